@@ -1,0 +1,173 @@
+#include "misfit/math/least_squares.h"
+
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace misfit {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Ceres reports a failed linear solve through glog whatever its own logging options say; what matters of it is in Summary::message.
+void silence_glog() {
+  static std::once_flag once;
+  std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
+}
+
+bool all_finite(const double* values, std::size_t count) {
+  return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
+}
+
+// Wraps an Evaluate whose sizes are known at run time only. A residual or derivative that is not finite is an evaluation failure.
+class RuntimeCost final : public ceres::CostFunction {
+ public:
+  RuntimeCost(const LeastSquares::Evaluate& evaluate, int residuals, const std::vector<int>& block_sizes) : evaluate_(&evaluate) {
+    set_num_residuals(residuals);
+    *mutable_parameter_block_sizes() = block_sizes;
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    if (!(*evaluate_)(parameters, residuals, jacobians)) return false;
+    const auto rows = static_cast<std::size_t>(num_residuals());
+    if (!all_finite(residuals, rows)) return false;
+    if (jacobians == nullptr) return true;
+    for (std::size_t b = 0; b < parameter_block_sizes().size(); ++b) {
+      const auto columns = static_cast<std::size_t>(parameter_block_sizes()[b]);
+      if (jacobians[b] != nullptr && !all_finite(jacobians[b], rows * columns)) return false;
+    }
+    return true;
+  }
+
+ private:
+  const LeastSquares::Evaluate* evaluate_;  // owned by LeastSquares, which outlives the solve
+};
+
+std::unique_ptr<ceres::LossFunction> make_loss(LeastSquares::Loss loss, double scale) {
+  switch (loss) {
+    case LeastSquares::Loss::none:
+      return nullptr;
+    case LeastSquares::Loss::huber:
+      return std::make_unique<ceres::HuberLoss>(scale);
+    case LeastSquares::Loss::cauchy:
+      return std::make_unique<ceres::CauchyLoss>(scale);
+    case LeastSquares::Loss::tukey:
+      return std::make_unique<ceres::TukeyLoss>(scale);
+  }
+  return nullptr;
+}
+
+// QR keeps the digits that forming J'J loses, and costs nothing on small problems; on large ones J'J is twice as fast.
+ceres::LinearSolverType choose_linear_solver(bool sparse, std::size_t residuals, std::size_t columns) {
+  constexpr std::size_t small = 20000;  // entries of the Jacobian
+  if (sparse) return ceres::SPARSE_NORMAL_CHOLESKY;
+  return residuals * columns <= small ? ceres::DENSE_QR : ceres::DENSE_NORMAL_CHOLESKY;
+}
+
+ceres::Solver::Options to_ceres(const LeastSquares::Options& options, std::size_t residuals, std::size_t columns) {
+  ceres::Solver::Options to;
+  to.minimizer_type = ceres::TRUST_REGION;
+  to.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+  to.max_num_iterations = options.max_iterations;
+  to.function_tolerance = options.function_tolerance;
+  to.gradient_tolerance = options.gradient_tolerance;
+  to.parameter_tolerance = options.parameter_tolerance;
+  to.initial_trust_region_radius = options.initial_radius;
+  to.max_trust_region_radius = std::max(to.max_trust_region_radius, options.initial_radius);
+  to.linear_solver_type = choose_linear_solver(options.sparse, residuals, columns);
+  to.dense_linear_algebra_library_type = ceres::EIGEN;
+  to.num_threads = 1;  // more than one changes the last digits
+  to.logging_type = ceres::SILENT;
+  to.minimizer_progress_to_stdout = false;
+  return to;
+}
+
+// Why a block cannot be a start; empty if it can. Ceres would say it with addresses.
+std::string infeasible(std::size_t number, const std::vector<double>& values, const std::vector<double>& lower,
+                       const std::vector<double>& upper) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::ostringstream text;
+    text << "block " << number << ", entry " << i << ": start " << values[i];
+    if (!std::isfinite(values[i])) return text.str() + " is not finite";
+    text << " is outside its bounds [" << lower[i] << ", " << upper[i] << "], or these are empty";
+    if (!(lower[i] < upper[i]) || values[i] < lower[i] || values[i] > upper[i]) return text.str();
+  }
+  return {};
+}
+
+}  // namespace
+
+int LeastSquares::add_block(std::vector<double> values, std::vector<double> lower, std::vector<double> upper) {
+  if (values.empty()) throw std::invalid_argument("LeastSquares::add_block: an empty block");
+  if (lower.empty()) lower.assign(values.size(), -infinity);
+  if (upper.empty()) upper.assign(values.size(), infinity);
+  if (lower.size() != values.size() || upper.size() != values.size()) {
+    throw std::invalid_argument("LeastSquares::add_block: bounds and values differ in length");
+  }
+  blocks_.push_back({std::move(values), std::move(lower), std::move(upper), false});
+  return static_cast<int>(blocks_.size()) - 1;
+}
+
+void LeastSquares::fix_block(int block) { blocks_.at(static_cast<std::size_t>(block)).fixed = true; }
+
+void LeastSquares::add_residuals(std::vector<int> blocks, int residuals, Evaluate evaluate, Loss loss, double scale) {
+  if (residuals < 1 || blocks.empty()) throw std::invalid_argument("LeastSquares::add_residuals: no residuals or no blocks");
+  if (loss != Loss::none && !(scale > 0.0)) throw std::invalid_argument("LeastSquares::add_residuals: the loss' width must be positive");
+  for (const int b : blocks) static_cast<void>(blocks_.at(static_cast<std::size_t>(b)));
+  residuals_.push_back({std::move(blocks), residuals, std::move(evaluate), loss, scale});
+}
+
+LeastSquares::Summary LeastSquares::solve(const Options& options) {
+  silence_glog();
+  Summary result;
+  result.cost = std::numeric_limits<double>::quiet_NaN();
+  ceres::Problem problem;
+  std::size_t columns = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    Block& block = blocks_[b];
+    if (!block.fixed) result.message = infeasible(b, block.values, block.lower, block.upper);
+    if (!result.message.empty()) return result;
+    problem.AddParameterBlock(block.values.data(), static_cast<int>(block.values.size()));
+    if (block.fixed) {
+      problem.SetParameterBlockConstant(block.values.data());
+      continue;
+    }
+    columns += block.values.size();
+    for (std::size_t i = 0; i < block.values.size(); ++i) {
+      if (block.lower[i] > -infinity) problem.SetParameterLowerBound(block.values.data(), static_cast<int>(i), block.lower[i]);
+      if (block.upper[i] < infinity) problem.SetParameterUpperBound(block.values.data(), static_cast<int>(i), block.upper[i]);
+    }
+  }
+  std::size_t rows = 0;
+  for (const Residuals& term : residuals_) {
+    std::vector<int> sizes;
+    std::vector<double*> pointers;
+    for (const int b : term.blocks) {
+      Block& block = blocks_[static_cast<std::size_t>(b)];
+      sizes.push_back(static_cast<int>(block.values.size()));
+      pointers.push_back(block.values.data());
+    }
+    auto cost = std::make_unique<RuntimeCost>(term.evaluate, term.count, sizes);
+    problem.AddResidualBlock(cost.release(), make_loss(term.loss, term.scale).release(), pointers);  // the problem owns both
+    rows += static_cast<std::size_t>(term.count);
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(to_ceres(options, rows, columns), &problem, &summary);
+  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  result.usable = summary.IsSolutionUsable();
+  result.message = summary.message;
+  if (result.usable) result.cost = summary.final_cost;
+  result.linearisations = std::max(0, summary.num_jacobian_evaluations);
+  result.iterations = std::max(0, result.linearisations - 1);
+  return result;
+}
+
+}  // namespace misfit
