@@ -1,0 +1,56 @@
+# misfit_layer(NAME LINKS layers and packages… [PRIVATE packages…]): one folder of lib/misfit = one static library misfit_NAME.
+# A folder of headers alone becomes an interface library, whose PRIVATE packages are left out.
+add_library(misfit_options INTERFACE)
+add_library(misfit::options ALIAS misfit_options)
+target_compile_features(misfit_options INTERFACE cxx_std_20)
+target_compile_options(misfit_options INTERFACE
+  $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
+  $<$<BOOL:${MISFIT_WERROR}>:$<BUILD_INTERFACE:-Werror>>)
+set_target_properties(misfit_options PROPERTIES EXPORT_NAME options)
+
+# One set of precompiled headers for all layers: what most files include anyway. A file still includes what it uses (the asan preset builds without).
+set(MISFIT_PCH_HEADERS <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <sstream> <string>
+  <string_view> <unordered_map> <utility> <variant> <vector> <Eigen/Dense>)
+if(MISFIT_PCH)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/misfit_pch.cpp CONTENT "// Only owns the precompiled headers of the layers.\n")
+  add_library(misfit_pch OBJECT ${PROJECT_BINARY_DIR}/misfit_pch.cpp)
+  target_link_libraries(misfit_pch PRIVATE misfit_options Eigen3::Eigen)
+  target_precompile_headers(misfit_pch PRIVATE ${MISFIT_PCH_HEADERS})
+endif()
+
+# Lets a static library of this project use the precompiled headers, if they are on.
+function(misfit_use_pch target)
+  if(MISFIT_PCH)
+    target_precompile_headers(${target} REUSE_FROM misfit_pch)
+  endif()
+endfunction()
+
+set(MISFIT_LAYERS "" CACHE INTERNAL "")
+function(misfit_layer name)
+  cmake_parse_arguments(arg "" "" "LINKS;PRIVATE" ${ARGN})
+  set(links misfit_options)
+  foreach(item IN LISTS arg_LINKS)
+    if(TARGET misfit_${item})
+      list(APPEND links misfit_${item})
+    else()
+      list(APPEND links ${item})
+    endif()
+  endforeach()
+
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/misfit/${name}/*.cpp)
+  if(sources)
+    set(scope PUBLIC)
+    add_library(misfit_${name} STATIC ${sources})
+    target_link_libraries(misfit_${name} PRIVATE ${arg_PRIVATE})
+    misfit_use_pch(misfit_${name})
+  else()
+    set(scope INTERFACE)
+    add_library(misfit_${name} INTERFACE)
+  endif()
+  add_library(misfit::${name} ALIAS misfit_${name})
+  target_link_libraries(misfit_${name} ${scope} ${links})
+  target_include_directories(misfit_${name} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/lib> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  set_target_properties(misfit_${name} PROPERTIES EXPORT_NAME ${name})
+  set(MISFIT_LAYERS "${MISFIT_LAYERS};${name}" CACHE INTERNAL "")
+endfunction()
