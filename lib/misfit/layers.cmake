@@ -8,7 +8,7 @@ target_compile_options(misfit_options INTERFACE
   $<$<BOOL:${MISFIT_WERROR}>:$<BUILD_INTERFACE:-Werror>>)
 set_target_properties(misfit_options PROPERTIES EXPORT_NAME options)
 
-# One set of precompiled headers for all layers: what most files include anyway. A file still includes what it uses (the asan preset builds without).
+# One set of precompiled headers for all layers: what most files include anyway. A file still includes what it uses (clang-tidy reads them without).
 set(MISFIT_PCH_HEADERS <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <sstream> <string>
   <string_view> <unordered_map> <utility> <variant> <vector> <Eigen/Dense>)
 if(MISFIT_PCH)
