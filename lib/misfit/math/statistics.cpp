@@ -1,0 +1,52 @@
+#include "misfit/math/statistics.h"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <limits>
+
+namespace misfit {
+namespace {
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+}  // namespace
+
+double median(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  if (values.empty()) return nan_value;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+double mad_sigma(const std::vector<double>& values) {
+  const double centre = median(values);
+  std::vector<double> deviations;
+  deviations.reserve(values.size());
+  for (const double v : values) deviations.push_back(std::abs(v - centre));
+  return 1.482602218505602 * median(std::move(deviations));
+}
+
+double chi_square_tail(double x, double dof) {
+  if (std::isnan(x)) return nan_value;
+  if (x <= 0.0) return 1.0;
+  if (std::isinf(x)) return 0.0;
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), x));
+}
+
+double f_tail(double x, double dof1, double dof2) {
+  if (std::isnan(x)) return nan_value;
+  if (x <= 0.0) return 1.0;
+  if (std::isinf(x)) return 0.0;
+  return boost::math::cdf(boost::math::complement(boost::math::fisher_f(dof1, dof2), x));
+}
+
+double normal_quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }
+
+double normal_tail(double x) { return 0.5 * std::erfc(x / std::sqrt(2.0)); }
+
+double sidak(double p, double count) { return p >= 1.0 ? 1.0 : -std::expm1(count * std::log1p(-p)); }
+
+}  // namespace misfit

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+namespace misfit {
+
+/// Median of the finite values; the mean of the middle two for an even count. NaN if there is none.
+[[nodiscard]] double median(std::vector<double> values);
+
+/// Robust standard deviation about the median: 1.4826 × median |x − median(x)|, which is sigma for normal x and unmoved by up to half of
+/// the values being wild. Values that are not finite are passed over; NaN if there is none.
+[[nodiscard]] double mad_sigma(const std::vector<double>& values);
+
+/// P(chi² with `dof` > 0 degrees of freedom > x); 1 for x ≤ 0, NaN for NaN. Accurate in the far tail (to about 1e-300).
+[[nodiscard]] double chi_square_tail(double x, double dof);
+
+/// P(F with (dof1, dof2) degrees of freedom > x), both > 0; 1 for x ≤ 0, NaN for NaN.
+[[nodiscard]] double f_tail(double x, double dof1, double dof2);
+
+/// The standard normal's quantile: x with P(z < x) = p, 0 < p < 1.
+[[nodiscard]] double normal_quantile(double p);
+
+/// P(z > x) for a standard normal z.
+[[nodiscard]] double normal_tail(double x);
+
+/// p-value of the best of `count` ≥ 1 independent tests whose own p-value is `p`: 1 − (1 − p)^count (Šidák), exact for tiny p.
+[[nodiscard]] double sidak(double p, double count);
+
+}  // namespace misfit
