@@ -1,0 +1,245 @@
+#include "misfit/core/config.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "misfit/core/files.h"
+#include "misfit/core/units.h"
+
+namespace misfit::config {
+
+/// One table of the document. Children are kept, so that all views of one table share their notes.
+struct Section::State {
+  std::shared_ptr<const toml::table> root;  ///< keeps `table` alive
+  const toml::table* table = nullptr;
+  std::string file;
+  std::string path;  ///< "" at the top
+  Source where;
+  std::vector<std::string> asked;  ///< keys that a reader knows, in order of asking
+  std::set<std::string> read;      ///< of these, those that stand in the file
+  std::map<std::string, std::shared_ptr<State>> children;
+
+  const toml::node* node(std::string_view key) const { return table->get(key); }
+
+  /// The node of `key`, noted as read; nullptr if absent.
+  const toml::node* take(std::string_view key) {
+    if (std::find(asked.begin(), asked.end(), key) == asked.end()) asked.emplace_back(key);
+    const toml::node* found = node(key);
+    if (found) read.emplace(key);
+    return found;
+  }
+
+  std::string full(std::string_view key) const { return path.empty() ? std::string(key) : path + "." + std::string(key); }
+
+  Source place(const toml::source_region& region) const {
+    return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+  }
+
+  std::shared_ptr<State> child(const std::string& name, const toml::table& of, const Source& at) {
+    std::shared_ptr<State>& slot = children[name];
+    if (!slot) slot = std::make_shared<State>(State{root, &of, file, full(name), at, {}, {}, {}});
+    return slot;
+  }
+
+  [[noreturn]] void fail(std::string_view key, const toml::node& node, const std::string& expected) const {
+    std::ostringstream text;
+    node.visit([&text](const auto& value) { text << value; });  // as TOML
+    std::string shown = text.str();
+    std::replace(shown.begin(), shown.end(), '\n', ' ');
+    if (shown.size() > 60) shown = shown.substr(0, 57) + "...";
+    throw InputError(place(node.source()), full(key) + " = " + shown + ": " + expected);
+  }
+};
+
+namespace {
+
+/// A number, or a string "24 in", in `unit`. InputError (without place) saying what is wrong.
+double number_of(const toml::node& node, std::string_view unit) {
+  const std::string wanted = unit.empty() ? "" : " in '" + std::string(unit) + "'";
+  double value = 0.0;
+  if (node.is_integer() || node.is_floating_point()) {
+    value = *node.value<double>();
+  } else if (node.is_string()) {
+    const Quantity quantity = parse_quantity(node.as_string()->get());
+    value = quantity.value;
+    if (!quantity.unit.empty()) value = convert(quantity.value / parse_unit(quantity.unit).to_si, quantity.unit, unit);
+  } else {
+    throw InputError("a number" + wanted + " is expected, as 0.5 or \"0.5 " + std::string(unit) + "\"");
+  }
+  if (!std::isfinite(value)) throw InputError("a finite number" + wanted + " is expected");
+  return value;
+}
+
+toml::table parse_document(std::string_view text, const std::string& name) {
+  try {
+    return toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    const auto& begin = error.source().begin;
+    throw InputError({name, static_cast<int>(begin.line), static_cast<int>(begin.column)},
+                     "not valid TOML: " + std::string(error.description()));
+  }
+}
+
+}  // namespace
+
+Section Section::load(const std::filesystem::path& path) { return parse(read_file(path), path.string()); }
+
+Section Section::parse(std::string_view text, const std::string& name) {
+  auto root = std::make_shared<const toml::table>(parse_document(text, name));
+  const toml::table* table = root.get();
+  return Section(std::make_shared<State>(State{std::move(root), table, name, "", {name, 0, 0}, {}, {}, {}}));
+}
+
+bool Section::has(std::string_view key) const { return state_->node(key) != nullptr; }
+
+std::vector<std::string> Section::keys() const {
+  std::vector<std::pair<toml::source_position, std::string>> found;
+  for (const auto& [key, node] : *state_->table) found.emplace_back(key.source().begin, std::string(key.str()));
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> out;
+  for (auto& [position, key] : found) out.push_back(std::move(key));
+  return out;
+}
+
+Source Section::where(std::string_view key) const {
+  for (const auto& [name, node] : *state_->table) {
+    if (name.str() == key) return state_->place(name.source());
+  }
+  return state_->where;
+}
+
+Source Section::where() const { return state_->where; }
+std::string Section::path() const { return state_->path; }
+std::filesystem::path Section::file() const { return state_->file; }
+
+std::optional<Number> Section::number(std::string_view key, std::string_view unit, bool sigma_allowed) const {
+  const toml::node* node = state_->take(key);
+  if (!node) return std::nullopt;
+  Number out;
+  out.unit = unit;
+  out.where = where(key);
+  if (sigma_allowed && node->is_table()) {
+    const Section parts = *table(key);
+    const auto value = parts.number("value", unit);
+    const auto sigma = parts.number("sigma", unit);
+    parts.finish();
+    if (!value) state_->fail(key, *node, "{ value = …, sigma = … } needs a value");
+    if (sigma && sigma->value <= 0.0) parts.fail("sigma", "must be above 0; leave it out where it is not known");
+    out.value = value->value;
+    if (sigma) out.sigma = sigma->value;
+    return out;
+  }
+  try {
+    out.value = number_of(*node, unit);
+  } catch (const InputError& error) {
+    state_->fail(key, *node, error.what() + std::string(sigma_allowed && !node->is_string() ? ", or { value = …, sigma = … }" : ""));
+  }
+  return out;
+}
+
+std::optional<bool> Section::flag(std::string_view key) const {
+  const toml::node* node = state_->take(key);
+  if (!node) return std::nullopt;
+  if (!node->is_boolean()) state_->fail(key, *node, "true or false is expected");
+  return node->as_boolean()->get();
+}
+
+std::optional<long> Section::integer(std::string_view key, long least, long most) const {
+  const toml::node* node = state_->take(key);
+  if (!node) return std::nullopt;
+  const bool fits = node->is_integer() && node->as_integer()->get() >= least && node->as_integer()->get() <= most;
+  if (!fits) state_->fail(key, *node, "a whole number from " + std::to_string(least) + " to " + std::to_string(most) + " is expected");
+  return static_cast<long>(node->as_integer()->get());
+}
+
+std::optional<std::string> Section::text(std::string_view key) const {
+  const toml::node* node = state_->take(key);
+  if (!node) return std::nullopt;
+  if (!node->is_string()) state_->fail(key, *node, "a text in quotation marks is expected");
+  return node->as_string()->get();
+}
+
+std::optional<std::string> Section::choice(std::string_view key, const std::vector<std::string>& allowed) const {
+  const auto chosen = text(key);
+  if (chosen && std::find(allowed.begin(), allowed.end(), *chosen) == allowed.end()) {
+    state_->fail(key, *state_->node(key), "not one of the choices" + suggest(*chosen, allowed));
+  }
+  return chosen;
+}
+
+std::optional<std::vector<double>> Section::numbers(std::string_view key, std::string_view unit) const {
+  const toml::node* node = state_->take(key);
+  if (!node) return std::nullopt;
+  if (!node->is_array()) state_->fail(key, *node, "an array of numbers is expected, as [0, 0.5, 1]");
+  std::vector<double> out;
+  for (const toml::node& element : *node->as_array()) {
+    try {
+      out.push_back(number_of(element, unit));
+    } catch (const InputError& error) {
+      state_->fail(std::string(key) + "[" + std::to_string(out.size()) + "]", element, error.what());
+    }
+  }
+  return out;
+}
+
+std::optional<std::vector<std::string>> Section::texts(std::string_view key) const {
+  const toml::node* node = state_->take(key);
+  if (!node) return std::nullopt;
+  if (!node->is_array()) state_->fail(key, *node, "an array of texts is expected, as [\"a\", \"b\"]");
+  std::vector<std::string> out;
+  for (const toml::node& element : *node->as_array()) {
+    const std::string name = std::string(key) + "[" + std::to_string(out.size()) + "]";
+    if (!element.is_string()) state_->fail(name, element, "a text in quotation marks is expected");
+    out.push_back(element.as_string()->get());
+  }
+  return out;
+}
+
+std::optional<Section> Section::table(std::string_view key) const {
+  const toml::node* node = state_->take(key);
+  if (!node) return std::nullopt;
+  if (!node->is_table()) state_->fail(key, *node, "a table is expected, as { … }");
+  return Section(state_->child(std::string(key), *node->as_table(), where(key)));
+}
+
+std::vector<Section> Section::tables(std::string_view key) const {
+  const toml::node* node = state_->take(key);
+  if (!node) return {};
+  if (node->is_table()) return {*table(key)};
+  if (!node->is_array()) state_->fail(key, *node, "a table or an array of tables is expected, as [[" + state_->full(key) + "]]");
+  std::vector<Section> out;
+  for (const toml::node& element : *node->as_array()) {
+    const std::string name = std::string(key) + "[" + std::to_string(out.size()) + "]";
+    if (!element.is_table()) state_->fail(name, element, "a table is expected, as { … }");
+    out.push_back(Section(state_->child(name, *element.as_table(), state_->place(element.source()))));
+  }
+  return out;
+}
+
+bool Section::is_text(std::string_view key) const { return has(key) && state_->node(key)->is_string(); }
+bool Section::is_number(std::string_view key) const { return has(key) && state_->node(key)->is_number(); }
+bool Section::is_table(std::string_view key) const { return has(key) && state_->node(key)->is_table(); }
+bool Section::is_array(std::string_view key) const { return has(key) && state_->node(key)->is_array(); }
+bool Section::is_flag(std::string_view key) const { return has(key) && state_->node(key)->is_boolean(); }
+
+void Section::finish() const {
+  for (const std::string& key : keys()) {
+    if (state_->read.count(key) > 0) continue;
+    const std::string what = state_->node(key)->is_table() && state_->path.empty() ? "unknown section [" : "unknown key '";
+    const std::string end = what.back() == '[' ? "]" : "'";
+    const std::string inside = state_->path.empty() ? "" : " in [" + state_->path + "]";
+    throw InputError(where(key), what + key + end + inside + suggest(key, state_->asked));
+  }
+}
+
+void Section::fail(std::string_view key, const std::string& message) const {
+  const std::string path = key.empty() ? state_->path : state_->full(key);
+  throw InputError(where(key), path.empty() ? message : path + ": " + message);
+}
+
+}  // namespace misfit::config

@@ -1,0 +1,138 @@
+#include "misfit/core/files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <vector>
+
+#include "misfit/core/error.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string system_message(int code) { return std::generic_category().message(code); }
+
+std::string no_such_file(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return path.string() + ": no such file: the folder " + folder.string() + " does not exist";
+  std::vector<std::string> names;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    names.push_back(it->path().filename().string());
+  const std::string nearest = nearest_name(path.filename().string(), names);
+  return path.string() + ": no such file" + (nearest.empty() ? "" : " — did you mean '" + nearest + "'?");
+}
+
+/// A file descriptor that is closed at the end of its scope. `close()` reports errors (a full disk may show only there).
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int number() const { return number_; }
+  int close() {
+    const int result = ::close(number_);
+    number_ = -1;
+    return result == 0 ? 0 : errno;
+  }
+
+ private:
+  int number_;
+};
+
+/// 0, or the errno of the first write that failed.
+int write_all(int descriptor, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t n = ::write(descriptor, content.data(), content.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return errno;
+    if (n == 0) return ENOSPC;
+    content.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return 0;
+}
+
+/// Writes `content` to the new file `path` and flushes it to the device; 0 or errno.
+int write_new_file(const fs::path& path, std::string_view content) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (file.number() < 0) return errno;
+  if (const int error = write_all(file.number(), content)) return error;
+  // Pipes and some network folders cannot flush (EINVAL): that is no loss of data.
+  if (::fsync(file.number()) != 0 && errno != EINVAL) return errno;
+  return file.close();
+}
+
+/// Unique among threads and processes of this machine, hidden, in the same folder (so that rename cannot cross devices).
+fs::path temporary_name(const fs::path& path) {
+  static std::atomic<unsigned> counter{0};
+  const unsigned number = counter++;
+  return path.parent_path() / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), number);
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.number() < 0 && (errno == ENOENT || errno == ENOTDIR)) throw InputError(no_such_file(path));
+  if (file.number() < 0) throw InputError(path.string() + ": cannot be read: " + system_message(errno));
+  struct stat status {};
+  if (::fstat(file.number(), &status) == 0 && S_ISDIR(status.st_mode)) throw InputError(path.string() + ": is a folder, a file is needed");
+  std::string content;
+  if (status.st_size > 0) content.reserve(static_cast<std::size_t>(status.st_size));
+  std::vector<char> buffer(1 << 16);
+  for (;;) {
+    const ssize_t n = ::read(file.number(), buffer.data(), buffer.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw InputError(path.string() + ": cannot be read: " + system_message(errno));
+    if (n == 0) return content;
+    content.append(buffer.data(), static_cast<std::size_t>(n));
+  }
+}
+
+void write_atomically(const fs::path& path, std::string_view content) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw RunError(path.string() + ": cannot be written: it is a folder");
+  const fs::path temporary = temporary_name(path);
+  int error = write_new_file(temporary, content);
+  if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
+  if (error == 0) return;
+  fs::remove(temporary, ignored);
+  throw RunError(path.string() + ": cannot be written: " + system_message(error));
+}
+
+void make_writable_folder(const fs::path& dir) {
+  std::error_code error;
+  fs::create_directories(dir, error);
+  if (error) throw InputError(dir.string() + ": the folder cannot be made: " + error.message());
+  if (!fs::is_directory(dir, error)) throw InputError(dir.string() + ": is a file, a folder is needed");
+  const fs::path probe = temporary_name(dir / "probe");
+  const int failure = write_new_file(probe, "");
+  fs::remove(probe, error);
+  if (failure != 0) throw InputError(dir.string() + ": the folder cannot be written to: " + system_message(failure));
+}
+
+std::string hash_text(std::string_view content) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : content) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= 1099511628211ULL;
+  }
+  std::string out(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) out[i] = "0123456789abcdef"[hash & 15U];
+  return out;
+}
+
+std::string hash_file(const fs::path& path) { return hash_text(read_file(path)); }
+
+}  // namespace misfit

@@ -1,0 +1,42 @@
+#include "misfit/core/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+
+namespace misfit {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds between_lines{200};
+constexpr const char* clear_line = "\r\033[K";
+
+std::string time_left(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s left", std::ceil(seconds));
+  if (seconds < 5400.0) return fmt::format("{:.0f} min left", std::ceil(seconds / 60.0));
+  return fmt::format("{:.1f} h left", seconds / 3600.0);
+}
+
+}  // namespace
+
+Progress::Progress(std::string what, bool quiet)
+    : what_(std::move(what)), visible_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_ - between_lines) {}
+
+Progress::~Progress() {
+  if (visible_) fmt::print(stderr, "{}", clear_line);
+}
+
+void Progress::update(std::size_t done, std::size_t total) {
+  if (!visible_ || total == 0) return;
+  const auto now = Clock::now();
+  if (now - last_ < between_lines && done < total) return;
+  last_ = now;
+  const double part = static_cast<double>(done) / static_cast<double>(total);
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const std::string left = done == 0 ? "" : "  " + time_left(elapsed * (1.0 - part) / part);
+  fmt::print(stderr, "{}{}  {:.0f} %{}", clear_line, what_, std::floor(100.0 * part), left);
+  std::fflush(stderr);
+}
+
+}  // namespace misfit

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace misfit {
+
+/// One entry of run.json.
+struct StageRecord {
+  std::string stage;                          ///< "calibrate", "fit/output_error"
+  std::string command;                        ///< command line that made it
+  std::map<std::string, std::string> inputs;  ///< name → hash (files, and "settings" for the part of the study it depends on)
+  std::vector<std::string> outputs;           ///< paths relative to the run folder
+  double seconds = 0.0;
+  std::string version = {}, commit = {};      ///< of the program that made it: filled by RunFolder::record
+};
+
+/// The output folder of a study. run.json is rewritten (atomically) after every stage.
+class RunFolder {
+ public:
+  /// Makes the folder and reads run.json if there is one (an unreadable one is treated as absent, said on stderr).
+  RunFolder(std::filesystem::path dir, std::string command, unsigned long seed);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return dir_; }
+  [[nodiscard]] std::filesystem::path file(const std::string& name) const { return dir_ / name; }
+
+  /// True if `stage` ran before with exactly these inputs and the same program version and commit, and all its outputs are still there.
+  [[nodiscard]] bool up_to_date(const std::string& stage, const std::map<std::string, std::string>& inputs) const;
+  void record(const StageRecord& record);
+  [[nodiscard]] const std::map<std::string, StageRecord>& stages() const { return stages_; }
+
+ private:
+  void write() const;
+  std::filesystem::path dir_;
+  std::string command_;
+  unsigned long seed_;
+  std::map<std::string, StageRecord> stages_;
+};
+
+}  // namespace misfit

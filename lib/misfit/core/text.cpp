@@ -1,0 +1,101 @@
+#include "misfit/core/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace misfit {
+namespace {
+
+/// Code points of a UTF-8 text: the bytes that do not continue another.
+std::size_t code_points(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+/// Decimal exponent of the first digit of |x| > 0 once it is rounded to `digits` digits: 0.0996 with two digits is 0.10, so -1.
+int rounded_exponent(double x, int digits) {
+  const std::string text = fmt::format("{:.{}e}", std::abs(x), digits - 1);
+  return std::atoi(text.c_str() + text.find('e') + 1);
+}
+
+/// Fixed notation with `decimals` places; a negative number of places rounds to tens, hundreds, …
+std::string fixed(double x, int decimals) {
+  double rounded = x;
+  if (decimals < 0) {
+    const double step = std::pow(10.0, -decimals);
+    rounded = std::round(x / step) * step;
+  }
+  std::string text = fmt::format("{:.{}f}", rounded, std::max(decimals, 0));
+  if (text.starts_with('-') && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
+  return text;
+}
+
+void append_row(std::string& out, const std::vector<std::string>& cells, const std::vector<std::size_t>& width, const std::string& indent) {
+  std::string line = indent;
+  for (std::size_t j = 0; j < cells.size(); ++j) {
+    line += cells[j];
+    if (j + 1 < cells.size()) line += std::string(width[j] - code_points(cells[j]) + 2, ' ');
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  out += line + "\n";
+}
+
+}  // namespace
+
+std::string format_value(double value, double sigma) {
+  if (std::isnan(value)) return "not available";
+  if (!std::isfinite(sigma) || sigma <= 0.0 || !std::isfinite(value)) return fmt::format("{:.5g}", value);
+  const double size = std::max(std::abs(value), sigma);
+  const int exponent = rounded_exponent(size, 2);
+  const int decimals = 1 - rounded_exponent(sigma, 2);
+  if (exponent >= -4 && exponent < 6) return fixed(value, decimals) + " ± " + fixed(sigma, decimals);
+  const double scale = std::pow(10.0, exponent);
+  return fmt::format("({} ± {})e{}", fixed(value / scale, decimals + exponent), fixed(sigma / scale, decimals + exponent), exponent);
+}
+
+std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::string& indent) {
+  std::vector<std::size_t> width;
+  for (const auto& row : rows) {
+    if (row.size() > width.size()) width.resize(row.size(), 0);
+    for (std::size_t j = 0; j < row.size(); ++j) width[j] = std::max(width[j], code_points(row[j]));
+  }
+  std::string out;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    append_row(out, rows[i], width, indent);
+    if (i > 0) continue;
+    std::vector<std::string> rule;
+    for (std::size_t j = 0; j < rows[0].size(); ++j) rule.emplace_back(width[j], '-');
+    append_row(out, rule, width, indent);
+  }
+  return out;
+}
+
+std::string wrap_text(const std::string& text, std::size_t width, const std::string& indent) {
+  std::string out, line, word;
+  const auto end_line = [&] {
+    out += line.empty() ? "\n" : indent + line + "\n";
+    line.clear();
+  };
+  const auto end_word = [&] {
+    if (word.empty()) return;
+    const std::size_t needed = code_points(indent) + code_points(line) + 1 + code_points(word);
+    if (!line.empty() && needed > width) end_line();
+    line += (line.empty() ? "" : " ") + word;
+    word.clear();
+  };
+  for (const char c : text) {
+    if (c != ' ' && c != '\n') {
+      word += c;
+      continue;
+    }
+    end_word();
+    if (c == '\n') end_line();
+  }
+  end_word();
+  return line.empty() ? out : out + indent + line;
+}
+
+}  // namespace misfit

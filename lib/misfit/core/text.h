@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace misfit {
+
+/// `value ± sigma` with sigma to two significant digits and value to the same place: (12.0312, 0.21) → "12.03 ± 0.21". Without a positive
+/// finite sigma: five significant digits. NaN → "not available".
+[[nodiscard]] std::string format_value(double value, double sigma = 0.0);
+
+/// Pads columns so that they align (UTF-8 aware: counts code points); first row is the header, underlined. Numbers are not parsed: give strings.
+[[nodiscard]] std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::string& indent = "  ");
+
+/// Breaks at blanks to at most `width` code points.
+[[nodiscard]] std::string wrap_text(const std::string& text, std::size_t width = 100, const std::string& indent = "");
+
+}  // namespace misfit

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace misfit {
+
+/// A unit as factor to SI and exponents of (m, kg, s, A, K, px). Angles are dimensionless: rad = 1, deg = pi/180; so are
+/// "-", "" and "%" (0.01). No offsets: temperatures are differences or kelvin.
+struct Unit {
+  double to_si = 1.0;
+  std::array<int, 6> dimension{};
+  bool angle = false;  ///< rad or deg to the first power: kept only to choose the printed unit
+
+  [[nodiscard]] bool same_dimension(const Unit& other) const { return dimension == other.dimension; }
+};
+
+/// Parses "kg m^2", "px/m", "N m", "deg/s", "1/s", "m/s^2", "in", "Pa", "V". Factors are separated by blank, '*' or '·', a '/'
+/// divides by the ONE factor that follows it; powers are integers after '^' (also negative) or a digit ("m2").
+/// Known: m mm cm km in ft; kg g lb; s ms min h Hz; rad deg; N kN lbf; Pa kPa hPa bar psf psi; J W; A V mV Ohm; K; px pix pixel; - % 1.
+/// Throws InputError naming the unknown part and the nearest known unit.
+[[nodiscard]] Unit parse_unit(std::string_view text);
+
+/// A number with its unit, as written by a user: "24 in" → 0.6096 with dimension m. A bare number has an empty unit.
+struct Quantity {
+  double value = 0.0;  ///< in SI if `unit` was given, as written otherwise
+  std::string unit;    ///< as written; empty for a bare number
+};
+[[nodiscard]] Quantity parse_quantity(std::string_view text);
+
+/// `value` given in unit `from`, expressed in unit `to`. Throws InputError if the dimensions differ.
+[[nodiscard]] double convert(double value, std::string_view from, std::string_view to);
+
+/// The unit people like to read for a quantity whose inside unit is `si`: rad → deg, rad/s → deg/s, rad/s^2 → deg/s^2; else itself.
+[[nodiscard]] std::string display_unit(std::string_view si);
+
+}  // namespace misfit

@@ -1,0 +1,8 @@
+#pragma once
+
+namespace misfit {
+
+[[nodiscard]] const char* version();  ///< "0.1.0"
+[[nodiscard]] const char* commit();   ///< short commit of the build, "+" appended if the tree was changed; "unknown" outside git
+
+}  // namespace misfit

@@ -1,0 +1,107 @@
+#include "misfit/core/units.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "misfit/core/error.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit {
+namespace {
+
+using Dimension = std::array<int, 6>;
+
+TEST(ParseUnit, ReadsProductsQuotientsAndPowers) {
+  EXPECT_EQ(parse_unit("kg m^2").dimension, (Dimension{2, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(parse_unit("N m").dimension, parse_unit("J").dimension);
+  EXPECT_EQ(parse_unit("N*m").dimension, parse_unit("N·m").dimension);
+  EXPECT_EQ(parse_unit("px/m").dimension, (Dimension{-1, 0, 0, 0, 0, 1}));
+  EXPECT_EQ(parse_unit("1/s").dimension, parse_unit("Hz").dimension);
+  EXPECT_EQ(parse_unit("m2").dimension, (Dimension{2, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(parse_unit("s^-2").dimension, parse_unit("1/s^2").dimension);
+  EXPECT_EQ(parse_unit(" m / s ").dimension, parse_unit("m/s").dimension);
+}
+
+TEST(ParseUnit, DividesByTheOneFactorThatFollows) {
+  EXPECT_EQ(parse_unit("kg/m s").dimension, (Dimension{-1, 1, 1, 0, 0, 0}));
+  EXPECT_EQ(parse_unit("kg/m/s").dimension, (Dimension{-1, 1, -1, 0, 0, 0}));
+}
+
+TEST(ParseUnit, HasTheFactorsOfTheBooks) {
+  EXPECT_DOUBLE_EQ(parse_unit("in").to_si, 0.0254);
+  EXPECT_DOUBLE_EQ(parse_unit("deg").to_si, std::numbers::pi / 180.0);
+  EXPECT_NEAR(parse_unit("psf").to_si, 47.880258980336, 1e-11);  // NIST SP 811
+  EXPECT_NEAR(parse_unit("psi").to_si, 6894.757293168, 1e-8);    // NIST SP 811
+  EXPECT_NEAR(parse_unit("lbf").to_si, 4.4482216152605, 1e-13);  // NIST SP 811
+  EXPECT_DOUBLE_EQ(parse_unit("%").to_si, 0.01);
+  EXPECT_DOUBLE_EQ(parse_unit("ft^2").to_si, 0.3048 * 0.3048);
+}
+
+TEST(ParseUnit, RelatesElectricalUnits) {
+  EXPECT_EQ(parse_unit("V A").dimension, parse_unit("W").dimension);
+  EXPECT_EQ(parse_unit("V/A").dimension, parse_unit("Ohm").dimension);
+  EXPECT_DOUBLE_EQ(parse_unit("mV").to_si, 1e-3);
+}
+
+TEST(ParseUnit, TakesNothingAndADashAsDimensionless) {
+  for (const char* text : {"", "-", "%", "1", "rad", "deg"}) EXPECT_EQ(parse_unit(text).dimension, Dimension{}) << text;
+}
+
+TEST(ParseUnit, KnowsAnAngle) {
+  EXPECT_TRUE(parse_unit("deg").angle);
+  EXPECT_TRUE(parse_unit("rad/s").angle);
+  EXPECT_FALSE(parse_unit("rad^2").angle);
+  EXPECT_FALSE(parse_unit("N m/rad").angle);
+  EXPECT_FALSE(parse_unit("-").angle);
+}
+
+TEST(ParseUnit, NamesAnUnknownPartAndTheNearest) {
+  expect_parts(message_of<InputError>([] { (void)parse_unit("kgs m"); }), {"unknown unit 'kgs' in 'kgs m'", "did you mean 'kg'"});
+  expect_parts(message_of<InputError>([] { (void)parse_unit("§"); }), {"unknown unit '§'", "valid: m, mm"});
+}
+
+TEST(ParseUnit, RefusesWhatIsNotAUnit) {
+  for (const char* text : {"/s", "m/", "m//s", "m**s", "*m", "m^", "m^x", "m^99", "m^99999999999", "^2", "3 m"}) {
+    EXPECT_THROW((void)parse_unit(text), InputError) << text;
+  }
+}
+
+TEST(ParseQuantity, ReadsANumberWithItsUnit) {
+  const Quantity size = parse_quantity("24 in");
+  EXPECT_DOUBLE_EQ(size.value, 0.6096);
+  EXPECT_EQ(size.unit, "in");
+  EXPECT_DOUBLE_EQ(parse_quantity(" +1.5e3 Pa ").value, 1500.0);
+  EXPECT_DOUBLE_EQ(parse_quantity("-2deg").value, -2.0 * std::numbers::pi / 180.0);
+}
+
+TEST(ParseQuantity, LeavesABareNumberAsWritten) {
+  EXPECT_EQ(parse_quantity("24").value, 24.0);
+  EXPECT_EQ(parse_quantity("24").unit, "");
+}
+
+TEST(ParseQuantity, RefusesWhatIsNoFiniteNumber) {
+  for (const char* text : {"", "in", "inf m", "nan", "1e999 m", "+-3", "--3", "1.2.3 m", "1,5 m"}) {
+    EXPECT_THROW((void)parse_quantity(text), InputError) << text;
+  }
+}
+
+TEST(Convert, GoesBetweenUnitsOfOneDimension) {
+  EXPECT_NEAR(convert(180.0, "deg", "rad"), std::numbers::pi, 1e-15);
+  EXPECT_DOUBLE_EQ(convert(1.0, "ft", "in"), 12.0);
+  EXPECT_EQ(convert(0.1, "m", "m"), 0.1);
+}
+
+TEST(Convert, RefusesAnotherDimension) {
+  expect_parts(message_of<InputError>([] { (void)convert(24.0, "kg", "m"); }), {"'kg'", "'m'"});
+}
+
+TEST(DisplayUnit, ShowsAnglesInDegrees) {
+  EXPECT_EQ(display_unit("rad"), "deg");
+  EXPECT_EQ(display_unit("rad/s"), "deg/s");
+  EXPECT_EQ(display_unit("rad/s^2"), "deg/s^2");
+  EXPECT_EQ(display_unit("N m"), "N m");
+}
+
+}  // namespace
+}  // namespace misfit
