@@ -1,0 +1,424 @@
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+#include "misfit/model/model.h"
+
+namespace misfit {
+namespace {
+
+std::string with_unit(double value, const std::string& unit) { return format_value(value) + (unit == "-" ? "" : " " + unit); }
+
+/// Work in progress: the model and what is needed to fill it.
+class Assembler {
+ public:
+  Assembler(const ModelRequest& request, const Registry& registry) : request_(request), registry_(registry) {
+    const SystemType& type = registry.system(request.system, request.system_where);
+    for (const auto& [flag, value] : request.options.flags) {
+      if (std::find(type.flags.begin(), type.flags.end(), flag) == type.flags.end()) {
+        throw InputError(request.system_where, "system '" + request.system + "' has no option '" + flag + "'" + suggest(flag, type.flags));
+      }
+    }
+    model_.system = type.make(request.options);
+  }
+
+  Model run() {
+    add_constants();
+    name_coefficients();
+    for (std::size_t i = 0; i < request_.effects.size(); ++i) bind(i);
+    check_everything_used();
+    check_sizes();
+    return std::move(model_);
+  }
+
+  std::map<std::string, std::string> curves_without_knots() {
+    std::map<std::string, std::string> open;
+    name_coefficients();
+    for (std::size_t i = 0; i < request_.effects.size(); ++i) {
+      const auto& spec = effect(i).spec();
+      for (std::size_t c = 0; c < spec.coefficients.size(); ++c) {
+        const auto curve = curve_request(names_[i][c], spec.coefficients[c]);
+        if (curve && curve->knots.empty()) open[names_[i][c]] = curve->of;
+      }
+    }
+    return open;
+  }
+
+ private:
+  const SystemSpec& system() const { return model_.system->spec(); }
+  const Effect& effect(std::size_t i) const { return registry_.effect(request_.effects[i].kind, request_.effects[i].where); }
+
+  void add_constants() {
+    std::vector<std::string> names;
+    for (const auto& constant : system().constants) names.push_back(constant.name);
+    for (const auto& constant : system().constants) {
+      const auto given = request_.constants.find(constant.name);
+      if (given == request_.constants.end() && constant.required) {
+        throw InputError(request_.system_where, "[geometry] " + constant.name + " is missing: " + constant.doc + " [" + constant.unit + "]");
+      }
+      Parameter p{constant.name, constant.unit, constant.doc};
+      p.value = given == request_.constants.end() ? constant.value : given->second;
+      p.lower = constant.lower;
+      p.upper = constant.upper;
+      const auto where = request_.constants_where.find(constant.name);
+      check_bounds(p, where == request_.constants_where.end() ? Source{} : where->second);
+      p.scale = p.value != 0.0 ? std::abs(p.value) : 1.0;
+      const auto sigma = request_.constant_sigmas.find(constant.name);
+      if (sigma != request_.constant_sigmas.end()) p.prior_sigma = sigma->second;
+      p.prior_mean = p.value;
+      apply_request(p);
+      model_.parameters.push_back(p);
+    }
+  }
+
+  static void check_bounds(const Parameter& p, const Source& where) {
+    if (p.value >= p.lower && p.value <= p.upper) return;
+    throw InputError(where, p.name + " = " + with_unit(p.value, p.unit) + " is outside its bounds, " + with_unit(p.lower, p.unit) + " to " +
+                                with_unit(p.upper, p.unit));
+  }
+
+  void apply_request(Parameter& p) {
+    const auto found = request_.parameters.find(p.name);
+    if (found == request_.parameters.end()) return;
+    used_parameters_.insert(p.name);
+    const ParameterRequest& r = found->second;
+    if (r.lower) p.lower = *r.lower;
+    if (r.upper) p.upper = *r.upper;
+    if (r.value) p.value = *r.value;
+    if (r.free) p.free = *r.free;
+    if (r.sigma) p.prior_sigma = r.sigma;
+    p.prior_mean = p.value;
+    if (!(p.lower < p.upper)) throw InputError(r.where, "bounds of " + p.name + " must increase: [" + with_unit(p.lower, p.unit) + ", " + with_unit(p.upper, p.unit) + "]");
+    check_bounds(p, r.where);
+  }
+
+  /// Bare names where unique, EFFECT.NAME where two effects of the model would share one; a system may rename.
+  void name_coefficients() {
+    names_.clear();
+    std::map<std::string, int> uses;
+    for (std::size_t i = 0; i < request_.effects.size(); ++i) {
+      std::vector<std::string> own;
+      for (const auto& c : effect(i).spec().coefficients) {
+        const auto renamed = system().coefficient_names.find(c.name);
+        own.push_back(renamed == system().coefficient_names.end() ? c.name : renamed->second);
+        ++uses[own.back()];
+      }
+      names_.push_back(own);
+    }
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      for (auto& name : names_[i]) {
+        if (uses[name] > 1) name = request_.effects[i].name + "." + name;
+      }
+    }
+  }
+
+  std::optional<CurveRequest> curve_request(const std::string& name, const CoefficientSpec& spec) const {
+    const auto found = request_.curves.find(name);
+    if (found != request_.curves.end()) return found->second;
+    if (spec.curve_of[0] == '\0' || request_.parameters.contains(name)) return std::nullopt;
+    CurveRequest request;
+    request.of = spec.curve_of;
+    return request;
+  }
+
+  void bind(std::size_t i) {
+    const EffectRequest& request = request_.effects[i];
+    const EffectSpec& spec = effect(i).spec();
+    for (std::size_t j = 0; j < i; ++j) {
+      if (request_.effects[j].name == request.name) throw InputError(request.where, "effect '" + request.name + "' is named twice");
+    }
+    BoundEffect bound;
+    bound.effect = &effect(i);
+    bound.name = request.name;
+    check_roles(request, spec);
+    bind_ports(request, spec, bound);
+    for (const auto& role : spec.quantities) bound.quantities.push_back(bind_quantity(request, role, bound.kind));
+    for (const auto& name : spec.constants) bound.constants.push_back(bind_constant(request, name));
+    bound.first_state = static_cast<int>(model_.own_states.size());
+    for (const auto& state : spec.states) {
+      model_.own_states.push_back(state);
+      model_.own_state_names.push_back(request.name + "." + state.name);
+    }
+    for (std::size_t c = 0; c < spec.coefficients.size(); ++c) bound.coefficients.push_back(bind_coefficient(names_[i][c], spec.coefficients[c], request, bound.kind));
+    model_.effects.push_back(std::move(bound));
+  }
+
+  static void check_roles(const EffectRequest& request, const EffectSpec& spec) {
+    std::vector<std::string> valid;
+    for (const auto& role : spec.quantities) valid.emplace_back(role.name);
+    for (const auto& role : spec.ports) valid.emplace_back(role.name);
+    for (const auto& [role, target] : request.roles) {
+      if (std::find(valid.begin(), valid.end(), role) == valid.end()) {
+        throw InputError(request.where, "effect '" + request.name + "' (" + spec.key + ") has no role '" + role + "'" + suggest(role, valid));
+      }
+    }
+  }
+
+  /// The name a role stands for: as the study binds it, else itself if `exists`, else the system's default for the role.
+  template <class Exists>
+  std::string target_of(const EffectRequest& request, const Role& role, const Exists& exists) const {
+    const auto bound = request.roles.find(role.name);
+    if (bound != request.roles.end()) return bound->second;
+    if (exists(role.name)) return role.name;
+    const auto fallback = system().roles.find(role.name);
+    return fallback == system().roles.end() ? role.name : fallback->second;
+  }
+
+  struct Place {
+    PortKind kind;
+    int index;
+    std::string unit;
+  };
+  std::optional<Place> find_port(const std::string& name) const {
+    // Dynamic ports first: a quantity port may share the name of the quantity that it changes, never that of a dynamic port.
+    const auto search = [&](const auto& list, PortKind kind) -> std::optional<Place> {
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        if (list[i].name == name) return Place{kind, static_cast<int>(i), list[i].unit};
+      }
+      return std::nullopt;
+    };
+    if (auto place = search(system().dynamic_ports, PortKind::dynamic)) return place;
+    if (auto place = search(system().quantity_ports, PortKind::quantity)) return place;
+    if (auto place = search(system().outputs, PortKind::sensor)) return place;
+    if (name == "sample_time") return Place{PortKind::sensor, model_.outputs(), "s"};
+    return std::nullopt;
+  }
+  std::vector<std::string> port_names() const {
+    std::vector<std::string> names;
+    for (const auto& port : system().dynamic_ports) names.push_back(port.name);
+    for (const auto& port : system().quantity_ports) names.push_back(port.name);
+    for (const auto& output : system().outputs) names.push_back(output.name);
+    names.emplace_back("sample_time");
+    return names;
+  }
+
+  void bind_ports(const EffectRequest& request, const EffectSpec& spec, BoundEffect& bound) const {
+    bool first = true;
+    for (const auto& role : spec.ports) {
+      const std::string target = target_of(request, role, [&](const std::string& name) { return find_port(name).has_value(); });
+      const auto place = find_port(target);
+      if (!place) {
+        if (role.optional && !request.roles.contains(role.name)) {
+          bound.ports.push_back(-1);
+          continue;
+        }
+        throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no port '" + target + "'" + suggest(target, port_names()));
+      }
+      check_unit(request, role, "port '" + target + "'", place->unit);
+      if (!first && place->kind != bound.kind) {
+        throw InputError(request.where, "effect '" + request.name + "' cannot add to '" + target + "' beside its other ports: they are of different kinds");
+      }
+      bound.kind = place->kind;
+      first = false;
+      bound.ports.push_back(place->index);
+    }
+  }
+
+  static void check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit) {
+    if (role.unit[0] == '*') return;  // a generic role takes any unit
+    if (!parse_unit(role.unit).same_dimension(parse_unit(unit))) {
+      throw InputError(request.where, "effect '" + request.name + "': role '" + role.name + "' needs [" + role.unit + "], " + what + " has [" + unit + "]");
+    }
+  }
+
+  int bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const {
+    const std::string target = target_of(request, role, [&](const std::string& name) { return find_quantity(name) >= 0; });
+    const int index = find_quantity(target);
+    if (index < 0) {
+      if (role.optional && !request.roles.contains(role.name)) return -1;
+      throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no quantity '" + target + "'" + suggest(target, quantity_names()));
+    }
+    check_order(request.where, "effect '" + request.name + "'", target, index, kind);
+    const int own = static_cast<int>(system().quantities.size());
+    check_unit(request, role, "quantity '" + target + "'", index < own ? system().quantities[static_cast<std::size_t>(index)].unit : system().outputs[static_cast<std::size_t>(index - own)].unit);
+    return index;
+  }
+
+  /// Effects on quantity ports read base quantities only; only effects on sensors read predicted outputs (DESIGN 4, order of evaluation).
+  void check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const {
+    if (kind == PortKind::quantity && index >= system().base_quantities) {
+      throw InputError(where, who + " changes a quantity and so cannot read '" + target + "', which depends on such changes");
+    }
+    if (kind != PortKind::sensor && index >= static_cast<int>(system().quantities.size())) {
+      throw InputError(where, who + " cannot read the predicted output '" + target + "': only effects on sensors can");
+    }
+  }
+
+  int find_quantity(const std::string& name) const {
+    const auto& list = system().quantities;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (list[i].name == name) return static_cast<int>(i);
+    }
+    const auto& outputs = system().outputs;
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      if (outputs[i].name == name) return static_cast<int>(list.size() + i);
+    }
+    return -1;
+  }
+  std::vector<std::string> quantity_names() const {
+    std::vector<std::string> names;
+    for (const auto& quantity : system().quantities) names.push_back(quantity.name);
+    return names;
+  }
+
+  int bind_constant(const EffectRequest& request, const std::string& name) const {
+    const auto& constants = system().constants;
+    for (std::size_t i = 0; i < constants.size(); ++i) {
+      if (constants[i].name == name) return static_cast<int>(i);
+    }
+    throw InputError(request.where, "effect '" + request.name + "' needs '" + name + "', which system '" + system().key + "' does not have");
+  }
+
+  BoundCoefficient bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request, PortKind kind) {
+    const auto curve = curve_request(name, spec);
+    if (curve) return {-1, add_curve(name, spec, *curve, request, kind)};
+    if (spec.over_sine) throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"alpha_T\" }");
+    Parameter p{name, spec.unit, spec.doc};
+    p.value = spec.value;
+    p.lower = spec.lower;
+    p.upper = spec.upper;
+    p.scale = spec.scale;
+    p.free = true;
+    p.kind = spec.kind;
+    apply_request(p);
+    model_.parameters.push_back(p);
+    return {static_cast<int>(model_.parameters.size()) - 1, -1};
+  }
+
+  int add_curve(const std::string& name, const CoefficientSpec& spec, const CurveRequest& request, const EffectRequest& by, PortKind kind) {
+    used_curves_.insert(name);
+    if (request.of.empty()) throw InputError(request.where, "curve " + name + ": `of` must name a quantity" + suggest("", quantity_names()));
+    Curve curve;
+    curve.name = name;
+    curve.of = request.of;
+    curve.unit = spec.unit;
+    curve.quantity = find_quantity(request.of);
+    if (curve.quantity < 0) {
+      throw InputError(request.where, "curve " + name + ": system '" + system().key + "' has no quantity '" + request.of + "'" + suggest(request.of, quantity_names()));
+    }
+    check_order(request.where, "effect '" + by.name + "'", request.of, curve.quantity, kind);
+    const bool own = curve.quantity < static_cast<int>(system().quantities.size());
+    curve.of_unit = own ? system().quantities[static_cast<std::size_t>(curve.quantity)].unit : system().outputs[static_cast<std::size_t>(curve.quantity) - system().quantities.size()].unit;
+    curve.over_sine = spec.over_sine && own && !system().quantities[static_cast<std::size_t>(curve.quantity)].carries_sign;
+    curve.roughness = request.roughness;
+    curve.scale = spec.scale;
+    try {
+      curve.spline = CubicSpline(request.knots, spec.parity);
+    } catch (const InputError& error) {
+      throw InputError(request.where, "curve " + name + ": " + error.what());
+    }
+    curve.first = static_cast<int>(model_.parameters.size());
+    add_curve_parameters(curve, spec);
+    model_.curves.push_back(std::move(curve));
+    return static_cast<int>(model_.curves.size()) - 1;
+  }
+
+  void add_curve_parameters(const Curve& curve, const CoefficientSpec& spec) {
+    const auto request = request_.parameters.find(curve.name);
+    for (int i = 0; i < curve.spline.size(); ++i) {
+      Parameter p{curve.name + "[" + std::to_string(i) + "]", spec.unit, spec.doc};
+      p.value = spec.value;
+      p.lower = spec.lower;
+      p.upper = spec.upper;
+      p.scale = spec.scale;
+      p.free = true;
+      p.kind = spec.kind;
+      p.curve = static_cast<int>(model_.curves.size());
+      if (request != request_.parameters.end()) {
+        used_parameters_.insert(curve.name);
+        if (request->second.free) p.free = *request->second.free;
+        if (request->second.value) p.value = *request->second.value;
+      }
+      model_.parameters.push_back(p);
+    }
+  }
+
+  void check_everything_used() const {
+    std::vector<std::string> names, curves;
+    for (const auto& p : model_.parameters) {
+      if (p.curve < 0) names.push_back(p.name);
+    }
+    for (const auto& list : names_) curves.insert(curves.end(), list.begin(), list.end());
+    for (const auto& curve : model_.curves) names.push_back(curve.name);
+    for (const auto& [name, request] : request_.parameters) {
+      if (!used_parameters_.contains(name)) throw InputError(request.where, "[parameters]: the model has no parameter '" + name + "'" + suggest(name, names));
+    }
+    for (const auto& [name, request] : request_.curves) {
+      if (!used_curves_.contains(name)) throw InputError(request.where, "[curves]: the model has no coefficient '" + name + "'" + suggest(name, curves));
+    }
+  }
+
+  void check_sizes() const {
+    const auto limit = [&](std::size_t have, int most, const char* what) {
+      if (have > static_cast<std::size_t>(most)) throw InputError(request_.system_where, "the model has " + std::to_string(have) + " " + what + "; at most " + std::to_string(most) + " are possible");
+    };
+    limit(static_cast<std::size_t>(model_.states()), kMaxStates, "states");
+    limit(system().quantities.size() + system().outputs.size(), kMaxQuantities, "quantities");
+    limit(system().dynamic_ports.size() + model_.own_states.size(), kMaxPorts, "dynamic ports and own states");
+    limit(system().quantity_ports.size(), kMaxPorts, "quantity ports");
+    limit(system().inputs.size(), kMaxInputs, "inputs");
+    limit(system().outputs.size(), kMaxOutputs, "outputs");
+    limit(system().constants.size(), kMaxConstants, "constants");
+    limit(model_.free_parameters().size(), kMaxColumns, "free parameters");
+  }
+
+  const ModelRequest& request_;
+  const Registry& registry_;
+  Model model_;
+  std::vector<std::vector<std::string>> names_;
+  std::set<std::string> used_parameters_, used_curves_;
+};
+
+}  // namespace
+
+Model assemble(const ModelRequest& request, const Registry& registry) { return Assembler(request, registry).run(); }
+
+std::map<std::string, std::string> curves_without_knots(const ModelRequest& request, const Registry& registry) {
+  return Assembler(request, registry).curves_without_knots();
+}
+
+std::vector<double> Model::values() const {
+  std::vector<double> out;
+  for (const auto& p : parameters) out.push_back(p.value);
+  return out;
+}
+
+std::vector<int> Model::free_parameters() const {
+  std::vector<int> out;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].free) out.push_back(static_cast<int>(i));
+  }
+  return out;
+}
+
+int Model::find_parameter(const std::string& name) const {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+const Curve* Model::find_curve(const std::string& name) const {
+  for (const auto& curve : curves) {
+    if (curve.name == name) return &curve;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> Model::needed_inputs() const {
+  std::set<std::string> names;
+  const auto& quantities = system->spec().quantities;
+  const auto note = [&](int index) {
+    if (index < 0 || index >= static_cast<int>(quantities.size())) return;
+    for (const auto& input : quantities[static_cast<std::size_t>(index)].inputs) names.insert(input);
+  };
+  for (const auto& effect : effects) {
+    for (int index : effect.quantities) note(index);
+  }
+  for (const auto& curve : curves) note(curve.quantity);
+  return {names.begin(), names.end()};
+}
+
+}  // namespace misfit

@@ -1,0 +1,217 @@
+#pragma once
+
+// How to add an effect: one file models/<group>/<key>.cpp like models/parachute/pitch_damping.cpp, and one line in a study.
+//
+// What this interface cannot express: forces that depend on accelerations (declare them as a change of `inertia`, a quantity port), jumps of
+// the state, and memory without a finite state (a pure delay: use own states that approximate it).
+
+#include <array>
+#include <cstddef>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "misfit/math/bspline.h"
+#include "misfit/math/scalar.h"
+#include "misfit/model/limits.h"
+
+namespace misfit {
+
+class Registry;
+
+enum class CoefficientKind {
+  strength,  ///< 0 means off (all strengths 0: the effect adds nothing)
+  shape      ///< the rest: a frequency, a clock angle, a time constant. Off never sits at a singular shape
+};
+
+/// What an effect reads or writes, by role. A role is bound by the study, else to the quantity or port of the same name, else to the system's
+/// default for the role. An optional role that the system lacks reads 0 or is not written.
+struct Role {
+  const char* name = "";
+  const char* unit = "";
+  bool optional = false;
+};
+
+/// A number the effect owns; where the study says so, a curve of any quantity.
+struct CoefficientSpec {
+  const char* name = "";
+  CoefficientKind kind = CoefficientKind::strength;
+  double value = 0.0;  ///< start when the study gives none [unit]
+  const char* unit = "-";
+  double lower = 0.0, upper = 0.0;
+  double scale = 1.0;  ///< typical size [unit]: for steps, random starts and "how big is it"
+  const char* doc = "";
+  Parity parity = Parity::none;  ///< as a curve: symmetry about 0
+  const char* curve_of = "";     ///< default: a curve of this quantity unless the study gives a number; "" = a number
+  bool over_sine = false;        ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
+};
+
+/// Memory of an effect: z' = drift [unit/s], and if stochastic white noise of spectral density diffusion² is added.
+struct OwnStateSpec {
+  const char* name = "";
+  const char* unit = "-";
+  double initial = 0.0;
+};
+
+/// A worked example: all inputs given, outputs computed by hand or from a source. Every coefficient is non-zero in at least one.
+struct Example {
+  std::vector<double> constants, quantities, coefficients, states;
+  double t = 0.0;
+  std::vector<double> ports, drifts;  ///< expected
+  const char* source = "";
+};
+
+/// Everything the outside may know of an effect; views of the static declarations of its struct.
+struct EffectSpec {
+  std::string key, formula, symbols, valid, size, source, excludes;  ///< the six fixed lines ("Not" is `excludes`)
+  std::vector<Role> quantities, ports;
+  std::vector<std::string> constants;  ///< parameters of the system it reads as plain numbers
+  std::vector<CoefficientSpec> coefficients;
+  std::vector<OwnStateSpec> states;
+  std::string specialises;  ///< key of the generic effect it coincides with: that one is not proposed beside it
+  bool dissipative = false; ///< never adds power at the port's conjugate rate
+};
+
+/// What a formula sees. K is double when constants are fixed, T when one of them is free.
+template <class T, class K>
+struct Reads {
+  const T* q;  ///< quantities, order of `quantities`
+  const T* c;  ///< coefficients, order of `coefficients`
+  const T* z;  ///< own states, order of `states`
+  const K* k;  ///< constants, order of `constants`
+  double t;    ///< [s]
+};
+
+/// An effect behind a virtual call. Outputs are ordered ports first, then drifts of own states; they are set, not added.
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  [[nodiscard]] virtual const EffectSpec& spec() const = 0;
+  [[nodiscard]] virtual std::vector<Example> examples() const = 0;
+  virtual void evaluate(const Reads<double, double>& in, double* out) const = 0;
+  /// J: row-major outputs × (quantities + coefficients + own states [+ constants if `constants_too`]).
+  virtual void linearise(const Reads<double, double>& in, double* out, double* J, bool constants_too) const = 0;
+  /// Fastest rate of what it adds [1/s]: integrators keep rate × step < 0.5. 0: no demand.
+  [[nodiscard]] virtual double fastest_rate(const Reads<double, double>& in) const = 0;
+  /// Noise intensity of each own state [unit/sqrt(s)]; zeros for deterministic memory.
+  virtual void diffusion(const Reads<double, double>& in, double* out) const = 0;
+};
+
+/// Turns a struct with a templated formula into an Effect. Required: `static constexpr` texts formula, symbols, valid, size, source, excludes;
+/// arrays `quantities`, `ports`; `template <class T, class K> static void add(const Reads<T, K>& in, T* F)`, or with own states
+/// `add(in, F, drift)`; `static std::vector<Example> examples()`. Optional: arrays `constants`, `coefficients`, `states`; `specialises`, `dissipative`;
+/// `fastest_rate(const Reads<double, double>&)`, `diffusion(const Reads<double, double>&, double*)`.
+template <class E>
+class EffectOf final : public Effect {
+ public:
+  explicit EffectOf(const char* key);
+
+  [[nodiscard]] const EffectSpec& spec() const override { return spec_; }
+  [[nodiscard]] std::vector<Example> examples() const override { return E::examples(); }
+
+  void evaluate(const Reads<double, double>& in, double* out) const override { call<double, double>(in, out); }
+
+  void linearise(const Reads<double, double>& in, double* out, double* J, bool constants_too) const override {
+    if (constants_too && NK > 0) {
+      differentiate<NQ + NC + NZ + NK>(in, out, J);
+    } else {
+      differentiate<NQ + NC + NZ>(in, out, J);
+    }
+  }
+
+  [[nodiscard]] double fastest_rate(const Reads<double, double>& in) const override {
+    if constexpr (requires { E::fastest_rate(in); }) return E::fastest_rate(in);
+    return 0.0;
+  }
+
+  void diffusion(const Reads<double, double>& in, double* out) const override {
+    if constexpr (requires { E::diffusion(in, out); }) {
+      E::diffusion(in, out);
+    } else {
+      for (int i = 0; i < NZ; ++i) out[i] = 0.0;
+    }
+  }
+
+ private:
+  static consteval int coefficients() {
+    if constexpr (requires { E::coefficients; }) return static_cast<int>(std::size(E::coefficients));
+    return 0;
+  }
+  static consteval int constants() {
+    if constexpr (requires { E::constants; }) return static_cast<int>(std::size(E::constants));
+    return 0;
+  }
+  static consteval int states() {
+    if constexpr (requires { E::states; }) return static_cast<int>(std::size(E::states));
+    return 0;
+  }
+  static constexpr int NQ = static_cast<int>(std::size(E::quantities));
+  static constexpr int NP = static_cast<int>(std::size(E::ports));
+  static constexpr int NC = coefficients();
+  static constexpr int NK = constants();
+  static constexpr int NZ = states();
+  static constexpr int NO = NP + NZ;
+  static_assert(NQ + NC + NZ + NK <= kMaxWidth, "an effect reads at most kMaxWidth numbers");
+
+  template <class T, class K>
+  static void call(const Reads<T, K>& in, T* out) {
+    if constexpr (NZ > 0) {
+      E::template add<T, K>(in, out, out + NP);
+    } else {
+      E::template add<T, K>(in, out);
+    }
+  }
+
+  template <int W>
+  static void differentiate(const Reads<double, double>& in, double* out, double* J) {
+    if constexpr (W == 0) {
+      call<double, double>(in, out);
+    } else {
+      using T = Jet<W>;
+      std::array<T, static_cast<std::size_t>(W)> seeds;
+      for (int i = 0; i < NQ; ++i) seeds[static_cast<std::size_t>(i)] = T(in.q[i], i);
+      for (int i = 0; i < NC; ++i) seeds[static_cast<std::size_t>(NQ + i)] = T(in.c[i], NQ + i);
+      for (int i = 0; i < NZ; ++i) seeds[static_cast<std::size_t>(NQ + NC + i)] = T(in.z[i], NQ + NC + i);
+      std::array<T, static_cast<std::size_t>(NO)> results;
+      const T* s = seeds.data();
+      if constexpr (W > NQ + NC + NZ) {
+        for (int i = 0; i < NK; ++i) seeds[static_cast<std::size_t>(NQ + NC + NZ + i)] = T(in.k[i], NQ + NC + NZ + i);
+        call<T, T>({s, s + NQ, s + NQ + NC, s + NQ + NC + NZ, in.t}, results.data());
+      } else {
+        call<T, double>({s, s + NQ, s + NQ + NC, in.k, in.t}, results.data());
+      }
+      for (int o = 0; o < NO; ++o) {
+        out[o] = results[static_cast<std::size_t>(o)].a;
+        for (int i = 0; i < W; ++i) J[o * W + i] = results[static_cast<std::size_t>(o)].v[i];
+      }
+    }
+  }
+
+  EffectSpec spec_;
+};
+
+template <class E>
+EffectOf<E>::EffectOf(const char* key) {
+  spec_.key = key;
+  spec_.formula = E::formula;
+  spec_.symbols = E::symbols;
+  spec_.valid = E::valid;
+  spec_.size = E::size;
+  spec_.source = E::source;
+  spec_.excludes = E::excludes;
+  spec_.quantities.assign(std::begin(E::quantities), std::end(E::quantities));
+  spec_.ports.assign(std::begin(E::ports), std::end(E::ports));
+  if constexpr (NK > 0) spec_.constants.assign(std::begin(E::constants), std::end(E::constants));
+  if constexpr (NC > 0) spec_.coefficients.assign(std::begin(E::coefficients), std::end(E::coefficients));
+  if constexpr (NZ > 0) spec_.states.assign(std::begin(E::states), std::end(E::states));
+  if constexpr (requires { E::specialises; }) spec_.specialises = E::specialises;
+  if constexpr (requires { E::dissipative; }) spec_.dissipative = E::dissipative;
+}
+
+}  // namespace misfit
+
+/// The last line of an effect's file. The stem of the file must be `key`: CMake's generated list calls misfit_register_<stem>.
+#define MISFIT_EFFECT(key, Type)                                  \
+  void misfit_register_##key(misfit::Registry& registry);         \
+  void misfit_register_##key(misfit::Registry& registry) { registry.add(std::make_unique<misfit::EffectOf<Type>>(#key)); }

@@ -1,0 +1,191 @@
+#include "misfit/model/evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace misfit {
+namespace {
+
+constexpr std::size_t at_least_one(int n) { return static_cast<std::size_t>(n > 0 ? n : 1); }
+
+}  // namespace
+
+Evaluator::Evaluator(const Model& model) : model_(&model), system_(model.system.get()), p_(model.values()) {
+  const SystemSpec& spec = system_->spec();
+  n_ = model.states();
+  nx_ = model.system_states();
+  ny_ = model.outputs();
+  nf_ = static_cast<int>(spec.dynamic_ports.size());
+  np_ = static_cast<int>(spec.quantity_ports.size());
+  nq_ = static_cast<int>(spec.quantities.size());
+  nk_ = static_cast<int>(spec.constants.size());
+  flatten();
+  const auto size = [](int rows, int columns) { return at_least_one(rows * columns); };
+  q_rows_.assign(size(nq_ + ny_, kRowStride), 0.0);
+  P_rows_.assign(size(np_, kRowStride), 0.0);
+  F_rows_.assign(size(nf_ + ny_ + 1, kRowStride), 0.0);
+  scratch_.assign(size(std::max({np_, nf_, ny_ + 1, n_}), kRowStride), 0.0);
+  q_x_.assign(size(nq_, nx_), 0.0);
+  q_P_.assign(size(nq_, np_), 0.0);
+  q_k_.assign(size(nq_, nk_), 0.0);
+  r_x_.assign(size(nx_, nx_), 0.0);
+  r_P_.assign(size(nx_, np_), 0.0);
+  r_F_.assign(size(nx_, nf_), 0.0);
+  r_k_.assign(size(nx_, nk_), 0.0);
+  y_x_.assign(size(ny_, nx_), 0.0);
+  y_k_.assign(size(ny_, nk_), 0.0);
+}
+
+void Evaluator::flatten() {
+  const std::vector<int> free = model_->free_parameters();
+  columns_ = static_cast<int>(free.size());
+  column_of_.assign(model_->parameters.size(), -1);
+  for (int c = 0; c < columns_; ++c) column_of_[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])] = c;
+  for (int k = 0; k < nk_; ++k) free_constants_ = free_constants_ || column_of_[static_cast<std::size_t>(k)] >= 0;
+  for (const auto& bound : model_->effects) flatten_effect(bound);
+  quantity_effects_ = !quantity_.empty();
+  general_ = quantity_effects_ || free_constants_;
+}
+
+void Evaluator::flatten_effect(const BoundEffect& bound) {
+  const EffectSpec& spec = bound.effect->spec();
+  Use use{};
+  use.effect = bound.effect;
+  use.nq = static_cast<int>(spec.quantities.size());
+  use.nc = static_cast<int>(spec.coefficients.size());
+  use.nz = static_cast<int>(spec.states.size());
+  use.nk = static_cast<int>(spec.constants.size());
+  use.ports = static_cast<int>(spec.ports.size());
+  use.outputs = use.ports + use.nz;
+  use.width = use.nq + use.nc + use.nz + (free_constants_ ? use.nk : 0);
+  use.first_state = bound.first_state;
+  const auto note = [&](int quantity) {
+    if (quantity >= 0 && quantity < nq_) needed_ |= std::uint64_t{1} << static_cast<unsigned>(quantity);
+  };
+  for (std::size_t i = 0; i < bound.quantities.size(); ++i) note(use.quantity[i] = bound.quantities[i]);
+  std::copy(bound.ports.begin(), bound.ports.end(), use.port.begin());
+  std::copy(bound.constants.begin(), bound.constants.end(), use.constant.begin());
+  for (std::size_t i = 0; i < bound.coefficients.size(); ++i) {
+    use.parameter[i] = bound.coefficients[i].parameter;
+    use.curve[i] = bound.coefficients[i].curve;
+    if (use.curve[i] >= 0) note(model_->curves[static_cast<std::size_t>(use.curve[i])].quantity);
+  }
+  auto& list = bound.kind == PortKind::quantity ? quantity_ : bound.kind == PortKind::dynamic ? dynamic_ : sensor_;
+  list.push_back(use);
+  if (bound.kind == PortKind::sensor) shifts_time_ = shifts_time_ || std::find(bound.ports.begin(), bound.ports.end(), ny_) != bound.ports.end();
+}
+
+void Evaluator::set_parameters(const double* values) { std::copy(values, values + p_.size(), p_.begin()); }
+
+double Evaluator::curve_value(const Curve& curve, double at) const {
+  const CurvePoint point = curve.over_sine ? curve.spline.over_sine(at) : curve.spline.at(at);
+  const double* c = p_.data() + curve.first + point.first;
+  return point.w[0] * c[0] + point.w[1] * c[1] + point.w[2] * c[2] + point.w[3] * c[3];
+}
+
+/// Quantities, coefficients, own states, constants, in this order (the order of the seeds in EffectOf).
+void Evaluator::gather(const Use& use, const double* own, double* values) const {
+  double* v = values;
+  for (int i = 0; i < use.nq; ++i) {
+    const int quantity = use.quantity[static_cast<std::size_t>(i)];
+    *v++ = quantity < 0 ? 0.0 : q_[static_cast<std::size_t>(quantity)];
+  }
+  for (int i = 0; i < use.nc; ++i) {
+    const int curve = use.curve[static_cast<std::size_t>(i)];
+    if (curve < 0) {
+      *v++ = p_[static_cast<std::size_t>(use.parameter[static_cast<std::size_t>(i)])];
+    } else {
+      const Curve& c = model_->curves[static_cast<std::size_t>(curve)];
+      *v++ = curve_value(c, q_[static_cast<std::size_t>(c.quantity)]);
+    }
+  }
+  for (int i = 0; i < use.nz; ++i) *v++ = own[use.first_state + i];
+  for (int i = 0; i < use.nk; ++i) *v++ = p_[static_cast<std::size_t>(use.constant[static_cast<std::size_t>(i)])];
+}
+
+Reads<double, double> Evaluator::reads(const Use& use, const double* values, double t) const {
+  return {values, values + use.nq, values + use.nq + use.nc, values + use.nq + use.nc + use.nz, t};
+}
+
+void Evaluator::add_value(const Use& use, const double* own, double t, double* targets, double* drifts) {
+  std::array<double, kMaxWidth> values;
+  std::array<double, kMaxWidth> out;
+  gather(use, own, values.data());
+  use.effect->evaluate(reads(use, values.data(), t), out.data());
+  for (int o = 0; o < use.ports; ++o) {
+    const int port = use.port[static_cast<std::size_t>(o)];
+    if (port >= 0) targets[port] += out[static_cast<std::size_t>(o)];
+  }
+  for (int i = 0; i < use.nz; ++i) drifts[use.first_state + i] = out[static_cast<std::size_t>(use.ports + i)];
+}
+
+void Evaluator::base_and_derived(const Point& at, const double* own) {
+  std::fill(P_.begin(), P_.begin() + np_, 0.0);
+  if (quantity_effects_) {
+    system_->quantities(at, P_.data(), needed_, q_.data());
+    std::array<double, kMaxStates> drifts{};
+    for (const auto& use : quantity_) add_value(use, own, at.t, P_.data(), drifts.data());
+  }
+  system_->quantities(at, P_.data(), needed_, q_.data());
+}
+
+void Evaluator::rates(const double* x, const double* u, double t, double* dx) {
+  const Point at{x, u, t, p_.data()};
+  const double* own = x + nx_;
+  base_and_derived(at, own);
+  std::fill(F_.begin(), F_.begin() + nf_, 0.0);
+  for (const auto& use : dynamic_) add_value(use, own, t, F_.data(), dx + nx_);
+  if (n_ > nx_) own_drifts(at, own, dx + nx_);
+  system_->rates(at, P_.data(), F_.data(), dx);
+}
+
+/// Memory of effects on quantity and sensor ports drifts as well.
+void Evaluator::own_drifts(const Point& at, const double* own, double* drifts) {
+  std::array<double, kMaxPorts + kMaxOutputs> unused{};
+  for (const auto& use : quantity_) {
+    if (use.nz > 0) add_value(use, own, at.t, unused.data(), drifts);
+  }
+  if (std::any_of(sensor_.begin(), sensor_.end(), [](const Use& use) { return use.nz > 0; })) {
+    system_->outputs(at, q_.data() + nq_);
+    for (const auto& use : sensor_) {
+      if (use.nz > 0) add_value(use, own, at.t, unused.data(), drifts);
+    }
+  }
+}
+
+void Evaluator::predict(const double* x, const double* u, double t, double* y) {
+  const Point at{x, u, t, p_.data()};
+  system_->outputs(at, y);
+  y[ny_] = 0.0;
+  if (sensor_.empty()) return;
+  base_and_derived(at, x + nx_);
+  std::copy(y, y + ny_, q_.begin() + nq_);
+  std::array<double, kMaxStates> drifts{};
+  for (const auto& use : sensor_) add_value(use, x + nx_, t, y, drifts.data());
+}
+
+void Evaluator::quantities(const double* x, const double* u, double t, double* q) {
+  const std::uint64_t needed = needed_;
+  needed_ = ~std::uint64_t{0};
+  const Point at{x, u, t, p_.data()};
+  base_and_derived(at, x + nx_);
+  needed_ = needed;
+  std::copy(q_.begin(), q_.begin() + nq_, q);
+}
+
+double Evaluator::fastest_rate(const double* x, const double* u, double t) {
+  const Point at{x, u, t, p_.data()};
+  base_and_derived(at, x + nx_);
+  system_->outputs(at, q_.data() + nq_);
+  double fastest = system_->spec().fastest_rate;
+  std::array<double, kMaxWidth> values;
+  for (const auto* list : {&quantity_, &dynamic_, &sensor_}) {
+    for (const auto& use : *list) {
+      gather(use, x + nx_, values.data());
+      fastest = std::max(fastest, use.effect->fastest_rate(reads(use, values.data(), t)));
+    }
+  }
+  return fastest;
+}
+
+}  // namespace misfit

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "misfit/model/model.h"
+
+namespace misfit {
+
+/// The free parameters that act within one sample, in the order they were met ("touched columns"): slot s is column `column[s]`.
+class Slots {
+ public:
+  Slots() { slot_of_.fill(-1); }
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] int column(int slot) const { return column_[static_cast<std::size_t>(slot)]; }
+  int slot(int column) {
+    auto& known = slot_of_[static_cast<std::size_t>(column)];
+    if (known < 0) {
+      known = count_;
+      column_[static_cast<std::size_t>(count_++)] = column;
+    }
+    return known;
+  }
+  void clear() {
+    for (int s = 0; s < count_; ++s) slot_of_[static_cast<std::size_t>(column_[static_cast<std::size_t>(s)])] = -1;
+    count_ = 0;
+  }
+
+ private:
+  std::array<int, kMaxColumns> column_{};
+  std::array<int, kMaxColumns> slot_of_{};
+  int count_ = 0;
+};
+
+/// Derivative rows: columns 0 … states−1 for the state, then one column per slot. Fixed stride.
+inline constexpr int kRowStride = kMaxStates + kMaxColumns;
+
+/// The assembled right-hand side x' = f(x, u, t; p) and outputs y = h(x, u, t; p) with first derivatives, by the chain rule over effects that are
+/// each linearised on their own (DESIGN 4). One object per thread: it holds scratch memory, so that nothing allocates.
+/// Order: base quantities → effects on quantity ports → derived quantities → effects on dynamic ports and own states → x'.
+class Evaluator {
+ public:
+  /// Keeps pointers into `model`, which must outlive it.
+  explicit Evaluator(const Model& model);
+
+  /// All parameters, in the order of Model::parameters.
+  void set_parameters(const double* values);
+  [[nodiscard]] const Model& model() const { return *model_; }
+  [[nodiscard]] int states() const { return n_; }
+  [[nodiscard]] int outputs() const { return ny_; }
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] bool shifts_time() const { return shifts_time_; }  ///< some effect writes `sample_time`
+
+  void rates(const double* x, const double* u, double t, double* dx);
+  /// dx and its derivative rows D[i·kRowStride + …] for i < states(): ∂/∂x, then ∂/∂(slot). New slots may be added.
+  void linearise_rates(const double* x, const double* u, double t, Slots& slots, double* dx, double* D);
+
+  /// y and, last, the shift of the sample time [s] (outputs() + 1 values).
+  void predict(const double* x, const double* u, double t, double* y);
+  /// The same with derivative rows for each of the outputs() + 1 values.
+  void linearise_outputs(const double* x, const double* u, double t, Slots& slots, double* y, double* D);
+
+  /// Fastest rate of the system and its effects at this state [1/s].
+  [[nodiscard]] double fastest_rate(const double* x, const double* u, double t);
+  /// Value of every quantity at a state (for maps, figures and simulated tables).
+  void quantities(const double* x, const double* u, double t, double* q);
+
+ private:
+  struct Use {  // one bound effect, flattened
+    const Effect* effect;
+    int width, outputs, ports, nq, nc, nz, nk, first_state;
+    std::array<int, kMaxWidth> quantity, port, constant, parameter, curve;
+  };
+  void flatten();
+  void flatten_effect(const BoundEffect& bound);
+  [[nodiscard]] double curve_value(const Curve& curve, double at) const;
+  void gather(const Use& use, const double* own, double* values) const;
+  Reads<double, double> reads(const Use& use, const double* values, double t) const;
+  void add_value(const Use& use, const double* own, double t, double* targets, double* drifts);
+  void add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts, double* drift_rows);
+  void base_and_derived(const Point& at, const double* own);
+  void own_drifts(const Point& at, const double* own, double* drifts);
+  void own_drifts_linear(const Point& at, const double* own, Slots& slots, double* dx, double* D);
+  void base_and_derived_linear(const Point& at, const double* own, Slots& slots);
+  void outputs_as_quantities(const Point& at, Slots& slots);
+  void clear_new_slot(int slot, int rows, double* D) const;
+  void chain_quantity(double weight, int quantity, int slots, double* row) const;
+
+  const Model* model_;
+  const System* system_;
+  int n_, nx_, ny_, nf_, np_, nq_, nk_, columns_;
+  std::uint64_t needed_ = 0;
+  bool shifts_time_ = false, quantity_effects_ = false, free_constants_ = false, general_ = false;
+  std::vector<Use> quantity_, dynamic_, sensor_;
+  std::vector<int> column_of_;  // of every parameter; −1 fixed
+  std::vector<double> p_;
+  std::array<double, kMaxQuantities> q_{};
+  std::array<double, kMaxPorts> P_{}, F_{};
+  std::vector<double> q_rows_, P_rows_, F_rows_;  // kRowStride each
+  std::vector<double> scratch_;                   // rows of ports that nobody reads
+  std::vector<double> q_x_, q_P_, q_k_, r_x_, r_P_, r_F_, r_k_, y_x_, y_k_;
+};
+
+}  // namespace misfit

@@ -1,0 +1,230 @@
+// Derivatives of the assembled right-hand side: the chain rule over effects that are each linearised on their own.
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/model/evaluator.h"
+
+namespace misfit {
+namespace {
+
+double* row_of(std::vector<double>& rows, int i) { return rows.data() + static_cast<std::ptrdiff_t>(i) * kRowStride; }
+const double* row_of(const std::vector<double>& rows, int i) { return rows.data() + static_cast<std::ptrdiff_t>(i) * kRowStride; }
+
+void add_scaled(double weight, const double* from, int count, double* to) {
+  for (int i = 0; i < count; ++i) to[i] += weight * from[i];
+}
+
+}  // namespace
+
+/// row += weight · dq/d(state, slots). In the common case (no effect on quantity ports, no free constant) quantities depend on the state alone.
+void Evaluator::chain_quantity(double weight, int quantity, int slots, double* row) const {
+  if (!general_ && quantity < nq_) {
+    add_scaled(weight, q_x_.data() + static_cast<std::ptrdiff_t>(quantity) * nx_, nx_, row);
+    return;
+  }
+  const double* from = row_of(q_rows_, quantity);
+  add_scaled(weight, from, n_ + slots, row);
+}
+
+/// Adds an effect's outputs to targets[port] with derivative rows rows[port·kRowStride + …], and sets its own states' drifts and rows. Rows are kept
+/// zero beyond the slots in use: a slot that is met for the first time needs no clearing.
+void Evaluator::add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts, double* drift_rows) {
+  std::array<double, kMaxWidth> values;
+  std::array<double, kMaxWidth> out;
+  std::array<double, static_cast<std::size_t>(kMaxWidth * kMaxWidth)> J;
+  std::array<CurvePoint, kMaxWidth> points;
+  double* v = values.data();
+  for (int i = 0; i < use.nq; ++i) {
+    const int quantity = use.quantity[static_cast<std::size_t>(i)];
+    *v++ = quantity < 0 ? 0.0 : q_[static_cast<std::size_t>(quantity)];
+  }
+  std::array<double, kMaxWidth> slope;
+  for (int i = 0; i < use.nc; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    if (use.curve[index] < 0) {
+      *v++ = p_[static_cast<std::size_t>(use.parameter[index])];
+      continue;
+    }
+    const Curve& curve = model_->curves[static_cast<std::size_t>(use.curve[index])];
+    const double at = q_[static_cast<std::size_t>(curve.quantity)];
+    points[index] = curve.over_sine ? curve.spline.over_sine(at) : curve.spline.at(at);
+    const CurvePoint& point = points[index];
+    const double* c = p_.data() + curve.first + point.first;
+    *v++ = point.w[0] * c[0] + point.w[1] * c[1] + point.w[2] * c[2] + point.w[3] * c[3];
+    slope[index] = point.d[0] * c[0] + point.d[1] * c[1] + point.d[2] * c[2] + point.d[3] * c[3];
+  }
+  for (int i = 0; i < use.nz; ++i) *v++ = own[use.first_state + i];
+  for (int i = 0; i < use.nk; ++i) *v++ = p_[static_cast<std::size_t>(use.constant[static_cast<std::size_t>(i)])];
+  use.effect->linearise(reads(use, values.data(), t), out.data(), J.data(), free_constants_);
+
+  for (int o = 0; o < use.outputs; ++o) {
+    double* row = nullptr;
+    if (o < use.ports) {
+      const int port = use.port[static_cast<std::size_t>(o)];
+      if (port < 0) continue;
+      targets[port] += out[static_cast<std::size_t>(o)];
+      row = rows + static_cast<std::ptrdiff_t>(port) * kRowStride;
+    } else {
+      const int state = use.first_state + o - use.ports;
+      drifts[state] = out[static_cast<std::size_t>(o)];
+      row = drift_rows + static_cast<std::ptrdiff_t>(state) * kRowStride;
+    }
+    const double* j = J.data() + static_cast<std::ptrdiff_t>(o) * use.width;
+    for (int i = 0; i < use.nq; ++i, ++j) {
+      const int quantity = use.quantity[static_cast<std::size_t>(i)];
+      if (quantity >= 0 && *j != 0.0) chain_quantity(*j, quantity, slots.count(), row);
+    }
+    for (int i = 0; i < use.nc; ++i, ++j) {
+      const auto index = static_cast<std::size_t>(i);
+      if (*j == 0.0) continue;
+      if (use.curve[index] < 0) {
+        const int column = column_of_[static_cast<std::size_t>(use.parameter[index])];
+        if (column >= 0) row[n_ + slots.slot(column)] += *j;
+        continue;
+      }
+      const Curve& curve = model_->curves[static_cast<std::size_t>(use.curve[index])];
+      chain_quantity(*j * slope[index], curve.quantity, slots.count(), row);
+      const int first = curve.first + points[index].first;
+      for (int w = 0; w < 4; ++w) {
+        const int column = column_of_[static_cast<std::size_t>(first + w)];
+        if (column >= 0) row[n_ + slots.slot(column)] += *j * points[index].w[static_cast<std::size_t>(w)];
+      }
+    }
+    for (int i = 0; i < use.nz; ++i, ++j) row[nx_ + use.first_state + i] += *j;
+    if (!free_constants_) continue;
+    for (int i = 0; i < use.nk; ++i, ++j) {
+      const int column = column_of_[static_cast<std::size_t>(use.constant[static_cast<std::size_t>(i)])];
+      if (column >= 0 && *j != 0.0) row[n_ + slots.slot(column)] += *j;
+    }
+  }
+}
+
+void Evaluator::base_and_derived_linear(const Point& at, const double* own, Slots& slots) {
+  if (!general_) {
+    system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), nullptr, nullptr});
+    return;
+  }
+  const int width = n_ + columns_;
+  const auto rows_from_blocks = [&](bool with_ports) {
+    for (int i = 0; i < nq_; ++i) {
+      if ((needed_ >> static_cast<unsigned>(i) & 1U) == 0U) continue;
+      double* row = row_of(q_rows_, i);
+      std::fill(row, row + width, 0.0);
+      std::copy_n(q_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
+      for (int P = 0; with_ports && P < np_; ++P) add_scaled(q_P_[static_cast<std::size_t>(i * np_ + P)], row_of(P_rows_, P), n_ + slots.count(), row);
+      for (int k = 0; free_constants_ && k < nk_; ++k) {
+        const int column = column_of_[static_cast<std::size_t>(k)];
+        const double weight = q_k_[static_cast<std::size_t>(i * nk_ + k)];
+        if (column >= 0 && weight != 0.0) row[n_ + slots.slot(column)] += weight;
+      }
+    }
+  };
+  std::fill(P_.begin(), P_.begin() + np_, 0.0);
+  double* k = free_constants_ ? q_k_.data() : nullptr;
+  system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), q_P_.data(), k});
+  rows_from_blocks(false);
+  if (!quantity_effects_) return;
+  for (int P = 0; P < np_; ++P) std::fill_n(row_of(P_rows_, P), width, 0.0);
+  std::array<double, kMaxStates> drifts{};
+  scratch_.assign(scratch_.size(), 0.0);
+  for (const auto& use : quantity_) add_linear(use, own, at.t, slots, P_.data(), P_rows_.data(), drifts.data(), scratch_.data());
+  system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), q_P_.data(), k});
+  rows_from_blocks(true);
+}
+
+void Evaluator::linearise_rates(const double* x, const double* u, double t, Slots& slots, double* dx, double* D) {
+  const Point at{x, u, t, p_.data()};
+  const double* own = x + nx_;
+  base_and_derived_linear(at, own, slots);
+  std::fill(F_.begin(), F_.begin() + nf_, 0.0);
+  const int width = n_ + columns_;
+  for (int i = 0; i < nf_; ++i) std::fill_n(row_of(F_rows_, i), width, 0.0);
+  for (int i = nx_; i < n_; ++i) std::fill_n(D + static_cast<std::ptrdiff_t>(i) * kRowStride, width, 0.0);
+  double* own_rows = D + static_cast<std::ptrdiff_t>(nx_) * kRowStride;
+  for (const auto& use : dynamic_) add_linear(use, own, t, slots, F_.data(), F_rows_.data(), dx + nx_, own_rows);
+  if (n_ > nx_) own_drifts_linear(at, own, slots, dx + nx_, own_rows);
+
+  RateDerivatives d{r_x_.data(), quantity_effects_ ? r_P_.data() : nullptr, r_F_.data(), free_constants_ ? r_k_.data() : nullptr};
+  system_->linearise_rates(at, P_.data(), F_.data(), dx, d);
+  for (int i = 0; i < nx_; ++i) {
+    double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
+    std::copy_n(r_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
+    std::fill(row + nx_, row + n_ + slots.count(), 0.0);
+    for (int f = 0; f < nf_; ++f) {
+      const double weight = r_F_[static_cast<std::size_t>(i * nf_ + f)];
+      if (weight != 0.0) add_scaled(weight, row_of(F_rows_, f), n_ + slots.count(), row);
+    }
+    for (int P = 0; quantity_effects_ && P < np_; ++P) {
+      const double weight = r_P_[static_cast<std::size_t>(i * np_ + P)];
+      if (weight != 0.0) add_scaled(weight, row_of(P_rows_, P), n_ + slots.count(), row);
+    }
+    for (int k = 0; free_constants_ && k < nk_; ++k) {
+      const int column = column_of_[static_cast<std::size_t>(k)];
+      const double weight = r_k_[static_cast<std::size_t>(i * nk_ + k)];
+      if (column >= 0 && weight != 0.0) {
+        const int before = slots.count();
+        const int slot = slots.slot(column);
+        if (slot >= before) clear_new_slot(slot, i, D);
+        row[n_ + slot] += weight;
+      }
+    }
+  }
+}
+
+/// A constant that only the rates know was met after earlier rows were written.
+void Evaluator::clear_new_slot(int slot, int rows, double* D) const {
+  for (int i = 0; i <= rows; ++i) D[static_cast<std::ptrdiff_t>(i) * kRowStride + n_ + slot] = 0.0;
+}
+
+void Evaluator::own_drifts_linear(const Point& at, const double* own, Slots& slots, double* drifts, double* own_rows) {
+  std::array<double, kMaxPorts + kMaxOutputs> unused{};
+  const auto drift = [&](const Use& use) {
+    std::fill(scratch_.begin(), scratch_.end(), 0.0);
+    add_linear(use, own, at.t, slots, unused.data(), scratch_.data(), drifts, own_rows);
+  };
+  for (const auto& use : quantity_) {
+    if (use.nz > 0) drift(use);
+  }
+  if (std::any_of(sensor_.begin(), sensor_.end(), [](const Use& use) { return use.nz > 0; })) {
+    outputs_as_quantities(at, slots);
+    for (const auto& use : sensor_) {
+      if (use.nz > 0) drift(use);
+    }
+  }
+}
+
+/// Predicted outputs before sensor effects, as quantities nq … nq + ny − 1 with rows.
+void Evaluator::outputs_as_quantities(const Point& at, Slots& slots) {
+  system_->linearise_outputs(at, q_.data() + nq_, y_x_.data(), free_constants_ ? y_k_.data() : nullptr);
+  for (int i = 0; i < ny_; ++i) {
+    double* row = row_of(q_rows_, nq_ + i);
+    std::fill_n(row, n_ + columns_, 0.0);
+    std::copy_n(y_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
+    for (int k = 0; free_constants_ && k < nk_; ++k) {
+      const int column = column_of_[static_cast<std::size_t>(k)];
+      const double weight = y_k_[static_cast<std::size_t>(i * nk_ + k)];
+      if (column >= 0 && weight != 0.0) row[n_ + slots.slot(column)] += weight;
+    }
+  }
+}
+
+void Evaluator::linearise_outputs(const double* x, const double* u, double t, Slots& slots, double* y, double* D) {
+  const Point at{x, u, t, p_.data()};
+  if (!sensor_.empty()) base_and_derived_linear(at, x + nx_, slots);
+  outputs_as_quantities(at, slots);
+  const int width = n_ + columns_;
+  for (int i = 0; i < ny_; ++i) {
+    y[i] = q_[static_cast<std::size_t>(nq_ + i)];
+    std::copy_n(row_of(q_rows_, nq_ + i), width, D + static_cast<std::ptrdiff_t>(i) * kRowStride);
+  }
+  y[ny_] = 0.0;
+  std::fill_n(D + static_cast<std::ptrdiff_t>(ny_) * kRowStride, width, 0.0);
+  std::array<double, kMaxStates> drifts{};
+  for (const auto& use : sensor_) {
+    std::fill(scratch_.begin(), scratch_.end(), 0.0);
+    add_linear(use, x + nx_, t, slots, y, D, drifts.data(), scratch_.data());
+  }
+}
+
+}  // namespace misfit

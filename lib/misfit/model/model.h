@@ -1,0 +1,116 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/math/bspline.h"
+#include "misfit/model/registry.h"
+
+namespace misfit {
+
+/// A curve as asked for. Knots in SI (radians for angles); empty: to be chosen from data before the model is assembled.
+struct CurveRequest {
+  std::string of;
+  std::vector<double> knots;
+  std::optional<double> roughness;  ///< nullopt: chosen from the data
+  Source where;
+};
+
+/// What a study says of one parameter, in SI.
+struct ParameterRequest {
+  std::optional<bool> free;
+  std::optional<double> value, lower, upper, sigma;  ///< sigma: Gaussian prior about `value`
+  Source where;
+};
+
+struct EffectRequest {
+  std::string name, kind;
+  std::map<std::string, std::string> roles;
+  Source where;
+};
+
+/// A model as asked for: plain data, from a study or made in a test.
+struct ModelRequest {
+  std::string system;
+  SystemOptions options;
+  Source system_where;
+  std::map<std::string, double> constants;          ///< SI
+  std::map<std::string, double> constant_sigmas;    ///< where known
+  std::map<std::string, Source> constants_where;
+  std::vector<EffectRequest> effects;
+  std::map<std::string, ParameterRequest> parameters;
+  std::map<std::string, CurveRequest> curves;       ///< by the coefficient's name in the model
+};
+
+/// One row of the parameter table.
+struct Parameter {
+  std::string name, unit, doc;
+  double value = 0.0, lower = 0.0, upper = 0.0, scale = 1.0;
+  bool free = false;
+  std::optional<double> prior_sigma{};  ///< Gaussian about prior_mean
+  double prior_mean = 0.0;
+  CoefficientKind kind = CoefficientKind::shape;
+  int curve = -1;                     ///< index into Model::curves for a curve's coefficient
+};
+
+/// A coefficient that is a curve: parameters first … first + spline.size() − 1.
+struct Curve {
+  std::string name, of, of_unit, unit;
+  int quantity = -1;  ///< index of `of`
+  CubicSpline spline;
+  bool over_sine = false;
+  int first = 0;
+  std::optional<double> roughness;
+  double scale = 1.0;
+};
+
+/// Where a bound coefficient takes its number: from a parameter or from a curve (the other is −1).
+struct BoundCoefficient {
+  int parameter = -1;
+  int curve = -1;
+};
+
+enum class PortKind { quantity, dynamic, sensor };
+
+/// An effect in its place: all names resolved to indices; −1 where an optional role is absent.
+struct BoundEffect {
+  const Effect* effect = nullptr;
+  std::string name;
+  PortKind kind = PortKind::dynamic;
+  std::vector<int> quantities, ports, constants;
+  std::vector<BoundCoefficient> coefficients;
+  int first_state = 0;  ///< of its own states, counted after the system's
+};
+
+/// A system, its effects and the parameter table. Sensor ports are the outputs, in order, then `sample_time`; predicted outputs can be read as
+/// quantities by effects on sensor ports: index = system's quantities + output.
+struct Model {
+  std::shared_ptr<const System> system;
+  std::vector<BoundEffect> effects;
+  std::vector<Parameter> parameters;  ///< system constants first, in the order of the system
+  std::vector<Curve> curves;
+  std::vector<OwnStateSpec> own_states;
+  std::vector<std::string> own_state_names;  ///< "effect.state"
+
+  [[nodiscard]] int system_states() const { return static_cast<int>(system->spec().states.size()); }
+  [[nodiscard]] int states() const { return system_states() + static_cast<int>(own_states.size()); }
+  [[nodiscard]] int outputs() const { return static_cast<int>(system->spec().outputs.size()); }
+  [[nodiscard]] int inputs() const { return static_cast<int>(system->spec().inputs.size()); }
+  [[nodiscard]] std::vector<double> values() const;           ///< of all parameters
+  [[nodiscard]] std::vector<int> free_parameters() const;     ///< index into `parameters` of each column
+  [[nodiscard]] int find_parameter(const std::string& name) const;  ///< −1 if there is none
+  [[nodiscard]] const Curve* find_curve(const std::string& name) const;
+  [[nodiscard]] std::vector<std::string> needed_inputs() const;     ///< inputs that some quantity read by somebody needs
+};
+
+/// Resolves names and checks units, bounds and sizes. InputError with the place in the study, what is allowed and the nearest name. Every curve must have
+/// knots by now. A coefficient is called by its own name, or EFFECT.NAME where two effects of the model would share it.
+[[nodiscard]] Model assemble(const ModelRequest& request, const Registry& registry);
+
+/// Curves of the model that still need knots (name → quantity), before assembling: from `request.curves` and the effects' defaults.
+[[nodiscard]] std::map<std::string, std::string> curves_without_knots(const ModelRequest& request, const Registry& registry);
+
+}  // namespace misfit

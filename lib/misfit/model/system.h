@@ -1,0 +1,301 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "misfit/math/scalar.h"
+#include "misfit/model/limits.h"
+
+namespace misfit {
+
+struct StateSpec {
+  std::string name, unit;
+  int rate_of = -1;  ///< index of the state whose time derivative this one is; −1: none
+};
+
+enum class Hold { zero_order, first_order };  ///< how an input runs between its samples
+struct InputSpec {
+  std::string name, unit, doc;
+  Hold hold = Hold::first_order;
+};
+
+/// A named function of state, input, time and quantity ports. The first `base_quantities` of a system do not depend on quantity ports.
+struct QuantitySpec {
+  std::string name, unit, doc;
+  std::vector<std::string> inputs;  ///< inputs without which it cannot be computed
+  bool carries_sign = false;        ///< may be negative: curves of it need no division by its sine (CoefficientSpec::over_sine is ignored)
+};
+
+struct PortSpec {
+  std::string name, unit, doc;
+  std::string conjugate;  ///< dynamic ports: quantity whose product with the port is power; quantity ports: the quantity that is changed
+};
+
+/// A parameter of the system: geometry, mass, flow. Fixed unless a study frees it.
+struct ConstantSpec {
+  std::string name, unit, doc;
+  double lower = 0.0, upper = 0.0;  ///< inclusive
+  bool required = true;
+  double value = 0.0;               ///< when not required
+};
+
+struct OutputSpec {
+  std::string name, unit;
+  int observes = -1;   ///< index of the state it is; −1: a function
+  double noise = 0.0;  ///< typical white reading noise [unit], a start only
+};
+
+/// A curve that is a combination of the model's own: Σ factor(x) · d^order curve / dx^order.
+struct DerivedCurve {
+  struct Term {
+    std::string curve;
+    int derivative = 0;
+    std::function<double(double x)> factor;
+  };
+  std::string name, of, unit, doc;
+  std::vector<Term> terms;
+};
+
+/// Another form of the same physics, for methods that need it: kind and flags.
+struct SystemForm {
+  std::string kind;
+  std::map<std::string, bool> flags;
+};
+
+struct SystemSpec {
+  std::string key, doc, formula, source;
+  std::vector<StateSpec> states;
+  std::vector<InputSpec> inputs;
+  std::vector<QuantitySpec> quantities;
+  int base_quantities = 0;
+  std::vector<PortSpec> quantity_ports, dynamic_ports;
+  std::vector<ConstantSpec> constants;
+  std::vector<OutputSpec> outputs;                 ///< each is also a sensor port of the same name; then `sample_time [s]`
+  std::map<std::string, std::string> roles;        ///< default quantity or port of generic roles: "rate", "level", "port"
+  std::map<std::string, std::string> coefficient_names;  ///< effect's coefficient → name it has in this system ("C_mq" → "C_m_alphadot")
+  SystemForm regression;                           ///< form in which sliding_bin is stated (the paper's Eq. 8); empty kind: none
+  std::string static_curve, damping_curve;         ///< coefficients that sliding_bin solves for; empty: none
+  double fastest_rate = 0.0;                       ///< [1/s], of the system without effects
+};
+
+/// Row-major blocks of first derivatives; a null pointer means "not wanted".
+struct QuantityDerivatives {
+  double* x = nullptr;  ///< quantities × states
+  double* P = nullptr;  ///< quantities × quantity ports
+  double* k = nullptr;  ///< quantities × constants
+};
+struct RateDerivatives {
+  double* x = nullptr;  ///< states × states, at fixed F
+  double* P = nullptr;  ///< states × quantity ports
+  double* F = nullptr;  ///< states × dynamic ports: B of x' = f0 + B F
+  double* k = nullptr;  ///< states × constants
+};
+
+/// Where a system is evaluated.
+struct Point {
+  const double* x;  ///< states
+  const double* u;  ///< inputs
+  double t;         ///< [s]
+  const double* k;  ///< constants
+};
+
+/// The skeleton of a model. `needed` has bit i set if quantity i is read by somebody: others may be left 0.
+class System {
+ public:
+  virtual ~System() = default;
+  [[nodiscard]] virtual const SystemSpec& spec() const = 0;
+  /// Curves in the meaning people compare (the paper's C_m_alphadot), from this model's own; `k` are the constants.
+  [[nodiscard]] virtual std::vector<DerivedCurve> derived_curves(const double* /*k*/) const { return {}; }
+
+  virtual void quantities(const Point& at, const double* P, std::uint64_t needed, double* q) const = 0;
+  virtual void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q, const QuantityDerivatives& d) const = 0;
+  virtual void rates(const Point& at, const double* P, const double* F, double* dx) const = 0;
+  virtual void linearise_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const = 0;
+  virtual void outputs(const Point& at, double* y) const = 0;
+  /// y, ∂y/∂x (outputs × states), and, if not null, ∂y/∂k (outputs × constants).
+  virtual void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const = 0;
+};
+
+/// Options of a system as a study gives them: flags and numbers (SI).
+struct SystemOptions {
+  std::map<std::string, bool> flags;
+  std::map<std::string, double> numbers;
+};
+
+/// What the registry knows of a kind of system before it is made.
+struct SystemType {
+  std::string key;
+  std::vector<std::string> flags;  ///< names that [system] may set
+  std::function<std::unique_ptr<System>(const SystemOptions&)> make;
+};
+
+/// Turns a struct with templated formulas into a System. `S` has static NX, NU, NP (quantity ports), NF (dynamic ports), NQ, NK, NY and
+///   template <class T, class K> void quantities(const T* x, const double* u, double t, const K* k, const T* P, uint64_t needed, T* q) const
+///   template <class T, class K> void rates(const T* x, const double* u, double t, const K* k, const T* P, const T* F, T* dx) const
+///   template <class T, class K> void outputs(const T* x, const double* u, double t, const K* k, T* y) const
+///   SystemSpec spec() const;   std::vector<DerivedCurve> derived_curves(const double* k) const
+/// All first derivatives come from Jets as wide as what varies: states alone in the common case.
+template <class S>
+class SystemOf final : public System {
+ public:
+  explicit SystemOf(S system) : system_(std::move(system)), spec_(system_.spec()) {}
+
+  [[nodiscard]] const SystemSpec& spec() const override { return spec_; }
+  [[nodiscard]] std::vector<DerivedCurve> derived_curves(const double* k) const override { return system_.derived_curves(k); }
+
+  void quantities(const Point& at, const double* P, std::uint64_t needed, double* q) const override {
+    system_.template quantities<double, double>(at.x, at.u, at.t, at.k, P, needed, q);
+  }
+  void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q, const QuantityDerivatives& d) const override {
+    if (d.k != nullptr) {
+      differentiate_quantities<S::NX + S::NP + S::NK>(at, P, needed, q, d);
+    } else if (d.P != nullptr && S::NP > 0) {
+      differentiate_quantities<S::NX + S::NP>(at, P, needed, q, d);
+    } else {
+      differentiate_quantities<S::NX>(at, P, needed, q, d);
+    }
+  }
+  void rates(const Point& at, const double* P, const double* F, double* dx) const override {
+    system_.template rates<double, double>(at.x, at.u, at.t, at.k, P, F, dx);
+  }
+  void linearise_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const override {
+    if (d.k != nullptr) {
+      differentiate_rates<S::NX + S::NF + S::NP + S::NK>(at, P, F, dx, d);
+    } else if (d.P != nullptr && S::NP > 0) {
+      differentiate_rates<S::NX + S::NF + S::NP>(at, P, F, dx, d);
+    } else {
+      differentiate_rates<S::NX + S::NF>(at, P, F, dx, d);
+    }
+  }
+  void outputs(const Point& at, double* y) const override { system_.template outputs<double, double>(at.x, at.u, at.t, at.k, y); }
+  void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const override {
+    if (y_k != nullptr) {
+      differentiate_outputs<S::NX + S::NK>(at, y, y_x, y_k);
+    } else {
+      differentiate_outputs<S::NX>(at, y, y_x, y_k);
+    }
+  }
+
+ private:
+  template <class T, std::size_t N>
+  static void seed(std::array<T, N>& jets, const double* values, int count, int first) {
+    for (int i = 0; i < count; ++i) jets[static_cast<std::size_t>(i)] = T(values[i], first + i);
+  }
+  template <class T>
+  static void plain(T* jets, const double* values, int count) {
+    for (int i = 0; i < count; ++i) jets[i] = T(values[i]);
+  }
+  template <class T>
+  static void block(const T& jet, int first, int count, double* row) {
+    for (int i = 0; i < count; ++i) row[i] = jet.v[first + i];
+  }
+  static constexpr std::size_t at_least_one(int n) { return static_cast<std::size_t>(n > 0 ? n : 1); }
+
+  template <int W>
+  void differentiate_quantities(const Point& at, const double* P, std::uint64_t needed, double* q, const QuantityDerivatives& d) const {
+    using T = Jet<W>;
+    constexpr bool with_P = W >= S::NX + S::NP && S::NP > 0;
+    constexpr bool with_k = W > S::NX + S::NP;
+    std::array<T, at_least_one(S::NX)> x;
+    seed(x, at.x, S::NX, 0);
+    std::array<T, at_least_one(S::NP)> ports;
+    if constexpr (with_P) {
+      seed(ports, P, S::NP, S::NX);
+    } else {
+      plain(ports.data(), P, S::NP);
+    }
+    std::array<T, static_cast<std::size_t>(S::NQ)> out;
+    if constexpr (with_k) {
+      std::array<T, at_least_one(S::NK)> k;
+      seed(k, at.k, S::NK, S::NX + S::NP);
+      system_.template quantities<T, T>(x.data(), at.u, at.t, k.data(), ports.data(), needed, out.data());
+    } else {
+      system_.template quantities<T, double>(x.data(), at.u, at.t, at.k, ports.data(), needed, out.data());
+    }
+    for (int i = 0; i < S::NQ; ++i) {
+      if ((needed >> static_cast<unsigned>(i) & 1U) == 0U) continue;
+      const T& jet = out[static_cast<std::size_t>(i)];
+      q[i] = jet.a;
+      block(jet, 0, S::NX, d.x + i * S::NX);
+      if constexpr (with_P) {
+        if (d.P != nullptr) block(jet, S::NX, S::NP, d.P + i * S::NP);
+      }
+      if constexpr (with_k) block(jet, S::NX + S::NP, S::NK, d.k + i * S::NK);
+    }
+  }
+
+  template <int W>
+  void differentiate_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const {
+    using T = Jet<W>;
+    constexpr bool with_P = W >= S::NX + S::NF + S::NP && S::NP > 0;
+    constexpr bool with_k = W > S::NX + S::NF + S::NP;
+    std::array<T, at_least_one(S::NX)> x;
+    seed(x, at.x, S::NX, 0);
+    std::array<T, at_least_one(S::NF)> forces;
+    seed(forces, F, S::NF, S::NX);
+    std::array<T, at_least_one(S::NP)> ports;
+    if constexpr (with_P) {
+      seed(ports, P, S::NP, S::NX + S::NF);
+    } else {
+      plain(ports.data(), P, S::NP);
+    }
+    std::array<T, at_least_one(S::NX)> out;
+    if constexpr (with_k) {
+      std::array<T, at_least_one(S::NK)> k;
+      seed(k, at.k, S::NK, S::NX + S::NF + S::NP);
+      system_.template rates<T, T>(x.data(), at.u, at.t, k.data(), ports.data(), forces.data(), out.data());
+    } else {
+      system_.template rates<T, double>(x.data(), at.u, at.t, at.k, ports.data(), forces.data(), out.data());
+    }
+    for (int i = 0; i < S::NX; ++i) {
+      const T& jet = out[static_cast<std::size_t>(i)];
+      dx[i] = jet.a;
+      block(jet, 0, S::NX, d.x + i * S::NX);
+      block(jet, S::NX, S::NF, d.F + i * S::NF);
+      if constexpr (with_P) {
+        if (d.P != nullptr) block(jet, S::NX + S::NF, S::NP, d.P + i * S::NP);
+      }
+      if constexpr (with_k) block(jet, S::NX + S::NF + S::NP, S::NK, d.k + i * S::NK);
+    }
+  }
+
+  template <int W>
+  void differentiate_outputs(const Point& at, double* y, double* y_x, double* y_k) const {
+    using T = Jet<W>;
+    std::array<T, at_least_one(S::NX)> x;
+    seed(x, at.x, S::NX, 0);
+    std::array<T, static_cast<std::size_t>(S::NY)> out;
+    if constexpr (W > S::NX) {
+      std::array<T, at_least_one(S::NK)> k;
+      seed(k, at.k, S::NK, S::NX);
+      system_.template outputs<T, T>(x.data(), at.u, at.t, k.data(), out.data());
+    } else {
+      system_.template outputs<T, double>(x.data(), at.u, at.t, at.k, out.data());
+    }
+    for (int i = 0; i < S::NY; ++i) {
+      const T& jet = out[static_cast<std::size_t>(i)];
+      y[i] = jet.a;
+      block(jet, 0, S::NX, y_x + i * S::NX);
+      if constexpr (W > S::NX) block(jet, S::NX, S::NK, y_k + i * S::NK);
+    }
+  }
+
+  S system_;
+  SystemSpec spec_;
+};
+
+}  // namespace misfit
+
+/// The last line of a system's file: `Type::flags()` lists the options and `Type(const SystemOptions&)` makes it.
+#define MISFIT_SYSTEM(key, Type)                                                                                        \
+  void misfit_register_##key(misfit::Registry& registry);                                                               \
+  void misfit_register_##key(misfit::Registry& registry) {                                                              \
+    registry.add(misfit::SystemType{#key, Type::flags(), [](const misfit::SystemOptions& options) -> std::unique_ptr<misfit::System> { \
+                                      return std::make_unique<misfit::SystemOf<Type>>(Type(options));                   \
+                                    }});                                                                                \
+  }
