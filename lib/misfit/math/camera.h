@@ -36,6 +36,16 @@ inline constexpr std::array<const char*, 8> camera_parameter_names = {"h_c",    
                                                                       "pixel_aspect", "lens_k1", "camera_distance"};
 inline constexpr std::array<const char*, 8> camera_parameter_units = {"m", "px/m", "rad", "px", "px", "-", "-", "m"};
 
+/// The parameters as an array in the order of camera_parameter_names.
+template <class T>
+std::array<T*, 8> camera_entries(CameraParameters<T>& c) {
+  return {&c.h_c, &c.K, &c.camera_roll, &c.centre_y, &c.centre_z, &c.pixel_aspect, &c.lens_k1, &c.camera_distance};
+}
+template <class T>
+std::array<T, 8> camera_values(const CameraParameters<T>& c) {
+  return {c.h_c, c.K, c.camera_roll, c.centre_y, c.centre_z, c.pixel_aspect, c.lens_k1, c.camera_distance};
+}
+
 /// Ideal image coordinates → what the camera reports: lens distortion [B], roll, aspect, then centre, the order in which light meets them.
 ///   P' = P (1 + k1 r²);  P'' = [cos −sin; sin cos] P' on (P_y; P_z), so a positive roll turns +z (down) towards −y;
 ///   P_y = (1 + pixel_aspect) P''_y + centre_y;  P_z = P''_z + centre_z.

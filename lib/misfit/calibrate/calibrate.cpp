@@ -1,0 +1,165 @@
+#include "misfit/calibrate/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/calibrate/groups.h"
+#include "misfit/calibrate/outliers.h"
+#include "misfit/calibrate/selection.h"
+#include "misfit/calibrate/sweep_points.h"
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+
+namespace misfit {
+namespace {
+
+struct Plan {
+  SweepModel base;
+  std::vector<CameraGroup> offered;
+  std::vector<std::string> notes;
+};
+
+void free_group(SweepModel& model, const CameraGroup& group) {
+  model.free.insert(model.free.end(), group.parameters.begin(), group.parameters.end());
+  std::sort(model.free.begin(), model.free.end());
+  model.free.erase(std::unique(model.free.begin(), model.free.end()), model.free.end());
+}
+
+Plan make_plan(const CalibrateOptions& options, bool with_y) {
+  Plan plan;
+  plan.base.free = {camera_parameter("h_c"), camera_parameter("K")};
+  plan.base.start.K = 1.0;
+  for (const auto& [name, value] : options.fixed) camera_entry(plan.base.start, camera_parameter(name)) = value;
+  for (const std::string& name : options.take_in) {
+    const CameraGroup group = camera_group(name, with_y);
+    if (group.parameters.empty()) throw RunError("the sweep gives no P_y, so " + name + " cannot be taken in");
+    free_group(plan.base, group);
+  }
+  for (const std::string& name : options.offer) {
+    const CameraGroup group = camera_group(name, with_y);
+    if (std::count(options.take_in.begin(), options.take_in.end(), name) > 0) continue;
+    if (group.parameters.size() < camera_group(name, true).parameters.size()) {
+      plan.notes.push_back("the sweep gives no P_y: " +
+                           (group.parameters.empty() ? name + " was not offered" : "of " + name + " only centre_z was offered"));
+    }
+    if (!group.parameters.empty()) plan.offered.push_back(group);
+  }
+  return plan;
+}
+
+std::size_t coordinates(const std::vector<SweepPoint>& points) {
+  std::size_t count = 0;
+  for (const SweepPoint& p : points)
+    count += static_cast<std::size_t>(std::isfinite(p.P_y)) + static_cast<std::size_t>(std::isfinite(p.P_z));
+  return count;
+}
+
+// The first judgement of which points to keep: under everything offered where the data can carry it, else under the base model.
+std::vector<bool> first_keep(const std::vector<SweepPoint>& points, double l_b, const Plan& plan, double limit) {
+  SweepModel largest = plan.base;
+  for (const CameraGroup& group : plan.offered) free_group(largest, group);
+  const SweepModel& model = coordinates(points) >= 3 * largest.free.size() ? largest : plan.base;
+  return points_within(points, l_b, robust_fit(points, l_b, model).camera, model.free.size(), limit);
+}
+
+std::string names_of(const std::vector<std::size_t>& parameters) {
+  std::string text;
+  for (const std::size_t p : parameters) text += (text.empty() ? "" : ", ") + std::string(camera_parameter_names[p]);
+  return text;
+}
+
+void check_enough(std::size_t data, const std::vector<std::size_t>& free) {
+  if (data > free.size()) return;
+  throw RunError("the sweep has " + std::to_string(data) + " usable coordinates for " + std::to_string(free.size()) + " unknowns (" +
+                 names_of(free) + "); a calibration needs more coordinates than unknowns");
+}
+
+// Selection and the points kept depend on one another: repeated until the points stay (they do after one or two rounds).
+Selection select_and_clean(const std::vector<SweepPoint>& points, std::vector<bool>& keep, double l_b, Plan& plan,
+                           const CalibrateOptions& options) {
+  for (int round = 0;; ++round) {
+    plan.base.start = start_camera(points, l_b, plan.base.start);
+    Selection selection = select_parameters({points, keep, l_b, plan.base, plan.offered, options.threshold});
+    check_enough(selection.fit.data, selection.fit.free);
+    std::vector<bool> next = points_within(points, l_b, selection.fit.camera, selection.fit.free.size(), options.outlier_limit);
+    if (next == keep) return selection;
+    if (round == 10) {
+      plan.notes.emplace_back("which points to set aside did not settle after 10 rounds; those of the last round are used");
+      return selection;
+    }
+    keep = std::move(next);
+  }
+}
+
+void add_residuals(Calibration& calibration, const std::vector<SweepPoint>& points, const std::vector<bool>& keep, double l_b) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SweepPoint& p = points[i];
+    const auto predicted = predict(p, l_b, calibration.camera);
+    if (std::isfinite(p.P_y)) calibration.residuals.push_back({p.point, 'y', p.theta, p.P_y, predicted[0], keep[i]});
+    if (std::isfinite(p.P_z)) calibration.residuals.push_back({p.point, 'z', p.theta, p.P_z, predicted[1], keep[i]});
+  }
+}
+
+void note_separability(Calibration& calibration) {
+  const Eigen::MatrixXd& C = calibration.covariance;
+  for (Eigen::Index i = 0; i < C.rows(); ++i) {
+    for (Eigen::Index j = i + 1; j < C.rows(); ++j) {
+      const double correlation = C(i, j) / std::sqrt(C(i, i) * C(j, j));
+      if (std::abs(correlation) <= 0.98) continue;
+      calibration.notes.push_back(calibration.names[static_cast<std::size_t>(i)] + " and " +
+                                  calibration.names[static_cast<std::size_t>(j)] + " are weakly separated by this sweep (correlation " +
+                                  format_value(correlation) + "): believe their common effect, not each alone");
+    }
+  }
+}
+
+void note_tests(Calibration& calibration) {
+  for (const CameraTest& test : calibration.tests) {
+    const bool seen = std::all_of(test.sigmas.begin(), test.sigmas.end(), [](double s) { return std::isfinite(s); });
+    if (seen || test.taken_in) continue;
+    calibration.notes.push_back(test.name + " cannot be told from the other free parameters by this sweep");
+  }
+}
+
+void note_outliers(Calibration& calibration, std::size_t points) {
+  if (calibration.outliers == 0) return;
+  calibration.notes.push_back(std::to_string(calibration.outliers) + " of " + std::to_string(points) +
+                              " points were set aside as outliers");
+  if (3 * static_cast<std::size_t>(calibration.outliers) > points) {
+    calibration.notes.emplace_back("that is more than a third: check that points, angles and geometry belong together");
+  }
+}
+
+}  // namespace
+
+Calibration calibrate(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options) {
+  const double l_b = geometry.l_b;
+  const std::vector<SweepPoint> points = sweep_points(sweep, geometry);
+  Plan plan = make_plan(options, has_y(points));
+  check_enough(coordinates(points), plan.base.free);
+  std::vector<bool> keep = first_keep(points, l_b, plan, options.outlier_limit);
+  const Selection selection = select_and_clean(points, keep, l_b, plan, options);
+  if (!selection.fit.determined) throw RunError("the sweep cannot tell these apart: " + names_of(selection.fit.free));
+
+  Calibration calibration;
+  calibration.model = options.model;
+  calibration.camera = selection.fit.camera;
+  for (const std::size_t p : selection.fit.free) calibration.names.emplace_back(camera_parameter_names[p]);
+  calibration.covariance = selection.fit.covariance;
+  calibration.sigma_px = selection.fit.sigma_px;
+  calibration.rms_px = std::sqrt(selection.fit.rss / static_cast<double>(selection.fit.data));
+  calibration.outliers = static_cast<int>(std::count(keep.begin(), keep.end(), false));
+  calibration.message = selection.fit.message;
+  calibration.converged = selection.fit.converged;
+  calibration.tests = selection.tests;
+  calibration.notes = plan.notes;
+  add_residuals(calibration, points, keep, l_b);
+  note_outliers(calibration, points.size());
+  note_tests(calibration);
+  note_separability(calibration);
+  if (!selection.fit.inside)
+    calibration.notes.emplace_back("a parameter ended at the edge of what is physical: do not believe this calibration");
+  return calibration;
+}
+
+}  // namespace misfit
