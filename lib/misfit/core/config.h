@@ -19,9 +19,9 @@ struct Number {
   Source where;
 };
 
-/// A strict view of one TOML table. Every key that is read is noted; `finish()` throws for the keys that were not, naming file, line, the key, the
-/// nearest key that was asked for and all of them. Reading a key with the wrong type is an InputError with the place and what is allowed.
-/// Copies share their notes (they are views).
+/// A strict view of one TOML table. Every key that is read is noted; `finish()` throws for the keys that were not, naming file, line, the
+/// key, the nearest key that was asked for and all of them. Reading a key with the wrong type is an InputError with the place and what is
+/// allowed. Copies share their notes (they are views).
 class Section {
  public:
   /// Parses a file. InputError with file, line and column for TOML syntax errors.
@@ -29,11 +29,11 @@ class Section {
   /// Parses text; `name` stands for the file in messages.
   [[nodiscard]] static Section parse(std::string_view text, const std::string& name);
 
-  [[nodiscard]] bool has(std::string_view key) const;             ///< does not count as reading it
-  [[nodiscard]] std::vector<std::string> keys() const;            ///< in file order (by line)
-  [[nodiscard]] Source where(std::string_view key) const;         ///< place of the key (of the table itself if absent)
+  [[nodiscard]] bool has(std::string_view key) const;      ///< does not count as reading it
+  [[nodiscard]] std::vector<std::string> keys() const;     ///< in file order (by line)
+  [[nodiscard]] Source where(std::string_view key) const;  ///< place of the key (of the table itself if absent)
   [[nodiscard]] Source where() const;
-  [[nodiscard]] std::string path() const;                         ///< "geometry", "effects.bearing": for messages
+  [[nodiscard]] std::string path() const;  ///< "geometry", "effects.bearing": for messages
   [[nodiscard]] std::filesystem::path file() const;
 
   /// A number in SI. Accepts 0.5, "24 in" (dimension checked against `unit`, converted to it) and, where `sigma_allowed`,
@@ -55,7 +55,7 @@ class Section {
   [[nodiscard]] bool is_array(std::string_view key) const;
   [[nodiscard]] bool is_flag(std::string_view key) const;
 
-  void finish() const;                                            ///< this table only; sub-tables finish themselves
+  void finish() const;  ///< this table only; sub-tables finish themselves
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
 
  private:

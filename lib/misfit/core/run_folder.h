@@ -15,7 +15,7 @@ struct StageRecord {
   std::map<std::string, std::string> inputs;  ///< name → hash (files, and "settings" for the part of the study it depends on)
   std::vector<std::string> outputs;           ///< paths relative to the run folder
   double seconds = 0.0;
-  std::string version = {}, commit = {};      ///< of the program that made it: filled by RunFolder::record
+  std::string version = {}, commit = {};  ///< of the program that made it: filled by RunFolder::record
 };
 
 /// The output folder of a study. run.json is rewritten (atomically) after every stage.

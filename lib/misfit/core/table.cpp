@@ -1,5 +1,7 @@
 #include "misfit/core/table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -37,9 +39,16 @@ const Column* Table::find(std::string_view name) const {
 
 const Column& Table::at(std::string_view name) const {
   if (const Column* column = find(name)) return *column;
-  std::vector<std::string> headers;
-  for (const Column& column : columns) headers.push_back(column.header());
-  throw InputError({source, 0, 0}, "no column '" + std::string(name) + "'" + suggest(name, headers));
+  std::vector<std::string> names;
+  std::string headers;
+  for (const Column& column : columns) {
+    names.push_back(column.name);
+    headers += headers.empty() ? "" : ", ";
+    headers += column.header();
+  }
+  const Column* nearest = find(nearest_name(name, names));  // by bare names: a unit would count as a difference
+  const std::string end = nearest ? fmt::format(" — did you mean '{}'? Valid: ", nearest->header()) : " — valid: ";
+  throw InputError({source, 0, 0}, fmt::format("no column '{}'{}{}", name, end, headers));
 }
 
 std::vector<double> Table::values(std::string_view name, std::string_view unit) const {

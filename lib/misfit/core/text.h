@@ -9,7 +9,8 @@ namespace misfit {
 /// finite sigma: five significant digits. NaN → "not available".
 [[nodiscard]] std::string format_value(double value, double sigma = 0.0);
 
-/// Pads columns so that they align (UTF-8 aware: counts code points); first row is the header, underlined. Numbers are not parsed: give strings.
+/// Pads columns so that they align (UTF-8 aware: counts code points); first row is the header, underlined. Numbers are not parsed: give
+/// strings.
 [[nodiscard]] std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::string& indent = "  ");
 
 /// Breaks at blanks to at most `width` code points.

@@ -1,0 +1,101 @@
+#include "misfit/data/study.h"
+
+#include <limits>
+#include <numbers>
+
+#include "misfit/core/files.h"
+#include "misfit/data/study_parts.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+using config::Section;
+
+constexpr long largest_seed = std::numeric_limits<long>::max();
+
+void read_head(const Section& root, Study& study) {
+  study.name = fs::absolute(study.file).parent_path().filename().string();
+  study.methods = {"sliding_bin", "equation_error", "output_error"};
+  const auto head = root.table("study");
+  if (!head) return;
+  study.name = head->text("name").value_or(study.name);
+  study.question = head->text("question").value_or("");
+  study.seed = static_cast<unsigned long>(head->integer("seed", 0, largest_seed).value_or(1));
+  if (const auto methods = head->texts("methods")) {
+    study.methods = *methods;
+    study_parts::check_names(*head, "methods", *methods, {"sliding_bin", "equation_error", "output_error", "filter_error"});
+    if (methods->empty()) head->fail("methods", "at least one method is needed; leave the key out for the default ones");
+  }
+  head->finish();
+}
+
+/// A flag, or a number kept with the unit as written: what it must be is known to the model only.
+void read_system_option(const Section& system, const std::string& key, Study& study) {
+  if (system.is_flag(key)) {
+    study.system_flags[key] = *system.flag(key);
+  } else if (system.is_number(key)) {
+    study.system_numbers[key] = *system.number(key, "");
+  } else if (system.is_text(key)) {
+    study.system_numbers[key] = study_parts::number_as_written(system, key);
+  } else {
+    system.fail(key, "true, false or a number, as 0.5 or \"0.5 m\", is expected");
+  }
+}
+
+void read_system(const Section& root, Study& study) {
+  const auto system = root.table("system");
+  if (!system)
+    throw InputError({study.file.string(), 0, 0}, "the section [system] is missing: it names the model, as kind = \"parachute_spherical\"");
+  if (system->has("kind") == system->has("file")) system->fail("", "exactly one of kind and file is needed");
+  study.system_kind = system->text("kind").value_or("");
+  study.system_file = study_parts::existing_file(*system, "file", study.folder);
+  for (const std::string& key : system->keys()) {
+    study.system_where[key] = system->where(key);
+    if (key != "kind" && key != "file") read_system_option(*system, key, study);
+  }
+  system->finish();
+}
+
+/// More than 30 deg is degrees written without unit.
+double bin_angle(const Section& section, std::string_view key) {
+  const auto angle = section.number(key, "rad");
+  if (!angle) return 0.0;
+  if (angle->value <= 0.0 || angle->value > std::numbers::pi / 6.0)
+    section.fail(key, "an angle above 0 and up to 30 deg is expected, as \"1.5 deg\"");
+  return angle->value;
+}
+
+void read_sliding_bin(const Section& root, Study& study) {
+  const auto section = root.table("sliding_bin");
+  if (!section) return;
+  study.bin_width = bin_angle(*section, "width");
+  study.bin_step = bin_angle(*section, "step");
+  section->finish();
+}
+
+}  // namespace
+
+Study read_study(const fs::path& path) {
+  Study study;
+  study.file = fs::is_directory(path) ? path / "study.toml" : path;
+  study.folder = study.file.has_parent_path() ? study.file.parent_path() : fs::path(".");
+  study.text = read_file(study.file);
+  const Section root = Section::parse(study.text, study.file.string());
+  read_head(root, study);
+  read_system(root, study);
+  study.geometry = root.table("geometry");
+  study_parts::read_camera(root, study);
+  study_parts::read_experiments(root, study);
+  study_parts::read_video(root, study);
+  study_parts::read_effects(root, study);
+  study_parts::read_parameters(root, study);
+  study_parts::read_curves(root, study);
+  study_parts::read_reference(root, study);
+  study_parts::read_uncertainty(root);
+  read_sliding_bin(root, study);
+  root.finish();
+  return study;
+}
+
+}  // namespace misfit

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/core/config.h"
+#include "misfit/data/track.h"
+
+namespace misfit {
+
+/// One entry of [geometry] or [system]: kept raw until the system says which names exist and in which unit.
+struct CameraStudy {
+  std::optional<std::filesystem::path> sweep;   ///< calibrate from it …
+  std::string model = "pinhole";                ///< "pinhole" or "plane_by_plane"
+  std::map<std::string, config::Number> given;  ///< … or h_c, K and any other camera parameter, with sigma where known
+  std::vector<std::string> offer;               ///< optional parameters that calibrate may take in; default all
+  std::vector<std::string> take_in;             ///< optional parameters that calibrate must free whatever the test says
+};
+
+struct ExperimentStudy {
+  std::string name;
+  std::optional<std::filesystem::path> track, video, data;  ///< exactly one
+  ColumnMap columns;
+  enum class Validation { none, last_fraction, interval, file } validation = Validation::none;
+  double fraction = 0.0;        ///< last_fraction: 0.25 for "last 25 %"
+  double from = 0.0, to = 0.0;  ///< interval [s]
+  std::filesystem::path validation_file;
+  long exclude = 0;  ///< initial samples
+  Source where;
+};
+
+/// One line of [effects].
+struct EffectStudy {
+  std::string name;                          ///< key in the study: "bearing"
+  std::string kind;                          ///< effect's key: "coulomb_friction"; default = name
+  std::map<std::string, std::string> roles;  ///< role → quantity or port, as bound by the study
+  Source where;
+};
+
+struct ParameterStudy {
+  std::optional<bool> free;
+  std::optional<config::Section> section;  ///< holds value, bounds, sigma with the unit that the model will name
+  Source where;
+};
+
+struct CurveStudy {
+  std::string of;                            ///< quantity
+  std::optional<std::vector<double>> knots;  ///< as written (degrees for angles); nullopt = "auto"
+  std::optional<double> roughness;           ///< nullopt = "auto"; unit of the weight: see fit/roughness.h
+  Source where;
+};
+
+/// A study as written. Everything that can be checked without the model has been checked.
+struct Study {
+  std::filesystem::path file, folder;
+  std::string name, question;
+  std::vector<std::string> methods;  ///< subset of sliding_bin, equation_error, output_error, filter_error
+  unsigned long seed = 1;
+  std::string system_kind;  ///< or …
+  std::optional<std::filesystem::path> system_file;
+  std::map<std::string, config::Number> system_numbers;
+  std::map<std::string, bool> system_flags;  ///< "induced_angle"
+  std::map<std::string, Source> system_where;
+  std::optional<config::Section> geometry;  ///< read key by key by whoever knows the units (rig and system); finish() after that
+  CameraStudy camera;
+  bool has_camera = false;
+  std::vector<ExperimentStudy> experiments;
+  std::vector<EffectStudy> effects;  ///< in file order
+  std::map<std::string, ParameterStudy> parameters;
+  std::map<std::string, CurveStudy> curves;
+  std::map<std::string, std::filesystem::path> reference;  ///< curve → file
+  double bin_width = 0.0;                                  ///< [sliding_bin] width [rad]; 0 = default 1.5 deg
+  double bin_step = 0.0;                                   ///< [sliding_bin] step [rad]; 0 = default 0.1 deg
+  std::string text;                                        ///< the file's content, for hashing and resolved.toml
+};
+
+/// Reads and checks DIR/study.toml (DESIGN section 8). Relative paths are taken from the study's folder, and every file named must exist.
+[[nodiscard]] Study read_study(const std::filesystem::path& path);
+
+}  // namespace misfit

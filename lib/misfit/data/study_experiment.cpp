@@ -1,0 +1,87 @@
+// [[experiment]] of a study.
+
+#include <regex>
+
+#include "misfit/data/study_parts.h"
+
+namespace misfit::study_parts {
+namespace {
+
+using config::Section;
+
+constexpr const char* validation_forms = "\"last 25 %\", [t0, t1] in seconds, or a file ending in .csv is expected";
+
+void read_source(const Section& section, const Study& study, ExperimentStudy& experiment) {
+  experiment.track = existing_file(section, "track", study.folder);
+  experiment.video = existing_file(section, "video", study.folder);
+  experiment.data = existing_file(section, "data", study.folder);
+  const int given = (experiment.track ? 1 : 0) + (experiment.video ? 1 : 0) + (experiment.data ? 1 : 0);
+  if (given != 1) section.fail("", "exactly one of track, video and data is needed, " + std::to_string(given) + " are given");
+}
+
+void read_columns(const Section& section, ExperimentStudy& experiment) {
+  const auto columns = section.table("columns");
+  if (!columns) return;
+  for (const std::string& name : columns->keys()) experiment.columns.header_of.emplace_back(name, *columns->text(name));
+  columns->finish();
+}
+
+void read_interval(const Section& section, ExperimentStudy& experiment) {
+  const auto ends = section.numbers("validation", "s");
+  if (ends->size() != 2 || (*ends)[0] >= (*ends)[1]) section.fail("validation", "[t0, t1] needs two times, the first before the second");
+  experiment.validation = ExperimentStudy::Validation::interval;
+  experiment.from = (*ends)[0];
+  experiment.to = (*ends)[1];
+}
+
+void read_validation(const Section& section, const Study& study, ExperimentStudy& experiment) {
+  if (section.is_array("validation")) return read_interval(section, experiment);
+  if (section.has("validation") && !section.is_text("validation")) section.fail("validation", validation_forms);
+  const auto given = section.text("validation");
+  if (!given) return;
+  const std::string& text = *given;
+  std::smatch match;
+  if (std::regex_match(text, match, std::regex(R"(\s*last\s+(\d{1,3}(\.\d{1,9})?)\s*%\s*)"))) {
+    experiment.validation = ExperimentStudy::Validation::last_fraction;
+    experiment.fraction = std::stod(match[1]) / 100.0;
+    if (experiment.fraction <= 0.0 || experiment.fraction >= 1.0)
+      section.fail("validation", "the part held out must be above 0 % and below 100 %");
+  } else if (text.ends_with(".csv")) {
+    experiment.validation = ExperimentStudy::Validation::file;
+    experiment.validation_file = *existing_file(section, "validation", study.folder);
+  } else {
+    section.fail("validation", "'" + text + "': " + validation_forms);
+  }
+}
+
+/// A name becomes part of file names.
+void read_name(const Section& section, const Study& study, ExperimentStudy& experiment) {
+  const auto& file = experiment.track ? experiment.track : experiment.video ? experiment.video : experiment.data;
+  experiment.name = section.text("name").value_or(file->stem().string());
+  if (experiment.name.empty() || experiment.name.find_first_of("/\\") != std::string::npos || experiment.name.front() == '.') {
+    section.fail("name", "a name without / and \\ that does not begin with a dot is expected");
+  }
+  for (const ExperimentStudy& earlier : study.experiments) {
+    if (earlier.name != experiment.name) continue;
+    section.fail("name", "two experiments are called '" + experiment.name + "' (the other on line " + std::to_string(earlier.where.line) +
+                             "): give each a name of its own");
+  }
+}
+
+}  // namespace
+
+void read_experiments(const Section& root, Study& study) {
+  for (const Section& section : root.tables("experiment")) {
+    ExperimentStudy experiment;
+    experiment.where = section.where();
+    read_source(section, study, experiment);
+    read_columns(section, experiment);
+    read_validation(section, study, experiment);
+    experiment.exclude = section.integer("exclude", 0, 1'000'000'000).value_or(0);
+    read_name(section, study, experiment);
+    section.finish();
+    study.experiments.push_back(std::move(experiment));
+  }
+}
+
+}  // namespace misfit::study_parts

@@ -1,0 +1,202 @@
+#include "misfit/data/study_parts.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "misfit/core/units.h"
+#include "misfit/math/camera.h"
+
+namespace misfit::study_parts {
+
+namespace fs = std::filesystem;
+using config::Section;
+
+void check_names(const Section& section, std::string_view key, const std::vector<std::string>& names,
+                 const std::vector<std::string>& valid) {
+  for (auto it = names.begin(); it != names.end(); ++it) {
+    if (std::find(valid.begin(), valid.end(), *it) == valid.end()) section.fail(key, "unknown name '" + *it + "'" + suggest(*it, valid));
+    if (std::find(names.begin(), it, *it) != it) section.fail(key, "'" + *it + "' is given twice");
+  }
+}
+
+std::optional<fs::path> existing_file(const Section& section, std::string_view key, const fs::path& folder) {
+  const auto name = section.text(key);
+  if (!name) return std::nullopt;
+  const fs::path path = (folder / *name).lexically_normal();
+  std::error_code error;
+  if (!name->empty() && fs::is_regular_file(path, error)) return path;
+  if (!name->empty() && fs::exists(path, error)) section.fail(key, "'" + *name + "' is no file");
+  std::vector<std::string> names;
+  for (fs::directory_iterator it(path.parent_path(), error), end; !error && it != end; it.increment(error)) {
+    if (it->is_regular_file(error)) names.push_back(it->path().filename().string());
+  }
+  const std::string nearest = nearest_name(path.filename().string(), names);
+  section.fail(key, "no such file '" + *name + "' in " + path.parent_path().string() +
+                        (nearest.empty() ? "" : " — did you mean '" + nearest + "'?"));
+}
+
+config::Number number_as_written(const Section& section, std::string_view key) {
+  config::Number out;
+  out.where = section.where(key);
+  try {
+    const Quantity quantity = parse_quantity(section.text(key).value_or(""));
+    out.value = quantity.value;
+    out.unit = quantity.unit;
+  } catch (const InputError& error) {
+    section.fail(key, error.what());
+  }
+  return out;
+}
+
+namespace {
+
+/// Names of CameraTest (data/calibration.h): what calibrate may free beside h_c and K.
+const std::vector<std::string>& optional_camera_parameters() {
+  static const std::vector<std::string> names{"camera_roll", "image_centre", "pixel_aspect", "lens_k1", "camera_distance"};
+  return names;
+}
+
+void check_camera(const Section& section, const CameraStudy& camera) {
+  if (camera.sweep && !camera.given.empty()) {
+    section.fail(camera.given.begin()->first, "a camera is either calibrated from sweep or given; remove one of the two");
+  }
+  if (!camera.sweep && (camera.given.count("h_c") == 0 || camera.given.count("K") == 0))
+    section.fail("", "sweep = \"FILE\", or both h_c and K, are needed");
+  if (!camera.sweep && section.has("offer")) section.fail("offer", "has no meaning without sweep");
+  if (!camera.sweep && section.has("take_in")) section.fail("take_in", "has no meaning without sweep");
+}
+
+/// Absent or "auto"; another text is refused.
+bool is_auto(const Section& section, std::string_view key) {
+  if (section.has(key) && !section.is_text(key)) return false;
+  (void)section.choice(key, {"auto"});
+  return true;
+}
+
+void read_runs(const Section& uncertainty) {
+  (void)uncertainty.integer("runs", 1, 100'000'000);
+  if (uncertainty.is_table("readings")) {
+    (void)uncertainty.table("readings");
+  } else if (uncertainty.is_array("readings")) {
+    (void)uncertainty.texts("readings");
+  } else {
+    (void)uncertainty.text("readings");
+  }
+}
+
+}  // namespace
+
+void read_camera(const Section& root, Study& study) {
+  const auto section = root.table("camera");
+  if (!section) return;
+  study.has_camera = true;
+  CameraStudy& camera = study.camera;
+  camera.sweep = existing_file(*section, "sweep", study.folder);
+  camera.model = section->choice("model", {"pinhole", "plane_by_plane"}).value_or(camera.model);
+  camera.offer = section->texts("offer").value_or(optional_camera_parameters());
+  camera.take_in = section->texts("take_in").value_or(std::vector<std::string>{});
+  check_names(*section, "offer", camera.offer, optional_camera_parameters());
+  check_names(*section, "take_in", camera.take_in, optional_camera_parameters());
+  for (std::size_t i = 0; i < camera_parameter_names.size(); ++i) {
+    const char* name = camera_parameter_names[i];
+    if (const auto number = section->number(name, camera_parameter_units[i], true)) camera.given[name] = *number;
+  }
+  section->finish();
+  check_camera(*section, camera);
+}
+
+void read_video(const Section& root, const Study& study) {
+  const auto video = root.table("video");
+  if (!video) return;
+  (void)video->choice("fields", {"auto", "progressive", "top_first", "bottom_first"});
+  const std::vector<std::string> shapes{"ring", "bright", "dark"};
+  const auto marker = video->text("marker");
+  if (marker && marker->ends_with(".png")) {
+    (void)existing_file(*video, "marker", study.folder);
+  } else {
+    (void)video->choice("marker", shapes);
+  }
+  video->finish();
+}
+
+void read_effects(const Section& root, Study& study) {
+  const auto effects = root.table("effects");
+  if (!effects) return;
+  for (const std::string& key : effects->keys()) {
+    if (!effects->is_table(key)) effects->fail(key, "an effect is a table, as " + key + " = {}");
+    const Section section = *effects->table(key);
+    EffectStudy effect;
+    effect.name = key;
+    effect.where = effects->where(key);
+    effect.kind = section.text("kind").value_or(key);
+    for (const std::string& role : section.keys()) {
+      if (role != "kind") effect.roles[role] = section.text(role).value_or("");
+    }
+    section.finish();
+    study.effects.push_back(std::move(effect));
+  }
+  effects->finish();
+}
+
+void read_parameters(const Section& root, Study& study) {
+  const auto parameters = root.table("parameters");
+  if (!parameters) return;
+  const std::vector<std::string> known{"free", "value", "bounds", "sigma"};
+  for (const std::string& key : parameters->keys()) {
+    const Section section = *parameters->table(key);
+    for (const std::string& entry : section.keys()) {
+      if (std::find(known.begin(), known.end(), entry) == known.end()) section.fail(entry, "unknown key" + suggest(entry, known));
+    }
+    ParameterStudy parameter;
+    parameter.free = section.flag("free");
+    parameter.where = parameters->where(key);
+    parameter.section = section;
+    study.parameters[key] = std::move(parameter);
+  }
+  parameters->finish();
+}
+
+void read_curves(const Section& root, Study& study) {
+  const auto curves = root.table("curves");
+  if (!curves) return;
+  for (const std::string& key : curves->keys()) {
+    const Section section = *curves->table(key);
+    CurveStudy curve;
+    curve.where = curves->where(key);
+    const auto of = section.text("of");
+    if (!of || of->empty()) section.fail("of", "the quantity that the curve depends on is needed, as of = \"alpha_T\"");
+    curve.of = *of;
+    if (!is_auto(section, "knots")) curve.knots = section.numbers("knots", "deg");
+    if (curve.knots && (curve.knots->size() < 2 || !std::is_sorted(curve.knots->begin(), curve.knots->end(), std::less_equal<>()))) {
+      section.fail("knots", "at least two knots are needed, each above the one before");
+    }
+    if (!is_auto(section, "roughness")) curve.roughness = section.number("roughness", "")->value;
+    if (curve.roughness && *curve.roughness < 0.0) section.fail("roughness", "\"auto\" or a number from 0 is expected");
+    section.finish();
+    study.curves[key] = std::move(curve);
+  }
+  curves->finish();
+}
+
+void read_reference(const Section& root, Study& study) {
+  const auto reference = root.table("reference");
+  if (!reference) return;
+  for (const std::string& curve : reference->keys()) study.reference[curve] = *existing_file(*reference, curve, study.folder);
+  reference->finish();
+}
+
+void read_uncertainty(const Section& root) {
+  const auto uncertainty = root.table("uncertainty");
+  if (!uncertainty) return;
+  read_runs(*uncertainty);
+  if (const auto perturb = uncertainty->table("perturb")) {
+    for (const std::string& name : perturb->keys()) {
+      if (perturb->is_text(name)) (void)number_as_written(*perturb, name);
+      if (!perturb->is_text(name)) (void)perturb->number(name, "");
+    }
+    perturb->finish();
+  }
+  uncertainty->finish();
+}
+
+}  // namespace misfit::study_parts

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace misfit {
+
+/// The apex in the image over time. All vectors have one entry per sample; lost samples keep their row.
+struct Track {
+  std::vector<double> t;           ///< [s], strictly increasing
+  std::vector<double> P_y;         ///< [px] from the image centre, positive left looking upstream; NaN when lost
+  std::vector<double> P_z;         ///< [px] from the image centre, positive down; NaN when lost
+  std::vector<double> sigma;       ///< [px] standard deviation of one coordinate; NaN when not known
+  std::vector<bool> ok;            ///< false: lost, not to be used
+  std::vector<std::string> notes;  ///< what was dropped and why, in words
+};
+
+/// Which header holds which signal (name → header); names absent from the map are looked for under their own name.
+struct ColumnMap {
+  std::vector<std::pair<std::string, std::string>> header_of;
+  [[nodiscard]] std::string header(const std::string& name) const;
+};
+
+/// Reads `t[s],P_y[px],P_z[px]` and, where present, `sigma[px]` and `ok`. Rows without t are dropped and said; time that does not increase
+/// is an InputError with the line; all samples lost is a RunError; samples farther than 1e5 px from the centre are lost and said.
+[[nodiscard]] Track read_track(const std::filesystem::path& path, const ColumnMap& columns = {});
+void write_track(const std::filesystem::path& path, const Track& track);
+
+}  // namespace misfit
