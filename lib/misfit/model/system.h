@@ -182,9 +182,9 @@ class SystemOf final : public System {
   }
 
  private:
-  template <class T, std::size_t N>
-  static void seed(std::array<T, N>& jets, const double* values, int count, int first) {
-    for (int i = 0; i < count; ++i) jets[static_cast<std::size_t>(i)] = T(values[i], first + i);
+  template <class T>
+  static void seed(T* jets, const double* values, int count, int first) {
+    for (int i = 0; i < count; ++i) jets[i] = T(values[i], first + i);
   }
   template <class T>
   static void plain(T* jets, const double* values, int count) {
@@ -202,17 +202,17 @@ class SystemOf final : public System {
     constexpr bool with_P = W >= S::NX + S::NP && S::NP > 0;
     constexpr bool with_k = W > S::NX + S::NP;
     std::array<T, at_least_one(S::NX)> x;
-    seed(x, at.x, S::NX, 0);
+    seed(x.data(), at.x, S::NX, 0);
     std::array<T, at_least_one(S::NP)> ports;
     if constexpr (with_P) {
-      seed(ports, P, S::NP, S::NX);
+      seed(ports.data(), P, S::NP, S::NX);
     } else {
       plain(ports.data(), P, S::NP);
     }
     std::array<T, static_cast<std::size_t>(S::NQ)> out;
     if constexpr (with_k) {
       std::array<T, at_least_one(S::NK)> k;
-      seed(k, at.k, S::NK, S::NX + S::NP);
+      seed(k.data(), at.k, S::NK, S::NX + S::NP);
       system_.template quantities<T, T>(x.data(), at.u, at.t, k.data(), ports.data(), needed, out.data());
     } else {
       system_.template quantities<T, double>(x.data(), at.u, at.t, at.k, ports.data(), needed, out.data());
@@ -235,19 +235,19 @@ class SystemOf final : public System {
     constexpr bool with_P = W >= S::NX + S::NF + S::NP && S::NP > 0;
     constexpr bool with_k = W > S::NX + S::NF + S::NP;
     std::array<T, at_least_one(S::NX)> x;
-    seed(x, at.x, S::NX, 0);
+    seed(x.data(), at.x, S::NX, 0);
     std::array<T, at_least_one(S::NF)> forces;
-    seed(forces, F, S::NF, S::NX);
+    seed(forces.data(), F, S::NF, S::NX);
     std::array<T, at_least_one(S::NP)> ports;
     if constexpr (with_P) {
-      seed(ports, P, S::NP, S::NX + S::NF);
+      seed(ports.data(), P, S::NP, S::NX + S::NF);
     } else {
       plain(ports.data(), P, S::NP);
     }
     std::array<T, at_least_one(S::NX)> out;
     if constexpr (with_k) {
       std::array<T, at_least_one(S::NK)> k;
-      seed(k, at.k, S::NK, S::NX + S::NF + S::NP);
+      seed(k.data(), at.k, S::NK, S::NX + S::NF + S::NP);
       system_.template rates<T, T>(x.data(), at.u, at.t, k.data(), ports.data(), forces.data(), out.data());
     } else {
       system_.template rates<T, double>(x.data(), at.u, at.t, at.k, ports.data(), forces.data(), out.data());
@@ -268,11 +268,11 @@ class SystemOf final : public System {
   void differentiate_outputs(const Point& at, double* y, double* y_x, double* y_k) const {
     using T = Jet<W>;
     std::array<T, at_least_one(S::NX)> x;
-    seed(x, at.x, S::NX, 0);
+    seed(x.data(), at.x, S::NX, 0);
     std::array<T, static_cast<std::size_t>(S::NY)> out;
     if constexpr (W > S::NX) {
       std::array<T, at_least_one(S::NK)> k;
-      seed(k, at.k, S::NK, S::NX);
+      seed(k.data(), at.k, S::NK, S::NX);
       system_.template outputs<T, T>(x.data(), at.u, at.t, k.data(), out.data());
     } else {
       system_.template outputs<T, double>(x.data(), at.u, at.t, at.k, out.data());

@@ -1,0 +1,188 @@
+#include "misfit/fit/curves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+
+namespace misfit {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180.0;
+
+/// A curve as weights on columns at one place: value = weights · θ + constant (constant from coefficients that are fixed).
+struct Weights {
+  Eigen::VectorXd on_columns;
+  double value = 0.0;
+};
+
+void add_term(const Model& model, const std::vector<int>& column_of, const Curve& curve, int derivative, double factor, double x, Weights& out) {
+  const CurvePoint point = curve.spline.at(x);
+  for (int j = 0; j < 4; ++j) {
+    const auto parameter = static_cast<std::size_t>(curve.first + point.first + j);
+    const double w = factor * (derivative == 0 ? point.w : point.d)[static_cast<std::size_t>(j)];
+    out.value += w * model.parameters[parameter].value;
+    if (column_of[parameter] >= 0) out.on_columns[column_of[parameter]] += w;
+  }
+}
+
+std::vector<double> grid_over(double lowest, double highest, const std::string& unit) {
+  const double range = highest - lowest;
+  const double step = unit == "rad" && range < 2.0 ? 0.1 * degree : range / 200.0;
+  const double margin = 0.1 * range;  // a little outside, drawn dashed with the widening band
+  std::vector<double> x;
+  double first = std::ceil((lowest - margin) / step) * step;
+  if (lowest >= 0.0) first = std::max(first, 0.0);
+  for (int i = 0; first + i * step <= highest + margin; ++i) x.push_back(first + i * step);
+  return x;
+}
+
+std::vector<double> counts_at(const std::vector<double>& x, const RowMatrix& visited, int quantity) {
+  std::vector<double> count(x.size(), 0.0);
+  if (x.size() < 2 || visited.rows() == 0) return count;
+  const double step = x[1] - x[0];
+  for (Eigen::Index i = 0; i < visited.rows(); ++i) {
+    const double cell = std::round((visited(i, quantity) - x.front()) / step);
+    if (cell >= 0.0 && cell < static_cast<double>(x.size())) count[static_cast<std::size_t>(cell)] += 1.0;
+  }
+  return count;
+}
+
+struct Combination {
+  std::string name, of, unit;
+  std::vector<DerivedCurve::Term> terms;
+};
+
+CurveEstimate evaluate(const Model& model, const std::vector<int>& column_of, const Eigen::MatrixXd& covariance, const RowMatrix& visited, const Combination& c) {
+  CurveEstimate out;
+  out.name = c.name;
+  out.of = c.of;
+  out.unit = c.unit;
+  const Curve* lead = model.find_curve(c.terms.front().curve);
+  out.of_unit = lead->of_unit;
+  out.x = grid_over(lead->spline.lowest(), lead->spline.highest(), lead->of_unit);
+  out.count = counts_at(out.x, visited, lead->quantity);
+  for (double x : out.x) {
+    Weights w{Eigen::VectorXd::Zero(covariance.rows()), 0.0};
+    for (const auto& term : c.terms) add_term(model, column_of, *model.find_curve(term.curve), term.derivative, term.factor(x), x, w);
+    out.value.push_back(w.value);
+    out.sigma.push_back(std::sqrt(std::max(w.on_columns.dot(covariance * w.on_columns), 0.0)));
+  }
+  return out;
+}
+
+}  // namespace
+
+RowMatrix visited_quantities(const Model& model, const Signals& signals, const ReconstructedStates& states) {
+  Evaluator evaluator(model);
+  const InputTable inputs = input_table(signals, model.inputs());
+  const auto count = static_cast<Eigen::Index>(std::count(states.ok.begin(), states.ok.end(), true));
+  RowMatrix out(count, static_cast<Eigen::Index>(model.system->spec().quantities.size()));
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < states.ok.size(); ++i) {
+    if (!states.ok[i]) continue;
+    evaluator.quantities(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs.at(i), signals.t[i], out.row(row++).data());
+  }
+  return out;
+}
+
+std::vector<double> choose_knots(std::vector<double> visited, int intervals, const std::string& curve) {
+  constexpr double samples_per_interval = 30.0;
+  constexpr double tail = 0.001;
+  std::sort(visited.begin(), visited.end());
+  if (visited.size() < 2 * static_cast<std::size_t>(samples_per_interval)) {
+    throw RunError("curve " + curve + ": only " + std::to_string(visited.size()) + " samples show its quantity; at least 60 are needed to choose knots");
+  }
+  const auto at = [&](double fraction) { return visited[static_cast<std::size_t>(fraction * static_cast<double>(visited.size() - 1))]; };
+  double low = at(tail);
+  const double high = at(1.0 - tail);
+  if (!(high > low)) throw RunError("curve " + curve + ": its quantity does not move, it is " + format_value(low) + " throughout");
+  const int pieces = std::clamp(static_cast<int>(static_cast<double>(visited.size()) / samples_per_interval), 2, intervals);
+  if (low >= 0.0) low = std::max(low, (high - low) / (2.0 * pieces));
+  std::vector<double> knots;
+  for (int i = 0; i <= pieces; ++i) knots.push_back(low + (high - low) * i / pieces);
+  return knots;
+}
+
+void choose_all_knots(ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments, int intervals) {
+  const auto open = curves_without_knots(request, registry);
+  if (open.empty()) return;
+  ModelRequest probe = request;  // any knots do: only quantities are evaluated
+  for (const auto& [name, of] : open) {
+    probe.curves[name].of = of;
+    probe.curves[name].knots = {1.0, 2.0};
+  }
+  const Model model = assemble(probe, registry);
+  std::map<std::string, std::vector<double>> visited;
+  for (const auto& experiment : experiments) {
+    const RowMatrix values = visited_quantities(model, experiment, reconstruct_states(model, experiment));
+    for (const auto& [name, of] : open) {
+      const auto column = values.col(model.find_curve(name)->quantity);
+      visited[name].insert(visited[name].end(), column.begin(), column.end());
+    }
+  }
+  for (const auto& [name, of] : open) {
+    request.curves[name].of = of;
+    request.curves[name].knots = choose_knots(visited[name], intervals, name);
+  }
+}
+
+void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited, Fit& fit) {
+  const std::vector<int> free = model.free_parameters();
+  std::vector<int> column_of(model.parameters.size(), -1);
+  fit.names.clear();
+  fit.covariance = covariance;
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    column_of[static_cast<std::size_t>(free[c])] = static_cast<int>(c);
+    fit.names.push_back(p.name);
+    const auto i = static_cast<Eigen::Index>(c);
+    fit.parameters[p.name] = {p.value, std::sqrt(std::max(covariance(i, i), 0.0)), p.unit};
+  }
+  fit.curves.clear();
+  for (const auto& curve : model.curves) {
+    const Combination own{curve.name, curve.of, curve.unit, {{curve.name, 0, [](double) { return 1.0; }}}};
+    fit.curves.push_back(evaluate(model, column_of, covariance, visited, own));
+  }
+  const std::vector<double> values = model.values();
+  for (const auto& derived : model.system->derived_curves(values.data())) {
+    const bool possible = std::all_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return model.find_curve(term.curve) != nullptr; });
+    if (possible) fit.curves.push_back(evaluate(model, column_of, covariance, visited, {derived.name, derived.of, derived.unit, derived.terms}));
+  }
+  for (const auto& curve : fit.curves) {
+    if (curve.name == model.system->spec().static_curve) fit.trim = stable_zero(curve);
+  }
+}
+
+void mark_not_informative(const Model& model, const std::string& curve, const std::string& why, Fit& fit) {
+  const std::vector<double> values = model.values();
+  std::vector<std::string> names{curve};
+  for (const auto& derived : model.system->derived_curves(values.data())) {
+    if (std::any_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return term.curve == curve; })) names.push_back(derived.name);
+  }
+  for (auto& estimate : fit.curves) {
+    if (std::find(names.begin(), names.end(), estimate.name) == names.end()) continue;
+    estimate.informative = false;
+    estimate.why = why;
+  }
+}
+
+std::optional<Estimate> stable_zero(const CurveEstimate& curve) {
+  std::optional<Estimate> best;
+  double most = 0.0;
+  for (std::size_t i = 1; i < curve.x.size(); ++i) {
+    const double a = curve.value[i - 1], b = curve.value[i];
+    if (!(a > 0.0 && b <= 0.0) || !(curve.x[i - 1] > 0.0)) continue;
+    const double count = curve.count[i - 1] + curve.count[i];
+    if (!(count > most)) continue;
+    most = count;
+    const double step = curve.x[i] - curve.x[i - 1];
+    const double fraction = a / (a - b);
+    const double sigma = curve.sigma[i - 1] + fraction * (curve.sigma[i] - curve.sigma[i - 1]);
+    best = Estimate{curve.x[i - 1] + fraction * step, sigma / ((a - b) / step), curve.of_unit};
+  }
+  return best;
+}
+
+}  // namespace misfit

@@ -1,0 +1,168 @@
+#include "misfit/fit/equation_error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "misfit/core/text.h"
+#include "misfit/fit/curves.h"
+#include "misfit/fit/whiteness.h"
+
+namespace misfit {
+namespace {
+
+/// States whose rate is an equation of motion and not just another state.
+std::vector<int> dynamic_states(const Model& model, const std::vector<bool>& shown) {
+  std::vector<int> rows;
+  const auto& states = model.system->spec().states;
+  for (std::size_t j = 0; j < states.size(); ++j) {
+    const bool kinematic = std::any_of(states.begin(), states.end(), [&](const StateSpec& s) { return s.rate_of == static_cast<int>(j); });
+    if (!kinematic && shown[j]) rows.push_back(static_cast<int>(j));
+  }
+  return rows;
+}
+
+struct Regression {
+  Linearised sums;
+  std::vector<std::vector<double>> residuals;  ///< per experiment and row, NaN where not used
+};
+
+class Regressor {
+ public:
+  Regressor(const Model& model, const std::vector<Signals>& experiments) : model_(model), experiments_(experiments) {
+    for (const auto& experiment : experiments) {
+      states_.push_back(reconstruct_states(model, experiment));
+      inputs_.push_back(input_table(experiment, model.inputs()));
+    }
+    rows_ = dynamic_states(model, states_.front().shown);
+  }
+  const std::vector<int>& rows() const { return rows_; }
+  const ReconstructedStates& states(std::size_t e) const { return states_[e]; }
+
+  Regression linearise(const Model& at) const {
+    Regression out;
+    Evaluator evaluator(at);
+    const std::vector<int> free = at.free_parameters();
+    const int columns = evaluator.columns();
+    out.sums.N = Eigen::MatrixXd::Zero(columns, columns);
+    out.sums.g = Eigen::VectorXd::Zero(columns);
+    out.sums.theta = Eigen::VectorXd::Zero(columns);
+    for (int c = 0; c < columns; ++c) out.sums.theta[c] = at.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
+    for (std::size_t e = 0; e < experiments_.size(); ++e) add(e, evaluator, out);
+    return out;
+  }
+
+ private:
+  void add(std::size_t e, Evaluator& evaluator, Regression& out) const {
+    const Signals& signals = experiments_[e];
+    const ReconstructedStates& states = states_[e];
+    const int n = evaluator.states();
+    std::vector<double> D(static_cast<std::size_t>(n) * kRowStride), dx(static_cast<std::size_t>(n));
+    Slots slots;
+    for (int row : rows_) {
+      std::vector<double> residuals(signals.samples(), std::nan(""));
+      for (std::size_t i = signals.exclude; i < signals.samples(); ++i) {
+        if (!states.ok[i] || signals.held_out(i)) continue;
+        slots.clear();
+        evaluator.linearise_rates(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs_[e].at(i), signals.t[i], slots, dx.data(), D.data());
+        const double r = dx[static_cast<std::size_t>(row)] - states.dx(static_cast<Eigen::Index>(i), row);
+        if (!std::isfinite(r)) continue;
+        residuals[i] = r;
+        const double* d = D.data() + static_cast<std::ptrdiff_t>(row) * kRowStride + n;
+        for (int a = 0; a < slots.count(); ++a) {
+          out.sums.g[slots.column(a)] += d[a] * r;
+          for (int b = 0; b < slots.count(); ++b) out.sums.N(slots.column(a), slots.column(b)) += d[a] * d[b];
+        }
+        out.sums.rss += r * r;
+        out.sums.count += 1.0;
+      }
+      out.residuals.push_back(std::move(residuals));
+    }
+  }
+
+  const Model& model_;
+  const std::vector<Signals>& experiments_;
+  std::vector<ReconstructedStates> states_;
+  std::vector<InputTable> inputs_;
+  std::vector<int> rows_;
+};
+
+void set_priors(const Model& model, Linearised& sums) {
+  const std::vector<int> free = model.free_parameters();
+  sums.prior_precision = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()));
+  sums.prior_mean = sums.prior_precision;
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const auto i = static_cast<Eigen::Index>(c);
+    // Without a prior a coefficient that no sample touches would be free to be anything: a very wide one (1000 typical sizes) keeps it finite.
+    constexpr double very_wide = 1e3;
+    sums.prior_precision[i] = 1.0 / std::pow(p.prior_sigma.value_or(very_wide * p.scale), 2);
+    sums.prior_mean[i] = p.prior_sigma ? p.prior_mean : 0.0;
+  }
+}
+
+}  // namespace
+
+FittedModel equation_error(const Model& model, const std::vector<Signals>& experiments) {
+  const auto begin = std::chrono::steady_clock::now();
+  FittedModel out{{}, model, curve_penalties(model), {}};
+  out.fit.method = "equation_error";
+  const Regressor regressor(model, experiments);
+  if (regressor.rows().empty()) {
+    out.fit.status = FitStatus::declined;
+    out.fit.message = "the measured channels do not show the states of system '" + model.system->spec().key + "' and their rates, so its equations cannot be regressed";
+    return out;
+  }
+  const std::vector<int> free = model.free_parameters();
+  Smoothed smoothed;
+  Regression regression;
+  constexpr int rounds = 4;  // the first is exact for strengths and curves; the others for shapes
+  for (int round = 0; round < rounds; ++round) {
+    regression = regressor.linearise(out.model);
+    ++out.fit.linearisations;
+    set_priors(out.model, regression.sums);
+    if (regression.sums.count < 2.0 * static_cast<double>(free.size()) || free.empty()) {
+      out.fit.status = FitStatus::declined;
+      out.fit.message = free.empty() ? "every parameter is fixed: there is nothing to estimate"
+                                     : "only " + std::to_string(static_cast<long>(regression.sums.count)) + " usable samples for " + std::to_string(free.size()) + " unknowns";
+      return out;
+    }
+    smoothed = smooth(regression.sums, out.penalties);
+    if (!smoothed.ok) break;
+    const double moved = (smoothed.theta - regression.sums.theta).cwiseAbs().maxCoeff();
+    for (std::size_t c = 0; c < free.size(); ++c) {
+      Parameter& p = out.model.parameters[static_cast<std::size_t>(free[c])];
+      p.value = p.curve >= 0 ? smoothed.theta[static_cast<Eigen::Index>(c)] : std::clamp(smoothed.theta[static_cast<Eigen::Index>(c)], p.lower, p.upper);
+    }
+    if (round > 0 && moved < 1e-9 * (1.0 + smoothed.theta.cwiseAbs().maxCoeff())) break;
+  }
+  out.fit.status = smoothed.ok ? FitStatus::converged : FitStatus::failed;
+  out.fit.message = smoothed.ok ? "linear regression solved" : "the regression is singular: some coefficients are not determined by these data";
+  if (!smoothed.ok) return out;
+  regression = regressor.linearise(out.model);
+  const double frequency = motion_frequency(model, regressor.states(0));
+  const double half_period = frequency > 0.0 ? 3.14159265358979 / frequency : 20.0 * usual_step(experiments.front().t);
+  constexpr int beyond_stencil = 5;
+  const int last_lag = std::max(beyond_stencil + 5, static_cast<int>(half_period / usual_step(experiments.front().t)));
+  const WhitenessTest test = whiteness(regression.residuals.front(), beyond_stencil, last_lag);
+  out.fit.driven = looks_driven(test);
+  const std::string unit = model.system->spec().states[static_cast<std::size_t>(regressor.rows().front())].unit + "/s";
+  out.fit.noise["equation_residual"] = {std::sqrt(smoothed.sigma2), 0.0, unit};
+  out.fit.facts["whiteness"] = "equation residuals at lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) + " samples: largest autocorrelation " +
+                               format_value(test.largest) + " at lag " + std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_value(test.p_value);
+  RowMatrix visited = visited_quantities(out.model, experiments.front(), regressor.states(0));
+  for (std::size_t e = 1; e < experiments.size(); ++e) {
+    const RowMatrix more = visited_quantities(out.model, experiments[e], regressor.states(e));
+    visited.conservativeResize(visited.rows() + more.rows(), visited.cols());
+    visited.bottomRows(more.rows()) = more;
+  }
+  describe(out.model, smoothed.covariance, visited, out.fit);
+  if (out.fit.driven) {
+    out.fit.warnings.push_back("the motion is driven (" + out.fit.facts["whiteness"] + "): on stationary driven motion the product of acceleration and rate telescopes, so the damping of this method is not informative");
+    mark_not_informative(out.model, model.system->spec().damping_curve, "driven motion: the sum of acceleration times rate telescopes", out.fit);
+  }
+  out.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace misfit

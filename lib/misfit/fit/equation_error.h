@@ -1,0 +1,31 @@
+#pragma once
+
+// References
+//   [P]   the paper, Eqs. 8-11: regression of measured accelerations.
+//   [KM]  V. Klein, E. A. Morelli, Aircraft System Identification (2006), ch. 5: equation error.
+
+#include <vector>
+
+#include "misfit/data/fit.h"
+#include "misfit/data/signals.h"
+#include "misfit/fit/roughness.h"
+#include "misfit/model/model.h"
+
+namespace misfit {
+
+/// A fit together with the model that carries its parameters, to start another method or to simulate.
+struct FittedModel {
+  Fit fit;
+  Model model;
+  std::vector<Penalty> penalties;                  ///< with the roughness weights that were chosen
+  std::vector<Eigen::VectorXd> initial_states;     ///< per experiment, at its first sample; empty where the method has none
+};
+
+/// Regression of state derivatives read from the measurement on the model's right-hand side, linear in strengths and curve coefficients; curves have
+/// their own roughness chosen by marginal likelihood [KM; P with B-splines instead of bins].
+/// Noise in the measured states biases it towards small damping, and the residuals of neighbouring samples share stencils: its sigmas are too narrow by up to
+/// two. On driven motion its damping is not informative: Σ α'' α' telescopes (DESIGN 4.1). It gives starts.
+/// Declines (status, message) where the system's states cannot be read from the channels.
+[[nodiscard]] FittedModel equation_error(const Model& model, const std::vector<Signals>& experiments);
+
+}  // namespace misfit

@@ -1,0 +1,92 @@
+#include "misfit/fit/roughness.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace misfit {
+namespace {
+
+Eigen::MatrixXd precision(const Linearised& problem, const std::vector<Penalty>& penalties, double sigma2) {
+  Eigen::MatrixXd H = problem.N / sigma2;
+  H.diagonal() += problem.prior_precision;
+  for (const auto& p : penalties) H.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
+  return H;
+}
+
+/// Solves with the diagonal scaled to one: columns of different units differ by many orders of magnitude.
+bool invert(const Eigen::MatrixXd& H, Eigen::MatrixXd& inverse) {
+  const Eigen::VectorXd scale = H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * H * scale.asDiagonal());
+  if (factor.info() != Eigen::Success) return false;
+  inverse = scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(H.rows(), H.cols())) * scale.asDiagonal();
+  return inverse.allFinite();
+}
+
+}  // namespace
+
+std::vector<Penalty> curve_penalties(const Model& model) {
+  std::vector<Penalty> penalties;
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t k = 0; k < model.curves.size(); ++k) {
+    const Curve& curve = model.curves[k];
+    const auto column = std::find(free.begin(), free.end(), curve.first);
+    if (column == free.end()) continue;
+    Penalty p;
+    p.curve = static_cast<int>(k);
+    p.first = static_cast<int>(column - free.begin());
+    p.omega = curve.spline.roughness();
+    p.rank = curve.spline.size() - 2;
+    p.chosen = !curve.roughness.has_value();
+    const double range = curve.spline.highest() - curve.spline.lowest();
+    constexpr double wiggles = 10.0;  // start loose: more structure than a parabola of typical size
+    p.lambda = curve.roughness.value_or(std::pow(range, 3) / std::pow(wiggles * curve.scale, 2));
+    penalties.push_back(std::move(p));
+  }
+  return penalties;
+}
+
+Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, double sigma2_given) {
+  Smoothed out;
+  double sigma2 = sigma2_given > 0.0 ? sigma2_given : std::max(problem.rss / std::max(problem.count, 1.0), 1e-300);
+  constexpr int most = 60;
+  for (int round = 0; round < most; ++round) {
+    const Eigen::MatrixXd H = precision(problem, penalties, sigma2);
+    if (!invert(H, out.covariance)) return out;
+    Eigen::VectorXd b = (problem.N * problem.theta - problem.g) / sigma2;
+    b += problem.prior_precision.cwiseProduct(problem.prior_mean);
+    out.theta = out.covariance * b;
+    const Eigen::VectorXd d = out.theta - problem.theta;
+    out.rss = std::max(problem.rss + 2.0 * d.dot(problem.g) + d.dot(problem.N * d), 1e-300);
+    out.edf = (out.covariance * problem.N).trace() / sigma2;
+    out.sigma2 = sigma2;
+    out.ok = true;
+    double change = 0.0;
+    for (auto& p : penalties) {
+      if (!p.chosen) continue;
+      const auto size = p.omega.rows();
+      const Eigen::VectorXd c = out.theta.segment(p.first, size);
+      const double trace = (out.covariance.block(p.first, p.first, size, size) * p.omega).trace();
+      const double quadratic = std::max(c.dot(p.omega * c), 1e-300);
+      const double target = std::max(p.rank - p.lambda * trace, 1e-3) / quadratic;
+      const double next = std::clamp(target, p.lambda * 1e-2, p.lambda * 1e2);
+      change = std::max(change, std::abs(std::log(next / p.lambda)));
+      p.lambda = next;
+    }
+    if (sigma2_given <= 0.0) {
+      const double next = std::max(out.rss / std::max(problem.count - out.edf, 1.0), 1e-300);
+      change = std::max(change, std::abs(std::log(next / sigma2)));
+      sigma2 = next;
+    }
+    if (change < 1e-3) break;
+  }
+  return out;
+}
+
+Eigen::MatrixXd penalty_rows(const Penalty& penalty) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(penalty.omega);
+  const Eigen::VectorXd values = (penalty.lambda * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
+  return values.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+}  // namespace misfit

@@ -1,0 +1,77 @@
+#pragma once
+
+// References
+//   [B]  H. G. Bock, Recent advances in parameter identification for ODE (1983): multiple shooting.
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "misfit/data/signals.h"
+#include "misfit/fit/roughness.h"
+#include "misfit/math/least_squares.h"
+#include "misfit/sim/trajectory.h"
+
+namespace misfit {
+
+/// One pass of multiple shooting: segment initial states are unknowns tied by weighted continuity residuals [B].
+struct ShootingPass {
+  std::size_t length = 0;       ///< samples per segment; 0: one trajectory per experiment
+  double defect_weight = 10.0;  ///< of a defect of one `state scale`, relative to a residual of one sigma
+  double initial_radius = 1e4;  ///< of the trust region
+  int max_iterations = 30;
+  double tolerance = 1e-6;      ///< relative change of the cost
+};
+
+/// The unknowns of output error — free parameters and segment initial states — and how to improve them.
+class Shooting {
+ public:
+  /// `sigma`: standard deviation of each output's residual [output unit]; `state_scale`: size that counts as one sigma of a defect, per state.
+  Shooting(Model model, const std::vector<Signals>& experiments, std::vector<double> sigma, std::vector<double> state_scale, std::vector<RowMatrix> start_states);
+
+  /// One solve by Ceres. The histories (states at every sample) are replaced by what the solved segments pass through.
+  LeastSquares::Summary solve(const ShootingPass& pass, const std::vector<Penalty>& penalties);
+
+  /// The single-trajectory problem at the present values: columns are the free parameters, then the initial states of each experiment. Residuals are
+  /// in units of sigma. False if the run leaves the finite numbers.
+  bool linearise(Linearised& out);
+  /// Predictions over the whole of each experiment from its initial state, with derivatives if asked.
+  [[nodiscard]] std::vector<Segment> run(bool sensitivities);
+
+  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const std::vector<double>& sigma() const { return sigma_; }
+  void set_sigma(std::vector<double> sigma) { sigma_ = std::move(sigma); }
+  [[nodiscard]] Eigen::VectorXd initial_state(std::size_t experiment) const { return history_[experiment].row(0); }
+  [[nodiscard]] int linearisations() const { return linearisations_; }
+  [[nodiscard]] const std::string& failure() const { return failure_; }  ///< where the last run left the finite numbers, in words
+  /// Is output o of sample i a residual of the estimation?
+  [[nodiscard]] bool counts(std::size_t experiment, std::size_t i, std::size_t o) const;
+
+ private:
+  struct Piece {
+    std::size_t experiment, first, last;
+    int block = -1, next = -1;  ///< parameter blocks: own initial state, initial state of the next piece (−1: none)
+    Segment segment{};
+  };
+  void set_theta(const double* theta);
+  bool evaluate(Piece& piece, double defect_weight, const double* const* blocks, double* r, double** J);
+  void fill_rows(const Piece& piece, double* r, double** J) const;
+  std::vector<Piece> cut(std::size_t length) const;
+  void add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const;
+  void remember(std::vector<Piece>& pieces, const LeastSquares& problem);
+  void note_failure(const Segment& segment, std::size_t experiment);
+
+  Model model_;
+  const std::vector<Signals>& experiments_;
+  std::vector<double> sigma_, state_scale_;
+  std::vector<RowMatrix> history_;
+  std::vector<InputTable> inputs_;
+  std::vector<int> free_;
+  std::vector<double> values_;
+  std::unique_ptr<Stepper> stepper_;
+  int linearisations_ = 0;
+  std::string failure_;
+};
+
+}  // namespace misfit

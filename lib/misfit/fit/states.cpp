@@ -1,0 +1,114 @@
+#include "misfit/fit/states.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+struct LocalFit {
+  double value, slope, curvature;  // of f, f', f''
+  bool ok = false;
+};
+
+LocalFit local_quadratic(const std::vector<double>& t, const std::vector<double>& y, std::size_t i, double h) {
+  constexpr std::size_t reach = 2;
+  constexpr double largest_gap = 3.0;
+  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  int points = 0;
+  const std::size_t from = i >= reach ? i - reach : 0, to = std::min(i + reach, t.size() - 1);
+  for (std::size_t k = from; k <= to; ++k) {
+    const double s = (t[k] - t[i]) / h;
+    if (!std::isfinite(y[k]) || std::abs(s) > largest_gap) continue;
+    const Eigen::Vector3d a(1.0, s, s * s);
+    N += a * a.transpose();
+    b += a * y[k];
+    ++points;
+  }
+  if (points < 4) return {};
+  const Eigen::Vector3d c = N.ldlt().solve(b);
+  return {c[0], c[1] / h, 2.0 * c[2] / (h * h), true};
+}
+
+}  // namespace
+
+double usual_step(const std::vector<double>& t) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+  return steps.empty() ? 1.0 : median(steps);
+}
+
+ReconstructedStates reconstruct_states(const Model& model, const Signals& signals) {
+  const auto& spec = model.system->spec();
+  const auto samples = static_cast<Eigen::Index>(signals.samples());
+  const double h = usual_step(signals.t);
+  ReconstructedStates out;
+  out.x = RowMatrix::Zero(samples, model.states());
+  out.dx = RowMatrix::Zero(samples, model.states());
+  out.ok.assign(signals.samples(), true);
+  out.shown.assign(static_cast<std::size_t>(model.states()), false);
+  for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
+    const int state = spec.outputs[o].observes;
+    if (state < 0 || o >= signals.measured.size()) continue;
+    int rate = -1;
+    for (std::size_t j = 0; j < spec.states.size(); ++j) {
+      if (spec.states[j].rate_of == state) rate = static_cast<int>(j);
+    }
+    out.shown[static_cast<std::size_t>(state)] = true;
+    if (rate >= 0) out.shown[static_cast<std::size_t>(rate)] = true;
+    for (Eigen::Index i = 0; i < samples; ++i) {
+      const LocalFit fit = local_quadratic(signals.t, signals.measured[o].values, static_cast<std::size_t>(i), h);
+      if (!fit.ok) {
+        out.ok[static_cast<std::size_t>(i)] = false;
+        continue;
+      }
+      out.x(i, state) = fit.value;
+      out.dx(i, state) = fit.slope;
+      if (rate < 0) continue;
+      out.x(i, rate) = fit.slope;
+      out.dx(i, rate) = fit.curvature;
+    }
+  }
+  for (std::size_t z = 0; z < model.own_states.size(); ++z) out.x.col(model.system_states() + static_cast<Eigen::Index>(z)).setConstant(model.own_states[z].initial);
+  return out;
+}
+
+double motion_frequency(const Model& model, const ReconstructedStates& states) {
+  double fastest = 0.0;
+  const auto& spec = model.system->spec();
+  for (std::size_t j = 0; j < spec.states.size(); ++j) {
+    const int level = spec.states[j].rate_of;
+    if (level < 0 || !states.shown[j]) continue;
+    double n = 0.0, sum = 0.0, squares = 0.0, rates = 0.0;
+    for (Eigen::Index i = 0; i < states.x.rows(); ++i) {
+      if (!states.ok[static_cast<std::size_t>(i)]) continue;
+      n += 1.0;
+      sum += states.x(i, level);
+      squares += states.x(i, level) * states.x(i, level);
+      rates += states.x(i, static_cast<Eigen::Index>(j)) * states.x(i, static_cast<Eigen::Index>(j));
+    }
+    const double variance = n > 2.0 ? squares / n - sum * sum / (n * n) : 0.0;
+    if (variance > 0.0) fastest = std::max(fastest, std::sqrt(rates / n / variance));
+  }
+  return fastest;
+}
+
+double reading_noise(const std::vector<double>& values) {
+  static constexpr std::array<double, 6> weights = {-1.0, 5.0, -10.0, 10.0, -5.0, 1.0};
+  constexpr double gain_squared = 252.0;  // sum of squares of the weights
+  std::vector<double> differences;
+  for (std::size_t i = 0; i + weights.size() <= values.size(); ++i) {
+    double d = 0.0;
+    for (std::size_t k = 0; k < weights.size(); ++k) d += weights[k] * values[i + k];
+    if (std::isfinite(d)) differences.push_back(d);
+  }
+  if (differences.size() < 10) return std::numeric_limits<double>::quiet_NaN();
+  return mad_sigma(differences) / std::sqrt(gain_squared);
+}
+
+}  // namespace misfit
