@@ -11,28 +11,8 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-/// A study folder with every file that the studies below name.
-class StudyFolder : public ::testing::Test {
- protected:
-  StudyFolder() {
-    for (const char* name : {"track.csv", "other.csv", "static_sweep.csv", "static_test.csv", "flight.mkv", "model.toml", "template.png"})
-      folder_.write(name, "x\n");
-  }
-  Study read(const std::string& text) const { return read_study(folder_.write("study.toml", text)); }
-  /// A study that is right but for `text`.
-  Study read_with(const std::string& text) const { return read("[system]\nkind = \"parachute_planar\"\n" + text); }
-  std::string error_of(const std::string& text) const {
-    return message_of<InputError>([&] { (void)read(text); });
-  }
-  /// `text` begins on line 3.
-  std::string error_with(const std::string& text) const {
-    return message_of<InputError>([&] { (void)read_with(text); });
-  }
-  TemporaryFolder folder_;
-};
-
-TEST_F(StudyFolder, AWholeStudyIsRead) {
-  const Study study = read(R"(
+/// A study with every section. "[study]" is line 2.
+constexpr const char* whole = R"(
 [study]
 name = "Parachute"
 question = "What is missing?"
@@ -82,7 +62,30 @@ perturb = { R = "0.1524 m", K = "1.969 px/m", x = 0.1 }
 [sliding_bin]
 width = "1.5 deg"
 step = "0.1 deg"
-)");
+)";
+
+/// A study folder with every file that the studies below name.
+class StudyFolder : public ::testing::Test {
+ protected:
+  StudyFolder() {
+    for (const char* name : {"track.csv", "other.csv", "static_sweep.csv", "static_test.csv", "flight.mkv", "model.toml", "template.png"})
+      folder_.write(name, "x\n");
+  }
+  Study read(const std::string& text) const { return read_study(folder_.write("study.toml", text)); }
+  /// A study that is right but for `text`.
+  Study read_with(const std::string& text) const { return read("[system]\nkind = \"parachute_planar\"\n" + text); }
+  std::string error_of(const std::string& text) const {
+    return message_of<InputError>([&] { (void)read(text); });
+  }
+  /// `text` begins on line 3.
+  std::string error_with(const std::string& text) const {
+    return message_of<InputError>([&] { (void)read_with(text); });
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(StudyFolder, AWholeStudyGivesHeadAndSystem) {
+  const Study study = read(whole);
   EXPECT_EQ(study.name, "Parachute");
   EXPECT_EQ(study.question, "What is missing?");
   EXPECT_EQ(study.methods, (std::vector<std::string>{"sliding_bin", "output_error"}));
@@ -93,6 +96,10 @@ step = "0.1 deg"
   EXPECT_EQ(study.system_numbers.at("step").unit, "ms");
   EXPECT_EQ(study.system_numbers.at("order").unit, "");
   EXPECT_EQ(study.system_where.at("induced_angle").line, 9);
+}
+
+TEST_F(StudyFolder, AWholeStudyGivesGeometryAndCamera) {
+  const Study study = read(whole);
   EXPECT_DOUBLE_EQ(study.geometry->number("D", "m")->value, 0.6096);
   EXPECT_EQ(study.geometry->number("R", "m", true)->sigma, 0.05);
   EXPECT_TRUE(study.has_camera);
@@ -100,6 +107,10 @@ step = "0.1 deg"
   EXPECT_EQ(study.camera.model, "plane_by_plane");
   EXPECT_EQ(study.camera.offer, (std::vector<std::string>{"camera_roll"}));
   EXPECT_EQ(study.camera.take_in, (std::vector<std::string>{"image_centre"}));
+}
+
+TEST_F(StudyFolder, AWholeStudyGivesExperiments) {
+  const Study study = read(whole);
   ASSERT_EQ(study.experiments.size(), 2U);
   EXPECT_EQ(study.experiments[0].name, "flight");
   EXPECT_EQ(study.experiments[0].columns.header("P_y"), "col[px]");
@@ -110,6 +121,10 @@ step = "0.1 deg"
   EXPECT_EQ(study.experiments[1].name, "other");
   EXPECT_EQ(study.experiments[1].validation, ExperimentStudy::Validation::interval);
   EXPECT_EQ(study.experiments[1].to, 120.0);
+}
+
+TEST_F(StudyFolder, AWholeStudyGivesEffectsParametersAndCurves) {
+  const Study study = read(whole);
   ASSERT_EQ(study.effects.size(), 2U);
   EXPECT_EQ(study.effects[0].kind, "gravity");
   EXPECT_EQ(study.effects[1].name, "bearing");
