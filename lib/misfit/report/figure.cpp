@@ -1,0 +1,84 @@
+#include "misfit/report/figure.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/core/table.h"
+#include "misfit/report/gnuplot_run.h"
+#include "misfit/report/gnuplot_script.h"
+
+namespace misfit::report {
+namespace {
+
+constexpr const char* name_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
+
+std::vector<double> padded(std::vector<double> values, std::size_t rows) {
+  values.resize(rows, std::numeric_limits<double>::quiet_NaN());
+  return values;
+}
+
+std::string unique_key(const std::string& key, std::set<std::string>& used) {
+  const std::string base = key.empty() ? "series" : key;
+  std::string result = base;
+  for (int number = 2; !used.insert(result).second; ++number) result = base + "_" + std::to_string(number);
+  return result;
+}
+
+bool along_x(Style style) { return style == Style::x_bars || style == Style::boxes; }
+
+void check(const Figure& figure) {
+  if (figure.name.empty() || figure.name.front() == '.' || figure.name.find_first_not_of(name_characters) != std::string::npos) {
+    throw InputError("figure '" + figure.name + "': a name is made of letters, digits, '_', '-' and '.'");
+  }
+  for (const Panel& panel : figure.panels) {
+    for (const Series& s : panel.series) {
+      for (const auto& [column, values] : columns_of(s)) {
+        if (values->size() != s.x.size())
+          throw InputError("figure '" + figure.name + "', series '" + s.key + "': " + column + " and x differ in length");
+      }
+    }
+  }
+}
+
+Table numbers_of(const Figure& figure) {
+  std::size_t rows = 1;
+  for (const Panel& panel : figure.panels) {
+    for (const Series& s : panel.series) rows = std::max(rows, s.x.size());
+  }
+  Table table;
+  std::set<std::string> used;
+  for (const Panel& panel : figure.panels) {
+    for (const Series& s : panel.series) {
+      const std::string key = unique_key(s.key, used);
+      for (const auto& [column, values] : columns_of(s)) {
+        const bool horizontal = std::string(column) == "x" || (along_x(s.style) && std::string(column) != "y");
+        table.add(key + "." + column, horizontal ? figure.x_unit : panel.y_unit, padded(*values, rows));
+      }
+    }
+  }
+  if (table.columns.empty()) table.add("no_data", "", padded({}, rows));
+  return table;
+}
+
+}  // namespace
+
+std::string palette(std::size_t k) {
+  static constexpr std::array<const char*, 6> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"};
+  return colours[k % colours.size()];
+}
+
+std::filesystem::path write_figure(const std::filesystem::path& dir, const Figure& figure) {
+  check(figure);
+  make_writable_folder(dir);
+  constexpr int digits = 7;
+  write_csv(dir / (figure.name + ".csv"), numbers_of(figure), digits);
+  write_atomically(dir / (figure.name + ".gp"), gnuplot_script(figure));
+  run_gnuplot(dir, figure.name);
+  return dir / (figure.name + ".svg");
+}
+
+}  // namespace misfit::report

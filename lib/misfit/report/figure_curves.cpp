@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "misfit/core/text.h"
+#include "misfit/report/figure_units.h"
+#include "misfit/report/figures.h"
+
+namespace misfit::report {
+namespace {
+
+constexpr const char* static_curve = "C_m";  // its zero is the trim
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+struct Drawn {
+  std::vector<double> x, value, lo, hi;
+  std::vector<bool> visited;
+};
+
+Drawn drawn(const CurveEstimate& curve) {
+  Drawn d{shown(curve.x, curve.of_unit), shown(curve.value, curve.unit), {}, {}, {}};
+  const std::vector<double> sigma = shown(curve.sigma, curve.unit);
+  for (std::size_t i = 0; i < d.x.size(); ++i) {
+    d.lo.push_back(d.value[i] - sigma[i]);
+    d.hi.push_back(d.value[i] + sigma[i]);
+    d.visited.push_back(curve.count[i] > 0.0);
+  }
+  return d;
+}
+
+/// `values` where the point is visited (or, for `visited` false, where it or a neighbour is not, so that the two lines meet).
+std::vector<double> part(const std::vector<double>& values, const Drawn& d, bool visited) {
+  std::vector<double> result(values.size(), nan);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool beside = (i > 0 && !d.visited[i - 1]) || (i + 1 < values.size() && !d.visited[i + 1]);
+    if (visited ? d.visited[i] : !d.visited[i] || beside) result[i] = values[i];
+  }
+  return result;
+}
+
+bool any_finite(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+bool has_outside(const Panel& panel) {
+  return std::any_of(panel.series.begin(), panel.series.end(), [](const Series& s) { return s.style == Style::dashed; });
+}
+
+void add_informative(const Fit& fit, const Drawn& d, const std::string& colour, Panel& panel) {
+  const std::string key = as_key(fit.method);
+  panel.series.push_back({key + "_band", "", Style::band, colour, d.x, {}, part(d.lo, d, true), part(d.hi, d, true)});
+  panel.series.push_back({key, fit.method + ", ± 1 sigma", Style::line, colour, d.x, part(d.value, d, true), {}, {}});
+  const std::vector<double> outside = part(d.value, d, false);
+  if (any_finite(outside) && std::find(d.visited.begin(), d.visited.end(), false) != d.visited.end()) {
+    const std::string legend = has_outside(panel) ? "" : "dashed: not visited";
+    panel.series.push_back({key + "_band_outside", "", Style::pale_band, colour, d.x, {}, part(d.lo, d, false), part(d.hi, d, false)});
+    panel.series.push_back({key + "_outside", legend, Style::dashed, colour, d.x, outside, {}, {}, 1.4});
+  }
+}
+
+void add_curve(const Fit& fit, const CurveEstimate& curve, const std::string& colour, Figure& figure) {
+  const Drawn d = drawn(curve);
+  Panel& panel = figure.panels.front();
+  if (curve.informative) {
+    add_informative(fit, d, colour, panel);
+    return;
+  }
+  panel.series.push_back({as_key(fit.method), fit.method + ", not informative", Style::dotted, grey, d.x, d.value, {}, {}});
+  figure.notes.push_back(fmt::format("{} of {} is not informative{}", curve.name, fit.method, curve.why.empty() ? "." : ": " + curve.why));
+}
+
+void add_trim(const std::string& name, const Estimate& trim, const std::string& colour, Panel& panel) {
+  const double value = shown({trim.value}, trim.unit).front();
+  const double sigma = std::isfinite(trim.sigma) ? shown({trim.sigma}, trim.unit).front() : 0.0;
+  const std::string legend = fmt::format("trim of {}: {} {}", name, format_value(value, sigma), display_unit(trim.unit));
+  panel.series.push_back({"trim_" + as_key(name), legend, Style::x_bars, colour, {value}, {0.0}, {value - sigma}, {value + sigma}});
+}
+
+void add_reference(const Reference& reference, Panel& panel) {
+  Series s{as_key(reference.name),
+           reference.name + " (reference)",
+           Style::error_bars,
+           black,
+           shown(reference.x, reference.of_unit),
+           shown(reference.value, reference.unit),
+           {},
+           {}};
+  const std::vector<double> sigma = shown(reference.sigma, reference.unit);
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    s.lo.push_back(s.y[i] - sigma[i]);
+    s.hi.push_back(s.y[i] + sigma[i]);
+  }
+  panel.series.push_back(std::move(s));
+}
+
+/// Range of y from what the data carry: visited values with their bands (no wider than the values' own span on either side), the
+/// references. Bands outside the visited range widen without limit and would flatten everything else.
+std::optional<std::array<double, 2>> curve_range(const Panel& panel) {
+  double lo = std::numeric_limits<double>::infinity();
+  double hi = -lo;
+  const auto take = [&](double v) {
+    if (!std::isfinite(v)) return;
+    lo = std::min(lo, v);
+    hi = std::max(hi, v);
+  };
+  for (const Series& s : panel.series) {
+    if (s.style == Style::line || s.style == Style::dotted || s.style == Style::error_bars) std::for_each(s.y.begin(), s.y.end(), take);
+  }
+  if (!(lo < hi)) return std::nullopt;
+  const std::array<double, 2> core = {lo, hi};
+  const double span = hi - lo;
+  for (std::size_t k = 1; k < panel.series.size(); ++k) {
+    if (panel.series[k - 1].style != Style::band || panel.series[k].style != Style::line) continue;
+    for (std::size_t i = 0; i < panel.series[k].y.size(); ++i) {
+      if (!std::isfinite(panel.series[k].y[i])) continue;
+      take(std::max(panel.series[k - 1].lo[i], core[0] - 0.5 * span));
+      take(std::min(panel.series[k - 1].hi[i], core[1] + 0.5 * span));
+    }
+  }
+  const double margin = 0.05 * (hi - lo);
+  return std::array<double, 2>{std::min(lo - margin, -margin), std::max(hi + margin, margin)};
+}
+
+bool usable(const Fit& fit) { return fit.status == FitStatus::converged || fit.status == FitStatus::not_converged; }
+
+}  // namespace
+
+Figure curve_figure(const std::string& curve, const std::string& of, const std::vector<Fit>& fits,
+                    const std::vector<Reference>& references) {
+  Figure figure;
+  figure.name = "curve_" + as_key(curve) + (of == "alpha_T" ? "" : "_of_" + as_key(of));
+  figure.title = curve + " against " + of;
+  figure.caption = curve + " as each method finds it, with bands of one standard deviation. Dashed: angles that the motion did not visit.";
+  figure.x_label = of;
+  Panel panel;
+  panel.y_label = curve;
+  panel.zero_line = true;
+  panel.height = 400.0;
+  figure.panels.push_back(panel);
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (!usable(fits[k])) figure.notes.push_back(fits[k].method + " " + to_string(fits[k].status) + ": " + fits[k].message);
+    for (const CurveEstimate& c : fits[k].curves) {
+      if (c.name != curve || c.of != of || !usable(fits[k])) continue;
+      figure.x_unit = display_unit(c.of_unit);
+      figure.panels.front().y_unit = display_unit(c.unit);
+      add_curve(fits[k], c, palette(k), figure);
+    }
+  }
+  for (const Reference& reference : references) {
+    if (reference.curve != curve || reference.of != of) continue;
+    figure.x_unit = display_unit(reference.of_unit);
+    figure.panels.front().y_unit = display_unit(reference.unit);
+    add_reference(reference, figure.panels.front());
+  }
+  figure.panels.front().y_range = curve_range(figure.panels.front());
+  if (curve != static_curve) return figure;
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (usable(fits[k]) && fits[k].trim) add_trim(fits[k].method, *fits[k].trim, palette(k), figure.panels.front());
+  }
+  for (const Reference& reference : references) {
+    if (reference.curve == curve && reference.trim) add_trim(reference.name, *reference.trim, black, figure.panels.front());
+  }
+  return figure;
+}
+
+}  // namespace misfit::report

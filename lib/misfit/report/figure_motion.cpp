@@ -1,0 +1,180 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "misfit/report/figure_units.h"
+#include "misfit/report/figures.h"
+
+namespace misfit::report {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> masked(std::vector<double> values, const std::vector<bool>& keep) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!keep[i]) values[i] = nan;
+  }
+  return values;
+}
+
+template <class V>
+V slice(const V& values, std::size_t from, std::size_t to) {
+  return V(values.begin() + static_cast<std::ptrdiff_t>(from), values.begin() + static_cast<std::ptrdiff_t>(to));
+}
+
+ChannelPrediction cut(const ChannelPrediction& c, const Interval& part) {
+  const auto from = static_cast<std::size_t>(std::lower_bound(c.t.begin(), c.t.end(), part.from) - c.t.begin());
+  const auto to = static_cast<std::size_t>(std::upper_bound(c.t.begin(), c.t.end(), part.to) - c.t.begin());
+  return {c.experiment,
+          c.channel,
+          c.unit,
+          slice(c.t, from, to),
+          slice(c.measured, from, to),
+          slice(c.predicted, from, to),
+          slice(c.sigma, from, to),
+          slice(c.held_out, from, to)};
+}
+
+std::vector<double> residuals(const ChannelPrediction& c) {
+  std::vector<double> r(c.t.size());
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = c.measured[i] - c.predicted[i];
+  return r;
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+/// mean of r[i] r[i+lag] over the pairs that exist, over mean of r². NaN entries are left out.
+double autocorrelation(const std::vector<double>& r, std::size_t lag) {
+  double sum = 0.0;
+  double square = 0.0;
+  std::size_t pairs = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    if (!std::isfinite(r[i])) continue;
+    square += r[i] * r[i];
+    ++count;
+    if (i + lag < r.size() && std::isfinite(r[i + lag])) {
+      sum += r[i] * r[i + lag];
+      ++pairs;
+    }
+  }
+  if (pairs == 0 || !(square > 0.0)) return nan;
+  return sum / static_cast<double>(pairs) / (square / static_cast<double>(count));
+}
+
+/// Residuals over their sigma, less their mean, NaN where held out or missing.
+std::vector<double> normalised_residuals(const ChannelPrediction& c) {
+  std::vector<double> r = residuals(c);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    if (std::isfinite(c.sigma[i]) && c.sigma[i] > 0.0) r[i] /= c.sigma[i];
+    if (c.held_out[i]) r[i] = nan;
+    if (!std::isfinite(r[i])) continue;
+    sum += r[i];
+    ++count;
+  }
+  if (count == 0) return r;
+  for (double& value : r) value -= sum / static_cast<double>(count);
+  return r;
+}
+
+Panel motion_panel(const ChannelPrediction& c, const std::string& unit) {
+  Panel panel{c.channel, unit, {}, std::nullopt, 0.0, 270.0, false};
+  std::vector<bool> estimation = c.held_out;
+  estimation.flip();
+  panel.series.push_back({"measured", "measured", Style::points, black, c.t, masked(shown(c.measured, c.unit), estimation), {}, {}});
+  panel.series.push_back(
+      {"predicted", "predicted", Style::line, palette(0), c.t, masked(shown(c.predicted, c.unit), estimation), {}, {}, 1.4});
+  if (std::find(c.held_out.begin(), c.held_out.end(), true) != c.held_out.end()) {
+    panel.series.push_back(
+        {"measured_held_out", "measured, held out", Style::points, grey, c.t, masked(shown(c.measured, c.unit), c.held_out), {}, {}});
+    panel.series.push_back({"predicted_held_out",
+                            "predicted, held out",
+                            Style::line,
+                            palette(1),
+                            c.t,
+                            masked(shown(c.predicted, c.unit), c.held_out),
+                            {},
+                            {},
+                            1.4});
+  }
+  return panel;
+}
+
+Panel residual_panel(const ChannelPrediction& c, const std::string& unit) {
+  Panel panel{"residual", unit, {}, std::nullopt, 0.0, 130.0, true};
+  const std::vector<double> sigma = shown(c.sigma, c.unit);
+  panel.series.push_back({"sigma", "± 1 sigma of the prediction", Style::band, palette(0), c.t, {}, scaled(sigma, -1.0), sigma});
+  panel.series.push_back({"residual", "measured − predicted", Style::points, black, c.t, shown(residuals(c), c.unit), {}, {}});
+  return panel;
+}
+
+}  // namespace
+
+Interval typical_interval(const std::vector<double>& t, const std::vector<double>& values, double length) {
+  if (t.empty()) return {0.0, length};
+  const double span = t.back() - t.front();
+  if (span <= length) return {t.front(), t.back()};
+  Interval best;
+  std::size_t most = 0;
+  for (int k = 0; k <= 8; ++k) {
+    const double from = t.front() + (span - length) * (1.0 / 3.0 + k / 24.0);
+    std::size_t finite = 0;
+    for (std::size_t i = 0; i < t.size(); ++i) finite += t[i] >= from && t[i] <= from + length && std::isfinite(values[i]) ? 1U : 0U;
+    if (k == 0 || finite > most) {
+      best = {from, from + length};
+      most = finite;
+    }
+  }
+  return best;
+}
+
+Figure motion_figure(const std::string& method, const ChannelPrediction& channel, const std::optional<Interval>& zoom) {
+  const ChannelPrediction c = zoom ? cut(channel, *zoom) : channel;
+  const std::string unit = display_unit(c.unit);
+  Figure figure;
+  figure.name = as_key("motion_" + method + "_" + channel.experiment + "_" + channel.channel) + (zoom ? "_zoom" : "");
+  figure.title =
+      fmt::format("{} of {}: measured and predicted by {}{}", channel.channel, channel.experiment, method, zoom ? " (part)" : "");
+  figure.caption = fmt::format("{} against time, measured and as {} predicts it; below, their difference.", channel.channel, method);
+  figure.x_label = "time";
+  figure.x_unit = std::string("s");  // g++ 12 warns wrongly about a one-letter literal assigned
+  figure.panels = {motion_panel(c, unit), residual_panel(c, unit)};
+  return figure;
+}
+
+Figure autocorrelation_figure(const std::string& method, const ChannelPrediction& channel, std::size_t max_lag) {
+  const std::vector<double> r = normalised_residuals(channel);
+  const auto count = static_cast<double>(std::count_if(r.begin(), r.end(), [](double v) { return std::isfinite(v); }));
+  Figure figure;
+  figure.name = as_key("autocorrelation_" + method + "_" + channel.experiment + "_" + channel.channel);
+  figure.title = fmt::format("Residuals of {} ({}, {}): autocorrelation", channel.channel, method, channel.experiment);
+  figure.caption = "If the model says all there is to say, the residuals are white: 95 % of the lags stay inside the band.";
+  figure.x_label = "lag";
+  figure.x_unit = "samples";
+  Panel panel{"autocorrelation", "-", {}, std::nullopt, 0.0, 220.0, true};
+  Series rho{"residual", "residuals / sigma", Style::boxes, palette(0), {}, {}, {}, {}};
+  for (std::size_t lag = 1; lag <= max_lag && static_cast<double>(lag) < count; ++lag) {
+    const auto x = static_cast<double>(lag);
+    rho.x.push_back(x);
+    rho.y.push_back(autocorrelation(r, lag));
+    rho.lo.push_back(x - 0.35);
+    rho.hi.push_back(x + 0.35);
+  }
+  if (!rho.x.empty()) {
+    const double limit = 1.96 / std::sqrt(count);
+    panel.series.push_back(
+        {"white", "95 % band of white residuals", Style::band, grey, {0.0, rho.x.back() + 1.0}, {}, {-limit, -limit}, {limit, limit}});
+  }
+  panel.series.push_back(std::move(rho));
+  figure.panels.push_back(std::move(panel));
+  return figure;
+}
+
+}  // namespace misfit::report

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace misfit::report {
+
+/// Draws DIR/NAME.svg with DIR/NAME.gp (NAME without quotes or blanks; the script honours `out` and ends with `drawn = 1`): the old drawing
+/// stays until the new one is complete. RunError in words if gnuplot is not on the PATH or fails.
+void run_gnuplot(const std::filesystem::path& dir, const std::string& name);
+
+}  // namespace misfit::report

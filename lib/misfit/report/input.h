@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "misfit/data/attitude.h"
+#include "misfit/data/calibration.h"
+#include "misfit/data/comparison.h"
+#include "misfit/data/fit.h"
+#include "misfit/data/reference.h"
+#include "misfit/data/track.h"
+
+namespace misfit::report {
+
+/// One experiment as measured; either part may be absent.
+struct ExperimentInput {
+  std::string name;
+  std::optional<Track> track;
+  std::optional<Attitude> attitude;
+};
+
+/// How this run came about.
+struct RunFacts {
+  std::string version, commit, command;
+  unsigned long seed = 0;
+  std::map<std::string, std::string> hashes;           ///< file, as the study names it → hash
+  std::vector<std::pair<std::string, double>> stages;  ///< stage → seconds
+};
+
+/// All that a report shows. The report computes nothing: what is not here is not in it.
+struct ReportInput {
+  std::string study, question;
+  std::vector<Fit> fits;
+  std::vector<ExperimentInput> experiments;
+  std::optional<Calibration> calibration;
+  std::optional<Comparison> comparison;
+  std::vector<Reference> references;
+  std::vector<std::string> notes;  ///< further findings or limits, in sentences
+  RunFacts run;
+};
+
+}  // namespace misfit::report

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/report/figure.h"
+
+namespace misfit::report {
+
+/// An HTML page under construction. Every text given to it is plain and is escaped here; only `html` takes markup.
+class Page {
+ public:
+  explicit Page(std::string title) : title_(std::move(title)) {}
+
+  void section(const std::string& heading);
+  void subsection(const std::string& heading);
+  void paragraph(const std::string& text, const std::string& css_class = "");
+  void list(const std::vector<std::string>& items);               ///< nothing if empty
+  void table(const std::vector<std::vector<std::string>>& rows);  ///< first row is the header; nothing if only that
+  void figure(const Figure& figure, const std::string& svg);      ///< drawing, caption, notes
+  void html(const std::string& markup) { body_ += markup; }
+
+  /// The whole page: title, style and a list of its sections included.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::string title_, body_;
+  std::vector<std::string> sections_;
+};
+
+/// An SVG file as an element of a page: without prolog and namespaces, scaling with the page, every id and reference to it led by `prefix`
+/// (ids are shared by all drawings of a page), named `label` for screen readers.
+[[nodiscard]] std::string inline_svg(const std::string& svg, const std::string& prefix, const std::string& label);
+
+}  // namespace misfit::report

@@ -1,0 +1,25 @@
+#include "misfit/report/report.h"
+
+#include "misfit/core/files.h"
+#include "misfit/report/sections.h"
+
+namespace misfit::report {
+
+std::filesystem::path write_report(const std::filesystem::path& dir, const ReportInput& input) {
+  make_writable_folder(dir);
+  Page page(input.study.empty() ? "Report" : input.study);
+  const Draw draw(dir / "figures", page);
+  summary_section(input, page);
+  curves_section(input, page, draw);
+  prediction_section(input, page, draw);
+  measured_section(input, page, draw);
+  parameters_section(input, page);
+  calibration_section(input, page, draw);
+  notes_section(input, page);
+  provenance_section(input, page);
+  const std::filesystem::path path = dir / "report.html";
+  write_atomically(path, page.text());
+  return path;
+}
+
+}  // namespace misfit::report

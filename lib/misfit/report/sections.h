@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/report/figure.h"
+#include "misfit/report/input.h"
+#include "misfit/report/page.h"
+
+namespace misfit::report {
+
+/// Draws a figure and puts it on the page.
+class Draw {
+ public:
+  Draw(std::filesystem::path folder, Page& page) : folder_(std::move(folder)), page_(page) {}
+  void operator()(const Figure& figure) const;
+
+ private:
+  std::filesystem::path folder_;
+  Page& page_;
+};
+
+// The sections of the page in their order; each is left out when there is nothing to show.
+void summary_section(const ReportInput& input, Page& page);
+void curves_section(const ReportInput& input, Page& page, const Draw& draw);
+void measured_section(const ReportInput& input, Page& page, const Draw& draw);
+void prediction_section(const ReportInput& input, Page& page, const Draw& draw);
+void parameters_section(const ReportInput& input, Page& page);
+void calibration_section(const ReportInput& input, Page& page, const Draw& draw);
+void notes_section(const ReportInput& input, Page& page);
+void provenance_section(const ReportInput& input, Page& page);
+
+}  // namespace misfit::report
