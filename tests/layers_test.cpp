@@ -1,0 +1,204 @@
+// The layers, enforced: the LINKS of each misfit_layer(…) line in the root CMakeLists.txt are the only other layers its files may include.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Headers (by how their names begin) that cost seconds per includer: one file each may have them.
+const std::vector<std::string> costly = {"ceres/ceres.h", "CLI/", "gnuplot-iostream", "toml++/"};
+
+using Layers = std::map<std::string, std::set<std::string>>;  ///< layer → layers it may include
+
+struct Include {
+  std::string file;  ///< relative to the repository
+  int line = 0;
+  std::string target;
+
+  [[nodiscard]] std::string text() const { return file + ":" + std::to_string(line) + ": includes " + target; }
+};
+
+std::string read(const fs::path& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+Layers read_layers(const fs::path& root) {
+  static const std::regex call(R"((?:^|\n)misfit_layer\((\w+)([^)]*)\))");
+  const std::string text = read(root / "CMakeLists.txt");
+  Layers layers;
+  for (std::sregex_iterator it(text.begin(), text.end(), call), end; it != end; ++it) {
+    const std::string name = (*it)[1];
+    std::set<std::string>& allowed = layers[name];
+    allowed.insert(name);
+    std::istringstream words((*it)[2]);
+    for (std::string word; words >> word && word != "PRIVATE";) {
+      if (layers.contains(word)) allowed.insert(word);
+    }
+  }
+  return layers;
+}
+
+std::vector<Include> read_includes(const fs::path& root, const std::string& folder) {
+  static const std::regex directive(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  std::vector<Include> includes;
+  if (!fs::exists(root / folder)) return includes;
+  for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+    const auto extension = entry.path().extension();
+    if (extension != ".h" && extension != ".cpp") continue;
+    std::ifstream in(entry.path());
+    std::string text;
+    std::smatch match;
+    for (int line = 1; std::getline(in, text); ++line) {
+      if (std::regex_search(text, match, directive)) includes.push_back({fs::relative(entry.path(), root).string(), line, match[1]});
+    }
+  }
+  return includes;
+}
+
+/// Second component of "misfit/LAYER/x.h" or of "lib/misfit/LAYER/x.cpp" after `prefix`; empty without that prefix.
+std::string layer_of(const std::string& path, const std::string& prefix) {
+  if (!path.starts_with(prefix)) return "";
+  return path.substr(prefix.size(), path.find('/', prefix.size()) - prefix.size());
+}
+
+void check_layer(const Include& include, const Layers& layers, std::vector<std::string>& faults) {
+  const std::string from = layer_of(include.file, "lib/misfit/");
+  const auto layer = layers.find(from);
+  if (layer == layers.end()) {
+    faults.push_back(include.file + ": folder '" + from + "' has no misfit_layer line in CMakeLists.txt");
+    return;
+  }
+  const std::string to = layer_of(include.target, "misfit/");
+  if (!to.empty() && !layer->second.contains(to)) faults.push_back(include.text() + "; the LINKS of " + from + " do not permit " + to);
+  if (include.target.starts_with("models/") || include.target.starts_with("apps/")) {
+    faults.push_back(include.text() + "; lib knows neither models nor apps");
+  }
+}
+
+void check_models(const Include& include, std::vector<std::string>& faults) {
+  static const std::set<std::string> allowed = {"core", "math", "data", "model"};
+  const std::string to = layer_of(include.target, "misfit/");
+  if ((!to.empty() && !allowed.contains(to)) || include.target.starts_with("apps/")) {
+    faults.push_back(include.text() + "; models may include core, math, data and model");
+  }
+}
+
+void check_costly(const std::vector<Include>& includes, std::vector<std::string>& faults) {
+  for (const std::string& header : costly) {
+    std::map<std::string, Include> includers;  // by file
+    for (const Include& include : includes) {
+      if (include.target.starts_with(header)) includers.emplace(include.file, include);
+    }
+    for (const auto& [file, include] : includers) {
+      const std::string& first = includers.begin()->first;
+      if (file != first) faults.push_back(include.text() + ", as " + first + " does; one includer only");
+    }
+  }
+}
+
+/// Every include that breaks the rules, as "file:line: …", sorted.
+std::vector<std::string> faults_of(const fs::path& root) {
+  const Layers layers = read_layers(root);
+  std::vector<Include> all = read_includes(root, "lib");
+  std::vector<std::string> faults;
+  for (const Include& include : all) check_layer(include, layers, faults);
+  for (const Include& include : read_includes(root, "models")) {
+    check_models(include, faults);
+    all.push_back(include);
+  }
+  for (const Include& include : read_includes(root, "apps")) all.push_back(include);
+  check_costly(all, faults);
+  std::sort(faults.begin(), faults.end());
+  faults.erase(std::unique(faults.begin(), faults.end()), faults.end());
+  return faults;
+}
+
+/// A small tree in which core < math < fit, written to a folder that is removed afterwards.
+class MadeUpTree : public testing::Test {
+ protected:
+  MadeUpTree()
+      : root_(fs::path(testing::TempDir()) / ("layers_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
+    write("CMakeLists.txt",
+          "misfit_layer(core LINKS fmt::fmt)\nmisfit_layer(math LINKS core PRIVATE Ceres::ceres)\n"
+          "misfit_layer(model LINKS core)\nmisfit_layer(fit LINKS core\n  math)\n");
+    write("lib/misfit/fit/fit.cpp", "#include <vector>\n#include \"misfit/fit/fit.h\"\n#include \"misfit/math/spline.h\"\n");
+    write("models/drag.cpp", "#include \"misfit/model/effect.h\"\n");
+  }
+  ~MadeUpTree() override { fs::remove_all(root_); }
+
+  void write(const std::string& file, const std::string& text) const {
+    fs::create_directories((root_ / file).parent_path());
+    std::ofstream(root_ / file) << text;
+  }
+
+  fs::path root_;
+};
+
+TEST(Layers, AreReadFromTheLinkLines) {
+  const Layers layers = read_layers(MISFIT_SOURCE_DIR);
+  ASSERT_TRUE(layers.contains("core") && layers.contains("fit") && layers.contains("report"));
+  EXPECT_THAT(layers.at("core"), ElementsAre("core"));
+  EXPECT_TRUE(layers.at("fit").contains("sim"));
+  EXPECT_FALSE(layers.at("sim").contains("fit"));
+}
+
+TEST(Layers, EveryIncludeIsPermitted) {
+  ASSERT_GT(read_includes(MISFIT_SOURCE_DIR, "lib").size(), 100u) << "the sources were not found";
+  EXPECT_THAT(faults_of(MISFIT_SOURCE_DIR), IsEmpty());
+}
+
+TEST_F(MadeUpTree, PermittedIncludesPass) { EXPECT_THAT(faults_of(root_), IsEmpty()); }
+
+TEST_F(MadeUpTree, UpwardIncludeIsFoundWithFileAndLine) {
+  write("lib/misfit/math/spline.h", "#pragma once\n\n#  include \"misfit/fit/fit.h\"\n");
+  EXPECT_THAT(faults_of(root_), ElementsAre(HasSubstr("lib/misfit/math/spline.h:3: includes misfit/fit/fit.h; the LINKS of math")));
+}
+
+TEST_F(MadeUpTree, PrivatePackageIsNoPermissionForALayer) {
+  write("CMakeLists.txt", "misfit_layer(core LINKS)\nmisfit_layer(math LINKS core)\nmisfit_layer(model LINKS core PRIVATE math)\n");
+  fs::remove_all(root_ / "lib");
+  write("lib/misfit/model/model.h", "#include \"misfit/math/spline.h\"\n");
+  EXPECT_THAT(faults_of(root_), ElementsAre(HasSubstr("model.h:1")));
+}
+
+TEST_F(MadeUpTree, LibraryThatKnowsModelsOrAppsIsFound) {
+  write("lib/misfit/fit/a.cpp", "#include \"models/drag.h\"\n");
+  write("lib/misfit/fit/b.cpp", "#include \"apps/verbs.h\"\n");
+  EXPECT_THAT(faults_of(root_), ElementsAre(HasSubstr("fit/a.cpp:1"), HasSubstr("fit/b.cpp:1")));
+}
+
+TEST_F(MadeUpTree, ModelThatKnowsAStageIsFound) {
+  write("models/group/lift.cpp", "#include \"misfit/model/effect.h\"\n#include \"misfit/fit/fit.h\"\n");
+  EXPECT_THAT(faults_of(root_), ElementsAre(HasSubstr("models/group/lift.cpp:2")));
+}
+
+TEST_F(MadeUpTree, SecondIncluderOfACostlyHeaderIsFound) {
+  write("lib/misfit/fit/solve.cpp", "#include <ceres/ceres.h>\n");
+  EXPECT_THAT(faults_of(root_), IsEmpty());
+  write("apps/main.cpp", "#include <ceres/ceres.h>\n");
+  EXPECT_THAT(faults_of(root_), ElementsAre(HasSubstr("lib/misfit/fit/solve.cpp:1: includes ceres/ceres.h, as apps/main.cpp does")));
+}
+
+TEST_F(MadeUpTree, FolderWithoutALayerLineIsFound) {
+  write("lib/misfit/extra/x.h", "#include <vector>\n");
+  EXPECT_THAT(faults_of(root_), ElementsAre(HasSubstr("folder 'extra' has no misfit_layer line")));
+}
+
+}  // namespace
