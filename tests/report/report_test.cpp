@@ -93,7 +93,8 @@ TEST(Page, IdsOfDrawingsAreKeptApart) {
       "<?xml version=\"1.0\"?>\n<svg width=\"9\" height=\"5\" viewBox=\"0 0 9 5\" xmlns=\"http://www.w3.org/2000/svg\">"
       "<title>T</title><circle id='dot'/><use xlink:href='#dot'/><g filter=\"url(#f)\" id=\"g1\"/></svg>";
   EXPECT_EQ(inline_svg(svg, "one", "a < b"),
-            "<svg viewBox=\"0 0 9 5\" role=\"img\" aria-label=\"a &lt; b\"><circle id='one-dot'/><use xlink:href='#one-dot'/>"
+            "<svg viewBox=\"0 0 9 5\" style=\"max-width:9px\" role=\"img\" aria-label=\"a &lt; b\"><circle id='one-dot'/><use "
+            "xlink:href='#one-dot'/>"
             "<g filter=\"url(#one-f)\" id=\"one-g1\"/></svg>");
 }
 

@@ -118,9 +118,9 @@ std::string look(const Series& s) {
     case Style::markers:
       return "with points pt 6 ps 0.7 lw 1.5 " + colour;
     case Style::error_bars:
-      return "with yerrorbars pt 7 ps 0.4 lw 1.3 " + colour;
+      return "with points pt 7 ps 0.4 " + colour;
     case Style::x_bars:
-      return "with xerrorbars pt 13 ps 1.1 lw 2 " + colour;
+      return "with points pt 13 ps 0.9 " + colour;
     case Style::band:
       return "with filledcurves fs transparent solid 0.20 noborder fc rgb '" + s.colour + "'";
     case Style::pale_band:
@@ -134,9 +134,22 @@ std::string look(const Series& s) {
 }
 
 std::string columns_text(const Series& s, std::size_t first) {
-  std::string text;
-  for (std::size_t k = 0; k < columns_of(s).size(); ++k) text += fmt::format("{}(v({}))", k == 0 ? "" : ":", first + k);
-  return s.style == Style::boxes ? text + fmt::format(":(0):(v({}))", first + 1) : text;
+  if (s.style == Style::boxes)
+    return fmt::format("(v({0})):(v({1})):(v({2})):(v({3})):(0):(v({1}))", first, first + 1, first + 2, first + 3);
+  if (s.style == Style::band || s.style == Style::pale_band) return fmt::format("(v({})):(v({})):(v({}))", first, first + 1, first + 2);
+  return fmt::format("(v({})):(v({}))", first, first + 1);
+}
+
+/// The bars of a series with errors, as lines from lo to hi: gnuplot's own error bars leave a white halo about the point that hides short
+/// ones.
+std::string bars_clause(const Figure& figure, const Series& s, std::size_t first) {
+  const bool horizontal = s.style == Style::x_bars;
+  if (!horizontal && s.style != Style::error_bars) return "";
+  const std::string from =
+      horizontal ? fmt::format("(v({})):(v({}))", first + 2, first + 1) : fmt::format("(v({})):(v({}))", first, first + 2);
+  const std::string length = fmt::format("(v({})-v({}))", first + 3, first + 2);
+  return fmt::format("'{}.csv' using {}:{} with vectors nohead lw {} lc rgb '{}' notitle, \\\n     ", figure.name, from,
+                     horizontal ? length + ":(0)" : "(0):" + length, horizontal ? 3 : 1.4, s.colour);
 }
 
 std::string clause(const Figure& figure, const Series& s, std::size_t first) {
@@ -145,7 +158,8 @@ std::string clause(const Figure& figure, const Series& s, std::size_t first) {
   const std::size_t step = (s.x.size() + drawn_rows(s.style) - 1) / drawn_rows(s.style);
   const std::string every = step > 1 ? fmt::format(" every {}", step) : "";
   const std::string title = legend.empty() ? "notitle" : "title '" + gnuplot_text(legend) + "'";
-  return fmt::format("'{}.csv' using {}{} {} {}", figure.name, columns_text(s, first), every, look(s), title);
+  return bars_clause(figure, s, first) +
+         fmt::format("'{}.csv' using {}{} {} {}", figure.name, columns_text(s, first), every, look(s), title);
 }
 
 std::string plot_command(const Figure& figure, const Panel& panel, std::size_t& column) {
@@ -184,7 +198,7 @@ std::string head(const Figure& figure, double width, double height) {
   return text +
          "set datafile separator ','\nset datafile columnheaders\nv(c) = valid(c) ? column(c) : NaN\n"
          "set style line 11 lc rgb '#e2e2e2' lw 1\nset grid xtics ytics back ls 11, ls 11\nset border 3 lw 1 lc rgb '#555555'\n"
-         "set tics nomirror out scale 0.6 tc rgb '#222222'\nset errorbars small\nset multiplot\n";
+         "set tics nomirror out scale 0.6 tc rgb '#222222'\nset multiplot\n";
 }
 
 /// The whole drawing [px].

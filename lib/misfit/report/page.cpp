@@ -86,6 +86,8 @@ std::string inline_svg(const std::string& svg, const std::string& prefix, const 
   const std::string head = svg.substr(begin, head_end - begin);
   const std::size_t view = head.find("viewBox=\"");
   const std::string box = view == std::string::npos ? "" : head.substr(view, head.find('"', view + 9) + 1 - view);
+  const std::size_t wide = head.find(" width=\"");
+  const std::string width = wide == std::string::npos ? "900" : head.substr(wide + 8, head.find('"', wide + 8) - wide - 8);
   std::string body = svg.substr(head_end + 1);
   remove_between(body, "<title>", "</title>");  // tooltips with the drawing program's own markup
   remove_between(body, "<desc>", "</desc>");
@@ -93,7 +95,7 @@ std::string inline_svg(const std::string& svg, const std::string& prefix, const 
   replace_all(body, "id=\"", "id=\"" + prefix + "-");
   replace_all(body, "href='#", "href='#" + prefix + "-");
   replace_all(body, "url(#", "url(#" + prefix + "-");
-  return fmt::format("<svg {} role=\"img\" aria-label=\"{}\">{}", box, escape_html(label), body);
+  return fmt::format("<svg {} style=\"max-width:{}px\" role=\"img\" aria-label=\"{}\">{}", box, width, escape_html(label), body);
 }
 
 }  // namespace misfit::report

@@ -33,7 +33,7 @@ td.short { white-space: nowrap; }
 .bad { color: var(--bad); }
 .warnings { margin: .2rem 0 0; padding-left: 1.1rem; }
 figure { margin: 1.4rem 0 2rem; }
-figure svg { display: block; width: 100%; height: auto; max-width: 900px; }
+figure svg { display: block; width: 100%; height: auto; }
 figcaption { max-width: 46rem; margin-top: .3rem; font-size: .9rem; color: var(--soft); }
 figcaption .note { display: block; color: var(--bad); }
 figcaption .files { display: block; font-size: .78rem; }

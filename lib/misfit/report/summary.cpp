@@ -63,6 +63,7 @@ std::vector<std::string> findings(const ReportInput& input) {
   }
   for (std::string& sentence : sentences) {
     while (sentence.ends_with("..")) sentence.pop_back();
+    if (sentence.starts_with("the ")) sentence.front() = 'T';
   }
   sentences.insert(sentences.end(), input.notes.begin(), input.notes.end());
   return sentences;
