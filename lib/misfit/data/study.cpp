@@ -94,6 +94,7 @@ Study read_study(const fs::path& path) {
   study_parts::read_reference(root, study);
   study_parts::read_uncertainty(root);
   read_sliding_bin(root, study);
+  study_parts::read_simulate(root, study);
   root.finish();
   return study;
 }

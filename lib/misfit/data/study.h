@@ -51,7 +51,16 @@ struct CurveStudy {
   std::string of;                            ///< quantity
   std::optional<std::vector<double>> knots;  ///< as written (degrees for angles); nullopt = "auto"
   std::optional<double> roughness;           ///< nullopt = "auto"; unit of the weight: see fit/roughness.h
+  std::optional<std::filesystem::path> table;  ///< CSV with columns `of` and the curve's name: values to start from, or to simulate with
   Source where;
+};
+
+/// [simulate]: what `misfit simulate` makes when the study has no experiment to take times and initial state from.
+struct SimulateStudy {
+  double duration = 10.0;                         ///< [s]
+  double step = 1.0 / 59.94;                      ///< [s]
+  std::map<std::string, config::Number> initial;  ///< state → value as written (unit checked by the model)
+  std::map<std::string, config::Number> noise;    ///< output → sigma of white noise added, as written
 };
 
 /// A study as written. Everything that can be checked without the model has been checked.
@@ -73,6 +82,7 @@ struct Study {
   std::map<std::string, ParameterStudy> parameters;
   std::map<std::string, CurveStudy> curves;
   std::map<std::string, std::filesystem::path> reference;  ///< curve → file
+  std::optional<SimulateStudy> simulate;
   double bin_width = 0.0;                                  ///< [sliding_bin] width [rad]; 0 = default 1.5 deg
   double bin_step = 0.0;                                   ///< [sliding_bin] step [rad]; 0 = default 0.1 deg
   std::string text;                                        ///< the file's content, for hashing and resolved.toml

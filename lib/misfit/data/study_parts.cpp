@@ -172,6 +172,7 @@ void read_curves(const Section& root, Study& study) {
     }
     if (!is_auto(section, "roughness")) curve.roughness = section.number("roughness", "")->value;
     if (curve.roughness && *curve.roughness < 0.0) section.fail("roughness", "\"auto\" or a number from 0 is expected");
+    curve.table = existing_file(section, "table", study.folder);
     section.finish();
     study.curves[key] = std::move(curve);
   }
@@ -183,6 +184,30 @@ void read_reference(const Section& root, Study& study) {
   if (!reference) return;
   for (const std::string& curve : reference->keys()) study.reference[curve] = *existing_file(*reference, curve, study.folder);
   reference->finish();
+}
+
+void read_simulate(const Section& root, Study& study) {
+  const auto section = root.table("simulate");
+  if (!section) return;
+  SimulateStudy simulate;
+  const auto positive = [&](const char* key, double fallback) {
+    const auto number = section->number(key, "s");
+    if (number && !(number->value > 0.0)) section->fail(key, "must be positive");
+    return number ? number->value : fallback;
+  };
+  simulate.duration = positive("duration", simulate.duration);
+  simulate.step = positive("step", simulate.step);
+  for (const char* key : {"initial", "noise"}) {
+    const auto table = section->table(key);
+    if (!table) continue;
+    auto& into = std::string_view(key) == "initial" ? simulate.initial : simulate.noise;
+    for (const std::string& name : table->keys()) {
+      into[name] = table->is_text(name) ? number_as_written(*table, name) : *table->number(name, "");
+    }
+    table->finish();
+  }
+  section->finish();
+  study.simulate = simulate;
 }
 
 void read_uncertainty(const Section& root) {

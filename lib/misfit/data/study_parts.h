@@ -23,6 +23,7 @@ void read_effects(const config::Section& root, Study& study);
 void read_parameters(const config::Section& root, Study& study);
 void read_curves(const config::Section& root, Study& study);
 void read_reference(const config::Section& root, Study& study);
+void read_simulate(const config::Section& root, Study& study);
 void read_uncertainty(const config::Section& root);
 
 }  // namespace misfit::study_parts

@@ -1,0 +1,22 @@
+#include <iostream>
+
+#include "apps/print.h"
+#include "apps/stages.h"
+#include "apps/verbs.h"
+#include "misfit/core/error.h"
+
+namespace misfit {
+
+int calibrate_verb(const Options& options, const Registry& registry) {
+  Session session(options, registry);
+  const auto calibration = calibrate_stage(session);
+  if (!calibration) throw InputError({session.study.file.string(), 0, 0}, "the study has no [camera]: there is nothing to calibrate");
+  if (options.json) {
+    print_file(session.folder.file("camera.json"));
+  } else {
+    std::cout << calibration_text(*calibration);
+  }
+  return calibration->converged ? 0 : 1;
+}
+
+}  // namespace misfit

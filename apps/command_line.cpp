@@ -1,0 +1,98 @@
+#include "apps/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+
+#include "apps/verbs.h"
+#include "misfit/core/error.h"
+#include "misfit/core/version.h"
+
+namespace misfit {
+namespace {
+
+using Verb = int (*)(const Options&, const Registry&);
+
+struct VerbEntry {
+  const char* name;
+  const char* doc;
+  Verb call;
+  bool study_required;
+};
+
+constexpr VerbEntry verbs[] = {
+    {"run", "do everything the study asks for and write the report; stages whose inputs have not changed are skipped", run_verb, true},
+    {"calibrate", "camera height, scale and what else the static sweep supports", calibrate_verb, true},
+    {"attitude", "angles of the axis from the track", attitude_verb, true},
+    {"fit", "estimate the model's curves and parameters", fit_verb, true},
+    {"compare", "methods side by side and against reference curves", compare_verb, true},
+    {"report", "figures and one self-contained page", report_verb, true},
+    {"simulate", "run the model: as [simulate] says, or as fitted", simulate_verb, true},
+    {"effects", "the effects this program knows, or those of a study: formula, roles, ports, coefficients, source", effects_verb, false},
+};
+
+void add_options(CLI::App& verb, Options& options, bool study_required) {
+  auto* study = verb.add_option("study", options.study, "study.toml, or the folder that holds it")->type_name("STUDY");
+  if (study_required) study->required();
+  verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
+  verb.add_option("--method", options.methods, "only these methods")->type_name("NAME")->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
+  verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")->type_name("N")->check(CLI::Range(0, 1024));
+  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N");
+  verb.add_flag("--quiet", options.quiet, "no progress and no remarks on stderr");
+  verb.add_flag("--json", options.json, "print the result as JSON");
+}
+
+std::string typed(int argc, char** argv) {
+  std::string out = "misfit";
+  for (int i = 1; i < argc; ++i) out += std::string(" ") + argv[i];
+  return out;
+}
+
+std::vector<std::string> verb_names() {
+  std::vector<std::string> names;
+  for (const auto& verb : verbs) names.emplace_back(verb.name);
+  return names;
+}
+
+int dispatch(int argc, char** argv, const Registry& registry) {
+  CLI::App app{"misfit — find out what your model is missing"};
+  app.set_version_flag("--version", std::string("misfit ") + version() + " (" + commit() + ")");
+  app.require_subcommand(1);
+  Options options;
+  options.command = typed(argc, argv);
+  std::map<const CLI::App*, Verb> calls;
+  for (const auto& entry : verbs) {
+    CLI::App* verb = app.add_subcommand(entry.name, entry.doc);
+    add_options(*verb, options, entry.study_required);
+    calls[verb] = entry.call;
+  }
+  if (argc > 1 && argv[1][0] != '-') {
+    const std::vector<std::string> names = verb_names();
+    if (std::find(names.begin(), names.end(), argv[1]) == names.end()) throw InputError(std::string("unknown verb '") + argv[1] + "'" + suggest(argv[1], names));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  const CLI::App* chosen = app.get_subcommands().front();
+  options.has_seed = chosen->count("--seed") > 0;
+  watch_interrupts();
+  return calls.at(chosen)(options, registry);
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, const Registry& registry) {
+  try {
+    return dispatch(argc, argv, registry);
+  } catch (const InputError& error) {
+    std::cerr << "misfit: " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "misfit: " << error.what() << '\n';
+    return 1;
+  }
+}
+
+}  // namespace misfit

@@ -1,0 +1,21 @@
+#include <iostream>
+
+#include "apps/print.h"
+#include "apps/stages.h"
+#include "apps/verbs.h"
+#include "misfit/compare/compare.h"
+
+namespace misfit {
+
+int compare_verb(const Options& options, const Registry& registry) {
+  Session session(options, registry);
+  const Comparison comparison = compare_stage(session, fit_stage(session));
+  if (options.json) {
+    print_file(session.folder.file("compare.json"));
+  } else {
+    std::cout << comparison_text(comparison);
+  }
+  return 0;
+}
+
+}  // namespace misfit

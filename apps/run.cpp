@@ -1,0 +1,30 @@
+#include <iostream>
+
+#include "apps/print.h"
+#include "apps/stages.h"
+#include "apps/verbs.h"
+#include "misfit/compare/compare.h"
+
+namespace misfit {
+
+int run_verb(const Options& options, const Registry& registry) {
+  Session session(options, registry);
+  const auto calibration = calibrate_stage(session);
+  const auto attitudes = attitude_stage(session);
+  const std::vector<Fit> fits = fit_stage(session);
+  const Comparison comparison = compare_stage(session, fits);
+  const auto page = report_stage(session, fits);
+  if (options.json) {
+    print_file(session.folder.file("compare.json"));
+    return status_of(fits);
+  }
+  std::cout << session.study.name << '\n' << session.study.question << "\n\n";
+  if (calibration) std::cout << calibration_text(*calibration) << '\n';
+  for (std::size_t e = 0; e < attitudes.size(); ++e) {
+    if (attitudes[e]) std::cout << attitude_text(session.study.experiments[e].name, *attitudes[e]) << '\n';
+  }
+  std::cout << fits_text(fits) << '\n' << comparison_text(comparison) << "\nreport: " << page.string() << '\n';
+  return status_of(fits);
+}
+
+}  // namespace misfit

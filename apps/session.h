@@ -1,0 +1,50 @@
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "misfit/core/run_folder.h"
+#include "misfit/data/study.h"
+#include "misfit/model/request.h"
+
+namespace misfit {
+
+/// Options of the command line that verbs share.
+struct Options {
+  std::string study;                  ///< path of study.toml
+  std::string out;                    ///< empty: out/ beside the study
+  std::vector<std::string> methods;   ///< empty: those of the study
+  int threads = 0;                    ///< 0: one per core
+  bool has_seed = false;
+  unsigned long seed = 1;
+  bool quiet = false, json = false;
+  std::string command;                ///< the command line as typed, for run.json
+};
+
+/// A study opened for work: what was asked, the run folder, and the hashes that decide what must be done again.
+struct Session {
+  Session(const Options& options, const Registry& registry);
+
+  Options options;
+  const Registry& registry;
+  Study study;
+  StudyModel model;
+  RunFolder folder;
+  std::string program;  ///< hash of the running program: another build does everything again
+
+  [[nodiscard]] std::vector<std::string> methods() const { return options.methods.empty() ? study.methods : options.methods; }
+  /// {"program", "settings"} and the files, hashed: the inputs of a stage.
+  [[nodiscard]] std::map<std::string, std::string> inputs(const std::string& settings, const std::vector<std::filesystem::path>& files) const;
+  /// A line on stderr unless quiet.
+  void say(const std::string& line) const;
+};
+
+/// True after Ctrl-C: stages finish what they are at, write, and stop. The second Ctrl-C ends the program at once.
+[[nodiscard]] const std::atomic<bool>& interrupted();
+void watch_interrupts();
+/// RunError "interrupted; …" if Ctrl-C was pressed: called between stages, when everything done so far is on disk.
+void stop_if_interrupted();
+
+}  // namespace misfit

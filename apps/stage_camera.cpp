@@ -1,0 +1,100 @@
+#include <chrono>
+
+#include "apps/stages.h"
+#include "misfit/attitude/attitude.h"
+#include "misfit/calibrate/calibrate.h"
+#include "misfit/calibrate/given.h"
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+CameraModel model_of(const CameraStudy& camera) { return camera.model == "plane_by_plane" ? CameraModel::plane_by_plane : CameraModel::pinhole; }
+
+std::string settings_of(const Session& session) {
+  const RigGeometry& rig = session.model.rig;
+  std::string text = session.study.camera.model;
+  for (double v : {rig.R, rig.R_cp, rig.V, rig.l_b, rig.l_s, rig.l_p, rig.R1, rig.R2, rig.R3}) text += " " + std::to_string(v);
+  for (const auto& name : session.study.camera.offer) text += " offer " + name;
+  for (const auto& name : session.study.camera.take_in) text += " take_in " + name;
+  for (const auto& [name, number] : session.study.camera.given) text += " " + name + "=" + std::to_string(number.value) + "~" + std::to_string(number.sigma.value_or(0.0));
+  return text;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); }
+
+Calibration make_calibration(const Session& session) {
+  const CameraStudy& camera = session.study.camera;
+  if (!camera.sweep) return camera_as_given(model_of(camera), camera.given);
+  require_rig(session.study, session.model.rig, true);
+  CalibrateOptions options;
+  options.model = model_of(camera);
+  options.offer = camera.offer;
+  options.take_in = camera.take_in;
+  return calibrate(read_sweep(*camera.sweep), session.model.rig, options);
+}
+
+fs::path attitude_file(const Session& session, std::size_t e) {
+  return session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + session.study.experiments[e].name + ".csv");
+}
+
+void write_notes(const fs::path& path, const std::vector<std::string>& notes) {
+  std::string text;
+  for (const auto& note : notes) text += note + "\n";
+  write_atomically(path, text);
+}
+
+}  // namespace
+
+std::optional<Calibration> calibrate_stage(Session& session) {
+  stop_if_interrupted();
+  if (!session.study.has_camera) return std::nullopt;
+  const fs::path file = session.folder.file("camera.json");
+  std::vector<fs::path> files;
+  if (session.study.camera.sweep) files.push_back(*session.study.camera.sweep);
+  const auto inputs = session.inputs(settings_of(session), files);
+  if (session.folder.up_to_date("calibrate", inputs)) return read_calibration(file);
+  const auto begin = std::chrono::steady_clock::now();
+  const Calibration calibration = make_calibration(session);
+  write_calibration(file, calibration);
+  session.folder.record({"calibrate", session.options.command, inputs, {"camera.json"}, seconds_since(begin), "", ""});
+  return calibration;
+}
+
+std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
+  std::vector<std::optional<Attitude>> out;
+  const std::optional<Calibration> calibration = calibrate_stage(session);
+  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
+    stop_if_interrupted();
+    const ExperimentStudy& experiment = session.study.experiments[e];
+    if (experiment.video) throw InputError(experiment.where, "this build cannot read video yet: give the tracked marker as track = \"track.csv\"");
+    if (!experiment.track) {
+      out.emplace_back();
+      continue;
+    }
+    if (!calibration) throw InputError(experiment.where, "experiment '" + experiment.name + "' is a track in pixels: the study needs [camera] (sweep = \"…\", or h_c and K)");
+    require_rig(session.study, session.model.rig, false);
+    const fs::path file = attitude_file(session, e);
+    auto inputs = session.inputs(settings_of(session), {*experiment.track, session.folder.file("camera.json")});
+    const std::string stage = "attitude/" + experiment.name;
+    if (session.folder.up_to_date(stage, inputs)) {
+      out.emplace_back(read_attitude(file));
+      continue;
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    const Track track = read_track(*experiment.track, experiment.columns);
+    Attitude result = attitude(track, *calibration, session.model.rig);
+    result.notes.insert(result.notes.begin(), track.notes.begin(), track.notes.end());
+    write_attitude(file, result);
+    const fs::path notes = fs::path(file).replace_extension(".notes.txt");
+    write_notes(notes, result.notes);
+    session.folder.record({stage, session.options.command, inputs, {file.filename().string(), notes.filename().string()}, seconds_since(begin), "", ""});
+    out.emplace_back(std::move(result));
+  }
+  return out;
+}
+
+}  // namespace misfit

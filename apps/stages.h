@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "apps/session.h"
+#include "misfit/data/attitude.h"
+#include "misfit/data/calibration.h"
+#include "misfit/data/comparison.h"
+#include "misfit/data/fit.h"
+#include "misfit/data/reference.h"
+#include "misfit/data/signals.h"
+#include "misfit/fit/equation_error.h"
+
+namespace misfit {
+
+// Each stage reads what it needs from the session and the run folder, skips its work when nothing it depends on has changed since (run.json), and
+// leaves its result on disk. They are run in this order; each calls the ones it needs.
+
+/// camera.json; nullopt if the study has no camera.
+[[nodiscard]] std::optional<Calibration> calibrate_stage(Session& session);
+/// attitude.csv (attitude_NAME.csv for further experiments); empty for experiments without a track.
+[[nodiscard]] std::vector<std::optional<Attitude>> attitude_stage(Session& session);
+
+/// The model with knots chosen, and the recordings as it sees them.
+struct Prepared {
+  ModelRequest request;
+  Model model;
+  std::vector<Signals> experiments;
+};
+/// For the study's own system.
+[[nodiscard]] Prepared prepare(Session& session);
+/// For the regression form of sliding_bin; nullopt where the system has none. Names of effects it leaves out go to `left_out`.
+[[nodiscard]] std::optional<Prepared> prepare_regression(Session& session, std::vector<std::string>& left_out);
+/// Does the attitude stage already average over three samples the channel that the regression reads?
+[[nodiscard]] bool averaged_by_attitude(const Session& session);
+
+/// fit/METHOD/… for every method asked for, in order, and resolved.toml.
+[[nodiscard]] std::vector<Fit> fit_stage(Session& session);
+[[nodiscard]] std::vector<Reference> references(const Session& session);
+/// compare.json.
+[[nodiscard]] Comparison compare_stage(Session& session, const std::vector<Fit>& fits);
+/// figures/ and report.html; returns the page.
+std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fits);
+
+/// resolved.toml: the study with every default and every choice made from the data spelled out.
+void write_resolved(const Session& session, const Prepared& prepared);
+
+}  // namespace misfit

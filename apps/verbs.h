@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "apps/session.h"
+
+namespace misfit {
+
+// One function per verb: open the study, call the stages, print. Each in apps/NAME.cpp. Return the exit status.
+int calibrate_verb(const Options& options, const Registry& registry);
+int attitude_verb(const Options& options, const Registry& registry);
+int simulate_verb(const Options& options, const Registry& registry);
+int fit_verb(const Options& options, const Registry& registry);
+int compare_verb(const Options& options, const Registry& registry);
+int report_verb(const Options& options, const Registry& registry);
+int run_verb(const Options& options, const Registry& registry);
+int effects_verb(const Options& options, const Registry& registry);
+
+}  // namespace misfit

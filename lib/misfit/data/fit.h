@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace misfit {
+
+/// A number that can be reported: with sigma and unit.
+struct Estimate {
+  double value = 0.0;
+  double sigma = 0.0;  ///< 0: not estimated
+  std::string unit;
+};
+
+/// A curve with its band, on a grid of its argument.
+struct CurveEstimate {
+  std::string name;               ///< "C_m"
+  std::string of;                 ///< quantity: "alpha_T"
+  std::string of_unit;            ///< SI unit of the quantity: "rad"
+  std::string unit;               ///< of the value: "-"
+  std::vector<double> x;          ///< [of_unit]
+  std::vector<double> value;
+  std::vector<double> sigma;
+  std::vector<double> count;      ///< samples (bin or grid cell) behind the value; 0: outside the visited range
+  bool informative = true;        ///< false: the method cannot give this curve from these data; `why` says why
+  std::string why;
+};
+
+enum class FitStatus { converged, not_converged, declined, failed };
+[[nodiscard]] std::string to_string(FitStatus status);
+
+/// One channel of one experiment against the model.
+struct ChannelPrediction {
+  std::string experiment, channel, unit;
+  std::vector<double> t, measured, predicted, sigma;  ///< SI; NaN = missing; sigma of measured − predicted under the model
+  std::vector<bool> held_out;                         ///< validation part
+};
+
+/// What every method returns. An empty `predictions` means the method does not predict motion.
+struct Fit {
+  std::string method;                            ///< "output_error"
+  FitStatus status = FitStatus::failed;
+  std::string message;                           ///< why it stopped, in words
+  std::vector<std::string> warnings;             ///< what a reader must know before believing it
+  std::map<std::string, Estimate> parameters;    ///< free parameters (curve coefficients as NAME[i]) and derived numbers, SI
+  std::vector<std::string> names;                ///< order of `covariance`
+  Eigen::MatrixXd covariance;
+  std::map<std::string, Estimate> noise, force;
+  std::optional<double> loglik, validation_loglik;
+  std::optional<Estimate> trim;                  ///< [rad]
+  std::map<std::string, Estimate> rms, validation_rms;  ///< per channel
+  std::vector<CurveEstimate> curves;
+  std::vector<ChannelPrediction> predictions;
+  std::map<std::string, std::string> facts;      ///< further findings in words, for fit.json ("telescoped_sum": "…")
+  bool driven = false;                           ///< the motion is driven by something the model does not have
+  double seconds = 0.0;
+  int linearisations = 0;
+};
+
+/// Writes fit.json, curves.csv and one prediction.csv (DESIGN section 8) into `dir`; several experiments: prediction_NAME.csv beside.
+void write_fit(const std::filesystem::path& dir, const Fit& fit);
+[[nodiscard]] Fit read_fit(const std::filesystem::path& dir);
+
+}  // namespace misfit

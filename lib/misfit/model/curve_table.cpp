@@ -1,0 +1,52 @@
+#include "misfit/model/curve_table.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+
+namespace misfit {
+namespace {
+
+double value_at(const Model& model, const Curve& curve, double x) {
+  const CurvePoint point = curve.spline.at(x);
+  double value = 0.0;
+  for (int j = 0; j < 4; ++j) value += point.w[static_cast<std::size_t>(j)] * model.parameters[static_cast<std::size_t>(curve.first + point.first + j)].value;
+  return value;
+}
+
+}  // namespace
+
+double set_curve(Model& model, const std::string& name, const std::vector<double>& x, const std::vector<double>& value) {
+  const Curve* curve = model.find_curve(name);
+  if (curve == nullptr) throw InputError("the model has no curve '" + name + "'");
+  const int size = curve->spline.size();
+  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(size, size);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
+  int inside = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(value[i]) || x[i] < curve->spline.lowest() || x[i] > curve->spline.highest()) continue;
+    const CurvePoint point = curve->spline.at(x[i]);
+    for (std::size_t j = 0; j < 4; ++j) {
+      const auto row = point.first + static_cast<int>(j);
+      b[row] += point.w[j] * value[i];
+      for (std::size_t k = 0; k < 4; ++k) N(row, point.first + static_cast<int>(k)) += point.w[j] * point.w[k];
+    }
+    ++inside;
+  }
+  if (inside < 2) throw RunError("curve " + name + ": fewer than two points of its table lie inside its knots");
+  const Eigen::MatrixXd omega = curve->spline.roughness();
+  constexpr double vanishing = 1e-9;
+  N += vanishing * (N.trace() / omega.trace()) * omega;
+  N.diagonal().array() += 1e-14 * N.trace();
+  const Eigen::VectorXd c = N.ldlt().solve(b);
+  for (int j = 0; j < size; ++j) model.parameters[static_cast<std::size_t>(curve->first + j)].value = c[j];
+  double worst = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (std::isfinite(value[i]) && x[i] >= curve->spline.lowest() && x[i] <= curve->spline.highest()) worst = std::max(worst, std::abs(value_at(model, *curve, x[i]) - value[i]));
+  }
+  return worst;
+}
+
+}  // namespace misfit

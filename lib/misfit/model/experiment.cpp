@@ -1,0 +1,188 @@
+#include "misfit/model/experiment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Adds multiples of a full turn so that neighbours differ by less than half a turn; missing values stay missing.
+std::vector<double> unwrapped(std::vector<double> angle) {
+  double turns = 0.0, last = std::nan("");
+  for (double& a : angle) {
+    if (!std::isfinite(a)) continue;
+    if (std::isfinite(last)) turns -= std::round((a + turns - last) / (2.0 * pi)) * 2.0 * pi;
+    a += turns;
+    last = a;
+  }
+  return angle;
+}
+
+std::vector<double> central_rate(const std::vector<double>& t, const std::vector<double>& y) {
+  std::vector<double> rate(y.size(), std::nan(""));
+  for (std::size_t i = 1; i + 1 < y.size(); ++i) rate[i] = (y[i + 1] - y[i - 1]) / (t[i + 1] - t[i - 1]);
+  return rate;
+}
+
+/// Fills missing values linearly (constant at the ends); returns how many, or all if none is known.
+std::size_t bridge(const std::vector<double>& t, std::vector<double>& y) {
+  std::size_t filled = 0;
+  std::size_t known = y.size();
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    if (!std::isfinite(y[i])) continue;
+    for (std::size_t k = known == y.size() ? 0 : known + 1; k < i; ++k, ++filled) {
+      y[k] = known == y.size() ? y[i] : y[known] + (y[i] - y[known]) * (t[k] - t[known]) / (t[i] - t[known]);
+    }
+    known = i;
+  }
+  if (known == y.size()) return y.size();
+  for (std::size_t k = known + 1; k < y.size(); ++k, ++filled) y[k] = y[known];
+  return filled;
+}
+
+class Reader {
+ public:
+  Reader(const Table& table, const Model& model, const ExperimentStudy& study) : table_(table), model_(model), study_(study) {}
+
+  Signals run() {
+    read_time();
+    const SystemSpec& spec = model_.system->spec();
+    for (const auto& output : spec.outputs) out_.measured.push_back({output.name, output.unit, kept(table_.values(header(output.name), output.unit)), 0.0});
+    const std::vector<std::string> needed = model_.needed_inputs();
+    for (const auto& input : spec.inputs) {
+      const bool wanted = std::find(needed.begin(), needed.end(), input.name) != needed.end();
+      out_.inputs.push_back({input.name, input.unit, wanted ? read_input(input) : std::vector<double>{}, 0.0});
+    }
+    split();
+    count_missing();
+    out_.name = study_.name;
+    return std::move(out_);
+  }
+
+ private:
+  std::string header(const std::string& name) const { return study_.columns.header(name); }
+  std::vector<double> kept(const std::vector<double>& column) const {
+    std::vector<double> values;
+    for (std::size_t row : rows_) values.push_back(column[row]);
+    return values;
+  }
+  Source line(std::size_t row) const { return {table_.source, row < table_.line.size() ? table_.line[row] : 0, 0}; }
+
+  void read_time() {
+    const std::vector<double> t = table_.values(header("t"), "s");
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      if (!std::isfinite(t[i])) continue;
+      if (!rows_.empty() && !(t[i] > t[rows_.back()])) {
+        throw InputError(line(i), "time does not increase: " + format_value(t[i]) + " s after " + format_value(t[rows_.back()]) + " s");
+      }
+      rows_.push_back(i);
+    }
+    if (rows_.size() < t.size()) out_.notes.push_back(std::to_string(t.size() - rows_.size()) + " rows without time dropped");
+    if (rows_.size() < 2) throw RunError("experiment '" + study_.name + "': " + std::to_string(rows_.size()) + " samples with a time are not a recording");
+    for (std::size_t row : rows_) out_.t.push_back(t[row]);
+  }
+
+  std::vector<double> read_input(const InputSpec& input) {
+    const bool angle = parse_unit(input.unit).angle;
+    std::vector<double> values;
+    constexpr std::string_view suffix = "_rate";
+    const bool rate = input.name.size() > suffix.size() && input.name.ends_with(suffix);
+    if (rate && table_.find(header(input.name)) == nullptr) {
+      const std::string base = input.name.substr(0, input.name.size() - suffix.size());
+      if (table_.find(header(base)) == nullptr) static_cast<void>(table_.at(header(input.name)));  // throws, naming the nearest
+      const std::string base_unit = input.unit.ends_with("/s") ? input.unit.substr(0, input.unit.size() - 2) : input.unit;
+      std::vector<double> level = kept(table_.values(header(base), base_unit));
+      if (base_unit == "rad") level = unwrapped(level);
+      values = central_rate(out_.t, level);
+      out_.notes.push_back("input " + input.name + " differentiated from " + base);
+    } else {
+      values = kept(table_.values(header(input.name), input.unit));
+      if (angle) values = unwrapped(values);
+    }
+    std::vector<bool> missing;
+    for (double v : values) missing.push_back(!std::isfinite(v));
+    const std::size_t filled = bridge(out_.t, values);
+    if (filled == values.size()) throw RunError("experiment '" + study_.name + "': input " + input.name + " has no value at all");
+    if (filled == 0) return values;
+    out_.notes.push_back("input " + input.name + ": " + std::to_string(filled) + " missing values bridged; the samples there are not used");
+    for (auto& channel : out_.measured) {
+      for (std::size_t i = 0; i < missing.size(); ++i) {
+        if (missing[i]) channel.values[i] = std::nan("");
+      }
+    }
+    return values;
+  }
+
+  void split() {
+    using Validation = ExperimentStudy::Validation;
+    const double first = out_.t.front(), last = out_.t.back();
+    if (study_.validation == Validation::last_fraction) {
+      out_.validation_from = first + (1.0 - study_.fraction) * (last - first);
+    } else if (study_.validation == Validation::interval) {
+      out_.validation_from = study_.from;
+      out_.validation_to = study_.to;
+      if (study_.from > last || study_.to < first) {
+        throw InputError(study_.where, "validation interval " + format_value(study_.from) + " to " + format_value(study_.to) + " s lies outside the recording, " + format_value(first) +
+                                           " to " + format_value(last) + " s");
+      }
+    }
+    out_.exclude = static_cast<std::size_t>(std::max(study_.exclude, 0L));
+    if (out_.exclude >= out_.samples()) throw InputError(study_.where, "exclude = " + std::to_string(study_.exclude) + " leaves no sample of " + std::to_string(out_.samples()));
+  }
+
+  void count_missing() {
+    for (const auto& channel : out_.measured) {
+      const auto missing = std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isfinite(v); });
+      if (missing == static_cast<long>(channel.values.size())) throw RunError("experiment '" + study_.name + "': channel " + channel.name + " has no value at all: all samples are lost");
+      if (missing > 0) out_.notes.push_back("channel " + channel.name + ": " + std::to_string(missing) + " of " + std::to_string(channel.values.size()) + " samples missing, carried as gaps");
+    }
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < out_.t.size(); ++i) steps.push_back(out_.t[i] - out_.t[i - 1]);
+    const double usual = median(steps);
+    constexpr double gap = 1.5;
+    const auto gaps = std::count_if(steps.begin(), steps.end(), [&](double s) { return s > gap * usual; });
+    if (gaps > 0) out_.notes.push_back(std::to_string(gaps) + " gaps in time, the longest " + format_value(*std::max_element(steps.begin(), steps.end())) + " s");
+  }
+
+  const Table& table_;
+  const Model& model_;
+  const ExperimentStudy& study_;
+  std::vector<std::size_t> rows_;
+  Signals out_;
+};
+
+}  // namespace
+
+Signals signals_from(const Table& table, const Model& model, const ExperimentStudy& study) { return Reader(table, model, study).run(); }
+
+Table attitude_table(const Attitude& a) {
+  Table table;
+  table.source = "attitude";
+  table.add("t", "s", a.t);
+  table.add("theta", "rad", a.theta);
+  table.add("psi", "rad", a.psi);
+  table.add("alpha", "rad", a.alpha);
+  table.add("beta", "rad", a.beta);
+  table.add("alpha_T", "rad", a.alpha_T);
+  table.add("eta", "rad", a.eta);
+  table.add("phi", "rad", unwrapped(a.phi));
+  // phi = atan2(tan psi, tan theta) → phi' from the rates of the averages.
+  std::vector<double> rate(a.t.size(), std::nan(""));
+  for (std::size_t i = 0; i < a.t.size(); ++i) {
+    const double y = std::tan(a.psi_mean[i]), z = std::tan(a.theta_mean[i]);
+    const double y_rate = (1.0 + y * y) * a.psi_rate[i], z_rate = (1.0 + z * z) * a.theta_rate[i];
+    const double square = y * y + z * z;
+    if (square > 0.0) rate[i] = (y_rate * z - y * z_rate) / square;
+  }
+  table.add("phi_rate", "rad/s", rate);
+  return table;
+}
+
+}  // namespace misfit

@@ -1,0 +1,176 @@
+#include "misfit/model/request.h"
+
+#include <algorithm>
+#include <array>
+
+#include "misfit/core/units.h"
+
+namespace misfit {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180.0;
+
+struct RigEntry {
+  const char* name;
+  double RigGeometry::*field;
+};
+constexpr std::array<RigEntry, 9> rig_entries = {{{"R", &RigGeometry::R},
+                                                  {"R_cp", &RigGeometry::R_cp},
+                                                  {"V", &RigGeometry::V},
+                                                  {"l_b", &RigGeometry::l_b},
+                                                  {"l_s", &RigGeometry::l_s},
+                                                  {"l_p", &RigGeometry::l_p},
+                                                  {"R1", &RigGeometry::R1},
+                                                  {"R2", &RigGeometry::R2},
+                                                  {"R3", &RigGeometry::R3}}};
+
+std::string rig_unit(const std::string& name) { return name == "V" ? "m/s" : "m"; }
+
+void read_rig(const config::Section& geometry, RigGeometry& rig) {
+  for (const auto& entry : rig_entries) {
+    const auto number = geometry.number(entry.name, rig_unit(entry.name), true);
+    if (!number) continue;
+    if (!(number->value > 0.0)) throw InputError(number->where, std::string(entry.name) + " must be positive, it is " + std::to_string(number->value) + " " + rig_unit(entry.name));
+    rig.*entry.field = number->value;
+  }
+}
+
+void read_constants(const config::Section& geometry, const SystemSpec& spec, ModelRequest& request) {
+  for (const auto& constant : spec.constants) {
+    const auto number = geometry.number(constant.name, constant.unit, true);
+    if (!number) continue;
+    request.constants[constant.name] = number->value;
+    request.constants_where[constant.name] = number->where;
+    if (number->sigma) request.constant_sigmas[constant.name] = *number->sigma;
+  }
+}
+
+/// Unit of a parameter by its name in the assembled model; empty if no such name (assemble() then says so).
+class ParameterUnits {
+ public:
+  ParameterUnits(const ModelRequest& request, const SystemSpec& spec, const Registry& registry) {
+    for (const auto& constant : spec.constants) units_[constant.name] = constant.unit;
+    for (const auto& effect : request.effects) {
+      for (const auto& coefficient : registry.effect(effect.kind, effect.where).spec().coefficients) {
+        const auto renamed = spec.coefficient_names.find(coefficient.name);
+        const std::string name = renamed == spec.coefficient_names.end() ? coefficient.name : renamed->second;
+        units_[name] = coefficient.unit;
+        units_[effect.name + "." + name] = coefficient.unit;
+      }
+    }
+  }
+  std::string of(const std::string& name) const {
+    const auto found = units_.find(name);
+    return found == units_.end() ? "-" : found->second;
+  }
+
+ private:
+  std::map<std::string, std::string> units_;
+};
+
+ParameterRequest read_parameter(const ParameterStudy& study, const std::string& unit) {
+  ParameterRequest out;
+  out.where = study.where;
+  out.free = study.free;
+  if (!study.section) return out;
+  const config::Section& section = *study.section;
+  const auto number = [&](const char* key) -> std::optional<double> {
+    const auto n = section.number(key, unit);
+    return n ? std::optional<double>(n->value) : std::nullopt;
+  };
+  out.value = number("value");
+  out.sigma = number("sigma");
+  if (out.sigma && !(*out.sigma > 0.0)) section.fail("sigma", "must be positive");
+  if (const auto bounds = section.numbers("bounds", unit)) {
+    if (bounds->size() != 2) section.fail("bounds", "must be [lower, upper]");
+    out.lower = bounds->front();
+    out.upper = bounds->back();
+  }
+  section.finish();
+  return out;
+}
+
+bool is_angle(const SystemSpec& spec, const std::string& quantity) {
+  for (const auto& q : spec.quantities) {
+    if (q.name == quantity) return parse_unit(q.unit).angle;
+  }
+  for (const auto& o : spec.outputs) {
+    if (o.name == quantity) return parse_unit(o.unit).angle;
+  }
+  return false;
+}
+
+void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& request) {
+  for (const auto& [name, curve] : study.curves) {
+    CurveRequest out{curve.of, curve.knots.value_or(std::vector<double>{}), curve.roughness, curve.where};
+    if (is_angle(spec, curve.of)) {
+      for (double& knot : out.knots) knot *= degree;
+    }
+    request.curves[name] = out;
+  }
+}
+
+}  // namespace
+
+StudyModel read_model(const Study& study, const Registry& registry) {
+  StudyModel out;
+  ModelRequest& request = out.request;
+  if (study.system_kind.empty()) throw InputError({study.file.string(), 0, 0}, "[system] kind is missing" + suggest("", registry.system_keys()));
+  request.system = study.system_kind;
+  request.options.flags = study.system_flags;
+  for (const auto& [name, number] : study.system_numbers) request.options.numbers[name] = number.value;
+  const auto where = study.system_where.find("kind");
+  request.system_where = where == study.system_where.end() ? Source{study.file.string(), 0, 0} : where->second;
+  const SystemType& type = registry.system(request.system, request.system_where);
+  for (const auto& [name, number] : study.system_numbers) {
+    throw InputError(number.where, "system '" + request.system + "' has no option '" + name + "'" + suggest(name, type.flags));
+  }
+  const SystemSpec spec = type.make(request.options)->spec();
+  if (study.geometry) {
+    read_rig(*study.geometry, out.rig);
+    read_constants(*study.geometry, spec, request);
+    study.geometry->finish();
+  }
+  for (const auto& effect : study.effects) request.effects.push_back({effect.name, effect.kind, effect.roles, effect.where});
+  const ParameterUnits units(request, spec, registry);
+  for (const auto& [name, parameter] : study.parameters) request.parameters[name] = read_parameter(parameter, units.of(name));
+  read_curves(study, spec, request);
+  return out;
+}
+
+std::optional<ModelRequest> regression_form(const ModelRequest& request, const Registry& registry, std::vector<std::string>& left_out) {
+  const SystemSpec own = registry.system(request.system, request.system_where).make(request.options)->spec();
+  if (own.regression.kind.empty()) return std::nullopt;
+  ModelRequest form = request;
+  form.system = own.regression.kind;
+  form.options = {own.regression.flags, {}};
+  const SystemSpec spec = registry.system(form.system).make(form.options)->spec();
+  form.parameters.clear();
+  form.curves.clear();
+  std::erase_if(form.effects, [&](const EffectRequest& effect) {
+    const auto& coefficients = registry.effect(effect.kind, effect.where).spec().coefficients;
+    const bool known = std::all_of(coefficients.begin(), coefficients.end(), [&](const CoefficientSpec& c) {
+      const auto renamed = spec.coefficient_names.find(c.name);
+      const std::string name = renamed == spec.coefficient_names.end() ? c.name : renamed->second;
+      return name == spec.static_curve || name == spec.damping_curve;
+    });
+    if (!known) left_out.push_back(effect.name);
+    return !known;
+  });
+  return form;
+}
+
+void require_rig(const Study& study, const RigGeometry& rig, bool for_sweep) {
+  std::vector<std::string> missing;
+  for (const auto& entry : rig_entries) {
+    const std::string name = entry.name;
+    const bool of_sweep = name == "l_p" || name == "R1" || name == "R2" || name == "R3";
+    if ((for_sweep || !of_sweep) && !(rig.*entry.field > 0.0)) missing.push_back(name);
+  }
+  if (missing.empty()) return;
+  std::string list;
+  for (const auto& name : missing) list += (list.empty() ? "" : ", ") + name;
+  throw InputError({study.file.string(), 0, 0}, "[geometry] lacks " + list + ", which the " + (for_sweep ? "calibration" : "camera") + " needs");
+}
+
+}  // namespace misfit
