@@ -78,8 +78,8 @@ std::vector<ShootingPass> passes(const Setting& setting, bool from_regression) {
     list.push_back({5, 1.0, 1e4, 40, 1e-4});
     list.push_back({5, 10.0, 1e6, 40, 1e-4});
   }
-  list.push_back({half_period, 10.0, nearly_gauss_newton, 30, 1e-5});
-  for (std::size_t length = 6 * half_period; length < setting.samples / 2 && list.size() < 5; length *= 6) list.push_back({length, 10.0, nearly_gauss_newton, 30, 1e-5});
+  list.push_back({half_period, 10.0, nearly_gauss_newton, 30, 1e-4});
+  for (std::size_t length = 6 * half_period; length < setting.samples / 2 && list.size() < 5; length *= 6) list.push_back({length, 10.0, nearly_gauss_newton, 30, 1e-6});
   return list;
 }
 
@@ -213,37 +213,45 @@ class Estimator {
       : experiments_(experiments),
         options_(options),
         setting_(look_at(start.model, experiments, options)),
-        penalties_(start.penalties.empty() ? curve_penalties(start.model) : start.penalties),
+        penalties_(curve_penalties(start.model)),  // not those of a regression, whose noise is another one
         shooting_(start.model, experiments, setting_.sigma, setting_.state_scale, start_states(setting_)) {}
 
   FittedModel run() {
-    LeastSquares::Summary summary;
-    for (const auto& pass : passes(setting_, options_.from_regression)) {
-      summary = shooting_.solve(pass, penalties_);
-      if (!summary.usable) return failed("segments of " + std::to_string(pass.length) + " samples: " + summary.message);
+    const std::vector<ShootingPass> list = passes(setting_, options_.from_regression);
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      if (!solve(list[k])) return failed("segments of " + std::to_string(list[k].length) + " samples: " + last_.message);
+      if (k == 0 || !any_chosen(penalties_)) continue;
+      Linearised pieces;
+      if (shooting_.linearise_segments(list[k].length, pieces)) static_cast<void>(smooth(pieces, penalties_));
     }
-    return whole_trajectory();
+    return whole_trajectory(list.back());
   }
 
  private:
-  FittedModel whole_trajectory() {
+  bool solve(const ShootingPass& pass) {
+    last_ = shooting_.solve(pass, penalties_);
+    return last_.usable;
+  }
+
+  /// One trajectory. Whenever the roughness is chosen anew, the last lengthening comes first again: a single trajectory alone would creep along the
+  /// curved valley of equal phase.
+  FittedModel whole_trajectory(const ShootingPass& lengthened) {
     Linearised linearised;
-    Smoothed smoothed;
-    LeastSquares::Summary summary;
     constexpr int most_rounds = 8;
     double before = 0.0;
     for (int round = 0; round < most_rounds; ++round) {
-      summary = shooting_.solve({0, 10.0, 1e6, round == 0 ? 60 : 15, 1e-8}, penalties_);
-      if (!summary.usable) return failed(summary.message);
-      smoothed = smooth_present(shooting_, penalties_, linearised);
+      if (round > 0 && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
+      if (!solve({0, 10.0, 1e8, 60, 1e-7})) return failed(last_.message);
+      const Smoothed smoothed = smooth_present(shooting_, penalties_, linearised);
       if (!smoothed.ok) return failed(shooting_.failure().empty() ? "the information matrix is singular: some parameters are not determined by these data" : "");
       const std::vector<double> sigma = channel_sigmas(shooting_, shooting_.run(false), experiments_, smoothed.edf);
-      const bool settled = std::abs(smoothed.edf - before) < 0.05 && std::abs(sigma.front() / shooting_.sigma().front() - 1.0) < 0.01;
+      const bool same_roughness = !any_chosen(penalties_) || std::abs(smoothed.edf - before) < 0.1;
+      const bool settled = same_roughness && std::abs(sigma.front() / shooting_.sigma().front() - 1.0) < 0.01;
       before = smoothed.edf;
       shooting_.set_sigma(sigma);
-      if (settled || (!any_chosen(penalties_) && round > 0)) break;
+      if (settled) break;
     }
-    return finish(summary);
+    return finish(last_);
   }
 
   FittedModel failed(const std::string& why) {
@@ -296,6 +304,7 @@ class Estimator {
   Setting setting_;
   std::vector<Penalty> penalties_;
   Shooting shooting_;
+  LeastSquares::Summary last_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "misfit/fit/shooting.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -172,6 +173,55 @@ void Shooting::remember(std::vector<Piece>& pieces, const LeastSquares& problem)
   }
 }
 
+Linearised Shooting::empty_sums(Eigen::Index unknowns) const {
+  Linearised out{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns), 0.0, 0.0, Eigen::VectorXd::Zero(unknowns), Eigen::VectorXd::Zero(unknowns), Eigen::VectorXd::Zero(unknowns)};
+  for (std::size_t c = 0; c < free_.size(); ++c) {
+    const Parameter& p = model_.parameters[static_cast<std::size_t>(free_[c])];
+    const auto i = static_cast<Eigen::Index>(c);
+    out.theta[i] = p.value;
+    if (!p.prior_sigma || p.curve >= 0) continue;
+    out.prior_precision[i] = 1.0 / (*p.prior_sigma * *p.prior_sigma);
+    out.prior_mean[i] = p.prior_mean;
+  }
+  return out;
+}
+
+double Shooting::counted(const Piece& piece) const {
+  double count = 0.0;
+  for (std::size_t i = piece.first; i < piece.last; ++i) {
+    for (std::size_t o = 0; o < static_cast<std::size_t>(model_.outputs()); ++o) count += counts(piece.experiment, i, o) ? 1.0 : 0.0;
+  }
+  return count;
+}
+
+bool Shooting::linearise_segments(std::size_t length, Linearised& out) {
+  const auto columns = static_cast<Eigen::Index>(free_.size());
+  const Eigen::Index n = model_.states();
+  out = empty_sums(columns);
+  set_theta(out.theta.data());
+  ++linearisations_;
+  for (Piece& piece : cut(length)) {
+    const Eigen::VectorXd x0 = history_[piece.experiment].row(static_cast<Eigen::Index>(piece.first));
+    run_segment(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last, x0.data(), true, piece.segment);
+    if (!piece.segment.finite) return false;
+    const Eigen::Index rows = piece.segment.y.size();
+    Eigen::VectorXd r(rows);
+    RowMatrix theta_rows(rows, columns), state_rows(rows, n);
+    double* J[2] = {theta_rows.data(), state_rows.data()};
+    fill_rows(piece, r.data(), J);
+    // The segment's own initial state is projected out: what is left tells of the parameters alone.
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> states(state_rows);
+    const Eigen::MatrixXd Q = Eigen::MatrixXd(states.householderQ() * Eigen::MatrixXd::Identity(rows, states.rank()));
+    r -= Q * (Q.transpose() * r);
+    theta_rows -= Q * (Q.transpose() * theta_rows);
+    out.N.noalias() += theta_rows.transpose() * theta_rows;
+    out.g.noalias() += theta_rows.transpose() * r;
+    out.rss += r.squaredNorm();
+    out.count += std::max(counted(piece) - static_cast<double>(states.rank()), 0.0);
+  }
+  return true;
+}
+
 std::vector<Segment> Shooting::run(bool sensitivities) {
   std::vector<Segment> out(experiments_.size());
   std::vector<double> theta;
@@ -191,14 +241,7 @@ bool Shooting::linearise(Linearised& out) {
   const Eigen::Index all = columns + n * static_cast<Eigen::Index>(experiments_.size());
   const std::vector<Segment> runs = run(true);
   ++linearisations_;
-  out = {Eigen::MatrixXd::Zero(all, all), Eigen::VectorXd::Zero(all), 0.0, 0.0, Eigen::VectorXd::Zero(all), Eigen::VectorXd::Zero(all), Eigen::VectorXd::Zero(all)};
-  for (Eigen::Index c = 0; c < columns; ++c) {
-    const Parameter& p = model_.parameters[static_cast<std::size_t>(free_[static_cast<std::size_t>(c)])];
-    out.theta[c] = p.value;
-    if (!p.prior_sigma || p.curve >= 0) continue;
-    out.prior_precision[c] = 1.0 / (*p.prior_sigma * *p.prior_sigma);
-    out.prior_mean[c] = p.prior_mean;
-  }
+  out = empty_sums(all);
   for (std::size_t e = 0; e < runs.size(); ++e) {
     if (!runs[e].finite) return false;
     Piece piece{e, 0, experiments_[e].samples(), -1, -1, runs[e]};
@@ -216,9 +259,7 @@ bool Shooting::linearise(Linearised& out) {
     out.g.head(columns).noalias() += theta_rows.transpose() * r;
     out.g.segment(at, n).noalias() = state_rows.transpose() * r;
     out.rss += r.squaredNorm();
-    for (std::size_t i = 0; i < piece.last; ++i) {
-      for (std::size_t o = 0; o < static_cast<std::size_t>(model_.outputs()); ++o) out.count += counts(e, i, o) ? 1.0 : 0.0;
-    }
+    out.count += counted(piece);
   }
   return true;
 }

@@ -36,6 +36,9 @@ class Shooting {
   /// The single-trajectory problem at the present values: columns are the free parameters, then the initial states of each experiment. Residuals are
   /// in units of sigma. False if the run leaves the finite numbers.
   bool linearise(Linearised& out);
+  /// The same with every segment of `length` samples on its own, its initial state (from the history) projected out: columns are the free parameters. Tells how
+  /// rough the curves may be before the trajectory hangs together.
+  bool linearise_segments(std::size_t length, Linearised& out);
   /// Predictions over the whole of each experiment from its initial state, with derivatives if asked.
   [[nodiscard]] std::vector<Segment> run(bool sensitivities);
 
@@ -57,6 +60,8 @@ class Shooting {
   void set_theta(const double* theta);
   bool evaluate(Piece& piece, double defect_weight, const double* const* blocks, double* r, double** J);
   void fill_rows(const Piece& piece, double* r, double** J) const;
+  [[nodiscard]] Linearised empty_sums(Eigen::Index unknowns) const;
+  [[nodiscard]] double counted(const Piece& piece) const;
   std::vector<Piece> cut(std::size_t length) const;
   void add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const;
   void remember(std::vector<Piece>& pieces, const LeastSquares& problem);
