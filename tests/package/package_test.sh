@@ -12,8 +12,32 @@ cmake --install "$build" --prefix "$work/prefix" > /dev/null
 cmake -S "$here" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" "$@" > "$work/configure.log" || { cat "$work/configure.log"; exit 1; }
 cmake --build "$work/build"
 "$work/build/own_misfit" effects > "$work/own.txt"
+"$work/build/own_misfit" simulate "$here/study.toml" --out "$work/out" --quiet
 
 fail() { echo "FAILED: $*"; exit 1; }
 grep -q strut_interference "$work/own.txt" || fail "the own program does not list its effect"
 grep -q pitch_damping "$work/own.txt" || fail "the own program does not list misfit's effects"
 ! grep -q strut_interference "$work/installed.txt" || fail "the installed program lists an effect it cannot have"
+# The study says why: 0.5 rad after 1 s.
+awk -F, 'END { exit !($1 == 1 && ($2 - 28.6478898)^2 < 1e-6) }' "$work/out/simulation.csv" ||
+  fail "the motion with the own effect ends with $(tail -n 1 "$work/out/simulation.csv"), not with t = 1 s, eta = 28.6479 deg"
+
+# broken NAME: a copy of the project under WORK/NAME, to be spoilt.
+broken() {
+  mkdir "$work/$1"
+  cp -r "$here/CMakeLists.txt" "$here/effects" "$work/$1/"
+}
+configure_broken() { cmake -S "$work/$1" -B "$work/$1/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" "${@:2}" > "$work/$1/log" 2>&1; }
+
+broken twice
+mkdir "$work/twice/effects/more"
+cp "$here/effects/strut_interference.cpp" "$work/twice/effects/more/"
+! configure_broken twice "$@" || fail "two effects of one name are accepted"
+tr -s ' \n' '  ' < "$work/twice/log" | grep -q "key 'strut_interference' is taken" || fail "two effects of one name: the message does not say so"
+
+broken misnamed
+mv "$work/misnamed/effects/strut_interference.cpp" "$work/misnamed/effects/strut_wake_of_mine.cpp"
+configure_broken misnamed "$@" || fail "a misnamed effect should configure"
+! cmake --build "$work/misnamed/build" > "$work/misnamed/log" 2>&1 || fail "a file that registers another name than its own is accepted"
+grep -q "misfit_register_strut_wake_of_mine" "$work/misnamed/log" || fail "a misnamed effect: the message does not name it"
+echo "package: as expected"
