@@ -63,6 +63,7 @@ CubicSpline::CubicSpline(std::vector<double> breakpoints, Parity parity) : knots
   for (std::size_t i = 1; i < knots_.size(); ++i) {
     if (!(knots_[i] > knots_[i - 1])) throw InputError("knots of a curve must increase strictly");
   }
+  if (!std::isfinite(knots_.front()) || !std::isfinite(knots_.back())) throw InputError("knots of a curve must be finite");
   if (parity != Parity::none && !(knots_.front() > 0.0)) throw InputError("knots of an odd or even curve must be positive");
   const std::vector<double> extended = extended_knots(knots_);
   for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
@@ -82,26 +83,6 @@ CubicSpline::CubicSpline(std::vector<double> breakpoints, Parity parity) : knots
   }
 }
 
-int CubicSpline::interval_of(double x) const {
-  const auto cell = static_cast<std::size_t>(std::clamp((x - knots_.front()) * cells_per_unit_, 0.0, static_cast<double>(lookup_.size() - 1)));
-  int i = lookup_[cell];
-  const int last = static_cast<int>(pieces_.size()) - 1;
-  while (i < last && x >= knots_[static_cast<std::size_t>(i) + 1]) ++i;
-  while (i > 0 && x < knots_[static_cast<std::size_t>(i)]) --i;
-  return i;
-}
-
-CurvePoint CubicSpline::inside(int interval, double u) const {
-  const Piece& p = pieces_[static_cast<std::size_t>(interval)];
-  CurvePoint out;
-  out.first = interval;
-  for (std::size_t j = 0; j < 4; ++j) {
-    out.w[j] = ((p[3][j] * u + p[2][j]) * u + p[1][j]) * u + p[0][j];
-    out.d[j] = (3.0 * p[3][j] * u + 2.0 * p[2][j]) * u + p[1][j];
-  }
-  return out;
-}
-
 CurvePoint CubicSpline::below(double x) const {
   const CurvePoint end = inside(0, 0.0);
   const double k = knots_.front();
@@ -115,7 +96,7 @@ CurvePoint CubicSpline::below(double x) const {
   return combine(end, 1.0, x - k, 0.0, 1.0);
 }
 
-CurvePoint CubicSpline::at(double x) const {
+CurvePoint CubicSpline::outside(double x) const {
   if (parity_ != Parity::none && x < 0.0) {
     CurvePoint mirrored = at(-x);
     auto& turned = parity_ == Parity::odd ? mirrored.w : mirrored.d;  // odd: the value changes sign, even: the slope does
@@ -123,14 +104,10 @@ CurvePoint CubicSpline::at(double x) const {
     return mirrored;
   }
   if (x < knots_.front()) return below(x);
-  if (x > knots_.back()) {
-    const int last = static_cast<int>(pieces_.size()) - 1;
-    const CurvePoint end = inside(last, knots_.back() - knots_[static_cast<std::size_t>(last)]);
-    return combine(end, 1.0, x - knots_.back(), 0.0, 1.0);
-  }
-  if (!std::isfinite(x)) return combine(CurvePoint{}, x, x, x, x);
-  const int interval = interval_of(x);
-  return inside(interval, x - knots_[static_cast<std::size_t>(interval)]);
+  if (!std::isfinite(x) && !(x > 0.0)) return combine(CurvePoint{}, x, x, x, x);
+  const int last = static_cast<int>(pieces_.size()) - 1;
+  const CurvePoint end = inside(last, knots_.back() - knots_[static_cast<std::size_t>(last)]);
+  return combine(end, 1.0, x - knots_.back(), 0.0, 1.0);
 }
 
 CurvePoint CubicSpline::over_sine(double x) const {
