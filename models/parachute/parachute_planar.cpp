@@ -115,7 +115,7 @@ struct ParachutePlanar {
                    {"V", "m/s", "free-stream speed", 1e-6, 1e5, true, 0.0}};
     constexpr double typical_noise = 2e-3;
     s.outputs = {{induced ? "eta" : "alpha_T", "rad", 0, typical_noise}};
-    s.roles = {{"rate", "pitch_rate"}, {"level", "eta"}, {"port", "pitching_moment"}};
+    s.roles = {{"rate", "pitch_rate"}, {"level", "eta"}, {"port", "pitching_moment"}, {"output", s.outputs.front().name}};
     if (!induced) s.coefficient_names = {{"C_mq", "C_m_alphadot"}};
     s.regression = {"parachute_planar", {{"induced_angle", false}}};
     s.static_curve = "C_m";

@@ -14,7 +14,7 @@ struct PitchDamping {
   static constexpr const char* source = "paper Eq. 8; DESIGN 4.1";
   static constexpr const char* excludes = "memory of the wake (aerodynamic lag)";
   static constexpr Role quantities[] = {
-      {"dynamic_pressure", "Pa"}, {"wind_speed", "m/s"}, {"pitch_rate", "rad/s"}, {"lateral_rate", "rad/s", true}};
+      {"dynamic_pressure", "Pa"}, {"wind_speed", "m/s", false, true}, {"pitch_rate", "rad/s"}, {"lateral_rate", "rad/s", true}};
   static constexpr Role ports[] = {{"pitching_moment", "N m"}, {"lateral_moment", "N m", true}};
   static constexpr const char* constants[] = {"S", "D"};
   static constexpr CoefficientSpec coefficients[] = {{"C_mq", CoefficientKind::strength, 0.0, "-", -50.0, 50.0, 0.25,
@@ -28,7 +28,7 @@ struct PitchDamping {
   }
 
   static std::vector<Example> examples() {
-    return {{{1.9554, 1.5816}, {736.0, 35.1, 1.0, 0.0}, {-0.25}, {}, 0.0, {-12.820685, 0.0}, {}, "2276.1948 x 1.5816/70.2 x -0.25 = -12.8207"},
+    return {{{1.9554, 1.5816}, {736.0, 35.1, 1.0, 0.0}, {-0.25}, {}, 0.0, {-12.820638, 0.0}, {}, "2276.1982 x 1.5816/70.2 x -0.25"},
             {{2.0, 3.0}, {100.0, 30.0, 0.5, -2.0}, {0.4}, {}, 0.0, {6.0, -24.0}, {}, "by hand: 100 x 2 x 9/60 x 0.4 = 12; x 0.5, x -2"}};
   }
 };

@@ -27,9 +27,9 @@ struct StaticMoment {
   }
 
   static std::vector<Example> examples() {
-    // 736 Pa x 1.9554 m^2 x 1.5816 m = 2276.1948 N m per unit coefficient; at alpha_T = 10 deg: C_m = 0.0105, sin = 0.17364818, so C_m/sin =
-    // 0.060467094 and in the plane of motion (v x n) = sin(10 deg): moment = 2276.1948 x 0.0105 = 23.900045 N m.
-    return {{{1.9554, 1.5816}, {736.0, 0.17364818, 0.0}, {0.0105 / 0.17364818}, {}, 0.0, {736.0 * 1.9554 * 1.5816 * 0.0105, 0.0}, {}, "paper Eq. 9, Table 1"},
+    // 736 Pa x 1.9554 m^2 x 1.5816 m = 2276.1982 N m per unit coefficient; at alpha_T = 10 deg: C_m = 0.0105, sin = 0.17364818, so C_m/sin =
+    // 0.060467094 and in the plane of motion (v x n) = sin(10 deg): moment = 2276.1982 x 0.0105 = 23.900081 N m.
+    return {{{1.9554, 1.5816}, {736.0, 0.17364818, 0.0}, {0.0105 / 0.17364818}, {}, 0.0, {23.900081, 0.0}, {}, "paper Eq. 9, Table 1"},
             {{2.0, 1.5}, {100.0, 0.3, -0.1}, {0.5}, {}, 0.0, {45.0, -15.0}, {}, "by hand: 100 x 2 x 1.5 x 0.5 = 150; x 0.3, x -0.1"}};
   }
 };

@@ -5,6 +5,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/model/model.h"
+#include "misfit/model/role_units.h"
 
 namespace misfit {
 namespace {
@@ -20,6 +21,9 @@ class Assembler {
       if (std::find(type.flags.begin(), type.flags.end(), flag) == type.flags.end()) {
         throw InputError(request.system_where, "system '" + request.system + "' has no option '" + flag + "'" + suggest(flag, type.flags));
       }
+    }
+    for (const auto& [number, value] : request.options.numbers) {
+      throw InputError(request.system_where, "system '" + request.system + "' has no option '" + number + "'" + suggest(number, type.flags));
     }
     model_.system = type.make(request.options);
   }
@@ -44,6 +48,18 @@ class Assembler {
       }
     }
     return open;
+  }
+
+  std::map<std::string, std::string> parameter_units() {
+    std::map<std::string, std::string> units;
+    for (const auto& constant : system().constants) units[constant.name] = constant.unit;
+    name_coefficients();
+    for (std::size_t i = 0; i < request_.effects.size(); ++i) {
+      const auto& spec = effect(i).spec();
+      const auto roles = role_units(request_.effects[i], spec);
+      for (std::size_t c = 0; c < spec.coefficients.size(); ++c) units[names_[i][c]] = bind_unit(spec.coefficients[c].unit, roles);
+    }
+    return units;
   }
 
  private:
@@ -94,10 +110,11 @@ class Assembler {
     check_bounds(p, r.where);
   }
 
-  /// Bare names where unique, EFFECT.NAME where two effects of the model would share one; a system may rename.
+  /// Bare names where unique, EFFECT.NAME where two effects of the model, or an effect and the system, would share one; a system may rename.
   void name_coefficients() {
     names_.clear();
     std::map<std::string, int> uses;
+    for (const auto& constant : system().constants) ++uses[constant.name];
     for (std::size_t i = 0; i < request_.effects.size(); ++i) {
       std::vector<std::string> own;
       for (const auto& c : effect(i).spec().coefficients) {
@@ -117,7 +134,8 @@ class Assembler {
   std::optional<CurveRequest> curve_request(const std::string& name, const CoefficientSpec& spec) const {
     const auto found = request_.curves.find(name);
     if (found != request_.curves.end()) return found->second;
-    if (spec.curve_of[0] == '\0' || request_.parameters.contains(name)) return std::nullopt;
+    const auto number = request_.parameters.find(name);
+    if (spec.curve_of[0] == '\0' || (number != request_.parameters.end() && number->second.value)) return std::nullopt;
     CurveRequest request;
     request.of = spec.curve_of;
     return request;
@@ -133,6 +151,7 @@ class Assembler {
     bound.effect = &effect(i);
     bound.name = request.name;
     check_roles(request, spec);
+    role_units_ = role_units(request, spec);
     bind_ports(request, spec, bound);
     for (const auto& role : spec.quantities) bound.quantities.push_back(bind_quantity(request, role, bound.kind));
     for (const auto& name : spec.constants) bound.constants.push_back(bind_constant(request, name));
@@ -140,9 +159,29 @@ class Assembler {
     for (const auto& state : spec.states) {
       model_.own_states.push_back(state);
       model_.own_state_names.push_back(request.name + "." + state.name);
+      model_.own_state_units.push_back(bind_unit(state.unit, role_units_));
     }
     for (std::size_t c = 0; c < spec.coefficients.size(); ++c) bound.coefficients.push_back(bind_coefficient(names_[i][c], spec.coefficients[c], request, bound.kind));
     model_.effects.push_back(std::move(bound));
+  }
+
+  /// Unit of what each role stands for; "-" where an optional role is absent (a wrong name is reported when it is bound).
+  std::map<std::string, std::string> role_units(const EffectRequest& request, const EffectSpec& spec) const {
+    std::map<std::string, std::string> units;
+    for (const auto& role : spec.quantities) {
+      const int index = find_quantity(target_of(request, role, [&](const std::string& name) { return find_quantity(name) >= 0; }));
+      units[role.name] = index < 0 ? "-" : unit_of_quantity(index);
+    }
+    for (const auto& role : spec.ports) {
+      const auto place = find_port(target_of(request, role, [&](const std::string& name) { return find_port(name).has_value(); }));
+      units[role.name] = place ? place->unit : "-";
+    }
+    return units;
+  }
+  const std::string& unit_of_quantity(int index) const {
+    const auto i = static_cast<std::size_t>(index);
+    const auto own = system().quantities.size();
+    return i < own ? system().quantities[i].unit : system().outputs[i - own].unit;
   }
 
   static void check_roles(const EffectRequest& request, const EffectSpec& spec) {
@@ -231,8 +270,7 @@ class Assembler {
       throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no quantity '" + target + "'" + suggest(target, quantity_names()));
     }
     check_order(request.where, "effect '" + request.name + "'", target, index, kind);
-    const int own = static_cast<int>(system().quantities.size());
-    check_unit(request, role, "quantity '" + target + "'", index < own ? system().quantities[static_cast<std::size_t>(index)].unit : system().outputs[static_cast<std::size_t>(index - own)].unit);
+    check_unit(request, role, "quantity '" + target + "'", unit_of_quantity(index));
     return index;
   }
 
@@ -275,16 +313,21 @@ class Assembler {
     const auto curve = curve_request(name, spec);
     if (curve) return {-1, add_curve(name, spec, *curve, request, kind)};
     if (spec.over_sine) throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"alpha_T\" }");
-    Parameter p{name, spec.unit, spec.doc};
+    Parameter p = as_parameter(name, spec);
+    apply_request(p);
+    model_.parameters.push_back(p);
+    return {static_cast<int>(model_.parameters.size()) - 1, -1};
+  }
+
+  Parameter as_parameter(const std::string& name, const CoefficientSpec& spec) const {
+    Parameter p{name, bind_unit(spec.unit, role_units_), spec.doc};
     p.value = spec.value;
     p.lower = spec.lower;
     p.upper = spec.upper;
     p.scale = spec.scale;
-    p.free = true;
+    p.free = !spec.fixed;
     p.kind = spec.kind;
-    apply_request(p);
-    model_.parameters.push_back(p);
-    return {static_cast<int>(model_.parameters.size()) - 1, -1};
+    return p;
   }
 
   int add_curve(const std::string& name, const CoefficientSpec& spec, const CurveRequest& request, const EffectRequest& by, PortKind kind) {
@@ -293,14 +336,14 @@ class Assembler {
     Curve curve;
     curve.name = name;
     curve.of = request.of;
-    curve.unit = spec.unit;
+    curve.unit = bind_unit(spec.unit, role_units_);
     curve.quantity = find_quantity(request.of);
     if (curve.quantity < 0) {
       throw InputError(request.where, "curve " + name + ": system '" + system().key + "' has no quantity '" + request.of + "'" + suggest(request.of, quantity_names()));
     }
     check_order(request.where, "effect '" + by.name + "'", request.of, curve.quantity, kind);
     const bool own = curve.quantity < static_cast<int>(system().quantities.size());
-    curve.of_unit = own ? system().quantities[static_cast<std::size_t>(curve.quantity)].unit : system().outputs[static_cast<std::size_t>(curve.quantity) - system().quantities.size()].unit;
+    curve.of_unit = unit_of_quantity(curve.quantity);
     curve.over_sine = spec.over_sine && own && !system().quantities[static_cast<std::size_t>(curve.quantity)].carries_sign;
     curve.roughness = request.roughness;
     curve.scale = spec.scale;
@@ -315,22 +358,14 @@ class Assembler {
     return static_cast<int>(model_.curves.size()) - 1;
   }
 
+  /// One parameter per spline coefficient. What [parameters] says of the curve holds for each: they sum to one, so bounds on them are bounds on the curve.
   void add_curve_parameters(const Curve& curve, const CoefficientSpec& spec) {
-    const auto request = request_.parameters.find(curve.name);
+    Parameter p = as_parameter(curve.name, spec);
+    p.free = true;
+    apply_request(p);
+    p.curve = static_cast<int>(model_.curves.size());
     for (int i = 0; i < curve.spline.size(); ++i) {
-      Parameter p{curve.name + "[" + std::to_string(i) + "]", spec.unit, spec.doc};
-      p.value = spec.value;
-      p.lower = spec.lower;
-      p.upper = spec.upper;
-      p.scale = spec.scale;
-      p.free = true;
-      p.kind = spec.kind;
-      p.curve = static_cast<int>(model_.curves.size());
-      if (request != request_.parameters.end()) {
-        used_parameters_.insert(curve.name);
-        if (request->second.free) p.free = *request->second.free;
-        if (request->second.value) p.value = *request->second.value;
-      }
+      p.name = curve.name + "[" + std::to_string(i) + "]";
       model_.parameters.push_back(p);
     }
   }
@@ -369,6 +404,7 @@ class Assembler {
   Model model_;
   std::vector<std::vector<std::string>> names_;
   std::set<std::string> used_parameters_, used_curves_;
+  std::map<std::string, std::string> role_units_;  // of the effect being bound
 };
 
 }  // namespace
@@ -377,6 +413,10 @@ Model assemble(const ModelRequest& request, const Registry& registry) { return A
 
 std::map<std::string, std::string> curves_without_knots(const ModelRequest& request, const Registry& registry) {
   return Assembler(request, registry).curves_without_knots();
+}
+
+std::map<std::string, std::string> parameter_units(const ModelRequest& request, const Registry& registry) {
+  return Assembler(request, registry).parameter_units();
 }
 
 std::vector<double> Model::values() const {

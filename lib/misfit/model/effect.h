@@ -26,11 +26,12 @@ enum class CoefficientKind {
 };
 
 /// What an effect reads or writes, by role. A role is bound by the study, else to the quantity or port of the same name, else to the system's
-/// default for the role. An optional role that the system lacks reads 0 or is not written.
+/// default for the role. An optional role that the system lacks reads 0 or is not written. Unit "*": a generic effect, any unit will do.
 struct Role {
   const char* name = "";
   const char* unit = "";
   bool optional = false;
+  bool positive = false;  ///< the formula divides by it or takes its root: never 0 in use. At all others it must be regular at 0
 };
 
 /// A number the effect owns; where the study says so, a curve of any quantity.
@@ -38,13 +39,14 @@ struct CoefficientSpec {
   const char* name = "";
   CoefficientKind kind = CoefficientKind::strength;
   double value = 0.0;  ///< start when the study gives none [unit]
-  const char* unit = "-";
+  const char* unit = "-";  ///< may name roles: "{port}/{rate}" (role_units.h); value, bounds and scale are then numbers in the units so found
   double lower = 0.0, upper = 0.0;
   double scale = 1.0;  ///< typical size [unit]: for steps, random starts and "how big is it"
   const char* doc = "";
   Parity parity = Parity::none;  ///< as a curve: symmetry about 0
   const char* curve_of = "";     ///< default: a curve of this quantity unless the study gives a number; "" = a number
   bool over_sine = false;        ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
+  bool fixed = false;      ///< not fitted unless the study frees it: a smoothing width, an origin of time
 };
 
 /// Memory of an effect: z' = drift [unit/s], and if stochastic white noise of spectral density diffusion² is added.
@@ -71,6 +73,9 @@ struct EffectSpec {
   std::vector<OwnStateSpec> states;
   std::string specialises;  ///< key of the generic effect it coincides with: that one is not proposed beside it
   bool dissipative = false; ///< never adds power at the port's conjugate rate
+
+  /// In the order of the fields.
+  void set_texts(const std::array<const char*, 7>& texts);
 };
 
 /// What a formula sees. K is double when constants are fixed, T when one of them is free.
@@ -99,8 +104,8 @@ class Effect {
 };
 
 /// Turns a struct with a templated formula into an Effect. Required: `static constexpr` texts formula, symbols, valid, size, source, excludes;
-/// arrays `quantities`, `ports`; `template <class T, class K> static void add(const Reads<T, K>& in, T* F)`, or with own states
-/// `add(in, F, drift)`; `static std::vector<Example> examples()`. Optional: arrays `constants`, `coefficients`, `states`; `specialises`, `dissipative`;
+/// array `ports`; `template <class T, class K> static void add(const Reads<T, K>& in, T* F)`, or with own states
+/// `add(in, F, drift)`; `static std::vector<Example> examples()`. Optional: arrays `quantities`, `constants`, `coefficients`, `states`; `specialises`, `dissipative`;
 /// `fastest_rate(const Reads<double, double>&)`, `diffusion(const Reads<double, double>&, double*)`.
 template <class E>
 class EffectOf final : public Effect {
@@ -134,6 +139,10 @@ class EffectOf final : public Effect {
   }
 
  private:
+  static consteval int quantities() {
+    if constexpr (requires { E::quantities; }) return static_cast<int>(std::size(E::quantities));
+    return 0;
+  }
   static consteval int coefficients() {
     if constexpr (requires { E::coefficients; }) return static_cast<int>(std::size(E::coefficients));
     return 0;
@@ -146,7 +155,7 @@ class EffectOf final : public Effect {
     if constexpr (requires { E::states; }) return static_cast<int>(std::size(E::states));
     return 0;
   }
-  static constexpr int NQ = static_cast<int>(std::size(E::quantities));
+  static constexpr int NQ = quantities();
   static constexpr int NP = static_cast<int>(std::size(E::ports));
   static constexpr int NC = coefficients();
   static constexpr int NK = constants();
@@ -193,14 +202,8 @@ class EffectOf final : public Effect {
 
 template <class E>
 EffectOf<E>::EffectOf(const char* key) {
-  spec_.key = key;
-  spec_.formula = E::formula;
-  spec_.symbols = E::symbols;
-  spec_.valid = E::valid;
-  spec_.size = E::size;
-  spec_.source = E::source;
-  spec_.excludes = E::excludes;
-  spec_.quantities.assign(std::begin(E::quantities), std::end(E::quantities));
+  spec_.set_texts({key, E::formula, E::symbols, E::valid, E::size, E::source, E::excludes});
+  if constexpr (NQ > 0) spec_.quantities.assign(std::begin(E::quantities), std::end(E::quantities));
   spec_.ports.assign(std::begin(E::ports), std::end(E::ports));
   if constexpr (NK > 0) spec_.constants.assign(std::begin(E::constants), std::end(E::constants));
   if constexpr (NC > 0) spec_.coefficients.assign(std::begin(E::coefficients), std::end(E::coefficients));

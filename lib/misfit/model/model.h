@@ -94,6 +94,7 @@ struct Model {
   std::vector<Curve> curves;
   std::vector<OwnStateSpec> own_states;
   std::vector<std::string> own_state_names;  ///< "effect.state"
+  std::vector<std::string> own_state_units;
 
   [[nodiscard]] int system_states() const { return static_cast<int>(system->spec().states.size()); }
   [[nodiscard]] int states() const { return system_states() + static_cast<int>(own_states.size()); }
@@ -112,5 +113,8 @@ struct Model {
 
 /// Curves of the model that still need knots (name → quantity), before assembling: from `request.curves` and the effects' defaults.
 [[nodiscard]] std::map<std::string, std::string> curves_without_knots(const ModelRequest& request, const Registry& registry);
+
+/// Unit of every parameter and curve by its name in the model to be, before assembling: to read values that a study writes with units.
+[[nodiscard]] std::map<std::string, std::string> parameter_units(const ModelRequest& request, const Registry& registry);
 
 }  // namespace misfit

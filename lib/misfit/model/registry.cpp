@@ -14,6 +14,11 @@ std::vector<std::string> keys_of(const Map& map) {
 
 }  // namespace
 
+void EffectSpec::set_texts(const std::array<const char*, 7>& texts) {
+  const std::array<std::string*, 7> fields = {&key, &formula, &symbols, &valid, &size, &source, &excludes};
+  for (std::size_t i = 0; i < texts.size(); ++i) *fields[i] = texts[i];
+}
+
 void Registry::add(std::unique_ptr<Effect> effect) {
   const std::string key = effect->spec().key;
   if (!effects_.emplace(key, std::move(effect)).second) throw std::logic_error("effect '" + key + "' registered twice");

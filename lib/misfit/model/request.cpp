@@ -45,29 +45,6 @@ void read_constants(const config::Section& geometry, const SystemSpec& spec, Mod
   }
 }
 
-/// Unit of a parameter by its name in the assembled model; empty if no such name (assemble() then says so).
-class ParameterUnits {
- public:
-  ParameterUnits(const ModelRequest& request, const SystemSpec& spec, const Registry& registry) {
-    for (const auto& constant : spec.constants) units_[constant.name] = constant.unit;
-    for (const auto& effect : request.effects) {
-      for (const auto& coefficient : registry.effect(effect.kind, effect.where).spec().coefficients) {
-        const auto renamed = spec.coefficient_names.find(coefficient.name);
-        const std::string name = renamed == spec.coefficient_names.end() ? coefficient.name : renamed->second;
-        units_[name] = coefficient.unit;
-        units_[effect.name + "." + name] = coefficient.unit;
-      }
-    }
-  }
-  std::string of(const std::string& name) const {
-    const auto found = units_.find(name);
-    return found == units_.end() ? "-" : found->second;
-  }
-
- private:
-  std::map<std::string, std::string> units_;
-};
-
 ParameterRequest read_parameter(const ParameterStudy& study, const std::string& unit) {
   ParameterRequest out;
   out.where = study.where;
@@ -132,8 +109,11 @@ StudyModel read_model(const Study& study, const Registry& registry) {
     study.geometry->finish();
   }
   for (const auto& effect : study.effects) request.effects.push_back({effect.name, effect.kind, effect.roles, effect.where});
-  const ParameterUnits units(request, spec, registry);
-  for (const auto& [name, parameter] : study.parameters) request.parameters[name] = read_parameter(parameter, units.of(name));
+  const std::map<std::string, std::string> units = parameter_units(request, registry);
+  for (const auto& [name, parameter] : study.parameters) {
+    const auto unit = units.find(name);  // assemble() reports a name that is not there
+    request.parameters[name] = read_parameter(parameter, unit == units.end() ? "-" : unit->second);
+  }
   read_curves(study, spec, request);
   return out;
 }

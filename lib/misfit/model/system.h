@@ -76,7 +76,7 @@ struct SystemSpec {
   std::vector<PortSpec> quantity_ports, dynamic_ports;
   std::vector<ConstantSpec> constants;
   std::vector<OutputSpec> outputs;                 ///< each is also a sensor port of the same name; then `sample_time [s]`
-  std::map<std::string, std::string> roles;        ///< default quantity or port of generic roles: "rate", "level", "port"
+  std::map<std::string, std::string> roles;        ///< default quantity or port of generic roles: "rate", "level", "port", "output"
   std::map<std::string, std::string> coefficient_names;  ///< effect's coefficient → name it has in this system ("C_mq" → "C_m_alphadot")
   SystemForm regression;                           ///< form in which sliding_bin is stated (the paper's Eq. 8); empty kind: none
   std::string static_curve, damping_curve;         ///< coefficients that sliding_bin solves for; empty: none
