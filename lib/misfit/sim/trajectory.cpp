@@ -85,7 +85,7 @@ bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& 
     if (!stepper.step_linear(moved.data(), {signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)}, w.slots, w.D.data())) return false;
     moved_S = S;
     moved_S->advance(w.D.data(), w.slots);
-    evaluator.rates(moved.data(), inputs.at(i), signals.t[i], speed.data());
+    evaluator.rates(moved.data(), inputs.at(i), signals.t[i] + shift, speed.data());
     moved_S->add_direction(speed.data(), by_shift.data());
     w.slots.clear();
     evaluator.linearise_outputs(moved.data(), inputs.at(i), signals.t[i], w.slots, w.y.data(), w.O.data());
@@ -142,6 +142,7 @@ void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inp
     if (!predicted) return;
     for (int o = 0; o < ny; ++o) out.y(static_cast<Eigen::Index>(i - first), o) = w.y[static_cast<std::size_t>(o)];
     if (i + 1 >= signals.samples()) break;
+    out.failed_at = i + 1;
     if (!sensitivities) {
       if (!stepper.step(x.data(), interval_between(signals, inputs, i))) return;
       continue;
