@@ -17,7 +17,8 @@ struct Weights {
   double value = 0.0;
 };
 
-void add_term(const Model& model, const std::vector<int>& column_of, const Curve& curve, int derivative, double factor, double x, Weights& out) {
+void add_term(const Model& model, const std::vector<int>& column_of, const Curve& curve, int derivative, double factor, double x,
+              Weights& out) {
   const CurvePoint point = curve.spline.at(x);
   for (int j = 0; j < 4; ++j) {
     const auto parameter = static_cast<std::size_t>(curve.first + point.first + j);
@@ -54,7 +55,8 @@ struct Combination {
   std::vector<DerivedCurve::Term> terms;
 };
 
-CurveEstimate evaluate(const Model& model, const std::vector<int>& column_of, const Eigen::MatrixXd& covariance, const RowMatrix& visited, const Combination& c) {
+CurveEstimate evaluate(const Model& model, const std::vector<int>& column_of, const Eigen::MatrixXd& covariance, const RowMatrix& visited,
+                       const Combination& c) {
   CurveEstimate out;
   out.name = c.name;
   out.of = c.of;
@@ -92,7 +94,8 @@ std::vector<double> choose_knots(std::vector<double> visited, int intervals, con
   constexpr double tail = 0.001;
   std::sort(visited.begin(), visited.end());
   if (visited.size() < 2 * static_cast<std::size_t>(samples_per_interval)) {
-    throw RunError("curve " + curve + ": only " + std::to_string(visited.size()) + " samples show its quantity; at least 60 are needed to choose knots");
+    throw RunError("curve " + curve + ": only " + std::to_string(visited.size()) +
+                   " samples show its quantity; at least 60 are needed to choose knots");
   }
   const auto at = [&](double fraction) { return visited[static_cast<std::size_t>(fraction * static_cast<double>(visited.size() - 1))]; };
   double low = at(tail);
@@ -147,8 +150,10 @@ void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMa
   }
   const std::vector<double> values = model.values();
   for (const auto& derived : model.system->derived_curves(values.data())) {
-    const bool possible = std::all_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return model.find_curve(term.curve) != nullptr; });
-    if (possible) fit.curves.push_back(evaluate(model, column_of, covariance, visited, {derived.name, derived.of, derived.unit, derived.terms}));
+    const bool possible =
+        std::all_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return model.find_curve(term.curve) != nullptr; });
+    if (possible)
+      fit.curves.push_back(evaluate(model, column_of, covariance, visited, {derived.name, derived.of, derived.unit, derived.terms}));
   }
   for (const auto& curve : fit.curves) {
     if (curve.name == model.system->spec().static_curve) fit.trim = stable_zero(curve);
@@ -159,7 +164,8 @@ void mark_not_informative(const Model& model, const std::string& curve, const st
   const std::vector<double> values = model.values();
   std::vector<std::string> names{curve};
   for (const auto& derived : model.system->derived_curves(values.data())) {
-    if (std::any_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return term.curve == curve; })) names.push_back(derived.name);
+    if (std::any_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return term.curve == curve; }))
+      names.push_back(derived.name);
   }
   for (auto& estimate : fit.curves) {
     if (std::find(names.begin(), names.end(), estimate.name) == names.end()) continue;

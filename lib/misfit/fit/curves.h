@@ -13,21 +13,24 @@ namespace misfit {
 /// Values of every quantity of the system along measured motion: samples × quantities, only samples where the states are known.
 [[nodiscard]] RowMatrix visited_quantities(const Model& model, const Signals& signals, const ReconstructedStates& states);
 
-/// Equally spaced breakpoints over the visited range of a quantity (0.1 % to 99.9 % of the samples), `intervals` of them, fewer where the range holds too few
-/// samples (at least 30 per interval on average); the first is kept above 0 for odd and even curves. RunError if nothing is visited.
+/// Equally spaced breakpoints over the visited range of a quantity (0.1 % to 99.9 % of the samples), `intervals` of them, fewer where the
+/// range holds too few samples (at least 30 per interval on average); the first is kept above 0 for odd and even curves. RunError if
+/// nothing is visited.
 [[nodiscard]] std::vector<double> choose_knots(std::vector<double> visited, int intervals, const std::string& curve);
 
 /// Fills knots of all curves of the request that have none, from the visited ranges in all experiments.
 void choose_all_knots(ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments, int intervals);
 
-/// Estimates for the report from free parameters with joint covariance: parameters by name, curves and derived curves with bands on a grid of 0.1 deg (angles) or
-/// 1/200 of the range, visit counts, and the trim (stable zero of the system's static curve) with sigma. `visited` gives the counts.
+/// Estimates for the report from free parameters with joint covariance: parameters by name, curves and derived curves with bands on a grid
+/// of 0.1 deg (angles) or 1/200 of the range, visit counts, and the trim (stable zero of the system's static curve) with sigma. `visited`
+/// gives the counts.
 void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited, Fit& fit);
 
 /// Marks a curve, and every derived curve that contains it, as something the method cannot give.
 void mark_not_informative(const Model& model, const std::string& curve, const std::string& why, Fit& fit);
 
-/// Zero of a curve with negative slope, where the most samples were (ties: the first); sigma = σ_C/|slope|. nullopt if there is none inside the visited range.
+/// Zero of a curve with negative slope, where the most samples were (ties: the first); sigma = σ_C/|slope|. nullopt if there is none inside
+/// the visited range.
 [[nodiscard]] std::optional<Estimate> stable_zero(const CurveEstimate& curve);
 
 }  // namespace misfit

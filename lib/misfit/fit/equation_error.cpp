@@ -64,7 +64,8 @@ class Regressor {
       for (std::size_t i = signals.exclude; i < signals.samples(); ++i) {
         if (!states.ok[i] || signals.held_out(i)) continue;
         slots.clear();
-        evaluator.linearise_rates(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs_[e].at(i), signals.t[i], slots, dx.data(), D.data());
+        evaluator.linearise_rates(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs_[e].at(i), signals.t[i], slots, dx.data(),
+                                  D.data());
         const double r = dx[static_cast<std::size_t>(row)] - states.dx(static_cast<Eigen::Index>(i), row);
         if (!std::isfinite(r)) continue;
         residuals[i] = r;
@@ -94,7 +95,8 @@ void set_priors(const Model& model, Linearised& sums) {
   for (std::size_t c = 0; c < free.size(); ++c) {
     const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
     const auto i = static_cast<Eigen::Index>(c);
-    // Without a prior a coefficient that no sample touches would be free to be anything: a very wide one (1000 typical sizes) keeps it finite.
+    // Without a prior a coefficient that no sample touches would be free to be anything: a very wide one (1000 typical sizes) keeps it
+    // finite.
     constexpr double very_wide = 1e3;
     sums.prior_precision[i] = 1.0 / std::pow(p.prior_sigma.value_or(very_wide * p.scale), 2);
     sums.prior_mean[i] = p.prior_sigma ? p.prior_mean : 0.0;
@@ -110,7 +112,8 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
   const Regressor regressor(model, experiments);
   if (regressor.rows().empty()) {
     out.fit.status = FitStatus::declined;
-    out.fit.message = "the measured channels do not show the states of system '" + model.system->spec().key + "' and their rates, so its equations cannot be regressed";
+    out.fit.message = "the measured channels do not show the states of system '" + model.system->spec().key +
+                      "' and their rates, so its equations cannot be regressed";
     return out;
   }
   const std::vector<int> free = model.free_parameters();
@@ -124,7 +127,8 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
     if (regression.sums.count < 2.0 * static_cast<double>(free.size()) || free.empty()) {
       out.fit.status = FitStatus::declined;
       out.fit.message = free.empty() ? "every parameter is fixed: there is nothing to estimate"
-                                     : "only " + std::to_string(static_cast<long>(regression.sums.count)) + " usable samples for " + std::to_string(free.size()) + " unknowns";
+                                     : "only " + std::to_string(static_cast<long>(regression.sums.count)) + " usable samples for " +
+                                           std::to_string(free.size()) + " unknowns";
       return out;
     }
     smoothed = smooth(regression.sums, out.penalties);
@@ -132,12 +136,14 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
     const double moved = (smoothed.theta - regression.sums.theta).cwiseAbs().maxCoeff();
     for (std::size_t c = 0; c < free.size(); ++c) {
       Parameter& p = out.model.parameters[static_cast<std::size_t>(free[c])];
-      p.value = p.curve >= 0 ? smoothed.theta[static_cast<Eigen::Index>(c)] : std::clamp(smoothed.theta[static_cast<Eigen::Index>(c)], p.lower, p.upper);
+      p.value = p.curve >= 0 ? smoothed.theta[static_cast<Eigen::Index>(c)]
+                             : std::clamp(smoothed.theta[static_cast<Eigen::Index>(c)], p.lower, p.upper);
     }
     if (round > 0 && moved < 1e-9 * (1.0 + smoothed.theta.cwiseAbs().maxCoeff())) break;
   }
   out.fit.status = smoothed.ok ? FitStatus::converged : FitStatus::failed;
-  out.fit.message = smoothed.ok ? "linear regression solved" : "the regression is singular: some coefficients are not determined by these data";
+  out.fit.message =
+      smoothed.ok ? "linear regression solved" : "the regression is singular: some coefficients are not determined by these data";
   if (!smoothed.ok) return out;
   regression = regressor.linearise(out.model);
   const double frequency = motion_frequency(model, regressor.states(0));
@@ -148,8 +154,9 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
   out.fit.driven = looks_driven(test);
   const std::string unit = model.system->spec().states[static_cast<std::size_t>(regressor.rows().front())].unit + "/s";
   out.fit.noise["equation_residual"] = {std::sqrt(smoothed.sigma2), 0.0, unit};
-  out.fit.facts["whiteness"] = "equation residuals at lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) + " samples: largest autocorrelation " +
-                               format_value(test.largest) + " at lag " + std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_value(test.p_value);
+  out.fit.facts["whiteness"] = "equation residuals at lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) +
+                               " samples: largest autocorrelation " + format_value(test.largest) + " at lag " +
+                               std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_value(test.p_value);
   RowMatrix visited = visited_quantities(out.model, experiments.front(), regressor.states(0));
   for (std::size_t e = 1; e < experiments.size(); ++e) {
     const RowMatrix more = visited_quantities(out.model, experiments[e], regressor.states(e));
@@ -158,8 +165,11 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
   }
   describe(out.model, smoothed.covariance, visited, out.fit);
   if (out.fit.driven) {
-    out.fit.warnings.push_back("the motion is driven (" + out.fit.facts["whiteness"] + "): on stationary driven motion the product of acceleration and rate telescopes, so the damping of this method is not informative");
-    mark_not_informative(out.model, model.system->spec().damping_curve, "driven motion: the sum of acceleration times rate telescopes", out.fit);
+    out.fit.warnings.push_back(
+        "the motion is driven (" + out.fit.facts["whiteness"] +
+        "): on stationary driven motion the product of acceleration and rate telescopes, so the damping of this method is not informative");
+    mark_not_informative(out.model, model.system->spec().damping_curve, "driven motion: the sum of acceleration times rate telescopes",
+                         out.fit);
   }
   out.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;

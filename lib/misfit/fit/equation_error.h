@@ -17,15 +17,15 @@ namespace misfit {
 struct FittedModel {
   Fit fit;
   Model model;
-  std::vector<Penalty> penalties;                  ///< with the roughness weights that were chosen
-  std::vector<Eigen::VectorXd> initial_states;     ///< per experiment, at its first sample; empty where the method has none
+  std::vector<Penalty> penalties;               ///< with the roughness weights that were chosen
+  std::vector<Eigen::VectorXd> initial_states;  ///< per experiment, at its first sample; empty where the method has none
 };
 
-/// Regression of state derivatives read from the measurement on the model's right-hand side, linear in strengths and curve coefficients; curves have
-/// their own roughness chosen by marginal likelihood [KM; P with B-splines instead of bins].
-/// Noise in the measured states biases it towards small damping, and the residuals of neighbouring samples share stencils: its sigmas are too narrow by up to
-/// two. On driven motion its damping is not informative: Σ α'' α' telescopes (DESIGN 4.1). It gives starts.
-/// Declines (status, message) where the system's states cannot be read from the channels.
+/// Regression of state derivatives read from the measurement on the model's right-hand side, linear in strengths and curve coefficients;
+/// curves have their own roughness chosen by marginal likelihood [KM; P with B-splines instead of bins]. Noise in the measured states
+/// biases it towards small damping, and the residuals of neighbouring samples share stencils: its sigmas are too narrow by up to two. On
+/// driven motion its damping is not informative: Σ α'' α' telescopes (DESIGN 4.1). It gives starts. Declines (status, message) where the
+/// system's states cannot be read from the channels.
 [[nodiscard]] FittedModel equation_error(const Model& model, const std::vector<Signals>& experiments);
 
 }  // namespace misfit

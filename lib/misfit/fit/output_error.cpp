@@ -16,9 +16,9 @@ constexpr double pi = 3.14159265358979323846;
 
 /// Everything a fit needs that does not change while it runs.
 struct Setting {
-  double step = 0.0;         ///< usual sample interval [s]
-  double frequency = 0.0;    ///< [rad/s]
-  std::size_t samples = 0;   ///< of the longest experiment
+  double step = 0.0;        ///< usual sample interval [s]
+  double frequency = 0.0;   ///< [rad/s]
+  std::size_t samples = 0;  ///< of the longest experiment
   std::vector<double> sigma, state_scale;
   std::vector<ReconstructedStates> states;
 };
@@ -71,7 +71,8 @@ std::vector<RowMatrix> start_states(const Setting& setting) {
 }
 
 std::vector<ShootingPass> passes(const Setting& setting, bool from_regression) {
-  constexpr double nearly_gauss_newton = 1e8;  // with segments this short the problem is nearly linear: a small region only slows it (DESIGN 5)
+  constexpr double nearly_gauss_newton =
+      1e8;  // with segments this short the problem is nearly linear: a small region only slows it (DESIGN 5)
   const auto half_period = static_cast<std::size_t>(std::clamp(pi / setting.frequency / setting.step, 5.0, 1000.0));
   std::vector<ShootingPass> list;
   if (!from_regression) {
@@ -79,7 +80,8 @@ std::vector<ShootingPass> passes(const Setting& setting, bool from_regression) {
     list.push_back({5, 10.0, 1e6, 40, 1e-4});
   }
   list.push_back({half_period, 10.0, nearly_gauss_newton, 30, 1e-4});
-  for (std::size_t length = 6 * half_period; length < setting.samples / 2 && list.size() < 5; length *= 6) list.push_back({length, 10.0, nearly_gauss_newton, 30, 1e-6});
+  for (std::size_t length = 6 * half_period; length < setting.samples / 2 && list.size() < 5; length *= 6)
+    list.push_back({length, 10.0, nearly_gauss_newton, 30, 1e-6});
   return list;
 }
 
@@ -93,7 +95,8 @@ bool any_chosen(const std::vector<Penalty>& penalties) {
 }
 
 /// Per-channel residuals of the estimation part → standard deviations with the effective number of parameters taken off.
-std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments, double edf) {
+std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
+                                   double edf) {
   std::vector<double> sigma = shooting.sigma();
   const double share = edf / static_cast<double>(sigma.size());
   for (std::size_t o = 0; o < sigma.size(); ++o) {
@@ -111,18 +114,19 @@ std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<S
   return sigma;
 }
 
-void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments, const Eigen::MatrixXd& covariance, Fit& fit) {
+void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
+                    const Eigen::MatrixXd& covariance, Fit& fit) {
   const auto& outputs = shooting.model().system->spec().outputs;
   const auto ny = static_cast<Eigen::Index>(outputs.size());
   const Eigen::Index n = shooting.model().states();
   for (std::size_t e = 0; e < runs.size(); ++e) {
     const Segment& run = runs[e];
-    const Eigen::Index columns = run.y_theta.cols();
-    RowMatrix rows(run.y_theta.rows(), columns + n);
-    rows << run.y_theta, run.y_x0;
+    const Eigen::Index columns = run.y_rows.cols() - n;
+    const RowMatrix& rows = run.y_rows;
     Eigen::MatrixXd joint(columns + n, columns + n);
     const Eigen::Index at = columns + n * static_cast<Eigen::Index>(e);
-    joint << covariance.topLeftCorner(columns, columns), covariance.block(0, at, columns, n), covariance.block(at, 0, n, columns), covariance.block(at, at, n, n);
+    joint << covariance.topLeftCorner(columns, columns), covariance.block(0, at, columns, n), covariance.block(at, 0, n, columns),
+        covariance.block(at, at, n, n);
     const Eigen::VectorXd spread = (rows * joint).cwiseProduct(rows).rowwise().sum();
     for (Eigen::Index o = 0; o < ny; ++o) {
       ChannelPrediction p;
@@ -191,19 +195,25 @@ void judge(const Model& model, const Setting& setting, Fit& fit) {
   const int last = std::max(6, static_cast<int>(pi / setting.frequency / setting.step));
   const WhitenessTest test = whiteness(residuals, 1, last);
   const double noise = reading_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
-  fit.facts["whiteness"] = "residuals of " + p.channel + " at lags 1 to " + std::to_string(test.last_lag) + " samples (half a period): largest autocorrelation " + format_value(test.largest) +
-                           " at lag " + std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_value(test.p_value);
-  fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) + ", reading noise about " + in_display_unit(noise, p.unit);
+  fit.facts["whiteness"] = "residuals of " + p.channel + " at lags 1 to " + std::to_string(test.last_lag) +
+                           " samples (half a period): largest autocorrelation " + format_value(test.largest) + " at lag " +
+                           std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_value(test.p_value);
+  fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
+                           ", reading noise about " + in_display_unit(noise, p.unit);
   constexpr double clearly_above_noise = 2.0;
   fit.driven = looks_driven(test) && rms > clearly_above_noise * noise;
   if (!fit.driven) {
-    if (test.p_value < 1e-3) fit.warnings.push_back("residuals are not white (" + fit.facts["whiteness"] + "): intervals are too narrow and something small is missing");
+    if (test.p_value < 1e-3)
+      fit.warnings.push_back("residuals are not white (" + fit.facts["whiteness"] +
+                             "): intervals are too narrow and something small is missing");
     return;
   }
   fit.status = FitStatus::declined;
-  fit.message = "the motion is driven by something this deterministic model does not have: it cannot follow the measured motion (" + fit.facts["explained"] + "; " + fit.facts["whiteness"] +
+  fit.message = "the motion is driven by something this deterministic model does not have: it cannot follow the measured motion (" +
+                fit.facts["explained"] + "; " + fit.facts["whiteness"] +
                 "). The method that can estimate such motion is filter_error. Solver: " + fit.message;
-  for (const auto& curve : model.curves) mark_not_informative(model, curve.name, "driven motion: a deterministic trajectory cannot follow it", fit);
+  for (const auto& curve : model.curves)
+    mark_not_informative(model, curve.name, "driven motion: a deterministic trajectory cannot follow it", fit);
   fit.trim.reset();
 }
 
@@ -233,8 +243,8 @@ class Estimator {
     return last_.usable;
   }
 
-  /// One trajectory. Whenever the roughness is chosen anew, the last lengthening comes first again: a single trajectory alone would creep along the
-  /// curved valley of equal phase.
+  /// One trajectory. Whenever the roughness is chosen anew, the last lengthening comes first again: a single trajectory alone would creep
+  /// along the curved valley of equal phase.
   FittedModel whole_trajectory(const ShootingPass& lengthened) {
     Linearised linearised;
     constexpr int most_rounds = 8;
@@ -243,7 +253,9 @@ class Estimator {
       if (round > 0 && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
       if (!solve({0, 10.0, 1e8, 60, 1e-7})) return failed(last_.message);
       const Smoothed smoothed = smooth_present(shooting_, penalties_, linearised);
-      if (!smoothed.ok) return failed(shooting_.failure().empty() ? "the information matrix is singular: some parameters are not determined by these data" : "");
+      if (!smoothed.ok)
+        return failed(shooting_.failure().empty() ? "the information matrix is singular: some parameters are not determined by these data"
+                                                  : "");
       const std::vector<double> sigma = channel_sigmas(shooting_, shooting_.run(false), experiments_, smoothed.edf);
       const bool same_roughness = !any_chosen(penalties_) || std::abs(smoothed.edf - before) < 0.1;
       const bool settled = same_roughness && std::abs(sigma.front() / shooting_.sigma().front() - 1.0) < 0.01;
@@ -280,7 +292,8 @@ class Estimator {
     const auto& outputs = out.model.system->spec().outputs;
     for (std::size_t o = 0; o < outputs.size(); ++o) {
       const double sigma = shooting_.sigma()[o];
-      fit.noise[outputs[o].name] = {sigma, sigma / std::sqrt(2.0 * std::max(linearised.count / static_cast<double>(outputs.size()), 1.0)), outputs[o].unit};
+      fit.noise[outputs[o].name] = {sigma, sigma / std::sqrt(2.0 * std::max(linearised.count / static_cast<double>(outputs.size()), 1.0)),
+                                    outputs[o].unit};
     }
     RowMatrix visited = visited_quantities(out.model, experiments_.front(), setting_.states.front());
     for (std::size_t e = 1; e < experiments_.size(); ++e) {

@@ -11,42 +11,43 @@
 
 namespace misfit {
 
-/// Quadratic penalty λ ∫ C''² = λ cᵀ Ω c of one curve whose coefficients are all free, in the units of −2 log density: C'' is a priori white noise of intensity
-/// 1/λ [W]. The unit of λ is argument³/value²; it does not depend on the measurement noise.
+/// Quadratic penalty λ ∫ C''² = λ cᵀ Ω c of one curve whose coefficients are all free, in the units of −2 log density: C'' is a priori
+/// white noise of intensity 1/λ [W]. The unit of λ is argument³/value²; it does not depend on the measurement noise.
 struct Penalty {
-  int curve = -1;             ///< index into Model::curves
-  int first = 0;              ///< first column
-  Eigen::MatrixXd omega;      ///< size × size
-  int rank = 0;               ///< size − 2: straight lines are free
+  int curve = -1;         ///< index into Model::curves
+  int first = 0;          ///< first column
+  Eigen::MatrixXd omega;  ///< size × size
+  int rank = 0;           ///< size − 2: straight lines are free
   double lambda = 0.0;
-  bool chosen = false;        ///< true: λ is to be chosen from the data
+  bool chosen = false;  ///< true: λ is to be chosen from the data
 };
 
-/// Penalties of the model's free curves; columns are those of Model::free_parameters(). Where the study gives no roughness λ starts at `scale`-based size: a curve whose
-/// slope turns by its typical size over its whole range.
+/// Penalties of the model's free curves; columns are those of Model::free_parameters(). Where the study gives no roughness λ starts at
+/// `scale`-based size: a curve whose slope turns by its typical size over its whole range.
 [[nodiscard]] std::vector<Penalty> curve_penalties(const Model& model);
 
-/// A Gaussian linearisation of a fit: residuals r (unweighted sum of squares), N = JᵀJ, g = Jᵀr at θ, in units where one residual's variance is σ².
+/// A Gaussian linearisation of a fit: residuals r (unweighted sum of squares), N = JᵀJ, g = Jᵀr at θ, in units where one residual's
+/// variance is σ².
 struct Linearised {
-  Eigen::MatrixXd N;       ///< columns × columns
-  Eigen::VectorXd g;       ///< columns
-  double rss = 0.0;        ///< rᵀr
-  double count = 0.0;      ///< residuals
-  Eigen::VectorXd theta;   ///< columns: where it was made
+  Eigen::MatrixXd N;                            ///< columns × columns
+  Eigen::VectorXd g;                            ///< columns
+  double rss = 0.0;                             ///< rᵀr
+  double count = 0.0;                           ///< residuals
+  Eigen::VectorXd theta;                        ///< columns: where it was made
   Eigen::VectorXd prior_precision, prior_mean;  ///< per column; precision 0 = none
 };
 
 struct Smoothed {
-  Eigen::VectorXd theta;        ///< maximum of the penalised Gaussian
-  Eigen::MatrixXd covariance;   ///< inverse of N/σ² + Σ λ Ω + priors
-  double sigma2 = 0.0;          ///< residual variance, rss/(count − edf)
-  double edf = 0.0;             ///< effective number of parameters, tr(covariance N)/σ²
-  double rss = 0.0;             ///< at theta, by the linearisation
-  bool ok = false;              ///< false: the information matrix is not positive definite
+  Eigen::VectorXd theta;       ///< maximum of the penalised Gaussian
+  Eigen::MatrixXd covariance;  ///< inverse of N/σ² + Σ λ Ω + priors
+  double sigma2 = 0.0;         ///< residual variance, rss/(count − edf)
+  double edf = 0.0;            ///< effective number of parameters, tr(covariance N)/σ²
+  double rss = 0.0;            ///< at theta, by the linearisation
+  bool ok = false;             ///< false: the information matrix is not positive definite
 };
 
-/// Maximises the marginal likelihood over the λ marked `chosen` and σ² for the linearised problem [FS], updating `penalties`. With `sigma2_given` > 0 the variance
-/// is kept.
+/// Maximises the marginal likelihood over the λ marked `chosen` and σ² for the linearised problem [FS], updating `penalties`. With
+/// `sigma2_given` > 0 the variance is kept.
 [[nodiscard]] Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, double sigma2_given = 0.0);
 
 /// L with LᵀL = λ Ω: residual rows L c for a solver.

@@ -9,7 +9,8 @@
 
 namespace misfit {
 
-Shooting::Shooting(Model model, const std::vector<Signals>& experiments, std::vector<double> sigma, std::vector<double> state_scale, std::vector<RowMatrix> start_states)
+Shooting::Shooting(Model model, const std::vector<Signals>& experiments, std::vector<double> sigma, std::vector<double> state_scale,
+                   std::vector<RowMatrix> start_states)
     : model_(std::move(model)),
       experiments_(experiments),
       sigma_(std::move(sigma)),
@@ -48,6 +49,8 @@ std::vector<Shooting::Piece> Shooting::cut(std::size_t length) const {
 void Shooting::fill_rows(const Piece& piece, double* r, double** J) const {
   const Segment& s = piece.segment;
   const auto ny = static_cast<std::size_t>(s.y.cols());
+  const auto columns = static_cast<Eigen::Index>(free_.size());
+  const Eigen::Index n = model_.states();
   const Signals& signals = experiments_[piece.experiment];
   for (std::size_t i = piece.first; i < piece.last; ++i) {
     for (std::size_t o = 0; o < ny; ++o) {
@@ -55,10 +58,12 @@ void Shooting::fill_rows(const Piece& piece, double* r, double** J) const {
       const auto at = static_cast<Eigen::Index>(row);
       const bool used = counts(piece.experiment, i, o);
       const double weight = used ? 1.0 / sigma_[o] : 0.0;
-      r[row] = used ? (s.y(static_cast<Eigen::Index>(i - piece.first), static_cast<Eigen::Index>(o)) - signals.measured[o].values[i]) * weight : 0.0;
+      r[row] =
+          used ? (s.y(static_cast<Eigen::Index>(i - piece.first), static_cast<Eigen::Index>(o)) - signals.measured[o].values[i]) * weight
+               : 0.0;
       if (J == nullptr) continue;
-      if (J[0] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[0] + row * free_.size(), s.y_theta.cols()) = weight * s.y_theta.row(at);
-      if (J[1] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[1] + row * static_cast<std::size_t>(s.y_x0.cols()), s.y_x0.cols()) = weight * s.y_x0.row(at);
+      if (J[0] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[0] + row * free_.size(), columns) = weight * s.y_rows.row(at).head(columns);
+      if (J[1] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[1] + row * static_cast<std::size_t>(n), n) = weight * s.y_rows.row(at).tail(n);
     }
   }
 }
@@ -81,30 +86,34 @@ bool Shooting::evaluate(Piece& piece, double defect_weight, const double* const*
     const std::size_t row = first + static_cast<std::size_t>(j);
     r[row] = weight * (s.end[j] - blocks[2][j]);
     if (J == nullptr) continue;
-    if (J[0] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[0] + row * free_.size(), s.end_theta.cols()) = weight * s.end_theta.row(j);
-    if (J[1] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[1] + row * static_cast<std::size_t>(n), n) = weight * s.end_x0.row(j);
+    if (J[0] != nullptr)
+      Eigen::Map<Eigen::RowVectorXd>(J[0] + row * free_.size(), static_cast<Eigen::Index>(free_.size())) =
+          weight * s.end_rows.row(j).head(static_cast<Eigen::Index>(free_.size()));
+    if (J[1] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[1] + row * static_cast<std::size_t>(n), n) = weight * s.end_rows.row(j).tail(n);
     if (J[2] != nullptr) J[2][row * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)] = -weight;
   }
   return true;
 }
 
 void Shooting::note_failure(const Segment& segment, std::size_t experiment) {
-  failure_ = "the simulated motion left the finite numbers at t = " + format_value(experiments_[experiment].t[segment.failed_at]) + " s of '" + experiments_[experiment].name + "'";
+  failure_ = "the simulated motion left the finite numbers at t = " + format_value(experiments_[experiment].t[segment.failed_at]) +
+             " s of '" + experiments_[experiment].name + "'";
 }
 
 void Shooting::add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const {
   for (const auto& penalty : penalties) {
     const Eigen::MatrixXd L = penalty_rows(penalty);
     const auto columns = free_.size();
-    problem.add_residuals({theta_block}, static_cast<int>(L.rows()), [L, first = penalty.first, columns](const double* const* blocks, double* r, double** J) {
-      const auto rows = L.rows();
-      Eigen::Map<Eigen::VectorXd>(r, rows) = L * Eigen::Map<const Eigen::VectorXd>(blocks[0] + first, L.cols());
-      if (J == nullptr || J[0] == nullptr) return true;
-      Eigen::Map<RowMatrix> jacobian(J[0], rows, static_cast<Eigen::Index>(columns));
-      jacobian.setZero();
-      jacobian.middleCols(first, L.cols()) = L;
-      return true;
-    });
+    problem.add_residuals({theta_block}, static_cast<int>(L.rows()),
+                          [L, first = penalty.first, columns](const double* const* blocks, double* r, double** J) {
+                            const auto rows = L.rows();
+                            Eigen::Map<Eigen::VectorXd>(r, rows) = L * Eigen::Map<const Eigen::VectorXd>(blocks[0] + first, L.cols());
+                            if (J == nullptr || J[0] == nullptr) return true;
+                            Eigen::Map<RowMatrix> jacobian(J[0], rows, static_cast<Eigen::Index>(columns));
+                            jacobian.setZero();
+                            jacobian.middleCols(first, L.cols()) = L;
+                            return true;
+                          });
   }
   for (std::size_t c = 0; c < free_.size(); ++c) {
     const Parameter& p = model_.parameters[static_cast<std::size_t>(free_[c])];
@@ -145,7 +154,8 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
     if (k + 1 < pieces.size() && pieces[k + 1].experiment == piece.experiment) piece.next = pieces[k + 1].block;
     std::vector<int> blocks{theta_block, piece.block};
     if (piece.next >= 0) blocks.push_back(piece.next);
-    const int residuals = static_cast<int>((piece.last - piece.first) * static_cast<std::size_t>(model_.outputs())) + (piece.next >= 0 ? model_.states() : 0);
+    const int residuals =
+        static_cast<int>((piece.last - piece.first) * static_cast<std::size_t>(model_.outputs())) + (piece.next >= 0 ? model_.states() : 0);
     problem.add_residuals(blocks, residuals, [this, &piece, weight = pass.defect_weight](const double* const* x, double* r, double** J) {
       return evaluate(piece, weight, x, r, J);
     });
@@ -168,13 +178,15 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
 
 void Shooting::remember(std::vector<Piece>& pieces, const LeastSquares& problem) {
   for (const auto& piece : pieces) {
-    const RowMatrix states = run_states(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last, problem.block(piece.block).data());
+    const RowMatrix states = run_states(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last,
+                                        problem.block(piece.block).data());
     history_[piece.experiment].middleRows(static_cast<Eigen::Index>(piece.first), states.rows()) = states;
   }
 }
 
 Linearised Shooting::empty_sums(Eigen::Index unknowns) const {
-  Linearised out{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns), 0.0, 0.0, Eigen::VectorXd::Zero(unknowns), Eigen::VectorXd::Zero(unknowns), Eigen::VectorXd::Zero(unknowns)};
+  Linearised out{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns), 0.0, 0.0, Eigen::VectorXd::Zero(unknowns),
+                 Eigen::VectorXd::Zero(unknowns),           Eigen::VectorXd::Zero(unknowns)};
   for (std::size_t c = 0; c < free_.size(); ++c) {
     const Parameter& p = model_.parameters[static_cast<std::size_t>(free_[c])];
     const auto i = static_cast<Eigen::Index>(c);
@@ -202,7 +214,8 @@ bool Shooting::linearise_segments(std::size_t length, Linearised& out) {
   ++linearisations_;
   for (Piece& piece : cut(length)) {
     const Eigen::VectorXd x0 = history_[piece.experiment].row(static_cast<Eigen::Index>(piece.first));
-    run_segment(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last, x0.data(), true, piece.segment);
+    run_segment(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last, x0.data(), true,
+                piece.segment);
     if (!piece.segment.finite) return false;
     const Eigen::Index rows = piece.segment.y.size();
     Eigen::VectorXd r(rows);
@@ -235,31 +248,56 @@ std::vector<Segment> Shooting::run(bool sensitivities) {
   return out;
 }
 
+/// Scales rows and residuals of a whole run by 1/sigma in place; rows that do not count become zero.
+double Shooting::weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r) const {
+  const Signals& signals = experiments_[experiment];
+  const auto ny = static_cast<std::size_t>(run.y.cols());
+  r.resize(run.y.size());
+  double count = 0.0;
+  for (std::size_t i = run.first; i < run.last; ++i) {
+    for (std::size_t o = 0; o < ny; ++o) {
+      const auto row = static_cast<Eigen::Index>((i - run.first) * ny + o);
+      const bool used = counts(experiment, i, o);
+      const double weight = used ? 1.0 / sigma_[o] : 0.0;
+      r[row] =
+          used ? (run.y(static_cast<Eigen::Index>(i - run.first), static_cast<Eigen::Index>(o)) - signals.measured[o].values[i]) * weight
+               : 0.0;
+      run.y_rows.row(row) *= weight;
+      count += used ? 1.0 : 0.0;
+    }
+  }
+  return count;
+}
+
 bool Shooting::linearise(Linearised& out) {
   const auto columns = static_cast<Eigen::Index>(free_.size());
   const Eigen::Index n = model_.states();
   const Eigen::Index all = columns + n * static_cast<Eigen::Index>(experiments_.size());
-  const std::vector<Segment> runs = run(true);
   ++linearisations_;
   out = empty_sums(all);
-  for (std::size_t e = 0; e < runs.size(); ++e) {
-    if (!runs[e].finite) return false;
-    Piece piece{e, 0, experiments_[e].samples(), -1, -1, runs[e]};
-    const Eigen::Index rows = piece.segment.y.size();
-    Eigen::VectorXd r(rows);
-    RowMatrix theta_rows(rows, columns), state_rows(rows, n);
-    double* J[2] = {theta_rows.data(), state_rows.data()};
-    fill_rows(piece, r.data(), J);
+  set_theta(out.theta.data());
+  Eigen::VectorXd r;
+  for (std::size_t e = 0; e < experiments_.size(); ++e) {
+    const Eigen::VectorXd x0 = initial_state(e);
+    run_segment(*stepper_, experiments_[e], inputs_[e], 0, experiments_[e].samples(), x0.data(), true, run_);
+    if (!run_.finite) {
+      note_failure(run_, e);
+      return false;
+    }
+    out.count += weigh(e, run_, r);
+    Eigen::MatrixXd N = Eigen::MatrixXd::Zero(columns + n, columns + n);
+    N.selfadjointView<Eigen::Lower>().rankUpdate(run_.y_rows.transpose());
+    N.triangularView<Eigen::StrictlyUpper>() = N.transpose();
+    const Eigen::VectorXd g = run_.y_rows.transpose() * r;
     const Eigen::Index at = columns + n * static_cast<Eigen::Index>(e);
-    out.theta.segment(at, n) = initial_state(e);
-    out.N.topLeftCorner(columns, columns).noalias() += theta_rows.transpose() * theta_rows;
-    out.N.block(0, at, columns, n).noalias() = theta_rows.transpose() * state_rows;
-    out.N.block(at, 0, n, columns) = out.N.block(0, at, columns, n).transpose();
-    out.N.block(at, at, n, n).noalias() = state_rows.transpose() * state_rows;
-    out.g.head(columns).noalias() += theta_rows.transpose() * r;
-    out.g.segment(at, n).noalias() = state_rows.transpose() * r;
+    out.theta.segment(at, n) = x0;
+    out.N.topLeftCorner(columns, columns) += N.topLeftCorner(columns, columns);
+    out.N.block(0, at, columns, n) = N.topRightCorner(columns, n);
+    out.N.block(at, 0, n, columns) = N.bottomLeftCorner(n, columns);
+    out.N.block(at, at, n, n) = N.bottomRightCorner(n, n);
+    out.g.head(columns) += g.head(columns);
+    out.g.segment(at, n) = g.tail(n);
     out.rss += r.squaredNorm();
-    out.count += counted(piece);
   }
   return true;
 }

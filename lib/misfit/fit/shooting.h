@@ -21,23 +21,25 @@ struct ShootingPass {
   double defect_weight = 10.0;  ///< of a defect of one `state scale`, relative to a residual of one sigma
   double initial_radius = 1e4;  ///< of the trust region
   int max_iterations = 30;
-  double tolerance = 1e-6;      ///< relative change of the cost
+  double tolerance = 1e-6;  ///< relative change of the cost
 };
 
 /// The unknowns of output error — free parameters and segment initial states — and how to improve them.
 class Shooting {
  public:
-  /// `sigma`: standard deviation of each output's residual [output unit]; `state_scale`: size that counts as one sigma of a defect, per state.
-  Shooting(Model model, const std::vector<Signals>& experiments, std::vector<double> sigma, std::vector<double> state_scale, std::vector<RowMatrix> start_states);
+  /// `sigma`: standard deviation of each output's residual [output unit]; `state_scale`: size that counts as one sigma of a defect, per
+  /// state.
+  Shooting(Model model, const std::vector<Signals>& experiments, std::vector<double> sigma, std::vector<double> state_scale,
+           std::vector<RowMatrix> start_states);
 
   /// One solve by Ceres. The histories (states at every sample) are replaced by what the solved segments pass through.
   LeastSquares::Summary solve(const ShootingPass& pass, const std::vector<Penalty>& penalties);
 
-  /// The single-trajectory problem at the present values: columns are the free parameters, then the initial states of each experiment. Residuals are
-  /// in units of sigma. False if the run leaves the finite numbers.
+  /// The single-trajectory problem at the present values: columns are the free parameters, then the initial states of each experiment.
+  /// Residuals are in units of sigma. False if the run leaves the finite numbers.
   bool linearise(Linearised& out);
-  /// The same with every segment of `length` samples on its own, its initial state (from the history) projected out: columns are the free parameters. Tells how
-  /// rough the curves may be before the trajectory hangs together.
+  /// The same with every segment of `length` samples on its own, its initial state (from the history) projected out: columns are the free
+  /// parameters. Tells how rough the curves may be before the trajectory hangs together.
   bool linearise_segments(std::size_t length, Linearised& out);
   /// Predictions over the whole of each experiment from its initial state, with derivatives if asked.
   [[nodiscard]] std::vector<Segment> run(bool sensitivities);
@@ -61,6 +63,7 @@ class Shooting {
   bool evaluate(Piece& piece, double defect_weight, const double* const* blocks, double* r, double** J);
   void fill_rows(const Piece& piece, double* r, double** J) const;
   [[nodiscard]] Linearised empty_sums(Eigen::Index unknowns) const;
+  [[nodiscard]] double weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r) const;
   [[nodiscard]] double counted(const Piece& piece) const;
   std::vector<Piece> cut(std::size_t length) const;
   void add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const;
@@ -75,6 +78,7 @@ class Shooting {
   std::vector<int> free_;
   std::vector<double> values_;
   std::unique_ptr<Stepper> stepper_;
+  Segment run_;  ///< kept, so that linearising again does not allocate
   int linearisations_ = 0;
   std::string failure_;
 };

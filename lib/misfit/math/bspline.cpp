@@ -120,7 +120,8 @@ CurvePoint CubicSpline::over_sine(double x) const {
     const double a_w = 1.5 / k;
     const double b_w = -0.5 / (k * k * k);
     const double b_d = 0.5 / (k * k);
-    return combine(end, (a_w + b_w * x * x) * shape, (-0.5 + b_d * x * x) * shape, x * (2.0 * b_w + a_w / 3.0), x * (2.0 * b_d - 0.5 / 3.0));
+    return combine(end, (a_w + b_w * x * x) * shape, (-0.5 + b_d * x * x) * shape, x * (2.0 * b_w + a_w / 3.0),
+                   x * (2.0 * b_d - 0.5 / 3.0));
   }
   const CurvePoint plain = at(x);
   const double inverse = 1.0 / std::sin(x);
@@ -136,7 +137,8 @@ Eigen::MatrixXd CubicSpline::roughness() const {
       for (std::size_t k = 0; k < 4; ++k) {  // C'' = 2 p2 + 6 p3 u
         const double a = 2.0 * pieces_[i][2][j], b = 6.0 * pieces_[i][3][j];
         const double c = 2.0 * pieces_[i][2][k], e = 6.0 * pieces_[i][3][k];
-        omega(static_cast<Eigen::Index>(i + j), static_cast<Eigen::Index>(i + k)) += h * (a * c + h * ((a * e + b * c) / 2.0 + h * b * e / 3.0));
+        omega(static_cast<Eigen::Index>(i + j), static_cast<Eigen::Index>(i + k)) +=
+            h * (a * c + h * ((a * e + b * c) / 2.0 + h * b * e / 3.0));
       }
     }
   }

@@ -16,17 +16,17 @@ enum class Parity { none, odd, even };
 
 /// Weights of the four B-splines that are not zero at a point: value = Σ w[j] c[first + j], slope = Σ d[j] c[first + j].
 struct CurvePoint {
-  int first = 0;
   std::array<double, 4> w{};
   std::array<double, 4> d{};
+  int first = 0;
 };
 
 /// Cubic B-spline basis on simple interior knots with coalescent ends [dB]: `knots` breakpoints give knots + 2 coefficients.
 ///
 /// Continuation outside the knots, so that a wandering solver meets a finite, once differentiable curve:
 ///   above the last knot: straight line with the end slope;
-///   below the first knot k: straight line (Parity::none); a x + b x³ (odd) or a + b x² (even) with value and slope matched at k > 0, and the
-///   mirror image for x < 0.
+///   below the first knot k: straight line (Parity::none); a x + b x³ (odd) or a + b x² (even) with value and slope matched at k > 0, and
+///   the mirror image for x < 0.
 /// Parities need k > 0: the constructor drops a first breakpoint at 0 (the continuation covers [0, k] with value 0 or slope 0 at 0).
 class CubicSpline {
  public:
@@ -41,7 +41,23 @@ class CubicSpline {
   [[nodiscard]] double highest() const { return knots_.back(); }
 
   /// Weights at x. Never indexes outside the coefficients, whatever x is; a NaN gives NaN weights.
-  [[nodiscard]] CurvePoint at(double x) const;
+  [[nodiscard]] CurvePoint at(double x) const {
+    CurvePoint out;
+    evaluate(x, out);
+    return out;
+  }
+  /// The same in place: the inner loop should not copy.
+  void evaluate(double x, CurvePoint& out) const {
+    if (!covers(x)) {
+      out = outside(x);
+      return;
+    }
+    const int interval = interval_of(x);
+    inside(interval, x - knots_[static_cast<std::size_t>(interval)], out);
+  }
+  /// True where both have the same weights at every x inside the knots (parity differs only outside).
+  [[nodiscard]] bool same_inside(const CubicSpline& other) const { return knots_ == other.knots_; }
+  [[nodiscard]] bool covers(double x) const { return x >= knots_.front() && x < knots_.back(); }
   /// Weights of C(x)/sin(x) and its derivative, regular at 0 for an odd curve: there C/sin = (a + b x²) x/sin x.
   [[nodiscard]] CurvePoint over_sine(double x) const;
 
@@ -54,8 +70,28 @@ class CubicSpline {
   [[nodiscard]] std::vector<double> greville() const;
 
  private:
-  [[nodiscard]] CurvePoint inside(int interval, double u) const;
-  [[nodiscard]] int interval_of(double x) const;
+  [[nodiscard]] CurvePoint inside(int interval, double u) const {
+    CurvePoint out;
+    inside(interval, u, out);
+    return out;
+  }
+  void inside(int interval, double u, CurvePoint& out) const {
+    const Piece& p = pieces_[static_cast<std::size_t>(interval)];
+    out.first = interval;
+    for (std::size_t j = 0; j < 4; ++j) {
+      out.w[j] = ((p[3][j] * u + p[2][j]) * u + p[1][j]) * u + p[0][j];
+      out.d[j] = (3.0 * p[3][j] * u + 2.0 * p[2][j]) * u + p[1][j];
+    }
+  }
+  /// Only for x inside the knots.
+  [[nodiscard]] int interval_of(double x) const {
+    const auto cell = static_cast<std::size_t>((x - knots_.front()) * cells_per_unit_);
+    int i = lookup_[cell < lookup_.size() ? cell : lookup_.size() - 1];
+    while (x >= knots_[static_cast<std::size_t>(i) + 1]) ++i;
+    while (x < knots_[static_cast<std::size_t>(i)]) --i;
+    return i;
+  }
+  [[nodiscard]] CurvePoint outside(double x) const;
   [[nodiscard]] CurvePoint below(double x) const;
 
   using Piece = std::array<std::array<double, 4>, 4>;  ///< [power][basis]: basis_j(x) = Σ_p piece[p][j] (x − knot)^p

@@ -25,6 +25,7 @@ Evaluator::Evaluator(const Model& model) : model_(&model), system_(model.system.
   P_rows_.assign(size(np_, kRowStride), 0.0);
   F_rows_.assign(size(nf_ + ny_ + 1, kRowStride), 0.0);
   scratch_.assign(size(std::max({np_, nf_, ny_ + 1, n_}), kRowStride), 0.0);
+  force_x_.assign(size(nf_ + n_ - nx_, n_), 0.0);
   q_x_.assign(size(nq_, nx_), 0.0);
   q_P_.assign(size(nq_, np_), 0.0);
   q_k_.assign(size(nq_, nk_), 0.0);
@@ -45,6 +46,42 @@ void Evaluator::flatten() {
   for (const auto& bound : model_->effects) flatten_effect(bound);
   quantity_effects_ = !quantity_.empty();
   general_ = quantity_effects_ || free_constants_;
+  find_twins();
+}
+
+/// Curves of one quantity over the same knots share their weights inside them; what dynamic effects read is evaluated once per right-hand
+/// side.
+void Evaluator::find_twins() {
+  const auto& curves = model_->curves;
+  curve_.resize(curves.size());
+  std::size_t most_entries = 0;
+  for (const auto& use : dynamic_) {
+    for (int i = 0; i < use.nc; ++i) {
+      const int curve = use.curve[static_cast<std::size_t>(i)];
+      if (curve >= 0 && std::find(dynamic_curves_.begin(), dynamic_curves_.end(), curve) == dynamic_curves_.end())
+        dynamic_curves_.push_back(curve);
+    }
+    most_entries += static_cast<std::size_t>(use.nc * use.outputs);
+  }
+  entries_.reserve(most_entries);
+  curve_entries_.reserve(most_entries);
+  slot_entries_.reserve(4 * most_entries * static_cast<std::size_t>(n_));
+  std::sort(dynamic_curves_.begin(), dynamic_curves_.end());
+  for (int k : dynamic_curves_) {
+    const Curve& curve = curves[static_cast<std::size_t>(k)];
+    CurveState& state = curve_[static_cast<std::size_t>(k)];
+    state.quantity = curve.quantity;
+    for (int i = 0; i < curve.spline.size(); ++i) state.free = state.free || column_of_[static_cast<std::size_t>(curve.first + i)] >= 0;
+    for (int earlier : dynamic_curves_) {
+      const Curve& other = curves[static_cast<std::size_t>(earlier)];
+      const bool alike =
+          earlier < k && other.quantity == curve.quantity && !curve.over_sine && !other.over_sine && curve.spline.same_inside(other.spline);
+      if (alike && state.twin < 0) state.twin = earlier;
+    }
+  }
+  for (const auto* list : {&quantity_, &sensor_}) {
+    for (const auto& use : *list) own_elsewhere_ = own_elsewhere_ || use.nz > 0;
+  }
 }
 
 void Evaluator::flatten_effect(const BoundEffect& bound) {
@@ -72,7 +109,8 @@ void Evaluator::flatten_effect(const BoundEffect& bound) {
   }
   auto& list = bound.kind == PortKind::quantity ? quantity_ : bound.kind == PortKind::dynamic ? dynamic_ : sensor_;
   list.push_back(use);
-  if (bound.kind == PortKind::sensor) shifts_time_ = shifts_time_ || std::find(bound.ports.begin(), bound.ports.end(), ny_) != bound.ports.end();
+  if (bound.kind == PortKind::sensor)
+    shifts_time_ = shifts_time_ || std::find(bound.ports.begin(), bound.ports.end(), ny_) != bound.ports.end();
 }
 
 void Evaluator::set_parameters(const double* values) { std::copy(values, values + p_.size(), p_.begin()); }

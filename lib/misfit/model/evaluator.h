@@ -8,6 +8,11 @@
 
 namespace misfit {
 
+/// Rows are computed in multiples of this many columns, so that the compiler need not treat a remainder: columns beyond those in use hold
+/// garbage.
+inline constexpr int kRowPadding = 4;
+[[nodiscard]] constexpr int padded(int width) { return (width + kRowPadding - 1) / kRowPadding * kRowPadding; }
+
 /// The free parameters that act within one sample, in the order they were met ("touched columns"): slot s is column `column[s]`.
 class Slots {
  public:
@@ -22,6 +27,8 @@ class Slots {
     }
     return known;
   }
+  /// Whether a slot remembered from before, perhaps from other Slots, is that column here.
+  [[nodiscard]] bool holds(int slot, int column) const { return slot < count_ && column_[static_cast<std::size_t>(slot)] == column; }
   void clear() {
     for (int s = 0; s < count_; ++s) slot_of_[static_cast<std::size_t>(column_[static_cast<std::size_t>(s)])] = -1;
     count_ = 0;
@@ -34,11 +41,11 @@ class Slots {
 };
 
 /// Derivative rows: columns 0 … states−1 for the state, then one column per slot. Fixed stride.
-inline constexpr int kRowStride = kMaxStates + kMaxColumns;
+inline constexpr int kRowStride = padded(kMaxStates + kMaxColumns);
 
-/// The assembled right-hand side x' = f(x, u, t; p) and outputs y = h(x, u, t; p) with first derivatives, by the chain rule over effects that are
-/// each linearised on their own (DESIGN 4). One object per thread: it holds scratch memory, so that nothing allocates.
-/// Order: base quantities → effects on quantity ports → derived quantities → effects on dynamic ports and own states → x'.
+/// The assembled right-hand side x' = f(x, u, t; p) and outputs y = h(x, u, t; p) with first derivatives, by the chain rule over effects
+/// that are each linearised on their own (DESIGN 4). One object per thread: it holds scratch memory, so that nothing allocates. Order: base
+/// quantities → effects on quantity ports → derived quantities → effects on dynamic ports and own states → x'.
 class Evaluator {
  public:
   /// Keeps pointers into `model`, which must outlive it.
@@ -55,6 +62,15 @@ class Evaluator {
   void rates(const double* x, const double* u, double t, double* dx);
   /// dx and its derivative rows D[i·kRowStride + …] for i < states(): ∂/∂x, then ∂/∂(slot). New slots may be added.
   void linearise_rates(const double* x, const double* u, double t, Slots& slots, double* dx, double* D);
+  /// The same for the inner loop: D gets the columns ∂/∂x only, and B the (few) derivatives by slots. False, with nothing done, where the
+  /// model needs full rows (effects on quantity ports, free constants).
+  bool linearise_rates_sparsely(const double* x, const double* u, double t, Slots& slots, double* dx, double* D);
+  /// ∂(dx_row)/∂(slot) of the last linearise_rates_sparsely(); several entries of one place add up.
+  struct Entry {
+    int row, slot;
+    double value;
+  };
+  [[nodiscard]] const std::vector<Entry>& slot_entries() const { return slot_entries_; }
 
   /// y and, last, the shift of the sample time [s] (outputs() + 1 values).
   void predict(const double* x, const double* u, double t, double* y);
@@ -78,12 +94,38 @@ class Evaluator {
   void gather(const Use& use, const double* own, double* values) const;
   Reads<double, double> reads(const Use& use, const double* values, double t) const;
   void add_value(const Use& use, const double* own, double t, double* targets, double* drifts);
-  void add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts, double* drift_rows);
+  void add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts,
+                  double* drift_rows);
+  // The common case, nothing on quantity ports and no free constant: quantities depend on the state alone and derivatives by parameters are
+  // kept as a short list of entries instead of rows.
+  struct CurveEntry {  // value times the four weights of a curve, at its four slots
+    int row, curve;
+    double value;
+  };
+  struct CurveState {  // a curve at the present quantities
+    const CurvePoint* point = nullptr;
+    CurvePoint own;
+    double value = 0.0, slope = 0.0;
+    int quantity = 0, twin = -1;
+    bool free = false;   // some coefficient is free; a fixed one among them has slot −1
+    int slots_for = -1;  // first coefficient that `slots` belong to
+    std::array<int, 4> slots{};
+  };
+  template <int NX>
+  void linearise_rates_simply(const Point& at, Slots& slots, double* dx, double* D);
+  void take_entries(double weight, int from, int to);
+  template <int NX>
+  void add_entries(const Use& use, const double* own, double t, Slots& slots, double* drifts);
+  void evaluate_curves(Slots& slots);
+  [[nodiscard]] bool slots_hold(const CurveState& state, int first, const Slots& slots) const;
+  void find_slots(CurveState& state, int first, Slots& slots) const;
+  void find_twins();
   void base_and_derived(const Point& at, const double* own);
   void own_drifts(const Point& at, const double* own, double* drifts);
   void own_drifts_linear(const Point& at, const double* own, Slots& slots, double* dx, double* D);
   void base_and_derived_linear(const Point& at, const double* own, Slots& slots);
   void outputs_as_quantities(const Point& at, Slots& slots);
+  void linearise_outputs_simply(const Point& at, const Slots& slots, double* y, double* D);
   void clear_new_slot(int slot, int rows, double* D) const;
   void chain_quantity(double weight, int quantity, int slots, double* row) const;
 
@@ -98,7 +140,14 @@ class Evaluator {
   std::array<double, kMaxQuantities> q_{};
   std::array<double, kMaxPorts> P_{}, F_{};
   std::vector<double> q_rows_, P_rows_, F_rows_;  // kRowStride each
-  std::vector<double> scratch_;                   // rows of ports that nobody reads
+  std::vector<int> dynamic_curves_;               // those that dynamic effects read
+  std::vector<CurveState> curve_;                 // per curve of the model
+  std::vector<Entry> entries_;                    // row: dynamic port, or number of dynamic ports + own state
+  std::vector<Entry> slot_entries_;               // row: state
+  std::vector<CurveEntry> curve_entries_;
+  std::vector<double> force_x_;  // (dynamic ports + own states) × states
+  bool own_elsewhere_ = false;   // an effect on a quantity or sensor port has memory
+  std::vector<double> scratch_;  // rows of ports that nobody reads
   std::vector<double> q_x_, q_P_, q_k_, r_x_, r_P_, r_F_, r_k_, y_x_, y_k_;
 };
 

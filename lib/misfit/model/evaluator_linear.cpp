@@ -17,7 +17,8 @@ void add_scaled(double weight, const double* from, int count, double* to) {
 
 }  // namespace
 
-/// row += weight · dq/d(state, slots). In the common case (no effect on quantity ports, no free constant) quantities depend on the state alone.
+/// row += weight · dq/d(state, slots). In the common case (no effect on quantity ports, no free constant) quantities depend on the state
+/// alone.
 void Evaluator::chain_quantity(double weight, int quantity, int slots, double* row) const {
   if (!general_ && quantity < nq_) {
     add_scaled(weight, q_x_.data() + static_cast<std::ptrdiff_t>(quantity) * nx_, nx_, row);
@@ -27,9 +28,10 @@ void Evaluator::chain_quantity(double weight, int quantity, int slots, double* r
   add_scaled(weight, from, n_ + slots, row);
 }
 
-/// Adds an effect's outputs to targets[port] with derivative rows rows[port·kRowStride + …], and sets its own states' drifts and rows. Rows are kept
-/// zero beyond the slots in use: a slot that is met for the first time needs no clearing.
-void Evaluator::add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts, double* drift_rows) {
+/// Adds an effect's outputs to targets[port] with derivative rows rows[port·kRowStride + …], and sets its own states' drifts and rows. Rows
+/// are kept zero beyond the slots in use: a slot that is met for the first time needs no clearing.
+void Evaluator::add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts,
+                           double* drift_rows) {
   std::array<double, kMaxWidth> values;
   std::array<double, kMaxWidth> out;
   std::array<double, static_cast<std::size_t>(kMaxWidth * kMaxWidth)> J;
@@ -112,7 +114,8 @@ void Evaluator::base_and_derived_linear(const Point& at, const double* own, Slot
       double* row = row_of(q_rows_, i);
       std::fill(row, row + width, 0.0);
       std::copy_n(q_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
-      for (int P = 0; with_ports && P < np_; ++P) add_scaled(q_P_[static_cast<std::size_t>(i * np_ + P)], row_of(P_rows_, P), n_ + slots.count(), row);
+      for (int P = 0; with_ports && P < np_; ++P)
+        add_scaled(q_P_[static_cast<std::size_t>(i * np_ + P)], row_of(P_rows_, P), n_ + slots.count(), row);
       for (int k = 0; free_constants_ && k < nk_; ++k) {
         const int column = column_of_[static_cast<std::size_t>(k)];
         const double weight = q_k_[static_cast<std::size_t>(i * nk_ + k)];
@@ -135,6 +138,11 @@ void Evaluator::base_and_derived_linear(const Point& at, const double* own, Slot
 
 void Evaluator::linearise_rates(const double* x, const double* u, double t, Slots& slots, double* dx, double* D) {
   const Point at{x, u, t, p_.data()};
+  if (linearise_rates_sparsely(x, u, t, slots, dx, D)) {
+    for (int i = 0; i < n_; ++i) std::fill_n(D + static_cast<std::ptrdiff_t>(i) * kRowStride + n_, columns_, 0.0);
+    for (const Entry& entry : slot_entries_) D[static_cast<std::ptrdiff_t>(entry.row) * kRowStride + n_ + entry.slot] += entry.value;
+    return;
+  }
   const double* own = x + nx_;
   base_and_derived_linear(at, own, slots);
   std::fill(F_.begin(), F_.begin() + nf_, 0.0);
@@ -209,8 +217,23 @@ void Evaluator::outputs_as_quantities(const Point& at, Slots& slots) {
   }
 }
 
+/// No effect on a sensor and no free constant: outputs depend on the state alone.
+void Evaluator::linearise_outputs_simply(const Point& at, const Slots& slots, double* y, double* D) {
+  system_->linearise_outputs(at, y, y_x_.data(), nullptr);
+  for (int i = 0; i <= ny_; ++i) {
+    double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
+    for (int x = 0; x < n_; ++x) row[x] = i < ny_ && x < nx_ ? y_x_[static_cast<std::size_t>(i * nx_ + x)] : 0.0;
+    std::fill_n(row + n_, slots.count(), 0.0);
+  }
+  y[ny_] = 0.0;
+}
+
 void Evaluator::linearise_outputs(const double* x, const double* u, double t, Slots& slots, double* y, double* D) {
   const Point at{x, u, t, p_.data()};
+  if (sensor_.empty() && !free_constants_) {
+    linearise_outputs_simply(at, slots, y, D);
+    return;
+  }
   if (!sensor_.empty()) base_and_derived_linear(at, x + nx_, slots);
   outputs_as_quantities(at, slots);
   const int width = n_ + columns_;

@@ -14,9 +14,9 @@ struct Interval {
   const double* u1 = nullptr;
 };
 
-/// The step map x⁺ = step(x, u, t, p) with Φ = ∂x⁺/∂x and Γ = ∂x⁺/∂p for touched columns: the primitive of output error, filter, smoother and score
-/// test. Classical fourth-order Runge–Kutta; the sensitivities are those of the discrete map itself (exact derivatives of what is computed).
-/// Sub-steps so that fastest rate × step < 0.5; the rate is taken once per trajectory, in prepare(). One object per thread.
+/// The step map x⁺ = step(x, u, t, p) with Φ = ∂x⁺/∂x and Γ = ∂x⁺/∂p for touched columns: the primitive of output error, filter, smoother
+/// and score test. Classical fourth-order Runge–Kutta; the sensitivities are those of the discrete map itself (exact derivatives of what is
+/// computed). Sub-steps so that fastest rate × step < 0.5; the rate is taken once per trajectory, in prepare(). One object per thread.
 class Stepper {
  public:
   /// Keeps a pointer to `model`, which must outlive it.
@@ -37,14 +37,14 @@ class Stepper {
  private:
   [[nodiscard]] int substeps(double h) const;
   void inputs_at(const Interval& interval, double fraction, double* u) const;
-  void stage_rows(const double* L, const double* X, int width, double* K) const;
-  void substep_linear(double* x, const Interval& interval, double from, double to, Slots& slots, double* D, bool first);
+  void substep_linear(double* x, const Interval& interval, double from, double to, Slots& slots, double* D);
+  void advance_rows(double h, std::size_t stage, int width, bool sparse, const double* X, double* next, const double* D);
 
   Evaluator evaluator_;
   int n_, nu_;
   double fastest_rate_ = 0.0;
   std::vector<bool> zero_order_;
-  std::vector<double> L_, X_, K_, sum_;  // rows of kRowStride
+  std::vector<double> L_, X_, Y_, sum_;  // rows of kRowStride
 };
 
 }  // namespace misfit

@@ -23,11 +23,12 @@ class Sensitivity {
   }
   /// out = (state part of `row`) · S + (slot part of `row`) scattered.
   void combine(const double* row, const Slots& slots, double* out) const {
-    std::fill_n(out, width_, 0.0);
-    for (int j = 0; j < n_; ++j) {
+    const double* first = rows_.data();
+    for (int c = 0; c < width_; ++c) out[c] = row[0] * first[c];
+    for (int j = 1; j < n_; ++j) {
       const double weight = row[j];
       if (weight == 0.0) continue;
-      const double* from = rows_.row(j).data();
+      const double* from = first + static_cast<std::ptrdiff_t>(j) * width_;
       for (int c = 0; c < width_; ++c) out[c] += weight * from[c];
     }
     for (int s = 0; s < slots.count(); ++s) out[slots.column(s)] += row[n_ + s];
@@ -45,7 +46,7 @@ class Sensitivity {
 };
 
 struct Scratch {
-  std::vector<double> D, O, row;
+  std::vector<double> D, O;
   Slots slots;
   std::array<double, kMaxOutputs + 1> y{};
 };
@@ -67,9 +68,9 @@ bool predict(Stepper& stepper, const Signals& signals, const InputTable& inputs,
   return true;
 }
 
-/// Rows of ∂y/∂(θ, x0) at sample i into out.y_theta and out.y_x0.
-bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x, const Sensitivity& S,
-                    Scratch& w, Segment& out) {
+/// Rows of ∂y/∂(θ, x0) at sample i into out.y_rows.
+bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x,
+                    const Sensitivity& S, Scratch& w, Segment& out) {
   Evaluator& evaluator = stepper.evaluator();
   const int ny = evaluator.outputs(), n = stepper.states(), columns = evaluator.columns();
   w.slots.clear();
@@ -82,7 +83,8 @@ bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& 
     S.combine(w.O.data() + static_cast<std::ptrdiff_t>(ny) * kRowStride, w.slots, by_shift.data());  // ∂τ/∂(θ, x0)
     std::array<double, kMaxStates> moved, speed{};
     std::copy_n(x, n, moved.begin());
-    if (!stepper.step_linear(moved.data(), {signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)}, w.slots, w.D.data())) return false;
+    if (!stepper.step_linear(moved.data(), {signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)}, w.slots, w.D.data()))
+      return false;
     moved_S = S;
     moved_S->advance(w.D.data(), w.slots);
     evaluator.rates(moved.data(), inputs.at(i), signals.t[i] + shift, speed.data());
@@ -92,10 +94,8 @@ bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& 
     use = &*moved_S;
   }
   for (int o = 0; o < ny; ++o) {
-    use->combine(w.O.data() + static_cast<std::ptrdiff_t>(o) * kRowStride, w.slots, w.row.data());
     const auto r = static_cast<Eigen::Index>((i - out.first) * static_cast<std::size_t>(ny)) + o;
-    std::copy_n(w.row.data(), columns, out.y_theta.row(r).data());
-    std::copy_n(w.row.data() + columns, n, out.y_x0.row(r).data());
+    use->combine(w.O.data() + static_cast<std::ptrdiff_t>(o) * kRowStride, w.slots, out.y_rows.row(r).data());
   }
   return true;
 }
@@ -124,13 +124,11 @@ void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inp
   out.finite = false;
   out.y.resize(samples, ny);
   if (sensitivities) {
-    out.y_theta.resize(samples * ny, columns);
-    out.y_x0.resize(samples * ny, n);
+    out.y_rows.resize(samples * ny, columns + n);
   }
   Scratch w;
   w.D.resize(static_cast<std::size_t>(n) * kRowStride);
   w.O.resize(static_cast<std::size_t>(ny + 1) * kRowStride);
-  w.row.resize(static_cast<std::size_t>(columns + n));
   Sensitivity S(n, sensitivities ? columns : 0);
   std::array<double, kMaxStates> x{};
   std::copy_n(x0, n, x.begin());
@@ -152,13 +150,13 @@ void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inp
   }
   out.end = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
   if (sensitivities) {
-    out.end_theta = S.rows().leftCols(columns);
-    out.end_x0 = S.rows().rightCols(n);
+    out.end_rows = S.rows();
   }
   out.finite = out.y.allFinite();
 }
 
-RowMatrix run_states(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last, const double* x0) {
+RowMatrix run_states(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last,
+                     const double* x0) {
   const int n = stepper.states();
   RowMatrix states(static_cast<Eigen::Index>(last - first), n);
   std::array<double, kMaxStates> x{};

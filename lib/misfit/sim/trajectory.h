@@ -13,29 +13,30 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 struct InputTable {
   int inputs = 0;
   std::vector<double> values;  ///< samples × max(inputs, 1)
-  [[nodiscard]] const double* at(std::size_t sample) const { return values.data() + sample * static_cast<std::size_t>(inputs > 0 ? inputs : 1); }
+  [[nodiscard]] const double* at(std::size_t sample) const {
+    return values.data() + sample * static_cast<std::size_t>(inputs > 0 ? inputs : 1);
+  }
 };
 [[nodiscard]] InputTable input_table(const Signals& signals, int inputs);
 
 /// What a run over samples first … last − 1 predicts. Sample `last` (if it exists) is where the next segment starts.
 struct Segment {
   std::size_t first = 0, last = 0;
-  RowMatrix y;            ///< samples × outputs
-  RowMatrix y_theta;      ///< (samples · outputs) × columns, row = sample · outputs + output
-  RowMatrix y_x0;         ///< (samples · outputs) × states
-  Eigen::VectorXd end;    ///< state at sample `last`, or at the last sample if there is none after it
-  RowMatrix end_theta;    ///< states × columns
-  RowMatrix end_x0;       ///< states × states
-  bool finite = false;    ///< false: a state left the finite numbers at sample `failed_at`; nothing else may be used
+  RowMatrix y;          ///< samples × outputs
+  RowMatrix y_rows;     ///< ∂y/∂(θ, x0): (samples · outputs) × (columns + states), row = sample · outputs + output
+  Eigen::VectorXd end;  ///< state at sample `last`, or at the last sample if there is none after it
+  RowMatrix end_rows;   ///< ∂end/∂(θ, x0): states × (columns + states)
+  bool finite = false;  ///< false: a state left the finite numbers at sample `failed_at`; nothing else may be used
   std::size_t failed_at = 0;
 };
 
-/// Runs the model over a segment. The parameters are those the stepper's evaluator holds. Derivatives only if `sensitivities`. Matrices are resized only when
-/// their size changes: reuse `out` to avoid allocation.
+/// Runs the model over a segment. The parameters are those the stepper's evaluator holds. Derivatives only if `sensitivities`. Matrices are
+/// resized only when their size changes: reuse `out` to avoid allocation.
 void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last, const double* x0,
                  bool sensitivities, Segment& out);
 
 /// States at every sample first … last − 1 (samples × states), without derivatives; stops early (fewer rows) where a state is not finite.
-[[nodiscard]] RowMatrix run_states(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last, const double* x0);
+[[nodiscard]] RowMatrix run_states(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last,
+                                   const double* x0);
 
 }  // namespace misfit
