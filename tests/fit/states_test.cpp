@@ -1,0 +1,97 @@
+#include "misfit/fit/states.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/fit/planar_model.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_planar;
+
+TEST(ReadingNoise, FindsATenthOfADegreeOnTheValidationMotion) {
+  EXPECT_NEAR(reading_noise(validation_signals().measured[0].values) / degree, 0.1, 0.005);
+}
+
+TEST(ReadingNoise, IsUnmovedByWildSamplesAndGaps) {
+  auto values = validation_signals().measured[0].values;
+  for (std::size_t i = 50; i < values.size(); i += 100) values[i] += 20.0 * degree;
+  for (std::size_t i = 0; i < values.size(); i += 100) values[i] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NEAR(reading_noise(values) / degree, 0.1, 0.015);
+}
+
+TEST(ReadingNoise, OfAFewSamplesIsNotGiven) { EXPECT_TRUE(std::isnan(reading_noise(std::vector<double>(14, 1.0)))); }
+
+TEST(ReadingNoise, OfSmoothMotionIsNearlyNothing) {
+  std::vector<double> values;
+  for (double t : even_times(2000, 1.0 / 59.94)) values.push_back(0.1 * std::sin(11.0 * t));  // ω h = 0.18
+  EXPECT_LT(reading_noise(values), 0.003 * 0.1);
+}
+
+TEST(UsualStep, IsTheMedianDifference) {
+  EXPECT_DOUBLE_EQ(usual_step({0.0, 0.5, 1.0, 1.5, 7.0}), 0.5);
+  EXPECT_DOUBLE_EQ(usual_step({}), 1.0);
+}
+
+TEST(ReconstructStates, IsExactOnAParabolaAlsoAtUnevenTimes) {
+  const Model model = assemble(eq_8(), registry());
+  std::vector<double> t, y;
+  for (int i = 0; i < 50; ++i) {
+    t.push_back(0.1 * i + (i % 3 == 0 ? 0.02 : 0.0));
+    y.push_back(0.3 + 0.2 * t.back() - 0.05 * t.back() * t.back());
+  }
+  const ReconstructedStates s = reconstruct_states(model, measured(t, y));
+  EXPECT_TRUE(s.shown[0] && s.shown[1]);
+  for (Eigen::Index i = 2; i < 48; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    ASSERT_TRUE(s.ok[k]);
+    EXPECT_NEAR(s.x(i, 0), y[k], 1e-12);
+    EXPECT_NEAR(s.x(i, 1), 0.2 - 0.1 * t[k], 1e-11);
+    EXPECT_NEAR(s.dx(i, 0), s.x(i, 1), 0.0);
+    EXPECT_NEAR(s.dx(i, 1), -0.1, 1e-9);
+  }
+}
+
+TEST(ReconstructStates, BridgesOneMissingSampleButNotTwo) {
+  const Model model = assemble(eq_8(), registry());
+  const auto t = even_times(40, 0.1);
+  std::vector<double> y(t.size(), 0.2);
+  y[10] = y[20] = y[22] = std::numeric_limits<double>::quiet_NaN();
+  const ReconstructedStates s = reconstruct_states(model, measured(t, y));
+  EXPECT_TRUE(s.ok[10]);
+  EXPECT_TRUE(s.ok[18]);
+  EXPECT_FALSE(s.ok[21]);
+  EXPECT_FALSE(s.ok[0]);  // three of five
+}
+
+TEST(ReconstructStates, IsNotStretchedOverAGapInTime) {
+  const Model model = assemble(eq_8(), registry());
+  auto t = even_times(40, 0.1);
+  for (std::size_t i = 20; i < t.size(); ++i) t[i] += 1.0;
+  const ReconstructedStates s = reconstruct_states(model, measured(t, std::vector<double>(t.size(), 0.2)));
+  EXPECT_FALSE(s.ok[19]);
+  EXPECT_FALSE(s.ok[20]);
+  EXPECT_TRUE(s.ok[18]);
+  EXPECT_TRUE(s.ok[21]);
+}
+
+TEST(MotionFrequency, IsThatOfASine) {
+  const Model model = assemble(eq_8(), registry());
+  const auto t = even_times(3000, 1.0 / 59.94);
+  std::vector<double> y;
+  for (double s : t) y.push_back(0.2 + 0.05 * std::sin(10.0 * s));
+  EXPECT_NEAR(motion_frequency(model, reconstruct_states(model, measured(t, y))), 10.0, 0.5);  // five-point lines flatten slopes by 5 %
+}
+
+TEST(MotionFrequency, OfAChannelThatStandsStillIsZero) {
+  const Model model = assemble(eq_8(), registry());
+  const auto t = even_times(100, 0.1);
+  EXPECT_EQ(motion_frequency(model, reconstruct_states(model, measured(t, std::vector<double>(t.size(), 0.0)))), 0.0);
+}
+
+}  // namespace
+}  // namespace misfit
