@@ -5,9 +5,9 @@
 
 namespace misfit {
 
-/// Unit of a coefficient or own state in its model. Effects that take any unit write roles in braces, "{port}/{rate}"; with port = "N m" and rate =
-/// "rad/s" this is "N m s/rad". Powers of the same symbol are added, what cancels is left out, "-" if nothing remains. A role that is not in `units` counts
-/// as "-". A text without braces is returned as it is.
+/// Unit of a coefficient or own state in its model. Effects that take any unit write roles in braces, "{port}/{rate}"; with port = "N m"
+/// and rate = "rad/s" this is "N m s/rad". Powers of the same symbol are added, what cancels is left out, "-" if nothing remains. A role
+/// that is not in `units` counts as "-". A text without braces is returned as it is.
 [[nodiscard]] std::string bind_unit(const std::string& unit, const std::map<std::string, std::string>& units);
 
 }  // namespace misfit

@@ -87,6 +87,7 @@ bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& 
       return false;
     moved_S = S;
     moved_S->advance(w.D.data(), w.slots);
+    // The rate of the motion, where the exact derivative would be that of the step map by its length: equal to the accuracy of a step.
     evaluator.rates(moved.data(), inputs.at(i), signals.t[i] + shift, speed.data());
     moved_S->add_direction(speed.data(), by_shift.data());
     w.slots.clear();
@@ -152,7 +153,7 @@ void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inp
   if (sensitivities) {
     out.end_rows = S.rows();
   }
-  out.finite = out.y.allFinite();
+  out.finite = out.y.allFinite() && (!sensitivities || (out.y_rows.allFinite() && out.end_rows.allFinite()));
 }
 
 RowMatrix run_states(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last,
