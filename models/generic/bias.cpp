@@ -22,7 +22,8 @@ struct Bias {
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {0.002}, {}, 0.0, {0.002}, {}, "the reading moves by the offset"}, {{}, {}, {-7.5}, {}, 3.0, {-7.5}, {}, "whatever the time"}};
+    return {{{}, {}, {0.002}, {}, 0.0, {0.002}, {}, "the reading moves by the offset"},
+            {{}, {}, {-7.5}, {}, 3.0, {-7.5}, {}, "whatever the time"}};
   }
 };
 

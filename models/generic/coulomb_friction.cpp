@@ -10,7 +10,8 @@ struct CoulombFriction {
   static constexpr const char* symbols = "friction [port], width of the smoothing [rate], rate of the motion along the port [any]";
   static constexpr const char* valid = "rates that are mostly above the width; below it the bearing creeps instead of sticking";
   static constexpr const char* size = "20 N m at the swivel holds the parachute 1.4 deg away from its trim";
-  static constexpr const char* source = "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007): smooth Coulomb friction by tanh";
+  static constexpr const char* source =
+      "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007): smooth Coulomb friction by tanh";
   static constexpr const char* excludes = "sticking, higher friction at the start of motion (Stribeck), viscous part (viscous_friction)";
   static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}};
   static constexpr Role ports[] = {{"port", "*"}};

@@ -9,7 +9,8 @@ struct Lag {
   static constexpr const char* formula = "F = k (z - x), z' = (x - z)/tau";
   static constexpr const char* symbols = "x the level [any], z lagged level [level], k [port/level], tau time constant [s]";
   static constexpr const char* valid = "one time constant; force = 0 in equilibrium, whatever k";
-  static constexpr const char* size = "for slow motion F = -k tau x': a lag of 0.1 s with k = 100 N m/rad looks like a damping of 10 N m s/rad";
+  static constexpr const char* size =
+      "for slow motion F = -k tau x': a lag of 0.1 s with k = 100 N m/rad looks like a damping of 10 N m s/rad";
   static constexpr const char* source = "first-order lag (Tobak and Schiff, NASA TR R-456, 1976: memory of aerodynamic moments)";
   static constexpr const char* excludes = "pure delay, several time constants";
   static constexpr Role quantities[] = {{"level", "*"}};

@@ -15,8 +15,8 @@ struct DynamicPressureDrift {
   static constexpr Role ports[] = {{"dynamic_pressure", "Pa"}};
   static constexpr CoefficientSpec coefficients[] = {
       {"pressure_drift", CoefficientKind::strength, 0.0, "Pa/s", -1e4, 1e4, 0.5, "rate of change of the dynamic pressure"},
-      {"t_drift", CoefficientKind::shape, 0.0, "s", -1e6, 1e6, 10.0, "time at which the dynamic pressure is the nominal one",
-       Parity::none, "", false, true}};
+      {"t_drift", CoefficientKind::shape, 0.0, "s", -1e6, 1e6, 10.0, "time at which the dynamic pressure is the nominal one", Parity::none,
+       "", false, true}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
@@ -24,7 +24,8 @@ struct DynamicPressureDrift {
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {0.5, 10.0}, {}, 90.0, {40.0}, {}, "0.5 Pa/s for 80 s"}, {{}, {}, {-2.0, 4.0}, {}, 1.0, {6.0}, {}, "by hand: -2 x -3"}};
+    return {{{}, {}, {0.5, 10.0}, {}, 90.0, {40.0}, {}, "0.5 Pa/s for 80 s"},
+            {{}, {}, {-2.0, 4.0}, {}, 1.0, {6.0}, {}, "by hand: -2 x -3"}};
   }
 };
 

@@ -15,7 +15,8 @@ struct InertiaSwell {
   static constexpr Role quantities[] = {{"eta", "rad"}};
   static constexpr Role ports[] = {{"inertia", "kg m^2"}};
   static constexpr const char* constants[] = {"D"};
-  static constexpr CoefficientSpec coefficients[] = {{"swell", CoefficientKind::strength, 0.0, "kg", -100.0, 100.0, 1.0, "growth of the enclosed mass"}};
+  static constexpr CoefficientSpec coefficients[] = {
+      {"swell", CoefficientKind::strength, 0.0, "kg", -100.0, 100.0, 1.0, "growth of the enclosed mass"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {

@@ -14,8 +14,9 @@ struct PressureMemory {
   static constexpr const char* excludes = "everything else";
   static constexpr Role quantities[] = {{"eta", "rad"}};
   static constexpr Role ports[] = {{"dynamic_pressure", "Pa"}};
-  static constexpr CoefficientSpec coefficients[] = {{"blockage", CoefficientKind::strength, 0.0, "Pa", -1e4, 1e4, 100.0, "pressure lost at z = 1"},
-                                                     {"blockage_tau", CoefficientKind::shape, 0.5, "s", 1e-3, 100.0, 0.5, "time constant"}};
+  static constexpr CoefficientSpec coefficients[] = {
+      {"blockage", CoefficientKind::strength, 0.0, "Pa", -1e4, 1e4, 100.0, "pressure lost at z = 1"},
+      {"blockage_tau", CoefficientKind::shape, 0.5, "s", 1e-3, 100.0, 0.5, "time constant"}};
   static constexpr OwnStateSpec states[] = {{"z", "-", 0.0}};
 
   template <class T, class K>
@@ -27,7 +28,8 @@ struct PressureMemory {
   static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[1]; }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.4}, {50.0, 0.5}, {0.2}, 0.0, {-2.0}, {0.4}, "50 x 0.04; 0.2/0.5"}, {{}, {1.0}, {-3.0, 2.0}, {2.0}, 0.0, {12.0}, {-0.5}, "by hand"}};
+    return {{{}, {0.4}, {50.0, 0.5}, {0.2}, 0.0, {-2.0}, {0.4}, "50 x 0.04; 0.2/0.5"},
+            {{}, {1.0}, {-3.0, 2.0}, {2.0}, 0.0, {12.0}, {-0.5}, "by hand"}};
   }
 };
 

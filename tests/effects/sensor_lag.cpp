@@ -14,8 +14,9 @@ struct SensorLag {
   static constexpr const char* excludes = "pure delay";
   static constexpr Role quantities[] = {{"reading", "*"}};
   static constexpr Role ports[] = {{"output", "*"}};
-  static constexpr CoefficientSpec coefficients[] = {{"share", CoefficientKind::strength, 0.0, "-", -2.0, 2.0, 0.1, "lagged part of the reading"},
-                                                     {"sensor_tau", CoefficientKind::shape, 0.05, "s", 1e-4, 10.0, 0.05, "time constant"}};
+  static constexpr CoefficientSpec coefficients[] = {
+      {"share", CoefficientKind::strength, 0.0, "-", -2.0, 2.0, 0.1, "lagged part of the reading"},
+      {"sensor_tau", CoefficientKind::shape, 0.05, "s", 1e-4, 10.0, 0.05, "time constant"}};
   static constexpr OwnStateSpec states[] = {{"z", "{output}", 0.0}};
 
   template <class T, class K>
@@ -25,7 +26,8 @@ struct SensorLag {
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {2.0}, {0.5, 0.1}, {1.0}, 0.0, {-0.5}, {10.0}, "0.5 (1 - 2); (2 - 1)/0.1"}, {{}, {-1.0}, {1.0, 0.5}, {1.0}, 0.0, {2.0}, {-4.0}, "by hand"}};
+    return {{{}, {2.0}, {0.5, 0.1}, {1.0}, 0.0, {-0.5}, {10.0}, "0.5 (1 - 2); (2 - 1)/0.1"},
+            {{}, {-1.0}, {1.0, 0.5}, {1.0}, 0.0, {2.0}, {-4.0}, "by hand"}};
   }
 };
 

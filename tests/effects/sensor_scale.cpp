@@ -14,14 +14,17 @@ struct SensorScale {
   static constexpr const char* excludes = "offset";
   static constexpr Role quantities[] = {{"reading", "*"}};
   static constexpr Role ports[] = {{"output", "*"}};
-  static constexpr CoefficientSpec coefficients[] = {{"scale_error", CoefficientKind::strength, 0.0, "-", -1.0, 1.0, 0.01, "relative error"}};
+  static constexpr CoefficientSpec coefficients[] = {
+      {"scale_error", CoefficientKind::strength, 0.0, "-", -1.0, 1.0, 0.01, "relative error"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
     y[0] = in.c[0] * in.q[0];
   }
 
-  static std::vector<Example> examples() { return {{{}, {3.0}, {0.02}, {}, 0.0, {0.06}, {}, "2 % of 3"}, {{}, {-5.0}, {0.1}, {}, 0.0, {-0.5}, {}, "by hand"}}; }
+  static std::vector<Example> examples() {
+    return {{{}, {3.0}, {0.02}, {}, 0.0, {0.06}, {}, "2 % of 3"}, {{}, {-5.0}, {0.1}, {}, 0.0, {-0.5}, {}, "by hand"}};
+  }
 };
 
 }  // namespace

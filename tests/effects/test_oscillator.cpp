@@ -39,11 +39,16 @@ struct TestOscillator {
     s.source = "made up for the tests";
     s.states = {{"x", "m", -1}, {"v", "m/s", 0}};
     s.inputs = {{"drive", "N", "held force", Hold::zero_order}};
-    s.quantities = {{"x", "m", "place", {}, false}, {"v", "m/s", "speed", {}, false}, {"drive", "N", "held force", {"drive"}, false}, {"inertia", "kg", "mass", {}, false}};
+    s.quantities = {{"x", "m", "place", {}, false},
+                    {"v", "m/s", "speed", {}, false},
+                    {"drive", "N", "held force", {"drive"}, false},
+                    {"inertia", "kg", "mass", {}, false}};
     s.base_quantities = 3;
     s.quantity_ports = {{"added_mass", "kg", "adds to the mass", "inertia"}};
     s.dynamic_ports = {{"force", "N", "along x", "v"}, {"slip", "m/s", "adds to the speed", ""}};
-    s.constants = {{"mass", "kg", "mass", 1e-9, 1e6, true, 0.0}, {"stiffness", "N/m", "spring", 0.0, 1e9, true, 0.0}, {"gain", "1/m", "of the position sensor", -1e3, 1e3, false, 1.0}};
+    s.constants = {{"mass", "kg", "mass", 1e-9, 1e6, true, 0.0},
+                   {"stiffness", "N/m", "spring", 0.0, 1e9, true, 0.0},
+                   {"gain", "1/m", "of the position sensor", -1e3, 1e3, false, 1.0}};
     s.outputs = {{"position_reading", "-", -1, 1e-3}, {"speed_reading", "m/s", 1, 1e-3}};
     s.roles = {{"rate", "v"}, {"level", "x"}, {"port", "force"}, {"output", "position_reading"}, {"reading", "position_reading"}};
     s.fastest_rate = 2.0;

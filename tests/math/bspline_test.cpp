@@ -148,7 +148,8 @@ TEST(CubicSplineTest, AnEvenCurveKeepsItsValueUnderChangeOfSignAndIsFlatAtZero) 
 TEST(CubicSplineTest, OverSineIsTheCurveDividedByTheSine) {
   const CubicSpline s(uneven, Parity::odd);
   const auto c = random_coefficients(s.size(), 9);
-  for (double x : {-1.2, -0.3, -2e-4, 1.1e-4, 1e-3, 0.05, 0.5, 1.3, 1.6}) EXPECT_NEAR(sine_value(s, c, x), value(s, c, x) / std::sin(x), 1e-9) << x;
+  for (double x : {-1.2, -0.3, -2e-4, 1.1e-4, 1e-3, 0.05, 0.5, 1.3, 1.6})
+    EXPECT_NEAR(sine_value(s, c, x), value(s, c, x) / std::sin(x), 1e-9) << x;
 }
 
 TEST(CubicSplineTest, OverSineAtZeroIsTheSlopeOfTheCurveAndFlat) {
@@ -178,7 +179,8 @@ TEST(CubicSplineTest, RoughnessIsTheIntegralOfTheSquaredSecondDerivative) {
   const CubicSpline s(uneven);
   const auto c = random_coefficients(s.size(), 12);
   const Eigen::Map<const Eigen::VectorXd> v(c.data(), s.size());
-  // C'' is linear between knots: two Gauss points per interval are exact for its square; C'' from the exact slope differences of a parabola.
+  // C'' is linear between knots: two Gauss points per interval are exact for its square; C'' from the exact slope differences of a
+  // parabola.
   double integral = 0.0;
   for (std::size_t i = 0; i + 1 < uneven.size(); ++i) {
     const double middle = (uneven[i] + uneven[i + 1]) / 2.0, half = (uneven[i + 1] - uneven[i]) / 2.0;
@@ -213,7 +215,8 @@ TEST_P(CubicSplineOfParity, NoArgumentReachesOutsideTheCoefficients) {
   const CubicSpline s(uneven, GetParam());
   constexpr double inf = std::numeric_limits<double>::infinity();
   constexpr double most = std::numeric_limits<double>::max();
-  for (double x : {inf, -inf, std::nan(""), -std::nan(""), most, -most, 1e300, -1e300, 0.0, -0.0, std::numeric_limits<double>::denorm_min()}) {
+  for (double x :
+       {inf, -inf, std::nan(""), -std::nan(""), most, -most, 1e300, -1e300, 0.0, -0.0, std::numeric_limits<double>::denorm_min()}) {
     for (const CurvePoint& p : {s.at(x), s.over_sine(x)}) {
       EXPECT_GE(p.first, 0) << x;
       EXPECT_LE(p.first + 4, s.size()) << x;

@@ -87,7 +87,8 @@ inline void shake(Model& model, unsigned seed) {
 }
 
 inline void free_all_constants(ModelRequest& request) {
-  for (const auto& constant : registry().system(request.system).make(request.options)->spec().constants) request.parameters[constant.name].free = true;
+  const std::unique_ptr<System> system = registry().system(request.system).make(request.options);
+  for (const auto& constant : system->spec().constants) request.parameters[constant.name].free = true;
 }
 
 }  // namespace misfit::testing_models

@@ -1,8 +1,7 @@
-// Laws over every registered effect. The author of an effect writes nothing here.
+// Laws over every registered effect by itself. The author of an effect writes nothing here. Laws inside a system: effect_systems_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <set>
 
 #include "misfit/core/units.h"
@@ -21,7 +20,8 @@ struct Inputs {
   std::size_t nq, nc, nz, nk;
   double t;
 
-  explicit Inputs(const Example& e) : nq(e.quantities.size()), nc(e.coefficients.size()), nz(e.states.size()), nk(e.constants.size()), t(e.t) {
+  explicit Inputs(const Example& e)
+      : nq(e.quantities.size()), nc(e.coefficients.size()), nz(e.states.size()), nk(e.constants.size()), t(e.t) {
     for (const auto* part : {&e.quantities, &e.coefficients, &e.states, &e.constants}) row.insert(row.end(), part->begin(), part->end());
   }
   [[nodiscard]] Reads<double, double> reads() const {
@@ -71,14 +71,16 @@ class EffectLaws : public testing::TestWithParam<std::string> {
           in.row[i]);
       for (Eigen::Index o = 0; o < difference.size(); ++o) {
         const double jet = all.J(o, static_cast<Eigen::Index>(i));
-        EXPECT_NEAR(jet, difference[o], 1e-6 * std::abs(jet) + 1e-8 * (1.0 + std::abs(plain[o]))) << where << ": output " << o << ", input " << i;
+        EXPECT_NEAR(jet, difference[o], 1e-6 * std::abs(jet) + 1e-8 * (1.0 + std::abs(plain[o])))
+            << where << ": output " << o << ", input " << i;
       }
     }
   }
 };
 
 TEST_P(EffectLaws, SaysWhatItIsInSixLinesAndEveryCoefficientHasItsOwn) {
-  for (const auto* line : {&spec_.formula, &spec_.symbols, &spec_.valid, &spec_.size, &spec_.source, &spec_.excludes}) EXPECT_FALSE(line->empty());
+  for (const auto* line : {&spec_.formula, &spec_.symbols, &spec_.valid, &spec_.size, &spec_.source, &spec_.excludes})
+    EXPECT_FALSE(line->empty());
   for (const auto& c : spec_.coefficients) EXPECT_NE(std::string(c.doc), "") << c.name;
   EXPECT_EQ(spec_.key, GetParam());
   EXPECT_FALSE(spec_.ports.empty()) << "an effect must act on something";
@@ -147,7 +149,8 @@ TEST_P(EffectLaws, WorkedExamplesAreCompleteAndMeetTheFormula) {
     std::vector<double> expected = x.ports;
     expected.insert(expected.end(), x.drifts.begin(), x.drifts.end());
     const Eigen::VectorXd out = outputs(Inputs(x));
-    for (std::size_t o = 0; o < expected.size(); ++o) EXPECT_NEAR(out[static_cast<Eigen::Index>(o)], expected[o], 1e-6 * std::abs(expected[o])) << "example " << e << ", output " << o;
+    for (std::size_t o = 0; o < expected.size(); ++o)
+      EXPECT_NEAR(out[static_cast<Eigen::Index>(o)], expected[o], 1e-6 * std::abs(expected[o])) << "example " << e << ", output " << o;
   }
 }
 
@@ -206,7 +209,8 @@ TEST_P(EffectLaws, IsFiniteAtItsDefaultsWhereEveryFitStarts) {
 }
 
 TEST_P(EffectLaws, AddsNothingWhenAllStrengthsAreZero) {
-  const bool has_strengths = std::any_of(spec_.coefficients.begin(), spec_.coefficients.end(), [](const auto& c) { return c.kind == CoefficientKind::strength; });
+  const bool has_strengths =
+      std::any_of(spec_.coefficients.begin(), spec_.coefficients.end(), [](const auto& c) { return c.kind == CoefficientKind::strength; });
   if (!has_strengths) return;  // coning, gravity: on or left out
   for (const auto& example : examples_) {
     Inputs in(example);
@@ -239,59 +243,6 @@ TEST_P(EffectLaws, DiffusionIsFiniteAndNotNegative) {
     effect_.diffusion(in.reads(), intensity.data());
     for (double value : intensity) EXPECT_TRUE(std::isfinite(value) && value >= 0.0);
   }
-}
-
-/// A system in which the effect binds with its default roles, if there is one.
-std::vector<Model> models_with(const std::string& key) {
-  std::vector<Model> models;
-  for (const auto& request : {parachute(true), parachute(false), cart({})}) {
-    ModelRequest alone = request;
-    alone.effects = {effect(key)};
-    alone.curves.clear();
-    for (const auto& [name, of] : curves_without_knots(alone, registry())) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};
-    try {
-      models.push_back(assemble(alone, registry()));
-    } catch (const InputError&) {  // does not suit this system
-    }
-  }
-  return models;
-}
-
-TEST_P(EffectLaws, SuitsAtLeastOneSystemWithItsDefaultRoles) { EXPECT_FALSE(models_with(GetParam()).empty()); }
-
-TEST_P(EffectLaws, NeverAddsPowerIfDeclaredDissipative) {
-  if (!spec_.dissipative) return;
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal;
-  int judged = 0;
-  for (const Model& model : models_with(GetParam())) {
-    const SystemSpec& system = model.system->spec();
-    const BoundEffect& bound = model.effects.front();
-    Evaluator evaluator(model);
-    for (int trial = 0; trial < 300; ++trial) {
-      std::vector<double> x(static_cast<std::size_t>(model.states())), u(static_cast<std::size_t>(model.inputs()) + 1), q(system.quantities.size());
-      for (double& value : x) value = normal(random);
-      for (double& value : u) value = normal(random);
-      evaluator.quantities(x.data(), u.data(), 0.0, q.data());
-      Example at;
-      for (int i : bound.quantities) at.quantities.push_back(i < 0 ? 0.0 : q[static_cast<std::size_t>(i)]);
-      for (const auto& c : spec_.coefficients) at.coefficients.push_back(std::clamp(c.value + 3.0 * c.scale * normal(random), c.lower, c.upper));
-      at.states.assign(spec_.states.size(), normal(random));
-      for (int i : bound.constants) at.constants.push_back(model.parameters[static_cast<std::size_t>(i)].value);
-      const Eigen::VectorXd out = outputs(Inputs(at));
-      double power = 0.0;
-      for (std::size_t p = 0; p < bound.ports.size(); ++p) {
-        if (bound.ports[p] < 0 || bound.kind != PortKind::dynamic) continue;
-        const auto& conjugate = system.dynamic_ports[static_cast<std::size_t>(bound.ports[p])].conjugate;
-        for (std::size_t i = 0; i < system.quantities.size(); ++i) {
-          if (system.quantities[i].name == conjugate) power += out[static_cast<Eigen::Index>(p)] * q[i];
-        }
-      }
-      EXPECT_LE(power, 0.0);
-      judged += power < 0.0 ? 1 : 0;
-    }
-  }
-  EXPECT_GT(judged, 100) << "no system gave power to judge";
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, EffectLaws, testing::ValuesIn(registry().effect_keys()), [](const auto& key) { return key.param; });

@@ -1,0 +1,114 @@
+// What a request becomes: names, units, defaults and what is free.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/model/cases.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_models;
+using testing::ElementsAre;
+
+TEST(Binding, OneEffectTwiceIsBoundTwiceWithCoefficientsNamedAfterEach) {
+  const Model m = assemble(
+      cart({effect("viscous_friction", {}, "bearing"), effect("viscous_friction", {{"rate", "x"}, {"port", "slip"}}, "leak")}), registry());
+  ASSERT_EQ(m.effects.size(), 2U);
+  EXPECT_GE(m.find_parameter("bearing.viscosity"), 0);
+  EXPECT_GE(m.find_parameter("leak.viscosity"), 0);
+  EXPECT_EQ(m.find_parameter("viscosity"), -1);
+  EXPECT_EQ(m.parameters[static_cast<std::size_t>(m.find_parameter("bearing.viscosity"))].unit, "N s/m");
+  EXPECT_EQ(m.parameters[static_cast<std::size_t>(m.find_parameter("leak.viscosity"))].unit, "1/s");
+  Model with_values = m;
+  set(with_values, "bearing.viscosity", 3.0);
+  set(with_values, "leak.viscosity", 0.5);
+  set(with_values, "stiffness", 0.0);
+  Evaluator evaluator(with_values);
+  const double x[] = {0.4, 2.0}, u[] = {0.0};
+  double dx[2];
+  evaluator.rates(x, u, 0.0, dx);
+  EXPECT_NEAR(dx[0], 2.0 - 0.5 * 0.4, 1e-15);
+  EXPECT_NEAR(dx[1], -3.0 * 2.0 / 2.0, 1e-15);
+}
+
+TEST(Binding, AGenericEffectHasTheUnitsOfWhatItIsBoundTo) {
+  const Model planar =
+      assemble(parachute(true, {effect("viscous_friction"), effect("lag"), effect("bias"), effect("coulomb_friction")}), registry());
+  const auto unit = [&](const std::string& name) {
+    return planar.parameters.at(static_cast<std::size_t>(planar.find_parameter(name))).unit;
+  };
+  EXPECT_EQ(unit("viscosity"), "N m s/rad");
+  EXPECT_EQ(unit("lag_stiffness"), "N m/rad");
+  EXPECT_EQ(unit("offset"), "rad");
+  EXPECT_EQ(unit("width"), "rad/s");
+  EXPECT_THAT(planar.own_state_names, ElementsAre("lag.z"));
+  EXPECT_THAT(planar.own_state_units, ElementsAre("rad"));
+}
+
+TEST(Binding, UnitsOfParametersAreKnownBeforeAssembling) {
+  const ModelRequest r =
+      parachute(false, {effect("viscous_friction", {}, "bearing"), effect("viscous_friction", {}, "second"), effect("lag")});
+  const auto units = parameter_units(r, registry());
+  const Model m = assemble(r, registry());
+  for (const auto& p : m.parameters) {
+    if (p.curve >= 0) continue;
+    EXPECT_EQ(units.at(p.name), p.unit) << p.name;
+  }
+  for (const auto& c : m.curves) EXPECT_EQ(units.at(c.name), c.unit) << c.name;
+  EXPECT_EQ(units.at("bearing.viscosity"), "N m s/rad");
+}
+
+TEST(Binding, ASmoothingWidthIsFixedUnlessTheStudyFreesIt) {
+  ModelRequest r = parachute(true, {effect("coulomb_friction")});
+  const auto free = [&] {
+    const Model m = assemble(r, registry());
+    return m.parameters[static_cast<std::size_t>(m.find_parameter("width"))].free;
+  };
+  EXPECT_FALSE(free());
+  r.parameters["width"].free = true;
+  EXPECT_TRUE(free());
+}
+
+TEST(Binding, RolesTakeTheSystemsDefaults) {
+  const Model m = assemble(cart({effect("viscous_friction"), effect("bias")}), registry());
+  EXPECT_EQ(m.effects[0].quantities.front(), 1);  // v
+  EXPECT_EQ(m.effects[0].ports.front(), 0);       // force
+  EXPECT_EQ(m.effects[1].kind, PortKind::sensor);
+  EXPECT_EQ(m.effects[1].ports.front(), 0);  // position_reading
+}
+
+TEST(Binding, AnOptionalConstantHasItsDefault) {
+  const Model m = assemble(cart({}), registry());
+  EXPECT_EQ(m.parameters[static_cast<std::size_t>(m.find_parameter("gain"))].value, 1.0);
+}
+
+TEST(Binding, SystemConstantsAreFixedAndEffectsCoefficientsFreeUnlessTheStudySaysOtherwise) {
+  const Model m = assemble(parachute(true, {effect("lag")}), registry());
+  for (const auto& p : m.parameters) EXPECT_EQ(p.free, m.find_parameter(p.name) >= 7) << p.name;
+  ModelRequest r = parachute(true);
+  r.parameters["m_a"] = {true, 0.3, 0.1, 0.5, 0.05, {}};
+  const Model freed = assemble(r, registry());
+  const Parameter& m_a = freed.parameters[static_cast<std::size_t>(freed.find_parameter("m_a"))];
+  EXPECT_TRUE(m_a.free);
+  EXPECT_EQ(m_a.value, 0.3);
+  EXPECT_EQ(m_a.prior_mean, 0.3);
+  EXPECT_EQ(m_a.prior_sigma, 0.05);
+  EXPECT_EQ(m_a.lower, 0.1);
+}
+
+TEST(Binding, InputsThatNobodyReadsAreNotNeeded) {
+  EXPECT_THAT(assemble(parachute(false), registry()).needed_inputs(), ElementsAre("phi", "phi_rate"));
+  ModelRequest bare = parachute(false);
+  bare.effects = {effect("static_moment"), effect("pitch_damping")};
+  EXPECT_TRUE(assemble(bare, registry()).needed_inputs().empty());
+}
+
+TEST(Binding, CurvesWithoutKnotsAreListedWithTheirQuantity) {
+  ModelRequest r = parachute(false);
+  r.curves.clear();
+  EXPECT_THAT(curves_without_knots(r, registry()), ElementsAre(std::pair<const std::string, std::string>("C_m", "alpha_T"),
+                                                               std::pair<const std::string, std::string>("C_m_alphadot", "alpha_T")));
+}
+
+}  // namespace
+}  // namespace misfit

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <ostream>
+
+#include "tests/model/requests.h"
+
+namespace misfit::testing_models {
+
+/// A named model on which the laws of assembled models are tried. Values are set and shaken.
+struct Case {
+  std::string name;
+  ModelRequest request;
+
+  [[nodiscard]] Model model() const {
+    Model m = assemble(request, registry());
+    if (request.system == "parachute_planar") set_parachute_curves(m);
+    shake(m, 17);
+    return m;
+  }
+  friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+};
+
+inline Case with_free_constants(Case c) {
+  free_all_constants(c.request);
+  c.name += "_free_constants";
+  return c;
+}
+
+/// Strengths at values that count: shake() alone leaves them within 30 % of their scale.
+inline ModelRequest with_values(ModelRequest request, const std::map<std::string, double>& values) {
+  for (const auto& [name, value] : values) request.parameters[name].value = value;
+  return request;
+}
+
+inline ModelRequest with_scale_curve(ModelRequest request) {
+  request.curves["scale_error"] = {"position_reading", {-0.5, 0.0, 0.5}, {}, {}};
+  return request;
+}
+
+/// Two curves of one quantity over the same knots, which an evaluator may look up together.
+inline ModelRequest with_equal_knots(ModelRequest request) {
+  request.curves["C_m_alphadot"].knots = request.curves["C_m"].knots;
+  return request;
+}
+
+/// Both forms of the parachute, one effect of each kind on it, everything at once, and another system; each also with all constants freed.
+inline std::vector<Case> cases() {
+  const std::map<std::string, double> friction = {{"friction", 8.0}, {"width", 0.2}};
+  std::vector<Case> fixed = {
+      {"paper_form", parachute(false)},
+      {"induced_form", parachute(true)},
+      {"curves_on_equal_knots", with_equal_knots(parachute(false))},
+      {"force", with_values(parachute(true, {effect("periodic_forcing")}), {{"cosine", 4.0}, {"sine", -7.0}, {"frequency", 1.7}})},
+      {"changed_quantity", with_values(parachute(true, {effect("dynamic_pressure_drift")}), {{"pressure_drift", 20.0}, {"t_drift", -3.0}})},
+      {"changed_quantity_reads_state", with_values(parachute(true, {effect("inertia_swell")}), {{"swell", 6.0}})},
+      {"memory_on_a_force", with_values(parachute(true, {effect("lag")}), {{"lag_stiffness", 120.0}, {"tau", 0.3}})},
+      {"memory_on_a_quantity", with_values(parachute(false, {effect("pressure_memory")}), {{"blockage", 900.0}, {"blockage_tau", 0.4}})},
+      {"sensor", with_values(parachute(false, {effect("bias")}), {{"offset", 0.01}})},
+      {"shifted_time",
+       with_values(parachute(true, {effect("time_offset"), effect("periodic_forcing")}), {{"clock_offset", 0.013}, {"cosine", 9.0}})},
+      {"friction", with_values(parachute(true, {effect("coulomb_friction"), effect("viscous_friction")}), friction)},
+      {"everything", parachute(true, {effect("periodic_forcing"), effect("dynamic_pressure_drift"), effect("inertia_swell"), effect("lag"),
+                                      effect("pressure_memory"), effect("bias"), effect("time_offset"), effect("viscous_friction")})},
+      {"cart_all_ports",
+       cart({effect("viscous_friction"), effect("viscous_friction", {{"rate", "x"}, {"port", "slip"}}, "leak"), effect("lag"),
+             effect("bias", {{"output", "speed_reading"}}), effect("periodic_forcing", {{"port", "added_mass"}}, "breathing")})},
+      {"cart_two_ports_of_one_effect", with_values(cart({effect("own_weight", {{"also", "slip"}})}), {{"share", 0.4}})},
+      {"cart_sensor_memory", with_values(cart({effect("sensor_lag"), effect("sensor_scale")}), {{"share", 0.7}, {"scale_error", 0.05}})},
+      {"cart_curve_of_an_output", with_scale_curve(cart({effect("sensor_scale"), effect("coulomb_friction")}))}};
+  std::vector<Case> all;
+  for (const auto& c : fixed) {
+    all.push_back(c);
+    all.push_back(with_free_constants(c));
+  }
+  return all;
+}
+
+/// States and inputs at which the laws are tried: random, plus rest at 0, where angles have no derivative of their own.
+struct Sample {
+  std::vector<double> x, u;
+  double t;
+};
+inline std::vector<Sample> samples_of(const Model& model, int count) {
+  std::mt19937 random(23);
+  std::normal_distribution<double> normal;
+  std::vector<Sample> samples;
+  for (int s = 0; s < count; ++s) {
+    Sample sample{{}, {}, 0.7 * s};
+    for (int i = 0; i < model.states(); ++i) sample.x.push_back(s == 0 ? 0.0 : (i == 1 ? 1.0 : 0.25) * normal(random));
+    for (int i = 0; i < model.inputs(); ++i) sample.u.push_back(s == 0 ? 0.0 : normal(random));
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+}  // namespace misfit::testing_models

@@ -1,0 +1,76 @@
+// Laws over every registered effect inside the systems that it suits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "tests/model/requests.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_models;
+
+class EffectInSystems : public testing::TestWithParam<std::string> {};
+
+/// A system in which the effect binds with its default roles, if there is one.
+std::vector<Model> models_with(const std::string& key) {
+  std::vector<Model> models;
+  for (const auto& request : {parachute(true), parachute(false), cart({})}) {
+    ModelRequest alone = request;
+    alone.effects = {effect(key)};
+    alone.curves.clear();
+    for (const auto& [name, of] : curves_without_knots(alone, registry())) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};
+    try {
+      models.push_back(assemble(alone, registry()));
+    } catch (const InputError&) {  // does not suit this system
+    }
+  }
+  return models;
+}
+
+TEST_P(EffectInSystems, SuitsAtLeastOneSystemWithItsDefaultRoles) { EXPECT_FALSE(models_with(GetParam()).empty()); }
+
+TEST_P(EffectInSystems, NeverAddsPowerIfDeclaredDissipative) {
+  const EffectSpec& spec = registry().effect(GetParam()).spec();
+  if (!spec.dissipative) return;
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  int judged = 0;
+  for (const Model& model : models_with(GetParam())) {
+    const SystemSpec& system = model.system->spec();
+    const BoundEffect& bound = model.effects.front();
+    Evaluator evaluator(model);
+    for (int trial = 0; trial < 300; ++trial) {
+      std::vector<double> x(static_cast<std::size_t>(model.states())), u(static_cast<std::size_t>(model.inputs()) + 1),
+          q(system.quantities.size());
+      for (double& value : x) value = normal(random);
+      for (double& value : u) value = normal(random);
+      evaluator.quantities(x.data(), u.data(), 0.0, q.data());
+      Example at;
+      for (int i : bound.quantities) at.quantities.push_back(i < 0 ? 0.0 : q[static_cast<std::size_t>(i)]);
+      for (const auto& c : spec.coefficients)
+        at.coefficients.push_back(std::clamp(c.value + 3.0 * c.scale * normal(random), c.lower, c.upper));
+      at.states.assign(spec.states.size(), normal(random));
+      for (int i : bound.constants) at.constants.push_back(model.parameters[static_cast<std::size_t>(i)].value);
+      std::vector<double> out(spec.ports.size() + spec.states.size());
+      bound.effect->evaluate({at.quantities.data(), at.coefficients.data(), at.states.data(), at.constants.data(), 0.0}, out.data());
+      double power = 0.0;
+      for (std::size_t p = 0; p < bound.ports.size(); ++p) {
+        if (bound.ports[p] < 0 || bound.kind != PortKind::dynamic) continue;
+        const auto& conjugate = system.dynamic_ports[static_cast<std::size_t>(bound.ports[p])].conjugate;
+        for (std::size_t i = 0; i < system.quantities.size(); ++i) {
+          if (system.quantities[i].name == conjugate) power += out[p] * q[i];
+        }
+      }
+      EXPECT_LE(power, 0.0);
+      judged += power < 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(judged, 100) << "no system gave power to judge";
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, EffectInSystems, testing::ValuesIn(registry().effect_keys()), [](const auto& key) { return key.param; });
+
+}  // namespace
+}  // namespace misfit
