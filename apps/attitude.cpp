@@ -15,7 +15,8 @@ int attitude_verb(const Options& options, const Registry& registry) {
     if (attitudes[e]) std::cout << attitude_text(session.study.experiments[e].name, *attitudes[e]);
     any = any || attitudes[e].has_value();
   }
-  if (!any) throw InputError({session.study.file.string(), 0, 0}, "no experiment of the study has a track: there is no attitude to extract");
+  if (!any)
+    throw InputError({session.study.file.string(), 0, 0}, "no experiment of the study has a track: there is no attitude to extract");
   return 0;
 }
 

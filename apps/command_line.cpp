@@ -35,8 +35,12 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
   auto* study = verb.add_option("study", options.study, "study.toml, or the folder that holds it")->type_name("STUDY");
   if (study_required) study->required();
   verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
-  verb.add_option("--method", options.methods, "only these methods")->type_name("NAME")->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
-  verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")->type_name("N")->check(CLI::Range(0, 1024));
+  verb.add_option("--method", options.methods, "only these methods")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
+  verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
   verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N");
   verb.add_flag("--quiet", options.quiet, "no progress and no remarks on stderr");
   verb.add_flag("--json", options.json, "print the result as JSON");
@@ -68,7 +72,8 @@ int dispatch(int argc, char** argv, const Registry& registry) {
   }
   if (argc > 1 && argv[1][0] != '-') {
     const std::vector<std::string> names = verb_names();
-    if (std::find(names.begin(), names.end(), argv[1]) == names.end()) throw InputError(std::string("unknown verb '") + argv[1] + "'" + suggest(argv[1], names));
+    if (std::find(names.begin(), names.end(), argv[1]) == names.end())
+      throw InputError(std::string("unknown verb '") + argv[1] + "'" + suggest(argv[1], names));
   }
   try {
     app.parse(argc, argv);

@@ -1,9 +1,10 @@
+#include "misfit/compare/compare.h"
+
 #include <iostream>
 
 #include "apps/print.h"
 #include "apps/stages.h"
 #include "apps/verbs.h"
-#include "misfit/compare/compare.h"
 
 namespace misfit {
 

@@ -18,7 +18,8 @@ std::string joined(const std::vector<Role>& roles) {
 std::string coefficients_of(const EffectSpec& spec) {
   std::string out;
   for (const auto& c : spec.coefficients) {
-    out += fmt::format("{}{} [{}] {} in [{:g}, {:g}]{}", out.empty() ? "" : "; ", c.name, c.unit, c.kind == CoefficientKind::strength ? "strength" : "shape", c.lower, c.upper,
+    out += fmt::format("{}{} [{}] {} in [{:g}, {:g}]{}", out.empty() ? "" : "; ", c.name, c.unit,
+                       c.kind == CoefficientKind::strength ? "strength" : "shape", c.lower, c.upper,
                        c.curve_of[0] == '\0' ? "" : fmt::format(", a curve of {}", c.curve_of));
   }
   return out.empty() ? "none" : out;
@@ -40,12 +41,20 @@ std::vector<std::string> chosen(const Options& options, const Registry& registry
 }
 
 nlohmann::ordered_json as_json(const EffectSpec& spec) {
-  nlohmann::ordered_json json{{"effect", spec.key},   {"formula", spec.formula}, {"symbols", spec.symbols}, {"roles", joined(spec.quantities)}, {"ports", joined(spec.ports)},
-                              {"valid", spec.valid},  {"size", spec.size},       {"source", spec.source},   {"not", spec.excludes},             {"states", states_of(spec)}};
+  nlohmann::ordered_json json{
+      {"effect", spec.key},          {"formula", spec.formula},  {"symbols", spec.symbols}, {"roles", joined(spec.quantities)},
+      {"ports", joined(spec.ports)}, {"valid", spec.valid},      {"size", spec.size},       {"source", spec.source},
+      {"not", spec.excludes},        {"states", states_of(spec)}};
   json["constants"] = spec.constants;
   json["coefficients"] = nlohmann::ordered_json::array();
   for (const auto& c : spec.coefficients) {
-    json["coefficients"].push_back({{"name", c.name}, {"unit", c.unit}, {"kind", c.kind == CoefficientKind::strength ? "strength" : "shape"}, {"bounds", {c.lower, c.upper}}, {"start", c.value}, {"doc", c.doc}, {"curve_of", c.curve_of}});
+    json["coefficients"].push_back({{"name", c.name},
+                                    {"unit", c.unit},
+                                    {"kind", c.kind == CoefficientKind::strength ? "strength" : "shape"},
+                                    {"bounds", {c.lower, c.upper}},
+                                    {"start", c.value},
+                                    {"doc", c.doc},
+                                    {"curve_of", c.curve_of}});
   }
   return json;
 }
@@ -62,15 +71,15 @@ int effects_verb(const Options& options, const Registry& registry) {
     }
     std::cout << key << '\n';
     for (const auto& [what, text] : std::vector<std::pair<std::string, std::string>>{{"formula", spec.formula},
-                                                                                      {"symbols", spec.symbols},
-                                                                                      {"roles", joined(spec.quantities)},
-                                                                                      {"ports", joined(spec.ports)},
-                                                                                      {"coefficients", coefficients_of(spec)},
-                                                                                      {"own states", states_of(spec)},
-                                                                                      {"valid", spec.valid},
-                                                                                      {"size", spec.size},
-                                                                                      {"source", spec.source},
-                                                                                      {"not", spec.excludes}}) {
+                                                                                     {"symbols", spec.symbols},
+                                                                                     {"roles", joined(spec.quantities)},
+                                                                                     {"ports", joined(spec.ports)},
+                                                                                     {"coefficients", coefficients_of(spec)},
+                                                                                     {"own states", states_of(spec)},
+                                                                                     {"valid", spec.valid},
+                                                                                     {"size", spec.size},
+                                                                                     {"source", spec.source},
+                                                                                     {"not", spec.excludes}}) {
       if (text != "none") std::cout << fmt::format("  {:<13} {}\n", what, text);
     }
     std::cout << '\n';

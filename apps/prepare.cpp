@@ -44,7 +44,8 @@ void start_from_tables(const Session& session, Model& model) {
 }
 
 Prepared prepare_request(Session& session, ModelRequest request) {
-  if (session.study.experiments.empty()) throw InputError({session.study.file.string(), 0, 0}, "the study has no [[experiment]]: there is nothing to fit");
+  if (session.study.experiments.empty())
+    throw InputError({session.study.file.string(), 0, 0}, "the study has no [[experiment]]: there is nothing to fit");
   Prepared out;
   out.experiments = read_experiments(session, provisional(request, session.registry));
   choose_all_knots(request, session.registry, out.experiments, default_intervals);

@@ -37,7 +37,8 @@ void add_estimates(const char* what, const std::map<std::string, Estimate>& esti
 }
 
 std::string fit_text(const Fit& fit) {
-  std::string out = fmt::format("{}  —  {}  ({:.2f} s, {} linearisations)\n", fit.method, to_string(fit.status), fit.seconds, fit.linearisations);
+  std::string out =
+      fmt::format("{}  —  {}  ({:.2f} s, {} linearisations)\n", fit.method, to_string(fit.status), fit.seconds, fit.linearisations);
   out += wrap_text(fit.message, 110, "  ") + "\n";
   std::vector<std::vector<std::string>> rows{{"result", "value"}};
   if (fit.trim) rows.push_back({"trim", shown(*fit.trim)});
@@ -60,7 +61,8 @@ std::string calibration_text(const Calibration& c) {
   for (std::size_t i = 0; i < camera_parameter_names.size(); ++i) {
     const std::string name = camera_parameter_names[i];
     const bool free = std::find(c.names.begin(), c.names.end(), name) != c.names.end();
-    if (free || c.value(name) != 0.0) rows.push_back({name, shown({c.value(name), c.sigma(name), camera_parameter_units[i]}) + (free ? "" : "  (given)")});
+    if (free || c.value(name) != 0.0)
+      rows.push_back({name, shown({c.value(name), c.sigma(name), camera_parameter_units[i]}) + (free ? "" : "  (given)")});
   }
   if (!c.residuals.empty()) {
     rows.push_back({"residual RMS", format_value(c.rms_px) + " px"});
@@ -69,7 +71,7 @@ std::string calibration_text(const Calibration& c) {
   std::string out = "calibration  —  " + c.message + "\n" + align_columns(rows);
   if (!c.tests.empty()) {
     std::vector<std::vector<std::string>> tests{{"offered", "drop", "p (corrected)", "taken in"}};
-    for (const auto& t : c.tests) tests.push_back({t.name, format_value(t.drop), format_value(t.p_value), t.taken_in ? "yes" : "no"});
+    for (const auto& t : c.tests) tests.push_back({t.name, format_value(t.drop), format_probability(t.p_value), t.taken_in ? "yes" : "no"});
     out += align_columns(tests);
   }
   for (const auto& note : c.notes) out += wrap_text("! " + note, 110, "  ") + "\n";
@@ -88,7 +90,8 @@ std::string attitude_text(const std::string& experiment, const Attitude& a) {
   out += align_columns({{"quantity", "value"},
                         {"samples read", std::to_string(known) + " of " + std::to_string(a.t.size())},
                         {"mean alpha_T", format_value(mean * to_degrees) + " deg"},
-                        {"RMS of alpha_T about it", format_value(std::sqrt(std::max(squares / std::max(n, 1.0) - mean * mean, 0.0)) * to_degrees) + " deg"}});
+                        {"RMS of alpha_T about it",
+                         format_value(std::sqrt(std::max(squares / std::max(n, 1.0) - mean * mean, 0.0)) * to_degrees) + " deg"}});
   for (const auto& note : a.notes) out += wrap_text("! " + note, 110, "  ") + "\n";
   return out;
 }

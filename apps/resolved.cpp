@@ -32,8 +32,10 @@ std::string numbers_of(const std::vector<double>& values, double scale) {
 
 void add_head(const Session& session, std::string& text) {
   const Study& study = session.study;
-  text += fmt::format("# Written by misfit {} ({}): the study with all defaults and everything chosen from the data.\n", version(), commit());
-  text += fmt::format("[study]\nname = {}\nquestion = {}\nmethods = {}\nseed = {}\n", quoted(study.name), quoted(study.question), list_of(session.methods()), study.seed);
+  text +=
+      fmt::format("# Written by misfit {} ({}): the study with all defaults and everything chosen from the data.\n", version(), commit());
+  text += fmt::format("[study]\nname = {}\nquestion = {}\nmethods = {}\nseed = {}\n", quoted(study.name), quoted(study.question),
+                      list_of(session.methods()), study.seed);
   text += fmt::format("\n[system]\nkind = {}\n", quoted(session.model.request.system));
   for (const auto& [name, flag] : session.model.request.options.flags) text += fmt::format("{} = {}\n", name, flag);
 }
@@ -43,9 +45,11 @@ void add_experiments(const Session& session, const Prepared& prepared, std::stri
     const Signals& s = prepared.experiments[e];
     const ExperimentStudy& study = session.study.experiments[e];
     const auto file = study.track ? *study.track : study.data ? *study.data : std::filesystem::path();
-    text += fmt::format("\n[[experiment]]  # {} samples, {:.6g} s to {:.6g} s\nname = {}\n{} = {}\nexclude = {}\n", s.samples(), s.t.front(), s.t.back(), quoted(s.name),
-                        study.track ? "track" : "data", quoted(file.lexically_relative(session.study.folder).string()), s.exclude);
-    if (s.validation_from < s.t.back()) text += fmt::format("validation = [{:.10g}, {:.10g}]\n", s.validation_from, std::min(s.validation_to, s.t.back() + 1.0));
+    text += fmt::format("\n[[experiment]]  # {} samples, {:.6g} s to {:.6g} s\nname = {}\n{} = {}\nexclude = {}\n", s.samples(),
+                        s.t.front(), s.t.back(), quoted(s.name), study.track ? "track" : "data",
+                        quoted(file.lexically_relative(session.study.folder).string()), s.exclude);
+    if (s.validation_from < s.t.back())
+      text += fmt::format("validation = [{:.10g}, {:.10g}]\n", s.validation_from, std::min(s.validation_to, s.t.back() + 1.0));
   }
 }
 
@@ -66,7 +70,8 @@ void add_model(const Prepared& prepared, std::string& text) {
   text += "\n[curves]\n";
   for (const auto& curve : prepared.model.curves) {
     const bool angle = curve.of_unit == "rad";
-    text += fmt::format("{} = {{ of = {}, knots = {}, roughness = {} }}  # knots in {}\n", curve.name, quoted(curve.of), numbers_of(curve.spline.breakpoints(), angle ? 1.0 / degree : 1.0),
+    text += fmt::format("{} = {{ of = {}, knots = {}, roughness = {} }}  # knots in {}\n", curve.name, quoted(curve.of),
+                        numbers_of(curve.spline.breakpoints(), angle ? 1.0 / degree : 1.0),
                         curve.roughness ? fmt::format("{:.6g}", *curve.roughness) : "\"auto\"", angle ? "deg" : curve.of_unit);
   }
 }

@@ -24,7 +24,9 @@ Study open_study(const Options& options) {
   return study;
 }
 
-fs::path folder_of(const Options& options, const Study& study) { return options.out.empty() ? study.folder / "out" : fs::path(options.out); }
+fs::path folder_of(const Options& options, const Study& study) {
+  return options.out.empty() ? study.folder / "out" : fs::path(options.out);
+}
 
 std::string hash_of_program() {
   std::error_code error;
@@ -35,7 +37,12 @@ std::string hash_of_program() {
 }  // namespace
 
 Session::Session(const Options& o, const Registry& r)
-    : options(o), registry(r), study(open_study(o)), model(read_model(study, r)), folder(folder_of(o, study), o.command, study.seed), program(hash_of_program()) {}
+    : options(o),
+      registry(r),
+      study(open_study(o)),
+      model(read_model(study, r)),
+      folder(folder_of(o, study), o.command, study.seed),
+      program(hash_of_program()) {}
 
 std::map<std::string, std::string> Session::inputs(const std::string& settings, const std::vector<fs::path>& files) const {
   std::map<std::string, std::string> out{{"program", program}, {"settings", hash_text(settings)}};

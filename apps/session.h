@@ -13,14 +13,14 @@ namespace misfit {
 
 /// Options of the command line that verbs share.
 struct Options {
-  std::string study;                  ///< path of study.toml
-  std::string out;                    ///< empty: out/ beside the study
-  std::vector<std::string> methods;   ///< empty: those of the study
-  int threads = 0;                    ///< 0: one per core
+  std::string study;                 ///< path of study.toml
+  std::string out;                   ///< empty: out/ beside the study
+  std::vector<std::string> methods;  ///< empty: those of the study
+  int threads = 0;                   ///< 0: one per core
   bool has_seed = false;
   unsigned long seed = 1;
   bool quiet = false, json = false;
-  std::string command;                ///< the command line as typed, for run.json
+  std::string command;  ///< the command line as typed, for run.json
 };
 
 /// A study opened for work: what was asked, the run folder, and the hashes that decide what must be done again.
@@ -36,7 +36,8 @@ struct Session {
 
   [[nodiscard]] std::vector<std::string> methods() const { return options.methods.empty() ? study.methods : options.methods; }
   /// {"program", "settings"} and the files, hashed: the inputs of a stage.
-  [[nodiscard]] std::map<std::string, std::string> inputs(const std::string& settings, const std::vector<std::filesystem::path>& files) const;
+  [[nodiscard]] std::map<std::string, std::string> inputs(const std::string& settings,
+                                                          const std::vector<std::filesystem::path>& files) const;
   /// A line on stderr unless quiet.
   void say(const std::string& line) const;
 };

@@ -28,7 +28,8 @@ struct Case {
 /// A number of [simulate], written with or without unit, in the model's unit.
 double in_unit(const config::Number& number, const std::string& name, const std::string& unit) {
   if (number.unit.empty() || number.unit == "-") return number.value;
-  if (!parse_unit(number.unit).same_dimension(parse_unit(unit))) throw InputError(number.where, name + " needs [" + unit + "], not [" + number.unit + "]");
+  if (!parse_unit(number.unit).same_dimension(parse_unit(unit)))
+    throw InputError(number.where, name + " needs [" + unit + "], not [" + number.unit + "]");
   return number.value;
 }
 
@@ -36,7 +37,9 @@ double in_unit(const config::Number& number, const std::string& name, const std:
 void knots_from_tables(const Session& session, ModelRequest& request) {
   for (const auto& [name, of] : curves_without_knots(request, session.registry)) {
     const auto curve = session.study.curves.find(name);
-    if (curve == session.study.curves.end() || !curve->second.table) throw InputError({session.study.file.string(), 0, 0}, "to simulate, curve " + name + " needs a table: [curves] " + name + " = { of = \"" + of + "\", table = \"FILE.csv\" }");
+    if (curve == session.study.curves.end() || !curve->second.table)
+      throw InputError({session.study.file.string(), 0, 0}, "to simulate, curve " + name + " needs a table: [curves] " + name +
+                                                                " = { of = \"" + of + "\", table = \"FILE.csv\" }");
     const Table table = read_csv(*curve->second.table);
     const std::vector<double> x = table.values(of, table.at(of).unit == "deg" ? "rad" : table.at(of).unit);
     constexpr int intervals = 100;
@@ -64,15 +67,18 @@ Case from_section(Session& session) {
   const auto samples = static_cast<std::size_t>(ask.duration / ask.step) + 1;
   out.signals.name = "simulation";
   for (std::size_t i = 0; i < samples; ++i) out.signals.t.push_back(static_cast<double>(i) * ask.step);
-  for (const auto& input : out.model.system->spec().inputs) out.signals.inputs.push_back({input.name, input.unit, std::vector<double>(samples, 0.0), 0.0});
+  for (const auto& input : out.model.system->spec().inputs)
+    out.signals.inputs.push_back({input.name, input.unit, std::vector<double>(samples, 0.0), 0.0});
   const auto& states = out.model.system->spec().states;
   out.initial = Eigen::VectorXd::Zero(out.model.states());
   std::vector<std::string> names;
   for (const auto& state : states) names.push_back(state.name);
-  for (std::size_t z = 0; z < out.model.own_states.size(); ++z) out.initial[static_cast<Eigen::Index>(states.size() + z)] = out.model.own_states[z].initial;
+  for (std::size_t z = 0; z < out.model.own_states.size(); ++z)
+    out.initial[static_cast<Eigen::Index>(states.size() + z)] = out.model.own_states[z].initial;
   for (const auto& [name, number] : ask.initial) {
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) throw InputError(number.where, "[simulate] initial: the system has no state '" + name + "'" + suggest(name, names));
+    if (found == names.end())
+      throw InputError(number.where, "[simulate] initial: the system has no state '" + name + "'" + suggest(name, names));
     out.initial[found - names.begin()] = in_unit(number, name, states[static_cast<std::size_t>(found - names.begin())].unit);
   }
   return out;
@@ -133,7 +139,8 @@ int simulate_verb(const Options& options, const Registry& registry) {
   const Table table = simulate(c, session);
   const auto file = session.folder.file("simulation.csv");
   write_csv(file, table);
-  std::cout << fmt::format("{} samples, {:.2f} s of {} → {}\n", table.rows(), c.signals.t.back() - c.signals.t.front(), c.model.system->spec().key, file.string());
+  std::cout << fmt::format("{} samples, {:.2f} s of {} → {}\n", table.rows(), c.signals.t.back() - c.signals.t.front(),
+                           c.model.system->spec().key, file.string());
   return 0;
 }
 

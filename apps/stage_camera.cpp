@@ -12,7 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-CameraModel model_of(const CameraStudy& camera) { return camera.model == "plane_by_plane" ? CameraModel::plane_by_plane : CameraModel::pinhole; }
+CameraModel model_of(const CameraStudy& camera) {
+  return camera.model == "plane_by_plane" ? CameraModel::plane_by_plane : CameraModel::pinhole;
+}
 
 std::string settings_of(const Session& session) {
   const RigGeometry& rig = session.model.rig;
@@ -20,11 +22,14 @@ std::string settings_of(const Session& session) {
   for (double v : {rig.R, rig.R_cp, rig.V, rig.l_b, rig.l_s, rig.l_p, rig.R1, rig.R2, rig.R3}) text += " " + std::to_string(v);
   for (const auto& name : session.study.camera.offer) text += " offer " + name;
   for (const auto& name : session.study.camera.take_in) text += " take_in " + name;
-  for (const auto& [name, number] : session.study.camera.given) text += " " + name + "=" + std::to_string(number.value) + "~" + std::to_string(number.sigma.value_or(0.0));
+  for (const auto& [name, number] : session.study.camera.given)
+    text += " " + name + "=" + std::to_string(number.value) + "~" + std::to_string(number.sigma.value_or(0.0));
   return text;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point begin) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); }
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
 
 Calibration make_calibration(const Session& session) {
   const CameraStudy& camera = session.study.camera;
@@ -70,12 +75,15 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     stop_if_interrupted();
     const ExperimentStudy& experiment = session.study.experiments[e];
-    if (experiment.video) throw InputError(experiment.where, "this build cannot read video yet: give the tracked marker as track = \"track.csv\"");
+    if (experiment.video)
+      throw InputError(experiment.where, "this build cannot read video yet: give the tracked marker as track = \"track.csv\"");
     if (!experiment.track) {
       out.emplace_back();
       continue;
     }
-    if (!calibration) throw InputError(experiment.where, "experiment '" + experiment.name + "' is a track in pixels: the study needs [camera] (sweep = \"…\", or h_c and K)");
+    if (!calibration)
+      throw InputError(experiment.where,
+                       "experiment '" + experiment.name + "' is a track in pixels: the study needs [camera] (sweep = \"…\", or h_c and K)");
     require_rig(session.study, session.model.rig, false);
     const fs::path file = attitude_file(session, e);
     auto inputs = session.inputs(settings_of(session), {*experiment.track, session.folder.file("camera.json")});
@@ -91,7 +99,8 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
     write_attitude(file, result);
     const fs::path notes = fs::path(file).replace_extension(".notes.txt");
     write_notes(notes, result.notes);
-    session.folder.record({stage, session.options.command, inputs, {file.filename().string(), notes.filename().string()}, seconds_since(begin), "", ""});
+    session.folder.record(
+        {stage, session.options.command, inputs, {file.filename().string(), notes.filename().string()}, seconds_since(begin), "", ""});
     out.emplace_back(std::move(result));
   }
   return out;

@@ -50,7 +50,8 @@ class Methods {
       Fit fit;
       fit.method = "sliding_bin";
       fit.status = FitStatus::declined;
-      fit.message = "system '" + session_.model.request.system + "' has no form for it: sliding_bin needs one equation of motion with a static and a damping curve";
+      fit.message = "system '" + session_.model.request.system +
+                    "' has no form for it: sliding_bin needs one equation of motion with a static and a damping curve";
       return fit;
     }
     SlidingBinOptions options;
@@ -58,7 +59,8 @@ class Methods {
     if (session_.study.bin_step > 0.0) options.step = session_.study.bin_step;
     options.three_point_average = !averaged_by_attitude(session_);
     Fit fit = sliding_bin(form->model, form->experiments.front(), options);
-    if (form->experiments.size() > 1) fit.warnings.push_back("only the first experiment, '" + form->experiments.front().name + "', is used by this method");
+    if (form->experiments.size() > 1)
+      fit.warnings.push_back("only the first experiment, '" + form->experiments.front().name + "', is used by this method");
     for (const auto& name : left_out) fit.warnings.push_back("effect '" + name + "' is not in the equation of this method");
     add_notes(*form, fit);
     return fit;

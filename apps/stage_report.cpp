@@ -69,8 +69,13 @@ Comparison compare_stage(Session& session, const std::vector<Fit>& fits) {
   std::vector<fs::path> files;
   for (const auto& fit : fits) files.push_back(session.folder.file("fit/" + fit.method + "/fit.json"));
   for (const auto& [curve, file] : session.study.reference) files.push_back(file);
-  session.folder.record({"compare", session.options.command, session.inputs("", files), {"compare.json"},
-                         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), "", ""});
+  session.folder.record({"compare",
+                         session.options.command,
+                         session.inputs("", files),
+                         {"compare.json"},
+                         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+                         "",
+                         ""});
   return comparison;
 }
 
@@ -87,13 +92,19 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   input.references = references(session);
   for (const auto& reference : input.references) input.notes.insert(input.notes.end(), reference.notes.begin(), reference.notes.end());
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
-    const auto notes = lines_of(session.folder.file(e == 0 ? "attitude.notes.txt" : "attitude_" + session.study.experiments[e].name + ".notes.txt"));
+    const auto notes =
+        lines_of(session.folder.file(e == 0 ? "attitude.notes.txt" : "attitude_" + session.study.experiments[e].name + ".notes.txt"));
     input.notes.insert(input.notes.end(), notes.begin(), notes.end());
   }
   input.run = facts_of(session);
   fs::path page = report::write_report(session.folder.path(), input);
-  session.folder.record({"report", session.options.command, session.inputs("", {session.folder.file("compare.json")}), {"report.html"},
-                         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), "", ""});
+  session.folder.record({"report",
+                         session.options.command,
+                         session.inputs("", {session.folder.file("compare.json")}),
+                         {"report.html"},
+                         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+                         "",
+                         ""});
   return page;
 }
 

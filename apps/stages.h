@@ -14,8 +14,8 @@
 
 namespace misfit {
 
-// Each stage reads what it needs from the session and the run folder, skips its work when nothing it depends on has changed since (run.json), and
-// leaves its result on disk. They are run in this order; each calls the ones it needs.
+// Each stage reads what it needs from the session and the run folder, skips its work when nothing it depends on has changed since
+// (run.json), and leaves its result on disk. They are run in this order; each calls the ones it needs.
 
 /// camera.json; nullopt if the study has no camera.
 [[nodiscard]] std::optional<Calibration> calibrate_stage(Session& session);

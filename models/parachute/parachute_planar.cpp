@@ -51,8 +51,8 @@ struct ParachutePlanar {
     }
   }
 
-  /// Regular everywhere but at alpha_T = 0 exactly, where the derivative of the (even) angle is taken as 0; every use of alpha_T there is even or
-  /// odd-over-sine, so nothing is lost.
+  /// Regular everywhere but at alpha_T = 0 exactly, where the derivative of the (even) angle is taken as 0; every use of alpha_T there is
+  /// even or odd-over-sine, so nothing is lost.
   template <class T, class K>
   static void felt_wind(const T* x, const double* u, const K* k, T* q) {
     using std::atan2;
@@ -65,7 +65,8 @@ struct ParachutePlanar {
     const T along = q[wind_speed] * cos(x[0]);
     const T cross_squared = in_plane * in_plane + across * across;
     q[wind_cross_axis] = in_plane / sqrt(T(cross_squared + along * along));
-    q[alpha_T] = value_of(cross_squared) > 0.0 ? T(atan2(T(sqrt(cross_squared)), along)) : T(value_of(along) < 0.0 ? 3.14159265358979323846 : 0.0);
+    q[alpha_T] =
+        value_of(cross_squared) > 0.0 ? T(atan2(T(sqrt(cross_squared)), along)) : T(value_of(along) < 0.0 ? 3.14159265358979323846 : 0.0);
   }
 
   template <class T, class K>
@@ -86,7 +87,8 @@ struct ParachutePlanar {
     s.formula = "I eta'' = sum of moments, I = (m + m_a) R_cp^2";
     s.source = "paper Eq. 8; DESIGN 4.1";
     s.states = {{"eta", "rad", -1}, {"eta_rate", "rad/s", 0}};
-    s.inputs = {{"phi", "rad", "clock angle of the axis, unwrapped", Hold::first_order}, {"phi_rate", "rad/s", "its rate", Hold::first_order}};
+    s.inputs = {{"phi", "rad", "clock angle of the axis, unwrapped", Hold::first_order},
+                {"phi_rate", "rad/s", "its rate", Hold::first_order}};
     s.quantities = {{"eta", "rad", "geometric tilt of the axis", {}, false},
                     {"pitch_rate", "rad/s", "rotation rate in the plane of the tilt", {}, false},
                     {"phi", "rad", "clock angle", {"phi"}, false},
@@ -103,7 +105,8 @@ struct ParachutePlanar {
     } else {
       s.quantities[alpha_T].carries_sign = true;
     }
-    s.quantity_ports = {{"dynamic_pressure", "Pa", "changes q and, as sqrt(q), V", "dynamic_pressure"}, {"inertia", "kg m^2", "adds to I", "inertia"}};
+    s.quantity_ports = {{"dynamic_pressure", "Pa", "changes q and, as sqrt(q), V", "dynamic_pressure"},
+                        {"inertia", "kg m^2", "adds to I", "inertia"}};
     s.dynamic_ports = {{"pitching_moment", "N m", "moment in the plane of the tilt, positive opens it", "pitch_rate"}};
     constexpr double huge = 1e6;
     s.constants = {{"D", "m", "reference diameter", 1e-6, huge, true, 0.0},

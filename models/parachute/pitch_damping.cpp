@@ -4,8 +4,8 @@ namespace {
 
 using namespace misfit;
 
-/// Moment proportional to the rotation rate. Where the system has the felt wind in alpha_T the coefficient is C_mq; in the paper's form (Eq. 8,
-/// alpha_T the state itself) the same formula carries the paper's C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T).
+/// Moment proportional to the rotation rate. Where the system has the felt wind in alpha_T the coefficient is C_mq; in the paper's form
+/// (Eq. 8, alpha_T the state itself) the same formula carries the paper's C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T).
 struct PitchDamping {
   static constexpr const char* formula = "M = q S D (D/2V) C_mq(alpha_T) omega";
   static constexpr const char* symbols = "q [Pa], S [m^2], D [m], V wind speed [m/s], omega rotation rate of the axis [rad/s], C_mq [-]";

@@ -8,7 +8,8 @@ using namespace misfit;
 /// sin(alpha_T) and |v̂ × n| = sin(alpha_T).
 struct StaticMoment {
   static constexpr const char* formula = "M = q S D [C_m(alpha_T)/sin(alpha_T)] (v x n)";
-  static constexpr const char* symbols = "q dynamic pressure [Pa], S area [m^2], D diameter [m], v x n component of (wind direction x axis) [-]";
+  static constexpr const char* symbols =
+      "q dynamic pressure [Pa], S area [m^2], D diameter [m], v x n component of (wind direction x axis) [-]";
   static constexpr const char* valid = "axisymmetric canopy, quasi-steady, |alpha_T| < 90 deg";
   static constexpr const char* size = "C_m about +-0.02 within 3 deg of the trim: 45 N m at 736 Pa for D = 1.58 m";
   static constexpr const char* source = "paper Eq. 9; DESIGN 4.1";
@@ -16,8 +17,8 @@ struct StaticMoment {
   static constexpr Role quantities[] = {{"dynamic_pressure", "Pa"}, {"wind_cross_axis", "-"}, {"wind_cross_axis_lateral", "-", true}};
   static constexpr Role ports[] = {{"pitching_moment", "N m"}, {"lateral_moment", "N m", true}};
   static constexpr const char* constants[] = {"S", "D"};
-  static constexpr CoefficientSpec coefficients[] = {
-      {"C_m", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.02, "static pitching moment coefficient about the swivel", Parity::odd, "alpha_T", true}};
+  static constexpr CoefficientSpec coefficients[] = {{"C_m", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.02,
+                                                      "static pitching moment coefficient about the swivel", Parity::odd, "alpha_T", true}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
@@ -27,8 +28,8 @@ struct StaticMoment {
   }
 
   static std::vector<Example> examples() {
-    // 736 Pa x 1.9554 m^2 x 1.5816 m = 2276.1982 N m per unit coefficient; at alpha_T = 10 deg: C_m = 0.0105, sin = 0.17364818, so C_m/sin =
-    // 0.060467094 and in the plane of motion (v x n) = sin(10 deg): moment = 2276.1982 x 0.0105 = 23.900081 N m.
+    // 736 Pa x 1.9554 m^2 x 1.5816 m = 2276.1982 N m per unit coefficient; at alpha_T = 10 deg: C_m = 0.0105, sin = 0.17364818, so C_m/sin
+    // = 0.060467094 and in the plane of motion (v x n) = sin(10 deg): moment = 2276.1982 x 0.0105 = 23.900081 N m.
     return {{{1.9554, 1.5816}, {736.0, 0.17364818, 0.0}, {0.0105 / 0.17364818}, {}, 0.0, {23.900081, 0.0}, {}, "paper Eq. 9, Table 1"},
             {{2.0, 1.5}, {100.0, 0.3, -0.1}, {0.5}, {}, 0.0, {45.0, -15.0}, {}, "by hand: 100 x 2 x 1.5 x 0.5 = 150; x 0.3, x -0.1"}};
   }

@@ -98,4 +98,10 @@ std::string wrap_text(const std::string& text, std::size_t width, const std::str
   return line.empty() ? out : out + indent + line;
 }
 
+std::string format_probability(double p) {
+  if (std::isnan(p)) return "not available";
+  constexpr double smallest = 1e-300;
+  return p < smallest ? "below 1e-300" : fmt::format("{:.2g}", p);
+}
+
 }  // namespace misfit

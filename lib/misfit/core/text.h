@@ -9,6 +9,9 @@ namespace misfit {
 /// finite sigma: five significant digits. NaN → "not available".
 [[nodiscard]] std::string format_value(double value, double sigma = 0.0);
 
+/// A p-value: two significant digits, "below 1e-300" where it is not representable.
+[[nodiscard]] std::string format_probability(double p);
+
 /// Pads columns so that they align (UTF-8 aware: counts code points); first row is the header, underlined. Numbers are not parsed: give
 /// strings.
 [[nodiscard]] std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::string& indent = "  ");

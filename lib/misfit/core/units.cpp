@@ -206,4 +206,11 @@ std::string display_unit(std::string_view si) {
   return std::string(si);
 }
 
+std::string rate_unit(std::string_view unit) {
+  if (unit.empty() || unit == "-") return "1/s";
+  std::string out(unit);
+  out += unit.ends_with("/s") ? "^2" : "/s";
+  return out;
+}
+
 }  // namespace misfit

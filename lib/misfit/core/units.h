@@ -32,6 +32,9 @@ struct Quantity {
 /// `value` given in unit `from`, expressed in unit `to`. Throws InputError if the dimensions differ.
 [[nodiscard]] double convert(double value, std::string_view from, std::string_view to);
 
+/// The unit of a time derivative: "rad/s" → "rad/s^2", "V" → "V/s", "-" → "1/s".
+[[nodiscard]] std::string rate_unit(std::string_view unit);
+
 /// The unit people like to read for a quantity whose inside unit is `si`: rad → deg, rad/s → deg/s, rad/s^2 → deg/s^2; else itself.
 [[nodiscard]] std::string display_unit(std::string_view si);
 

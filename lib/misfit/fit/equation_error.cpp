@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "misfit/core/text.h"
+#include "misfit/core/units.h"
 #include "misfit/fit/curves.h"
 #include "misfit/fit/whiteness.h"
 
@@ -152,11 +153,11 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
   const int last_lag = std::max(beyond_stencil + 5, static_cast<int>(half_period / usual_step(experiments.front().t)));
   const WhitenessTest test = whiteness(regression.residuals.front(), beyond_stencil, last_lag);
   out.fit.driven = looks_driven(test);
-  const std::string unit = model.system->spec().states[static_cast<std::size_t>(regressor.rows().front())].unit + "/s";
+  const std::string unit = rate_unit(model.system->spec().states[static_cast<std::size_t>(regressor.rows().front())].unit);
   out.fit.noise["equation_residual"] = {std::sqrt(smoothed.sigma2), 0.0, unit};
   out.fit.facts["whiteness"] = "equation residuals at lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) +
                                " samples: largest autocorrelation " + format_value(test.largest) + " at lag " +
-                               std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_value(test.p_value);
+                               std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
   RowMatrix visited = visited_quantities(out.model, experiments.front(), regressor.states(0));
   for (std::size_t e = 1; e < experiments.size(); ++e) {
     const RowMatrix more = visited_quantities(out.model, experiments[e], regressor.states(e));

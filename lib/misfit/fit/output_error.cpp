@@ -70,7 +70,8 @@ std::vector<RowMatrix> start_states(const Setting& setting) {
   return out;
 }
 
-std::vector<ShootingPass> passes(const Setting& setting, bool from_regression) {
+/// The short segments to begin with; the last is half a period of the motion.
+std::vector<ShootingPass> short_passes(const Setting& setting, bool from_regression) {
   constexpr double nearly_gauss_newton =
       1e8;  // with segments this short the problem is nearly linear: a small region only slows it (DESIGN 5)
   const auto half_period = static_cast<std::size_t>(std::clamp(pi / setting.frequency / setting.step, 5.0, 1000.0));
@@ -80,8 +81,6 @@ std::vector<ShootingPass> passes(const Setting& setting, bool from_regression) {
     list.push_back({5, 10.0, 1e6, 40, 1e-4});
   }
   list.push_back({half_period, 10.0, nearly_gauss_newton, 30, 1e-4});
-  for (std::size_t length = 6 * half_period; length < setting.samples / 2 && list.size() < 5; length *= 6)
-    list.push_back({length, 10.0, nearly_gauss_newton, 30, 1e-6});
   return list;
 }
 
@@ -197,7 +196,7 @@ void judge(const Model& model, const Setting& setting, Fit& fit) {
   const double noise = reading_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
   fit.facts["whiteness"] = "residuals of " + p.channel + " at lags 1 to " + std::to_string(test.last_lag) +
                            " samples (half a period): largest autocorrelation " + format_value(test.largest) + " at lag " +
-                           std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_value(test.p_value);
+                           std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
   fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
                            ", reading noise about " + in_display_unit(noise, p.unit);
   constexpr double clearly_above_noise = 2.0;
@@ -222,25 +221,109 @@ class Estimator {
   Estimator(const FittedModel& start, const std::vector<Signals>& experiments, const OutputErrorStart& options)
       : experiments_(experiments),
         options_(options),
+        start_driven_(start.fit.driven),
         setting_(look_at(start.model, experiments, options)),
         penalties_(curve_penalties(start.model)),  // not those of a regression, whose noise is another one
         shooting_(start.model, experiments, setting_.sigma, setting_.state_scale, start_states(setting_)) {}
 
   FittedModel run() {
-    const std::vector<ShootingPass> list = passes(setting_, options_.from_regression);
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      if (!solve(list[k])) return failed("segments of " + std::to_string(list[k].length) + " samples: " + last_.message);
-      if (k == 0 || !any_chosen(penalties_)) continue;
-      Linearised pieces;
-      if (shooting_.linearise_segments(list[k].length, pieces)) static_cast<void>(smooth(pieces, penalties_));
+    ShootingPass pass;
+    for (const auto& next : short_passes(setting_, options_.from_regression)) {
+      pass = next;
+      if (!solve(pass)) return failed(segments_of(pass) + last_.message);
     }
-    return whole_trajectory(list.back());
+    pass.tolerance = 1e-6;
+    constexpr int most_lengthenings = 12;
+    for (int k = 0; k < most_lengthenings && 6 * pass.length < setting_.samples / 2; ++k) {
+      if (!lengthen(pass)) return lost(pass);
+      Linearised pieces;
+      if (any_chosen(penalties_) && shooting_.linearise_segments(pass.length, pieces)) static_cast<void>(smooth(pieces, penalties_));
+    }
+    return whole_trajectory(pass);
   }
 
  private:
   bool solve(const ShootingPass& pass) {
     last_ = shooting_.solve(pass, penalties_);
     return last_.usable;
+  }
+
+  /// Do the segments predict better than a constant would? If not, what the solver reached is no start for longer ones.
+  bool follows() {
+    const std::vector<RowMatrix> y = shooting_.predict_segments();
+    for (std::size_t e = 0; e < y.size(); ++e) {
+      for (std::size_t o = 0; o < setting_.sigma.size(); ++o) {
+        double squares = 0.0, count = 0.0;
+        for (std::size_t i = 0; i < experiments_[e].samples(); ++i) {
+          if (!shooting_.counts(e, i, o)) continue;
+          squares += std::pow(y[e](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments_[e].measured[o].values[i], 2);
+          count += 1.0;
+        }
+        if (!(std::sqrt(squares / std::max(count, 1.0)) <= motion_size(experiments_[e].measured[o].values))) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Six times as long; less where the states handed over do not carry that far.
+  bool lengthen(ShootingPass& pass) {
+    for (const double factor : {6.0, 3.0, 2.0, 1.5, 1.25}) {
+      const Shooting::State before = shooting_.state();
+      ShootingPass next = pass;
+      next.length = static_cast<std::size_t>(factor * static_cast<double>(pass.length));
+      if (solve(next) && follows()) {
+        pass = next;
+        return true;
+      }
+      shooting_.restore(before);
+    }
+    return false;
+  }
+
+  static std::string segments_of(const ShootingPass& pass) { return "segments of " + std::to_string(pass.length) + " samples: "; }
+
+  /// The model follows the motion over short segments only.
+  FittedModel lost(const ShootingPass& pass) {
+    FittedModel out = failed("");
+    const std::string span = format_value(std::round(100.0 * static_cast<double>(pass.length) * setting_.step) / 100.0);
+    const std::string what = "the model follows the measured motion over segments of " + span +
+                             " s only: run on, the simulated motion leaves it (" +
+                             (shooting_.failure().empty() ? last_.message : shooting_.failure()) + ")";
+    out.fit.message = what;
+    out.fit.facts["prediction"] = "restarted every " + span + " s from a fitted state: no single trajectory exists";
+    show_segments(out.fit);
+    if (!start_driven_) return out;
+    out.fit.driven = true;
+    out.fit.status = FitStatus::declined;
+    out.fit.message = "the motion is driven by something this deterministic model does not have, and it cannot follow it: " + what +
+                      ". The method that can estimate such motion is filter_error";
+    return out;
+  }
+
+  /// Predictions of the segments, so that a figure can show where they fail; sigma is the residuals' own.
+  void show_segments(Fit& fit) {
+    const std::vector<RowMatrix> y = shooting_.predict_segments();
+    const auto& outputs = shooting_.model().system->spec().outputs;
+    for (std::size_t o = 0; o < outputs.size(); ++o) {
+      double squares = 0.0, count = 0.0;
+      for (std::size_t e = 0; e < y.size(); ++e) {
+        ChannelPrediction p{
+            experiments_[e].name, outputs[o].name, outputs[o].unit, experiments_[e].t, experiments_[e].measured[o].values, {}, {}, {}};
+        for (std::size_t i = 0; i < p.t.size(); ++i) {
+          p.predicted.push_back(y[e](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)));
+          p.held_out.push_back(experiments_[e].held_out(i));
+          if (!shooting_.counts(e, i, o)) continue;
+          squares += std::pow(p.measured[i] - p.predicted[i], 2);
+          count += 1.0;
+        }
+        fit.predictions.push_back(std::move(p));
+      }
+      const double rms = std::sqrt(squares / std::max(count, 1.0));
+      fit.rms[outputs[o].name] = {rms, 0.0, outputs[o].unit};
+      for (auto& p : fit.predictions) {
+        if (p.channel == outputs[o].name) p.sigma.assign(p.t.size(), rms);
+      }
+    }
   }
 
   /// One trajectory. Whenever the roughness is chosen anew, the last lengthening comes first again: a single trajectory alone would creep
@@ -314,6 +397,7 @@ class Estimator {
 
   const std::vector<Signals>& experiments_;
   OutputErrorStart options_;
+  bool start_driven_;
   Setting setting_;
   std::vector<Penalty> penalties_;
   Shooting shooting_;

@@ -235,6 +235,28 @@ bool Shooting::linearise_segments(std::size_t length, Linearised& out) {
   return true;
 }
 
+void Shooting::restore(const State& state) {
+  model_.parameters = state.parameters;
+  history_ = state.history;
+}
+
+std::vector<RowMatrix> Shooting::predict_segments() {
+  std::vector<double> theta;
+  for (int index : free_) theta.push_back(model_.parameters[static_cast<std::size_t>(index)].value);
+  set_theta(theta.data());
+  std::vector<RowMatrix> out;
+  std::vector<double> y(static_cast<std::size_t>(model_.outputs()) + 1);
+  for (std::size_t e = 0; e < experiments_.size(); ++e) {
+    out.emplace_back(history_[e].rows(), model_.outputs());
+    for (Eigen::Index i = 0; i < history_[e].rows(); ++i) {
+      const auto sample = static_cast<std::size_t>(i);
+      stepper_->evaluator().predict(history_[e].row(i).data(), inputs_[e].at(sample), experiments_[e].t[sample], y.data());
+      for (Eigen::Index o = 0; o < out[e].cols(); ++o) out[e](i, o) = y[static_cast<std::size_t>(o)];
+    }
+  }
+  return out;
+}
+
 std::vector<Segment> Shooting::run(bool sensitivities) {
   std::vector<Segment> out(experiments_.size());
   std::vector<double> theta;

@@ -44,6 +44,16 @@ class Shooting {
   /// Predictions over the whole of each experiment from its initial state, with derivatives if asked.
   [[nodiscard]] std::vector<Segment> run(bool sensitivities);
 
+  /// Parameters and histories, to go back to when a solve leads nowhere.
+  struct State {
+    std::vector<Parameter> parameters;
+    std::vector<RowMatrix> history;
+  };
+  [[nodiscard]] State state() const { return {model_.parameters, history_}; }
+  void restore(const State& state);
+  /// What the segments of the last solve predict, each from its own fitted state: samples × outputs per experiment.
+  [[nodiscard]] std::vector<RowMatrix> predict_segments();
+
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const std::vector<double>& sigma() const { return sigma_; }
   void set_sigma(std::vector<double> sigma) { sigma_ = std::move(sigma); }

@@ -197,7 +197,7 @@ void tell_damping(const BinForm& form, const Pass& pass, Fit& fit) {
   fit.facts["whiteness"] = "residuals of the bins at lags " + std::to_string(pass.whiteness.first_lag) + " to " +
                            std::to_string(pass.whiteness.last_lag) + " samples: largest autocorrelation " +
                            format_value(pass.whiteness.largest) + " at lag " + std::to_string(pass.whiteness.largest_lag) +
-                           ", Ljung-Box p = " + format_value(pass.whiteness.p_value);
+                           ", Ljung-Box p = " + format_probability(pass.whiteness.p_value);
   const std::string sum = "sum of acceleration times rate over " + std::to_string(pass.sum.count) +
                           " samples: " + format_value(pass.sum.value, pass.sum.sigma) + " " + level_unit + "^2/s^3, " +
                           (pass.sum.zero() ? "within" : "beyond") + " 2 sigma of 0";
@@ -267,7 +267,7 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   fit.curves = {curve(*form, pass.bins.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma),
                 curve(*form, pass.bins.bins, spec.damping_curve, &BinSolution::damping, &BinSolution::damping_sigma)};
   fit.trim = stable_zero(fit.curves.front());
-  fit.noise["equation_residual"] = {pass.residual_rms, 0.0, spec.states[static_cast<std::size_t>(form->rate)].unit + "/s"};
+  fit.noise["equation_residual"] = {pass.residual_rms, 0.0, rate_unit(spec.states[static_cast<std::size_t>(form->rate)].unit)};
   fit.driven = pass.driven;
   tell_bins(*form, options, pass, other, fit);
   tell_damping(*form, pass, fit);

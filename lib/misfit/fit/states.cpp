@@ -74,7 +74,8 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
       out.dx(i, rate) = fit.curvature;
     }
   }
-  for (std::size_t z = 0; z < model.own_states.size(); ++z) out.x.col(model.system_states() + static_cast<Eigen::Index>(z)).setConstant(model.own_states[z].initial);
+  for (std::size_t z = 0; z < model.own_states.size(); ++z)
+    out.x.col(model.system_states() + static_cast<Eigen::Index>(z)).setConstant(model.own_states[z].initial);
   return out;
 }
 

@@ -10,15 +10,15 @@ namespace misfit {
 
 /// States and their derivatives read from the measured channels by local polynomials; what start values and regressions need.
 struct ReconstructedStates {
-  RowMatrix x;            ///< samples × states; 0 for a state that no channel shows
-  RowMatrix dx;           ///< samples × states: time derivative, where known
-  std::vector<bool> ok;   ///< all shown states and their derivatives are known at this sample
+  RowMatrix x;              ///< samples × states; 0 for a state that no channel shows
+  RowMatrix dx;             ///< samples × states: time derivative, where known
+  std::vector<bool> ok;     ///< all shown states and their derivatives are known at this sample
   std::vector<bool> shown;  ///< per state: measured itself or the rate of a measured one
 };
 
-/// Quadratic least squares over five neighbouring samples (uneven times and missing samples allowed; at least four of the five, not stretched over
-/// a gap of more than three usual steps): value, slope, second derivative. A state is shown if an output observes it, or if it is the rate
-/// of one that is. Own states of effects start at their declared initial value.
+/// Quadratic least squares over five neighbouring samples (uneven times and missing samples allowed; at least four of the five, not
+/// stretched over a gap of more than three usual steps): value, slope, second derivative. A state is shown if an output observes it, or if
+/// it is the rate of one that is. Own states of effects start at their declared initial value.
 [[nodiscard]] ReconstructedStates reconstruct_states(const Model& model, const Signals& signals);
 
 /// Usual step of the time base: the median difference [s].
@@ -27,7 +27,8 @@ struct ReconstructedStates {
 /// Circular frequency of the motion [rad/s]: sqrt(var(x')/var(x)) over the shown pairs of state and rate, the largest; 0 if there is none.
 [[nodiscard]] double motion_frequency(const Model& model, const ReconstructedStates& states);
 
-/// White reading noise of a channel from its fifth differences, robustly (MAD): smooth motion at ω h < 0.3 contributes less than 0.3 % of its amplitude.
+/// White reading noise of a channel from its fifth differences, robustly (MAD): smooth motion at ω h < 0.3 contributes less than 0.3 % of
+/// its amplitude.
 [[nodiscard]] double reading_noise(const std::vector<double>& values);
 
 }  // namespace misfit

@@ -23,7 +23,8 @@ class Assembler {
       }
     }
     for (const auto& [number, value] : request.options.numbers) {
-      throw InputError(request.system_where, "system '" + request.system + "' has no option '" + number + "'" + suggest(number, type.flags));
+      throw InputError(request.system_where,
+                       "system '" + request.system + "' has no option '" + number + "'" + suggest(number, type.flags));
     }
     model_.system = type.make(request.options);
   }
@@ -72,7 +73,8 @@ class Assembler {
     for (const auto& constant : system().constants) {
       const auto given = request_.constants.find(constant.name);
       if (given == request_.constants.end() && constant.required) {
-        throw InputError(request_.system_where, "[geometry] " + constant.name + " is missing: " + constant.doc + " [" + constant.unit + "]");
+        throw InputError(request_.system_where,
+                         "[geometry] " + constant.name + " is missing: " + constant.doc + " [" + constant.unit + "]");
       }
       Parameter p{constant.name, constant.unit, constant.doc};
       p.value = given == request_.constants.end() ? constant.value : given->second;
@@ -106,11 +108,14 @@ class Assembler {
     if (r.free) p.free = *r.free;
     if (r.sigma) p.prior_sigma = r.sigma;
     p.prior_mean = p.value;
-    if (!(p.lower < p.upper)) throw InputError(r.where, "bounds of " + p.name + " must increase: [" + with_unit(p.lower, p.unit) + ", " + with_unit(p.upper, p.unit) + "]");
+    if (!(p.lower < p.upper))
+      throw InputError(r.where,
+                       "bounds of " + p.name + " must increase: [" + with_unit(p.lower, p.unit) + ", " + with_unit(p.upper, p.unit) + "]");
     check_bounds(p, r.where);
   }
 
-  /// Bare names where unique, EFFECT.NAME where two effects of the model, or an effect and the system, would share one; a system may rename.
+  /// Bare names where unique, EFFECT.NAME where two effects of the model, or an effect and the system, would share one; a system may
+  /// rename.
   void name_coefficients() {
     names_.clear();
     std::map<std::string, int> uses;
@@ -161,7 +166,8 @@ class Assembler {
       model_.own_state_names.push_back(request.name + "." + state.name);
       model_.own_state_units.push_back(bind_unit(state.unit, role_units_));
     }
-    for (std::size_t c = 0; c < spec.coefficients.size(); ++c) bound.coefficients.push_back(bind_coefficient(names_[i][c], spec.coefficients[c], request, bound.kind));
+    for (std::size_t c = 0; c < spec.coefficients.size(); ++c)
+      bound.coefficients.push_back(bind_coefficient(names_[i][c], spec.coefficients[c], request, bound.kind));
     model_.effects.push_back(std::move(bound));
   }
 
@@ -190,7 +196,8 @@ class Assembler {
     for (const auto& role : spec.ports) valid.emplace_back(role.name);
     for (const auto& [role, target] : request.roles) {
       if (std::find(valid.begin(), valid.end(), role) == valid.end()) {
-        throw InputError(request.where, "effect '" + request.name + "' (" + spec.key + ") has no role '" + role + "'" + suggest(role, valid));
+        throw InputError(request.where,
+                         "effect '" + request.name + "' (" + spec.key + ") has no role '" + role + "'" + suggest(role, valid));
       }
     }
   }
@@ -243,11 +250,13 @@ class Assembler {
           bound.ports.push_back(-1);
           continue;
         }
-        throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no port '" + target + "'" + suggest(target, port_names()));
+        throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no port '" + target + "'" +
+                                            suggest(target, port_names()));
       }
       check_unit(request, role, "port '" + target + "'", place->unit);
       if (!first && place->kind != bound.kind) {
-        throw InputError(request.where, "effect '" + request.name + "' cannot add to '" + target + "' beside its other ports: they are of different kinds");
+        throw InputError(request.where, "effect '" + request.name + "' cannot add to '" + target +
+                                            "' beside its other ports: they are of different kinds");
       }
       bound.kind = place->kind;
       first = false;
@@ -258,7 +267,8 @@ class Assembler {
   static void check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit) {
     if (role.unit[0] == '*') return;  // a generic role takes any unit
     if (!parse_unit(role.unit).same_dimension(parse_unit(unit))) {
-      throw InputError(request.where, "effect '" + request.name + "': role '" + role.name + "' needs [" + role.unit + "], " + what + " has [" + unit + "]");
+      throw InputError(request.where, "effect '" + request.name + "': role '" + role.name + "' needs [" + role.unit + "], " + what +
+                                          " has [" + unit + "]");
     }
   }
 
@@ -267,7 +277,8 @@ class Assembler {
     const int index = find_quantity(target);
     if (index < 0) {
       if (role.optional && !request.roles.contains(role.name)) return -1;
-      throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no quantity '" + target + "'" + suggest(target, quantity_names()));
+      throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no quantity '" + target + "'" +
+                                          suggest(target, quantity_names()));
     }
     check_order(request.where, "effect '" + request.name + "'", target, index, kind);
     check_unit(request, role, "quantity '" + target + "'", unit_of_quantity(index));
@@ -306,7 +317,8 @@ class Assembler {
     for (std::size_t i = 0; i < constants.size(); ++i) {
       if (constants[i].name == name) return static_cast<int>(i);
     }
-    throw InputError(request.where, "effect '" + request.name + "' needs '" + name + "', which system '" + system().key + "' does not have");
+    throw InputError(request.where,
+                     "effect '" + request.name + "' needs '" + name + "', which system '" + system().key + "' does not have");
   }
 
   BoundCoefficient bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request, PortKind kind) {
@@ -332,14 +344,16 @@ class Assembler {
 
   int add_curve(const std::string& name, const CoefficientSpec& spec, const CurveRequest& request, const EffectRequest& by, PortKind kind) {
     used_curves_.insert(name);
-    if (request.of.empty()) throw InputError(request.where, "curve " + name + ": `of` must name a quantity" + suggest("", quantity_names()));
+    if (request.of.empty())
+      throw InputError(request.where, "curve " + name + ": `of` must name a quantity" + suggest("", quantity_names()));
     Curve curve;
     curve.name = name;
     curve.of = request.of;
     curve.unit = bind_unit(spec.unit, role_units_);
     curve.quantity = find_quantity(request.of);
     if (curve.quantity < 0) {
-      throw InputError(request.where, "curve " + name + ": system '" + system().key + "' has no quantity '" + request.of + "'" + suggest(request.of, quantity_names()));
+      throw InputError(request.where, "curve " + name + ": system '" + system().key + "' has no quantity '" + request.of + "'" +
+                                          suggest(request.of, quantity_names()));
     }
     check_order(request.where, "effect '" + by.name + "'", request.of, curve.quantity, kind);
     const bool own = curve.quantity < static_cast<int>(system().quantities.size());
@@ -358,7 +372,8 @@ class Assembler {
     return static_cast<int>(model_.curves.size()) - 1;
   }
 
-  /// One parameter per spline coefficient. What [parameters] says of the curve holds for each: they sum to one, so bounds on them are bounds on the curve.
+  /// One parameter per spline coefficient. What [parameters] says of the curve holds for each: they sum to one, so bounds on them are
+  /// bounds on the curve.
   void add_curve_parameters(const Curve& curve, const CoefficientSpec& spec) {
     Parameter p = as_parameter(curve.name, spec);
     p.free = true;
@@ -378,16 +393,20 @@ class Assembler {
     for (const auto& list : names_) curves.insert(curves.end(), list.begin(), list.end());
     for (const auto& curve : model_.curves) names.push_back(curve.name);
     for (const auto& [name, request] : request_.parameters) {
-      if (!used_parameters_.contains(name)) throw InputError(request.where, "[parameters]: the model has no parameter '" + name + "'" + suggest(name, names));
+      if (!used_parameters_.contains(name))
+        throw InputError(request.where, "[parameters]: the model has no parameter '" + name + "'" + suggest(name, names));
     }
     for (const auto& [name, request] : request_.curves) {
-      if (!used_curves_.contains(name)) throw InputError(request.where, "[curves]: the model has no coefficient '" + name + "'" + suggest(name, curves));
+      if (!used_curves_.contains(name))
+        throw InputError(request.where, "[curves]: the model has no coefficient '" + name + "'" + suggest(name, curves));
     }
   }
 
   void check_sizes() const {
     const auto limit = [&](std::size_t have, int most, const char* what) {
-      if (have > static_cast<std::size_t>(most)) throw InputError(request_.system_where, "the model has " + std::to_string(have) + " " + what + "; at most " + std::to_string(most) + " are possible");
+      if (have > static_cast<std::size_t>(most))
+        throw InputError(request_.system_where,
+                         "the model has " + std::to_string(have) + " " + what + "; at most " + std::to_string(most) + " are possible");
     };
     limit(static_cast<std::size_t>(model_.states()), kMaxStates, "states");
     limit(system().quantities.size() + system().outputs.size(), kMaxQuantities, "quantities");

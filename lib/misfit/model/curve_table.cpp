@@ -12,7 +12,8 @@ namespace {
 double value_at(const Model& model, const Curve& curve, double x) {
   const CurvePoint point = curve.spline.at(x);
   double value = 0.0;
-  for (int j = 0; j < 4; ++j) value += point.w[static_cast<std::size_t>(j)] * model.parameters[static_cast<std::size_t>(curve.first + point.first + j)].value;
+  for (int j = 0; j < 4; ++j)
+    value += point.w[static_cast<std::size_t>(j)] * model.parameters[static_cast<std::size_t>(curve.first + point.first + j)].value;
   return value;
 }
 
@@ -44,7 +45,8 @@ double set_curve(Model& model, const std::string& name, const std::vector<double
   for (int j = 0; j < size; ++j) model.parameters[static_cast<std::size_t>(curve->first + j)].value = c[j];
   double worst = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (std::isfinite(value[i]) && x[i] >= curve->spline.lowest() && x[i] <= curve->spline.highest()) worst = std::max(worst, std::abs(value_at(model, *curve, x[i]) - value[i]));
+    if (std::isfinite(value[i]) && x[i] >= curve->spline.lowest() && x[i] <= curve->spline.highest())
+      worst = std::max(worst, std::abs(value_at(model, *curve, x[i]) - value[i]));
   }
   return worst;
 }

@@ -54,7 +54,8 @@ class Reader {
   Signals run() {
     read_time();
     const SystemSpec& spec = model_.system->spec();
-    for (const auto& output : spec.outputs) out_.measured.push_back({output.name, output.unit, kept(table_.values(header(output.name), output.unit)), 0.0});
+    for (const auto& output : spec.outputs)
+      out_.measured.push_back({output.name, output.unit, kept(table_.values(header(output.name), output.unit)), 0.0});
     const std::vector<std::string> needed = model_.needed_inputs();
     for (const auto& input : spec.inputs) {
       const bool wanted = std::find(needed.begin(), needed.end(), input.name) != needed.end();
@@ -85,7 +86,8 @@ class Reader {
       rows_.push_back(i);
     }
     if (rows_.size() < t.size()) out_.notes.push_back(std::to_string(t.size() - rows_.size()) + " rows without time dropped");
-    if (rows_.size() < 2) throw RunError("experiment '" + study_.name + "': " + std::to_string(rows_.size()) + " samples with a time are not a recording");
+    if (rows_.size() < 2)
+      throw RunError("experiment '" + study_.name + "': " + std::to_string(rows_.size()) + " samples with a time are not a recording");
     for (std::size_t row : rows_) out_.t.push_back(t[row]);
   }
 
@@ -129,26 +131,33 @@ class Reader {
       out_.validation_from = study_.from;
       out_.validation_to = study_.to;
       if (study_.from > last || study_.to < first) {
-        throw InputError(study_.where, "validation interval " + format_value(study_.from) + " to " + format_value(study_.to) + " s lies outside the recording, " + format_value(first) +
-                                           " to " + format_value(last) + " s");
+        throw InputError(study_.where, "validation interval " + format_value(study_.from) + " to " + format_value(study_.to) +
+                                           " s lies outside the recording, " + format_value(first) + " to " + format_value(last) + " s");
       }
     }
     out_.exclude = static_cast<std::size_t>(std::max(study_.exclude, 0L));
-    if (out_.exclude >= out_.samples()) throw InputError(study_.where, "exclude = " + std::to_string(study_.exclude) + " leaves no sample of " + std::to_string(out_.samples()));
+    if (out_.exclude >= out_.samples())
+      throw InputError(study_.where,
+                       "exclude = " + std::to_string(study_.exclude) + " leaves no sample of " + std::to_string(out_.samples()));
   }
 
   void count_missing() {
     for (const auto& channel : out_.measured) {
       const auto missing = std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isfinite(v); });
-      if (missing == static_cast<long>(channel.values.size())) throw RunError("experiment '" + study_.name + "': channel " + channel.name + " has no value at all: all samples are lost");
-      if (missing > 0) out_.notes.push_back("channel " + channel.name + ": " + std::to_string(missing) + " of " + std::to_string(channel.values.size()) + " samples missing, carried as gaps");
+      if (missing == static_cast<long>(channel.values.size()))
+        throw RunError("experiment '" + study_.name + "': channel " + channel.name + " has no value at all: all samples are lost");
+      if (missing > 0)
+        out_.notes.push_back("channel " + channel.name + ": " + std::to_string(missing) + " of " + std::to_string(channel.values.size()) +
+                             " samples missing, carried as gaps");
     }
     std::vector<double> steps;
     for (std::size_t i = 1; i < out_.t.size(); ++i) steps.push_back(out_.t[i] - out_.t[i - 1]);
     const double usual = median(steps);
     constexpr double gap = 1.5;
     const auto gaps = std::count_if(steps.begin(), steps.end(), [&](double s) { return s > gap * usual; });
-    if (gaps > 0) out_.notes.push_back(std::to_string(gaps) + " gaps in time, the longest " + format_value(*std::max_element(steps.begin(), steps.end())) + " s");
+    if (gaps > 0)
+      out_.notes.push_back(std::to_string(gaps) + " gaps in time, the longest " +
+                           format_value(*std::max_element(steps.begin(), steps.end())) + " s");
   }
 
   const Table& table_;

@@ -30,7 +30,9 @@ void read_rig(const config::Section& geometry, RigGeometry& rig) {
   for (const auto& entry : rig_entries) {
     const auto number = geometry.number(entry.name, rig_unit(entry.name), true);
     if (!number) continue;
-    if (!(number->value > 0.0)) throw InputError(number->where, std::string(entry.name) + " must be positive, it is " + std::to_string(number->value) + " " + rig_unit(entry.name));
+    if (!(number->value > 0.0))
+      throw InputError(number->where,
+                       std::string(entry.name) + " must be positive, it is " + std::to_string(number->value) + " " + rig_unit(entry.name));
     rig.*entry.field = number->value;
   }
 }
@@ -92,7 +94,8 @@ void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& reque
 StudyModel read_model(const Study& study, const Registry& registry) {
   StudyModel out;
   ModelRequest& request = out.request;
-  if (study.system_kind.empty()) throw InputError({study.file.string(), 0, 0}, "[system] kind is missing" + suggest("", registry.system_keys()));
+  if (study.system_kind.empty())
+    throw InputError({study.file.string(), 0, 0}, "[system] kind is missing" + suggest("", registry.system_keys()));
   request.system = study.system_kind;
   request.options.flags = study.system_flags;
   for (const auto& [name, number] : study.system_numbers) request.options.numbers[name] = number.value;
@@ -150,7 +153,8 @@ void require_rig(const Study& study, const RigGeometry& rig, bool for_sweep) {
   if (missing.empty()) return;
   std::string list;
   for (const auto& name : missing) list += (list.empty() ? "" : ", ") + name;
-  throw InputError({study.file.string(), 0, 0}, "[geometry] lacks " + list + ", which the " + (for_sweep ? "calibration" : "camera") + " needs");
+  throw InputError({study.file.string(), 0, 0},
+                   "[geometry] lacks " + list + ", which the " + (for_sweep ? "calibration" : "camera") + " needs");
 }
 
 }  // namespace misfit

@@ -14,13 +14,15 @@ struct StudyModel {
   RigGeometry rig;  ///< entries that the study does not give are 0; require_rig() says which are missing
 };
 
-/// Names, units and bounds of [system], [geometry], [effects], [parameters] and [curves] against the registry. Knots in degrees become radians where
-/// the quantity is an angle. InputError with file, line and nearest name.
+/// Names, units and bounds of [system], [geometry], [effects], [parameters] and [curves] against the registry. Knots in degrees become
+/// radians where the quantity is an angle. InputError with file, line and nearest name.
 [[nodiscard]] StudyModel read_model(const Study& study, const Registry& registry);
 
-/// The same request in the system's regression form (SystemSpec::regression): for sliding_bin. Curves keep their places under the names of that form;
-/// effects with free coefficients other than the static and damping curves are left out, and named in `left_out`. nullopt if the system has none.
-[[nodiscard]] std::optional<ModelRequest> regression_form(const ModelRequest& request, const Registry& registry, std::vector<std::string>& left_out);
+/// The same request in the system's regression form (SystemSpec::regression): for sliding_bin. Curves keep their places under the names of
+/// that form; effects with free coefficients other than the static and damping curves are left out, and named in `left_out`. nullopt if the
+/// system has none.
+[[nodiscard]] std::optional<ModelRequest> regression_form(const ModelRequest& request, const Registry& registry,
+                                                          std::vector<std::string>& left_out);
 
 /// Checks that the rig holds what a camera needs: R, R_cp, V, l_b, l_s, and for a sweep l_p, R1, R2, R3. InputError naming what is missing.
 void require_rig(const Study& study, const RigGeometry& rig, bool for_sweep);

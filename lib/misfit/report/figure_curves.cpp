@@ -25,8 +25,12 @@ Drawn drawn(const CurveEstimate& curve) {
   for (std::size_t i = 0; i < d.x.size(); ++i) {
     d.lo.push_back(d.value[i] - sigma[i]);
     d.hi.push_back(d.value[i] + sigma[i]);
-    d.visited.push_back(curve.count[i] > 0.0);
   }
+  // Visited: between the lowest and the highest place with a sample; single empty cells inside would only tear the drawing.
+  const auto seen = [](double count) { return count > 0.0; };
+  const auto first = std::find_if(curve.count.begin(), curve.count.end(), seen) - curve.count.begin();
+  const auto behind = curve.count.rend() - std::find_if(curve.count.rbegin(), curve.count.rend(), seen);
+  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(d.x.size()); ++i) d.visited.push_back(i >= first && i < behind);
   return d;
 }
 
