@@ -42,7 +42,8 @@ struct ParachutePlanar {
     q[dynamic_pressure] = k[qbar] + P[pressure_port];
     q[inertia] = moment_of_inertia(k, P);
     if (wants(needed, gravity_direction)) q[gravity_direction] = std::cos(u[0]) * cos(x[0]);
-    q[wind_speed] = k[V] * sqrt(T(q[dynamic_pressure] / k[qbar]));
+    // The root only where the pressure is changed: it costs as much as everything else here.
+    q[wind_speed] = vanishes(P[pressure_port]) ? T(k[V]) : T(k[V] * sqrt(T(q[dynamic_pressure] / k[qbar])));
     if (!induced) {
       q[alpha_T] = x[0];
       q[wind_cross_axis] = T(1.0);  // alpha_T carries the sign: C_m enters undivided (QuantitySpec::carries_sign)

@@ -270,7 +270,7 @@ std::vector<Segment> Shooting::run(bool sensitivities) {
   return out;
 }
 
-/// Scales rows and residuals of a whole run by 1/sigma in place; rows that do not count become zero.
+/// Scales rows and residuals of a run by 1/sigma in place; rows that do not count become zero.
 double Shooting::weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r) const {
   const Signals& signals = experiments_[experiment];
   const auto ny = static_cast<std::size_t>(run.y.cols());
@@ -298,19 +298,25 @@ bool Shooting::linearise(Linearised& out) {
   ++linearisations_;
   out = empty_sums(all);
   set_theta(out.theta.data());
-  Eigen::VectorXd r;
+  Eigen::VectorXd r, g(columns + n);
+  Eigen::MatrixXd N(columns + n, columns + n);
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     const Eigen::VectorXd x0 = initial_state(e);
-    run_segment(*stepper_, experiments_[e], inputs_[e], 0, experiments_[e].samples(), x0.data(), true, run_);
+    N.setZero();
+    g.setZero();
+    const auto add = [&](Segment& part) {
+      out.count += weigh(e, part, r);
+      N.selfadjointView<Eigen::Lower>().rankUpdate(part.y_rows.transpose());
+      g.noalias() += part.y_rows.transpose() * r;
+      out.rss += r.squaredNorm();
+    };
+    constexpr std::size_t batch = 128;  // samples whose rows stay in the cache until they are summed
+    run_in_batches(*stepper_, experiments_[e], inputs_[e], 0, experiments_[e].samples(), x0.data(), true, batch, run_, add);
     if (!run_.finite) {
       note_failure(run_, e);
       return false;
     }
-    out.count += weigh(e, run_, r);
-    Eigen::MatrixXd N = Eigen::MatrixXd::Zero(columns + n, columns + n);
-    N.selfadjointView<Eigen::Lower>().rankUpdate(run_.y_rows.transpose());
     N.triangularView<Eigen::StrictlyUpper>() = N.transpose();
-    const Eigen::VectorXd g = run_.y_rows.transpose() * r;
     const Eigen::Index at = columns + n * static_cast<Eigen::Index>(e);
     out.theta.segment(at, n) = x0;
     out.N.topLeftCorner(columns, columns) += N.topLeftCorner(columns, columns);
@@ -319,7 +325,6 @@ bool Shooting::linearise(Linearised& out) {
     out.N.block(at, at, n, n) = N.bottomRightCorner(n, n);
     out.g.head(columns) += g.head(columns);
     out.g.segment(at, n) = g.tail(n);
-    out.rss += r.squaredNorm();
   }
   return true;
 }

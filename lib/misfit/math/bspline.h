@@ -77,11 +77,14 @@ class CubicSpline {
   }
   void inside(int interval, double u, CurvePoint& out) const {
     const Piece& p = pieces_[static_cast<std::size_t>(interval)];
-    out.first = interval;
+    std::array<double, 4> w, d;  // not in `out` at once: the compiler must not fear that it is the piece
     for (std::size_t j = 0; j < 4; ++j) {
-      out.w[j] = ((p[3][j] * u + p[2][j]) * u + p[1][j]) * u + p[0][j];
-      out.d[j] = (3.0 * p[3][j] * u + 2.0 * p[2][j]) * u + p[1][j];
+      w[j] = ((p[3][j] * u + p[2][j]) * u + p[1][j]) * u + p[0][j];
+      d[j] = (3.0 * p[3][j] * u + 2.0 * p[2][j]) * u + p[1][j];
     }
+    out.first = interval;
+    out.w = w;
+    out.d = d;
   }
   /// Only for x inside the knots.
   [[nodiscard]] int interval_of(double x) const {

@@ -47,6 +47,12 @@ void Evaluator::flatten() {
   quantity_effects_ = !quantity_.empty();
   general_ = quantity_effects_ || free_constants_;
   find_twins();
+  for (const auto& use : dynamic_) plan_effect(use);
+  fill_numbers();
+  const auto& outputs = system_->spec().outputs;
+  const bool observed = std::all_of(outputs.begin(), outputs.end(), [](const OutputSpec& output) { return output.observes >= 0; });
+  if (!observed || !sensor_.empty()) return;
+  for (const auto& output : outputs) observed_.push_back(output.observes);
 }
 
 /// Curves of one quantity over the same knots share their weights inside them; what dynamic effects read is evaluated once per right-hand
@@ -113,7 +119,10 @@ void Evaluator::flatten_effect(const BoundEffect& bound) {
     shifts_time_ = shifts_time_ || std::find(bound.ports.begin(), bound.ports.end(), ny_) != bound.ports.end();
 }
 
-void Evaluator::set_parameters(const double* values) { std::copy(values, values + p_.size(), p_.begin()); }
+void Evaluator::set_parameters(const double* values) {
+  std::copy(values, values + p_.size(), p_.begin());
+  fill_numbers();
+}
 
 double Evaluator::curve_value(const Curve& curve, double at) const {
   const CurvePoint point = curve.over_sine ? curve.spline.over_sine(at) : curve.spline.at(at);

@@ -71,6 +71,10 @@ class Evaluator {
     double value;
   };
   [[nodiscard]] const std::vector<Entry>& slot_entries() const { return slot_entries_; }
+  /// Whether every output is a state as it stands (OutputSpec::observes, no effect on a sensor port), so that nothing need be evaluated.
+  [[nodiscard]] bool outputs_are_states() const { return !observed_.empty(); }
+  /// State that output o is; only if outputs_are_states().
+  [[nodiscard]] int observed(int o) const { return observed_[static_cast<std::size_t>(o)]; }
 
   /// y and, last, the shift of the sample time [s] (outputs() + 1 values).
   void predict(const double* x, const double* u, double t, double* y);
@@ -98,6 +102,17 @@ class Evaluator {
                   double* drift_rows);
   // The common case, nothing on quantity ports and no free constant: quantities depend on the state alone and derivatives by parameters are
   // kept as a short list of entries instead of rows.
+  struct Link {
+    int place, other;  // place among the numbers that an effect reads (or writes), and what stands there
+  };
+  struct Plan {  // a dynamic effect in that case: only what is present, and in `values` already what stays the same over a run
+    const Effect* effect;
+    int width, nq, nc, nz, first_state;
+    std::vector<Link> quantities, curves;  // place → quantity, curve
+    std::vector<Link> numbers, columns;    // place → parameter; those that are free coefficients: place → column
+    std::vector<Link> outputs;             // place among the outputs → row of force_x_
+    std::vector<double> values;
+  };
   struct CurveEntry {  // value times the four weights of a curve, at its four slots
     int row, curve;
     double value;
@@ -111,11 +126,15 @@ class Evaluator {
     int slots_for = -1;  // first coefficient that `slots` belong to
     std::array<int, 4> slots{};
   };
-  template <int NX>
+  template <int NX, int N>
   void linearise_rates_simply(const Point& at, Slots& slots, double* dx, double* D);
   void take_entries(double weight, int from, int to);
   template <int NX>
-  void add_entries(const Use& use, const double* own, double t, Slots& slots, double* drifts);
+  void add_entries(Plan& plan, const double* own, double t, Slots& slots, double* drifts);
+  template <int NX>
+  void chain_output(const Plan& plan, int row, const double* j, Slots& slots);
+  void plan_effect(const Use& use);
+  void fill_numbers();
   void evaluate_curves(Slots& slots);
   [[nodiscard]] bool slots_hold(const CurveState& state, int first, const Slots& slots) const;
   void find_slots(CurveState& state, int first, Slots& slots) const;
@@ -135,6 +154,8 @@ class Evaluator {
   std::uint64_t needed_ = 0;
   bool shifts_time_ = false, quantity_effects_ = false, free_constants_ = false, general_ = false;
   std::vector<Use> quantity_, dynamic_, sensor_;
+  std::vector<Plan> plans_;     // of dynamic_
+  std::vector<int> observed_;   // state of each output; empty: outputs are to be evaluated
   std::vector<int> column_of_;  // of every parameter; −1 fixed
   std::vector<double> p_;
   std::array<double, kMaxQuantities> q_{};

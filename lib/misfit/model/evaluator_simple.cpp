@@ -1,6 +1,7 @@
 // The common case of the right-hand side's derivatives, written for speed: see Evaluator::linearise_rates_simply.
 
 #include <array>
+#include <utility>
 
 #include "misfit/model/evaluator.h"
 
@@ -48,90 +49,113 @@ void Evaluator::evaluate_curves(Slots& slots) {
   }
 }
 
-template <int NX>
-void Evaluator::add_entries(const Use& use, const double* own, double t, Slots& slots, double* drifts) {
-  const int nx = NX > 0 ? NX : nx_;
-  std::array<double, kMaxWidth> values;
-  std::array<double, kMaxWidth> out;
-  std::array<double, static_cast<std::size_t>(kMaxWidth * kMaxWidth)> J;
-  double* v = values.data();
+/// Order of the numbers as in gather(): quantities, coefficients, own states, constants. A quantity that is absent stays 0.
+void Evaluator::plan_effect(const Use& use) {
+  Plan plan{use.effect, use.width, use.nq, use.nc, use.nz, use.first_state, {}, {}, {}, {}, {}, {}};
+  plan.values.assign(static_cast<std::size_t>(use.nq + use.nc + use.nz + use.nk), 0.0);
   for (int i = 0; i < use.nq; ++i) {
     const int quantity = use.quantity[static_cast<std::size_t>(i)];
-    *v++ = quantity < 0 ? 0.0 : q_[static_cast<std::size_t>(quantity)];
+    if (quantity >= 0) plan.quantities.push_back({i, quantity});
   }
   for (int i = 0; i < use.nc; ++i) {
-    const auto index = static_cast<std::size_t>(i);
-    *v++ = use.curve[index] >= 0 ? curve_[static_cast<std::size_t>(use.curve[index])].value
-                                 : p_[static_cast<std::size_t>(use.parameter[index])];
+    const int curve = use.curve[static_cast<std::size_t>(i)], parameter = use.parameter[static_cast<std::size_t>(i)];
+    if (curve >= 0) {
+      plan.curves.push_back({use.nq + i, curve});
+      continue;
+    }
+    plan.numbers.push_back({use.nq + i, parameter});
+    const int column = column_of_[static_cast<std::size_t>(parameter)];
+    if (column >= 0) plan.columns.push_back({use.nq + i, column});
   }
-  for (int i = 0; i < use.nz; ++i) *v++ = own[use.first_state + i];
-  for (int i = 0; i < use.nk; ++i) *v++ = p_[static_cast<std::size_t>(use.constant[static_cast<std::size_t>(i)])];
-  use.effect->linearise(reads(use, values.data(), t), out.data(), J.data(), false);
+  for (int i = 0; i < use.nk; ++i) plan.numbers.push_back({use.nq + use.nc + use.nz + i, use.constant[static_cast<std::size_t>(i)]});
+  for (int o = 0; o < use.ports; ++o) {
+    const int port = use.port[static_cast<std::size_t>(o)];
+    if (port >= 0) plan.outputs.push_back({o, port});
+  }
+  for (int i = 0; i < use.nz; ++i) plan.outputs.push_back({use.ports + i, nf_ + use.first_state + i});
+  plans_.push_back(std::move(plan));
+}
 
-  for (int o = 0; o < use.outputs; ++o) {
-    int row = 0;
-    if (o < use.ports) {
-      row = use.port[static_cast<std::size_t>(o)];
-      if (row < 0) continue;
-      F_[static_cast<std::size_t>(row)] += out[static_cast<std::size_t>(o)];
-    } else {
-      const int state = use.first_state + o - use.ports;
-      drifts[state] = out[static_cast<std::size_t>(o)];
-      row = nf_ + state;
-    }
-    std::array<double, (NX > 0 ? NX : kMaxStates)>
-        sum{};  // by the system's states; kept out of memory so that the loop does not wait for its own stores
-    const double* j = J.data() + static_cast<std::ptrdiff_t>(o) * use.width;
-    const auto chain = [&](double weight, int quantity) {
-      const double* from = q_x_.data() + static_cast<std::ptrdiff_t>(quantity) * nx;
-      for (int x = 0; x < nx; ++x) sum[static_cast<std::size_t>(x)] += weight * from[x];
-    };
-    for (int i = 0; i < use.nq; ++i, ++j) {
-      if (use.quantity[static_cast<std::size_t>(i)] >= 0) chain(*j, use.quantity[static_cast<std::size_t>(i)]);
-    }
-    for (int i = 0; i < use.nc; ++i, ++j) {
-      const auto index = static_cast<std::size_t>(i);
-      if (use.curve[index] < 0) {
-        const int column = column_of_[static_cast<std::size_t>(use.parameter[index])];
-        if (column >= 0) entries_.push_back({row, slots.slot(column), *j});
-        continue;
-      }
-      const CurveState& curve = curve_[static_cast<std::size_t>(use.curve[index])];
-      chain(*j * curve.slope, curve.quantity);
-      if (curve.free) curve_entries_.push_back({row, use.curve[index], *j});
-    }
-    double* by_x = force_x_.data() + static_cast<std::ptrdiff_t>(row) * n_;
-    for (int x = 0; x < nx; ++x) by_x[x] += sum[static_cast<std::size_t>(x)];
-    for (int i = 0; i < use.nz; ++i, ++j) by_x[nx + use.first_state + i] += *j;
+void Evaluator::fill_numbers() {
+  for (auto& plan : plans_) {
+    for (const Link& link : plan.numbers) plan.values[static_cast<std::size_t>(link.place)] = p_[static_cast<std::size_t>(link.other)];
   }
 }
 
 template <int NX>
+void Evaluator::add_entries(Plan& plan, const double* own, double t, Slots& slots, double* drifts) {
+  std::array<double, kMaxWidth> out;
+  std::array<double, static_cast<std::size_t>(kMaxWidth * kMaxWidth)> J;
+  double* values = plan.values.data();
+  for (const Link& link : plan.quantities) values[link.place] = q_[static_cast<std::size_t>(link.other)];
+  for (const Link& link : plan.curves) values[link.place] = curve_[static_cast<std::size_t>(link.other)].value;
+  const double* coefficients = values + plan.nq;
+  double* states = values + plan.nq + plan.nc;
+  for (int i = 0; i < plan.nz; ++i) states[i] = own[plan.first_state + i];
+  plan.effect->linearise({values, coefficients, states, states + plan.nz, t}, out.data(), J.data(), false);
+  for (const Link& output : plan.outputs) {
+    const double value = out[static_cast<std::size_t>(output.place)];
+    if (output.other < nf_) {
+      F_[static_cast<std::size_t>(output.other)] += value;
+    } else {
+      drifts[output.other - nf_] = value;
+    }
+    chain_output<NX>(plan, output.other, J.data() + static_cast<std::ptrdiff_t>(output.place) * plan.width, slots);
+  }
+}
+
+/// One output's derivatives `j` by what its effect reads → by the states, into force_x_, and by parameters, as entries.
+template <int NX>
+void Evaluator::chain_output(const Plan& plan, int row, const double* j, Slots& slots) {
+  const int nx = NX > 0 ? NX : nx_;
+  // Kept out of memory so that the loop does not wait for its own stores.
+  std::array<double, static_cast<std::size_t>(NX > 0 ? NX : kMaxStates)> sum{};
+  const auto chain = [&](double weight, int quantity) {
+    const double* from = q_x_.data() + static_cast<std::ptrdiff_t>(quantity) * nx;
+    for (int x = 0; x < nx; ++x) sum[static_cast<std::size_t>(x)] += weight * from[x];
+  };
+  for (const Link& link : plan.quantities) chain(j[link.place], link.other);
+  for (const Link& link : plan.columns) entries_.push_back({row, slots.slot(link.other), j[link.place]});
+  for (const Link& link : plan.curves) {
+    const CurveState& curve = curve_[static_cast<std::size_t>(link.other)];
+    chain(j[link.place] * curve.slope, curve.quantity);
+    if (curve.free) curve_entries_.push_back({row, link.other, j[link.place]});
+  }
+  double* by_x = force_x_.data() + static_cast<std::ptrdiff_t>(row) * n_;
+  for (int x = 0; x < nx; ++x) by_x[x] += sum[static_cast<std::size_t>(x)];
+  const double* by_own = j + plan.nq + plan.nc;
+  for (int i = 0; i < plan.nz; ++i) by_x[nx + plan.first_state + i] += by_own[i];
+}
+
+template <int NX, int N>
 void Evaluator::linearise_rates_simply(const Point& at, Slots& slots, double* dx, double* D) {
   const int nx = NX > 0 ? NX : nx_;
+  const int n = N > 0 ? N : n_;
   system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), nullptr, nullptr});
   evaluate_curves(slots);
   for (int f = 0; f < nf_; ++f) F_[static_cast<std::size_t>(f)] = 0.0;
   for (double& value : force_x_) value = 0.0;
   entries_.clear();
   curve_entries_.clear();
-  for (const auto& use : dynamic_) add_entries<NX>(use, at.x + nx, at.t, slots, dx + nx);
+  for (auto& plan : plans_) add_entries<NX>(plan, at.x + nx, at.t, slots, dx + nx);
   system_->linearise_rates(at, P_.data(), F_.data(), dx, {r_x_.data(), nullptr, r_F_.data(), nullptr});
 
   slot_entries_.clear();
-  for (int i = 0; i < n_; ++i) {
-    double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
-    for (int x = 0; x < n_; ++x) row[x] = i < nx && x < nx ? r_x_[static_cast<std::size_t>(i * nx + x)] : 0.0;
+  for (int i = 0; i < n; ++i) {
+    std::array<double, static_cast<std::size_t>(N > 0 ? N : kMaxStates)> sum;
+    for (int x = 0; x < n; ++x) sum[static_cast<std::size_t>(x)] = i < nx && x < nx ? r_x_[static_cast<std::size_t>(i * nx + x)] : 0.0;
     // A state takes `weight` times a force; a memory's drift stands for itself.
     const int forces = i < nx ? nf_ : 1;
     for (int f = 0; f < forces; ++f) {
       const double weight = i < nx ? r_F_[static_cast<std::size_t>(i * nf_ + f)] : 1.0;
       const int from = i < nx ? f : nf_ + i - nx;
       if (weight == 0.0) continue;
-      const double* by_x = force_x_.data() + static_cast<std::ptrdiff_t>(from) * n_;
-      for (int x = 0; x < n_; ++x) row[x] += weight * by_x[x];
+      const double* by_x = force_x_.data() + static_cast<std::ptrdiff_t>(from) * n;
+      for (int x = 0; x < n; ++x) sum[static_cast<std::size_t>(x)] += weight * by_x[x];
       take_entries(weight, from, i);
     }
+    double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
+    for (int x = 0; x < n; ++x) row[x] = sum[static_cast<std::size_t>(x)];
   }
 }
 
@@ -143,8 +167,9 @@ void Evaluator::take_entries(double weight, int from, int to) {
     if (entry.row != from) continue;
     const CurveState& curve = curve_[static_cast<std::size_t>(entry.curve)];
     const double factor = weight * entry.value;
+    const CurvePoint& point = *curve.point;
     for (std::size_t w = 0; w < 4; ++w) {
-      if (curve.slots[w] >= 0) slot_entries_.push_back({to, curve.slots[w], factor * curve.point->w[w]});
+      if (curve.slots[w] >= 0) slot_entries_.push_back({to, curve.slots[w], factor * point.w[w]});
     }
   }
 }
@@ -152,13 +177,13 @@ void Evaluator::take_entries(double weight, int from, int to) {
 bool Evaluator::linearise_rates_sparsely(const double* x, const double* u, double t, Slots& slots, double* dx, double* D) {
   if (general_ || own_elsewhere_) return false;
   const Point at{x, u, t, p_.data()};
-  // The number of states of the usual systems is given to the compiler; 0: any.
+  // The number of states of the usual systems is given to the compiler, and that there is no memory besides; 0: any.
   if (nx_ == 2) {
-    linearise_rates_simply<2>(at, slots, dx, D);
+    n_ == 2 ? linearise_rates_simply<2, 2>(at, slots, dx, D) : linearise_rates_simply<2, 0>(at, slots, dx, D);
   } else if (nx_ == 4) {
-    linearise_rates_simply<4>(at, slots, dx, D);
+    n_ == 4 ? linearise_rates_simply<4, 4>(at, slots, dx, D) : linearise_rates_simply<4, 0>(at, slots, dx, D);
   } else {
-    linearise_rates_simply<0>(at, slots, dx, D);
+    linearise_rates_simply<0, 0>(at, slots, dx, D);
   }
   return true;
 }

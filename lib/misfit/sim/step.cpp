@@ -1,5 +1,6 @@
 #include "misfit/sim/step.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +11,13 @@ namespace {
 // Classical Runge–Kutta: where each stage stands, and its weight.
 constexpr std::array<double, 4> stage_at = {0.0, 0.5, 0.5, 1.0};
 constexpr std::array<double, 4> stage_weight = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+
+constexpr std::ptrdiff_t row_at(int i) { return static_cast<std::ptrdiff_t>(i) * kRowStride; }
+
+/// kRowPadding columns of a row at once.
+using Block = Eigen::Array<double, kRowPadding, 1>;
+Eigen::Map<const Block> block(const double* at) { return Eigen::Map<const Block>(at); }
+Eigen::Map<Block> block(double* at) { return Eigen::Map<Block>(at); }
 
 }  // namespace
 
@@ -27,7 +35,9 @@ void Stepper::prepare(const double* x, const double* u, double t) { fastest_rate
 int Stepper::substeps(double h) const {
   constexpr double largest_product = 0.5;  // rate × step: above, explicit Runge–Kutta loses accuracy, then stability (DESIGN 4)
   constexpr double most = 1000.0;
-  const double wanted = std::ceil(fastest_rate_ * std::abs(h) / largest_product);
+  const double product = fastest_rate_ * std::abs(h);
+  if (product <= largest_product) return 1;
+  const double wanted = std::ceil(product / largest_product);
   return static_cast<int>(std::clamp(std::isfinite(wanted) ? wanted : 1.0, 1.0, most));
 }
 
@@ -61,93 +71,98 @@ bool Stepper::step(double* x, const Interval& interval) {
 }
 
 /// One stage on rows of ∂/∂(x0, slots), L = [A | B], B as entries if sparse:  K = A X + [0 | B];  sum += h w K;  next = D + h a K (rows of
-/// the next stage's state).
-void Stepper::advance_rows(double h, std::size_t stage, int width, bool sparse, const double* X, double* next, const double* D) {
+/// the next stage's state). The first stage starts the sum from D, the last one leaves it in D. Columns go in blocks of kRowPadding.
+template <int N>
+void Stepper::advance_rows(double h, std::size_t stage, int width, bool sparse, const double* X, double* next, double* D) {
+  const int n = N > 0 ? N : n_;
+  const bool first = stage == 0, last = stage + 1 == stage_at.size();
   const double to_sum = h * stage_weight[stage];
-  const double to_next = stage + 1 < stage_at.size() ? h * stage_at[stage + 1] : 0.0;
-  const int whole = padded(width);
-  for (int i = 0; i < n_; ++i) {
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * kRowStride;
-    double* __restrict L = L_.data() + at;  // A first; then this row becomes K
-    std::array<double, kMaxStates> a;
-    for (int j = 0; j < n_; ++j) a[static_cast<std::size_t>(j)] = L[j];
-    for (int j = 0; j < n_; ++j) L[j] = 0.0;
-    if (sparse) {
-      for (int c = n_; c < whole; ++c) L[c] = 0.0;
-    }
-    int j = 0;
-    for (; j + 2 < n_; j += 2) {
-      const double a0 = a[static_cast<std::size_t>(j)], a1 = a[static_cast<std::size_t>(j) + 1];
-      const double* __restrict x0 = X + static_cast<std::ptrdiff_t>(j) * kRowStride;
-      const double* __restrict x1 = x0 + kRowStride;
-      for (int c = 0; c < whole; ++c) L[c] += a0 * x0[c] + a1 * x1[c];
-    }
-    // The last one or two states together with what becomes of K.
-    const bool two = j + 1 < n_;
-    const double a0 = a[static_cast<std::size_t>(j)], a1 = two ? a[static_cast<std::size_t>(j) + 1] : 0.0;
-    const double* __restrict x0 = X + static_cast<std::ptrdiff_t>(j) * kRowStride;
-    const double* __restrict x1 = two ? x0 + kRowStride : x0;
-    double* __restrict sum = sum_.data() + at;
-    double* __restrict out = next + at;
-    const double* __restrict d = D + at;
-    for (int c = 0; c < whole; ++c) {
-      const double k = L[c] + (a0 * x0[c] + a1 * x1[c]);
-      sum[c] += to_sum * k;
-      out[c] = d[c] + to_next * k;
+  const double to_next = last ? 0.0 : h * stage_at[stage + 1];
+  const double* sum_before = first ? D : sum_.data();
+  double* sum = last ? D : sum_.data();
+  constexpr auto rows = static_cast<std::size_t>(N > 0 ? N : kMaxStates);
+  std::array<double, rows * rows> A;
+  for (int i = 0; i < n; ++i) {
+    double* row = L_.data() + row_at(i);
+    for (int j = 0; j < n; ++j) A[static_cast<std::size_t>(i * n + j)] = row[j];
+    if (!sparse) std::fill_n(row, n, 0.0);  // what is left is [0 | B]
+  }
+  std::array<Block, rows> x;
+  for (int c = 0; c < width; c += kRowPadding) {
+    for (int j = 0; j < n; ++j) x[static_cast<std::size_t>(j)] = block(X + row_at(j) + c);
+    for (int i = 0; i < n; ++i) {
+      const std::ptrdiff_t at = row_at(i) + c;
+      Block K = A[static_cast<std::size_t>(i * n)] * x[0];
+      for (int j = 1; j < n; ++j) K += A[static_cast<std::size_t>(i * n + j)] * x[static_cast<std::size_t>(j)];
+      if (!sparse) K += block(L_.data() + at);
+      if (!last) block(next + at) = block(D + at) + to_next * K;
+      block(sum + at) = block(sum_before + at) + to_sum * K;
     }
   }
   if (!sparse) return;
   for (const Evaluator::Entry& entry : evaluator_.slot_entries()) {
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(entry.row) * kRowStride + n_ + entry.slot;
-    sum_[static_cast<std::size_t>(at)] += to_sum * entry.value;
-    next[at] += to_next * entry.value;
+    const std::ptrdiff_t at = row_at(entry.row) + n + entry.slot;
+    sum[at] += to_sum * entry.value;
+    if (!last) next[at] += to_next * entry.value;
   }
 }
 
+template <int N>
 void Stepper::substep_linear(double* x, const Interval& interval, double from, double to, Slots& slots, double* D) {
+  const int n = N > 0 ? N : n_;
   const double h = (to - from) * (interval.t1 - interval.t0);
-  std::array<double, kMaxStates> stage, sum, dx{};
-  std::array<double, kMaxInputs> u{};
-  for (int i = 0; i < n_; ++i) sum[static_cast<std::size_t>(i)] = stage[static_cast<std::size_t>(i)] = x[i];
-  const auto row = [](double* rows, int i) { return rows + static_cast<std::ptrdiff_t>(i) * kRowStride; };
-  for (int i = 0; i < n_; ++i) std::copy_n(row(D, i), n_ + slots.count(), row(sum_.data(), i));
+  std::array<double, static_cast<std::size_t>(N > 0 ? N : kMaxStates)> stage, sum, dx{};
+  std::array<double, kMaxInputs> u;
+  std::copy_n(x, n, stage.begin());
+  std::copy_n(x, n, sum.begin());
   double* X = D;
   double* next = X_.data();
   for (std::size_t s = 0; s < stage_at.size(); ++s) {
     const double fraction = from + stage_at[s] * (to - from);
-    inputs_at(interval, fraction, u.data());
+    if (s == 0 || stage_at[s] != stage_at[s - 1]) inputs_at(interval, fraction, u.data());
     if (s > 0) {
-      for (int i = 0; i < n_; ++i) stage[static_cast<std::size_t>(i)] = x[i] + h * stage_at[s] * dx[static_cast<std::size_t>(i)];
+      for (int i = 0; i < n; ++i) stage[static_cast<std::size_t>(i)] = x[i] + h * stage_at[s] * dx[static_cast<std::size_t>(i)];
     }
-    const int before = n_ + slots.count();
+    const int before = n + slots.count();
     const double t = interval.t0 + fraction * (interval.t1 - interval.t0);
     const bool sparse = evaluator_.linearise_rates_sparsely(stage.data(), u.data(), t, slots, dx.data(), L_.data());
     if (!sparse) evaluator_.linearise_rates(stage.data(), u.data(), t, slots, dx.data(), L_.data());
-    const int width = n_ + slots.count();
+    const int width = n + slots.count();
     if (width > before) {  // columns met for the first time: nothing of them has moved the state yet
-      for (double* rows : {D, X, sum_.data()}) {
-        for (int i = 0; i < n_; ++i) std::fill(row(rows, i) + before, row(rows, i) + width, 0.0);
+      const auto clear = [&](double* rows) {
+        for (int i = 0; i < n; ++i) std::fill(rows + row_at(i) + before, rows + row_at(i) + width, 0.0);
+      };
+      clear(D);
+      if (s > 0) {  // at the first stage X is D, and the sum is yet to begin
+        clear(X);
+        clear(sum_.data());
       }
     }
-    advance_rows(h, s, width, sparse, X, next, D);
+    advance_rows<N>(h, s, width, sparse, X, next, D);
     X = next;
     next = X == X_.data() ? Y_.data() : X_.data();
-    for (int i = 0; i < n_; ++i) sum[static_cast<std::size_t>(i)] += h * stage_weight[s] * dx[static_cast<std::size_t>(i)];
+    for (int i = 0; i < n; ++i) sum[static_cast<std::size_t>(i)] += h * stage_weight[s] * dx[static_cast<std::size_t>(i)];
   }
-  std::copy_n(sum.begin(), n_, x);
-  for (int i = 0; i < n_; ++i) std::copy_n(row(sum_.data(), i), n_ + slots.count(), row(D, i));
+  std::copy_n(sum.begin(), n, x);
 }
 
 bool Stepper::step_linear(double* x, const Interval& interval, Slots& slots, double* D) {
   slots.clear();
   for (int i = 0; i < n_; ++i) {
     double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
-    std::fill_n(row, n_, 0.0);
-    row[i] = 1.0;
+    for (int j = 0; j < n_; ++j) row[j] = i == j ? 1.0 : 0.0;
   }
   const int parts = substeps(interval.t1 - interval.t0);
   for (int part = 0; part < parts; ++part) {
-    substep_linear(x, interval, static_cast<double>(part) / parts, static_cast<double>(part + 1) / parts, slots, D);
+    const double from = static_cast<double>(part) / parts, to = static_cast<double>(part + 1) / parts;
+    // The number of states of the usual systems is given to the compiler; 0: any.
+    if (n_ == 2) {
+      substep_linear<2>(x, interval, from, to, slots, D);
+    } else if (n_ == 4) {
+      substep_linear<4>(x, interval, from, to, slots, D);
+    } else {
+      substep_linear<0>(x, interval, from, to, slots, D);
+    }
   }
   return std::all_of(x, x + n_, [](double value) { return std::isfinite(value); });
 }

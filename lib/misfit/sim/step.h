@@ -37,8 +37,10 @@ class Stepper {
  private:
   [[nodiscard]] int substeps(double h) const;
   void inputs_at(const Interval& interval, double fraction, double* u) const;
+  template <int N>
   void substep_linear(double* x, const Interval& interval, double from, double to, Slots& slots, double* D);
-  void advance_rows(double h, std::size_t stage, int width, bool sparse, const double* X, double* next, const double* D);
+  template <int N>
+  void advance_rows(double h, std::size_t stage, int width, bool sparse, const double* X, double* next, double* D);
 
   Evaluator evaluator_;
   int n_, nu_;

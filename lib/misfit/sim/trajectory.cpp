@@ -8,45 +8,72 @@
 namespace misfit {
 namespace {
 
-/// S⁺ = Φ S + Γ on rows [θ columns | x0 columns], width columns + states, in place through `work`.
+/// S⁺ = Φ S + Γ on rows [θ columns | x0 columns], columns + states wide, in place through `work`. Columns go in blocks of kRowPadding.
 class Sensitivity {
  public:
   Sensitivity(int states, int columns)
-      : n_(states), columns_(columns), width_(columns + states), rows_(RowMatrix::Zero(states, width_)), work_(states, width_) {
-    for (int i = 0; i < n_; ++i) rows_(i, columns_ + i) = 1.0;
+      : n_(states),
+        columns_(columns),
+        stride_(padded(columns + states)),
+        rows_(static_cast<std::size_t>(states * stride_), 0.0),
+        work_(rows_.size(), 0.0) {
+    for (int i = 0; i < n_; ++i) row(i)[columns_ + i] = 1.0;
   }
-  const RowMatrix& rows() const { return rows_; }
+  [[nodiscard]] int width() const { return columns_ + n_; }
+  [[nodiscard]] const double* row(int i) const { return rows_.data() + static_cast<std::ptrdiff_t>(i) * stride_; }
+  [[nodiscard]] RowMatrix matrix() const {
+    return Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>>(rows_.data(), n_, width(), Eigen::OuterStride<>(stride_));
+  }
 
   void advance(const double* D, const Slots& slots) {
-    for (int i = 0; i < n_; ++i) combine(D + static_cast<std::ptrdiff_t>(i) * kRowStride, slots, work_.row(i).data());
+    for (int i = 0; i < n_; ++i) {
+      combine(D + static_cast<std::ptrdiff_t>(i) * kRowStride, slots, work_.data() + static_cast<std::ptrdiff_t>(i) * stride_);
+    }
     rows_.swap(work_);
   }
-  /// out = (state part of `row`) · S + (slot part of `row`) scattered.
-  void combine(const double* row, const Slots& slots, double* out) const {
-    const double* first = rows_.data();
-    for (int c = 0; c < width_; ++c) out[c] = row[0] * first[c];
-    for (int j = 1; j < n_; ++j) {
-      const double weight = row[j];
-      if (weight == 0.0) continue;
-      const double* from = first + static_cast<std::ptrdiff_t>(j) * width_;
-      for (int c = 0; c < width_; ++c) out[c] += weight * from[c];
+  /// out = (state part of `D`) · S + (slot part of `D`) scattered; out has a whole number of blocks.
+  void combine(const double* D, const Slots& slots, double* out) const {
+    switch (n_) {  // the number of states of the usual systems is given to the compiler; 0: any
+      case 2:
+        multiply<2>(D, out);
+        break;
+      case 4:
+        multiply<4>(D, out);
+        break;
+      default:
+        multiply<0>(D, out);
     }
-    for (int s = 0; s < slots.count(); ++s) out[slots.column(s)] += row[n_ + s];
+    for (int s = 0; s < slots.count(); ++s) out[slots.column(s)] += D[n_ + s];
   }
   /// Adds speed ⊗ direction: the state also moves with the shift of the sample time.
   void add_direction(const double* speed, const double* direction) {
     for (int i = 0; i < n_; ++i) {
-      for (int c = 0; c < width_; ++c) rows_(i, c) += speed[i] * direction[c];
+      for (int c = 0; c < width(); ++c) row(i)[c] += speed[i] * direction[c];
+    }
+  }
+  [[nodiscard]] std::vector<double> empty_row() const { return std::vector<double>(static_cast<std::size_t>(stride_)); }
+
+ private:
+  using Block = Eigen::Array<double, kRowPadding, 1>;
+  double* row(int i) { return rows_.data() + static_cast<std::ptrdiff_t>(i) * stride_; }
+
+  template <int N>
+  void multiply(const double* weights, double* out) const {
+    const int n = N > 0 ? N : n_;
+    const double* S = rows_.data();
+    for (int c = 0; c < stride_; c += kRowPadding) {
+      Block sum = weights[0] * Eigen::Map<const Block>(S + c);
+      for (int j = 1; j < n; ++j) sum += weights[j] * Eigen::Map<const Block>(S + static_cast<std::ptrdiff_t>(j) * stride_ + c);
+      Eigen::Map<Block>(out + c) = sum;
     }
   }
 
- private:
-  int n_, columns_, width_;
-  RowMatrix rows_, work_;
+  int n_, columns_, stride_;
+  std::vector<double> rows_, work_;
 };
 
 struct Scratch {
-  std::vector<double> D, O;
+  std::vector<double> D, O, row;
   Slots slots;
   std::array<double, kMaxOutputs + 1> y{};
 };
@@ -68,18 +95,34 @@ bool predict(Stepper& stepper, const Signals& signals, const InputTable& inputs,
   return true;
 }
 
+double* output_row(std::size_t i, int o, int outputs, Segment& out) {
+  return out.y_rows.row(static_cast<Eigen::Index>((i - out.first) * static_cast<std::size_t>(outputs)) + o).data();
+}
+
+/// Outputs that are states as they stand: their rows are those of S.
+void copy_states(const Evaluator& evaluator, const double* x, const Sensitivity& S, double* y, double* rows) {
+  for (int o = 0; o < evaluator.outputs(); ++o) {
+    y[o] = x[evaluator.observed(o)];
+    std::copy_n(S.row(evaluator.observed(o)), S.width(), rows + static_cast<std::ptrdiff_t>(o) * S.width());
+  }
+}
+
 /// Rows of ∂y/∂(θ, x0) at sample i into out.y_rows.
 bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x,
                     const Sensitivity& S, Scratch& w, Segment& out) {
   Evaluator& evaluator = stepper.evaluator();
-  const int ny = evaluator.outputs(), n = stepper.states(), columns = evaluator.columns();
+  const int ny = evaluator.outputs(), n = stepper.states();
+  if (evaluator.outputs_are_states()) {
+    copy_states(evaluator, x, S, w.y.data(), output_row(i, 0, ny, out));
+    return true;
+  }
   w.slots.clear();
   evaluator.linearise_outputs(x, inputs.at(i), signals.t[i], w.slots, w.y.data(), w.O.data());
   const double shift = evaluator.shifts_time() ? w.y[static_cast<std::size_t>(ny)] : 0.0;
   std::optional<Sensitivity> moved_S;
   const Sensitivity* use = &S;
   if (evaluator.shifts_time()) {
-    std::vector<double> by_shift(static_cast<std::size_t>(columns + n));
+    std::vector<double> by_shift = S.empty_row();
     S.combine(w.O.data() + static_cast<std::ptrdiff_t>(ny) * kRowStride, w.slots, by_shift.data());  // ∂τ/∂(θ, x0)
     std::array<double, kMaxStates> moved, speed{};
     std::copy_n(x, n, moved.begin());
@@ -95,8 +138,8 @@ bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& 
     use = &*moved_S;
   }
   for (int o = 0; o < ny; ++o) {
-    const auto r = static_cast<Eigen::Index>((i - out.first) * static_cast<std::size_t>(ny)) + o;
-    use->combine(w.O.data() + static_cast<std::ptrdiff_t>(o) * kRowStride, w.slots, out.y_rows.row(r).data());
+    use->combine(w.O.data() + static_cast<std::ptrdiff_t>(o) * kRowStride, w.slots, w.row.data());
+    std::copy_n(w.row.data(), S.width(), output_row(i, o, ny, out));
   }
   return true;
 }
@@ -115,31 +158,40 @@ InputTable input_table(const Signals& signals, int inputs) {
   return table;
 }
 
-void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last, const double* x0,
-                 bool sensitivities, Segment& out) {
+void run_in_batches(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last,
+                    const double* x0, bool sensitivities, std::size_t batch, Segment& out, const std::function<void(Segment&)>& take) {
   Evaluator& evaluator = stepper.evaluator();
   const int n = stepper.states(), ny = evaluator.outputs(), columns = evaluator.columns();
-  const auto samples = static_cast<Eigen::Index>(last - first);
-  out.first = first;
-  out.last = last;
-  out.finite = false;
-  out.y.resize(samples, ny);
-  if (sensitivities) {
-    out.y_rows.resize(samples * ny, columns + n);
-  }
   Scratch w;
   w.D.resize(static_cast<std::size_t>(n) * kRowStride);
   w.O.resize(static_cast<std::size_t>(ny + 1) * kRowStride);
   Sensitivity S(n, sensitivities ? columns : 0);
+  w.row = S.empty_row();
   std::array<double, kMaxStates> x{};
   std::copy_n(x0, n, x.begin());
   stepper.prepare(x.data(), inputs.at(first), signals.t[first]);
+  // Rows copied from S need no look of their own: what is not finite in S stays so up to the end.
+  const bool rows_differ = sensitivities && !evaluator.outputs_are_states();
+  const auto begin_batch = [&](std::size_t from) {
+    out.first = from;
+    out.last = std::min(from + batch, last);
+    const auto samples = static_cast<Eigen::Index>(out.last - out.first);
+    out.y.resize(samples, ny);
+    if (sensitivities) out.y_rows.resize(samples * ny, columns + n);
+  };
+  out.finite = false;
+  begin_batch(first);
   for (std::size_t i = first; i < last; ++i) {
     out.failed_at = i;
     const bool predicted = sensitivities ? predict_linear(stepper, signals, inputs, i, x.data(), S, w, out)
                                          : predict(stepper, signals, inputs, i, x.data(), w.y.data());
     if (!predicted) return;
-    for (int o = 0; o < ny; ++o) out.y(static_cast<Eigen::Index>(i - first), o) = w.y[static_cast<std::size_t>(o)];
+    std::copy_n(w.y.data(), ny, out.y.row(static_cast<Eigen::Index>(i - out.first)).data());
+    if (i + 1 == out.last) {
+      if (!out.y.allFinite() || (rows_differ && !out.y_rows.allFinite())) return;
+      take(out);
+      if (i + 1 < last) begin_batch(i + 1);
+    }
     if (i + 1 >= signals.samples()) break;
     out.failed_at = i + 1;
     if (!sensitivities) {
@@ -150,10 +202,13 @@ void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inp
     S.advance(w.D.data(), w.slots);
   }
   out.end = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
-  if (sensitivities) {
-    out.end_rows = S.rows();
-  }
-  out.finite = out.y.allFinite() && (!sensitivities || (out.y_rows.allFinite() && out.end_rows.allFinite()));
+  if (sensitivities) out.end_rows = S.matrix();
+  out.finite = !sensitivities || out.end_rows.allFinite();
+}
+
+void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last, const double* x0,
+                 bool sensitivities, Segment& out) {
+  run_in_batches(stepper, signals, inputs, first, last, x0, sensitivities, last - first, out, [](Segment&) {});
 }
 
 RowMatrix run_states(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "misfit/sim/step.h"
@@ -34,6 +35,11 @@ struct Segment {
 /// resized only when their size changes: reuse `out` to avoid allocation.
 void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last, const double* x0,
                  bool sensitivities, Segment& out);
+
+/// The same in batches of so many samples, for those who need every row once and no longer: `out` (first, last, y, y_rows) is handed to
+/// `take`, which may change it, and then reused; `end` and `finite` are those of the whole run.
+void run_in_batches(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last,
+                    const double* x0, bool sensitivities, std::size_t batch, Segment& out, const std::function<void(Segment&)>& take);
 
 /// States at every sample first … last − 1 (samples × states), without derivatives; stops early (fewer rows) where a state is not finite.
 [[nodiscard]] RowMatrix run_states(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last,
