@@ -6,6 +6,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/progress.h"
 #include "misfit/core/text.h"
+#include "misfit/fit/curves.h"
 #include "misfit/fit/output_error.h"
 #include "misfit/fit/sliding_bin.h"
 
@@ -62,8 +63,21 @@ class Methods {
     if (form->experiments.size() > 1)
       fit.warnings.push_back("only the first experiment, '" + form->experiments.front().name + "', is used by this method");
     for (const auto& name : left_out) fit.warnings.push_back("effect '" + name + "' is not in the equation of this method");
+    add_scale(*form, fit);
     add_notes(*form, fit);
     return fit;
+  }
+
+  /// What an uncertain inertia does to every C_m (DESIGN 5).
+  static void add_scale(const Prepared& form, Fit& fit) {
+    const Signals& signals = form.experiments.front();
+    const ReconstructedStates states = reconstruct_states(form.model, signals);
+    const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+    if (known == static_cast<std::ptrdiff_t>(states.ok.size())) return;
+    const InputTable inputs = input_table(signals, form.model.inputs());
+    const auto sample = static_cast<std::size_t>(known);
+    const auto scales = scale_uncertainties(form.model, states.x.row(known).data(), inputs.at(sample), signals.t[sample]);
+    fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
   }
 
   Fit run_output_error() {

@@ -32,6 +32,9 @@ std::vector<report::ExperimentInput> experiments_of(Session& session) {
     input.name = study.name;
     if (study.track) input.track = read_track(*study.track, study.columns);
     input.attitude = std::move(attitudes[e]);
+    if (input.attitude && input.attitude->notes.empty()) {
+      input.attitude->notes = lines_of(session.folder.file(e == 0 ? "attitude.notes.txt" : "attitude_" + study.name + ".notes.txt"));
+    }
     out.push_back(std::move(input));
   }
   return out;
@@ -90,12 +93,6 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   input.calibration = calibrate_stage(session);
   input.comparison = compare_stage(session, fits);
   input.references = references(session);
-  for (const auto& reference : input.references) input.notes.insert(input.notes.end(), reference.notes.begin(), reference.notes.end());
-  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
-    const auto notes =
-        lines_of(session.folder.file(e == 0 ? "attitude.notes.txt" : "attitude_" + session.study.experiments[e].name + ".notes.txt"));
-    input.notes.insert(input.notes.end(), notes.begin(), notes.end());
-  }
   input.run = facts_of(session);
   fs::path page = report::write_report(session.folder.path(), input);
   session.folder.record({"report",

@@ -56,16 +56,20 @@ TEST(ReconstructStates, IsExactOnAParabolaAlsoAtUnevenTimes) {
   }
 }
 
-TEST(ReconstructStates, BridgesOneMissingSampleButNotTwo) {
+TEST(ReconstructStates, WidensItsReachWhereSamplesAreMissingUpToNine) {
   const Model model = assemble(eq_8(), registry());
-  const auto t = even_times(40, 0.1);
-  std::vector<double> y(t.size(), 0.2);
+  const auto t = even_times(60, 0.1);
+  std::vector<double> y;
+  for (double time : t) y.push_back(0.2 + 0.03 * time - 0.01 * time * time);
   y[10] = y[20] = y[22] = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 40; i < 47; ++i) y[i] = std::numeric_limits<double>::quiet_NaN();
   const ReconstructedStates s = reconstruct_states(model, measured(t, y));
   EXPECT_TRUE(s.ok[10]);
   EXPECT_TRUE(s.ok[18]);
-  EXPECT_FALSE(s.ok[21]);
-  EXPECT_FALSE(s.ok[0]);  // three of five
+  ASSERT_TRUE(s.ok[21]);  // three of five, five of seven
+  EXPECT_NEAR(s.x(21, 1), 0.03 - 0.02 * t[21], 1e-11);
+  EXPECT_FALSE(s.ok[43]);  // two of nine
+  EXPECT_FALSE(s.ok[0]);   // nothing before it
 }
 
 TEST(ReconstructStates, IsNotStretchedOverAGapInTime) {

@@ -160,6 +160,45 @@ void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMa
   }
 }
 
+namespace {
+
+/// Change of the rates by the static curve, its coefficients taken from 0 to 1, with constant `k` moved by `shift`: the largest row.
+double gain_of(const Model& model, const Curve& curve, std::size_t k, double shift, const double* x, const double* u, double t) {
+  Evaluator evaluator(model);
+  std::vector<double> values = model.values();
+  values[k] += shift;
+  std::vector<double> dx(static_cast<std::size_t>(model.states())), off = dx;
+  for (int i = 0; i < curve.spline.size(); ++i) values[static_cast<std::size_t>(curve.first + i)] = 1.0;
+  evaluator.set_parameters(values.data());
+  evaluator.rates(x, u, t, dx.data());
+  for (int i = 0; i < curve.spline.size(); ++i) values[static_cast<std::size_t>(curve.first + i)] = 0.0;
+  evaluator.set_parameters(values.data());
+  evaluator.rates(x, u, t, off.data());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < dx.size(); ++i) largest = std::max(largest, std::abs(dx[i] - off[i]));
+  return largest;
+}
+
+}  // namespace
+
+std::vector<std::string> scale_uncertainties(const Model& model, const double* x, const double* u, double t) {
+  std::vector<std::string> out;
+  const Curve* curve = model.find_curve(model.system->spec().static_curve);
+  if (curve == nullptr) return out;
+  for (std::size_t k = 0; k < model.system->spec().constants.size(); ++k) {
+    const Parameter& p = model.parameters[k];
+    if (p.free || !p.prior_sigma) continue;
+    const double nominal = gain_of(model, *curve, k, 0.0, x, u, t);
+    const double moved = gain_of(model, *curve, k, *p.prior_sigma, x, u, t);
+    constexpr double worth_saying = 1e-3;
+    if (!(nominal > 0.0) || std::abs(moved / nominal - 1.0) < worth_saying) continue;
+    out.push_back(curve->name + " is only known as well as its scale: " + p.name + " = " + format_value(p.value, *p.prior_sigma) + " " +
+                  p.unit + " alone makes every " + curve->name + " uncertain by " +
+                  format_value(std::round(1000.0 * std::abs(moved / nominal - 1.0)) / 10.0) + " %, which is not in its band");
+  }
+  return out;
+}
+
 void mark_not_informative(const Model& model, const std::string& curve, const std::string& why, Fit& fit) {
   const std::vector<double> values = model.values();
   std::vector<std::string> names{curve};

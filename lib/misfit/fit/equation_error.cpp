@@ -165,6 +165,11 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
     visited.bottomRows(more.rows()) = more;
   }
   describe(out.model, smoothed.covariance, visited, out.fit);
+  const ReconstructedStates& states = regressor.states(0);
+  const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+  const InputTable inputs = input_table(experiments.front(), model.inputs());
+  const auto sample = static_cast<std::size_t>(known);
+  out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
   if (out.fit.driven) {
     out.fit.warnings.push_back(
         "the motion is driven (" + out.fit.facts["whiteness"] +

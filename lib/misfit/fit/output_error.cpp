@@ -50,21 +50,21 @@ Setting look_at(const Model& model, const std::vector<Signals>& experiments, con
   return s;
 }
 
-/// States at every sample to begin with: read from the measurement, gaps bridged by the last known.
+/// States at every sample to begin with: read from the measurement, gaps bridged linearly between the known neighbours.
 std::vector<RowMatrix> start_states(const Setting& setting) {
   std::vector<RowMatrix> out;
   for (const auto& states : setting.states) {
     RowMatrix x = states.x;
-    const auto known = std::find(states.ok.begin(), states.ok.end(), true);
-    if (known == states.ok.end()) {
-      out.push_back(std::move(x));
-      continue;
-    }
-    Eigen::Index last = known - states.ok.begin();
+    Eigen::Index known = -1;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      if (states.ok[static_cast<std::size_t>(i)]) last = i;
-      if (i != last) x.row(i) = x.row(last);
+      if (!states.ok[static_cast<std::size_t>(i)]) continue;
+      for (Eigen::Index k = known + 1; k < i; ++k) {
+        const double share = known < 0 ? 1.0 : static_cast<double>(k - known) / static_cast<double>(i - known);
+        x.row(k) = known < 0 ? x.row(i).eval() : (x.row(known) + share * (x.row(i) - x.row(known))).eval();
+      }
+      known = i;
     }
+    for (Eigen::Index k = known + 1; known >= 0 && k < x.rows(); ++k) x.row(k) = x.row(known);
     out.push_back(std::move(x));
   }
   return out;
@@ -286,9 +286,9 @@ class Estimator {
   FittedModel lost(const ShootingPass& pass) {
     FittedModel out = failed("");
     const std::string span = format_value(std::round(100.0 * static_cast<double>(pass.length) * setting_.step) / 100.0);
-    const std::string what = "the model follows the measured motion over segments of " + span +
-                             " s only: run on, the simulated motion leaves it (" +
-                             (shooting_.failure().empty() ? last_.message : shooting_.failure()) + ")";
+    const std::string stop = shooting_.failure().empty() ? "longer segments predict worse than a constant would" : shooting_.failure();
+    const std::string what =
+        "the model follows the measured motion over segments of " + span + " s only: run on, the simulated motion leaves it (" + stop + ")";
     out.fit.message = what;
     out.fit.facts["prediction"] = "restarted every " + span + " s from a fitted state: no single trajectory exists";
     show_segments(out.fit);
@@ -390,6 +390,10 @@ class Estimator {
     errors_of(experiments_, fit);
     for (std::size_t e = 0; e < experiments_.size(); ++e) out.initial_states.push_back(shooting_.initial_state(e));
     fit.facts["effective_parameters"] = format_value(smoothed.edf);
+    const InputTable inputs = input_table(experiments_.front(), out.model.inputs());
+    const std::vector<std::string> scales =
+        scale_uncertainties(out.model, out.initial_states.front().data(), inputs.at(0), experiments_.front().t.front());
+    fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
     judge(out.model, setting_, fit);
     fit.linearisations = shooting_.linearisations();
     return out;

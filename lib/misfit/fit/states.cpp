@@ -15,24 +15,35 @@ struct LocalFit {
   bool ok = false;
 };
 
-LocalFit local_quadratic(const std::vector<double>& t, const std::vector<double>& y, std::size_t i, double h) {
-  constexpr std::size_t reach = 2;
-  constexpr double largest_gap = 3.0;
+/// Points within `reach` usual steps.
+LocalFit quadratic_within(const std::vector<double>& t, const std::vector<double>& y, std::size_t i, double h, std::size_t reach) {
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   int points = 0;
+  bool before = false, after = false;
   const std::size_t from = i >= reach ? i - reach : 0, to = std::min(i + reach, t.size() - 1);
   for (std::size_t k = from; k <= to; ++k) {
     const double s = (t[k] - t[i]) / h;
-    if (!std::isfinite(y[k]) || std::abs(s) > largest_gap) continue;
+    if (!std::isfinite(y[k]) || std::abs(s) > static_cast<double>(reach) + 1.0) continue;
     const Eigen::Vector3d a(1.0, s, s * s);
     N += a * a.transpose();
     b += a * y[k];
     ++points;
+    before = before || k < i;
+    after = after || k > i;
   }
-  if (points < 4) return {};
+  if (points < 4 || !before || !after) return {};
   const Eigen::Vector3d c = N.ldlt().solve(b);
   return {c[0], c[1] / h, 2.0 * c[2] / (h * h), true};
+}
+
+LocalFit local_quadratic(const std::vector<double>& t, const std::vector<double>& y, std::size_t i, double h) {
+  constexpr std::size_t usual = 2, farthest = 4;
+  for (std::size_t reach = usual; reach <= farthest; ++reach) {
+    const LocalFit fit = quadratic_within(t, y, i, h, reach);
+    if (fit.ok) return fit;
+  }
+  return {};
 }
 
 }  // namespace

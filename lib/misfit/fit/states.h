@@ -16,9 +16,9 @@ struct ReconstructedStates {
   std::vector<bool> shown;  ///< per state: measured itself or the rate of a measured one
 };
 
-/// Quadratic least squares over five neighbouring samples (uneven times and missing samples allowed; at least four of the five, not
-/// stretched over a gap of more than three usual steps): value, slope, second derivative. A state is shown if an output observes it, or if
-/// it is the rate of one that is. Own states of effects start at their declared initial value.
+/// Quadratic least squares over five neighbouring samples, or, where fewer than four of them are there, over seven or nine (uneven times
+/// and missing samples allowed; never stretched over a gap of more than five usual steps): value, slope, second derivative. A state is
+/// shown if an output observes it, or if it is the rate of one that is. Own states of effects start at their declared initial value.
 [[nodiscard]] ReconstructedStates reconstruct_states(const Model& model, const Signals& signals);
 
 /// Usual step of the time base: the median difference [s].
