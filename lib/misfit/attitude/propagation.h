@@ -18,6 +18,6 @@ struct UncertaintySources {
 
 /// Fills sigma_theta, sigma_psi, sigma_phi and sigma_alpha_T (attitude/attitude.h says what is in them) and returns a sentence with the
 /// median shares of both sources in sigma_alpha_T. `lag` = R_cp / V [s]. NaN where the value itself is.
-[[nodiscard]] std::string add_sigmas(Attitude& attitude, const UncertaintySources& sources, double lag);
+[[nodiscard]] std::string add_sigmas(Attitude& attitude, const UncertaintySources& from, double lag);
 
 }  // namespace misfit

@@ -16,19 +16,19 @@ struct CameraTest {
   std::vector<std::string> parameters;  ///< members of camera_parameter_names
   std::vector<double> values;           ///< estimate when freed (beside those taken in), SI
   std::vector<double> sigmas;
-  double drop = 0.0;                    ///< 2 Δ log L for freeing it beside those taken in before
-  double p_value = 1.0;                 ///< corrected for the number of candidates
+  double drop = 0.0;     ///< 2 Δ log L for freeing it beside those taken in before
+  double p_value = 1.0;  ///< corrected for the number of candidates
   bool taken_in = false;
 };
 
 /// One reference point at one angle.
 struct CalibrationResidual {
-  int point = 0;               ///< 1, 2, 3
-  char coordinate = 'z';       ///< 'y' or 'z'
-  double theta = 0.0;          ///< [rad]
-  double measured = 0.0;       ///< [px]
-  double predicted = 0.0;      ///< [px]
-  bool used = true;            ///< false: set aside as an outlier
+  int point = 0;           ///< 1, 2, 3
+  char coordinate = 'z';   ///< 'y' or 'z'
+  double theta = 0.0;      ///< [rad]
+  double measured = 0.0;   ///< [px]
+  double predicted = 0.0;  ///< [px]
+  bool used = true;        ///< false: set aside as an outlier
 };
 
 /// A calibrated camera: values, joint covariance of the free ones, and why each parameter is free or not.
@@ -40,7 +40,7 @@ struct Calibration {
   double sigma_px = 0.0;           ///< estimated noise of one coordinate [px]
   double rms_px = 0.0;             ///< over the points used [px]
   int outliers = 0;
-  std::string message;             ///< why the solver stopped
+  std::string message;  ///< why the solver stopped
   bool converged = false;
   std::vector<CameraTest> tests;
   std::vector<CalibrationResidual> residuals;
@@ -50,7 +50,8 @@ struct Calibration {
   [[nodiscard]] double sigma(const std::string& name) const;  ///< 0 if not free
 };
 
-/// camera.json as DESIGN section 8: {"h_c":{"value","sigma","unit"},…,"names","covariance","rms_px","tests":{…}}; angles in radians, unit "rad".
+/// camera.json as DESIGN section 8: {"h_c":{"value","sigma","unit"},…,"names","covariance","rms_px","tests":{…}}; angles in radians, unit
+/// "rad".
 void write_calibration(const std::filesystem::path& path, const Calibration& calibration);
 [[nodiscard]] Calibration read_calibration(const std::filesystem::path& path);
 

@@ -18,15 +18,15 @@ struct Estimate {
 
 /// A curve with its band, on a grid of its argument.
 struct CurveEstimate {
-  std::string name;               ///< "C_m"
-  std::string of;                 ///< quantity: "alpha_T"
-  std::string of_unit;            ///< SI unit of the quantity: "rad"
-  std::string unit;               ///< of the value: "-"
-  std::vector<double> x;          ///< [of_unit]
+  std::string name;       ///< "C_m"
+  std::string of;         ///< quantity: "alpha_T"
+  std::string of_unit;    ///< SI unit of the quantity: "rad"
+  std::string unit;       ///< of the value: "-"
+  std::vector<double> x;  ///< [of_unit]
   std::vector<double> value;
   std::vector<double> sigma;
-  std::vector<double> count;      ///< samples (bin or grid cell) behind the value; 0: outside the visited range
-  bool informative = true;        ///< false: the method cannot give this curve from these data; `why` says why
+  std::vector<double> count;  ///< samples (bin or grid cell) behind the value; 0: outside the visited range
+  bool informative = true;    ///< false: the method cannot give this curve from these data; `why` says why
   std::string why;
 };
 
@@ -42,21 +42,21 @@ struct ChannelPrediction {
 
 /// What every method returns. An empty `predictions` means the method does not predict motion.
 struct Fit {
-  std::string method;                            ///< "output_error"
+  std::string method;  ///< "output_error"
   FitStatus status = FitStatus::failed;
-  std::string message;                           ///< why it stopped, in words
-  std::vector<std::string> warnings;             ///< what a reader must know before believing it
-  std::map<std::string, Estimate> parameters;    ///< free parameters (curve coefficients as NAME[i]) and derived numbers, SI
-  std::vector<std::string> names;                ///< order of `covariance`
+  std::string message;                         ///< why it stopped, in words
+  std::vector<std::string> warnings;           ///< what a reader must know before believing it
+  std::map<std::string, Estimate> parameters;  ///< free parameters (curve coefficients as NAME[i]) and derived numbers, SI
+  std::vector<std::string> names;              ///< order of `covariance`
   Eigen::MatrixXd covariance;
   std::map<std::string, Estimate> noise, force;
   std::optional<double> loglik, validation_loglik;
-  std::optional<Estimate> trim;                  ///< [rad]
+  std::optional<Estimate> trim;                         ///< [rad]
   std::map<std::string, Estimate> rms, validation_rms;  ///< per channel
   std::vector<CurveEstimate> curves;
   std::vector<ChannelPrediction> predictions;
-  std::map<std::string, std::string> facts;      ///< further findings in words, for fit.json ("telescoped_sum": "…")
-  bool driven = false;                           ///< the motion is driven by something the model does not have
+  std::map<std::string, std::string> facts;  ///< further findings in words, for fit.json ("telescoped_sum": "…")
+  bool driven = false;                       ///< the motion is driven by something the model does not have
   double seconds = 0.0;
   int linearisations = 0;
 };

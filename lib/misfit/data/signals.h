@@ -8,19 +8,19 @@ namespace misfit {
 
 /// One measured or input signal on the common time base of its experiment.
 struct Signal {
-  std::string name;             ///< the system's name for it: "alpha_T"
-  std::string unit;             ///< SI unit: "rad"
-  std::vector<double> values;   ///< NaN = missing
-  double sigma = 0.0;           ///< white reading noise where known, else 0 [unit]
+  std::string name;            ///< the system's name for it: "alpha_T"
+  std::string unit;            ///< SI unit: "rad"
+  std::vector<double> values;  ///< NaN = missing
+  double sigma = 0.0;          ///< white reading noise where known, else 0 [unit]
 };
 
 /// One experiment as the fits see it: measured channels in the order of the system's outputs, inputs in the order of its inputs.
 struct Signals {
   std::string name;
-  std::vector<double> t;           ///< [s], strictly increasing, may be uneven
+  std::vector<double> t;  ///< [s], strictly increasing, may be uneven
   std::vector<Signal> measured;
-  std::vector<Signal> inputs;      ///< no missing values
-  std::size_t exclude = 0;         ///< initial samples not counted in errors
+  std::vector<Signal> inputs;                                        ///< no missing values
+  std::size_t exclude = 0;                                           ///< initial samples not counted in errors
   double validation_from = std::numeric_limits<double>::infinity();  ///< samples with validation_from <= t < validation_to are held out [s]
   double validation_to = std::numeric_limits<double>::infinity();
   std::vector<std::string> notes;  ///< what was dropped and why, in words

@@ -48,9 +48,9 @@ struct ParameterStudy {
 };
 
 struct CurveStudy {
-  std::string of;                            ///< quantity
-  std::optional<std::vector<double>> knots;  ///< as written (degrees for angles); nullopt = "auto"
-  std::optional<double> roughness;           ///< nullopt = "auto"; unit of the weight: see fit/roughness.h
+  std::string of;                              ///< quantity
+  std::optional<std::vector<double>> knots;    ///< as written (degrees for angles); nullopt = "auto"
+  std::optional<double> roughness;             ///< nullopt = "auto"; unit of the weight: see fit/roughness.h
   std::optional<std::filesystem::path> table;  ///< CSV with columns `of` and the curve's name: values to start from, or to simulate with
   Source where;
 };
@@ -83,9 +83,9 @@ struct Study {
   std::map<std::string, CurveStudy> curves;
   std::map<std::string, std::filesystem::path> reference;  ///< curve → file
   std::optional<SimulateStudy> simulate;
-  double bin_width = 0.0;                                  ///< [sliding_bin] width [rad]; 0 = default 1.5 deg
-  double bin_step = 0.0;                                   ///< [sliding_bin] step [rad]; 0 = default 0.1 deg
-  std::string text;                                        ///< the file's content, for hashing and resolved.toml
+  double bin_width = 0.0;  ///< [sliding_bin] width [rad]; 0 = default 1.5 deg
+  double bin_step = 0.0;   ///< [sliding_bin] step [rad]; 0 = default 0.1 deg
+  std::string text;        ///< the file's content, for hashing and resolved.toml
 };
 
 /// Reads and checks DIR/study.toml (DESIGN section 8). Relative paths are taken from the study's folder, and every file named must exist.

@@ -100,7 +100,9 @@ std::vector<double> choose_knots(std::vector<double> visited, int intervals, con
   const auto at = [&](double fraction) { return visited[static_cast<std::size_t>(fraction * static_cast<double>(visited.size() - 1))]; };
   double low = at(tail);
   const double high = at(1.0 - tail);
-  if (!(high > low)) throw RunError("curve " + curve + ": its quantity does not move, it is " + format_value(low) + " throughout");
+  const double rounding = 1e-9 * std::max(std::abs(high), std::abs(low));  // a constant is computed to a few last digits
+  if (!(high - low > rounding))
+    throw RunError("curve " + curve + ": its quantity does not move, it is " + format_value(low) + " throughout");
   const int pieces = std::clamp(static_cast<int>(static_cast<double>(visited.size()) / samples_per_interval), 2, intervals);
   if (low >= 0.0) low = std::max(low, (high - low) / (2.0 * pieces));
   std::vector<double> knots;

@@ -284,19 +284,14 @@ class Estimator {
 
   /// The model follows the motion over short segments only.
   FittedModel lost(const ShootingPass& pass) {
-    FittedModel out = failed("");
     const std::string span = format_value(std::round(100.0 * static_cast<double>(pass.length) * setting_.step) / 100.0);
-    const std::string stop = shooting_.failure().empty() ? "longer segments predict worse than a constant would" : shooting_.failure();
+    const std::string stop = "longer segments diverge or predict worse than a constant would";
+    shooting_.forget_failure();
     const std::string what =
         "the model follows the measured motion over segments of " + span + " s only: run on, the simulated motion leaves it (" + stop + ")";
-    out.fit.message = what;
+    FittedModel out = failed(what);
     out.fit.facts["prediction"] = "restarted every " + span + " s from a fitted state: no single trajectory exists";
-    show_segments(out.fit);
-    if (!start_driven_) return out;
-    out.fit.driven = true;
-    out.fit.status = FitStatus::declined;
-    out.fit.message = "the motion is driven by something this deterministic model does not have, and it cannot follow it: " + what +
-                      ". The method that can estimate such motion is filter_error";
+    if (out.fit.predictions.empty()) show_segments(out.fit);
     return out;
   }
 
@@ -349,11 +344,19 @@ class Estimator {
     return finish(last_);
   }
 
+  /// On motion that is driven a failure to simulate is what had to be expected: then the method declines, in words.
   FittedModel failed(const std::string& why) {
     FittedModel out{{}, shooting_.model(), penalties_, {}};
     out.fit.method = "output_error";
-    out.fit.status = FitStatus::failed;
+    out.fit.status = start_driven_ ? FitStatus::declined : FitStatus::failed;
+    out.fit.driven = start_driven_;
     out.fit.message = shooting_.failure().empty() ? why : shooting_.failure() + (why.empty() ? "" : " (" + why + ")");
+    if (start_driven_) {
+      out.fit.message =
+          "the motion is driven by something this deterministic model does not have, and it cannot follow it: " + out.fit.message +
+          ". The method that can estimate such motion is filter_error";
+      show_segments(out.fit);
+    }
     out.fit.linearisations = shooting_.linearisations();
     return out;
   }

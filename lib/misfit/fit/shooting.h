@@ -60,6 +60,7 @@ class Shooting {
   [[nodiscard]] Eigen::VectorXd initial_state(std::size_t experiment) const { return history_[experiment].row(0); }
   [[nodiscard]] int linearisations() const { return linearisations_; }
   [[nodiscard]] const std::string& failure() const { return failure_; }  ///< where the last run left the finite numbers, in words
+  void forget_failure() { failure_.clear(); }
   /// Is output o of sample i a residual of the estimation?
   [[nodiscard]] bool counts(std::size_t experiment, std::size_t i, std::size_t o) const;
 

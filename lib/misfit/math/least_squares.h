@@ -10,8 +10,8 @@ namespace misfit {
 /// file that includes ceres/ceres.h is least_squares.cpp: calibrate and the fits share it.
 class LeastSquares {
  public:
-  /// r: `residuals` values; J[b], if J and J[b] are not null: row-major residuals × size of block b. Returns false where the model cannot be
-  /// evaluated (the step is then shortened). Must not throw.
+  /// r: `residuals` values; J[b], if J and J[b] are not null: row-major residuals × size of block b. Returns false where the model cannot
+  /// be evaluated (the step is then shortened). Must not throw.
   using Evaluate = std::function<bool(const double* const* blocks, double* r, double** J)>;
 
   enum class Loss { none, huber, cauchy, tukey };

@@ -2,8 +2,8 @@
 
 // How to add an effect: one file models/<group>/<key>.cpp like models/parachute/pitch_damping.cpp, and one line in a study.
 //
-// What this interface cannot express: forces that depend on accelerations (declare them as a change of `inertia`, a quantity port), jumps of
-// the state, and memory without a finite state (a pure delay: use own states that approximate it).
+// What this interface cannot express: forces that depend on accelerations (declare them as a change of `inertia`, a quantity port), jumps
+// of the state, and memory without a finite state (a pure delay: use own states that approximate it).
 
 #include <array>
 #include <cstddef>
@@ -25,8 +25,9 @@ enum class CoefficientKind {
   shape      ///< the rest: a frequency, a clock angle, a time constant. Off never sits at a singular shape
 };
 
-/// What an effect reads or writes, by role. A role is bound by the study, else to the quantity or port of the same name, else to the system's
-/// default for the role. An optional role that the system lacks reads 0 or is not written. Unit "*": a generic effect, any unit will do.
+/// What an effect reads or writes, by role. A role is bound by the study, else to the quantity or port of the same name, else to the
+/// system's default for the role. An optional role that the system lacks reads 0 or is not written. Unit "*": a generic effect, any unit
+/// will do.
 struct Role {
   const char* name = "";
   const char* unit = "";
@@ -39,14 +40,15 @@ struct CoefficientSpec {
   const char* name = "";
   CoefficientKind kind = CoefficientKind::strength;
   double value = 0.0;  ///< start when the study gives none [unit]
-  const char* unit = "-";  ///< may name roles: "{port}/{rate}" (role_units.h); value, bounds and scale are then numbers in the units so found
+  const char* unit =
+      "-";  ///< may name roles: "{port}/{rate}" (role_units.h); value, bounds and scale are then numbers in the units so found
   double lower = 0.0, upper = 0.0;
   double scale = 1.0;  ///< typical size [unit]: for steps, random starts and "how big is it"
   const char* doc = "";
   Parity parity = Parity::none;  ///< as a curve: symmetry about 0
   const char* curve_of = "";     ///< default: a curve of this quantity unless the study gives a number; "" = a number
   bool over_sine = false;        ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
-  bool fixed = false;      ///< not fitted unless the study frees it: a smoothing width, an origin of time
+  bool fixed = false;            ///< not fitted unless the study frees it: a smoothing width, an origin of time
 };
 
 /// Memory of an effect: z' = drift [unit/s], and if stochastic white noise of spectral density diffusion² is added.
@@ -71,8 +73,8 @@ struct EffectSpec {
   std::vector<std::string> constants;  ///< parameters of the system it reads as plain numbers
   std::vector<CoefficientSpec> coefficients;
   std::vector<OwnStateSpec> states;
-  std::string specialises;  ///< key of the generic effect it coincides with: that one is not proposed beside it
-  bool dissipative = false; ///< never adds power at the port's conjugate rate
+  std::string specialises;   ///< key of the generic effect it coincides with: that one is not proposed beside it
+  bool dissipative = false;  ///< never adds power at the port's conjugate rate
 
   /// In the order of the fields.
   void set_texts(const std::array<const char*, 7>& texts);
@@ -103,10 +105,10 @@ class Effect {
   virtual void diffusion(const Reads<double, double>& in, double* out) const = 0;
 };
 
-/// Turns a struct with a templated formula into an Effect. Required: `static constexpr` texts formula, symbols, valid, size, source, excludes;
-/// array `ports`; `template <class T, class K> static void add(const Reads<T, K>& in, T* F)`, or with own states
-/// `add(in, F, drift)`; `static std::vector<Example> examples()`. Optional: arrays `quantities`, `constants`, `coefficients`, `states`; `specialises`, `dissipative`;
-/// `fastest_rate(const Reads<double, double>&)`, `diffusion(const Reads<double, double>&, double*)`.
+/// Turns a struct with a templated formula into an Effect. Required: `static constexpr` texts formula, symbols, valid, size, source,
+/// excludes; array `ports`; `template <class T, class K> static void add(const Reads<T, K>& in, T* F)`, or with own states `add(in, F,
+/// drift)`; `static std::vector<Example> examples()`. Optional: arrays `quantities`, `constants`, `coefficients`, `states`; `specialises`,
+/// `dissipative`; `fastest_rate(const Reads<double, double>&)`, `diffusion(const Reads<double, double>&, double*)`.
 template <class E>
 class EffectOf final : public Effect {
  public:
@@ -215,6 +217,6 @@ EffectOf<E>::EffectOf(const char* key) {
 }  // namespace misfit
 
 /// The last line of an effect's file. The stem of the file must be `key`: CMake's generated list calls misfit_register_<stem>.
-#define MISFIT_EFFECT(key, Type)                                  \
-  void misfit_register_##key(misfit::Registry& registry);         \
+#define MISFIT_EFFECT(key, Type)                          \
+  void misfit_register_##key(misfit::Registry& registry); \
   void misfit_register_##key(misfit::Registry& registry) { registry.add(std::make_unique<misfit::EffectOf<Type>>(#key)); }

@@ -8,8 +8,8 @@ inline constexpr int kMaxQuantities = 64;  ///< of the system, predicted outputs
 inline constexpr int kMaxPorts = 24;       ///< of one kind
 inline constexpr int kMaxInputs = 8;
 inline constexpr int kMaxOutputs = 8;
-inline constexpr int kMaxConstants = 32;   ///< parameters of the system
-inline constexpr int kMaxWidth = 24;       ///< quantities + coefficients + own states + constants that one effect reads
-inline constexpr int kMaxColumns = 256;    ///< free parameters of a model
+inline constexpr int kMaxConstants = 32;  ///< parameters of the system
+inline constexpr int kMaxWidth = 24;      ///< quantities + coefficients + own states + constants that one effect reads
+inline constexpr int kMaxColumns = 256;   ///< free parameters of a model
 
 }  // namespace misfit

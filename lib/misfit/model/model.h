@@ -37,12 +37,12 @@ struct ModelRequest {
   std::string system;
   SystemOptions options;
   Source system_where;
-  std::map<std::string, double> constants;          ///< SI
-  std::map<std::string, double> constant_sigmas;    ///< where known
+  std::map<std::string, double> constants;        ///< SI
+  std::map<std::string, double> constant_sigmas;  ///< where known
   std::map<std::string, Source> constants_where;
   std::vector<EffectRequest> effects;
   std::map<std::string, ParameterRequest> parameters;
-  std::map<std::string, CurveRequest> curves;       ///< by the coefficient's name in the model
+  std::map<std::string, CurveRequest> curves;  ///< by the coefficient's name in the model
 };
 
 /// One row of the parameter table.
@@ -53,7 +53,7 @@ struct Parameter {
   std::optional<double> prior_sigma{};  ///< Gaussian about prior_mean
   double prior_mean = 0.0;
   CoefficientKind kind = CoefficientKind::shape;
-  int curve = -1;                     ///< index into Model::curves for a curve's coefficient
+  int curve = -1;  ///< index into Model::curves for a curve's coefficient
 };
 
 /// A coefficient that is a curve: parameters first … first + spline.size() − 1.
@@ -85,8 +85,8 @@ struct BoundEffect {
   int first_state = 0;  ///< of its own states, counted after the system's
 };
 
-/// A system, its effects and the parameter table. Sensor ports are the outputs, in order, then `sample_time`; predicted outputs can be read as
-/// quantities by effects on sensor ports: index = system's quantities + output.
+/// A system, its effects and the parameter table. Sensor ports are the outputs, in order, then `sample_time`; predicted outputs can be read
+/// as quantities by effects on sensor ports: index = system's quantities + output.
 struct Model {
   std::shared_ptr<const System> system;
   std::vector<BoundEffect> effects;
@@ -100,15 +100,15 @@ struct Model {
   [[nodiscard]] int states() const { return system_states() + static_cast<int>(own_states.size()); }
   [[nodiscard]] int outputs() const { return static_cast<int>(system->spec().outputs.size()); }
   [[nodiscard]] int inputs() const { return static_cast<int>(system->spec().inputs.size()); }
-  [[nodiscard]] std::vector<double> values() const;           ///< of all parameters
-  [[nodiscard]] std::vector<int> free_parameters() const;     ///< index into `parameters` of each column
+  [[nodiscard]] std::vector<double> values() const;                 ///< of all parameters
+  [[nodiscard]] std::vector<int> free_parameters() const;           ///< index into `parameters` of each column
   [[nodiscard]] int find_parameter(const std::string& name) const;  ///< −1 if there is none
   [[nodiscard]] const Curve* find_curve(const std::string& name) const;
-  [[nodiscard]] std::vector<std::string> needed_inputs() const;     ///< inputs that some quantity read by somebody needs
+  [[nodiscard]] std::vector<std::string> needed_inputs() const;  ///< inputs that some quantity read by somebody needs
 };
 
-/// Resolves names and checks units, bounds and sizes. InputError with the place in the study, what is allowed and the nearest name. Every curve must have
-/// knots by now. A coefficient is called by its own name, or EFFECT.NAME where two effects of the model would share it.
+/// Resolves names and checks units, bounds and sizes. InputError with the place in the study, what is allowed and the nearest name. Every
+/// curve must have knots by now. A coefficient is called by its own name, or EFFECT.NAME where two effects of the model would share it.
 [[nodiscard]] Model assemble(const ModelRequest& request, const Registry& registry);
 
 /// Curves of the model that still need knots (name → quantity), before assembling: from `request.curves` and the effects' defaults.

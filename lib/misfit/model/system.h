@@ -41,7 +41,7 @@ struct ConstantSpec {
   std::string name, unit, doc;
   double lower = 0.0, upper = 0.0;  ///< inclusive
   bool required = true;
-  double value = 0.0;               ///< when not required
+  double value = 0.0;  ///< when not required
 };
 
 struct OutputSpec {
@@ -75,12 +75,12 @@ struct SystemSpec {
   int base_quantities = 0;
   std::vector<PortSpec> quantity_ports, dynamic_ports;
   std::vector<ConstantSpec> constants;
-  std::vector<OutputSpec> outputs;                 ///< each is also a sensor port of the same name; then `sample_time [s]`
-  std::map<std::string, std::string> roles;        ///< default quantity or port of generic roles: "rate", "level", "port", "output"
+  std::vector<OutputSpec> outputs;                       ///< each is also a sensor port of the same name; then `sample_time [s]`
+  std::map<std::string, std::string> roles;              ///< default quantity or port of generic roles: "rate", "level", "port", "output"
   std::map<std::string, std::string> coefficient_names;  ///< effect's coefficient → name it has in this system ("C_mq" → "C_m_alphadot")
-  SystemForm regression;                           ///< form in which sliding_bin is stated (the paper's Eq. 8); empty kind: none
-  std::string static_curve, damping_curve;         ///< coefficients that sliding_bin solves for; empty: none
-  double fastest_rate = 0.0;                       ///< [1/s], of the system without effects
+  SystemForm regression;                                 ///< form in which sliding_bin is stated (the paper's Eq. 8); empty kind: none
+  std::string static_curve, damping_curve;               ///< coefficients that sliding_bin solves for; empty: none
+  double fastest_rate = 0.0;                             ///< [1/s], of the system without effects
 };
 
 /// Row-major blocks of first derivatives; a null pointer means "not wanted".
@@ -113,7 +113,8 @@ class System {
   [[nodiscard]] virtual std::vector<DerivedCurve> derived_curves(const double* /*k*/) const { return {}; }
 
   virtual void quantities(const Point& at, const double* P, std::uint64_t needed, double* q) const = 0;
-  virtual void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q, const QuantityDerivatives& d) const = 0;
+  virtual void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
+                                    const QuantityDerivatives& d) const = 0;
   virtual void rates(const Point& at, const double* P, const double* F, double* dx) const = 0;
   virtual void linearise_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const = 0;
   virtual void outputs(const Point& at, double* y) const = 0;
@@ -135,8 +136,8 @@ struct SystemType {
 };
 
 /// Turns a struct with templated formulas into a System. `S` has static NX, NU, NP (quantity ports), NF (dynamic ports), NQ, NK, NY and
-///   template <class T, class K> void quantities(const T* x, const double* u, double t, const K* k, const T* P, uint64_t needed, T* q) const
-///   template <class T, class K> void rates(const T* x, const double* u, double t, const K* k, const T* P, const T* F, T* dx) const
+///   template <class T, class K> void quantities(const T* x, const double* u, double t, const K* k, const T* P, uint64_t needed, T* q)
+///   const template <class T, class K> void rates(const T* x, const double* u, double t, const K* k, const T* P, const T* F, T* dx) const
 ///   template <class T, class K> void outputs(const T* x, const double* u, double t, const K* k, T* y) const
 ///   SystemSpec spec() const;   std::vector<DerivedCurve> derived_curves(const double* k) const
 /// All first derivatives come from Jets as wide as what varies: states alone in the common case.
@@ -151,7 +152,8 @@ class SystemOf final : public System {
   void quantities(const Point& at, const double* P, std::uint64_t needed, double* q) const override {
     system_.template quantities<double, double>(at.x, at.u, at.t, at.k, P, needed, q);
   }
-  void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q, const QuantityDerivatives& d) const override {
+  void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
+                            const QuantityDerivatives& d) const override {
     if (d.k != nullptr) {
       differentiate_quantities<S::NX + S::NP + S::NK>(at, P, needed, q, d);
     } else if (d.P != nullptr && S::NP > 0) {
@@ -292,10 +294,10 @@ class SystemOf final : public System {
 }  // namespace misfit
 
 /// The last line of a system's file: `Type::flags()` lists the options and `Type(const SystemOptions&)` makes it.
-#define MISFIT_SYSTEM(key, Type)                                                                                        \
-  void misfit_register_##key(misfit::Registry& registry);                                                               \
-  void misfit_register_##key(misfit::Registry& registry) {                                                              \
+#define MISFIT_SYSTEM(key, Type)                                                                                                       \
+  void misfit_register_##key(misfit::Registry& registry);                                                                              \
+  void misfit_register_##key(misfit::Registry& registry) {                                                                             \
     registry.add(misfit::SystemType{#key, Type::flags(), [](const misfit::SystemOptions& options) -> std::unique_ptr<misfit::System> { \
-                                      return std::make_unique<misfit::SystemOf<Type>>(Type(options));                   \
-                                    }});                                                                                \
+                                      return std::make_unique<misfit::SystemOf<Type>>(Type(options));                                  \
+                                    }});                                                                                               \
   }
