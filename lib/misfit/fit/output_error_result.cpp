@@ -1,0 +1,145 @@
+#include "misfit/fit/output_error_result.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "misfit/core/text.h"
+#include "misfit/fit/curves.h"
+#include "misfit/fit/whiteness.h"
+
+namespace misfit::output_error_parts {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+std::string in_display_unit(double value, const std::string& unit) {
+  return unit == "rad" ? format_value(value * 180.0 / pi) + " deg" : format_value(value) + " " + unit;
+}
+
+}  // namespace
+
+std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
+                                   double edf) {
+  std::vector<double> sigma = shooting.sigma();
+  const double share = edf / static_cast<double>(sigma.size());
+  for (std::size_t o = 0; o < sigma.size(); ++o) {
+    double squares = 0.0, count = 0.0;
+    for (std::size_t e = 0; e < runs.size(); ++e) {
+      for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
+        if (!shooting.counts(e, i, o)) continue;
+        const double r = runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i];
+        squares += r * r;
+        count += 1.0;
+      }
+    }
+    if (count > share + 1.0 && squares > 0.0) sigma[o] = std::sqrt(squares / (count - share));
+  }
+  return sigma;
+}
+
+void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
+                    const Eigen::MatrixXd& covariance, Fit& fit) {
+  const auto& outputs = shooting.model().system->spec().outputs;
+  const auto ny = static_cast<Eigen::Index>(outputs.size());
+  const Eigen::Index n = shooting.model().states();
+  for (std::size_t e = 0; e < runs.size(); ++e) {
+    const Segment& run = runs[e];
+    const Eigen::Index columns = run.y_rows.cols() - n;
+    const RowMatrix& rows = run.y_rows;
+    Eigen::MatrixXd joint(columns + n, columns + n);
+    const Eigen::Index at = columns + n * static_cast<Eigen::Index>(e);
+    joint << covariance.topLeftCorner(columns, columns), covariance.block(0, at, columns, n), covariance.block(at, 0, n, columns),
+        covariance.block(at, at, n, n);
+    const Eigen::VectorXd spread = (rows * joint).cwiseProduct(rows).rowwise().sum();
+    for (Eigen::Index o = 0; o < ny; ++o) {
+      ChannelPrediction p;
+      p.experiment = experiments[e].name;
+      p.channel = outputs[static_cast<std::size_t>(o)].name;
+      p.unit = outputs[static_cast<std::size_t>(o)].unit;
+      p.t = experiments[e].t;
+      p.measured = experiments[e].measured[static_cast<std::size_t>(o)].values;
+      const double sigma = shooting.sigma()[static_cast<std::size_t>(o)];
+      for (std::size_t i = 0; i < p.t.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        p.predicted.push_back(run.y(row, o));
+        p.sigma.push_back(std::sqrt(sigma * sigma + std::max(spread[row * ny + o], 0.0)));
+        p.held_out.push_back(experiments[e].held_out(i));
+      }
+      fit.predictions.push_back(std::move(p));
+    }
+  }
+}
+
+void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
+  double loglik = 0.0, held_loglik = 0.0;
+  std::map<std::string, std::array<double, 4>> sums;  // squares, count, held-out squares, held-out count
+  bool any_held = false;
+  for (const auto& p : fit.predictions) {
+    const auto experiment = std::find_if(experiments.begin(), experiments.end(), [&](const Signals& s) { return s.name == p.experiment; });
+    auto& s = sums[p.channel];
+    const double sigma = fit.noise.at(p.channel).value;
+    for (std::size_t i = experiment->exclude; i < p.t.size(); ++i) {
+      const double r = p.measured[i] - p.predicted[i];
+      if (!std::isfinite(r)) continue;
+      const double term = -0.5 * r * r / (sigma * sigma) - std::log(sigma) - 0.5 * std::log(2.0 * pi);
+      const bool held = p.held_out[i];
+      any_held = any_held || held;
+      (held ? held_loglik : loglik) += term;
+      s[held ? 2 : 0] += r * r;
+      s[held ? 3 : 1] += 1.0;
+    }
+  }
+  fit.loglik = loglik;
+  if (any_held) fit.validation_loglik = held_loglik;
+  for (const auto& p : fit.predictions) {
+    const auto& s = sums[p.channel];
+    if (s[1] > 0.0) fit.rms[p.channel] = {std::sqrt(s[0] / s[1]), 0.0, p.unit};
+    if (s[3] > 0.0) fit.validation_rms[p.channel] = {std::sqrt(s[2] / s[3]), 0.0, p.unit};
+  }
+}
+
+double motion_size(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0, n = 0.0;
+  for (double v : values) {
+    if (std::isfinite(v)) sum += v, squares += v * v, n += 1.0;
+  }
+  return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
+}
+
+void judge(const Model& model, const Setting& setting, Fit& fit) {
+  const ChannelPrediction& p = fit.predictions.front();
+  std::vector<double> residuals;
+  for (std::size_t i = 0; i < p.t.size(); ++i) residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
+  const int last = std::max(6, static_cast<int>(pi / setting.frequency / setting.step));
+  const WhitenessTest test = whiteness(residuals, 1, last);
+  const double noise = reading_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
+  fit.facts["whiteness"] = "residuals of " + p.channel + " at lags 1 to " + std::to_string(test.last_lag) +
+                           " samples (half a period): largest autocorrelation " + format_value(test.largest) + " at lag " +
+                           std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
+  fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
+                           ", reading noise about " + in_display_unit(noise, p.unit);
+  constexpr double clearly_above_noise = 2.0;
+  fit.driven = looks_driven(test) && rms > clearly_above_noise * noise;
+  constexpr double follows = 0.5;  // of the motion's own size: a model that leaves less explains most of it
+  if (!fit.driven || rms < follows * size) {
+    if (test.p_value < 1e-3) {
+      fit.warnings.push_back("residuals are not white (" + fit.facts["whiteness"] + "; " + fit.facts["explained"] +
+                             "): something is missing from the model, and intervals are too narrow");
+    }
+    return;
+  }
+  fit.status = FitStatus::declined;
+  fit.message = "the motion is driven by something this deterministic model does not have: it cannot follow the measured motion (" +
+                fit.facts["explained"] + "; " + fit.facts["whiteness"] +
+                "). The method that can estimate such motion is filter_error. Solver: " + fit.message;
+  for (const auto& curve : model.curves)
+    mark_not_informative(model, curve.name, "driven motion: a deterministic trajectory cannot follow it", fit);
+  fit.trim.reset();
+}
+
+}  // namespace misfit::output_error_parts

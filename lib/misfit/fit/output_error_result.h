@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "misfit/fit/output_error_setting.h"
+
+// What output error makes of a finished run: not for use outside.
+namespace misfit::output_error_parts {
+
+/// Per-channel residuals of the estimation part → standard deviations with the effective number of parameters taken off.
+[[nodiscard]] std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs,
+                                                 const std::vector<Signals>& experiments, double edf);
+
+/// Channels of every experiment with sigma from noise and `covariance` of (parameters, initial states of each experiment).
+void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
+                    const Eigen::MatrixXd& covariance, Fit& fit);
+
+/// RMS and Gaussian log-likelihood of estimation and validation part, from the predictions and fit.noise.
+void errors_of(const std::vector<Signals>& experiments, Fit& fit);
+
+/// Standard deviation of the known values.
+[[nodiscard]] double motion_size(const std::vector<double>& values);
+
+/// Says whether a deterministic model followed the motion, and marks the fit where it did not.
+void judge(const Model& model, const Setting& setting, Fit& fit);
+
+}  // namespace misfit::output_error_parts

@@ -1,0 +1,49 @@
+#include "misfit/model/model.h"
+
+#include <set>
+
+namespace misfit {
+
+std::vector<double> Model::values() const {
+  std::vector<double> out;
+  for (const auto& p : parameters) out.push_back(p.value);
+  return out;
+}
+
+std::vector<int> Model::free_parameters() const {
+  std::vector<int> out;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].free) out.push_back(static_cast<int>(i));
+  }
+  return out;
+}
+
+int Model::find_parameter(const std::string& name) const {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+const Curve* Model::find_curve(const std::string& name) const {
+  for (const auto& curve : curves) {
+    if (curve.name == name) return &curve;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> Model::needed_inputs() const {
+  std::set<std::string> names;
+  const auto& quantities = system->spec().quantities;
+  const auto note = [&](int index) {
+    if (index < 0 || index >= static_cast<int>(quantities.size())) return;
+    for (const auto& input : quantities[static_cast<std::size_t>(index)].inputs) names.insert(input);
+  };
+  for (const auto& effect : effects) {
+    for (int index : effect.quantities) note(index);
+  }
+  for (const auto& curve : curves) note(curve.quantity);
+  return {names.begin(), names.end()};
+}
+
+}  // namespace misfit
