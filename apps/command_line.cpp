@@ -41,7 +41,7 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
   verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")
       ->type_name("N")
       ->check(CLI::Range(0, 1024));
-  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N");
+  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N")->check(CLI::NonNegativeNumber);
   verb.add_flag("--quiet", options.quiet, "no progress and no remarks on stderr");
   verb.add_flag("--json", options.json, "print the result as JSON");
 }

@@ -1,8 +1,10 @@
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "apps/print.h"
 #include "apps/stages.h"
 #include "apps/verbs.h"
+#include "misfit/core/files.h"
 
 namespace misfit {
 
@@ -10,7 +12,10 @@ int fit_verb(const Options& options, const Registry& registry) {
   Session session(options, registry);
   const std::vector<Fit> fits = fit_stage(session);
   if (options.json) {
-    for (const auto& fit : fits) print_file(session.folder.file("fit/" + fit.method + "/fit.json"));
+    nlohmann::ordered_json all = nlohmann::ordered_json::object();  // method → its fit.json
+    for (const auto& fit : fits)
+      all[fit.method] = nlohmann::ordered_json::parse(read_file(session.folder.file("fit/" + fit.method + "/fit.json")));
+    std::cout << all.dump(1) << '\n';
   } else {
     std::cout << fits_text(fits);
   }

@@ -1,4 +1,5 @@
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "apps/stages.h"
 #include "apps/verbs.h"
@@ -7,7 +8,8 @@ namespace misfit {
 
 int report_verb(const Options& options, const Registry& registry) {
   Session session(options, registry);
-  std::cout << report_stage(session, fit_stage(session)).string() << '\n';
+  const std::string page = report_stage(session, fit_stage(session)).string();
+  std::cout << (options.json ? nlohmann::json{{"report", page}}.dump(1) : page) << '\n';
   return 0;
 }
 

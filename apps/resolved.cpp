@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "apps/stages.h"
 #include "misfit/core/files.h"
 #include "misfit/core/version.h"
@@ -26,7 +29,7 @@ std::string list_of(const std::vector<std::string>& names) {
 
 std::string numbers_of(const std::vector<double>& values, double scale) {
   std::string out;
-  for (double v : values) out += (out.empty() ? "" : ", ") + fmt::format("{:.10g}", v * scale);
+  for (double v : values) out += (out.empty() ? "" : ", ") + fmt::format("{}", v * scale);
   return "[" + out + "]";
 }
 
@@ -40,40 +43,114 @@ void add_head(const Session& session, std::string& text) {
   for (const auto& [name, flag] : session.model.request.options.flags) text += fmt::format("{} = {}\n", name, flag);
 }
 
+/// A key of a TOML table: bare where it may be.
+std::string key_of(const std::string& name) {
+  const bool bare = !name.empty() && std::all_of(name.begin(), name.end(),
+                                                 [](unsigned char c) { return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '-'); });
+  return bare ? name : quoted(name);
+}
+
+/// As seen from resolved.toml, which can be run where it lies.
+std::string path_of(const Session& session, const std::filesystem::path& file) {
+  return quoted(std::filesystem::relative(file, session.folder.path()).generic_string());
+}
+
+std::string number_of(const config::Number& number) {
+  return number.sigma ? fmt::format("{{ value = {}, sigma = {} }}", number.value, *number.sigma) : fmt::format("{}", number.value);
+}
+
+void add_geometry(const Session& session, const Prepared& prepared, std::string& text) {
+  if (!session.study.geometry) return;
+  text += "\n[geometry]\n";
+  for (const auto& name : session.study.geometry->keys()) {
+    const auto& all = prepared.model.parameters;
+    const auto constant = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.name == name; });
+    const std::string unit = constant != all.end() ? constant->unit : name == "V" ? "m/s" : "m";  // what is not the system's is the rig's
+    text += fmt::format("{} = {}  # {}\n", name, number_of(*session.study.geometry->number(name, unit, true)), unit);
+  }
+}
+
+void add_camera(const Session& session, std::string& text) {
+  const CameraStudy& camera = session.study.camera;
+  if (!session.study.has_camera) return;
+  text += fmt::format("\n[camera]\nmodel = {}\n", quoted(camera.model));
+  if (camera.sweep) {
+    text += fmt::format("sweep = {}\noffer = {}\ntake_in = {}\n", path_of(session, *camera.sweep), list_of(camera.offer),
+                        list_of(camera.take_in));
+  }
+  for (const auto& [name, number] : camera.given) text += fmt::format("{} = {}\n", name, number_of(number));
+}
+
 void add_experiments(const Session& session, const Prepared& prepared, std::string& text) {
   for (std::size_t e = 0; e < prepared.experiments.size(); ++e) {
     const Signals& s = prepared.experiments[e];
     const ExperimentStudy& study = session.study.experiments[e];
-    const auto file = study.track ? *study.track : study.data ? *study.data : std::filesystem::path();
     text += fmt::format("\n[[experiment]]  # {} samples, {:.6g} s to {:.6g} s\nname = {}\n{} = {}\nexclude = {}\n", s.samples(),
                         s.t.front(), s.t.back(), quoted(s.name), study.track ? "track" : "data",
-                        quoted(file.lexically_relative(session.study.folder).string()), s.exclude);
+                        path_of(session, study.track ? *study.track : *study.data), study.exclude);
     if (s.validation_from < s.t.back())
-      text += fmt::format("validation = [{:.10g}, {:.10g}]\n", s.validation_from, std::min(s.validation_to, s.t.back() + 1.0));
+      text += fmt::format("validation = [{}, {}]\n", s.validation_from, std::min(s.validation_to, s.t.back() + 1.0));
+    if (study.columns.header_of.empty()) continue;
+    std::string columns;
+    for (const auto& [name, header] : study.columns.header_of)
+      columns += fmt::format("{}{} = {}", columns.empty() ? "" : ", ", key_of(name), quoted(header));
+    text += "columns = { " + columns + " }\n";
   }
 }
 
-void add_model(const Prepared& prepared, std::string& text) {
+void add_parameter(const Parameter& p, std::string& text) {
+  text += fmt::format("{} = {{ free = {}, value = {}, bounds = [{}, {}]", key_of(p.name), p.free, p.value, p.lower, p.upper);
+  if (p.prior_sigma) text += fmt::format(", sigma = {}", *p.prior_sigma);
+  text += fmt::format(" }}  # {}; {}\n", p.unit, p.doc);
+}
+
+void add_curve(const Session& session, const Curve& curve, std::string& text) {
+  const bool angle = curve.of_unit == "rad";
+  text += fmt::format("{} = {{ of = {}, knots = {}, roughness = {}", key_of(curve.name), quoted(curve.of),
+                      numbers_of(curve.spline.breakpoints(), angle ? 1.0 / degree : 1.0),
+                      curve.roughness ? fmt::format("{}", *curve.roughness) : "\"auto\"");
+  const auto study = session.study.curves.find(curve.name);
+  if (study != session.study.curves.end() && study->second.table) text += ", table = " + path_of(session, *study->second.table);
+  text += fmt::format(" }}  # knots in {}\n", angle ? "deg" : curve.of_unit);
+}
+
+/// The wish of the study where there is one: it holds for a curve as a whole.
+void add_curve_parameter(const Session& session, const std::string& curve, std::string& text) {
+  const auto found = session.model.request.parameters.find(curve);
+  if (found == session.model.request.parameters.end()) return;
+  const ParameterRequest& p = found->second;
+  std::string entries;
+  const auto add = [&](const std::string& entry) { entries += (entries.empty() ? "" : ", ") + entry; };
+  if (p.free) add(fmt::format("free = {}", *p.free));
+  if (p.value) add(fmt::format("value = {}", *p.value));
+  if (p.lower && p.upper) add(fmt::format("bounds = [{}, {}]", *p.lower, *p.upper));
+  if (p.sigma) add(fmt::format("sigma = {}", *p.sigma));
+  text += fmt::format("{} = {{ {} }}\n", key_of(curve), entries);
+}
+
+void add_model(const Session& session, const Prepared& prepared, std::string& text) {
   text += "\n[effects]\n";
   for (const auto& effect : prepared.request.effects) {
-    text += fmt::format("{} = {{ kind = {}", effect.name, quoted(effect.kind));
+    text += fmt::format("{} = {{ kind = {}", key_of(effect.name), quoted(effect.kind));
     for (const auto& [role, target] : effect.roles) text += fmt::format(", {} = {}", role, quoted(target));
     text += " }\n";
   }
   text += "\n[parameters]\n";
   for (const auto& p : prepared.model.parameters) {
-    if (p.curve >= 0) continue;
-    text += fmt::format("{} = {{ free = {}, value = {:.10g}, bounds = [{:.6g}, {:.6g}]", p.name, p.free, p.value, p.lower, p.upper);
-    if (p.prior_sigma) text += fmt::format(", sigma = {:.6g}", *p.prior_sigma);
-    text += fmt::format(" }}  # {}; {}\n", p.unit, p.doc);
+    if (p.curve < 0) add_parameter(p, text);
   }
+  for (const auto& curve : prepared.model.curves) add_curve_parameter(session, curve.name, text);
   text += "\n[curves]\n";
-  for (const auto& curve : prepared.model.curves) {
-    const bool angle = curve.of_unit == "rad";
-    text += fmt::format("{} = {{ of = {}, knots = {}, roughness = {} }}  # knots in {}\n", curve.name, quoted(curve.of),
-                        numbers_of(curve.spline.breakpoints(), angle ? 1.0 / degree : 1.0),
-                        curve.roughness ? fmt::format("{:.6g}", *curve.roughness) : "\"auto\"", angle ? "deg" : curve.of_unit);
-  }
+  for (const auto& curve : prepared.model.curves) add_curve(session, curve, text);
+}
+
+void add_rest(const Session& session, std::string& text) {
+  const Study& study = session.study;
+  if (!study.reference.empty()) text += "\n[reference]\n";
+  for (const auto& [curve, file] : study.reference) text += fmt::format("{} = {}\n", key_of(curve), path_of(session, file));
+  if (study.bin_width > 0.0 || study.bin_step > 0.0) text += "\n[sliding_bin]\n";
+  if (study.bin_width > 0.0) text += fmt::format("width = {}\n", study.bin_width);
+  if (study.bin_step > 0.0) text += fmt::format("step = {}\n", study.bin_step);
 }
 
 }  // namespace
@@ -81,8 +158,11 @@ void add_model(const Prepared& prepared, std::string& text) {
 void write_resolved(const Session& session, const Prepared& prepared) {
   std::string text;
   add_head(session, text);
+  add_geometry(session, prepared, text);
+  add_camera(session, text);
   add_experiments(session, prepared, text);
-  add_model(prepared, text);
+  add_model(session, prepared, text);
+  add_rest(session, text);
   write_atomically(session.folder.file("resolved.toml"), text);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "apps/stages.h"
@@ -139,6 +140,10 @@ int simulate_verb(const Options& options, const Registry& registry) {
   const Table table = simulate(c, session);
   const auto file = session.folder.file("simulation.csv");
   write_csv(file, table);
+  if (options.json) {
+    std::cout << nlohmann::json{{"file", file.string()}, {"samples", table.rows()}, {"system", c.model.system->spec().key}}.dump(1) << '\n';
+    return 0;
+  }
   std::cout << fmt::format("{} samples, {:.2f} s of {} → {}\n", table.rows(), c.signals.t.back() - c.signals.t.front(),
                            c.model.system->spec().key, file.string());
   return 0;

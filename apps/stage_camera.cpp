@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "apps/stages.h"
@@ -19,11 +21,11 @@ CameraModel model_of(const CameraStudy& camera) {
 std::string settings_of(const Session& session) {
   const RigGeometry& rig = session.model.rig;
   std::string text = session.study.camera.model;
-  for (double v : {rig.R, rig.R_cp, rig.V, rig.l_b, rig.l_s, rig.l_p, rig.R1, rig.R2, rig.R3}) text += " " + std::to_string(v);
+  for (double v : {rig.R, rig.R_cp, rig.V, rig.l_b, rig.l_s, rig.l_p, rig.R1, rig.R2, rig.R3}) text += fmt::format(" {}", v);
   for (const auto& name : session.study.camera.offer) text += " offer " + name;
   for (const auto& name : session.study.camera.take_in) text += " take_in " + name;
   for (const auto& [name, number] : session.study.camera.given)
-    text += " " + name + "=" + std::to_string(number.value) + "~" + std::to_string(number.sigma.value_or(0.0));
+    text += fmt::format(" {}={}~{}", name, number.value, number.sigma.value_or(0.0));
   return text;
 }
 
@@ -44,6 +46,18 @@ Calibration make_calibration(const Session& session) {
 
 fs::path attitude_file(const Session& session, std::size_t e) {
   return session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + session.study.experiments[e].name + ".csv");
+}
+
+std::vector<std::string> lines_of(const fs::path& path) {
+  std::vector<std::string> lines;
+  if (!fs::exists(path)) return lines;
+  const std::string text = read_file(path);
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t to = std::min(text.find('\n', from), text.size());
+    if (to > from) lines.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  return lines;
 }
 
 void write_notes(const fs::path& path, const std::vector<std::string>& notes) {
@@ -85,11 +99,14 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
       throw InputError(experiment.where,
                        "experiment '" + experiment.name + "' is a track in pixels: the study needs [camera] (sweep = \"…\", or h_c and K)");
     require_rig(session.study, session.model.rig, false);
-    const fs::path file = attitude_file(session, e);
-    auto inputs = session.inputs(settings_of(session), {*experiment.track, session.folder.file("camera.json")});
+    const fs::path file = attitude_file(session, e), notes = fs::path(file).replace_extension(".notes.txt");
+    std::string settings = settings_of(session);
+    for (const auto& [name, header] : experiment.columns.header_of) settings += fmt::format("\ncolumn {}={}", name, header);
+    const auto inputs = session.inputs(settings, {*experiment.track, session.folder.file("camera.json")});
     const std::string stage = "attitude/" + experiment.name;
     if (session.folder.up_to_date(stage, inputs)) {
       out.emplace_back(read_attitude(file));
+      out.back()->notes = lines_of(notes);
       continue;
     }
     const auto begin = std::chrono::steady_clock::now();
@@ -97,7 +114,6 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
     Attitude result = attitude(track, *calibration, session.model.rig);
     result.notes.insert(result.notes.begin(), track.notes.begin(), track.notes.end());
     write_attitude(file, result);
-    const fs::path notes = fs::path(file).replace_extension(".notes.txt");
     write_notes(notes, result.notes);
     session.folder.record(
         {stage, session.options.command, inputs, {file.filename().string(), notes.filename().string()}, seconds_since(begin), "", ""});

@@ -130,6 +130,7 @@ std::map<std::string, std::string> inputs_of(const Session& session, const std::
 std::vector<std::string> outputs_of(const fs::path& run_folder, const fs::path& dir) {
   std::vector<std::string> out;
   for (const auto& entry : fs::directory_iterator(dir)) out.push_back(entry.path().lexically_relative(run_folder).string());
+  out.emplace_back("resolved.toml");
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -151,11 +152,12 @@ std::vector<Fit> fit_stage(Session& session) {
       fits.push_back(read_fit(dir));
     } else {
       const auto begin = std::chrono::steady_clock::now();
+      const Prepared& prepared = methods.prepared();  // a study that makes no model is refused before any method has left a result
       fits.push_back(methods.run(names[k]));
       fs::remove_all(dir);
       make_writable_folder(dir);
       write_fit(dir, fits.back());
-      write_resolved(session, methods.prepared());
+      write_resolved(session, prepared);
       session.folder.record({stage, session.options.command, inputs, outputs_of(session.folder.path(), dir),
                              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), "", ""});
     }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 
 #include "apps/stages.h"
@@ -11,18 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> lines_of(const fs::path& path) {
-  std::vector<std::string> lines;
-  if (!fs::exists(path)) return lines;
-  const std::string text = read_file(path);
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t to = std::min(text.find('\n', from), text.size());
-    if (to > from) lines.push_back(text.substr(from, to - from));
-    from = to + 1;
-  }
-  return lines;
-}
-
 std::vector<report::ExperimentInput> experiments_of(Session& session) {
   std::vector<report::ExperimentInput> out;
   std::vector<std::optional<Attitude>> attitudes = attitude_stage(session);
@@ -32,9 +21,6 @@ std::vector<report::ExperimentInput> experiments_of(Session& session) {
     input.name = study.name;
     if (study.track) input.track = read_track(*study.track, study.columns);
     input.attitude = std::move(attitudes[e]);
-    if (input.attitude && input.attitude->notes.empty()) {
-      input.attitude->notes = lines_of(session.folder.file(e == 0 ? "attitude.notes.txt" : "attitude_" + study.name + ".notes.txt"));
-    }
     out.push_back(std::move(input));
   }
   return out;
@@ -56,6 +42,42 @@ report::RunFacts facts_of(const Session& session) {
   return facts;
 }
 
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// FOLDER/FILE for every file of the folder, sorted; none if it does not exist.
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) names.push_back((folder.filename() / entry.path().filename()).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Everything the fits left on disk.
+std::vector<fs::path> files_of(const Session& session, const std::vector<Fit>& fits) {
+  std::vector<fs::path> files;
+  for (const auto& fit : fits) {
+    for (const auto& entry : fs::directory_iterator(session.folder.file("fit/" + fit.method))) files.push_back(entry.path());
+  }
+  return files;
+}
+
+std::vector<fs::path> files_of_report(const Session& session, const std::vector<Fit>& fits) {
+  std::vector<fs::path> files = files_of(session, fits);
+  files.push_back(session.folder.file("compare.json"));
+  for (const auto& [curve, file] : session.study.reference) files.push_back(file);
+  if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
+  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
+    const ExperimentStudy& experiment = session.study.experiments[e];
+    if (!experiment.track) continue;
+    files.push_back(*experiment.track);
+    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + experiment.name + ".csv"));
+  }
+  return files;
+}
+
 }  // namespace
 
 std::vector<Reference> references(const Session& session) {
@@ -66,42 +88,37 @@ std::vector<Reference> references(const Session& session) {
 
 Comparison compare_stage(Session& session, const std::vector<Fit>& fits) {
   stop_if_interrupted();
+  const fs::path file = session.folder.file("compare.json");
+  std::vector<fs::path> files = files_of(session, fits);
+  for (const auto& [curve, reference] : session.study.reference) files.push_back(reference);
+  const auto inputs = session.inputs("", files);
+  if (session.folder.up_to_date("compare", inputs)) return read_comparison(file);
   const auto begin = std::chrono::steady_clock::now();
   Comparison comparison = compare(fits, references(session));
-  write_comparison(session.folder.file("compare.json"), comparison);
-  std::vector<fs::path> files;
-  for (const auto& fit : fits) files.push_back(session.folder.file("fit/" + fit.method + "/fit.json"));
-  for (const auto& [curve, file] : session.study.reference) files.push_back(file);
-  session.folder.record({"compare",
-                         session.options.command,
-                         session.inputs("", files),
-                         {"compare.json"},
-                         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
-                         "",
-                         ""});
+  write_comparison(file, comparison);
+  session.folder.record({"compare", session.options.command, inputs, {"compare.json"}, seconds_since(begin), "", ""});
   return comparison;
 }
 
 fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   stop_if_interrupted();
-  const auto begin = std::chrono::steady_clock::now();
   report::ReportInput input;
+  input.comparison = compare_stage(session, fits);
+  input.experiments = experiments_of(session);
+  input.calibration = calibrate_stage(session);
+  const auto inputs = session.inputs(session.study.text, files_of_report(session, fits));
+  if (session.folder.up_to_date("report", inputs)) return session.folder.file("report.html");
+  const auto begin = std::chrono::steady_clock::now();
   input.study = session.study.name;
   input.question = session.study.question;
   input.fits = fits;
-  input.experiments = experiments_of(session);
-  input.calibration = calibrate_stage(session);
-  input.comparison = compare_stage(session, fits);
   input.references = references(session);
   input.run = facts_of(session);
+  fs::remove_all(session.folder.file("figures"));
   fs::path page = report::write_report(session.folder.path(), input);
-  session.folder.record({"report",
-                         session.options.command,
-                         session.inputs("", {session.folder.file("compare.json")}),
-                         {"report.html"},
-                         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
-                         "",
-                         ""});
+  std::vector<std::string> outputs = names_in(session.folder.file("figures"));
+  outputs.emplace_back("report.html");
+  session.folder.record({"report", session.options.command, inputs, outputs, seconds_since(begin), "", ""});
   return page;
 }
 
