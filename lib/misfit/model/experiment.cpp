@@ -47,6 +47,24 @@ std::size_t bridge(const std::vector<double>& t, std::vector<double>& y) {
   return filled;
 }
 
+/// Sets isolated wild values to missing and returns how many. Wild: more than 15 robust sigmas from the cubic through two neighbours on
+/// either side, and more than five times as far as these neighbours differ from each other, so that a burst or a jump of the motion itself
+/// is never taken for one.
+std::size_t set_spikes_aside(std::vector<double>& y) {
+  constexpr double sigmas = 15.0, apart = 5.0;
+  const auto distance = [&](std::size_t i) { return y[i] - (4.0 * (y[i - 1] + y[i + 1]) - y[i - 2] - y[i + 2]) / 6.0; };
+  std::vector<double> distances;
+  for (std::size_t i = 2; i + 2 < y.size(); ++i) distances.push_back(distance(i));
+  const double limit = sigmas * mad_sigma(distances);
+  std::vector<std::size_t> wild;
+  for (std::size_t i = 2; i + 2 < y.size(); ++i) {
+    const double between = std::max({std::abs(y[i - 2] - y[i - 1]), std::abs(y[i - 1] - y[i + 1]), std::abs(y[i + 1] - y[i + 2])});
+    if (std::abs(distance(i)) > std::max(limit, apart * between)) wild.push_back(i);
+  }
+  for (std::size_t i : wild) y[i] = std::nan("");
+  return wild.size();
+}
+
 class Reader {
  public:
   Reader(const Table& table, const Model& model, const ExperimentStudy& study) : table_(table), model_(model), study_(study) {}
@@ -56,6 +74,10 @@ class Reader {
     const SystemSpec& spec = model_.system->spec();
     for (const auto& output : spec.outputs)
       out_.measured.push_back({output.name, output.unit, kept(table_.values(header(output.name), output.unit)), 0.0});
+    for (auto& channel : out_.measured) {
+      const std::size_t wild = set_spikes_aside(channel.values);
+      if (wild > 0) out_.notes.push_back("channel " + channel.name + ": " + std::to_string(wild) + " isolated wild samples set aside");
+    }
     const std::vector<std::string> needed = model_.needed_inputs();
     for (const auto& input : spec.inputs) {
       const bool wanted = std::find(needed.begin(), needed.end(), input.name) != needed.end();

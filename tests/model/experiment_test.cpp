@@ -1,0 +1,108 @@
+#include "misfit/model/experiment.h"
+
+#include <gtest/gtest.h>
+#include <misfit_models_registry.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+
+namespace misfit {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180.0;
+
+Model eq_8(bool with_gravity = false) {
+  static const Registry registry = [] {
+    Registry r;
+    misfit_models_register(r);
+    return r;
+  }();
+  ModelRequest request;
+  request.system = "parachute_planar";
+  request.options.flags["induced_angle"] = false;
+  request.constants = {{"D", 1.5816}, {"S", 1.9554}, {"R_cp", 3.15}, {"m", 0.206}, {"m_a", 0.294}, {"qbar", 736.0}, {"V", 35.1}};
+  request.effects = {{"static_moment", "static_moment", {}, {}}};
+  if (with_gravity) request.effects.push_back({"gravity", "gravity", {}, {}});
+  request.curves["C_m"] = {"alpha_T", {0.1, 0.2, 0.3}, {}, {}};
+  return assemble(request, registry);
+}
+
+Table recording(std::size_t samples) {
+  Table table;
+  table.source = "made.csv";
+  std::vector<double> t, alpha, phi;
+  for (std::size_t i = 0; i < samples; ++i) {
+    t.push_back(0.02 * static_cast<double>(i));
+    alpha.push_back(12.0 + 3.0 * std::sin(13.0 * t.back()));
+    phi.push_back(std::remainder(100.0 * t.back(), 360.0));
+  }
+  table.add("t", "s", t);
+  table.add("alpha_T", "deg", alpha);
+  table.add("phi", "deg", phi);
+  return table;
+}
+
+ExperimentStudy plain() {
+  ExperimentStudy study;
+  study.name = "made";
+  return study;
+}
+
+TEST(SignalsFrom, UnitsBecomeSI) {
+  const Signals s = signals_from(recording(50), eq_8(), plain());
+  EXPECT_NEAR(s.measured.front().values[0], 12.0 * degree, 1e-12);
+}
+
+TEST(SignalsFrom, AnInputIsUnwrappedAndMissingValuesAreBridgedButNotUsed) {
+  Table table = recording(300);
+  table.columns[2].values[100] = std::nan("");
+  const Signals s = signals_from(table, eq_8(true), plain());
+  EXPECT_NEAR(s.inputs[0].values[299], 100.0 * 0.02 * 299 * degree, 1e-9);  // past three turns
+  EXPECT_NEAR(s.inputs[0].values[100], 200.0 * degree, 1e-9);
+  EXPECT_TRUE(std::isnan(s.measured.front().values[100]));
+  EXPECT_TRUE(s.inputs[1].values.empty());  // phi_rate: nobody needs it
+}
+
+TEST(SignalsFrom, IsolatedWildSamplesAreSetAsideAndSaid) {
+  Table table = recording(400);
+  for (std::size_t i = 50; i < 400; i += 97) table.columns[1].values[i] += 40.0;
+  const Signals s = signals_from(table, eq_8(), plain());
+  for (std::size_t i = 50; i < 400; i += 97) EXPECT_TRUE(std::isnan(s.measured.front().values[i])) << i;
+  EXPECT_EQ(std::count_if(s.measured.front().values.begin(), s.measured.front().values.end(), [](double v) { return std::isnan(v); }), 4);
+  bool said = false;
+  for (const auto& note : s.notes) said = said || note.find("4 isolated wild samples") != std::string::npos;
+  EXPECT_TRUE(said);
+}
+
+TEST(SignalsFrom, ABurstAfterRestAndAJumpAreMotionNotWildSamples) {
+  Table table = recording(400);
+  for (std::size_t i = 0; i < 400; ++i) {
+    const double t = table.columns[0].values[i];
+    table.columns[1].values[i] = i < 350 ? 12.0 + 1e-3 * std::sin(40.0 * t) : 12.0 + 5.0 * std::sin(60.0 * t);
+    if (i >= 200 && i < 350) table.columns[1].values[i] += 3.0;
+  }
+  const Signals s = signals_from(table, eq_8(), plain());
+  EXPECT_EQ(std::count_if(s.measured.front().values.begin(), s.measured.front().values.end(), [](double v) { return std::isnan(v); }), 0);
+}
+
+TEST(SignalsFrom, TimeThatRunsBackwardsIsRefusedWithBothTimes) {
+  Table table = recording(20);
+  table.columns[0].values[10] = 0.1;
+  EXPECT_THROW(static_cast<void>(signals_from(table, eq_8(), plain())), InputError);
+}
+
+TEST(SignalsFrom, AChannelWithoutAnyValueIsAnAnswerInWords) {
+  Table table = recording(20);
+  table.columns[1].values.assign(20, std::nan(""));
+  try {
+    static_cast<void>(signals_from(table, eq_8(), plain()));
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find("all samples are lost"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace misfit
