@@ -87,7 +87,8 @@ struct ParachutePlanar {
     s.doc = induced ? "motion in the plane of the tilt, canopy feels V x - R_cp n'" : "the paper's Eq. 8: alpha_T is the state";
     s.formula = "I eta'' = sum of moments, I = (m + m_a) R_cp^2";
     s.source = "paper Eq. 8; DESIGN 4.1";
-    s.states = {{"eta", "rad", -1}, {"eta_rate", "rad/s", 0}};
+    s.states = {{"eta", "rad", -1, 0.1}, {"eta_rate", "rad/s", 0, 2.0}};
+    s.force_ports = {"pitching_moment"};
     s.inputs = {{"phi", "rad", "clock angle of the axis, unwrapped", Hold::first_order},
                 {"phi_rate", "rad/s", "its rate", Hold::first_order}};
     s.quantities = {{"eta", "rad", "geometric tilt of the axis", {}, false},

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -54,6 +55,53 @@ double usual_step(const std::vector<double>& t) {
   return steps.empty() ? 1.0 : median(steps);
 }
 
+namespace {
+
+/// Fills state and rate of one series of values.
+void add_series(const Model& model, const Signals& signals, int state, const std::vector<double>& values, double h,
+                ReconstructedStates& out) {
+  const auto& states = model.system->spec().states;
+  int rate = -1;
+  for (std::size_t j = 0; j < states.size(); ++j) {
+    if (states[j].rate_of == state) rate = static_cast<int>(j);
+  }
+  out.shown[static_cast<std::size_t>(state)] = true;
+  if (rate >= 0) out.shown[static_cast<std::size_t>(rate)] = true;
+  for (Eigen::Index i = 0; i < out.x.rows(); ++i) {
+    const LocalFit fit = local_quadratic(signals.t, values, static_cast<std::size_t>(i), h);
+    if (!fit.ok) {
+      out.ok[static_cast<std::size_t>(i)] = false;
+      continue;
+    }
+    out.x(i, state) = fit.value;
+    out.dx(i, state) = fit.slope;
+    if (rate < 0) continue;
+    out.x(i, rate) = fit.slope;
+    out.dx(i, rate) = fit.curvature;
+  }
+}
+
+/// Values of the readable states at every sample; NaN where a channel is missing or has no such state.
+std::vector<std::vector<double>> read_all(const Model& model, const Signals& signals) {
+  const auto& readable = model.system->spec().readable_states;
+  std::vector<std::vector<double>> out(readable.size(), std::vector<double>(signals.samples(), std::nan("")));
+  const std::vector<double> constants = model.values();  // the system's constants come first
+  std::array<double, kMaxOutputs> y{};
+  std::array<double, kMaxStates> x{};
+  for (std::size_t i = 0; i < signals.samples(); ++i) {
+    bool known = true;
+    for (std::size_t o = 0; o < signals.measured.size(); ++o) {
+      y[o] = signals.measured[o].values[i];
+      known = known && std::isfinite(y[o]);
+    }
+    if (!known || !model.system->read_states(y.data(), constants.data(), x.data())) continue;
+    for (std::size_t r = 0; r < readable.size(); ++r) out[r][i] = x[static_cast<std::size_t>(readable[r])];
+  }
+  return out;
+}
+
+}  // namespace
+
 ReconstructedStates reconstruct_states(const Model& model, const Signals& signals) {
   const auto& spec = model.system->spec();
   const auto samples = static_cast<Eigen::Index>(signals.samples());
@@ -64,26 +112,12 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
   out.ok.assign(signals.samples(), true);
   out.shown.assign(static_cast<std::size_t>(model.states()), false);
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
-    const int state = spec.outputs[o].observes;
-    if (state < 0 || o >= signals.measured.size()) continue;
-    int rate = -1;
-    for (std::size_t j = 0; j < spec.states.size(); ++j) {
-      if (spec.states[j].rate_of == state) rate = static_cast<int>(j);
-    }
-    out.shown[static_cast<std::size_t>(state)] = true;
-    if (rate >= 0) out.shown[static_cast<std::size_t>(rate)] = true;
-    for (Eigen::Index i = 0; i < samples; ++i) {
-      const LocalFit fit = local_quadratic(signals.t, signals.measured[o].values, static_cast<std::size_t>(i), h);
-      if (!fit.ok) {
-        out.ok[static_cast<std::size_t>(i)] = false;
-        continue;
-      }
-      out.x(i, state) = fit.value;
-      out.dx(i, state) = fit.slope;
-      if (rate < 0) continue;
-      out.x(i, rate) = fit.slope;
-      out.dx(i, rate) = fit.curvature;
-    }
+    if (spec.outputs[o].observes >= 0 && o < signals.measured.size())
+      add_series(model, signals, spec.outputs[o].observes, signals.measured[o].values, h, out);
+  }
+  if (!spec.readable_states.empty() && signals.measured.size() == spec.outputs.size()) {
+    const std::vector<std::vector<double>> values = read_all(model, signals);
+    for (std::size_t r = 0; r < values.size(); ++r) add_series(model, signals, spec.readable_states[r], values[r], h, out);
   }
   for (std::size_t z = 0; z < model.own_states.size(); ++z)
     out.x.col(model.system_states() + static_cast<Eigen::Index>(z)).setConstant(model.own_states[z].initial);

@@ -35,6 +35,12 @@ struct Role {
   bool positive = false;  ///< the formula divides by it or takes its root: never 0 in use. At all others it must be regular at 0
 };
 
+/// Where discovery looks for a shape before the refit refines it.
+struct ScanSpec {
+  double from = 0.0, to = 0.0;  ///< [unit]
+  int count = 0;  ///< values, ends included; 0: not scanned (the default value serves); −1: a frequency [Hz], steps of 1/(4T)
+};
+
 /// A number the effect owns; where the study says so, a curve of any quantity.
 struct CoefficientSpec {
   const char* name = "";
@@ -49,6 +55,9 @@ struct CoefficientSpec {
   const char* curve_of = "";     ///< default: a curve of this quantity unless the study gives a number; "" = a number
   bool over_sine = false;        ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
   bool fixed = false;            ///< not fitted unless the study frees it: a smoothing width, an origin of time
+  ScanSpec scan{};
+  const char* calibrated_as = "";  ///< camera parameter whose calibration sigma is the prior of this strength, if there is a calibration
+  double prior_sigma = 0.0;        ///< Gaussian about 0 where there is no calibration [unit]; 0: no prior
 };
 
 /// Memory of an effect: z' = drift [unit/s], and if stochastic white noise of spectral density diffusion² is added.

@@ -15,7 +15,8 @@ namespace misfit {
 
 struct StateSpec {
   std::string name, unit;
-  int rate_of = -1;  ///< index of the state whose time derivative this one is; −1: none
+  int rate_of = -1;    ///< index of the state whose time derivative this one is; −1: none
+  double scale = 1.0;  ///< typical size [unit]: how uncertain it is before anything is measured
 };
 
 enum class Hold { zero_order, first_order };  ///< how an input runs between its samples
@@ -78,6 +79,8 @@ struct SystemSpec {
   std::vector<OutputSpec> outputs;                       ///< each is also a sensor port of the same name; then `sample_time [s]`
   std::map<std::string, std::string> roles;              ///< default quantity or port of generic roles: "rate", "level", "port", "output"
   std::map<std::string, std::string> coefficient_names;  ///< effect's coefficient → name it has in this system ("C_mq" → "C_m_alphadot")
+  std::vector<std::string> force_ports;                  ///< dynamic ports of the random force that drives the motion, in fixed axes
+  std::vector<int> readable_states;                      ///< states that System::read_states() gives
   SystemForm regression;                                 ///< form in which sliding_bin is stated (the paper's Eq. 8); empty kind: none
   std::string static_curve, damping_curve;               ///< coefficients that sliding_bin solves for; empty: none
   double fastest_rate = 0.0;                             ///< [1/s], of the system without effects
@@ -120,6 +123,8 @@ class System {
   virtual void outputs(const Point& at, double* y) const = 0;
   /// y, ∂y/∂x (outputs × states), and, if not null, ∂y/∂k (outputs × constants).
   virtual void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const = 0;
+  /// The inverse of outputs() for SystemSpec::readable_states: fills those entries of x. False where the outputs have no such state.
+  virtual bool read_states(const double* /*y*/, const double* /*k*/, double* /*x*/) const { return false; }
 };
 
 /// Options of a system as a study gives them: flags and numbers (SI).
@@ -181,6 +186,10 @@ class SystemOf final : public System {
     } else {
       differentiate_outputs<S::NX>(at, y, y_x, y_k);
     }
+  }
+  bool read_states(const double* y, const double* k, double* x) const override {
+    if constexpr (requires { system_.read_states(y, k, x); }) return system_.read_states(y, k, x);
+    return false;
   }
 
  private:

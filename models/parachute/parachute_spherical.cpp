@@ -1,0 +1,267 @@
+#include "misfit/math/camera.h"
+#include "misfit/model/registry.h"
+
+namespace {
+
+using namespace misfit;
+
+/// Three-dimensional motion of an axisymmetric parachute about a fixed swivel, seen by one downstream camera. n = unit vector swivel → apex
+/// (x downstream, y left looking upstream, z down), states n_y, n_z and their rates, |n_y, n_z| < 1 and n_x > 0:
+///   n'' = (tau × n)/I − |n'|² n,  I = (m + m_a) R_cp² (+ port `inertia`)
+/// With s = sin(eta) and, where s > 0, theta^ = (n n_x − x^)/s (tilt grows) and phi^ = (n_z ŷ − n_y ẑ)/s (clock angle grows), a pair of
+/// in-plane and lateral moments (M_p, M_l) moves n along M_p theta^ + M_l phi^; moments about fixed axes act through tau × n. A moment
+/// along n does nothing, so tau_x is never needed. At s = 0 theta^ = ẑ, phi^ = ŷ: any pair of unit vectors serves there, because what is
+/// regular enters as a vector. Felt wind at the centre of pressure: v = (V, wind_y, wind_z) − R_cp n'.
+struct ParachuteSpherical {
+  static constexpr int NX = 4, NU = 0, NP = 4, NF = 4, NQ = 17, NK = 18, NY = 2;
+  enum State { y, z, dy, dz };
+  enum Constant { D, S, R_cp, m, m_a, qbar, V, R, l_b, l_s, first_camera };
+  enum QuantityIndex {
+    n_y,
+    n_z,
+    eta,
+    phi,
+    pitch_rate,
+    lateral_rate,
+    phi_rate,
+    gravity_direction,
+    gravity_direction_lateral,
+    image_scale,
+    focal_length,
+    dynamic_pressure,
+    wind_speed,
+    inertia,
+    alpha_T,
+    wind_cross_axis,
+    wind_cross_axis_lateral
+  };
+  enum QuantityPort { pressure_port, inertia_port, wind_y_port, wind_z_port };
+  enum DynamicPort { in_plane, lateral, moment_y, moment_z };
+
+  bool pinhole = true;
+
+  explicit ParachuteSpherical(const SystemOptions& options) {
+    const auto flag = options.flags.find("plane_by_plane");
+    if (flag != options.flags.end()) pinhole = !flag->second;
+  }
+  static std::vector<std::string> flags() { return {"plane_by_plane"}; }
+
+  static bool wants(std::uint64_t needed, QuantityIndex i) { return (needed >> static_cast<unsigned>(i) & 1U) != 0U; }
+
+  /// The axis with the unit vectors of its tilt and clock angle: only y and z parts of them are needed.
+  template <class T>
+  struct Axis {
+    T x, sine, theta_y, theta_z, phi_y, phi_z;
+  };
+
+  template <class T>
+  static Axis<T> axis_of(const T* n) {
+    using std::sqrt;
+    const T cross_squared = n[y] * n[y] + n[z] * n[z];
+    Axis<T> a;
+    a.x = sqrt(T(1.0) - cross_squared);
+    if (value_of(cross_squared) > 0.0) {
+      a.sine = sqrt(cross_squared);
+      const T toward_y = n[y] / a.sine, toward_z = n[z] / a.sine;
+      a.theta_y = toward_y * a.x;
+      a.theta_z = toward_z * a.x;
+      a.phi_y = toward_z;
+      a.phi_z = -toward_y;
+    } else {
+      a.sine = a.theta_y = a.phi_z = T(0.0);
+      a.theta_z = a.phi_y = T(1.0);
+    }
+    return a;
+  }
+
+  template <class T>
+  static T axial_rate(const T* n, const T& n_x) {
+    return -(n[y] * n[dy] + n[z] * n[dz]) / n_x;
+  }
+
+  template <class T, class K>
+  static T moment_of_inertia(const K* k, const T* P) {
+    return (k[m] + k[m_a]) * (k[R_cp] * k[R_cp]) + P[inertia_port];
+  }
+
+  template <class T, class K>
+  void quantities(const T* n, const double* /*u*/, double /*t*/, const K* k, const T* P, std::uint64_t needed, T* q) const {
+    using std::atan2;
+    using std::sqrt;
+    const Axis<T> a = axis_of(n);
+    const bool tilted = value_of(a.sine) > 0.0;
+    q[n_y] = n[y];
+    q[n_z] = n[z];
+    if (wants(needed, eta)) q[eta] = tilted ? T(atan2(a.sine, a.x)) : T(0.0);
+    if (wants(needed, phi)) q[phi] = tilted ? T(atan2(n[y], n[z])) : T(0.0);
+    const T n_x_rate = axial_rate(n, a.x);
+    q[pitch_rate] = a.theta_y * n[dy] + a.theta_z * n[dz] - a.sine * n_x_rate;
+    q[lateral_rate] = a.phi_y * n[dy] + a.phi_z * n[dz];
+    if (wants(needed, phi_rate)) q[phi_rate] = tilted ? T(q[lateral_rate] / a.sine) : T(0.0);
+    q[gravity_direction] = a.theta_z;
+    q[gravity_direction_lateral] = a.phi_z;
+    if (wants(needed, image_scale)) q[image_scale] = T(k[l_b] * k[first_camera + 1]) / (k[l_s] + k[first_camera + 7] - k[R] * a.x);
+    q[focal_length] = T(k[l_b] * k[first_camera + 1]);
+    q[dynamic_pressure] = k[qbar] + P[pressure_port];
+    q[inertia] = moment_of_inertia(k, P);
+    // The root only where the pressure is changed: it costs as much as everything else here.
+    q[wind_speed] = vanishes(P[pressure_port]) ? T(k[V]) : T(k[V] * sqrt(T(q[dynamic_pressure] / k[qbar])));
+    if (wants(needed, alpha_T) || wants(needed, wind_cross_axis) || wants(needed, wind_cross_axis_lateral))
+      felt_wind(n, a, n_x_rate, k, P, q);
+  }
+
+  /// Components of (v × n)/|v| about the axes of in-plane and lateral rotation; alpha_T between n and v.
+  template <class T, class K>
+  static void felt_wind(const T* n, const Axis<T>& a, const T& n_x_rate, const K* k, const T* P, T* q) {
+    using std::atan2;
+    using std::sqrt;
+    const T v_x = q[wind_speed] - k[R_cp] * n_x_rate;
+    const T v_y = P[wind_y_port] - k[R_cp] * n[dy];
+    const T v_z = P[wind_z_port] - k[R_cp] * n[dz];
+    const T in_plane_wind = v_x * a.sine - (a.theta_y * v_y + a.theta_z * v_z);
+    const T across = -(a.phi_y * v_y + a.phi_z * v_z);
+    const T along = v_x * a.x + v_y * n[y] + v_z * n[z];
+    const T cross_squared = in_plane_wind * in_plane_wind + across * across;
+    const T speed = sqrt(T(cross_squared + along * along));
+    q[wind_cross_axis] = in_plane_wind / speed;
+    q[wind_cross_axis_lateral] = across / speed;
+    q[alpha_T] =
+        value_of(cross_squared) > 0.0 ? T(atan2(T(sqrt(cross_squared)), along)) : T(value_of(along) < 0.0 ? 3.14159265358979323846 : 0.0);
+  }
+
+  template <class T, class K>
+  void rates(const T* n, const double* /*u*/, double /*t*/, const K* k, const T* P, const T* F, T* dx) const {
+    const Axis<T> a = axis_of(n);
+    const T n_x_rate = axial_rate(n, a.x);
+    const T turning = n[dy] * n[dy] + n[dz] * n[dz] + n_x_rate * n_x_rate;
+    const T I = moment_of_inertia(k, P);
+    dx[y] = n[dy];
+    dx[z] = n[dz];
+    dx[dy] = (F[in_plane] * a.theta_y + F[lateral] * a.phi_y + F[moment_z] * a.x) / I - turning * n[y];
+    dx[dz] = (F[in_plane] * a.theta_z + F[lateral] * a.phi_z - F[moment_y] * a.x) / I - turning * n[z];
+  }
+
+  template <class T, class K>
+  static CameraParameters<T> camera_of(const K* k) {
+    CameraParameters<T> camera;
+    const auto entries = camera_entries(camera);
+    for (std::size_t i = 0; i < entries.size(); ++i) *entries[i] = T(k[first_camera + i]);
+    return camera;
+  }
+
+  template <class T, class K>
+  void outputs(const T* n, const double* /*u*/, double /*t*/, const K* k, T* pixels) const {
+    using std::atan2;
+    using std::sqrt;
+    const CameraParameters<T> camera = camera_of<T>(k);
+    const T n_x = sqrt(T(1.0) - n[y] * n[y] - n[z] * n[z]);
+    std::array<T, 2> P;
+    if (pinhole) {
+      const T focal = T(k[l_b]) * camera.K;
+      const T depth = T(k[l_s]) + camera.camera_distance - k[R] * n_x;
+      P = to_image(camera, focal, T(focal * (k[R] * n[y]) / depth), T(focal * (k[R] * n[z] + camera.h_c) / depth));
+    } else {
+      const AxisGeometry rig{value_of(k[R]), value_of(k[l_b]), value_of(k[l_s])};
+      P = project_axis(CameraModel::plane_by_plane, camera, rig, T(atan2(n[z], n_x)), T(atan2(n[y], n_x)));
+    }
+    pixels[0] = P[0];
+    pixels[1] = P[1];
+  }
+
+  /// n_y and n_z from pixels; false where no direction explains them.
+  bool read_states(const double* pixels, const double* k, double* n) const {
+    const CameraParameters<double> camera = camera_of<double>(k);
+    const auto angles =
+        read_axis(pinhole ? CameraModel::pinhole : CameraModel::plane_by_plane, camera, {k[R], k[l_b], k[l_s]}, pixels[0], pixels[1]);
+    if (!angles) return false;
+    const std::array<double, 3> direction = axis_direction((*angles)[0], (*angles)[1]);
+    n[y] = direction[1];
+    n[z] = direction[2];
+    return true;
+  }
+
+  static std::vector<QuantitySpec> quantity_list() {
+    return {{"n_y", "-", "axis, part to the left (looking upstream)", {}, true},
+            {"n_z", "-", "axis, part downward", {}, true},
+            {"eta", "rad", "geometric tilt of the axis", {}, false},
+            {"phi", "rad", "clock angle atan2(n_y, n_z)", {}, true},
+            {"pitch_rate", "rad/s", "rotation rate in the plane of the tilt", {}, true},
+            {"lateral_rate", "rad/s", "rotation rate across the plane of the tilt", {}, true},
+            {"phi_rate", "rad/s", "rate of the clock angle", {}, true},
+            {"gravity_direction", "-", "cos(phi) cos(eta)", {}, true},
+            {"gravity_direction_lateral", "-", "-sin(phi)", {}, true},
+            {"image_scale", "px/m", "pixels per metre at the apex", {}, false},
+            {"focal_length", "px", "l_b K", {}, false},
+            {"dynamic_pressure", "Pa", "free-stream dynamic pressure", {}, false},
+            {"wind_speed", "m/s", "free-stream speed along x", {}, false},
+            {"inertia", "kg m^2", "(m + m_a) R_cp^2", {}, false},
+            {"alpha_T", "rad", "total angle of attack, between axis and felt wind", {}, false},
+            {"wind_cross_axis", "-", "in-plane component of (wind direction x axis)", {}, true},
+            {"wind_cross_axis_lateral", "-", "lateral component of (wind direction x axis)", {}, true}};
+  }
+
+  static std::vector<ConstantSpec> constant_list() {
+    constexpr double huge = 1e6;
+    std::vector<ConstantSpec> list = {{"D", "m", "reference diameter", 1e-6, huge, true, 0.0},
+                                      {"S", "m^2", "reference area", 1e-6, huge, true, 0.0},
+                                      {"R_cp", "m", "swivel to centre of pressure", 1e-6, huge, true, 0.0},
+                                      {"m", "kg", "mass of the parachute", 1e-9, huge, true, 0.0},
+                                      {"m_a", "kg", "apparent mass", 0.0, huge, true, 0.0},
+                                      {"qbar", "Pa", "dynamic pressure", 1e-6, 1e9, true, 0.0},
+                                      {"V", "m/s", "free-stream speed", 1e-6, 1e5, true, 0.0},
+                                      {"R", "m", "swivel to apex", 1e-6, huge, true, 0.0},
+                                      {"l_b", "m", "backshell face to camera", 1e-6, huge, true, 0.0},
+                                      {"l_s", "m", "swivel to camera", 1e-6, huge, true, 0.0}};
+    for (std::size_t i = 0; i < camera_parameter_names.size(); ++i) {
+      const bool scale = i == 1;
+      list.push_back({camera_parameter_names[i], camera_parameter_units[i], "of the camera, from its calibration", scale ? 1e-6 : -huge,
+                      huge, false, scale ? 1.0 : 0.0});
+    }
+    return list;
+  }
+
+  [[nodiscard]] SystemSpec spec() const {
+    SystemSpec s;
+    s.key = "parachute_spherical";
+    s.doc = "three-dimensional motion about the swivel, in pixels of one downstream camera";
+    s.formula = "n'' = (tau x n)/I - |n'|^2 n, I = (m + m_a) R_cp^2; P by the camera";
+    s.source = "DESIGN 4.1; rigid rotation of a line without spin";
+    s.states = {{"n_y", "-", -1, 0.1}, {"n_z", "-", -1, 0.1}, {"n_y_rate", "1/s", 0, 2.0}, {"n_z_rate", "1/s", 1, 2.0}};
+    s.quantities = quantity_list();
+    s.base_quantities = dynamic_pressure;
+    s.quantity_ports = {{"dynamic_pressure", "Pa", "changes q and, as sqrt(q), V", "dynamic_pressure"},
+                        {"inertia", "kg m^2", "adds to I", "inertia"},
+                        {"wind_y", "m/s", "wind to the left (looking upstream)", "wind_speed"},
+                        {"wind_z", "m/s", "wind downward", "wind_speed"}};
+    s.dynamic_ports = {{"pitching_moment", "N m", "moment in the plane of the tilt, positive opens it", "pitch_rate"},
+                       {"lateral_moment", "N m", "moment across it, positive turns the clock angle forward", "lateral_rate"},
+                       {"moment_y", "N m", "moment about the fixed y axis: positive lifts (-n_z)", ""},
+                       {"moment_z", "N m", "moment about the fixed z axis: positive moves to +y", ""}};
+    s.constants = constant_list();
+    constexpr double typical_noise = 0.5;
+    s.outputs = {{"P_y", "px", -1, typical_noise}, {"P_z", "px", -1, typical_noise}};
+    s.roles = {{"rate", "pitch_rate"}, {"level", "eta"}, {"port", "pitching_moment"}, {"output", "P_z"}};
+    s.force_ports = {"moment_y", "moment_z"};
+    s.readable_states = {y, z};
+    s.regression = {"parachute_planar", {{"induced_angle", false}}};
+    s.static_curve = "C_m";
+    s.damping_curve = "C_mq";
+    constexpr double typical_rate = 15.0;
+    s.fastest_rate = typical_rate;
+    return s;
+  }
+
+  /// C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T) (DESIGN 4.1): the induced angle damps as well.
+  [[nodiscard]] std::vector<DerivedCurve> derived_curves(const double* k) const {
+    const double lever = 2.0 * k[R_cp] / k[D];
+    return {{"C_m_alphadot",
+             "alpha_T",
+             "-",
+             "C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T)",
+             {{"C_mq", 0, [](double) { return 1.0; }}, {"C_m", 1, [lever](double a) { return lever * std::cos(a); }}}}};
+  }
+};
+
+}  // namespace
+
+MISFIT_SYSTEM(parachute_spherical, ParachuteSpherical)
