@@ -89,21 +89,6 @@ class Regressor {
   std::vector<int> rows_;
 };
 
-void set_priors(const Model& model, Linearised& sums) {
-  const std::vector<int> free = model.free_parameters();
-  sums.prior_precision = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()));
-  sums.prior_mean = sums.prior_precision;
-  for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    const auto i = static_cast<Eigen::Index>(c);
-    // Without a prior a coefficient that no sample touches would be free to be anything: a very wide one (1000 typical sizes) keeps it
-    // finite.
-    constexpr double very_wide = 1e3;
-    sums.prior_precision[i] = 1.0 / std::pow(p.prior_sigma.value_or(very_wide * p.scale), 2);
-    sums.prior_mean[i] = p.prior_sigma ? p.prior_mean : 0.0;
-  }
-}
-
 }  // namespace
 
 FittedModel equation_error(const Model& model, const std::vector<Signals>& experiments) {

@@ -46,6 +46,10 @@ struct Smoothed {
   bool ok = false;             ///< false: the information matrix is not positive definite
 };
 
+/// Fills the priors of the free parameters; without one a very wide prior (1000 typical sizes) keeps coefficients finite that no sample
+/// touches.
+void set_priors(const Model& model, Linearised& sums);
+
 /// Maximises the marginal likelihood over the λ marked `chosen` and σ² for the linearised problem [FS], updating `penalties`. With
 /// `sigma2_given` > 0 the variance is kept.
 [[nodiscard]] Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, double sigma2_given = 0.0);

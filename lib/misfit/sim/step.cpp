@@ -160,6 +160,10 @@ bool Stepper::step_linear(double* x, const Interval& interval, Slots& slots, dou
       substep_linear<2>(x, interval, from, to, slots, D);
     } else if (n_ == 4) {
       substep_linear<4>(x, interval, from, to, slots, D);
+    } else if (n_ == 3) {
+      substep_linear<3>(x, interval, from, to, slots, D);
+    } else if (n_ == 6) {
+      substep_linear<6>(x, interval, from, to, slots, D);
     } else {
       substep_linear<0>(x, interval, from, to, slots, D);
     }

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/data/fit.h"
+
+namespace misfit {
+
+/// One thing that the model could lack.
+struct Candidate {
+  int rank = 0;        ///< 1 = first
+  std::string effect;  ///< key, or "unknown:PORT(QUANTITY)"
+  std::string family;  ///< "physics", "generic", "sensor", "unknown"
+  std::vector<std::string> ports;
+  std::map<std::string, std::string> roles;  ///< bindings that differ from the defaults, as a study would write them
+  double score = 0.0;                        ///< chi² of the score test at the best cell
+  int dof = 1;
+  double predicted_drop = 0.0;
+  std::optional<double> actual_drop;    ///< after refitting; missing: not refitted
+  std::optional<double> held_out_gain;  ///< of the held-out log-likelihood
+  double p_value = 1.0;                 ///< corrected for cells scanned and families
+  std::vector<std::string> group;       ///< effects that these data cannot tell from this one, itself included; empty: alone
+  bool described = false;               ///< the model already has a column like it (1 − R² < 0.01)
+  bool accepted = false;
+  std::string why;                             ///< of being accepted or not, in words
+  std::map<std::string, Estimate> parameters;  ///< at the refit, else one Gauss–Newton step
+  std::map<std::string, Estimate> force;       ///< random force per port after refitting
+};
+
+/// What could be missing, best first.
+struct Discovery {
+  std::vector<Candidate> candidates;
+  std::string verdict;                    ///< one sentence: what to add, or that nothing is missing, or that no known effect explains it
+  std::vector<std::string> sentences;     ///< further remarks: groups and what would separate them, phantoms, calibration against flight
+  std::vector<std::string> tried;         ///< families and cells that were looked at, in words
+  std::map<std::string, Estimate> force;  ///< random force before
+  double seconds = 0.0;
+};
+
+/// candidates.json (DESIGN section 8: an array) and discovery.json (verdict, sentences, tried).
+void write_discovery(const std::filesystem::path& dir, const Discovery& discovery);
+[[nodiscard]] Discovery read_discovery(const std::filesystem::path& dir);
+
+}  // namespace misfit

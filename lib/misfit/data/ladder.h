@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/data/fit.h"
+
+namespace misfit {
+
+/// One rung: a model, how well it does, and what made it from its parent.
+struct Rung {
+  int id = 0, parent = -1;  ///< parent −1: the first
+  std::string study;        ///< path of its study, relative to the run folder
+  std::string added;        ///< effect, "system:KIND" for a change of system, "" for the first
+  std::string system;       ///< kind
+  std::string method;
+  std::optional<double> predicted_drop, actual_drop, held_out_gain;  ///< against the parent; missing across a change of system or channels
+  double loglik = 0.0;
+  std::optional<double> validation_loglik;
+  std::map<std::string, Estimate> force;                ///< strength of the random force
+  std::map<std::string, Estimate> rms, validation_rms;  ///< per channel, one step ahead
+  std::map<std::string, std::vector<double>> k_step;    ///< channel → RMS at 1, 2, 4, 8, 16, 32 steps ahead [unit of rms]
+  std::optional<Estimate> trim;                         ///< [rad]
+  std::map<std::string, Estimate> parameters;           ///< of the added effect
+  std::string note;                                     ///< in words
+};
+/// Steps of Rung::k_step.
+inline constexpr int kLadderSteps[] = {1, 2, 4, 8, 16, 32};
+
+struct Ladder {
+  std::vector<Rung> rungs;
+};
+
+/// ladder.json (DESIGN section 8: an array).
+void write_ladder(const std::filesystem::path& path, const Ladder& ladder);
+[[nodiscard]] Ladder read_ladder(const std::filesystem::path& path);
+
+}  // namespace misfit

@@ -1,0 +1,26 @@
+#pragma once
+
+// References
+//   [D]  R. B. Davies, Biometrika 74 (1987): tests when a nuisance parameter is present only under the alternative.
+
+#include "misfit/data/calibration.h"
+#include "misfit/data/candidates.h"
+#include "misfit/fit/filter_estimate.h"
+#include "misfit/model/registry.h"
+
+namespace misfit {
+
+struct DiscoverOptions {
+  int threads = 0;                           ///< 0: one per core; does not change the answer
+  const Calibration* calibration = nullptr;  ///< its covariance and tests are priors of sensor effects
+  double p_accept = 0.01;                    ///< family-wise
+  int most_refits = 6;
+};
+
+/// Ranks what the model could lack (DESIGN 6): score tests of every effect in the registry that suits the system and of unknown curves,
+/// with shapes scanned; refits of those worth it; groups that the data cannot separate; acceptance by family-wise p-value and held-out
+/// gain. `request` is what the estimate's model was assembled from.
+[[nodiscard]] Discovery discover(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                 const std::vector<Signals>& experiments, const DiscoverOptions& options = {});
+
+}  // namespace misfit

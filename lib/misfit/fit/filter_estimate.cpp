@@ -1,0 +1,327 @@
+#include "misfit/fit/filter_estimate.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/core/work_queue.h"
+#include "misfit/fit/filter_start.h"
+
+namespace misfit {
+namespace {
+
+constexpr double gate = 5.0;  // sigmas: beyond, a reading is set aside as an outlier (5.7e-7 of good ones)
+
+class Estimation {
+ public:
+  Estimation(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments, const FilterOptions& options)
+      : options_(options) {
+    out_.model = start;
+    out_.penalties = std::move(penalties);
+    if (!options.choose_roughness) {
+      for (auto& penalty : out_.penalties) penalty.chosen = false;
+    }
+    out_.forced = with_random_force(start);
+    for (const auto& experiment : experiments) out_.data.push_back(filter_data(out_.forced, experiment));
+    if (options.use) {
+      for (std::size_t e = 0; e < out_.data.size(); ++e) out_.data[e].use = (*options.use)[e];
+    }
+    free_ = start.free_parameters();
+    theta_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()));
+    for (std::size_t c = 0; c < free_.size(); ++c)
+      theta_[static_cast<Eigen::Index>(c)] = start.parameters[static_cast<std::size_t>(free_[c])].value;
+    out_.around = options.around ? *options.around : usual_noise(out_.forced, out_.data);
+    out_.noise = options.noise ? *options.noise : out_.around;
+  }
+
+  FilterEstimate run() {
+    set_time();
+    if (!linearise()) throw RunError(failure());
+    if (!options_.noise) search_noise();
+    iterate(25, 0.02);
+    if (!options_.use && gate_outliers()) {
+      linearise();
+      iterate(6, 0.02);
+    }
+    if (options_.verify) polish();
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  /// Alternates the blocks until neither gains.
+  void iterate(int most, double tolerance) {
+    out_.converged = false;
+    for (int k = 0; k < most; ++k) {
+      const double before = objective_;
+      const bool choosing = std::any_of(out_.penalties.begin(), out_.penalties.end(), [](const Penalty& p) { return p.chosen; });
+      const double edf = out_.edf;
+      physical_step();
+      noise_step(k < 3 ? 3 : 6);
+      const bool settled = !choosing || std::abs(out_.edf - edf) < 0.05;
+      if (k > 0 && settled && std::abs(objective_ - before) < tolerance) {
+        out_.converged = true;
+        return;
+      }
+    }
+  }
+
+  void set_time() { out_.forced.model.parameters[static_cast<std::size_t>(out_.forced.time_parameter)].value = out_.noise.force_time; }
+  std::vector<double> values(const Eigen::VectorXd& theta) const {
+    std::vector<double> all = out_.forced.model.values();
+    for (std::size_t c = 0; c < free_.size(); ++c) all[static_cast<std::size_t>(free_[c])] = theta[static_cast<Eigen::Index>(c)];
+    return all;
+  }
+  double penalty(const Eigen::VectorXd& theta) const {
+    double sum = 0.0;
+    for (const auto& p : out_.penalties) {
+      const auto c = theta.segment(p.first, p.omega.rows());
+      sum -= 0.5 * p.lambda * c.dot(p.omega * c);
+    }
+    for (std::size_t c = 0; c < free_.size(); ++c) {
+      const Parameter& p = out_.model.parameters[static_cast<std::size_t>(free_[c])];
+      if (p.prior_sigma) sum -= 0.5 * std::pow((theta[static_cast<Eigen::Index>(c)] - p.prior_mean) / *p.prior_sigma, 2);
+    }
+    return sum;
+  }
+
+  /// Full run with derivatives at theta_.
+  bool linearise() {
+    out_.traces.resize(out_.data.size());
+    out_.jacobians.resize(out_.data.size());
+    FilterRunner runner(out_.forced, true);
+    runner.set_parameters(values(theta_));
+    double loglik = 0.0;
+    for (std::size_t e = 0; e < out_.data.size(); ++e) {
+      if (!runner.run(out_.data[e], out_.noise, out_.traces[e], &out_.jacobians[e])) {
+        failed_experiment_ = e;
+        return false;
+      }
+      loglik += out_.traces[e].loglik;
+    }
+    ++out_.linearisations;
+    out_.loglik = loglik;
+    objective_ = loglik + penalty(theta_);
+    return true;
+  }
+
+  /// Objective at other values, exact (no derivatives); −infinity where the run fails.
+  double objective_at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* keep = nullptr) const {
+    FilterModel forced = out_.forced;
+    forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = noise.force_time;
+    FilterRunner runner(forced, false);
+    std::vector<double> all = values(theta);
+    all[static_cast<std::size_t>(forced.time_parameter)] = noise.force_time;
+    runner.set_parameters(all);
+    double sum = penalty(theta);
+    std::vector<FilterTrace> own(out_.data.size());
+    std::vector<FilterTrace>& traces = keep != nullptr ? *keep : own;
+    for (std::size_t e = 0; e < out_.data.size(); ++e) {
+      if (!runner.run(out_.data[e], noise, traces[e])) return -std::numeric_limits<double>::infinity();
+      sum += traces[e].loglik;
+    }
+    return sum;
+  }
+
+  Linearised normal_equations() const {
+    Linearised sums;
+    const Eigen::Index n = theta_.size();
+    sums.N = Eigen::MatrixXd::Zero(n, n);
+    sums.g = Eigen::VectorXd::Zero(n);
+    sums.theta = theta_;
+    for (const auto& jacobian : out_.jacobians) {
+      sums.N.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.J.transpose());
+      sums.g += jacobian.J.transpose() * jacobian.r;
+      sums.rss += jacobian.r.squaredNorm();
+      sums.count += static_cast<double>(jacobian.r.size());
+    }
+    sums.N = Eigen::MatrixXd(sums.N.selfadjointView<Eigen::Lower>());
+    set_priors(out_.model, sums);
+    return sums;
+  }
+
+  /// One Gauss–Newton step of the physical parameters with new roughness; shortened until the exact objective rises.
+  void physical_step() {
+    if (free_.empty()) return;
+    const Smoothed smoothed = smooth(normal_equations(), out_.penalties, 1.0);
+    if (!smoothed.ok) return;
+    out_.edf = smoothed.edf;
+    out_.covariance = smoothed.covariance;
+    objective_ = out_.loglik + penalty(theta_);  // the roughness may have changed
+    const Eigen::VectorXd step = inside_bounds(smoothed.theta) - theta_;
+    for (double share = 1.0; share > 0.05; share *= 0.4) {
+      const Eigen::VectorXd there = theta_ + share * step;
+      const double value = objective_at(there, out_.noise);
+      if (!(value > objective_ - 1e-6)) continue;
+      const Eigen::VectorXd before = theta_;
+      theta_ = there;
+      if (linearise()) return;
+      theta_ = before;
+    }
+    linearise();
+  }
+
+  Eigen::VectorXd inside_bounds(Eigen::VectorXd theta) const {
+    for (std::size_t c = 0; c < free_.size(); ++c) {
+      const Parameter& p = out_.model.parameters[static_cast<std::size_t>(free_[c])];
+      auto& value = theta[static_cast<Eigen::Index>(c)];
+      value = std::clamp(value, p.lower, p.upper);
+    }
+    return theta;
+  }
+
+  LinearisedRuns runs() const { return {&out_.forced, &out_.data, &out_.traces}; }
+
+  void noise_step(int iterations) {
+    const NoiseFit fit = fit_noise(runs(), out_.noise, out_.around, options_.threads, iterations);
+    take_noise(fit);
+  }
+
+  void take_noise(const NoiseFit& fit) {
+    const FilterNoise before = out_.noise;
+    const double objective = objective_;
+    out_.noise = fit.noise;
+    out_.noise_fit = fit;
+    set_time();
+    if (linearise() && objective_ > objective - 1.0) return;
+    out_.noise = before;
+    set_time();
+    linearise();
+  }
+
+  /// Starts of the jitter's frequency: the likelihood has a maximum per line it could sit on.
+  void search_noise() {
+    physical_step();
+    NoiseFit best;
+    best.minus_loglik = std::numeric_limits<double>::infinity();
+    for (const double share : {0.4, 1.0, 2.0}) {
+      FilterNoise start = out_.noise;
+      for (std::size_t o = 0; o < start.channels.size(); ++o)
+        start.channels[o].jitter_frequency = share * out_.around.channels[o].jitter_frequency;
+      const NoiseFit fit = fit_noise(runs(), start, out_.around, options_.threads, 6);
+      if (fit.minus_loglik < best.minus_loglik) best = fit;
+    }
+    take_noise(best);
+  }
+
+  bool gate_outliers() {
+    const auto ny = static_cast<std::size_t>(out_.model.outputs());
+    for (std::size_t e = 0; e < out_.data.size(); ++e) {
+      FilterData& data = out_.data[e];
+      const FilterTrace& trace = out_.traces[e];
+      for (std::size_t i = 0; i < trace.samples * ny; ++i) {
+        if (data.use[i] == Use::none || !(trace.S[i] > 0.0) || std::abs(trace.e[i]) <= gate * std::sqrt(trace.S[i])) continue;
+        data.use[i] = Use::none;
+        ++out_.outliers;
+      }
+    }
+    return out_.outliers > 0;
+  }
+
+  /// Gradient of the exact objective over (θ, log noise) by central differences, and a scoring step by it.
+  void polish() {
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::VectorXd gradient = exact_gradient();
+      const Eigen::Index n = theta_.size(), q = gradient.size() - n;
+      Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient.size());
+      step.head(n) = out_.covariance * gradient.head(n);
+      Eigen::MatrixXd information = out_.noise_fit.information;
+      for (Eigen::Index i = 0; i < q; ++i) {
+        if (out_.noise_fit.at_bound[static_cast<std::size_t>(i)]) information(i, i) += 1e12;
+        information(i, i) += 1e-6;
+      }
+      step.tail(q) = information.ldlt().solve(gradient.tail(q));
+      out_.left = 0.5 * gradient.dot(step);
+      constexpr double enough = 0.02;
+      if (out_.left < enough) return;
+      if (!try_step(step)) return;
+    }
+  }
+
+  bool try_step(const Eigen::VectorXd& step) {
+    const Eigen::Index n = theta_.size();
+    for (double share = 1.0; share > 0.1; share *= 0.5) {
+      std::vector<double> logs = out_.noise_fit.logs;
+      for (std::size_t i = 0; i < logs.size(); ++i) logs[i] += share * step[n + static_cast<Eigen::Index>(i)];
+      const FilterNoise noise = unpack(logs);
+      const Eigen::VectorXd there = inside_bounds(theta_ + share * step.head(n));
+      if (!(objective_at(there, noise) > objective_)) continue;
+      theta_ = there;
+      out_.noise = noise;
+      out_.noise_fit.logs = logs;
+      set_time();
+      return linearise();
+    }
+    return false;
+  }
+
+  Eigen::VectorXd exact_gradient() const {
+    const auto n = static_cast<std::size_t>(theta_.size());
+    const std::vector<double>& logs = out_.noise_fit.logs;
+    Eigen::VectorXd gradient(static_cast<Eigen::Index>(n + logs.size()));
+    run_jobs(n + logs.size(), options_.threads, [&](std::size_t i) {
+      const auto place = static_cast<Eigen::Index>(i);
+      double h = 1e-3, plus = 0.0, minus = 0.0;
+      if (i < n) {
+        h = 0.05 * std::sqrt(std::max(out_.covariance(place, place), 1e-300));
+        Eigen::VectorXd there = theta_;
+        there[place] += h;
+        plus = objective_at(there, out_.noise);
+        there[place] -= 2.0 * h;
+        minus = objective_at(there, out_.noise);
+      } else {
+        std::vector<double> there = logs;
+        there[i - n] += h;
+        plus = objective_at(theta_, unpack(there));
+        there[i - n] -= 2.0 * h;
+        minus = objective_at(theta_, unpack(there));
+      }
+      gradient[place] = std::isfinite(plus) && std::isfinite(minus) ? (plus - minus) / (2.0 * h) : 0.0;
+    });
+    return gradient;
+  }
+
+  void finish() {
+    for (std::size_t c = 0; c < free_.size(); ++c)
+      out_.model.parameters[static_cast<std::size_t>(free_[c])].value = theta_[static_cast<Eigen::Index>(c)];
+    const std::vector<double> all = values(theta_);
+    for (std::size_t i = 0; i < all.size(); ++i) out_.forced.model.parameters[i].value = all[i];
+    out_.objective = objective_;
+    if (!free_.empty()) {
+      std::vector<Penalty> kept = out_.penalties;
+      for (auto& p : kept) p.chosen = false;
+      const Smoothed smoothed = smooth(normal_equations(), kept, 1.0);
+      if (smoothed.ok) {
+        out_.covariance = smoothed.covariance;
+        out_.edf = smoothed.edf;
+      }
+    }
+    for (const auto& trace : out_.traces) out_.validation_loglik += trace.validation_loglik;
+    out_.message = out_.converged ? "the likelihood no longer rises" : "iteration limit: the likelihood may still rise";
+  }
+
+  std::string failure() const {
+    const FilterTrace& trace = out_.traces[failed_experiment_];
+    const Signals& signals = *out_.data[failed_experiment_].signals;
+    return "the model cannot be run: a state is no longer a number at t = " + format_value(signals.t[trace.failed_at]) +
+           " s of experiment '" + signals.name + "'";
+  }
+
+  FilterOptions options_;
+  FilterEstimate out_;
+  std::vector<int> free_;
+  Eigen::VectorXd theta_;
+  double objective_ = 0.0;
+  std::size_t failed_experiment_ = 0;
+};
+
+}  // namespace
+
+FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
+                               const FilterOptions& options) {
+  return Estimation(start, std::move(penalties), experiments, options).run();
+}
+
+}  // namespace misfit

@@ -1,0 +1,52 @@
+#pragma once
+
+// References
+//   [MI]  R. E. Maine, K. W. Iliff, SIAM J. Appl. Math. 41 (1981): Gauss–Newton on innovations, gains held per iteration.
+
+#include <optional>
+
+#include "misfit/fit/equation_error.h"
+#include "misfit/fit/filter_noise_fit.h"
+
+namespace misfit {
+
+struct FilterOptions {
+  int threads = 0;                                   ///< 0: one per core; does not change the answer
+  std::optional<FilterNoise> noise;                  ///< where to start; nullopt: looked for
+  std::optional<FilterNoise> around;                 ///< what sets the bounds of the noise; nullopt: the data
+  std::optional<std::vector<std::vector<Use>>> use;  ///< per experiment, so that two models are compared on the same readings
+  bool choose_roughness = true;                      ///< false: penalties as handed over
+  bool verify = true;                                ///< derivatives of the exact likelihood at the end, and steps by them
+};
+
+/// The maximum of the penalised likelihood with everything that diagnosis and discovery need of it.
+struct FilterEstimate {
+  Model model;         ///< the caller's, with the estimates
+  FilterModel forced;  ///< the same with the random force
+  std::vector<Penalty> penalties;
+  FilterNoise noise, around;
+  NoiseFit noise_fit;
+  std::vector<FilterData> data;
+  std::vector<FilterTrace> traces;
+  std::vector<FilterJacobian> jacobians;  ///< at the estimate
+  Eigen::MatrixXd covariance;             ///< of the free parameters: inverse of the information with roughness and priors
+  double objective = 0.0;                 ///< log-likelihood − ½ Σ λ cᵀΩc − ½ Σ ((θ − mean)/prior sigma)²
+  double loglik = 0.0, validation_loglik = 0.0;
+  double left = 0.0;  ///< what one more Newton step on the exact likelihood would still gain
+  double edf = 0.0;
+  bool converged = false;
+  std::string message;
+  int outliers = 0;
+  int linearisations = 0;
+};
+
+/// Maximum likelihood by blocks: physical parameters by Gauss–Newton on innovations with the gains held per iteration [MI], roughness by
+/// marginal likelihood, noise by Fisher scoring about the runs; at the end exact derivatives of the whole likelihood decide (DESIGN 5).
+/// Penalties: those of `start`. RunError if the states cannot be read from the channels or the model cannot be run from its start.
+[[nodiscard]] FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
+                                             const FilterOptions& options = {});
+
+/// log prior of the free parameters at their present values, roughness included (constants left out): −½ Σ λ cᵀΩc − ½ Σ ….
+[[nodiscard]] double log_prior(const Model& model, const std::vector<Penalty>& penalties);
+
+}  // namespace misfit

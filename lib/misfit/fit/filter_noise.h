@@ -1,0 +1,52 @@
+#pragma once
+
+// References
+//   [J]  A. H. Jazwinski, Stochastic Processes and Filtering Theory (1970): Ornstein–Uhlenbeck, discretisation of linear noise.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "misfit/data/signals.h"
+#include "misfit/model/model.h"
+
+namespace misfit {
+
+/// Noise of one measured channel: white reading noise and a resonance (AR(2): second-order jitter), stationary.
+struct ChannelNoise {
+  double white = 1.0;             ///< sigma [unit]
+  double jitter = 0.0;            ///< stationary sigma of the resonance [unit]
+  double jitter_frequency = 1.0;  ///< [Hz]
+  double jitter_damping = 0.3;    ///< of critical
+};
+
+/// The random force: one Ornstein–Uhlenbeck process per force port, of one common strength and correlation time, independent.
+struct FilterNoise {
+  double force = 0.0;       ///< stationary sigma [port unit]
+  double force_time = 0.1;  ///< correlation time [s]
+  std::vector<ChannelNoise> channels;
+};
+
+/// Logarithms in a fixed order: force, force_time, then per channel white, jitter, jitter_frequency, jitter_damping. Bounds keep a
+/// likelihood that does not depend on one of them from running away.
+struct NoiseVector {
+  std::vector<double> value, lower, upper;
+  std::vector<std::string> names;  ///< "force", "force_time", "P_y", "P_y_jitter", …
+};
+[[nodiscard]] NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around);
+[[nodiscard]] FilterNoise unpack(const std::vector<double>& logs);
+
+/// Exact discretisation over one step h of everything whose noise does not depend on the state.
+struct NoiseStep {
+  /// Second moments of a unit force's noise on rows of three kinds: the force itself (0), a rate (1), a level (2), the last two relative to
+  /// the row's response Φ to the force at the start of the step; i.e. Q_ij = force² m[kind_i][kind_j] Φ_if Φ_jf. [J]
+  std::array<std::array<double, 3>, 3> m{};
+  struct Jitter {
+    std::array<double, 4> phi{};  ///< of (j, j'/ω), row-major
+    std::array<double, 3> q{};    ///< covariance: 00, 01, 11
+  };
+  std::vector<Jitter> jitter;
+};
+[[nodiscard]] NoiseStep discretise(const FilterNoise& noise, double h);
+
+}  // namespace misfit

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "misfit/fit/filter_run.h"
+
+namespace misfit {
+
+/// One set of experiments with the runs about which the noise is fitted.
+struct LinearisedRuns {
+  const FilterModel* model = nullptr;
+  const std::vector<FilterData>* data = nullptr;
+  const std::vector<FilterTrace>* traces = nullptr;
+};
+
+struct NoiseFit {
+  FilterNoise noise;
+  double minus_loglik = 0.0;
+  Eigen::MatrixXd information;  ///< Fisher, over the logarithms of pack()
+  std::vector<double> logs;     ///< at the maximum
+  std::vector<bool> at_bound;   ///< not determined from below or above: left out of `information` (zero row)
+  bool converged = false;
+};
+
+/// Maximum likelihood of the noise with the runs' trajectories held: Fisher scoring with derivatives of innovations and variances by
+/// differences of the whole linear filter (step 1e-4 in the logarithm), Levenberg damping. `around` sets the bounds (pack()). The answer
+/// does not depend on `threads`.
+[[nodiscard]] NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const FilterNoise& around, int threads,
+                                 int max_iterations = 12);
+
+/// −log-likelihood of the noise about the runs.
+[[nodiscard]] double minus_loglik(const LinearisedRuns& runs, const FilterNoise& noise);
+
+}  // namespace misfit
