@@ -1,0 +1,243 @@
+#include "misfit/fit/filter_error.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+#include "misfit/data/ladder.h"
+#include "misfit/fit/curves.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+/// States after the readings of each sample were taken in; rows from the first used sample on.
+RowMatrix filtered_states(const FilterTrace& trace, std::size_t first) {
+  const auto n = static_cast<std::size_t>(trace.n);
+  RowMatrix x(static_cast<Eigen::Index>(trace.samples - first), trace.n);
+  for (std::size_t k = first; k < trace.samples; ++k) {
+    for (std::size_t i = 0; i < n; ++i)
+      x(static_cast<Eigen::Index>(k - first), static_cast<Eigen::Index>(i)) = trace.predicted[k * n + i] + trace.moved[k * n + i];
+  }
+  return x;
+}
+
+RowMatrix visited_by_filter(const FilterEstimate& estimate) {
+  Evaluator evaluator(estimate.forced.model);
+  const auto quantities = static_cast<Eigen::Index>(estimate.model.system->spec().quantities.size());
+  RowMatrix out(0, quantities);
+  for (std::size_t e = 0; e < estimate.data.size(); ++e) {
+    const FilterData& data = estimate.data[e];
+    const RowMatrix x = filtered_states(estimate.traces[e], data.first);
+    const Eigen::Index before = out.rows();
+    out.conservativeResize(before + x.rows(), quantities);
+    for (Eigen::Index k = 0; k < x.rows(); ++k) {
+      const std::size_t sample = data.first + static_cast<std::size_t>(k);
+      evaluator.quantities(x.row(k).data(), data.inputs.at(sample), data.signals->t[sample], out.row(before + k).data());
+    }
+  }
+  return out;
+}
+
+/// Standard deviations of the logarithms of the noise parameters; 0 where a parameter sits at its bound.
+std::vector<double> noise_sigmas(const NoiseFit& fit) {
+  Eigen::MatrixXd information = fit.information;
+  for (Eigen::Index i = 0; i < information.rows(); ++i) {
+    if (fit.at_bound[static_cast<std::size_t>(i)]) information(i, i) += 1e12;
+    information(i, i) += 1e-9;
+  }
+  const Eigen::MatrixXd covariance = information.inverse();
+  std::vector<double> out;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) out.push_back(std::sqrt(std::max(covariance(i, i), 0.0)));
+  return out;
+}
+
+void add_noise(const FilterEstimate& estimate, Fit& fit) {
+  const SystemSpec& spec = estimate.model.system->spec();
+  const NoiseVector vector = pack(estimate.noise, spec, estimate.around);
+  const std::vector<double> sigmas = noise_sigmas(estimate.noise_fit);
+  const auto as_estimate = [&](std::size_t i, const std::string& unit) {
+    const double value = std::exp(vector.value[i]);
+    return Estimate{value, value * sigmas[i], unit};
+  };
+  for (int port : estimate.forced.force_ports) {
+    const PortSpec& named = spec.dynamic_ports[static_cast<std::size_t>(port)];
+    fit.force[named.name] = as_estimate(0, named.unit);
+  }
+  fit.force["correlation_time"] = as_estimate(1, "s");
+  for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
+    const std::string& name = spec.outputs[o].name;
+    const std::string& unit = spec.outputs[o].unit;
+    fit.noise[name] = as_estimate(2 + 4 * o, unit);
+    fit.noise[name + "_jitter"] = as_estimate(3 + 4 * o, unit);
+    fit.noise[name + "_jitter_frequency"] = as_estimate(4 + 4 * o, "Hz");
+    fit.noise[name + "_jitter_damping"] = as_estimate(5 + 4 * o, "-");
+  }
+}
+
+void add_predictions(const FilterEstimate& estimate, Fit& fit) {
+  const auto& outputs = estimate.model.system->spec().outputs;
+  const std::size_t ny = outputs.size();
+  for (std::size_t o = 0; o < ny; ++o) {
+    double squares = 0.0, count = 0.0, held_squares = 0.0, held_count = 0.0;
+    for (std::size_t e = 0; e < estimate.data.size(); ++e) {
+      const FilterData& data = estimate.data[e];
+      const FilterTrace& trace = estimate.traces[e];
+      const Signals& signals = *data.signals;
+      ChannelPrediction p{signals.name, outputs[o].name, outputs[o].unit, signals.t, signals.measured[o].values, {}, {}, {}};
+      for (std::size_t k = 0; k < signals.samples(); ++k) {
+        const std::size_t at = k * ny + o;
+        p.predicted.push_back(trace.y[at]);
+        p.sigma.push_back(std::sqrt(trace.y_variance[at]));
+        p.held_out.push_back(signals.held_out(k));
+        const double error = p.measured[k] - trace.y[at];
+        if (data.use[at] == Use::counted) {
+          squares += error * error;
+          count += 1.0;
+        } else if (data.use[at] == Use::validation) {
+          held_squares += error * error;
+          held_count += 1.0;
+        }
+      }
+      fit.predictions.push_back(std::move(p));
+    }
+    if (count > 0.0) fit.rms[outputs[o].name] = {std::sqrt(squares / count), 0.0, outputs[o].unit};
+    if (held_count > 0.0) fit.validation_rms[outputs[o].name] = {std::sqrt(held_squares / held_count), 0.0, outputs[o].unit};
+  }
+}
+
+/// Says how much is missing, and whether it is missing where the motion is extreme: then the gaps are not random.
+void describe_gaps(const FilterEstimate& estimate, Fit& fit) {
+  const auto& outputs = estimate.model.system->spec().outputs;
+  const std::size_t ny = outputs.size();
+  for (std::size_t e = 0; e < estimate.data.size(); ++e) {
+    const FilterTrace& trace = estimate.traces[e];
+    const Signals& signals = *estimate.data[e].signals;
+    std::size_t missing = 0, extreme = 0;
+    std::vector<double> lowest(ny), highest(ny);
+    for (std::size_t o = 0; o < ny; ++o) {
+      std::vector<double> known;
+      for (double value : signals.measured[o].values) {
+        if (std::isfinite(value)) known.push_back(value);
+      }
+      std::sort(known.begin(), known.end());
+      if (known.size() < 100) return;
+      lowest[o] = known[known.size() / 200];
+      highest[o] = known[known.size() - 1 - known.size() / 200];
+    }
+    for (std::size_t k = estimate.data[e].first; k < signals.samples(); ++k) {
+      bool gap = false, outside = false;
+      for (std::size_t o = 0; o < ny; ++o) {
+        if (std::isfinite(signals.measured[o].values[k])) continue;
+        gap = true;
+        outside = outside || trace.y[k * ny + o] < lowest[o] || trace.y[k * ny + o] > highest[o];
+      }
+      missing += gap ? 1 : 0;
+      extreme += gap && outside ? 1 : 0;
+    }
+    if (missing == 0) continue;
+    const double share = 100.0 * static_cast<double>(missing) / static_cast<double>(signals.samples());
+    fit.facts["gaps: " + signals.name] =
+        std::to_string(missing) + " samples (" + format_value(share) + " %) are missing; the filter predicts across them";
+    constexpr double by_chance = 0.02;
+    if (static_cast<double>(extreme) > 5.0 * by_chance * static_cast<double>(missing) && extreme >= 5)
+      fit.warnings.push_back("experiment '" + signals.name + "': the gaps are not random: in " + std::to_string(extreme) + " of " +
+                             std::to_string(missing) +
+                             " missing samples the motion is predicted beyond 99 % of what was measured (it left the picture): extreme "
+                             "motion is under-represented");
+  }
+}
+
+}  // namespace
+
+Fit filter_fit(const FilterEstimate& estimate) {
+  Fit fit;
+  fit.method = "filter_error";
+  fit.status = estimate.converged ? FitStatus::converged : FitStatus::not_converged;
+  fit.message = estimate.message;
+  fit.driven = true;
+  fit.loglik = estimate.loglik;
+  std::size_t validated = 0;
+  for (const auto& trace : estimate.traces) validated += trace.validated;
+  if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
+  if (estimate.covariance.size() > 0) describe(estimate.model, estimate.covariance, visited_by_filter(estimate), fit);
+  add_noise(estimate, fit);
+  add_predictions(estimate, fit);
+  describe_gaps(estimate, fit);
+  fit.facts["effective_parameters"] = format_value(estimate.edf);
+  fit.facts["left_by_exact_derivatives"] = "one more Newton step on the exact likelihood would raise it by " + format_value(estimate.left);
+  if (estimate.left > 0.5)
+    fit.warnings.push_back("the exact derivatives of the likelihood say that it could still rise by " + format_value(estimate.left));
+  if (estimate.outliers > 0)
+    fit.warnings.push_back(std::to_string(estimate.outliers) +
+                           " readings more than 5 sigma from their prediction were set aside as outliers");
+  const FilterData& first = estimate.data.front();
+  const std::vector<std::string> scales =
+      scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);
+  fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
+  fit.linearisations = estimate.linearisations;
+  return fit;
+}
+
+std::map<std::string, std::vector<double>> k_step_errors(const FilterEstimate& estimate, bool validation) {
+  constexpr std::size_t stride = 3;  // starts; neighbours say the same
+  const auto& outputs = estimate.model.system->spec().outputs;
+  const std::size_t ny = outputs.size();
+  constexpr std::size_t lengths = std::size(kLadderSteps);
+  std::vector<std::vector<double>> squares(ny, std::vector<double>(lengths, 0.0)), counts = squares;
+  const Model fixed = all_fixed(estimate.forced.model);
+  Stepper stepper(fixed);
+  std::array<double, kMaxStates> x{};
+  std::array<double, kMaxOutputs + 1> y{};
+  for (std::size_t e = 0; e < estimate.data.size(); ++e) {
+    const FilterData& data = estimate.data[e];
+    const FilterTrace& trace = estimate.traces[e];
+    const auto n = static_cast<std::size_t>(trace.n);
+    const Signals& signals = *data.signals;
+    stepper.prepare(data.start.data(), data.inputs.at(data.first), signals.t[data.first]);
+    for (std::size_t k = data.first; k + 1 < signals.samples(); k += stride) {
+      for (std::size_t i = 0; i < n; ++i) x[i] = trace.predicted[k * n + i] + trace.moved[k * n + i];
+      std::size_t next = 0;
+      for (std::size_t j = 1; next < lengths && k + j < signals.samples(); ++j) {
+        if (!stepper.step(x.data(), {signals.t[k + j - 1], signals.t[k + j], data.inputs.at(k + j - 1), data.inputs.at(k + j)})) break;
+        if (static_cast<int>(j) != kLadderSteps[next]) continue;
+        stepper.evaluator().predict(x.data(), data.inputs.at(k + j), signals.t[k + j], y.data());
+        for (std::size_t o = 0; o < ny; ++o) {
+          if (data.use[(k + j) * ny + o] != (validation ? Use::validation : Use::counted)) continue;
+          const double error = signals.measured[o].values[k + j] - y[o];
+          squares[o][next] += error * error;
+          counts[o][next] += 1.0;
+        }
+        ++next;
+      }
+    }
+  }
+  std::map<std::string, std::vector<double>> out;
+  for (std::size_t o = 0; o < ny; ++o) {
+    for (std::size_t l = 0; l < lengths; ++l)
+      out[outputs[o].name].push_back(counts[o][l] > 0.0 ? std::sqrt(squares[o][l] / counts[o][l]) : std::nan(""));
+  }
+  return out;
+}
+
+FilterError filter_error(const FittedModel& start, const std::vector<Signals>& experiments, const FilterOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  FilterError out;
+  try {
+    out.estimate = estimate_filter(start.model, curve_penalties(start.model), experiments, options);
+    out.fit = filter_fit(*out.estimate);
+  } catch (const RunError& error) {
+    out.fit.method = "filter_error";
+    out.fit.status = FitStatus::declined;
+    out.fit.message = error.what();
+  }
+  out.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace misfit
