@@ -18,6 +18,10 @@ std::string joined(const std::vector<Role>& roles) {
 std::string coefficients_of(const EffectSpec& spec) {
   std::string out;
   for (const auto& c : spec.coefficients) {
+    if (c.borrowed) {
+      out += fmt::format("{}{} [{}] of another effect", out.empty() ? "" : "; ", c.name, c.unit);
+      continue;
+    }
     out += fmt::format("{}{} [{}] {} in [{:g}, {:g}]{}", out.empty() ? "" : "; ", c.name, c.unit,
                        c.kind == CoefficientKind::strength ? "strength" : "shape", c.lower, c.upper,
                        c.curve_of[0] == '\0' ? "" : fmt::format(", a curve of {}", c.curve_of));
@@ -50,7 +54,9 @@ nlohmann::ordered_json as_json(const EffectSpec& spec) {
   for (const auto& c : spec.coefficients) {
     json["coefficients"].push_back({{"name", c.name},
                                     {"unit", c.unit},
-                                    {"kind", c.kind == CoefficientKind::strength ? "strength" : "shape"},
+                                    {"kind", c.borrowed                            ? "borrowed"
+                                             : c.kind == CoefficientKind::strength ? "strength"
+                                                                                   : "shape"},
                                     {"bounds", {c.lower, c.upper}},
                                     {"start", c.value},
                                     {"doc", c.doc},

@@ -4,27 +4,41 @@ namespace {
 
 using namespace misfit;
 
-/// Dry friction: constant, against the motion. Smoothed over `width` about rate 0, where a real bearing would stick.
+/// Dry friction: constant, against the motion. Smoothed over `width` about rate 0, where a real bearing would stick. Where the system has a
+/// second rate across the first, friction opposes the rotation as a whole: one size, direction of the rate vector.
 struct CoulombFriction {
-  static constexpr const char* formula = "F = -friction tanh(rate/width)";
-  static constexpr const char* symbols = "friction [port], width of the smoothing [rate], rate of the motion along the port [any]";
+  static constexpr const char* formula = "F = -friction tanh(|rate|/width) rate/|rate|";
+  static constexpr const char* symbols = "friction [port], width of the smoothing [rate], rate of the motion along the port(s) [any]";
   static constexpr const char* valid = "rates that are mostly above the width; below it the bearing creeps instead of sticking";
   static constexpr const char* size = "20 N m at the swivel holds the parachute 1.4 deg away from its trim";
   static constexpr const char* source =
       "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007): smooth Coulomb friction by tanh";
   static constexpr const char* excludes = "sticking, higher friction at the start of motion (Stribeck), viscous part (viscous_friction)";
-  static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}, {"rate_lateral", "*", true, false, "rate"}};
+  static constexpr Role ports[] = {{"port", "*"}, {"port_lateral", "*", true, false, "port"}};
   static constexpr CoefficientSpec coefficients[] = {
       {"friction", CoefficientKind::strength, 0.0, "{port}", 0.0, 1e6, 1.0, "size of the friction when moving"},
       {"width", CoefficientKind::shape, 0.01, "{rate}", 1e-6, 1e6, 0.01, "rate at which the smoothed friction has 76 % of its size",
        Parity::none, "", false, true}};
   static constexpr bool dissipative = true;
 
+  /// tanh(sqrt(s))/sqrt(s), regular at 0.
+  template <class T>
+  static T slope(const T& s) {
+    using std::sqrt;
+    using std::tanh;
+    constexpr double small = 1e-4;  // the next term of the series is 17 s³/315: 5e-14
+    if (value_of(s) < small) return 1.0 - s / 3.0 + 2.0 * s * s / 15.0;
+    const T r = sqrt(s);
+    return tanh(r) / r;
+  }
+
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    using std::tanh;
-    F[0] = -in.c[0] * tanh(in.q[0] / in.c[1]);
+    const T along = in.q[0] / in.c[1], across = in.q[2] / in.c[1];
+    const T friction = in.c[0] * slope(T(along * along + across * across));
+    F[0] = -friction * along;
+    F[1] = -friction * across;
   }
 
   /// Slope at rate 0 over the inertia; a system without the quantity `inertia` has ports that are accelerations themselves.
@@ -34,8 +48,9 @@ struct CoulombFriction {
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.01, 5.0}, {20.0, 0.01}, {}, 0.0, {-15.2318831}, {}, "20 tanh(1) = 20 x 0.761594156"},
-            {{}, {-1.0, 0.0}, {3.0, 0.02}, {}, 0.0, {3.0}, {}, "fully sliding, against the motion"}};
+    return {{{}, {0.01, 5.0, 0.0}, {20.0, 0.01}, {}, 0.0, {-15.2318831, 0.0}, {}, "20 tanh(1) = 20 x 0.761594156"},
+            {{}, {-1.0, 0.0, 0.0}, {3.0, 0.02}, {}, 0.0, {3.0, 0.0}, {}, "fully sliding, against the motion"},
+            {{}, {0.3, 0.0, -0.4}, {10.0, 0.5}, {}, 0.0, {-4.56956494, 6.09275325}, {}, "|rate| = 0.5: 10 tanh(1) x (0.6, -0.8), against"}};
   }
 };
 

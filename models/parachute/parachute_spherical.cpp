@@ -68,7 +68,9 @@ struct ParachuteSpherical {
       a.phi_y = toward_z;
       a.phi_z = -toward_y;
     } else {
-      a.sine = a.theta_y = a.phi_z = T(0.0);
+      // To first order theta^ = ẑ - n_z x^ and phi^ = ŷ - n_y x^: their x parts count in the derivatives of the felt wind.
+      a.sine = n[z];
+      a.theta_y = a.phi_z = T(0.0);
       a.theta_z = a.phi_y = T(1.0);
     }
     return a;
@@ -119,7 +121,8 @@ struct ParachuteSpherical {
     const T v_y = P[wind_y_port] - k[R_cp] * n[dy];
     const T v_z = P[wind_z_port] - k[R_cp] * n[dz];
     const T in_plane_wind = v_x * a.sine - (a.theta_y * v_y + a.theta_z * v_z);
-    const T across = -(a.phi_y * v_y + a.phi_z * v_z);
+    T across = -(a.phi_y * v_y + a.phi_z * v_z);
+    if (value_of(a.sine) == 0.0) across += v_x * n[y];
     const T along = v_x * a.x + v_y * n[y] + v_z * n[z];
     const T cross_squared = in_plane_wind * in_plane_wind + across * across;
     const T speed = sqrt(T(cross_squared + along * along));
@@ -240,7 +243,9 @@ struct ParachuteSpherical {
     s.constants = constant_list();
     constexpr double typical_noise = 0.5;
     s.outputs = {{"P_y", "px", -1, typical_noise}, {"P_z", "px", -1, typical_noise}};
-    s.roles = {{"rate", "pitch_rate"}, {"level", "eta"}, {"port", "pitching_moment"}, {"output", "P_z"}};
+    s.roles = {{"rate", "pitch_rate"},           {"level", "eta"},
+               {"port", "pitching_moment"},      {"output", "P_z"},
+               {"rate_lateral", "lateral_rate"}, {"port_lateral", "lateral_moment"}};
     s.force_ports = {"moment_y", "moment_z"};
     s.readable_states = {y, z};
     s.regression = {"parachute_planar", {{"induced_angle", false}}};

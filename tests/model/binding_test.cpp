@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/model/cases.h"
 
 namespace misfit {
@@ -43,6 +45,34 @@ TEST(Binding, AGenericEffectHasTheUnitsOfWhatItIsBoundTo) {
   EXPECT_EQ(unit("width"), "rad/s");
   EXPECT_THAT(planar.own_state_names, ElementsAre("lag.z"));
   EXPECT_THAT(planar.own_state_units, ElementsAre("rad"));
+}
+
+TEST(Binding, ABorrowedCoefficientIsThatOfTheOtherEffect) {
+  const Model m = assemble(spherical({effect("strut_wake")}), registry());
+  EXPECT_EQ(std::count_if(m.parameters.begin(), m.parameters.end(), [](const auto& p) { return p.name == "C_m[0]"; }), 1);
+  const BoundEffect &lender = m.effects.front(), &borrower = m.effects.back();
+  EXPECT_EQ(borrower.coefficients.back().curve, lender.coefficients.front().curve);
+  EXPECT_GE(borrower.coefficients.back().curve, 0);
+}
+
+TEST(Binding, ABorrowedCoefficientThatNobodyHasIsAnError) {
+  ModelRequest r = spherical({effect("strut_wake")});
+  r.effects.erase(r.effects.begin());
+  r.curves.erase("C_m");
+  try {
+    static_cast<void>(assemble(r, registry()));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("'C_m', and no effect of the model has one"));
+  }
+}
+
+TEST(Binding, ARoleThatCompletesAnotherIsLeftOutWhereAStudyBindsThatOneAlone) {
+  const Model whole = assemble(spherical({effect("coulomb_friction")}), registry());
+  EXPECT_GE(whole.effects.back().ports.at(1), 0) << "friction opposes the rotation as a whole";
+  const Model one = assemble(spherical({effect("coulomb_friction", {{"rate", "n_y"}, {"port", "moment_z"}})}), registry());
+  EXPECT_EQ(one.effects.back().ports.at(1), -1);
+  EXPECT_EQ(one.effects.back().quantities.at(2), -1);
 }
 
 TEST(Binding, UnitsOfParametersAreKnownBeforeAssembling) {

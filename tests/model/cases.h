@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <ostream>
 
 #include "tests/model/requests.h"
@@ -13,7 +14,7 @@ struct Case {
 
   [[nodiscard]] Model model() const {
     Model m = assemble(request, registry());
-    if (request.system == "parachute_planar") set_parachute_curves(m);
+    if (m.find_curve("C_m") != nullptr) set_parachute_curves(m);
     shake(m, 17);
     return m;
   }
@@ -34,6 +35,12 @@ inline ModelRequest with_values(ModelRequest request, const std::map<std::string
 
 inline ModelRequest with_scale_curve(ModelRequest request) {
   request.curves["scale_error"] = {"position_reading", {-0.5, 0.0, 0.5}, {}, {}};
+  return request;
+}
+
+/// The effect that lends a coefficient stands behind the one that borrows it.
+inline ModelRequest lender_last(ModelRequest request) {
+  std::rotate(request.effects.begin(), request.effects.begin() + 1, request.effects.end());
   return request;
 }
 
@@ -66,6 +73,12 @@ inline std::vector<Case> cases() {
              effect("bias", {{"output", "speed_reading"}}), effect("periodic_forcing", {{"port", "added_mass"}}, "breathing")})},
       {"cart_two_ports_of_one_effect", with_values(cart({effect("own_weight", {{"also", "slip"}})}), {{"share", 0.4}})},
       {"cart_sensor_memory", with_values(cart({effect("sensor_lag"), effect("sensor_scale")}), {{"share", 0.7}, {"scale_error", 0.05}})},
+      {"spherical", spherical()},
+      {"wake",
+       with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}, {"wake_push", 0.15}, {"wake_phi", -1.6}, {"wake_width", 0.9}})},
+      {"wake_before_what_it_weakens", lender_last(with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}}))},
+      {"upwash", with_values(spherical({effect("flow_angularity")}), {{"upwash", 0.03}, {"sidewash", -0.02}})},
+      {"lagging_flow", with_values(spherical({effect("aerodynamic_lag"), effect("vortex_shedding")}), {{"C_lag", 0.3}, {"y_sine", 0.01}})},
       {"cart_curve_of_an_output", with_scale_curve(cart({effect("sensor_scale"), effect("coulomb_friction")}))}};
   std::vector<Case> all;
   for (const auto& c : fixed) {
@@ -84,9 +97,14 @@ inline std::vector<Sample> samples_of(const Model& model, int count) {
   std::mt19937 random(23);
   std::normal_distribution<double> normal;
   std::vector<Sample> samples;
+  const auto& states = model.system->spec().states;
+  const bool spherical = states.size() == 4;
   for (int s = 0; s < count; ++s) {
     Sample sample{{}, {}, 0.7 * s};
-    for (int i = 0; i < model.states(); ++i) sample.x.push_back(s == 0 ? 0.0 : (i == 1 ? 1.0 : 0.25) * normal(random));
+    for (int i = 0; i < model.states(); ++i) {
+      const double size = spherical && i < 4 ? 1.5 * states[static_cast<std::size_t>(i)].scale : i == 1 ? 1.0 : 0.25;
+      sample.x.push_back(s == 0 ? 0.0 : size * normal(random));
+    }
     for (int i = 0; i < model.inputs(); ++i) sample.u.push_back(s == 0 ? 0.0 : normal(random));
     samples.push_back(sample);
   }

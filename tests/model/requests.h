@@ -45,6 +45,19 @@ inline ModelRequest parachute(bool induced_angle, const std::vector<EffectReques
   return r;
 }
 
+/// The same canopy in three dimensions, in pixels of one camera.
+inline ModelRequest spherical(const std::vector<EffectRequest>& more = {}) {
+  ModelRequest r = parachute(true);
+  r.system = "parachute_spherical";
+  r.options.flags.clear();
+  for (const auto& [name, value] :
+       std::map<std::string, double>{{"R", 3.447}, {"l_b", 5.69}, {"l_s", 5.61}, {"h_c", 0.1524}, {"K", 133.86}})
+    r.constants[name] = value;
+  r.effects = {effect("static_moment"), effect("pitch_damping"), effect("gravity")};
+  r.effects.insert(r.effects.end(), more.begin(), more.end());
+  return r;
+}
+
 inline ModelRequest cart(const std::vector<EffectRequest>& effects) {
   ModelRequest r;
   r.system = "test_oscillator";

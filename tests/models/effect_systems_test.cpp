@@ -16,9 +16,12 @@ class EffectInSystems : public testing::TestWithParam<std::string> {};
 /// A system in which the effect binds with its default roles, if there is one.
 std::vector<Model> models_with(const std::string& key) {
   std::vector<Model> models;
-  for (const auto& request : {parachute(true), parachute(false), cart({})}) {
+  const auto& coefficients = registry().effect(key).spec().coefficients;
+  const bool borrows = std::any_of(coefficients.begin(), coefficients.end(), [](const auto& c) { return c.borrowed; });
+  for (const auto& request : {parachute(true), parachute(false), spherical(), cart({})}) {
     ModelRequest alone = request;
     alone.effects = {effect(key)};
+    if (borrows) alone.effects.push_back(effect("static_moment"));
     alone.curves.clear();
     for (const auto& [name, of] : curves_without_knots(alone, registry())) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};
     try {
@@ -44,7 +47,7 @@ TEST_P(EffectInSystems, NeverAddsPowerIfDeclaredDissipative) {
     for (int trial = 0; trial < 300; ++trial) {
       std::vector<double> x(static_cast<std::size_t>(model.states())), u(static_cast<std::size_t>(model.inputs()) + 1),
           q(system.quantities.size());
-      for (double& value : x) value = normal(random);
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] = (i < system.states.size() ? 2.0 * system.states[i].scale : 1.0) * normal(random);
       for (double& value : u) value = normal(random);
       evaluator.quantities(x.data(), u.data(), 0.0, q.data());
       Example at;

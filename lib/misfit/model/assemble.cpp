@@ -34,6 +34,7 @@ class Assembler {
     add_constants();
     name_coefficients();
     for (std::size_t i = 0; i < request_.effects.size(); ++i) bind(i);
+    lend_coefficients();
     check_everything_used();
     check_sizes();
     return std::move(model_);
@@ -45,6 +46,7 @@ class Assembler {
     for (std::size_t i = 0; i < request_.effects.size(); ++i) {
       const auto& spec = effect(i).spec();
       for (std::size_t c = 0; c < spec.coefficients.size(); ++c) {
+        if (spec.coefficients[c].borrowed) continue;
         const auto curve = curve_request(names_[i][c], spec.coefficients[c]);
         if (curve && curve->knots.empty()) open[names_[i][c]] = curve->of;
       }
@@ -59,7 +61,9 @@ class Assembler {
     for (std::size_t i = 0; i < request_.effects.size(); ++i) {
       const auto& spec = effect(i).spec();
       const auto roles = role_units(request_.effects[i], spec);
-      for (std::size_t c = 0; c < spec.coefficients.size(); ++c) units[names_[i][c]] = bind_unit(spec.coefficients[c].unit, roles);
+      for (std::size_t c = 0; c < spec.coefficients.size(); ++c) {
+        if (!spec.coefficients[c].borrowed) units[names_[i][c]] = bind_unit(spec.coefficients[c].unit, roles);
+      }
     }
     return units;
   }
@@ -126,15 +130,56 @@ class Assembler {
       for (const auto& c : effect(i).spec().coefficients) {
         const auto renamed = system().coefficient_names.find(c.name);
         own.push_back(renamed == system().coefficient_names.end() ? c.name : renamed->second);
-        ++uses[own.back()];
+        if (!c.borrowed) ++uses[own.back()];
       }
       names_.push_back(own);
     }
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      for (auto& name : names_[i]) {
-        if (uses[name] > 1) name = request_.effects[i].name + "." + name;
+      for (std::size_t c = 0; c < names_[i].size(); ++c) {
+        auto& name = names_[i][c];
+        if (!effect(i).spec().coefficients[c].borrowed && uses[name] > 1) name = request_.effects[i].name + "." + name;
       }
     }
+  }
+
+  /// Borrowed coefficients, once all effects are bound: that of the first effect which owns one of the name.
+  void lend_coefficients() {
+    for (std::size_t i = 0; i < model_.effects.size(); ++i) {
+      const auto& coefficients = effect(i).spec().coefficients;
+      for (std::size_t c = 0; c < coefficients.size(); ++c) {
+        if (!coefficients[c].borrowed) continue;
+        BoundEffect& borrower = model_.effects[i];
+        const auto lent = owned_coefficient(coefficients[c].name);
+        if (!lent) {
+          throw InputError(request_.effects[i].where,
+                           "effect '" + borrower.name + "' changes what another effect adds by its coefficient '" + coefficients[c].name +
+                               "', and no effect of the model has one" + suggest(coefficients[c].name, owned_names()));
+        }
+        if (lent->curve >= 0) {
+          const Curve& curve = model_.curves[static_cast<std::size_t>(lent->curve)];
+          check_order(request_.effects[i].where, "effect '" + borrower.name + "'", curve.of, curve.quantity, borrower.kind);
+        }
+        borrower.coefficients[c] = *lent;
+      }
+    }
+  }
+  std::optional<BoundCoefficient> owned_coefficient(const std::string& name) const {
+    for (std::size_t i = 0; i < model_.effects.size(); ++i) {
+      const auto& coefficients = effect(i).spec().coefficients;
+      for (std::size_t c = 0; c < coefficients.size(); ++c) {
+        if (!coefficients[c].borrowed && name == coefficients[c].name) return model_.effects[i].coefficients[c];
+      }
+    }
+    return std::nullopt;
+  }
+  std::vector<std::string> owned_names() const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < model_.effects.size(); ++i) {
+      for (const auto& c : effect(i).spec().coefficients) {
+        if (!c.borrowed) names.emplace_back(c.name);
+      }
+    }
+    return names;
   }
 
   std::optional<CurveRequest> curve_request(const std::string& name, const CoefficientSpec& spec) const {
@@ -203,6 +248,11 @@ class Assembler {
     }
   }
 
+  /// An optional role that completes another is not looked for where the study binds that one alone.
+  static bool is_left_out(const EffectRequest& request, const Role& role) {
+    return role.completes[0] != '\0' && request.roles.contains(role.completes) && !request.roles.contains(role.name);
+  }
+
   /// The name a role stands for: as the study binds it, else itself if `exists`, else the system's default for the role.
   template <class Exists>
   std::string target_of(const EffectRequest& request, const Role& role, const Exists& exists) const {
@@ -244,6 +294,10 @@ class Assembler {
   void bind_ports(const EffectRequest& request, const EffectSpec& spec, BoundEffect& bound) const {
     bool first = true;
     for (const auto& role : spec.ports) {
+      if (is_left_out(request, role)) {
+        bound.ports.push_back(-1);
+        continue;
+      }
       const std::string target = target_of(request, role, [&](const std::string& name) { return find_port(name).has_value(); });
       const auto place = find_port(target);
       if (!place) {
@@ -274,6 +328,7 @@ class Assembler {
   }
 
   int bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const {
+    if (is_left_out(request, role)) return -1;
     const std::string target = target_of(request, role, [&](const std::string& name) { return find_quantity(name) >= 0; });
     const int index = find_quantity(target);
     if (index < 0) {
@@ -323,6 +378,7 @@ class Assembler {
   }
 
   BoundCoefficient bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request, PortKind kind) {
+    if (spec.borrowed) return {};  // see lend_coefficients()
     const auto curve = curve_request(name, spec);
     if (curve) return {-1, add_curve(name, spec, *curve, request, kind)};
     if (spec.over_sine) throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"alpha_T\" }");

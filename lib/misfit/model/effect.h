@@ -33,6 +33,8 @@ struct Role {
   const char* unit = "";
   bool optional = false;
   bool positive = false;  ///< the formula divides by it or takes its root: never 0 in use. At all others it must be regular at 0
+  /// An optional role that completes this one (the lateral part of a rate): where a study binds that one alone, this one is left out.
+  const char* completes = "";
 };
 
 /// Where discovery looks for a shape before the refit refines it.
@@ -58,7 +60,18 @@ struct CoefficientSpec {
   ScanSpec scan{};
   const char* calibrated_as = "";  ///< camera parameter whose calibration sigma is the prior of this strength, if there is a calibration
   double prior_sigma = 0.0;        ///< Gaussian about 0 where there is no calibration [unit]; 0: no prior
+  /// The coefficient of this name of another effect of the model, number or curve, with that one's parameters: for effects that change what
+  /// another adds (a wake that weakens the static moment). InputError where no effect of the model has it. Declared as a shape; of the rest
+  /// of this specification only name, unit and doc count.
+  bool borrowed = false;
 };
+
+constexpr CoefficientSpec borrowed_coefficient(const char* name, const char* unit, const char* doc) {
+  constexpr double huge = 1e6;
+  CoefficientSpec spec{name, CoefficientKind::shape, 0.0, unit, -huge, huge, 1.0, doc};
+  spec.borrowed = true;
+  return spec;
+}
 
 /// Memory of an effect: z' = drift [unit/s], and if stochastic white noise of spectral density diffusion² is added.
 struct OwnStateSpec {
