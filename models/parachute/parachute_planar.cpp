@@ -95,10 +95,10 @@ struct ParachutePlanar {
                     {"pitch_rate", "rad/s", "rotation rate in the plane of the tilt", {}, false},
                     {"phi", "rad", "clock angle", {"phi"}, false},
                     {"phi_rate", "rad/s", "rate of the clock angle", {"phi_rate"}, false},
-                    {"gravity_direction", "-", "cos(phi) cos(eta)", {"phi"}, false},
-                    {"dynamic_pressure", "Pa", "free-stream dynamic pressure", {}, false},
-                    {"wind_speed", "m/s", "free-stream speed", {}, false},
-                    {"inertia", "kg m^2", "(m + m_a) R_cp^2", {}, false},
+                    {"gravity_direction", "-", "cos(phi) cos(eta)", {"phi"}, false, false},
+                    {"dynamic_pressure", "Pa", "free-stream dynamic pressure", {}, false, false},
+                    {"wind_speed", "m/s", "free-stream speed", {}, false, false},
+                    {"inertia", "kg m^2", "(m + m_a) R_cp^2", {}, false, false},
                     {"alpha_T", "rad", "total angle of attack", {}, false},
                     {"wind_cross_axis", "-", "in-plane component of (wind direction x axis)", {}, false}};
     s.base_quantities = 5;

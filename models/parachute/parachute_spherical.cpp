@@ -184,23 +184,23 @@ struct ParachuteSpherical {
   }
 
   static std::vector<QuantitySpec> quantity_list() {
-    return {{"n_y", "-", "axis, part to the left (looking upstream)", {}, true},
-            {"n_z", "-", "axis, part downward", {}, true},
-            {"eta", "rad", "geometric tilt of the axis", {}, false},
+    return {{"n_y", "-", "axis, part to the left (looking upstream)", {}, true, false},
+            {"n_z", "-", "axis, part downward", {}, true, false},
+            {"eta", "rad", "geometric tilt of the axis", {}, false, false},
             {"phi", "rad", "clock angle atan2(n_y, n_z)", {}, true},
             {"pitch_rate", "rad/s", "rotation rate in the plane of the tilt", {}, true},
             {"lateral_rate", "rad/s", "rotation rate across the plane of the tilt", {}, true},
-            {"phi_rate", "rad/s", "rate of the clock angle", {}, true},
-            {"gravity_direction", "-", "cos(phi) cos(eta)", {}, true},
-            {"gravity_direction_lateral", "-", "-sin(phi)", {}, true},
-            {"image_scale", "px/m", "pixels per metre at the apex", {}, false},
-            {"focal_length", "px", "l_b K", {}, false},
-            {"dynamic_pressure", "Pa", "free-stream dynamic pressure", {}, false},
-            {"wind_speed", "m/s", "free-stream speed along x", {}, false},
-            {"inertia", "kg m^2", "(m + m_a) R_cp^2", {}, false},
+            {"phi_rate", "rad/s", "rate of the clock angle", {}, true, false},
+            {"gravity_direction", "-", "cos(phi) cos(eta)", {}, true, false},
+            {"gravity_direction_lateral", "-", "-sin(phi)", {}, true, false},
+            {"image_scale", "px/m", "pixels per metre at the apex", {}, false, false},
+            {"focal_length", "px", "l_b K", {}, false, false},
+            {"dynamic_pressure", "Pa", "free-stream dynamic pressure", {}, false, false},
+            {"wind_speed", "m/s", "free-stream speed along x", {}, false, false},
+            {"inertia", "kg m^2", "(m + m_a) R_cp^2", {}, false, false},
             {"alpha_T", "rad", "total angle of attack, between axis and felt wind", {}, false},
-            {"wind_cross_axis", "-", "in-plane component of (wind direction x axis)", {}, true},
-            {"wind_cross_axis_lateral", "-", "lateral component of (wind direction x axis)", {}, true}};
+            {"wind_cross_axis", "-", "in-plane component of (wind direction x axis)", {}, true, false},
+            {"wind_cross_axis_lateral", "-", "lateral component of (wind direction x axis)", {}, true, false}};
   }
 
   static std::vector<ConstantSpec> constant_list() {

@@ -310,45 +310,95 @@ double minus_loglik(const FilterData& data, const std::vector<double>& e, const 
   return sum;
 }
 
-Smoothing smooth_states(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise) {
-  const Eigen::Index n = trace.n, ny = trace.ny, all = n + 2 * ny;
-  const auto N = static_cast<std::size_t>(n), NY = static_cast<std::size_t>(ny), ALL = N + 2 * NY;
-  const auto samples = static_cast<Eigen::Index>(trace.samples);
-  Smoothing out;
-  out.x = out.variance = out.adjoint = RowMatrix::Zero(samples, n);
-  NoiseSteps steps(noise);
-  // Backward over [model | jitter]: r, what later readings say of the predicted state, and V, its covariance [DK].
-  Eigen::VectorXd r = Eigen::VectorXd::Zero(all), gain(all), row(all);
-  Eigen::MatrixXd V = Eigen::MatrixXd::Zero(all, all), transition = Eigen::MatrixXd::Zero(all, all);
-  for (std::size_t k = trace.samples; k-- > data.first;) {
-    if (k + 1 < trace.samples) {
-      transition.topLeftCorner(n, n) = ConstMap(trace.Phi.data() + k * N * N, n, n);
-      const NoiseStep& step = steps.at(data.signals->t[k + 1] - data.signals->t[k]);
-      for (Eigen::Index o = 0; o < ny; ++o) {
+namespace {
+
+/// Backward over [model | jitter]: r, what readings from this sample on say of the predicted state, and V, its covariance [DK].
+class Backward {
+ public:
+  Backward(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise, bool variances)
+      : trace_(trace),
+        data_(data),
+        steps_(noise),
+        variances_(variances),
+        n_(trace.n),
+        ny_(trace.ny),
+        r(Eigen::VectorXd::Zero(n_ + 2 * ny_)),
+        V(Eigen::MatrixXd::Zero(n_ + 2 * ny_, n_ + 2 * ny_)),
+        transition_(V),
+        gain_(r),
+        row_(r) {}
+
+  void sample(std::size_t k) {
+    const auto N = static_cast<std::size_t>(n_), NY = static_cast<std::size_t>(ny_);
+    if (k + 1 < trace_.samples) {
+      transition_.topLeftCorner(n_, n_) = ConstMap(trace_.Phi.data() + k * N * N, n_, n_);
+      const NoiseStep& step = steps_.at(data_.signals->t[k + 1] - data_.signals->t[k]);
+      for (Eigen::Index o = 0; o < ny_; ++o) {
         const auto& p = step.jitter[static_cast<std::size_t>(o)].phi;
-        transition.block(n + 2 * o, n + 2 * o, 2, 2) << p[0], p[1], p[2], p[3];
+        transition_.block(n_ + 2 * o, n_ + 2 * o, 2, 2) << p[0], p[1], p[2], p[3];
       }
-      r = (transition.transpose() * r).eval();
-      V = (transition.transpose() * V * transition).eval();
+      r = (transition_.transpose() * r).eval();
+      if (variances_) V = (transition_.transpose() * V * transition_).eval();
     }
-    for (std::size_t o = NY; o-- > 0;) {
-      const std::size_t at = k * NY + o;
-      if (data.use[at] == Use::none || !(trace.S[at] > 0.0)) continue;
-      gain << Eigen::Map<const Eigen::VectorXd>(trace.K.data() + at * N, n),
-          Eigen::Map<const Eigen::VectorXd>(trace.Kj.data() + at * 2 * NY, 2 * ny);
-      row.setZero();
-      row.head(n) = Eigen::Map<const Eigen::VectorXd>(trace.H.data() + at * N, n);
-      row[n + 2 * static_cast<Eigen::Index>(o)] = 1.0;
-      const double whiten = 1.0 / trace.S[at];
-      r += row * (trace.e[at] * whiten - gain.dot(r));
-      const Eigen::VectorXd Vg = V * gain;
-      V += row * (row.transpose() * (gain.dot(Vg) + whiten)) - row * Vg.transpose() - Vg * row.transpose();
-    }
+    for (std::size_t o = NY; o-- > 0;) reading(k * NY + o, static_cast<Eigen::Index>(o));
+  }
+
+ private:
+  void reading(std::size_t at, Eigen::Index o) {
+    if (data_.use[at] == Use::none || !(trace_.S[at] > 0.0)) return;
+    const auto N = static_cast<std::size_t>(n_), NY = static_cast<std::size_t>(ny_);
+    gain_ << Eigen::Map<const Eigen::VectorXd>(trace_.K.data() + at * N, n_),
+        Eigen::Map<const Eigen::VectorXd>(trace_.Kj.data() + at * 2 * NY, 2 * ny_);
+    row_.setZero();
+    row_.head(n_) = Eigen::Map<const Eigen::VectorXd>(trace_.H.data() + at * N, n_);
+    row_[n_ + 2 * o] = 1.0;
+    const double whiten = 1.0 / trace_.S[at];
+    const bool counts = variances_ || data_.use[at] == Use::counted;
+    r += row_ * ((counts ? trace_.e[at] * whiten : 0.0) - gain_.dot(r));
+    if (!variances_) return;
+    const Eigen::VectorXd Vg = V * gain_;
+    V += row_ * (row_.transpose() * (gain_.dot(Vg) + whiten)) - row_ * Vg.transpose() - Vg * row_.transpose();
+  }
+
+  const FilterTrace& trace_;
+  const FilterData& data_;
+  NoiseSteps steps_;
+  bool variances_;
+  Eigen::Index n_, ny_;
+
+ public:
+  Eigen::VectorXd r;
+  Eigen::MatrixXd V;
+
+ private:
+  Eigen::MatrixXd transition_;
+  Eigen::VectorXd gain_, row_;
+};
+
+}  // namespace
+
+RowMatrix adjoint_of(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise) {
+  RowMatrix out = RowMatrix::Zero(static_cast<Eigen::Index>(trace.samples), trace.n);
+  Backward backward(trace, data, noise, false);
+  for (std::size_t k = trace.samples; k-- > data.first;) {
+    backward.sample(k);
+    out.row(static_cast<Eigen::Index>(k)) = backward.r.head(trace.n).transpose();
+  }
+  return out;
+}
+
+Smoothing smooth_states(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise) {
+  const Eigen::Index n = trace.n, all = n + 2 * trace.ny;
+  const auto N = static_cast<std::size_t>(n);
+  Smoothing out;
+  out.x = out.variance = RowMatrix::Zero(static_cast<Eigen::Index>(trace.samples), n);
+  Backward backward(trace, data, noise, true);
+  for (std::size_t k = trace.samples; k-- > data.first;) {
+    backward.sample(k);
     const auto i = static_cast<Eigen::Index>(k);
-    out.adjoint.row(i) = r.head(n).transpose();
-    const ConstMap joint(trace.P.data() + k * N * ALL, n, all);
-    out.x.row(i) = (Eigen::Map<const Eigen::VectorXd>(trace.predicted.data() + k * N, n) + joint * r).transpose();
-    const RowMatrix turned = joint * V;
+    const ConstMap joint(trace.P.data() + k * N * static_cast<std::size_t>(all), n, all);
+    out.x.row(i) = (Eigen::Map<const Eigen::VectorXd>(trace.predicted.data() + k * N, n) + joint * backward.r).transpose();
+    const RowMatrix turned = joint * backward.V;
     for (Eigen::Index j = 0; j < n; ++j) out.variance(i, j) = std::max(joint(j, j) - turned.row(j).dot(joint.row(j)), 0.0);
   }
   return out;

@@ -90,8 +90,9 @@ void run_linear(const FilterModel& model, const FilterData& data, const FilterTr
 /// What all data, later ones included, say of the states: mean and variance of each model state at every sample [DK]. Needs trace.P.
 struct Smoothing {
   RowMatrix x, variance;  ///< samples × n
-  RowMatrix adjoint;      ///< samples × n: ∂ log-likelihood/∂(predicted state) of this and all later readings, gains held
 };
+/// ∂ log-likelihood/∂(predicted state) of each sample's and all later readings, gains held, held-out readings left out: samples × n.
+[[nodiscard]] RowMatrix adjoint_of(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise);
 [[nodiscard]] Smoothing smooth_states(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise);
 
 }  // namespace misfit

@@ -30,6 +30,7 @@ struct QuantitySpec {
   std::string name, unit, doc;
   std::vector<std::string> inputs;  ///< inputs without which it cannot be computed
   bool carries_sign = false;        ///< may be negative: curves of it need no division by its sine (CoefficientSpec::over_sine is ignored)
+  bool explains = true;             ///< a coordinate of the motion: maps and unknown curves are drawn over it
 };
 
 struct PortSpec {

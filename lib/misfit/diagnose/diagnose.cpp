@@ -1,0 +1,184 @@
+#include "misfit/diagnose/diagnose.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+#include "misfit/core/work_queue.h"
+#include "misfit/diagnose/features.h"
+#include "misfit/diagnose/innovations.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+constexpr double significant = 0.01;  // corrected for all maps
+
+std::string in_unit(double value, double sigma, const std::string& unit) {
+  const std::string shown = display_unit(unit);
+  return format_value(convert(value, unit, shown), convert(sigma, unit, shown)) + " " + shown;
+}
+std::string place(double value, const std::string& unit) {
+  const std::string shown = display_unit(unit);
+  return format_value(std::round(10.0 * convert(value, unit, shown)) / 10.0) + " " + shown;
+}
+
+/// The run of neighbouring hats of one sign that says most, in words.
+std::string where_it_fails(const ForceMap& map) {
+  std::size_t best_from = 0, best_to = 0;
+  double best = 0.0;
+  for (std::size_t from = 0; from < map.x.size(); ++from) {
+    double weight = 0.0, sum = 0.0;
+    for (std::size_t to = from; to < map.x.size() && map.sigma[to] > 0.0 && map.amplitude[to] * map.amplitude[from] > 0.0; ++to) {
+      if (std::abs(map.amplitude[to]) < 1.5 * map.sigma[to]) break;
+      weight += 1.0 / (map.sigma[to] * map.sigma[to]);
+      sum += map.amplitude[to] / (map.sigma[to] * map.sigma[to]);
+      const double score = sum * sum / weight;
+      if (score > best) {
+        best = score;
+        best_from = from;
+        best_to = to;
+      }
+    }
+  }
+  if (!(best > 0.0)) return "";
+  double weight = 0.0, sum = 0.0;
+  for (std::size_t i = best_from; i <= best_to; ++i) {
+    weight += 1.0 / (map.sigma[i] * map.sigma[i]);
+    sum += map.amplitude[i] / (map.sigma[i] * map.sigma[i]);
+  }
+  const double value = sum / weight, sigma = 1.0 / std::sqrt(weight);
+  const double half = map.x.size() > 1 ? 0.5 * (map.x[1] - map.x[0]) : 0.0;
+  return "the model's " + map.port + " is " + in_unit(std::abs(value), sigma, map.port_unit) + (value < 0.0 ? " too high" : " too low") +
+         " where " + map.quantity + " is between " + place(map.x[best_from] - half, map.quantity_unit) + " and " +
+         place(map.x[best_to] + half, map.quantity_unit);
+}
+
+ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features& features, const SystemSpec& spec, int port) {
+  ForceMap map;
+  map.port = spec.dynamic_ports[static_cast<std::size_t>(port)].name;
+  map.port_unit = spec.dynamic_ports[static_cast<std::size_t>(port)].unit;
+  map.quantity = features.quantity;
+  map.quantity_unit = features.unit;
+  map.x = features.centre;
+  map.count = features.count;
+  const ScoreResult result = score.test(path.columns(port, features.f));
+  map.amplitude.assign(result.amplitude.data(), result.amplitude.data() + result.amplitude.size());
+  map.sigma.assign(result.sigma.data(), result.sigma.data() + result.sigma.size());
+  map.chi2 = result.chi2;
+  map.dof = result.dof;
+  map.p_value = result.dof > 0 ? chi_square_tail(result.chi2, result.dof) : 1.0;
+  return map;
+}
+
+std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
+                               const std::vector<Features>& features, int threads) {
+  const SystemSpec& spec = estimate.model.system->spec();
+  const std::size_t ports = spec.dynamic_ports.size();
+  std::vector<ForceMap> maps(ports * features.size());
+  run_jobs(maps.size(), threads,
+           [&](std::size_t k) { maps[k] = map_of(score, path, features[k / ports], spec, static_cast<int>(k % ports)); });
+  for (auto& map : maps) {
+    map.p_corrected = sidak(map.p_value, static_cast<double>(maps.size()));
+    if (map.p_corrected < significant) map.sentence = where_it_fails(map);
+  }
+  std::stable_sort(maps.begin(), maps.end(), [](const ForceMap& a, const ForceMap& b) { return a.p_value < b.p_value; });
+  return maps;
+}
+
+/// Cells of the two quantities whose maps say most.
+std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
+                               const std::vector<Features>& features, const std::vector<ForceMap>& maps) {
+  std::vector<PairMap> out;
+  if (maps.empty() || features.size() < 2) return out;
+  const SystemSpec& spec = estimate.model.system->spec();
+  const ForceMap& first = maps.front();
+  const auto second = std::find_if(maps.begin(), maps.end(), [&](const ForceMap& m) { return m.quantity != first.quantity; });
+  if (second == maps.end()) return out;
+  const auto find = [&](const std::string& name) {
+    return std::find_if(features.begin(), features.end(), [&](const Features& f) { return f.quantity == name; });
+  };
+  const Features &a = *find(first.quantity), &b = *find(second->quantity);
+  PairMap map{first.port, first.port_unit, a.quantity, a.unit, b.quantity, b.unit, a.centre, b.centre, {}, {}, 0.0, 0, 1.0, 1.0};
+  Eigen::MatrixXd cells(a.f.rows(), a.f.cols() * b.f.cols());
+  std::vector<bool> enough;
+  for (Eigen::Index i = 0; i < a.f.cols(); ++i) {
+    for (Eigen::Index j = 0; j < b.f.cols(); ++j) {
+      auto column = cells.col(i * b.f.cols() + j);
+      column = a.f.col(i).cwiseProduct(b.f.col(j));
+      constexpr double fewest = 20.0;
+      enough.push_back(column.sum() >= fewest);
+      if (!enough.back()) column.setZero();
+    }
+  }
+  int port = 0;
+  for (std::size_t p = 0; p < spec.dynamic_ports.size(); ++p) {
+    if (spec.dynamic_ports[p].name == first.port) port = static_cast<int>(p);
+  }
+  const ScoreResult result = score.test(path.columns(port, cells));
+  for (Eigen::Index c = 0; c < cells.cols(); ++c) {
+    const bool known = enough[static_cast<std::size_t>(c)] && result.sigma[c] > 0.0;
+    map.amplitude.push_back(known ? result.amplitude[c] : std::nan(""));
+    map.sigma.push_back(known ? result.sigma[c] : std::nan(""));
+  }
+  map.chi2 = result.chi2;
+  map.dof = result.dof;
+  map.p_value = result.dof > 0 ? chi_square_tail(result.chi2, result.dof) : 1.0;
+  map.p_corrected = map.p_value;
+  out.push_back(std::move(map));
+  return out;
+}
+
+void conclude(Diagnosis& out) {
+  int said = 0;
+  std::vector<std::string> quantities;
+  for (const auto& map : out.maps) {
+    const bool repeated = std::find(quantities.begin(), quantities.end(), map.port + map.quantity) != quantities.end();
+    if (map.sentence.empty() || said >= 3 || repeated) continue;
+    quantities.push_back(map.port + map.quantity);
+    out.sentences.push_back(map.sentence + " (p " + format_probability(map.p_corrected) + ")");
+    ++said;
+  }
+  if (said == 0) {
+    const std::string best = out.maps.empty() ? ""
+                                              : ": the most telling map, " + out.maps.front().port + " over " + out.maps.front().quantity +
+                                                    ", has p " + format_probability(out.maps.front().p_corrected);
+    out.sentences.push_back("nowhere: no map of the missing force over any quantity departs from zero" + best);
+  }
+  const auto time = std::find_if(out.maps.begin(), out.maps.end(), [](const ForceMap& map) { return map.quantity == "time"; });
+  if (said > 0 && time != out.maps.end() && time->p_corrected > significant)
+    out.sentences.push_back("time explains nothing of it: p " + format_probability(time->p_corrected));
+  for (const auto& report : out.whiteness) {
+    const double count = 3.0 * static_cast<double>(out.whiteness.size());
+    if (sidak(report.peak_p, count) < significant)
+      out.sentences.push_back("the innovations of " + report.channel + " hold a line at " + format_value(report.peak_frequency) + " Hz (" +
+                              format_value(report.peak_power) + " times the power of white noise)");
+    if (sidak(std::min(report.ljung_box_p, report.periodogram_p), count) < significant)
+      out.sentences.push_back("the innovations of " + report.channel + " are not white: Ljung-Box p " +
+                              format_probability(report.ljung_box_p) + ", cumulative periodogram p " +
+                              format_probability(report.periodogram_p));
+  }
+}
+
+}  // namespace
+
+Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Diagnosis out;
+  out.method = "filter_error";
+  const ScoreTest score(estimate);
+  const ForceColumns path(estimate);
+  const std::vector<Features> features = features_of(estimate, path);
+  out.whiteness = whiteness_of(estimate);
+  out.maps = all_maps(estimate, score, path, features, options.threads);
+  out.pairs = pair_maps(estimate, score, path, features, out.maps);
+  out.nis = nis_of(estimate);
+  out.missing = missing_force_of(estimate);
+  conclude(out);
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace misfit

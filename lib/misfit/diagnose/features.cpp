@@ -1,0 +1,88 @@
+#include "misfit/diagnose/features.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace misfit {
+namespace {
+
+struct Range {
+  double low = 0.0, high = 0.0;
+};
+
+Range visited_range(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t cut = values.size() / 200;
+  return {values[cut], values[values.size() - 1 - cut]};
+}
+
+/// Weights of two neighbouring hats at a value, the end hats extended.
+void add_hats(double value, const std::vector<double>& centre, Eigen::Index row, Eigen::MatrixXd& f) {
+  const double step = centre[1] - centre[0];
+  const double place = std::clamp((value - centre.front()) / step, 0.0, static_cast<double>(centre.size() - 1));
+  const auto left = std::min(static_cast<Eigen::Index>(place), static_cast<Eigen::Index>(centre.size()) - 2);
+  const double share = place - static_cast<double>(left);
+  f(row, left) += 1.0 - share;
+  f(row, left + 1) += share;
+}
+
+/// Drops hats that hardly any sample touches.
+void drop_empty(Features& features) {
+  constexpr double fewest = 25.0;
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < features.f.cols(); ++i) {
+    if (features.f.col(i).sum() >= fewest) kept.push_back(i);
+  }
+  Eigen::MatrixXd f(features.f.rows(), static_cast<Eigen::Index>(kept.size()));
+  std::vector<double> centre;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    f.col(static_cast<Eigen::Index>(k)) = features.f.col(kept[k]);
+    centre.push_back(features.centre[static_cast<std::size_t>(kept[k])]);
+    features.count.push_back(features.f.col(kept[k]).sum());
+  }
+  features.f = std::move(f);
+  features.centre = std::move(centre);
+}
+
+Features hats(const std::string& name, const std::string& unit, int index, const std::vector<double>& values, const std::vector<bool>& used,
+              int most) {
+  Features out;
+  out.quantity = name;
+  out.unit = unit;
+  out.index = index;
+  std::vector<double> visited;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (used[k] && std::isfinite(values[k])) visited.push_back(values[k]);
+  }
+  if (visited.size() < 100) return out;
+  const Range range = visited_range(visited);
+  if (!(range.high - range.low > 1e-9 * std::max(std::abs(range.high), std::abs(range.low)))) return out;
+  for (int i = 0; i < most; ++i) out.centre.push_back(range.low + (range.high - range.low) * i / (most - 1));
+  out.f = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(values.size()), most);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (used[k] && std::isfinite(values[k])) add_hats(values[k], out.centre, static_cast<Eigen::Index>(k), out.f);
+  }
+  drop_empty(out);
+  return out;
+}
+
+}  // namespace
+
+std::vector<Features> features_of(const FilterEstimate& estimate, const ForceColumns& path, int most) {
+  std::vector<Features> out;
+  const auto& specs = estimate.model.system->spec().quantities;
+  const auto take = [&](Features features) {
+    if (features.centre.size() >= 3) out.push_back(std::move(features));
+  };
+  for (std::size_t q = 0; q < specs.size(); ++q) {
+    if (!specs[q].explains) continue;
+    std::vector<double> values(path.used().size());
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] = path.quantities()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(q));
+    take(hats(specs[q].name, specs[q].unit, static_cast<int>(q), values, path.used(), most));
+  }
+  take(hats("time", "s", -1, path.times(), path.used(), most));
+  return out;
+}
+
+}  // namespace misfit

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/diagnose/score.h"
+
+namespace misfit {
+
+/// Hat functions of one quantity along the filter's path.
+struct Features {
+  std::string quantity, unit;
+  int index = -1;              ///< of the quantity in the system; −1: time
+  std::vector<double> centre;  ///< [unit]
+  std::vector<double> count;   ///< samples under each hat (its weights summed)
+  Eigen::MatrixXd f;           ///< all samples × hats
+};
+
+/// Quantities that maps are drawn over: those of the system that `explains` and vary, then time. `most` hats each, equally spaced over 0.5
+/// % to 99.5 % of the visited values (ends extended); hats with fewer than 25 samples under them are left out.
+[[nodiscard]] std::vector<Features> features_of(const FilterEstimate& estimate, const ForceColumns& path, int most = 10);
+
+}  // namespace misfit

@@ -1,0 +1,23 @@
+#pragma once
+
+// References
+//   [LB] G. M. Ljung, G. E. P. Box, Biometrika 65 (1978).
+//   [F]  R. A. Fisher, Proc. R. Soc. A 125 (1929): the largest line of a periodogram.
+//   [B]  M. S. Bartlett (1955), J. Durbin, Biometrika 56 (1969): cumulative periodogram.
+
+#include "misfit/data/diagnosis.h"
+#include "misfit/fit/filter_estimate.h"
+
+namespace misfit {
+
+/// Autocorrelation with its band, Ljung–Box over 40 lags [LB], periodogram with Fisher's g [F] and the cumulative periodogram [B] of each
+/// channel's standardised innovations; missing readings count as 0.
+[[nodiscard]] std::vector<WhitenessReport> whiteness_of(const FilterEstimate& estimate);
+
+/// Normalised innovation squared per channel and sample, averaged over windows of about 1/80 of the recording.
+[[nodiscard]] std::vector<NisSeries> nis_of(const FilterEstimate& estimate);
+
+/// The random force from all readings, earlier and later, with every quantity at the same samples.
+[[nodiscard]] std::vector<MissingForce> missing_force_of(const FilterEstimate& estimate);
+
+}  // namespace misfit

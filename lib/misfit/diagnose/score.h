@@ -1,0 +1,67 @@
+#pragma once
+
+// References
+//   [R]  C. R. Rao (1948); K. V. Mardia, R. J. Marshall, Biometrika 71 (1984): score tests in Gaussian likelihoods, V = I11 − I12 I22⁻¹
+//   I21.
+
+#include <Eigen/Dense>
+
+#include "misfit/fit/filter_estimate.h"
+
+namespace misfit {
+
+/// Prior of added coefficients: precision 0 = none.
+struct ColumnPriors {
+  Eigen::VectorXd precision, mean;
+};
+
+struct ScoreResult {
+  double chi2 = 0.0;          ///< sᵀ V⁻¹ s: also the predicted drop, one Gauss–Newton step [R]
+  int dof = 0;                ///< columns that the data know of
+  Eigen::VectorXd amplitude;  ///< one Gauss–Newton step; 0 where unknown
+  Eigen::VectorXd sigma;      ///< of each
+  double independent = 0.0;   ///< smallest 1 − R² of a column on the free ones: below 0.01 the model already describes it
+};
+
+/// Score tests for further columns of whitened derivatives with the estimate's free parameters projected out.
+class ScoreTest {
+ public:
+  explicit ScoreTest(const FilterEstimate& estimate);
+
+  [[nodiscard]] Eigen::Index rows() const { return r_.size(); }
+  /// C: rows × columns, ∂(predicted − measured)/√S by each added coefficient at its off value.
+  [[nodiscard]] ScoreResult test(const Eigen::MatrixXd& C, const ColumnPriors* priors = nullptr) const;
+  /// C − J I22⁻¹ Jᵀ C …: what of the columns the free parameters cannot imitate (for correlations between candidates).
+  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& C) const;
+
+ private:
+  RowMatrix J_;
+  Eigen::VectorXd r_, gradient_;  ///< of log density with priors, by the free parameters
+  Eigen::LDLT<Eigen::MatrixXd> information_;
+  bool any_ = false;
+};
+
+/// Columns for forces on dynamic ports that are given functions of the filter's own path.
+class ForceColumns {
+ public:
+  explicit ForceColumns(const FilterEstimate& estimate);
+
+  /// Filtered states, all samples of all experiments one after the other (samples before the first used one are 0), and quantities there.
+  [[nodiscard]] const RowMatrix& quantities() const { return quantities_; }
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }
+  [[nodiscard]] const std::vector<bool>& used() const { return used_; }
+  /// Columns for forces f (all samples × m) on `port`, held over each step at the mean of its ends.
+  [[nodiscard]] Eigen::MatrixXd columns(int port, const Eigen::MatrixXd& f) const;
+  /// ∂ log-likelihood/∂(force on `port` over the step from each sample), gains held: scans of many functions need only this (all samples).
+  [[nodiscard]] Eigen::VectorXd score_of_steps(int port) const;
+
+ private:
+  const FilterEstimate& estimate_;
+  std::vector<std::vector<double>> G_;  ///< per experiment: samples × n × ports
+  int ports_ = 0;
+  RowMatrix quantities_;
+  std::vector<double> times_;
+  std::vector<bool> used_;
+};
+
+}  // namespace misfit
