@@ -64,7 +64,7 @@ ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features
   map.quantity_unit = features.unit;
   map.x = features.centre;
   map.count = features.count;
-  const ScoreResult result = score.test(path.columns(port, features.f));
+  const ScoreResult result = score.test(path.columns(port, features.f, features.ahead));
   map.amplitude.assign(result.amplitude.data(), result.amplitude.data() + result.amplitude.size());
   map.sigma.assign(result.sigma.data(), result.sigma.data() + result.sigma.size());
   map.chi2 = result.chi2;
@@ -102,22 +102,26 @@ std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& 
   };
   const Features &a = *find(first.quantity), &b = *find(second->quantity);
   PairMap map{first.port, first.port_unit, a.quantity, a.unit, b.quantity, b.unit, a.centre, b.centre, {}, {}, 0.0, 0, 1.0, 1.0};
-  Eigen::MatrixXd cells(a.f.rows(), a.f.cols() * b.f.cols());
+  Eigen::MatrixXd cells(a.f.rows(), a.f.cols() * b.f.cols()), ahead = cells;
   std::vector<bool> enough;
   for (Eigen::Index i = 0; i < a.f.cols(); ++i) {
     for (Eigen::Index j = 0; j < b.f.cols(); ++j) {
       auto column = cells.col(i * b.f.cols() + j);
       column = a.f.col(i).cwiseProduct(b.f.col(j));
+      auto next = ahead.col(i * b.f.cols() + j);
+      next = a.ahead.col(i).cwiseProduct(b.ahead.col(j));
       constexpr double fewest = 20.0;
       enough.push_back(column.sum() >= fewest);
-      if (!enough.back()) column.setZero();
+      if (enough.back()) continue;
+      column.setZero();
+      next.setZero();
     }
   }
   int port = 0;
   for (std::size_t p = 0; p < spec.dynamic_ports.size(); ++p) {
     if (spec.dynamic_ports[p].name == first.port) port = static_cast<int>(p);
   }
-  const ScoreResult result = score.test(path.columns(port, cells));
+  const ScoreResult result = score.test(path.columns(port, cells, ahead));
   for (Eigen::Index c = 0; c < cells.cols(); ++c) {
     const bool known = enough[static_cast<std::size_t>(c)] && result.sigma[c] > 0.0;
     map.amplitude.push_back(known ? result.amplitude[c] : std::nan(""));

@@ -33,19 +33,21 @@ void drop_empty(Features& features) {
   for (Eigen::Index i = 0; i < features.f.cols(); ++i) {
     if (features.f.col(i).sum() >= fewest) kept.push_back(i);
   }
-  Eigen::MatrixXd f(features.f.rows(), static_cast<Eigen::Index>(kept.size()));
+  Eigen::MatrixXd f(features.f.rows(), static_cast<Eigen::Index>(kept.size())), ahead = f;
   std::vector<double> centre;
   for (std::size_t k = 0; k < kept.size(); ++k) {
     f.col(static_cast<Eigen::Index>(k)) = features.f.col(kept[k]);
+    ahead.col(static_cast<Eigen::Index>(k)) = features.ahead.col(kept[k]);
     centre.push_back(features.centre[static_cast<std::size_t>(kept[k])]);
     features.count.push_back(features.f.col(kept[k]).sum());
   }
   features.f = std::move(f);
+  features.ahead = std::move(ahead);
   features.centre = std::move(centre);
 }
 
-Features hats(const std::string& name, const std::string& unit, int index, const std::vector<double>& values, const std::vector<bool>& used,
-              int most) {
+Features hats(const std::string& name, const std::string& unit, int index, const std::vector<double>& values,
+              const std::vector<double>& ahead, const std::vector<bool>& used, int most) {
   Features out;
   out.quantity = name;
   out.unit = unit;
@@ -58,9 +60,11 @@ Features hats(const std::string& name, const std::string& unit, int index, const
   const Range range = visited_range(visited);
   if (!(range.high - range.low > 1e-9 * std::max(std::abs(range.high), std::abs(range.low)))) return out;
   for (int i = 0; i < most; ++i) out.centre.push_back(range.low + (range.high - range.low) * i / (most - 1));
-  out.f = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(values.size()), most);
+  out.f = out.ahead = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(values.size()), most);
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (used[k] && std::isfinite(values[k])) add_hats(values[k], out.centre, static_cast<Eigen::Index>(k), out.f);
+    if (!used[k] || !std::isfinite(values[k])) continue;
+    add_hats(values[k], out.centre, static_cast<Eigen::Index>(k), out.f);
+    add_hats(std::isfinite(ahead[k]) ? ahead[k] : values[k], out.centre, static_cast<Eigen::Index>(k), out.ahead);
   }
   drop_empty(out);
   return out;
@@ -76,12 +80,14 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceCol
   };
   for (std::size_t q = 0; q < specs.size(); ++q) {
     if (!specs[q].explains) continue;
-    std::vector<double> values(path.used().size());
-    for (std::size_t k = 0; k < values.size(); ++k)
+    std::vector<double> values(path.used().size()), ahead = values;
+    for (std::size_t k = 0; k < values.size(); ++k) {
       values[k] = path.quantities()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(q));
-    take(hats(specs[q].name, specs[q].unit, static_cast<int>(q), values, path.used(), most));
+      ahead[k] = path.quantities_ahead()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(q));
+    }
+    take(hats(specs[q].name, specs[q].unit, static_cast<int>(q), values, ahead, path.used(), most));
   }
-  take(hats("time", "s", -1, path.times(), path.used(), most));
+  take(hats("time", "s", -1, path.times(), path.times(), path.used(), most));
   return out;
 }
 

@@ -13,7 +13,7 @@ struct Features {
   int index = -1;              ///< of the quantity in the system; −1: time
   std::vector<double> centre;  ///< [unit]
   std::vector<double> count;   ///< samples under each hat (its weights summed)
-  Eigen::MatrixXd f;           ///< all samples × hats
+  Eigen::MatrixXd f, ahead;    ///< all samples × hats: at the filtered state, and as predicted for the end of the step
 };
 
 /// Quantities that maps are drawn over: those of the system that `explains` and vary, then time. `most` hats each, equally spaced over 0.5

@@ -151,7 +151,7 @@ ForceColumns::ForceColumns(const FilterEstimate& estimate) : estimate_(estimate)
   const auto N = static_cast<std::size_t>(n), PORTS = static_cast<std::size_t>(ports_);
   std::size_t all = 0;
   for (const auto& trace : estimate.traces) all += trace.samples;
-  quantities_ = RowMatrix::Zero(static_cast<Eigen::Index>(all), nq);
+  quantities_ = ahead_ = RowMatrix::Zero(static_cast<Eigen::Index>(all), nq);
   used_.assign(all, false);
   std::vector<double> D(N * kRowStride);
   Slots slots;
@@ -171,6 +171,7 @@ ForceColumns::ForceColumns(const FilterEstimate& estimate) : estimate_(estimate)
       if (k + 1 == trace.samples) break;
       if (!stepper.step_linear(x.data(), {signals.t[k], signals.t[k + 1], data.inputs.at(k), data.inputs.at(k + 1)}, slots, D.data()))
         break;
+      values.quantities(x.data(), data.inputs.at(k + 1), signals.t[k + 1], ahead_.row(static_cast<Eigen::Index>(offset + k)).data());
       for (std::size_t i = 0; i < N; ++i) {
         for (int c = 0; c < slots.count(); ++c)
           G_.back()[(k * N + i) * PORTS + static_cast<std::size_t>(slots.column(c))] = D[i * kRowStride + N + static_cast<std::size_t>(c)];
@@ -180,7 +181,7 @@ ForceColumns::ForceColumns(const FilterEstimate& estimate) : estimate_(estimate)
   }
 }
 
-Eigen::MatrixXd ForceColumns::columns(int port, const Eigen::MatrixXd& f) const {
+Eigen::MatrixXd ForceColumns::columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
   const Eigen::Index m = f.cols();
   Eigen::Index rows = 0;
   for (const auto& jacobian : estimate_.jacobians) rows += jacobian.r.size();
@@ -213,7 +214,7 @@ Eigen::MatrixXd ForceColumns::columns(int port, const Eigen::MatrixXd& f) const 
         last_h = h;
       }
       const auto sample = static_cast<Eigen::Index>(offset + k);
-      mean = 0.5 * (f.row(sample) + f.row(sample + 1));
+      mean = 0.5 * (f.row(sample) + ahead.row(sample));
       work.noalias() = Eigen::Map<const RowMatrix>(trace.Phi.data() + k * N * N, n, n) * s;
       for (Eigen::Index i = 0; i < n; ++i) {
         const double gain = G_[e][(k * N + static_cast<std::size_t>(i)) * PORTS + static_cast<std::size_t>(port)];

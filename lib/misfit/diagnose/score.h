@@ -46,12 +46,14 @@ class ForceColumns {
  public:
   explicit ForceColumns(const FilterEstimate& estimate);
 
-  /// Filtered states, all samples of all experiments one after the other (samples before the first used one are 0), and quantities there.
+  /// Quantities at the filtered state of each sample, all experiments one after the other (0 before the first used sample).
   [[nodiscard]] const RowMatrix& quantities() const { return quantities_; }
+  /// Quantities at the end of the step from each sample, as predicted: a force over the step must know nothing of the next reading.
+  [[nodiscard]] const RowMatrix& quantities_ahead() const { return ahead_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<bool>& used() const { return used_; }
-  /// Columns for forces f (all samples × m) on `port`, held over each step at the mean of its ends.
-  [[nodiscard]] Eigen::MatrixXd columns(int port, const Eigen::MatrixXd& f) const;
+  /// Columns for forces on `port` that go over each step from f at its start to `ahead` at its end (all samples × m).
+  [[nodiscard]] Eigen::MatrixXd columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const;
   /// ∂ log-likelihood/∂(force on `port` over the step from each sample), gains held: scans of many functions need only this (all samples).
   [[nodiscard]] Eigen::VectorXd score_of_steps(int port) const;
 
@@ -59,7 +61,7 @@ class ForceColumns {
   const FilterEstimate& estimate_;
   std::vector<std::vector<double>> G_;  ///< per experiment: samples × n × ports
   int ports_ = 0;
-  RowMatrix quantities_;
+  RowMatrix quantities_, ahead_;
   std::vector<double> times_;
   std::vector<bool> used_;
 };
