@@ -83,10 +83,14 @@ inline std::vector<Case> cases() {
                               effect("pixel_aspect"), effect("lens_distortion"), effect("field_offset")}),
                    {{"roll_error", 0.05}, {"K_error", 2.0}, {"h_c_error", 0.02}, {"aspect_error", 0.02}, {"k1_error", -0.1}})},
       {"random_states", with_values(spherical({effect("gust"), effect("apex_jitter")}), {{"gust_sigma", 27.0}, {"jitter", 1.0}})},
-      {"other_physics",
-       with_values(spherical({effect("magnus"), effect("relative_dynamic_pressure"), effect("apparent_inertia"), effect("lateral_damping"),
-                              effect("coulomb_friction"), effect("viscous_friction")}),
-                   {{"C_spin", 0.05}, {"relative_pressure", 1.0}, {"inertia_growth", 10.0}, {"friction", 20.0}, {"width", 0.2}})},
+      {"other_physics", with_values(spherical({effect("magnus"), effect("relative_dynamic_pressure"), effect("apparent_inertia"),
+                                               effect("lateral_damping"), effect("coulomb_friction"), effect("viscous_friction")}),
+                                    {{"C_spin", 0.05},
+                                     {"relative_pressure", 1.0},
+                                     {"inertia_growth", 10.0},
+                                     {"friction", 20.0},
+                                     {"width", 0.2},
+                                     {"viscosity", 5.0}})},
       {"lagging_flow", with_values(spherical({effect("aerodynamic_lag"), effect("vortex_shedding")}), {{"C_lag", 0.3}, {"y_sine", 0.01}})},
       {"cart_curve_of_an_output", with_scale_curve(cart({effect("sensor_scale"), effect("coulomb_friction")}))}};
   std::vector<Case> all;

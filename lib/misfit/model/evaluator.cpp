@@ -235,4 +235,18 @@ double Evaluator::fastest_rate(const double* x, const double* u, double t) {
   return fastest;
 }
 
+void Evaluator::diffusion(const double* x, const double* u, double t, double* intensity) {
+  const Point at{x, u, t, p_.data()};
+  base_and_derived(at, x + nx_);
+  system_->outputs(at, q_.data() + nq_);
+  std::array<double, kMaxWidth> values;
+  for (const auto* list : {&quantity_, &dynamic_, &sensor_}) {
+    for (const auto& use : *list) {
+      if (use.nz == 0) continue;
+      gather(use, x + nx_, values.data());
+      use.effect->diffusion(reads(use, values.data(), t), intensity + use.first_state);
+    }
+  }
+}
+
 }  // namespace misfit
