@@ -44,6 +44,12 @@ inline ModelRequest lender_last(ModelRequest request) {
   return request;
 }
 
+/// Constants that act on the outputs alone.
+inline ModelRequest free_camera(ModelRequest request) {
+  for (const char* name : {"h_c", "K", "camera_roll", "lens_k1", "R", "l_s"}) request.parameters[name].free = true;
+  return request;
+}
+
 /// Two curves of one quantity over the same knots, which an evaluator may look up together.
 inline ModelRequest with_equal_knots(ModelRequest request) {
   request.curves["C_m_alphadot"].knots = request.curves["C_m"].knots;
@@ -82,6 +88,8 @@ inline std::vector<Case> cases() {
        with_values(spherical({effect("camera_roll"), effect("image_centre"), effect("scale_error"), effect("camera_height_error"),
                               effect("pixel_aspect"), effect("lens_distortion"), effect("field_offset")}),
                    {{"roll_error", 0.05}, {"K_error", 2.0}, {"h_c_error", 0.02}, {"aspect_error", 0.02}, {"k1_error", -0.1}})},
+      {"free_camera", free_camera(spherical({effect("strut_wake"), effect("scale_error")}))},
+      {"free_camera_that_moves_the_canopy", free_camera(spherical({effect("viscous_friction", {{"rate", "image_scale"}})}))},
       {"random_states", with_values(spherical({effect("gust"), effect("apex_jitter")}), {{"gust_sigma", 27.0}, {"jitter", 1.0}})},
       {"other_physics", with_values(spherical({effect("magnus"), effect("relative_dynamic_pressure"), effect("apparent_inertia"),
                                                effect("lateral_damping"), effect("coulomb_friction"), effect("viscous_friction")}),
