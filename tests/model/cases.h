@@ -83,7 +83,7 @@ inline std::vector<Case> cases() {
       {"wake",
        with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}, {"wake_push", 0.15}, {"wake_phi", -1.6}, {"wake_width", 0.9}})},
       {"wake_before_what_it_weakens", lender_last(with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}}))},
-      {"upwash", with_values(spherical({effect("flow_angularity")}), {{"upwash", 0.03}, {"sidewash", -0.02}})},
+      {"upwash", with_values(spherical({effect("flow_angularity")}), {{"flow_theta", 0.03}, {"flow_psi", -0.02}})},
       {"wrong_camera",
        with_values(spherical({effect("camera_roll"), effect("image_centre"), effect("scale_error"), effect("camera_height_error"),
                               effect("pixel_aspect"), effect("lens_distortion"), effect("field_offset")}),

@@ -128,12 +128,12 @@ TEST(SphericalParachute, MomentsAboutFixedAxesAreTorqueCrossAxis) {
   }
 }
 
-TEST(SphericalParachute, UpwashMovesTheTrimUpAndSidewashToTheLeft) {
-  // At rest on the axis of the wind the canopy feels no angle of attack: nothing moves.
-  constexpr double up = 0.05, side = 0.03;
-  const Model m = with({effect("static_moment"), effect("flow_angularity")}, {{"upwash", up}, {"sidewash", side}});
-  const double length = std::sqrt(1.0 + std::tan(up) * std::tan(up) + std::tan(side) * std::tan(side));
-  const State along = {std::tan(side) / length, -std::tan(up) / length, 0.0, 0.0};
+TEST(SphericalParachute, TheTrimGoesWithTheDirectionOfTheWind) {
+  // At rest along the wind the canopy feels no angle of attack: nothing moves. theta and psi of the axis are those of the wind.
+  constexpr double theta = -0.05, psi = 0.03;
+  const Model m = with({effect("static_moment"), effect("flow_angularity")}, {{"flow_theta", theta}, {"flow_psi", psi}});
+  const double length = std::sqrt(1.0 + std::tan(theta) * std::tan(theta) + std::tan(psi) * std::tan(psi));
+  const State along = {std::tan(psi) / length, std::tan(theta) / length, 0.0, 0.0};
   EXPECT_NEAR(quantities(m, along)["alpha_T"], 0.0, 1e-7);
   for (double value : rates(m, along)) EXPECT_NEAR(value, 0.0, 1e-10);
   EXPECT_GT(std::abs(rates(m, {0.0, 0.0, 0.0, 0.0})[2]), 0.1);
