@@ -14,7 +14,7 @@
 #include "misfit/fit/curves.h"
 #include "misfit/fit/states.h"
 #include "misfit/model/curve_table.h"
-#include "misfit/sim/trajectory.h"
+#include "misfit/sim/random_run.h"
 
 namespace misfit {
 namespace {
@@ -106,12 +106,16 @@ Case from_fit(Session& session) {
 Table simulate(const Case& c, const Session& session) {
   Stepper stepper(c.model);
   const InputTable inputs = input_table(c.signals, c.model.inputs());
+  std::mt19937_64 random(session.study.seed);
   Segment run;
-  run_segment(stepper, c.signals, inputs, 0, c.signals.samples(), c.initial.data(), false, run);
+  if (has_random_states(stepper.evaluator(), c.initial.data(), inputs.at(0), c.signals.t.front())) {
+    run_randomly(stepper, c.signals, inputs, c.initial.data(), random, run);
+  } else {
+    run_segment(stepper, c.signals, inputs, 0, c.signals.samples(), c.initial.data(), false, run);
+  }
   if (!run.finite) throw RunError("the simulated motion left the finite numbers at t = " + format_value(c.signals.t[run.failed_at]) + " s");
   Table table;
   table.add("t", "s", c.signals.t);
-  std::mt19937_64 random(session.study.seed);
   for (Eigen::Index o = 0; o < run.y.cols(); ++o) {
     const OutputSpec& output = c.model.system->spec().outputs[static_cast<std::size_t>(o)];
     const std::string unit = display_unit(output.unit);

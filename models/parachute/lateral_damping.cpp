@@ -6,7 +6,7 @@ using namespace misfit;
 
 /// Damping across the plane of the tilt that differs from the damping in it: what `pitch_damping` applies to both is changed for one.
 struct LateralDamping {
-  static constexpr const char* formula = "M_lateral = q S D (D/2V) C_lateral omega_lateral";
+  static constexpr const char* formula = "M_lateral = q S D (D/2V) C_lateral omega_lateral sin^4(eta)/(sin^4(eta) + 0.02^4)";
   static constexpr const char* symbols =
       "q [Pa], S [m^2], D [m], V wind speed [m/s], omega_lateral rotation rate across the plane of the tilt [rad/s], C_lateral [-]";
   static constexpr const char* valid = "quasi-steady; adds to C_mq of pitch_damping; at tilts near 0 the two planes cannot differ";
@@ -26,13 +26,14 @@ struct LateralDamping {
     using std::sin;
     constexpr double covered = 0.02;  // sine of the tilt below which the plane of the tilt means nothing (strut_wake)
     const T sine = sin(in.q[3]);
-    const T open = sine * sine / (sine * sine + covered * covered);
+    const T fourth = sine * sine * sine * sine;
+    const T open = fourth / (fourth + covered * covered * covered * covered);
     F[0] = in.q[0] * (in.k[0] * in.k[1] * in.k[1]) / (2.0 * in.q[1]) * in.c[0] * in.q[2] * open;
   }
 
   static std::vector<Example> examples() {
     return {
-        {{1.9554, 1.5816}, {736.0, 35.1, 1.0, 1.57079633}, {-0.25}, {}, 0.0, {-12.8155117}, {}, "12.820638/(1 + 0.0004)"},
+        {{1.9554, 1.5816}, {736.0, 35.1, 1.0, 1.57079633}, {-0.25}, {}, 0.0, {-12.8206356}, {}, "12.8206377/(1 + 0.02^4)"},
         {{2.0, 3.0}, {100.0, 30.0, -2.0, 0.020001334}, {0.4}, {}, 0.0, {-12.0}, {}, "100 x 2 x 9/60 x 0.4 x -2, half open at sin = 0.02"}};
   }
 };

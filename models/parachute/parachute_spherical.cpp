@@ -193,8 +193,8 @@ struct ParachuteSpherical {
             {"phi_rate", "rad/s", "rate of the clock angle", {}, true, false},
             {"gravity_direction", "-", "cos(phi) cos(eta)", {}, true, false},
             {"gravity_direction_lateral", "-", "-sin(phi)", {}, true, false},
-            {"image_scale", "px/m", "pixels per metre at the apex", {}, false, false},
-            {"focal_length", "px", "l_b K", {}, false, false},
+            {"image_scale", "px/m", "pixels per metre at the apex", {}, false, false, true},
+            {"focal_length", "px", "l_b K", {}, false, false, true},
             {"dynamic_pressure", "Pa", "free-stream dynamic pressure", {}, false, false},
             {"wind_speed", "m/s", "free-stream speed along x", {}, false, false},
             {"inertia", "kg m^2", "(m + m_a) R_cp^2", {}, false, false},
@@ -212,13 +212,13 @@ struct ParachuteSpherical {
                                       {"m_a", "kg", "apparent mass", 0.0, huge, true, 0.0},
                                       {"qbar", "Pa", "dynamic pressure", 1e-6, 1e9, true, 0.0},
                                       {"V", "m/s", "free-stream speed", 1e-6, 1e5, true, 0.0},
-                                      {"R", "m", "swivel to apex", 1e-6, huge, true, 0.0},
-                                      {"l_b", "m", "backshell face to camera", 1e-6, huge, true, 0.0},
-                                      {"l_s", "m", "swivel to camera", 1e-6, huge, true, 0.0}};
+                                      {"R", "m", "swivel to apex", 1e-6, huge, true, 0.0, true},
+                                      {"l_b", "m", "backshell face to camera", 1e-6, huge, true, 0.0, true},
+                                      {"l_s", "m", "swivel to camera", 1e-6, huge, true, 0.0, true}};
     for (std::size_t i = 0; i < camera_parameter_names.size(); ++i) {
       const bool scale = i == 1;
       list.push_back({camera_parameter_names[i], camera_parameter_units[i], "of the camera, from its calibration", scale ? 1e-6 : -huge,
-                      huge, false, scale ? 1.0 : 0.0});
+                      huge, false, scale ? 1.0 : 0.0, true});
     }
     return list;
   }

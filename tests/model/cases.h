@@ -44,6 +44,12 @@ inline ModelRequest lender_last(ModelRequest request) {
   return request;
 }
 
+/// Constants that act on the outputs alone.
+inline ModelRequest free_camera(ModelRequest request) {
+  for (const char* name : {"h_c", "K", "camera_roll", "lens_k1", "R", "l_s"}) request.parameters[name].free = true;
+  return request;
+}
+
 /// Two curves of one quantity over the same knots, which an evaluator may look up together.
 inline ModelRequest with_equal_knots(ModelRequest request) {
   request.curves["C_m_alphadot"].knots = request.curves["C_m"].knots;
@@ -77,7 +83,22 @@ inline std::vector<Case> cases() {
       {"wake",
        with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}, {"wake_push", 0.15}, {"wake_phi", -1.6}, {"wake_width", 0.9}})},
       {"wake_before_what_it_weakens", lender_last(with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}}))},
-      {"upwash", with_values(spherical({effect("flow_angularity")}), {{"upwash", 0.03}, {"sidewash", -0.02}})},
+      {"upwash", with_values(spherical({effect("flow_angularity")}), {{"flow_theta", 0.03}, {"flow_psi", -0.02}})},
+      {"wrong_camera",
+       with_values(spherical({effect("camera_roll"), effect("image_centre"), effect("scale_error"), effect("camera_height_error"),
+                              effect("pixel_aspect"), effect("lens_distortion"), effect("field_offset")}),
+                   {{"roll_error", 0.05}, {"K_error", 2.0}, {"h_c_error", 0.02}, {"aspect_error", 0.02}, {"k1_error", -0.1}})},
+      {"free_camera", free_camera(spherical({effect("strut_wake"), effect("scale_error")}))},
+      {"free_camera_that_moves_the_canopy", free_camera(spherical({effect("viscous_friction", {{"rate", "image_scale"}})}))},
+      {"random_states", with_values(spherical({effect("gust"), effect("apex_jitter")}), {{"gust_sigma", 27.0}, {"jitter", 1.0}})},
+      {"other_physics", with_values(spherical({effect("magnus"), effect("relative_dynamic_pressure"), effect("apparent_inertia"),
+                                               effect("lateral_damping"), effect("coulomb_friction"), effect("viscous_friction")}),
+                                    {{"C_spin", 0.05},
+                                     {"relative_pressure", 1.0},
+                                     {"inertia_growth", 10.0},
+                                     {"friction", 20.0},
+                                     {"width", 0.2},
+                                     {"viscosity", 5.0}})},
       {"lagging_flow", with_values(spherical({effect("aerodynamic_lag"), effect("vortex_shedding")}), {{"C_lag", 0.3}, {"y_sine", 0.01}})},
       {"cart_curve_of_an_output", with_scale_curve(cart({effect("sensor_scale"), effect("coulomb_friction")}))}};
   std::vector<Case> all;

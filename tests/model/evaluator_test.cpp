@@ -161,6 +161,23 @@ TEST(EvaluatorTest, AWanderingSolverThatArrivesAtNotANumberGetsNotANumberBack) {
   EXPECT_FALSE(std::isfinite(dx[1]));
 }
 
+TEST(EvaluatorTest, AFreeCameraLeavesTheRatesTheirFastDerivatives) {
+  const auto is_fast = [](const ModelRequest& request) {
+    const Model model = Case{"", request}.model();
+    Evaluator evaluator(model);
+    const double x[8] = {0.1, 0.2, 0.3, 0.4};
+    double dx[8];
+    Slots slots;
+    std::vector<double> D(8 * static_cast<std::size_t>(kRowStride));
+    return evaluator.linearise_rates_sparsely(x, nullptr, 0.0, slots, dx, D.data());
+  };
+  EXPECT_TRUE(is_fast(free_camera(spherical())));
+  EXPECT_FALSE(is_fast(free_camera(spherical({effect("viscous_friction", {{"rate", "image_scale"}})}))));
+  ModelRequest heavier = free_camera(spherical());
+  heavier.parameters["m_a"].free = true;
+  EXPECT_FALSE(is_fast(heavier));
+}
+
 TEST(EvaluatorTest, QuantitiesAreThoseOfTheStateWithTheEffectsOnThem) {
   Model model = assemble(with_values(parachute(true, {effect("dynamic_pressure_drift")}), {{"pressure_drift", 10.0}}), registry());
   Evaluator evaluator(model);

@@ -46,6 +46,7 @@ void Evaluator::flatten() {
   for (const auto& bound : model_->effects) flatten_effect(bound);
   quantity_effects_ = !quantity_.empty();
   general_ = quantity_effects_ || free_constants_;
+  general_rates_ = quantity_effects_ || rates_move_with_constants();
   find_twins();
   for (const auto& use : dynamic_) plan_effect(use);
   fill_numbers();
@@ -53,6 +54,34 @@ void Evaluator::flatten() {
   const bool observed = std::all_of(outputs.begin(), outputs.end(), [](const OutputSpec& output) { return output.observes >= 0; });
   if (!observed || !sensor_.empty()) return;
   for (const auto& output : outputs) observed_.push_back(output.observes);
+}
+
+/// Whether a free constant acts on the rates: one that is not of the sensor, or one of the sensor that some effect on the motion reads.
+bool Evaluator::rates_move_with_constants() const {
+  const SystemSpec& spec = system_->spec();
+  bool sensor_free = false;
+  const auto free = [&](int k) { return column_of_[static_cast<std::size_t>(k)] >= 0; };
+  for (int k = 0; k < nk_; ++k) {
+    if (!free(k)) continue;
+    if (!spec.constants[static_cast<std::size_t>(k)].of_sensor) return true;
+    sensor_free = true;
+  }
+  const auto of_sensor = [&](int quantity) {
+    return quantity >= 0 && quantity < nq_ && spec.quantities[static_cast<std::size_t>(quantity)].of_sensor;
+  };
+  for (const auto& bound : model_->effects) {
+    if (!sensor_free || bound.kind == PortKind::sensor) continue;
+    for (int k : bound.constants) {
+      if (free(k)) return true;
+    }
+    for (int quantity : bound.quantities) {
+      if (of_sensor(quantity)) return true;
+    }
+    for (const auto& c : bound.coefficients) {
+      if (c.curve >= 0 && of_sensor(model_->curves[static_cast<std::size_t>(c.curve)].quantity)) return true;
+    }
+  }
+  return false;
 }
 
 /// Curves of one quantity over the same knots share their weights inside them; what dynamic effects read is evaluated once per right-hand
@@ -233,6 +262,20 @@ double Evaluator::fastest_rate(const double* x, const double* u, double t) {
     }
   }
   return fastest;
+}
+
+void Evaluator::diffusion(const double* x, const double* u, double t, double* intensity) {
+  const Point at{x, u, t, p_.data()};
+  base_and_derived(at, x + nx_);
+  system_->outputs(at, q_.data() + nq_);
+  std::array<double, kMaxWidth> values;
+  for (const auto* list : {&quantity_, &dynamic_, &sensor_}) {
+    for (const auto& use : *list) {
+      if (use.nz == 0) continue;
+      gather(use, x + nx_, values.data());
+      use.effect->diffusion(reads(use, values.data(), t), intensity + use.first_state);
+    }
+  }
 }
 
 }  // namespace misfit

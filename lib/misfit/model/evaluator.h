@@ -83,6 +83,8 @@ class Evaluator {
 
   /// Fastest rate of the system and its effects at this state [1/s].
   [[nodiscard]] double fastest_rate(const double* x, const double* u, double t);
+  /// Noise intensity of each own state [unit/sqrt(s)] (states() − the system's, in their order); zeros for deterministic memory.
+  void diffusion(const double* x, const double* u, double t, double* intensity);
   /// Value of every quantity at a state (for maps, figures and simulated tables).
   void quantities(const double* x, const double* u, double t, double* q);
 
@@ -94,6 +96,7 @@ class Evaluator {
   };
   void flatten();
   void flatten_effect(const BoundEffect& bound);
+  [[nodiscard]] bool rates_move_with_constants() const;
   [[nodiscard]] double curve_value(const Curve& curve, double at) const;
   void gather(const Use& use, const double* own, double* values) const;
   Reads<double, double> reads(const Use& use, const double* values, double t) const;
@@ -153,6 +156,7 @@ class Evaluator {
   int n_, nx_, ny_, nf_, np_, nq_, nk_, columns_;
   std::uint64_t needed_ = 0;
   bool shifts_time_ = false, quantity_effects_ = false, free_constants_ = false, general_ = false;
+  bool general_rates_ = false;  // as general_, of the rates: constants of the sensor may be free
   std::vector<Use> quantity_, dynamic_, sensor_;
   std::vector<Plan> plans_;     // of dynamic_
   std::vector<int> observed_;   // state of each output; empty: outputs are to be evaluated

@@ -51,7 +51,7 @@ void Evaluator::evaluate_curves(Slots& slots) {
 
 /// Order of the numbers as in gather(): quantities, coefficients, own states, constants. A quantity that is absent stays 0.
 void Evaluator::plan_effect(const Use& use) {
-  Plan plan{use.effect, use.width, use.nq, use.nc, use.nz, use.first_state, {}, {}, {}, {}, {}, {}};
+  Plan plan{use.effect, use.nq + use.nc + use.nz, use.nq, use.nc, use.nz, use.first_state, {}, {}, {}, {}, {}, {}};
   plan.values.assign(static_cast<std::size_t>(use.nq + use.nc + use.nz + use.nk), 0.0);
   for (int i = 0; i < use.nq; ++i) {
     const int quantity = use.quantity[static_cast<std::size_t>(i)];
@@ -175,7 +175,7 @@ void Evaluator::take_entries(double weight, int from, int to) {
 }
 
 bool Evaluator::linearise_rates_sparsely(const double* x, const double* u, double t, Slots& slots, double* dx, double* D) {
-  if (general_ || own_elsewhere_) return false;
+  if (general_rates_ || own_elsewhere_) return false;
   const Point at{x, u, t, p_.data()};
   // The number of states of the usual systems is given to the compiler, and that there is no memory besides; 0: any.
   if (nx_ == 2) {

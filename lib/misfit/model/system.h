@@ -31,6 +31,7 @@ struct QuantitySpec {
   std::vector<std::string> inputs;  ///< inputs without which it cannot be computed
   bool carries_sign = false;        ///< may be negative: curves of it need no division by its sine (CoefficientSpec::over_sine is ignored)
   bool explains = true;             ///< a coordinate of the motion: maps and unknown curves are drawn over it
+  bool of_sensor = false;           ///< depends on constants of the sensor (ConstantSpec::of_sensor); all others must not
 };
 
 struct PortSpec {
@@ -44,6 +45,8 @@ struct ConstantSpec {
   double lower = 0.0, upper = 0.0;  ///< inclusive
   bool required = true;
   double value = 0.0;  ///< when not required
+  /// Acts on the outputs, and on quantities of the sensor, alone: where it is free, the rates keep their fast derivatives.
+  bool of_sensor = false;
 };
 
 struct OutputSpec {
