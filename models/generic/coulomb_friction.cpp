@@ -18,7 +18,7 @@ struct CoulombFriction {
   static constexpr Role ports[] = {{"port", "*"}, {"port_lateral", "*", true, false, "port"}};
   static constexpr CoefficientSpec coefficients[] = {
       {"friction", CoefficientKind::strength, 0.0, "{port}", 0.0, 1e6, 1.0, "size of the friction when moving"},
-      {"width", CoefficientKind::shape, 0.01, "{rate}", 1e-6, 1e6, 0.01, "rate at which the smoothed friction has 76 % of its size",
+      {"width", CoefficientKind::shape, 0.1, "{rate}", 1e-6, 1e6, 0.01, "rate at which the smoothed friction has 76 % of its size",
        Parity::none, "", false, true}};
   static constexpr bool dissipative = true;
 

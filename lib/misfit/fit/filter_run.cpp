@@ -101,6 +101,17 @@ FilterData filter_data(const FilterModel& model, const Signals& signals) {
   return out;
 }
 
+FilterData filter_data_like(const FilterModel& model, const FilterData& data) {
+  FilterData out = data;
+  const Eigen::Index system = model.model.system_states(), all = model.model.states();
+  out.start = out.scale = Eigen::VectorXd::Zero(all);
+  out.start.head(system) = data.start.head(system);
+  out.scale.head(system) = data.scale.head(system);
+  for (Eigen::Index i = system; i < all; ++i) out.start[i] = model.model.own_states[static_cast<std::size_t>(i - system)].initial;
+  for (int f : model.force_states) out.start[f] = 0.0;
+  return out;
+}
+
 FilterRunner::FilterRunner(const FilterModel& model, bool derivatives)
     : model_(&model), own_(derivatives ? model.model : all_fixed(model.model)), stepper_(own_) {}
 

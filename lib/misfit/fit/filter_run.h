@@ -31,6 +31,8 @@ struct FilterData {
   Eigen::VectorXd start, scale;  ///< model states there and their sigmas, force states excluded (0)
 };
 [[nodiscard]] FilterData filter_data(const FilterModel& model, const Signals& signals);
+/// The same experiment for a model of the same system with further own states: readings, start and uses as in `data`.
+[[nodiscard]] FilterData filter_data_like(const FilterModel& model, const FilterData& data);
 
 /// A run of the extended Kalman filter over one experiment [J], kept so that it can be run again with other noise (linear about this one),
 /// smoothed, and asked for the effect of further forces. Row-major blocks per sample.

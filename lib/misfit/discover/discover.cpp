@@ -1,0 +1,280 @@
+#include "misfit/discover/discover.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/discover/refit.h"
+#include "misfit/discover/screen.h"
+#include "misfit/discover/verdict.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+constexpr double tie = 6.0;  // refitted drops nearer than this do not tell two effects apart (DESIGN 6)
+
+class Search {
+ public:
+  Search(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments,
+         const DiscoverOptions& options)
+      : estimate_(estimate),
+        experiments_(experiments),
+        registry_(registry),
+        options_(options),
+        specimens_(specimens(estimate, request, registry, options.calibration)),
+        score_(estimate),
+        path_(estimate) {}
+
+  Discovery run() {
+    screened_ = screen(estimate_, score_, path_, specimens_, options_.threads);
+    unknown_ = unknown_curves(estimate_, score_, path_, options_.threads);
+    families_ = static_cast<double>(screened_.size() + unknown_.size());
+    rank();
+    refit_best();
+    find_groups();
+    accept();
+    list_unknown();
+    describe_search();
+    return std::move(out_);
+  }
+
+ private:
+  struct Entry {
+    const Screened* screened = nullptr;
+    Candidate candidate;
+    std::optional<Refit> refit;
+    double log_p = 0.0;  ///< of the refit where there is one
+  };
+
+  void rank() {
+    for (const auto& s : screened_) {
+      Entry entry;
+      entry.screened = &s;
+      entry.log_p = s.log_p;
+      Candidate& c = entry.candidate;
+      c.effect = s.specimen->effect;
+      c.family = s.specimen->family;
+      c.ports = s.specimen->port_names;
+      c.score = s.result.chi2;
+      c.dof = s.result.dof;
+      c.predicted_drop = s.result.chi2;
+      c.p_value = sidak(s.p_value, families_);
+      c.described = s.runs && s.result.independent < 0.01 && !s.specimen->has_priors;
+      for (std::size_t i = 0; i < s.specimen->strengths.size() && s.runs; ++i) {
+        const Parameter& p = s.specimen->model.parameters[static_cast<std::size_t>(s.specimen->strengths[i])];
+        const auto k = static_cast<Eigen::Index>(i);
+        c.parameters[p.name] = {s.result.amplitude[k], s.result.sigma[k], p.unit};
+      }
+      if (!s.runs) {
+        c.p_value = 1.0;
+        c.why = "the model cannot be run with it";
+      } else if (c.described) {
+        c.why = "already described by the model: the free parameters imitate it to better than 99 %";
+      }
+      entries_.push_back(std::move(entry));
+    }
+    sort_entries();
+  }
+
+  void sort_entries() {
+    std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+      if (a.candidate.described != b.candidate.described) return b.candidate.described;
+      if (a.refit.has_value() != b.refit.has_value()) return a.refit.has_value();
+      return a.log_p < b.log_p;
+    });
+  }
+
+  /// All whose predicted drop is above half the best, if the screen says that there is anything.
+  void refit_best() {
+    double best = 0.0;
+    for (const auto& e : entries_) {
+      if (!e.candidate.described && e.candidate.p_value < 5.0 * options_.p_accept) best = std::max(best, e.candidate.predicted_drop);
+    }
+    if (!(best > 0.0)) return;
+    int refits = 0;
+    for (auto& e : entries_) {
+      if (e.candidate.described || e.candidate.p_value > 5.0 * options_.p_accept || e.candidate.predicted_drop < 0.5 * best) continue;
+      if (refits++ >= options_.most_refits) break;
+      e.refit = refit(estimate_, experiments_, *e.screened, registry_, options_.threads);
+      take_refit(e);
+    }
+    sort_entries();
+  }
+
+  void take_refit(Entry& e) const {
+    Candidate& c = e.candidate;
+    if (!e.refit->ok) {
+      c.why = e.refit->why;
+      e.refit.reset();
+      return;
+    }
+    c.actual_drop = e.refit->drop;
+    e.log_p = log_chi_square_tail(e.refit->drop, c.dof) + std::log(e.screened->cells_effective);
+    c.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families_);
+    c.parameters = e.refit->parameters;
+    for (int port : e.refit->estimate.forced.force_ports) {
+      const PortSpec& named = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
+      c.force[named.name] = {e.refit->estimate.noise.force, 0.0, named.unit};
+    }
+  }
+
+  /// The best and every other whose refitted drop is near: inseparable if neither has a significant score once the other is in.
+  void find_groups() {
+    if (entries_.empty() || !entries_.front().refit) return;
+    Entry& best = entries_.front();
+    std::vector<std::string> group = {best.candidate.effect};
+    for (std::size_t k = 1; k < entries_.size(); ++k) {
+      const Entry& other = entries_[k];
+      if (!other.refit || std::abs(other.refit->drop - best.refit->drop) > tie) continue;
+      if (adds_to(*best.refit, other) || adds_to(*other.refit, best)) continue;
+      group.push_back(other.candidate.effect);
+    }
+    if (group.size() < 2) return;
+    for (auto& e : entries_) {
+      if (std::find(group.begin(), group.end(), e.candidate.effect) != group.end()) e.candidate.group = group;
+    }
+  }
+
+  /// Has `other` a significant score in the model that holds the refitted effect?
+  bool adds_to(const Refit& in, const Entry& other) const {
+    const std::vector<Specimen> list = specimens(in.estimate, in.request, registry_, options_.calibration);
+    const auto specimen = std::find_if(list.begin(), list.end(), [&](const Specimen& s) { return s.effect == other.candidate.effect; });
+    if (specimen == list.end()) return false;
+    const Eigen::MatrixXd columns = specimen_columns(in.estimate, *specimen, other.screened->cell);
+    if (columns.size() == 0) return false;
+    const ScoreResult result = ScoreTest(in.estimate).test(columns, specimen->has_priors ? &specimen->priors : nullptr);
+    return result.dof > 0 && chi_square_tail(result.chi2, result.dof) < options_.p_accept;
+  }
+
+  void accept() {
+    if (entries_.empty() || !entries_.front().refit) return;
+    Entry& best = entries_.front();
+    Candidate& c = best.candidate;
+    if (!(c.p_value < options_.p_accept)) {
+      c.why = "not significant: family-wise p " + format_probability(c.p_value);
+      return;
+    }
+    c.held_out_gain = held_out_gain(estimate_, best.refit->estimate, experiments_, options_.threads);
+    if (!(*c.held_out_gain > 0.0)) {
+      c.why = "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
+      return;
+    }
+    left_ = what_is_left(best);
+    if (left_) {
+      c.why = "most of the departure remains: after it an unknown " + left_->port + "(" + left_->quantity + ") still has p " +
+              format_probability(left_->p_value);
+      return;
+    }
+    c.accepted = true;
+    c.why = "family-wise p " + format_probability(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
+    for (std::size_t k = 1; k < entries_.size(); ++k) {
+      Candidate& other = entries_[k].candidate;
+      if (!other.why.empty() || !entries_[k].refit) continue;
+      other.why = !other.group.empty() ? "these data cannot tell it from " + c.effect
+                                       : "explains less than " + c.effect + "; screened again once that is in";
+    }
+  }
+
+  /// An unknown curve of a quantity that the effect reads, significant after it and worth a good part of what it explained: then the effect
+  /// is only a likeness of what is missing.
+  std::optional<UnknownCurve> what_is_left(const Entry& best) const {
+    const FilterEstimate& with = best.refit->estimate;
+    const ScoreTest score(with);
+    const ForceColumns path(with);
+    std::vector<UnknownCurve> after = unknown_curves(with, score, path, options_.threads);
+    std::optional<UnknownCurve> worst;
+    for (auto& curve : after) {
+      curve.p_value = sidak(curve.p_value, static_cast<double>(after.size()));
+      const auto& read = best.screened->specimen->quantities;
+      const bool reads = std::find(read.begin(), read.end(), curve.quantity_index) != read.end();
+      constexpr double good_part = 0.2;
+      if (!reads || curve.p_value > options_.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < good_part * best.refit->drop)
+        continue;
+      if (!worst || curve.log_p < worst->log_p) worst = curve;
+    }
+    return worst;
+  }
+
+  void list_unknown() {
+    for (auto& e : entries_) {
+      X out_.candidates.push_back(e.candidate);
+    }
+    std::stable_sort(unknown_.begin(), unknown_.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.log_p < b.log_p; });
+    for (const auto& curve : unknown_) {
+      Candidate c;
+      c.effect = "unknown:" + curve.port + "(" + curve.quantity + ")";
+      c.family = "unknown";
+      c.ports = {curve.port};
+      c.score = c.predicted_drop = curve.result.chi2;
+      c.dof = curve.result.dof;
+      c.p_value = sidak(curve.p_value, families_);
+      c.why = c.p_value < options_.p_accept ? "a force that depends on " + curve.quantity + ", of unknown form"
+                                            : "not significant: family-wise p " + format_probability(c.p_value);
+      out_.candidates.push_back(std::move(c));
+    }
+    // By significance, but an accepted effect first: an unknown curve can always imitate it.
+    std::stable_sort(out_.candidates.begin(), out_.candidates.end(), [](const Candidate& a, const Candidate& b) {
+      if (a.accepted != b.accepted) return a.accepted;
+      if (a.actual_drop.has_value() != b.actual_drop.has_value()) return a.actual_drop.has_value();
+      return false;
+    });
+    for (std::size_t i = 0; i < out_.candidates.size(); ++i) out_.candidates[i].rank = static_cast<int>(i) + 1;
+  }
+
+  void describe_search() {
+    for (int port : estimate_.forced.force_ports) {
+      const PortSpec& named = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
+      out_.force[named.name] = {estimate_.noise.force, 0.0, named.unit};
+    }
+    for (const auto& s : screened_) {
+      out_.tried.push_back(s.specimen->effect + " (" + s.specimen->family + "): " + std::to_string(s.cells) +
+                           (s.cells == 1 ? " cell" : " cells") + ", " + format_value(std::round(s.cells_effective)) + " effective");
+    }
+    std::string curves = "unknown curves:";
+    for (const auto& curve : unknown_) curves += " " + curve.port + "(" + curve.quantity + ")";
+    out_.tried.push_back(curves);
+    const std::optional<Unexplained> open = unexplained();
+    write_verdict(out_, open, options_.p_accept);
+    add_camera_remarks(options_.calibration, out_);
+  }
+
+  /// What depends on a quantity in a way that no named effect has.
+  std::optional<Unexplained> unexplained() const {
+    if (left_) return Unexplained{left_->port, left_->quantity, left_->p_value};
+    if (!out_.candidates.empty() && out_.candidates.front().accepted) return std::nullopt;
+    if (unknown_.empty()) return std::nullopt;
+    const UnknownCurve& best = unknown_.front();
+    const double p = sidak(best.p_value, families_);
+    if (!(p < options_.p_accept)) return std::nullopt;
+    return Unexplained{best.port, best.quantity, p};
+  }
+
+  const FilterEstimate& estimate_;
+  const std::vector<Signals>& experiments_;
+  const Registry& registry_;
+  DiscoverOptions options_;
+  std::vector<Specimen> specimens_;
+  ScoreTest score_;
+  ForceColumns path_;
+  std::vector<Screened> screened_;
+  std::vector<UnknownCurve> unknown_;
+  std::vector<Entry> entries_;
+  std::optional<UnknownCurve> left_;
+  double families_ = 1.0;
+  Discovery out_;
+};
+
+}  // namespace
+
+Discovery discover(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                   const std::vector<Signals>& experiments, const DiscoverOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Discovery out = Search(estimate, request, registry, experiments, options).run();
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace misfit

@@ -1,0 +1,128 @@
+#include "misfit/discover/refit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+
+namespace misfit {
+namespace {
+
+std::vector<std::vector<Use>> uses_of(const FilterEstimate& estimate) {
+  std::vector<std::vector<Use>> out;
+  for (const auto& data : estimate.data) out.push_back(data.use);
+  return out;
+}
+
+std::vector<Penalty> same_roughness(const Model& model, const FilterEstimate& from) {
+  std::vector<Penalty> out = curve_penalties(model);
+  for (auto& p : out) {
+    for (const auto& known : from.penalties) {
+      if (model.curves[static_cast<std::size_t>(p.curve)].name == from.model.curves[static_cast<std::size_t>(known.curve)].name)
+        p.lambda = known.lambda;
+    }
+  }
+  return out;
+}
+
+/// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
+Model start_model(const FilterEstimate& without, const Screened& screened, const Registry& registry) {
+  const Specimen& specimen = *screened.specimen;
+  Model model = assemble(specimen.request, registry);
+  for (const auto& p : without.model.parameters) {
+    const int at = model.find_parameter(p.name);
+    if (at < 0) continue;
+    model.parameters[static_cast<std::size_t>(at)].value = p.value;
+    model.parameters[static_cast<std::size_t>(at)].free = p.free;
+  }
+  for (std::size_t i = 0; i < specimen.strengths.size(); ++i) {
+    Parameter& p = model.parameters[static_cast<std::size_t>(specimen.strengths[i])];
+    const auto k = static_cast<Eigen::Index>(i);
+    p.value = std::clamp(screened.result.amplitude[k], p.lower, p.upper);
+    p.free = true;
+    if (specimen.priors.precision[k] > 0.0) {
+      p.prior_sigma = 1.0 / std::sqrt(specimen.priors.precision[k]);
+      p.prior_mean = specimen.priors.mean[k];
+    }
+  }
+  for (std::size_t i = 0; i < screened.cell.size(); ++i) {
+    const int shape = i < specimen.shapes.size() ? specimen.shapes[i] : specimen.frequency;
+    model.parameters[static_cast<std::size_t>(shape)].value = screened.cell[i];
+  }
+  return model;
+}
+
+/// log prior of the effect being off: its strengths at 0.
+double prior_of_off(const Specimen& specimen) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < specimen.priors.precision.size(); ++i)
+    sum -= 0.5 * specimen.priors.precision[i] * specimen.priors.mean[i] * specimen.priors.mean[i];
+  return sum;
+}
+
+FilterOptions like(const FilterEstimate& estimate, int threads) {
+  FilterOptions options;
+  options.threads = threads;
+  options.noise = estimate.noise;
+  options.around = estimate.around;
+  options.use = uses_of(estimate);
+  options.choose_roughness = false;
+  return options;
+}
+
+/// Held out: the last quarter of each experiment.
+std::vector<std::vector<Use>> without_last_quarter(const FilterEstimate& estimate) {
+  std::vector<std::vector<Use>> out = uses_of(estimate);
+  for (auto& use : out) {
+    for (std::size_t i = use.size() - use.size() / 4; i < use.size(); ++i) {
+      if (use[i] == Use::counted) use[i] = Use::validation;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened, const Registry& registry,
+            int threads) {
+  Refit out;
+  out.request = screened.specimen->request;
+  const Model start = start_model(without, screened, registry);
+  try {
+    out.estimate = estimate_filter(start, same_roughness(start, without), experiments, like(without, threads));
+  } catch (const RunError& error) {
+    out.why = error.what();
+    return out;
+  }
+  out.ok = true;
+  out.drop = 2.0 * (out.estimate.objective + out.estimate.left - without.objective - without.left - prior_of_off(*screened.specimen));
+  const std::vector<int> free = out.estimate.model.free_parameters();
+  const BoundEffect& bound = out.estimate.model.effects.back();
+  for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
+    const int at = bound.coefficients[c].parameter;
+    if (at < 0 || bound.effect->spec().coefficients[c].borrowed) continue;
+    const Parameter& p = out.estimate.model.parameters[static_cast<std::size_t>(at)];
+    const auto column = std::find(free.begin(), free.end(), at) - free.begin();
+    const bool known = column < static_cast<std::ptrdiff_t>(free.size()) && out.estimate.covariance.size() > 0;
+    out.parameters[p.name] = {p.value, known ? std::sqrt(std::max(out.estimate.covariance(column, column), 0.0)) : 0.0, p.unit};
+  }
+  return out;
+}
+
+double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, const std::vector<Signals>& experiments, int threads) {
+  const auto validated = [](const FilterEstimate& e) {
+    return std::any_of(e.traces.begin(), e.traces.end(), [](const FilterTrace& t) { return t.validated > 0; });
+  };
+  if (validated(without)) return with.validation_loglik - without.validation_loglik;
+  double gain = 0.0;
+  for (const auto* estimate : {&without, &with}) {
+    FilterOptions options = like(*estimate, threads);
+    options.use = without_last_quarter(without);
+    options.verify = false;
+    const FilterEstimate shorter = estimate_filter(estimate->model, estimate->penalties, experiments, options);
+    gain += (estimate == &with ? 1.0 : -1.0) * shorter.validation_loglik;
+  }
+  return gain;
+}
+
+}  // namespace misfit

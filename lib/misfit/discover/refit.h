@@ -1,0 +1,24 @@
+#pragma once
+
+#include "misfit/discover/screen.h"
+
+namespace misfit {
+
+/// The model with one effect more, at its own maximum over everything, on the same readings and with the same roughness weights.
+struct Refit {
+  bool ok = false;
+  std::string why;    ///< of failing
+  double drop = 0.0;  ///< 2 [objective(with) − objective(without)], priors on both sides, what exact derivatives leave included
+  FilterEstimate estimate;
+  ModelRequest request;
+  std::map<std::string, Estimate> parameters;  ///< of the effect
+};
+[[nodiscard]] Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened,
+                          const Registry& registry, int threads);
+
+/// Gain of the held-out log-likelihood. Where the study holds nothing out, both models are fitted again without the last quarter of every
+/// experiment, and judged on it.
+[[nodiscard]] double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, const std::vector<Signals>& experiments,
+                                   int threads);
+
+}  // namespace misfit

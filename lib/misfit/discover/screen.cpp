@@ -1,0 +1,183 @@
+#include "misfit/discover/screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "misfit/core/work_queue.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+/// A strength that cannot be negative and would have to be: nothing there.
+ScoreResult one_sided(const Specimen& specimen, ScoreResult result) {
+  if (specimen.strengths.size() != 1 || !specimen.one_sided.front() || !(result.amplitude[0] < 0.0)) return result;
+  result.chi2 = 0.0;
+  result.amplitude.setZero();
+  return result;
+}
+
+/// 1 − mean squared correlation of two cells' columns, free parameters projected out: how much a new cell adds.
+double novelty(const ScoreTest& score, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  if (a.size() == 0 || b.size() == 0) return 1.0;
+  const Eigen::MatrixXd pa = score.projected(a), pb = score.projected(b);
+  double shared = 0.0;
+  Eigen::Index known = 0;
+  for (Eigen::Index i = 0; i < pa.cols(); ++i) {
+    const double na = pa.col(i).squaredNorm(), nb = pb.col(i).squaredNorm();
+    if (!(na > 0.0 && nb > 0.0)) continue;
+    const double product = pa.col(i).dot(pb.col(i));
+    shared += product * product / (na * nb);
+    ++known;
+  }
+  return known > 0 ? std::max(1.0 - shared / static_cast<double>(known), 0.0) : 1.0;
+}
+
+struct CellResult {
+  ScoreResult result;
+  Eigen::MatrixXd columns;
+};
+
+/// Frequencies whose line in the score of the force steps stands out most, as cells; their count among all scanned.
+std::vector<double> frequency_peaks(const Specimen& specimen, const ForceColumns& path, double& scanned) {
+  const std::vector<double>& t = path.times();
+  const double length = t.back() - t.front();
+  const double step = 1.0 / (4.0 * length);
+  const double nyquist = 0.45 * static_cast<double>(t.size()) / length;
+  const auto count = static_cast<std::size_t>(std::max(0.0, (std::min(specimen.frequency_to, nyquist) - specimen.frequency_from) / step));
+  std::vector<double> power(count, 0.0);
+  for (int port : specimen.ports) {
+    const Eigen::VectorXd lambda = path.score_of_steps(port);
+    std::vector<double> line(count);
+    for (std::size_t f = 0; f < count; ++f) {
+      const double omega = 2.0 * std::numbers::pi * (specimen.frequency_from + static_cast<double>(f) * step);
+      double re = 0.0, im = 0.0, x = 0.0, y = 0.0, c = 1.0, s = 0.0, last_h = -1.0;
+      for (std::size_t k = 0; k < t.size(); ++k) {
+        if (k == 0 || k % 512 == 0) {  // anew from time to time: the rotation gathers rounding
+          x = std::cos(omega * t[k]);
+          y = std::sin(omega * t[k]);
+        } else {
+          const double h = t[k] - t[k - 1];
+          if (h != last_h) {
+            c = std::cos(omega * h);
+            s = std::sin(omega * h);
+            last_h = h;
+          }
+          const double next = c * x - s * y;
+          y = s * x + c * y;
+          x = next;
+        }
+        re += lambda[static_cast<Eigen::Index>(k)] * x;
+        im += lambda[static_cast<Eigen::Index>(k)] * y;
+      }
+      line[f] = re * re + im * im;
+    }
+    // The background is the running median over 1/20 of the band: lines stand out of it.
+    const std::size_t reach = std::max<std::size_t>(40, count / 40);
+    for (std::size_t f = 0; f < count; ++f) {
+      const std::size_t from = f > reach ? f - reach : 0, to = std::min(count, f + reach);
+      power[f] +=
+          line[f] /
+          std::max(median({line.begin() + static_cast<std::ptrdiff_t>(from), line.begin() + static_cast<std::ptrdiff_t>(to)}), 1e-300);
+    }
+  }
+  scanned = static_cast<double>(count) / 2.0;  // two steps of a half width each are one independent line
+  std::vector<std::size_t> order(count);
+  for (std::size_t f = 0; f < count; ++f) order[f] = f;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return power[a] > power[b]; });
+  std::vector<double> out;
+  for (std::size_t f : order) {
+    constexpr std::size_t most = 8;
+    if (out.size() >= most) break;
+    out.push_back(specimen.frequency_from + static_cast<double>(f) * step);
+  }
+  return out;
+}
+
+}  // namespace
+
+double log_chi_square_tail(double x, double dof) {
+  const double p = chi_square_tail(x, dof);
+  if (p > 1e-290) return std::log(p);
+  // Leading term of the upper incomplete gamma function: (x/2)^(dof/2 − 1) e^(−x/2)/Γ(dof/2).
+  return (0.5 * dof - 1.0) * std::log(0.5 * x) - 0.5 * x - std::lgamma(0.5 * dof);
+}
+
+std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
+                             const std::vector<Specimen>& specimens, int threads) {
+  std::vector<Screened> out(specimens.size());
+  std::vector<std::vector<std::vector<double>>> cells(specimens.size());
+  std::vector<double> frequencies(specimens.size(), 1.0);
+  struct Job {
+    std::size_t specimen, cell;
+  };
+  std::vector<Job> jobs;
+  for (std::size_t s = 0; s < specimens.size(); ++s) {
+    cells[s] = specimens[s].cells;
+    if (specimens[s].frequency >= 0) {
+      cells[s].clear();
+      for (double f : frequency_peaks(specimens[s], path, frequencies[s])) {
+        for (auto cell : specimens[s].cells) {
+          cell.push_back(f);
+          cells[s].push_back(cell);
+        }
+      }
+    }
+    for (std::size_t c = 0; c < cells[s].size(); ++c) jobs.push_back({s, c});
+  }
+  std::vector<std::vector<CellResult>> results(specimens.size());
+  for (std::size_t s = 0; s < specimens.size(); ++s) results[s].resize(cells[s].size());
+  run_jobs(jobs.size(), threads, [&](std::size_t j) {
+    const Specimen& specimen = specimens[jobs[j].specimen];
+    CellResult& cell = results[jobs[j].specimen][jobs[j].cell];
+    cell.columns = specimen_columns(estimate, specimen, cells[jobs[j].specimen][jobs[j].cell]);
+    if (cell.columns.size() > 0)
+      cell.result = one_sided(specimen, score.test(cell.columns, specimen.has_priors ? &specimen.priors : nullptr));
+  });
+  run_jobs(specimens.size(), threads, [&](std::size_t s) {
+    Screened& best = out[s];
+    best.specimen = &specimens[s];
+    best.runs = false;
+    best.cells = cells[s].size();
+    for (std::size_t c = 0; c < cells[s].size(); ++c) {
+      CellResult& cell = results[s][c];
+      if (cell.columns.size() == 0) continue;
+      if (!best.runs || cell.result.chi2 > best.result.chi2) {
+        best.result = cell.result;
+        best.cell = cells[s][c];
+        best.columns = cell.columns;
+      }
+      best.runs = true;
+      if (c > 0 && specimens[s].frequency < 0) best.cells_effective += novelty(score, results[s][c - 1].columns, cell.columns);
+    }
+    if (specimens[s].frequency >= 0) best.cells_effective = std::max(frequencies[s], 1.0);
+    if (!best.runs || best.result.dof == 0) return;
+    const double sides = specimens[s].strengths.size() == 1 && specimens[s].one_sided.front() ? 0.5 : 1.0;
+    best.log_p = log_chi_square_tail(best.result.chi2, best.result.dof) + std::log(sides);
+    best.p_value = sidak(std::exp(best.log_p), best.cells_effective);
+    best.log_p += std::log(best.cells_effective);
+  });
+  return out;
+}
+
+std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path, int threads) {
+  const std::vector<Features> features = features_of(estimate, path, 8);
+  const auto& ports = estimate.model.system->spec().dynamic_ports;
+  std::vector<UnknownCurve> out(features.size() * ports.size());
+  run_jobs(out.size(), threads, [&](std::size_t k) {
+    const Features& f = features[k / ports.size()];
+    UnknownCurve& curve = out[k];
+    curve.port_index = static_cast<int>(k % ports.size());
+    curve.port = ports[k % ports.size()].name;
+    curve.quantity = f.quantity;
+    curve.quantity_index = f.index;
+    curve.result = score.test(path.columns(curve.port_index, f.f, f.ahead));
+    if (curve.result.dof == 0) return;
+    curve.log_p = log_chi_square_tail(curve.result.chi2, curve.result.dof);
+    curve.p_value = std::exp(curve.log_p);
+  });
+  return out;
+}
+
+}  // namespace misfit

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "misfit/diagnose/features.h"
+#include "misfit/discover/specimen.h"
+
+namespace misfit {
+
+/// What the score test says of a specimen, at its best cell.
+struct Screened {
+  const Specimen* specimen = nullptr;
+  std::vector<double> cell;  ///< shapes, then the frequency if it has one
+  ScoreResult result;
+  Eigen::MatrixXd columns;       ///< at the best cell
+  double cells_effective = 1.0;  ///< independent cells among those scanned
+  double p_value = 1.0;          ///< corrected for its cells, not for other families
+  double log_p = 0.0;            ///< natural logarithm of the p-value of the best cell: ranks what is below 1e-300
+  bool runs = true;              ///< false: the model cannot be run with it
+  std::size_t cells = 0;
+};
+
+/// Score tests of all cells of all specimens. Frequencies are scanned in steps of 1/(4T) by their line in the score of the force steps, and
+/// the strongest are then tested exactly. Independent of the number of threads.
+[[nodiscard]] std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
+                                           const std::vector<Specimen>& specimens, int threads);
+
+/// Unknown curves: hat functions of every quantity on every dynamic port.
+struct UnknownCurve {
+  std::string port, quantity;
+  int port_index = 0, quantity_index = -1;
+  ScoreResult result;
+  double log_p = 0.0, p_value = 1.0;
+};
+[[nodiscard]] std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
+                                                       int threads);
+
+/// log P(chi² > x), accurate where the probability underflows.
+[[nodiscard]] double log_chi_square_tail(double x, double dof);
+
+}  // namespace misfit

@@ -1,0 +1,197 @@
+#include "misfit/discover/specimen.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+
+namespace misfit {
+namespace {
+
+bool driven_by_noise(const Effect& effect) {
+  if (effect.spec().states.empty()) return false;
+  for (const Example& example : effect.examples()) {
+    std::vector<double> noise(effect.spec().states.size(), 0.0);
+    effect.diffusion({example.quantities.data(), example.coefficients.data(), example.states.data(), example.constants.data(), example.t},
+                     noise.data());
+    if (std::any_of(noise.begin(), noise.end(), [](double v) { return v > 0.0; })) return true;
+  }
+  return false;
+}
+
+bool in_model(const ModelRequest& request, const std::string& key) {
+  return std::any_of(request.effects.begin(), request.effects.end(), [&](const EffectRequest& e) { return e.kind == key; });
+}
+
+bool specialised(const Registry& registry, const std::vector<std::string>& suiting, const std::string& key) {
+  return std::any_of(suiting.begin(), suiting.end(),
+                     [&](const std::string& other) { return registry.effect(other).spec().specialises == key; });
+}
+
+bool has_strength(const EffectSpec& spec) {
+  return std::any_of(spec.coefficients.begin(), spec.coefficients.end(),
+                     [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.borrowed; });
+}
+
+/// The request with the effect; coefficients that default to curves are numbers.
+ModelRequest with_effect(const ModelRequest& request, const Effect& effect) {
+  ModelRequest out = request;
+  out.effects.push_back({effect.spec().key, effect.spec().key, {}, {}});
+  for (const auto& c : effect.spec().coefficients) {
+    if (c.borrowed || c.curve_of[0] == '\0') continue;
+    ParameterRequest number;
+    number.value = 0.0;
+    number.free = true;
+    out.parameters[c.name] = number;
+  }
+  return out;
+}
+
+std::vector<double> grid(const ScanSpec& scan) {
+  std::vector<double> out;
+  for (int i = 0; i < scan.count; ++i)
+    out.push_back(scan.count == 1 ? scan.from : scan.from + (scan.to - scan.from) * i / (scan.count - 1));
+  return out;
+}
+
+/// Prior of a strength: the calibration's own sigma where it freed or tested the parameter, else the effect's.
+void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::Index i, Specimen& out) {
+  const std::string name = c.calibrated_as;
+  double sigma = c.prior_sigma, mean = 0.0;
+  if (calibration != nullptr && !name.empty()) {
+    const double freed = calibration->sigma(name);
+    if (freed > 0.0) sigma = freed;
+    for (const auto& test : calibration->tests) {
+      for (std::size_t k = 0; k < test.parameters.size() && !(freed > 0.0); ++k) {
+        if (test.parameters[k] != name || test.taken_in || !(test.sigmas[k] > 0.0)) continue;
+        sigma = test.sigmas[k];
+        mean = test.values[k] - calibration->value(name);  // what the sweep would have it be
+      }
+    }
+  }
+  if (!(sigma > 0.0)) return;
+  out.has_priors = true;
+  out.priors.precision[i] = 1.0 / (sigma * sigma);
+  out.priors.mean[i] = mean;
+}
+
+void fill(const Effect& effect, const Calibration* calibration, Specimen& out) {
+  const BoundEffect& bound = out.model.effects.back();
+  const auto& coefficients = effect.spec().coefficients;
+  std::vector<std::vector<double>> axes;
+  std::vector<const CoefficientSpec*> strength_specs;
+  for (std::size_t c = 0; c < coefficients.size(); ++c) {
+    const int parameter = bound.coefficients[c].parameter;
+    if (coefficients[c].borrowed || parameter < 0) continue;
+    Parameter& p = out.model.parameters[static_cast<std::size_t>(parameter)];
+    if (coefficients[c].kind == CoefficientKind::strength) {
+      p.free = true;
+      p.value = 0.0;
+      out.strengths.push_back(parameter);
+      out.one_sided.push_back(coefficients[c].lower >= 0.0);
+      strength_specs.push_back(&coefficients[c]);
+    } else if (coefficients[c].scan.count > 0) {
+      out.shapes.push_back(parameter);
+      axes.push_back(grid(coefficients[c].scan));
+    } else if (coefficients[c].scan.count < 0) {
+      out.frequency = parameter;
+      out.frequency_from = coefficients[c].scan.from;
+      out.frequency_to = coefficients[c].scan.to;
+    }
+  }
+  out.cells = {{}};
+  for (const auto& axis : axes) {
+    std::vector<std::vector<double>> grown;
+    for (const auto& cell : out.cells) {
+      for (double value : axis) {
+        grown.push_back(cell);
+        grown.back().push_back(value);
+      }
+    }
+    out.cells = std::move(grown);
+  }
+  const auto n = static_cast<Eigen::Index>(out.strengths.size());
+  out.priors.precision = out.priors.mean = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) add_prior(*strength_specs[static_cast<std::size_t>(i)], calibration, i, out);
+  for (std::size_t p = 0; p < bound.ports.size(); ++p) {
+    if (bound.ports[p] < 0) continue;
+    if (bound.kind == PortKind::dynamic) out.ports.push_back(bound.ports[p]);
+  }
+  for (int q : bound.quantities) {
+    if (q >= 0) out.quantities.push_back(q);
+  }
+}
+
+std::vector<std::string> names_of_ports(const Model& model) {
+  const BoundEffect& bound = model.effects.back();
+  const SystemSpec& spec = model.system->spec();
+  std::vector<std::string> out;
+  for (int p : bound.ports) {
+    if (p < 0) continue;
+    const auto i = static_cast<std::size_t>(p);
+    if (bound.kind == PortKind::dynamic) out.push_back(spec.dynamic_ports[i].name);
+    if (bound.kind == PortKind::quantity) out.push_back(spec.quantity_ports[i].name);
+    if (bound.kind == PortKind::sensor) out.push_back(i < spec.outputs.size() ? spec.outputs[i].name : "sample_time");
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Specimen> specimens(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                const Calibration* calibration) {
+  std::vector<Specimen> out;
+  std::vector<std::string> suiting;
+  for (const std::string& key : registry.effect_keys()) {
+    const Effect& effect = registry.effect(key);
+    if (in_model(request, key) || !has_strength(effect.spec()) || driven_by_noise(effect)) continue;
+    Specimen specimen;
+    specimen.effect = key;
+    specimen.request = with_effect(request, effect);
+    try {
+      specimen.model = assemble(specimen.request, registry);
+    } catch (const InputError&) {
+      continue;  // does not suit this system
+    }
+    const bool generic =
+        std::any_of(effect.spec().ports.begin(), effect.spec().ports.end(), [](const Role& r) { return r.unit[0] == '*'; });
+    const PortKind kind = specimen.model.effects.back().kind;
+    specimen.family = kind == PortKind::sensor ? "sensor" : generic ? "generic" : "physics";
+    for (auto& p : specimen.model.parameters) p.free = false;
+    for (const auto& p : estimate.model.parameters) {
+      const int at = specimen.model.find_parameter(p.name);
+      if (at >= 0) specimen.model.parameters[static_cast<std::size_t>(at)].value = p.value;
+    }
+    fill(effect, calibration, specimen);
+    specimen.port_names = names_of_ports(specimen.model);
+    suiting.push_back(key);
+    out.push_back(std::move(specimen));
+  }
+  std::erase_if(out, [&](const Specimen& s) { return specialised(registry, suiting, s.effect); });
+  return out;
+}
+
+Eigen::MatrixXd specimen_columns(const FilterEstimate& estimate, const Specimen& specimen, const std::vector<double>& cell) {
+  FilterModel forced = with_random_force(specimen.model);
+  forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = estimate.noise.force_time;
+  for (std::size_t i = 0; i < specimen.shapes.size(); ++i)
+    forced.model.parameters[static_cast<std::size_t>(specimen.shapes[i])].value = cell[i];
+  if (cell.size() > specimen.shapes.size()) forced.model.parameters[static_cast<std::size_t>(specimen.frequency)].value = cell.back();
+  FilterRunner runner(forced, true);
+  runner.set_parameters(forced.model.values());
+  Eigen::Index rows = 0;
+  for (const auto& jacobian : estimate.jacobians) rows += jacobian.r.size();
+  Eigen::MatrixXd out(rows, static_cast<Eigen::Index>(specimen.strengths.size()));
+  Eigen::Index at = 0;
+  FilterTrace trace;
+  FilterJacobian jacobian;
+  for (std::size_t e = 0; e < estimate.data.size(); ++e) {
+    FilterData data = filter_data_like(forced, estimate.data[e]);
+    if (!runner.run(data, estimate.noise, trace, &jacobian)) return {};
+    out.middleRows(at, jacobian.r.size()) = jacobian.J;
+    at += jacobian.r.size();
+  }
+  return out;
+}
+
+}  // namespace misfit

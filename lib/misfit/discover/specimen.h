@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/diagnose/score.h"
+#include "misfit/discover/discover.h"
+
+namespace misfit {
+
+/// An effect put to the model as a question: its strengths are free and 0, everything else is held; shapes stand at one of the cells.
+struct Specimen {
+  std::string effect, family;              ///< family: "physics", "generic", "sensor"
+  ModelRequest request;                    ///< the model's, with the effect as a number everywhere
+  Model model;                             ///< values of the estimate; only the strengths free
+  std::vector<int> strengths;              ///< parameters, in the order of the columns
+  std::vector<bool> one_sided;             ///< strengths that cannot be negative
+  std::vector<int> shapes;                 ///< parameters that are scanned, in the order of a cell's values
+  std::vector<std::vector<double>> cells;  ///< at least one (empty where nothing is scanned)
+  int frequency = -1;                      ///< shape that is a frequency to be scanned finely
+  double frequency_from = 0.0, frequency_to = 0.0;
+  ColumnPriors priors;  ///< of the strengths
+  bool has_priors = false;
+  std::vector<int> ports;  ///< dynamic ports it writes
+  std::vector<std::string> port_names;
+  std::vector<int> quantities;  ///< of the system that it reads
+};
+
+/// Every effect of the registry that suits the model's system, is not in it, and has a strength. Left out: effects driven by noise (the
+/// filter has them), and generic ones that a system's own effect specialises.
+[[nodiscard]] std::vector<Specimen> specimens(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                              const Calibration* calibration);
+
+/// Columns of a specimen's strengths at a cell: rows of the estimate × strengths. Empty where the model cannot be run so.
+[[nodiscard]] Eigen::MatrixXd specimen_columns(const FilterEstimate& estimate, const Specimen& specimen, const std::vector<double>& cell);
+
+}  // namespace misfit

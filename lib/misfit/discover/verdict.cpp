@@ -1,0 +1,88 @@
+#include "misfit/discover/verdict.h"
+
+#include <algorithm>
+
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+
+namespace misfit {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) out += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  return out;
+}
+
+std::string numbers(const Candidate& c) {
+  std::string out;
+  for (const auto& [name, estimate] : c.parameters) {
+    const std::string unit = display_unit(estimate.unit);
+    out += (out.empty() ? "" : ", ") + name + " = " +
+           format_value(convert(estimate.value, estimate.unit, unit), convert(estimate.sigma, estimate.unit, unit)) + " " + unit;
+  }
+  return out;
+}
+
+bool is_sensor(const Discovery& discovery, const std::string& effect) {
+  return std::any_of(discovery.candidates.begin(), discovery.candidates.end(),
+                     [&](const Candidate& c) { return c.effect == effect && c.family == "sensor"; });
+}
+
+void separate(const Candidate& best, Discovery& discovery) {
+  if (best.group.empty()) return;
+  std::string sentence = "these data cannot tell " + joined(best.group) + " apart";
+  const bool camera = std::any_of(best.group.begin(), best.group.end(), [&](const std::string& e) { return is_sensor(discovery, e); });
+  sentence += camera ? ": a calibration sweep that measures roll, image centre and scale with both image coordinates would"
+                     : ": a recording at another dynamic pressure or another release would";
+  discovery.sentences.push_back(sentence);
+}
+
+}  // namespace
+
+void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept) {
+  if (out.candidates.empty()) {
+    out.verdict = "No effect of the library suits this system: nothing could be tried.";
+    return;
+  }
+  const Candidate& best = out.candidates.front();
+  if (best.accepted) {
+    out.verdict = "Missing: " + best.effect + " (drop " + format_value(best.actual_drop.value_or(best.predicted_drop)) +
+                  ", family-wise p " + format_probability(best.p_value) + "): " + numbers(best) + ".";
+    separate(best, out);
+    return;
+  }
+  if (unexplained) {
+    out.verdict = "Something is missing that depends on " + unexplained->quantity + " (a force on " + unexplained->port + ", p " +
+                  format_probability(unexplained->p_value) + "), and none of the effects I know explains it.";
+    if (best.actual_drop)
+      out.sentences.push_back("the nearest named effect is " + best.effect + " (drop " + format_value(*best.actual_drop) +
+                              "): " + best.why);
+    return;
+  }
+  double least = 1.0;
+  std::string nearest;
+  for (const auto& c : out.candidates) {
+    if (c.p_value < least) {
+      least = c.p_value;
+      nearest = c.effect;
+    }
+  }
+  const std::string closest = nearest.empty() ? "" : "; the nearest is " + nearest + " with p " + format_probability(least);
+  out.verdict = "Nothing is missing that these data can show: of " + std::to_string(out.candidates.size()) +
+                " candidates none reaches a family-wise p of " + format_value(p_accept) + " with a held-out gain" + closest + ".";
+}
+
+void add_camera_remarks(const Calibration* calibration, Discovery& out) {
+  if (calibration == nullptr) return;
+  std::vector<std::string> wanted;
+  for (const auto& test : calibration->tests) {
+    constexpr double clear = 1e-3;
+    if (!test.taken_in && test.p_value < clear) wanted.push_back(test.name);
+  }
+  if (wanted.empty()) return;
+  out.sentences.push_back("the calibration sweep and the camera of this model disagree: the sweep asks for " + joined(wanted) +
+                          ", which the model's camera does not have");
+}
+
+}  // namespace misfit
