@@ -28,27 +28,15 @@ std::optional<Estimate> degrees_from_json(const Json& object) {
   return angle;
 }
 
-Json to_json(const std::map<std::string, Estimate>& estimates) {
-  Json object = Json::object();
-  for (const auto& [name, estimate] : estimates) object[name] = estimate_to_json(estimate);
-  return object;
-}
-
-std::map<std::string, Estimate> estimates_from(const Json& object) {
-  std::map<std::string, Estimate> estimates;
-  for (const auto& [name, entry] : object.items()) estimates[name] = estimate_from_json(entry);
-  return estimates;
-}
-
 Json to_json(const MethodSummary& m) {
   return {{"status", to_string(m.status)},
           {"message", m.message},
           {"driven", m.driven},
           {"trim_deg", degrees_to_json(m.trim)},
-          {"slopes", to_json(m.slopes)},
-          {"at_trim", to_json(m.at_trim)},
-          {"rms", to_json(m.rms)},
-          {"validation_rms", to_json(m.validation_rms)},
+          {"slopes", estimates_to_json(m.slopes)},
+          {"at_trim", estimates_to_json(m.at_trim)},
+          {"rms", estimates_to_json(m.rms)},
+          {"validation_rms", estimates_to_json(m.validation_rms)},
           {"loglik", number_or_null(m.loglik)},
           {"validation_loglik", number_or_null(m.validation_loglik)}};
 }
@@ -62,10 +50,10 @@ MethodSummary method_from(const std::string& name, const Json& object) {
   m.message = object.at("message");
   m.driven = object.at("driven");
   m.trim = degrees_from_json(object.at("trim_deg"));
-  m.slopes = estimates_from(object.at("slopes"));
-  m.at_trim = estimates_from(object.at("at_trim"));
-  m.rms = estimates_from(object.at("rms"));
-  m.validation_rms = estimates_from(object.at("validation_rms"));
+  m.slopes = estimates_from_json(object.at("slopes"));
+  m.at_trim = estimates_from_json(object.at("at_trim"));
+  m.rms = estimates_from_json(object.at("rms"));
+  m.validation_rms = estimates_from_json(object.at("validation_rms"));
   const auto number = [&](const char* key) { return object.at(key).is_null() ? std::nullopt : std::optional<double>(object.at(key)); };
   m.loglik = number("loglik");
   m.validation_loglik = number("validation_loglik");
@@ -152,12 +140,6 @@ void write_comparison(const std::filesystem::path& path, const Comparison& compa
   write_atomically(path, root.dump(1) + "\n");
 }
 
-Comparison read_comparison(const std::filesystem::path& path) {
-  try {
-    return comparison_from(Json::parse(read_file(path)));
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(Source{path.string(), 0, 0}, error.what());
-  }
-}
+Comparison read_comparison(const std::filesystem::path& path) { return parsed_file(path, comparison_from); }
 
 }  // namespace misfit

@@ -16,18 +16,6 @@ namespace {
 constexpr std::array<const char*, 4> status_names = {"converged", "not_converged", "declined", "failed"};
 constexpr double degree = std::numbers::pi / 180.0;
 
-Json to_json(const std::map<std::string, Estimate>& estimates) {
-  Json object = Json::object();
-  for (const auto& [name, estimate] : estimates) object[name] = estimate_to_json(estimate);
-  return object;
-}
-
-std::map<std::string, Estimate> estimates_from(const Json& root, const char* key) {
-  std::map<std::string, Estimate> estimates;
-  for (const auto& [name, object] : root.at(key).items()) estimates[name] = estimate_from_json(object);
-  return estimates;
-}
-
 Json trim_to_json(const std::optional<Estimate>& trim) {
   if (!trim) return nullptr;
   return {{"value", number_or_null(trim->value / degree)}, {"sigma", sigma_or_null(trim->sigma / degree)}};
@@ -119,14 +107,14 @@ Json fit_to_json(const Fit& fit) {
           {"message", fit.message},
           {"warnings", fit.warnings},
           {"driven", fit.driven},
-          {"parameters", to_json(fit.parameters)},
-          {"noise", to_json(fit.noise)},
-          {"force", to_json(fit.force)},
+          {"parameters", estimates_to_json(fit.parameters)},
+          {"noise", estimates_to_json(fit.noise)},
+          {"force", estimates_to_json(fit.force)},
           {"loglik", number_or_null(fit.loglik)},
           {"validation_loglik", number_or_null(fit.validation_loglik)},
           {"trim_deg", trim_to_json(fit.trim)},
-          {"rms", to_json(fit.rms)},
-          {"validation_rms", to_json(fit.validation_rms)},
+          {"rms", estimates_to_json(fit.rms)},
+          {"validation_rms", estimates_to_json(fit.validation_rms)},
           {"seconds", number_or_null(fit.seconds)},
           {"linearisations", fit.linearisations},
           {"facts", fit.facts},
@@ -154,14 +142,14 @@ Fit fit_from_json(const Json& root) {
   fit.message = root.at("message");
   fit.warnings = root.at("warnings").get<std::vector<std::string>>();
   fit.driven = root.at("driven");
-  fit.parameters = estimates_from(root, "parameters");
-  fit.noise = estimates_from(root, "noise");
-  fit.force = estimates_from(root, "force");
+  fit.parameters = estimates_from_json(root.at("parameters"));
+  fit.noise = estimates_from_json(root.at("noise"));
+  fit.force = estimates_from_json(root.at("force"));
   fit.loglik = optional_number(root.at("loglik"));
   fit.validation_loglik = optional_number(root.at("validation_loglik"));
   fit.trim = trim_from_json(root.at("trim_deg"));
-  fit.rms = estimates_from(root, "rms");
-  fit.validation_rms = estimates_from(root, "validation_rms");
+  fit.rms = estimates_from_json(root.at("rms"));
+  fit.validation_rms = estimates_from_json(root.at("validation_rms"));
   fit.seconds = number_or_nan(root, "seconds");
   fit.linearisations = root.at("linearisations");
   fit.facts = root.at("facts").get<std::map<std::string, std::string>>();

@@ -4,9 +4,14 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
 #include "misfit/data/fit.h"
 
 namespace misfit {
@@ -34,6 +39,48 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] inline Estimate estimate_from_json(const Json& object) {
   const double sigma = number_or_nan(object, "sigma");
   return {number_or_nan(object, "value"), std::isnan(sigma) ? 0.0 : sigma, object.value("unit", "")};
+}
+
+/// {NAME: {"value","sigma","unit"}, …}
+[[nodiscard]] inline Json estimates_to_json(const std::map<std::string, Estimate>& estimates) {
+  Json object = Json::object();
+  for (const auto& [name, estimate] : estimates) object[name] = estimate_to_json(estimate);
+  return object;
+}
+
+[[nodiscard]] inline std::map<std::string, Estimate> estimates_from_json(const Json& object) {
+  std::map<std::string, Estimate> estimates;
+  for (const auto& [name, entry] : object.items()) estimates[name] = estimate_from_json(entry);
+  return estimates;
+}
+
+/// An array with null for every entry that is not finite.
+[[nodiscard]] inline Json numbers_to_json(const std::vector<double>& values) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(number_or_null(value));
+  return array;
+}
+
+[[nodiscard]] inline std::vector<double> numbers_from_json(const Json& array) {
+  std::vector<double> values;
+  for (const Json& entry : array) values.push_back(entry.is_null() ? std::numeric_limits<double>::quiet_NaN() : entry.get<double>());
+  return values;
+}
+
+[[nodiscard]] inline std::optional<double> optional_from_json(const Json& object, const char* key) {
+  const double value = number_or_nan(object, key);
+  return std::isnan(value) ? std::nullopt : std::optional<double>(value);
+}
+
+/// Reads and parses PATH and hands it to `take`; whatever is wrong with its form is an InputError that names the file.
+template <class Take>
+[[nodiscard]] auto parsed_file(const std::filesystem::path& path, Take take) {
+  const std::string text = read_file(path);
+  try {
+    return take(Json::parse(text));
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(Source{path.string(), 0, 0}, error.what());
+  }
 }
 
 }  // namespace misfit
