@@ -1,6 +1,10 @@
+#include <algorithm>
+#include <cmath>
+
 #include "apps/stages.h"
 #include "misfit/core/error.h"
 #include "misfit/fit/curves.h"
+#include "misfit/math/statistics.h"
 #include "misfit/model/curve_table.h"
 #include "misfit/model/experiment.h"
 
@@ -18,20 +22,72 @@ Model provisional(ModelRequest request, const Registry& registry) {
   return assemble(request, registry);
 }
 
+/// Does the system predict the image itself? Then it reads the track; every other system reads the attitude.
+bool predicts_pixels(const SystemSpec& spec) {
+  return std::any_of(spec.outputs.begin(), spec.outputs.end(), [](const OutputSpec& o) { return o.name == "P_y" || o.name == "P_z"; });
+}
+
+std::vector<double> where_ok(std::vector<double> values, const std::vector<bool>& ok) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!ok[i]) values[i] = std::nan("");
+  }
+  return values;
+}
+
+/// The track as the channels P_y and P_z, with its sigma where it gives one.
+Signals pixels_of(const ExperimentStudy& experiment, const Model& model) {
+  const Track track = read_track(*experiment.track, experiment.columns);
+  Table table;
+  table.source = experiment.track->string();
+  table.add("t", "s", track.t);
+  table.add("P_y", "px", where_ok(track.P_y, track.ok));
+  table.add("P_z", "px", where_ok(track.P_z, track.ok));
+  ExperimentStudy plain = experiment;
+  plain.columns = {};  // the map was for the track's columns
+  Signals signals = signals_from(table, model, plain);
+  std::vector<double> known;
+  for (std::size_t i = 0; i < track.sigma.size(); ++i) {
+    if (track.ok[i] && std::isfinite(track.sigma[i])) known.push_back(track.sigma[i]);
+  }
+  for (auto& channel : signals.measured) channel.sigma = known.empty() ? 0.0 : median(known);
+  signals.notes.insert(signals.notes.begin(), track.notes.begin(), track.notes.end());
+  return signals;
+}
+
 std::vector<Signals> read_experiments(Session& session, const Model& model) {
   std::vector<Signals> out;
   const std::vector<std::optional<Attitude>> attitudes = attitude_stage(session);
+  const bool pixels = predicts_pixels(model.system->spec());
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     const ExperimentStudy& experiment = session.study.experiments[e];
-    if (attitudes[e]) {
+    if (attitudes[e] && pixels) {
+      out.push_back(pixels_of(experiment, model));
+    } else if (attitudes[e]) {
       ExperimentStudy plain = experiment;
-      plain.columns = {};  // the map was for the track's columns
+      plain.columns = {};
       out.push_back(signals_from(attitude_table(*attitudes[e]), model, plain));
     } else {
       out.push_back(signals_from(read_csv(*experiment.data), model, experiment));
     }
   }
   return out;
+}
+
+/// A system that predicts the image sees it through the study's camera: values and sigmas of the calibration, and its projection.
+void add_camera(Session& session, ModelRequest& request) {
+  const SystemType& type = session.registry.system(request.system, request.system_where);
+  const SystemSpec spec = type.make(request.options)->spec();
+  if (!predicts_pixels(spec)) return;
+  const std::optional<Calibration> calibration = calibrate_stage(session);
+  if (!calibration) return;
+  const auto has_flag = std::find(type.flags.begin(), type.flags.end(), "plane_by_plane") != type.flags.end();
+  if (has_flag) request.options.flags.emplace("plane_by_plane", calibration->model == CameraModel::plane_by_plane);
+  for (const char* name : camera_parameter_names) {
+    const bool known = std::any_of(spec.constants.begin(), spec.constants.end(), [&](const ConstantSpec& c) { return c.name == name; });
+    if (!known || request.constants.contains(name)) continue;
+    request.constants[name] = calibration->value(name);
+    if (calibration->sigma(name) > 0.0) request.constant_sigmas[name] = calibration->sigma(name);
+  }
 }
 
 void start_from_tables(const Session& session, Model& model) {
@@ -46,6 +102,7 @@ void start_from_tables(const Session& session, Model& model) {
 Prepared prepare_request(Session& session, ModelRequest request) {
   if (session.study.experiments.empty())
     throw InputError({session.study.file.string(), 0, 0}, "the study has no [[experiment]]: there is nothing to fit");
+  add_camera(session, request);
   Prepared out;
   out.experiments = read_experiments(session, provisional(request, session.registry));
   choose_all_knots(request, session.registry, out.experiments, default_intervals);

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct Options {
 };
 
 /// A study opened for work: what was asked, the run folder, and the hashes that decide what must be done again.
+struct FilterWork;
+
 struct Session {
   Session(const Options& options, const Registry& registry);
 
@@ -32,7 +35,8 @@ struct Session {
   Study study;
   StudyModel model;
   RunFolder folder;
-  std::string program;  ///< hash of the running program: another build does everything again
+  std::string program;                       ///< hash of the running program: another build does everything again
+  std::shared_ptr<const FilterWork> filter;  ///< filter_error as estimated in this run of the program, for the stages after it (stages.h)
 
   [[nodiscard]] std::vector<std::string> methods() const { return options.methods.empty() ? study.methods : options.methods; }
   /// {"program", "settings"} and the files, hashed: the inputs of a stage.

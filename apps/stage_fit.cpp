@@ -7,6 +7,7 @@
 #include "misfit/core/progress.h"
 #include "misfit/core/text.h"
 #include "misfit/fit/curves.h"
+#include "misfit/fit/filter_error.h"
 #include "misfit/fit/output_error.h"
 #include "misfit/fit/sliding_bin.h"
 
@@ -24,12 +25,24 @@ class Methods {
     if (method == "sliding_bin") return run_sliding_bin();
     if (method == "equation_error") return regression().fit;
     if (method == "output_error") return run_output_error();
-    Fit fit;
-    fit.method = method;
-    fit.status = FitStatus::declined;
-    fit.message = "method " + method + " is not part of this version";
-    return fit;
+    session_.filter = run_filter_error();
+    return session_.filter->fit;
   }
+
+  std::shared_ptr<const FilterWork> run_filter_error() {
+    auto work = std::make_shared<FilterWork>();
+    work->prepared = prepared();
+    FilterOptions options;
+    options.threads = session_.options.threads;
+    FilterError result = filter_error(started().first, work->prepared.experiments, options);
+    work->fit = std::move(result.fit);
+    work->estimate = std::move(result.estimate);
+    add_notes(work->prepared, work->fit);
+    if (work->prepared.model.free_parameters().empty())
+      work->fit.warnings.emplace_back("every parameter is fixed: only the noise and the random force were estimated");
+    return work;
+  }
+
   const Prepared& prepared() {
     if (!prepared_) prepared_ = prepare(session_);
     return *prepared_;
@@ -80,18 +93,23 @@ class Methods {
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
   }
 
-  Fit run_output_error() {
+  /// Where the trajectory methods start, and whether the regression gave it.
+  std::pair<FittedModel, bool> started() {
     FittedModel start = regression();
-    OutputErrorStart options;
-    if (start.fit.status == FitStatus::declined || start.fit.status == FitStatus::failed) {
-      if (start.model.free_parameters().empty()) {
-        start.fit.method = "output_error";
-        return start.fit;
-      }
-      options.from_regression = false;
-    } else if (start.fit.driven) {
-      damping_to_zero(start.model);  // of a regression on driven motion only the static curve means something (DESIGN 5)
+    const bool regressed = start.fit.status != FitStatus::declined && start.fit.status != FitStatus::failed;
+    // Of a regression on driven motion only the static curve means something (DESIGN 5).
+    if (regressed && start.fit.driven) damping_to_zero(start.model);
+    return {std::move(start), regressed};
+  }
+
+  Fit run_output_error() {
+    auto [start, regressed] = started();
+    if (!regressed && start.model.free_parameters().empty()) {
+      start.fit.method = "output_error";
+      return start.fit;
     }
+    OutputErrorStart options;
+    options.from_regression = regressed;
     Fit fit = output_error(start, prepared().experiments, options).fit;
     add_notes(prepared(), fit);
     return fit;
@@ -119,8 +137,11 @@ std::map<std::string, std::string> inputs_of(const Session& session, const std::
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     const ExperimentStudy& experiment = session.study.experiments[e];
     if (experiment.data) files.push_back(*experiment.data);
-    if (experiment.track) files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + experiment.name + ".csv"));
+    if (!experiment.track) continue;
+    files.push_back(*experiment.track);
+    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + experiment.name + ".csv"));
   }
+  if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
   for (const auto& [name, curve] : session.study.curves) {
     if (curve.table) files.push_back(*curve.table);
   }
@@ -137,12 +158,23 @@ std::vector<std::string> outputs_of(const fs::path& run_folder, const fs::path& 
 
 }  // namespace
 
-std::vector<Fit> fit_stage(Session& session) {
+std::shared_ptr<const FilterWork> filter_work(Session& session) {
+  if (!session.filter) {
+    session.say("estimating filter_error again for what follows");
+    session.filter = Methods(session).run_filter_error();
+  }
+  if (!session.filter->estimate)
+    throw RunError("filter_error " + to_string(session.filter->fit.status) + ": " + session.filter->fit.message);
+  return session.filter;
+}
+
+std::vector<Fit> fit_stage(Session& session) { return fit_stage(session, session.methods()); }
+
+std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& names) {
   static_cast<void>(attitude_stage(session));
   std::vector<Fit> fits;
   Methods methods(session);
   Progress progress("fit", session.options.quiet);
-  const std::vector<std::string> names = session.methods();
   for (std::size_t k = 0; k < names.size(); ++k) {
     stop_if_interrupted();
     const std::string stage = "fit/" + names[k];

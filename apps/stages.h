@@ -6,11 +6,14 @@
 #include "apps/session.h"
 #include "misfit/data/attitude.h"
 #include "misfit/data/calibration.h"
+#include "misfit/data/candidates.h"
 #include "misfit/data/comparison.h"
+#include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
 #include "misfit/data/reference.h"
 #include "misfit/data/signals.h"
 #include "misfit/fit/equation_error.h"
+#include "misfit/fit/filter_estimate.h"
 
 namespace misfit {
 
@@ -35,13 +38,33 @@ struct Prepared {
 /// Does the attitude stage already average over three samples the channel that the regression reads?
 [[nodiscard]] bool averaged_by_attitude(const Session& session);
 
+/// filter_error with everything that diagnosis and discovery need of it. `estimate` points into `prepared`: kept behind one pointer, never
+/// copied.
+struct FilterWork {
+  Prepared prepared;
+  Fit fit;
+  std::optional<FilterEstimate> estimate;  ///< absent: declined, the fit says why
+};
+
 /// fit/METHOD/… for every method asked for, in order, and resolved.toml.
 [[nodiscard]] std::vector<Fit> fit_stage(Session& session);
+/// The same for these methods.
+[[nodiscard]] std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& methods);
+/// filter_error's estimate: the one of this run of the program, else estimated again (about two seconds, and the same answer). RunError
+/// with the fit's words if it declined.
+[[nodiscard]] std::shared_ptr<const FilterWork> filter_work(Session& session);
 [[nodiscard]] std::vector<Reference> references(const Session& session);
 /// compare.json.
 [[nodiscard]] Comparison compare_stage(Session& session, const std::vector<Fit>& fits);
 /// figures/ and report.html; returns the page.
 std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fits);
+
+/// diagnosis.json and missing_force.csv; nullopt if filter_error declined (its fit says why). Runs that fit where it must.
+[[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);
+/// candidates.json and discovery.json; nullopt if filter_error declined.
+[[nodiscard]] std::optional<Discovery> discover_stage(Session& session);
+/// RunError with the words of the declined fit: for verbs that cannot go on without it.
+[[noreturn]] void refuse_declined(Session& session);
 
 /// resolved.toml: the study with every default and every choice made from the data spelled out.
 void write_resolved(const Session& session, const Prepared& prepared);

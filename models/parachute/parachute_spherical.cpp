@@ -247,6 +247,7 @@ struct ParachuteSpherical {
                {"port", "pitching_moment"},      {"output", "P_z"},
                {"rate_lateral", "lateral_rate"}, {"port_lateral", "lateral_moment"}};
     s.force_ports = {"moment_y", "moment_z"};
+    s.includes = {"coning"};
     s.readable_states = {y, z};
     s.regression = {"parachute_planar", {{"induced_angle", false}}};
     s.static_curve = "C_m";

@@ -130,7 +130,12 @@ void read_effects(const Section& root, Study& study) {
     effect.where = effects->where(key);
     effect.kind = section.text("kind").value_or(key);
     for (const std::string& role : section.keys()) {
-      if (role != "kind") effect.roles[role] = section.text(role).value_or("");
+      if (role != "kind" && role != "start") effect.roles[role] = section.text(role).value_or("");
+    }
+    if (const auto start = section.table("start")) {
+      for (const std::string& name : start->keys())
+        effect.start[name] = start->is_text(name) ? number_as_written(*start, name) : *start->number(name, "");
+      start->finish();
     }
     section.finish();
     study.effects.push_back(std::move(effect));

@@ -198,6 +198,10 @@ class Assembler {
     for (std::size_t j = 0; j < i; ++j) {
       if (request_.effects[j].name == request.name) throw InputError(request.where, "effect '" + request.name + "' is named twice");
     }
+    if (std::find(system().includes.begin(), system().includes.end(), spec.key) != system().includes.end()) {
+      throw InputError(request.where, "effect '" + request.name + "': the equations of system '" + system().key + "' have '" + spec.key +
+                                          "' by themselves, it would count twice");
+    }
     BoundEffect bound;
     bound.effect = &effect(i);
     bound.name = request.name;

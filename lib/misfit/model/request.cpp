@@ -69,6 +69,20 @@ ParameterRequest read_parameter(const ParameterStudy& study, const std::string& 
   return out;
 }
 
+/// `start` of an effect's line: values where [parameters] gives none.
+void read_starts(const Study& study, const std::map<std::string, std::string>& units, ModelRequest& request) {
+  for (const auto& effect : study.effects) {
+    for (const auto& [name, number] : effect.start) {
+      const auto unit = units.find(name);
+      if (unit != units.end() && !number.unit.empty() && !parse_unit(number.unit).same_dimension(parse_unit(unit->second)))
+        throw InputError(number.where, name + " needs [" + unit->second + "], not [" + number.unit + "]");
+      ParameterRequest& parameter = request.parameters[name];
+      if (parameter.where.file.empty()) parameter.where = number.where;
+      if (!parameter.value) parameter.value = number.value;
+    }
+  }
+}
+
 bool is_angle(const SystemSpec& spec, const std::string& quantity) {
   for (const auto& q : spec.quantities) {
     if (q.name == quantity) return parse_unit(q.unit).angle;
@@ -117,6 +131,7 @@ StudyModel read_model(const Study& study, const Registry& registry) {
     const auto unit = units.find(name);  // assemble() reports a name that is not there
     request.parameters[name] = read_parameter(parameter, unit == units.end() ? "-" : unit->second);
   }
+  read_starts(study, units, request);
   read_curves(study, spec, request);
   return out;
 }

@@ -84,6 +84,7 @@ struct SystemSpec {
   std::map<std::string, std::string> roles;              ///< default quantity or port of generic roles: "rate", "level", "port", "output"
   std::map<std::string, std::string> coefficient_names;  ///< effect's coefficient → name it has in this system ("C_mq" → "C_m_alphadot")
   std::vector<std::string> force_ports;                  ///< dynamic ports of the random force that drives the motion, in fixed axes
+  std::vector<std::string> includes;                     ///< effects that its equations have by themselves: refused beside it
   std::vector<int> readable_states;                      ///< states that System::read_states() gives
   SystemForm regression;                                 ///< form in which sliding_bin is stated (the paper's Eq. 8); empty kind: none
   std::string static_curve, damping_curve;               ///< coefficients that sliding_bin solves for; empty: none

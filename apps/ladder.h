@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/stages.h"
+#include "misfit/data/ladder.h"
+
+namespace misfit {
+
+/// The ladder of a study: ladder.json and rungs/NN_EFFECT/ in its run folder. Every rung is a study of its own, with its own results in the
+/// out/ beside it.
+class Climb {
+ public:
+  /// Opens the study and its ladder. A ladder of a study or data that have changed since is begun anew; said on stderr.
+  Climb(const Options& options, const Registry& registry);
+
+  [[nodiscard]] Session& original() { return original_; }
+  [[nodiscard]] const Ladder& ladder() const { return ladder_; }
+  /// The study of the last rung (the original where there is none), opened. Said on stderr when it is not the original.
+  [[nodiscard]] Session& top();
+  /// Its rung; makes the first one, with its fit, where there is no ladder yet.
+  [[nodiscard]] const Rung& top_rung();
+
+  /// A new rung: `effect` (or "system:KIND") added to the top. `from`: what discovery says of the effect, where it was asked. InputError: no
+  /// such effect, already there, does not suit the system; RunError: the new model cannot be fitted.
+  const Rung& add(const std::string& effect, const std::optional<Candidate>& from);
+
+ private:
+  [[nodiscard]] std::map<std::string, std::string> inputs() const;
+  [[nodiscard]] std::string relative_study(const Session& session) const;
+  void append(Rung rung);
+
+  Options options_;
+  const Registry& registry_;
+  Session original_;
+  std::optional<Session> top_;
+  Ladder ladder_;
+};
+
+/// The study's text with the effect added, for `folder`. InputError as Climb::add.
+[[nodiscard]] std::string study_with_effect(const Session& session, const std::string& effect, const std::optional<Candidate>& from,
+                                            const std::filesystem::path& folder);
+/// The study's text with another system: what does not suit it becomes a comment. Names of effects left out go to `left_out`.
+[[nodiscard]] std::string study_with_system(const Session& session, const std::string& kind, const std::filesystem::path& folder,
+                                            std::vector<std::string>& left_out);
+
+}  // namespace misfit

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "misfit/data/study.h"
+
+namespace misfit {
+
+// Changes to the text of a study that keep everything else as it is, comments and layout included. They read TOML as far as they need:
+// section headers, keys at the start of a line, strings, brackets over several lines.
+
+/// Every string that names an existing file, taken from the study's folder, rewritten so that it names the same file from `folder`.
+/// Absolute paths stay.
+[[nodiscard]] std::string text_for_folder(const Study& study, const std::filesystem::path& folder);
+
+/// The line of [effects] for an effect: "bearing = { kind = \"coulomb_friction\", rate = \"omega\" }". `start`: values of parameters to
+/// start from [SI].
+[[nodiscard]] std::string effect_line(const std::string& name, const std::string& kind, const std::map<std::string, std::string>& roles,
+                                      const std::map<std::string, double>& start = {});
+
+/// `line` after the last entry of [effects]; the section is made where there is none.
+[[nodiscard]] std::string with_effect(const std::string& text, const std::string& line);
+
+/// The entry KEY of [section] as a comment with `why` behind it; text unchanged if there is no such entry.
+[[nodiscard]] std::string without_entry(const std::string& text, const std::string& section, const std::string& key,
+                                        const std::string& why);
+
+/// The entry KEY of [section] under another name; text unchanged if there is no such entry.
+[[nodiscard]] std::string with_renamed_entry(const std::string& text, const std::string& section, const std::string& key,
+                                             const std::string& name);
+
+/// [system] kind = "KIND" instead of what is there. InputError if the study has no such line.
+[[nodiscard]] std::string with_system(const std::string& text, const std::string& kind);
+
+}  // namespace misfit

@@ -1,0 +1,98 @@
+#include "misfit/data/study_edit.h"
+
+#include <gtest/gtest.h>
+
+#include "misfit/core/error.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit {
+namespace {
+
+constexpr const char* example =
+    "# a study, with [effects] in a comment\n"
+    "[study]\nname = \"track\"\n"
+    "[system]\n"
+    "kind = \"parachute_planar\"   # the paper's\n"
+    "induced_angle = true\n"
+    "[effects]           # what is in it\n"
+    "gravity = {}        # kept\n"
+    "bearing = { kind = \"coulomb_friction\",\n"
+    "  port = \"pitching_moment\" }\n"
+    "\n"
+    "# about the curves\n"
+    "[curves]\n"
+    "C_m = { of = \"alpha_T\", knots = [\n  1, 2\n] }\n";
+
+TEST(StudyEdit, AnEffectIsOneLineMoreAfterTheLastOne) {
+  const std::string text = with_effect(example, "coning = {}");
+  const std::string before = "  port = \"pitching_moment\" }\n";
+  const std::size_t at = text.find("coning = {}\n");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(text.substr(at - before.size(), before.size()), before);
+  std::string without = text;
+  without.erase(at, std::string("coning = {}\n").size());
+  EXPECT_EQ(without, example);
+}
+
+TEST(StudyEdit, AnEffectGoesIntoAnEmptySectionAndIntoAStudyWithoutOne) {
+  EXPECT_EQ(with_effect("[effects]\n[curves]\n", "a = {}"), "[effects]\na = {}\n[curves]\n");
+  EXPECT_EQ(with_effect("[system]\nkind = \"x\"", "a = {}"), "[system]\nkind = \"x\"\n\n[effects]\na = {}\n");
+  EXPECT_EQ(with_effect("[effects]\nb = {}", "a = {}"), "[effects]\nb = {}\na = {}");
+}
+
+TEST(StudyEdit, EffectsAsTablesOfTheirOwnKeepTheirEntries) {
+  const std::string text = "[effects.bearing]\nkind = \"coulomb_friction\"\n";
+  EXPECT_EQ(with_effect(text, "a = {}"), text + "\n[effects]\na = {}\n");
+  EXPECT_EQ(with_effect("[effects]\nb = {}\n[effects.bearing]\nkind = \"k\"\n", "a = {}"),
+            "[effects]\nb = {}\na = {}\n[effects.bearing]\nkind = \"k\"\n");
+}
+
+TEST(StudyEdit, TheLineOfAnEffectHoldsKindRolesAndStart) {
+  EXPECT_EQ(effect_line("coning", "coning", {}), "coning = {}");
+  EXPECT_EQ(effect_line("bearing", "coulomb_friction", {{"rate", "omega"}}), "bearing = { kind = \"coulomb_friction\", rate = \"omega\" }");
+  EXPECT_EQ(effect_line("strut_wake", "strut_wake", {}, {{"wake_phi", -1.5}}), "strut_wake = { start = { wake_phi = -1.5 } }");
+  EXPECT_EQ(effect_line("lag", "lag", {{"port", "dx2/dt"}}, {{"lag.k", 1e-9}}),
+            "lag = { port = \"dx2/dt\", start = { \"lag.k\" = 1e-09 } }");
+}
+
+TEST(StudyEdit, AnEntryBecomesACommentWithAReason) {
+  const std::string text = without_entry(example, "effects", "bearing", "why not");
+  EXPECT_NE(text.find("# bearing = { kind = \"coulomb_friction\",  # why not\n#   port = \"pitching_moment\" }\n\n# about"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(without_entry(example, "effects", "C_m", "other section"), example);
+  EXPECT_EQ(without_entry("[effects.a]\nkind = \"k\"\n[curves]\n", "effects", "a", "w"), "# [effects.a]  # w\n# kind = \"k\"\n[curves]\n");
+}
+
+TEST(StudyEdit, AnEntryIsRenamedInItsSectionOnly) {
+  const std::string text = with_renamed_entry(example, "curves", "C_m", "C_x");
+  EXPECT_NE(text.find("[curves]\nC_x = { of"), std::string::npos);
+  EXPECT_EQ(with_renamed_entry(example, "parameters", "C_m", "C_x"), example);
+}
+
+TEST(StudyEdit, TheSystemChangesInItsLine) {
+  const std::string text = with_system(example, "parachute_spherical");
+  EXPECT_NE(text.find("kind = \"parachute_spherical\"   # the paper's\ninduced_angle"), std::string::npos);
+  EXPECT_NE(text.find("kind = \"coulomb_friction\""), std::string::npos);
+  EXPECT_THROW(static_cast<void>(with_system("[system]\nfile = \"a.toml\"\n", "b")), InputError);
+}
+
+TEST(StudyEdit, FilesKeepTheirPlaceWhenTheStudyMoves) {
+  const TemporaryFolder folder;
+  folder.write("track.csv", "x");
+  std::filesystem::create_directories(folder.path() / "deep");
+  folder.write("deep/ref.csv", "x");
+  Study study;
+  study.folder = folder.path();
+  study.text =
+      "# \"track.csv\" stays in a comment\nname = \"track\"\ntrack = \"track.csv\"  # here\nC_m = 'deep/ref.csv'\nmissing = \"no.csv\"\n";
+  EXPECT_EQ(text_for_folder(study, folder.path() / "out/rungs/01_coning"),
+            "# \"track.csv\" stays in a comment\nname = \"track\"\ntrack = \"../../../track.csv\"  # here\nC_m = "
+            "\"../../../deep/ref.csv\"\nmissing = \"no.csv\"\n");
+  study.folder = folder.path() / "deep";
+  study.text = "C_m = \"ref.csv\"\nt = \"../track.csv\"\n";
+  EXPECT_EQ(text_for_folder(study, folder.path()), "C_m = \"deep/ref.csv\"\nt = \"track.csv\"\n");
+}
+
+}  // namespace
+}  // namespace misfit
