@@ -25,6 +25,7 @@ constexpr VerbEntry verbs[] = {
     {"calibrate", "camera height, scale and what else the static sweep supports", calibrate_verb, true},
     {"attitude", "angles of the axis from the track", attitude_verb, true},
     {"fit", "estimate the model's curves and parameters", fit_verb, true},
+    {"diagnose", "where the model fails: missing force by place, time and quantity, whiteness", diagnose_verb, true},
     {"compare", "methods side by side and against reference curves", compare_verb, true},
     {"report", "figures and one self-contained page", report_verb, true},
     {"simulate", "run the model: as [simulate] says, or as fitted", simulate_verb, true},
@@ -34,6 +35,9 @@ constexpr VerbEntry verbs[] = {
 void add_options(CLI::App& verb, Options& options, bool study_required) {
   auto* study = verb.add_option("study", options.study, "study.toml, or the folder that holds it")->type_name("STUDY");
   if (study_required) study->required();
+  if (verb.get_name() == "add")
+    verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
+  if (verb.get_name() == "discover") verb.add_flag("--auto", options.automatic, "add what is accepted and look again, until nothing is");
   verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
   verb.add_option("--method", options.methods, "only these methods")
       ->type_name("NAME")

@@ -22,8 +22,8 @@ class Climb {
   /// Its rung; makes the first one, with its fit, where there is no ladder yet.
   [[nodiscard]] const Rung& top_rung();
 
-  /// A new rung: `effect` (or "system:KIND") added to the top. `from`: what discovery says of the effect, where it was asked. InputError: no
-  /// such effect, already there, does not suit the system; RunError: the new model cannot be fitted.
+  /// A new rung: `effect` (or "system:KIND") added to the top. `from`: what discovery says of the effect, where it was asked. InputError:
+  /// no such effect, already there, does not suit the system; RunError: the new model cannot be fitted.
   const Rung& add(const std::string& effect, const std::optional<Candidate>& from);
 
  private:

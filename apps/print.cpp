@@ -44,6 +44,7 @@ std::string fit_text(const Fit& fit) {
   if (fit.trim) rows.push_back({"trim", shown(*fit.trim)});
   add_estimates("residual RMS", fit.rms, rows);
   add_estimates("validation RMS", fit.validation_rms, rows);
+  add_estimates("random force", fit.force, rows);
   add_estimates("noise", fit.noise, rows);
   for (const auto& [name, e] : fit.parameters) {
     if (name.find('[') == std::string::npos) rows.push_back({name, shown(e)});

@@ -5,7 +5,10 @@
 
 #include "misfit/data/attitude.h"
 #include "misfit/data/calibration.h"
+#include "misfit/data/candidates.h"
+#include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
+#include "misfit/data/ladder.h"
 
 namespace misfit {
 
@@ -13,6 +16,11 @@ namespace misfit {
 [[nodiscard]] std::string calibration_text(const Calibration& calibration);
 [[nodiscard]] std::string attitude_text(const std::string& experiment, const Attitude& attitude);
 [[nodiscard]] std::string fits_text(const std::vector<Fit>& fits);
+[[nodiscard]] std::string diagnosis_text(const Diagnosis& diagnosis);
+[[nodiscard]] std::string discovery_text(const Discovery& discovery);
+/// Error before and after of a rung and its parent, per channel in its unit.
+[[nodiscard]] std::string rung_text(const Ladder& ladder, const Rung& rung);
+[[nodiscard]] std::string ladder_text(const Ladder& ladder);
 /// 1 if every method failed or declined although some were asked for, else 0.
 [[nodiscard]] int status_of(const std::vector<Fit>& fits);
 /// The content of a result file, to stdout: for --json.

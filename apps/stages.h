@@ -63,6 +63,10 @@ std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fit
 [[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);
 /// candidates.json and discovery.json; nullopt if filter_error declined.
 [[nodiscard]] std::optional<Discovery> discover_stage(Session& session);
+/// Runs filter_error where it must; did it decline or fail?
+[[nodiscard]] bool filter_declined(Session& session);
+/// All files that its fit left: another estimate is another diagnosis.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_filter(const Session& session);
 /// RunError with the words of the declined fit: for verbs that cannot go on without it.
 [[noreturn]] void refuse_declined(Session& session);
 

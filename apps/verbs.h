@@ -13,6 +13,9 @@ int simulate_verb(const Options& options, const Registry& registry);
 int fit_verb(const Options& options, const Registry& registry);
 int compare_verb(const Options& options, const Registry& registry);
 int report_verb(const Options& options, const Registry& registry);
+int diagnose_verb(const Options& options, const Registry& registry);
+int discover_verb(const Options& options, const Registry& registry);
+int add_verb(const Options& options, const Registry& registry);
 int run_verb(const Options& options, const Registry& registry);
 int effects_verb(const Options& options, const Registry& registry);
 

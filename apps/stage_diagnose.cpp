@@ -1,12 +1,9 @@
-// What follows filter_error: diagnose and discover.
-
 #include <algorithm>
 #include <chrono>
 
 #include "apps/stages.h"
 #include "misfit/core/error.h"
 #include "misfit/diagnose/diagnose.h"
-#include "misfit/discover/discover.h"
 
 namespace misfit {
 namespace {
@@ -14,19 +11,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* method = "filter_error";
-
-/// All files that the fit left: another estimate is another diagnosis.
-std::vector<fs::path> files_of_fit(const Session& session) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(session.folder.file(std::string("fit/") + method))) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-bool declined(Session& session) {
-  const Fit fit = fit_stage(session, {method}).front();
-  return fit.status == FitStatus::declined || fit.status == FitStatus::failed;
-}
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -46,15 +30,27 @@ std::vector<std::string> files_of(const Diagnosis& diagnosis) {
 
 }  // namespace
 
+std::vector<fs::path> files_of_filter(const Session& session) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(session.folder.file(std::string("fit/") + method))) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool filter_declined(Session& session) {
+  const Fit fit = fit_stage(session, {method}).front();
+  return fit.status == FitStatus::declined || fit.status == FitStatus::failed;
+}
+
 void refuse_declined(Session& session) {
   const Fit fit = fit_stage(session, {method}).front();
   throw RunError(fit.method + " " + to_string(fit.status) + ", so there are no innovations to look at: " + fit.message);
 }
 
 std::optional<Diagnosis> diagnose_stage(Session& session) {
-  if (declined(session)) return std::nullopt;
+  if (filter_declined(session)) return std::nullopt;
   stop_if_interrupted();
-  const auto inputs = session.inputs("diagnose", files_of_fit(session));
+  const auto inputs = session.inputs("diagnose", files_of_filter(session));
   if (session.folder.up_to_date("diagnose", inputs)) return read_diagnosis(session.folder.path());
   const auto work = filter_work(session);
   const auto begin = std::chrono::steady_clock::now();
@@ -62,25 +58,6 @@ std::optional<Diagnosis> diagnose_stage(Session& session) {
   write_diagnosis(session.folder.path(), diagnosis);
   record(session, "diagnose", inputs, files_of(diagnosis), seconds_since(begin));
   return diagnosis;
-}
-
-std::optional<Discovery> discover_stage(Session& session) {
-  if (declined(session)) return std::nullopt;
-  stop_if_interrupted();
-  std::vector<fs::path> files = files_of_fit(session);
-  const std::optional<Calibration> calibration = calibrate_stage(session);
-  if (calibration) files.push_back(session.folder.file("camera.json"));
-  const auto inputs = session.inputs("discover", files);
-  if (session.folder.up_to_date("discover", inputs)) return read_discovery(session.folder.path());
-  const auto work = filter_work(session);
-  const auto begin = std::chrono::steady_clock::now();
-  DiscoverOptions options;
-  options.threads = session.options.threads;
-  options.calibration = calibration ? &*calibration : nullptr;
-  Discovery discovery = discover(*work->estimate, work->prepared.request, session.registry, work->prepared.experiments, options);
-  write_discovery(session.folder.path(), discovery);
-  record(session, "discover", inputs, {"candidates.json", "discovery.json"}, seconds_since(begin));
-  return discovery;
 }
 
 }  // namespace misfit

@@ -1,0 +1,21 @@
+#include <iostream>
+
+#include "apps/print.h"
+#include "apps/stages.h"
+#include "apps/verbs.h"
+
+namespace misfit {
+
+int diagnose_verb(const Options& options, const Registry& registry) {
+  Session session(options, registry);
+  const std::optional<Diagnosis> diagnosis = diagnose_stage(session);
+  if (!diagnosis) refuse_declined(session);
+  if (options.json) {
+    print_file(session.folder.file("diagnosis.json"));
+  } else {
+    std::cout << diagnosis_text(*diagnosis);
+  }
+  return 0;
+}
+
+}  // namespace misfit

@@ -1,0 +1,212 @@
+#include "apps/ladder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/fit/filter_error.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* ladder_name = "ladder.json";
+constexpr const char* method = "filter_error";
+constexpr const char* system_prefix = "system:";
+
+/// The options of the command for another study, its results in the out/ beside it.
+Options options_for(const Options& options, const fs::path& study) {
+  Options other = options;
+  other.study = study.string();
+  other.out.clear();
+  return other;
+}
+
+/// filter_error's fit and estimate; RunError in its words if it declined.
+std::shared_ptr<const FilterWork> fitted(Session& session) {
+  const Fit fit = fit_stage(session, {method}).front();
+  if (fit.status == FitStatus::declined || fit.status == FitStatus::failed) refuse_declined(session);
+  return filter_work(session);
+}
+
+/// What the fit says of the model, without what made it.
+Rung rung_of(const Session& session, const FilterWork& work) {
+  Rung rung;
+  rung.system = session.model.request.system;
+  rung.method = method;
+  rung.loglik = work.estimate->loglik;
+  rung.validation_loglik = work.fit.validation_loglik;
+  rung.force = work.fit.force;
+  rung.rms = work.fit.rms;
+  rung.validation_rms = work.fit.validation_rms;
+  rung.k_step = k_step_errors(*work.estimate);
+  rung.trim = work.fit.trim;
+  return rung;
+}
+
+/// Estimates of the child that the parent does not have.
+std::map<std::string, Estimate> new_parameters(const FilterWork& child, const FilterWork& parent) {
+  std::map<std::string, Estimate> out;
+  for (const auto& [name, estimate] : child.fit.parameters) {
+    if (!parent.fit.parameters.contains(name) && name.find('[') == std::string::npos) out[name] = estimate;
+  }
+  return out;
+}
+
+bool same_channels(const Model& a, const Model& b) {
+  const auto& x = a.system->spec();
+  const auto& y = b.system->spec();
+  return x.key == y.key && std::equal(x.outputs.begin(), x.outputs.end(), y.outputs.begin(), y.outputs.end(),
+                                      [](const OutputSpec& p, const OutputSpec& q) { return p.name == q.name; });
+}
+
+/// The child's penalties with the parent's weights for the curves that both have: the same prior on both sides of a drop.
+std::vector<Penalty> shared_penalties(const FilterEstimate& child, const FilterEstimate& parent) {
+  std::vector<Penalty> penalties = child.penalties;
+  for (auto& own : penalties) {
+    const std::string& name = child.model.curves[static_cast<std::size_t>(own.curve)].name;
+    for (const auto& other : parent.penalties) {
+      if (parent.model.curves[static_cast<std::size_t>(other.curve)].name == name) own.lambda = other.lambda;
+    }
+  }
+  return penalties;
+}
+
+struct Gain {
+  double drop = 0.0;
+  std::optional<double> held_out;
+};
+
+/// 2 [log L(with) − log L(without)] on the same readings and with the same weights of roughness, each at its own maximum, priors counted.
+Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
+  FilterOptions options;
+  options.threads = threads;
+  options.noise = child.estimate->noise;
+  options.around = parent.estimate->around;
+  options.choose_roughness = false;
+  std::vector<std::vector<Use>> use;
+  for (const auto& data : parent.estimate->data) use.push_back(data.use);
+  options.use = use;
+  const FilterEstimate with =
+      estimate_filter(child.estimate->model, shared_penalties(*child.estimate, *parent.estimate), child.prepared.experiments, options);
+  Gain gain{2.0 * (with.objective - parent.estimate->objective), std::nullopt};
+  if (parent.fit.validation_loglik) gain.held_out = with.validation_loglik - parent.estimate->validation_loglik;
+  return gain;
+}
+
+std::string file_name(const std::string& added) {
+  std::string name;
+  for (const char c : added) name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ? c : '_';
+  return name;
+}
+
+}  // namespace
+
+Climb::Climb(const Options& options, const Registry& registry) : options_(options), registry_(registry), original_(options, registry) {
+  const fs::path file = original_.folder.file(ladder_name);
+  if (!fs::exists(file)) return;
+  const auto& stages = original_.folder.stages();
+  const auto recorded = stages.find("ladder");
+  if (recorded != stages.end() && recorded->second.inputs == inputs()) {
+    ladder_ = read_ladder(file);
+  } else {
+    original_.say("the study or its data have changed since its ladder was climbed: it is begun anew");
+  }
+}
+
+std::map<std::string, std::string> Climb::inputs() const {
+  std::vector<fs::path> files;
+  for (const auto& experiment : original_.study.experiments) {
+    for (const auto& file : {experiment.track, experiment.video, experiment.data}) {
+      if (file) files.push_back(*file);
+    }
+  }
+  if (original_.study.camera.sweep) files.push_back(*original_.study.camera.sweep);
+  auto out = original_.inputs(original_.study.text, files);
+  out.erase("program");  // another build refits the rungs, it does not take them down
+  return out;
+}
+
+Session& Climb::top() {
+  if (ladder_.rungs.size() < 2) return original_;
+  if (!top_) {
+    const Rung& last = ladder_.rungs.back();
+    const fs::path study = original_.folder.file(last.study);
+    if (!fs::exists(study))
+      throw RunError("rung " + std::to_string(last.id) + " of the ladder is gone: " + study.string() + " — remove " +
+                     original_.folder.file(ladder_name).string() + " to begin anew");
+    original_.say(fmt::format("going on from rung {} of the ladder, {}", last.id, study.parent_path().lexically_normal().string()));
+    top_.emplace(options_for(options_, study), registry_);
+  }
+  return *top_;
+}
+
+const Rung& Climb::top_rung() {
+  if (ladder_.rungs.empty()) {
+    const auto work = fitted(original_);
+    Rung first = rung_of(original_, *work);
+    first.study = relative_study(original_);
+    append(std::move(first));
+  }
+  return ladder_.rungs.back();
+}
+
+std::string Climb::relative_study(const Session& session) const {
+  const fs::path from = fs::absolute(original_.folder.path()).lexically_normal();
+  return fs::absolute(session.study.file).lexically_normal().lexically_relative(from).generic_string();
+}
+
+void Climb::append(Rung rung) {
+  const auto begin = std::chrono::steady_clock::now();
+  ladder_.rungs.push_back(std::move(rung));
+  write_ladder(original_.folder.file(ladder_name), ladder_);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  original_.folder.record({"ladder", options_.command, inputs(), {ladder_name}, seconds, "", ""});
+}
+
+const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>& from) {
+  Session& below = top();
+  const int id = static_cast<int>(std::max<std::size_t>(ladder_.rungs.size(), 1));
+  const bool system = effect.starts_with(system_prefix);
+  const std::string name = system ? effect.substr(std::string(system_prefix).size()) : effect;
+  const fs::path folder = original_.folder.file(fmt::format("rungs/{:02}_{}", id, file_name(name)));
+  std::vector<std::string> left_out;
+  const std::string text = system ? study_with_system(below, name, folder, left_out) : study_with_effect(below, effect, from, folder);
+  const Rung parent = top_rung();  // a study that cannot be climbed is refused by now: fit what is below
+  const auto below_work = fitted(below);
+  fs::remove_all(folder);
+  make_writable_folder(folder);
+  write_atomically(folder / "study.toml", text);
+  Session above(options_for(options_, folder / "study.toml"), registry_);
+  const auto work = fitted(above);
+  Rung rung = rung_of(above, *work);
+  rung.id = id;
+  rung.parent = parent.id;
+  rung.study = relative_study(above);
+  rung.added = effect;
+  if (system) {
+    rung.note = "a change of system has no drop: its channels and states are others; compare k-step errors and the force";
+    for (const auto& left : left_out) rung.note += "; effect '" + left + "' is left out: it does not suit " + name;
+  } else {
+    rung.parameters = new_parameters(*work, *below_work);
+    if (from) rung.predicted_drop = from->actual_drop || from->predicted_drop > 0.0 ? from->predicted_drop : std::optional<double>();
+    if (same_channels(work->estimate->model, below_work->estimate->model)) {
+      const Gain gain = gain_of(*work, *below_work, options_.threads);
+      rung.actual_drop = gain.drop;
+      rung.held_out_gain = gain.held_out;
+    }
+  }
+  append(std::move(rung));
+  top_.reset();
+  top_.emplace(options_for(options_, folder / "study.toml"), registry_);
+  top_->filter = work;
+  return ladder_.rungs.back();
+}
+
+}  // namespace misfit
