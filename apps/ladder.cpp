@@ -100,6 +100,19 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   return gain;
 }
 
+std::map<std::string, std::string> inputs_of_ladder(const Session& session) {
+  std::vector<fs::path> files;
+  for (const auto& experiment : session.study.experiments) {
+    for (const auto& file : {experiment.track, experiment.video, experiment.data}) {
+      if (file) files.push_back(*file);
+    }
+  }
+  if (session.study.camera.sweep) files.push_back(*session.study.camera.sweep);
+  auto out = session.inputs(session.study.text, files);
+  out.erase("program");  // another build refits the rungs, it does not take them down
+  return out;
+}
+
 std::string file_name(const std::string& added) {
   std::string name;
   for (const char c : added) name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ? c : '_';
@@ -108,29 +121,20 @@ std::string file_name(const std::string& added) {
 
 }  // namespace
 
-Climb::Climb(const Options& options, const Registry& registry) : options_(options), registry_(registry), original_(options, registry) {
-  const fs::path file = original_.folder.file(ladder_name);
-  if (!fs::exists(file)) return;
-  const auto& stages = original_.folder.stages();
+std::optional<Ladder> known_ladder(const Session& session) {
+  const fs::path file = session.folder.file(ladder_name);
+  const auto& stages = session.folder.stages();
   const auto recorded = stages.find("ladder");
-  if (recorded != stages.end() && recorded->second.inputs == inputs()) {
-    ladder_ = read_ladder(file);
-  } else {
-    original_.say("the study or its data have changed since its ladder was climbed: it is begun anew");
-  }
+  if (!fs::exists(file) || recorded == stages.end() || recorded->second.inputs != inputs_of_ladder(session)) return std::nullopt;
+  return read_ladder(file);
 }
 
-std::map<std::string, std::string> Climb::inputs() const {
-  std::vector<fs::path> files;
-  for (const auto& experiment : original_.study.experiments) {
-    for (const auto& file : {experiment.track, experiment.video, experiment.data}) {
-      if (file) files.push_back(*file);
-    }
+Climb::Climb(const Options& options, const Registry& registry) : options_(options), registry_(registry), original_(options, registry) {
+  if (auto known = known_ladder(original_)) {
+    ladder_ = std::move(*known);
+  } else if (fs::exists(original_.folder.file(ladder_name))) {
+    original_.say("the study or its data have changed since its ladder was climbed: it is begun anew");
   }
-  if (original_.study.camera.sweep) files.push_back(*original_.study.camera.sweep);
-  auto out = original_.inputs(original_.study.text, files);
-  out.erase("program");  // another build refits the rungs, it does not take them down
-  return out;
 }
 
 Session& Climb::top() {
@@ -167,7 +171,7 @@ void Climb::append(Rung rung) {
   ladder_.rungs.push_back(std::move(rung));
   write_ladder(original_.folder.file(ladder_name), ladder_);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  original_.folder.record({"ladder", options_.command, inputs(), {ladder_name}, seconds, "", ""});
+  original_.folder.record({"ladder", options_.command, inputs_of_ladder(original_), {ladder_name}, seconds, "", ""});
 }
 
 const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>& from) {

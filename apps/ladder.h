@@ -4,7 +4,6 @@
 #include <string>
 
 #include "apps/stages.h"
-#include "misfit/data/ladder.h"
 
 namespace misfit {
 
@@ -27,7 +26,6 @@ class Climb {
   const Rung& add(const std::string& effect, const std::optional<Candidate>& from);
 
  private:
-  [[nodiscard]] std::map<std::string, std::string> inputs() const;
   [[nodiscard]] std::string relative_study(const Session& session) const;
   void append(Rung rung);
 

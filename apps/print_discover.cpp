@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "apps/print.h"
@@ -25,9 +26,16 @@ std::string number(const std::optional<double>& value, const char* format = "{:.
   return value && std::isfinite(*value) ? fmt::format(fmt::runtime(format), *value) : "–";
 }
 
+/// With a capital letter and a full stop.
+std::string as_sentence(std::string text) {
+  if (text.empty()) return text;
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text.ends_with('.') || text.ends_with('!') || text.ends_with('?') ? text : text + ".";
+}
+
 std::string sentences_text(const std::vector<std::string>& sentences) {
   std::string out;
-  for (const auto& sentence : sentences) out += wrap_text(sentence, width, "  ") + "\n";
+  for (const auto& sentence : sentences) out += wrap_text(as_sentence(sentence), width, "  ") + "\n";
   return out;
 }
 
@@ -131,7 +139,7 @@ std::string diagnosis_text(const Diagnosis& d) {
 }
 
 std::string discovery_text(const Discovery& d) {
-  std::string out = wrap_text(d.verdict, width, "") + "\n" + sentences_text(d.sentences);
+  std::string out = wrap_text(as_sentence(d.verdict), width, "") + "\n" + sentences_text(d.sentences);
   Cells rows{{"rank", "effect", "predicted drop", "actual drop", "held-out gain", "p", "group", "accepted"}};
   constexpr std::size_t most = 15;
   for (const auto& c : d.candidates) {

@@ -32,7 +32,8 @@ std::vector<std::string> files_of(const Diagnosis& diagnosis) {
 
 std::vector<fs::path> files_of_filter(const Session& session) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(session.folder.file(std::string("fit/") + method))) files.push_back(entry.path());
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(session.folder.file(std::string("fit/") + method), none)) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -47,11 +48,28 @@ void refuse_declined(Session& session) {
   throw RunError(fit.method + " " + to_string(fit.status) + ", so there are no innovations to look at: " + fit.message);
 }
 
+std::optional<Diagnosis> known_diagnosis(const Session& session) {
+  const auto inputs = session.inputs("diagnose", files_of_filter(session));
+  if (!session.folder.up_to_date("diagnose", inputs)) return std::nullopt;
+  return read_diagnosis(session.folder.path());
+}
+
+std::map<std::string, std::string> inputs_of_discovery(const Session& session) {
+  std::vector<fs::path> files = files_of_filter(session);
+  if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
+  return session.inputs("discover", files);
+}
+
+std::optional<Discovery> known_discovery(const Session& session) {
+  if (!session.folder.up_to_date("discover", inputs_of_discovery(session))) return std::nullopt;
+  return read_discovery(session.folder.path());
+}
+
 std::optional<Diagnosis> diagnose_stage(Session& session) {
   if (filter_declined(session)) return std::nullopt;
   stop_if_interrupted();
+  if (auto known = known_diagnosis(session)) return known;
   const auto inputs = session.inputs("diagnose", files_of_filter(session));
-  if (session.folder.up_to_date("diagnose", inputs)) return read_diagnosis(session.folder.path());
   const auto work = filter_work(session);
   const auto begin = std::chrono::steady_clock::now();
   Diagnosis diagnosis = diagnose(*work->estimate, {session.options.threads});

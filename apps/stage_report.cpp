@@ -67,6 +67,9 @@ std::vector<fs::path> files_of(const Session& session, const std::vector<Fit>& f
 std::vector<fs::path> files_of_report(const Session& session, const std::vector<Fit>& fits) {
   std::vector<fs::path> files = files_of(session, fits);
   files.push_back(session.folder.file("compare.json"));
+  for (const char* name : {"diagnosis.json", "missing_force.csv", "candidates.json", "discovery.json", "ladder.json"}) {
+    if (fs::exists(session.folder.file(name))) files.push_back(session.folder.file(name));
+  }
   for (const auto& [curve, file] : session.study.reference) files.push_back(file);
   if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
@@ -113,6 +116,9 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   input.question = session.study.question;
   input.fits = fits;
   input.references = references(session);
+  input.diagnosis = known_diagnosis(session);
+  input.discovery = known_discovery(session);
+  input.ladder = known_ladder(session);
   input.run = facts_of(session);
   fs::remove_all(session.folder.file("figures"));
   fs::path page = report::write_report(session.folder.path(), input);

@@ -10,6 +10,7 @@
 #include "misfit/data/comparison.h"
 #include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
+#include "misfit/data/ladder.h"
 #include "misfit/data/reference.h"
 #include "misfit/data/signals.h"
 #include "misfit/fit/equation_error.h"
@@ -63,9 +64,15 @@ std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fit
 [[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);
 /// candidates.json and discovery.json; nullopt if filter_error declined.
 [[nodiscard]] std::optional<Discovery> discover_stage(Session& session);
+/// What these stages left on disk, where it still belongs to the fit that is there.
+[[nodiscard]] std::optional<Diagnosis> known_diagnosis(const Session& session);
+[[nodiscard]] std::optional<Discovery> known_discovery(const Session& session);
+[[nodiscard]] std::map<std::string, std::string> inputs_of_discovery(const Session& session);
+/// ladder.json where it still belongs to the study and its data (apps/ladder.h).
+[[nodiscard]] std::optional<Ladder> known_ladder(const Session& session);
 /// Runs filter_error where it must; did it decline or fail?
 [[nodiscard]] bool filter_declined(Session& session);
-/// All files that its fit left: another estimate is another diagnosis.
+/// All files that its fit left: another estimate is another diagnosis. None if there is no fit.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_filter(const Session& session);
 /// RunError with the words of the declined fit: for verbs that cannot go on without it.
 [[noreturn]] void refuse_declined(Session& session);

@@ -10,6 +10,7 @@
 #include "misfit/core/table.h"
 #include "misfit/report/gnuplot_run.h"
 #include "misfit/report/gnuplot_script.h"
+#include "misfit/report/gnuplot_series.h"
 
 namespace misfit::report {
 namespace {
@@ -28,7 +29,17 @@ std::string unique_key(const std::string& key, std::set<std::string>& used) {
   return result;
 }
 
-bool along_x(Style style) { return style == Style::x_bars || style == Style::boxes; }
+/// Does this column run along x, and so have the unit of x?
+bool along_x(Style style, const std::string& column) {
+  if (column == "x") return true;
+  if (style == Style::x_bars || style == Style::boxes) return column != "y";
+  return style == Style::cells && column == "lo";
+}
+
+const std::string& unit_of(const Figure& figure, const Panel& panel, Style style, const std::string& column) {
+  if (column == "z") return figure.z_unit;
+  return along_x(style, column) ? figure.x_unit : panel.y_unit;
+}
 
 void check(const Figure& figure) {
   if (figure.name.empty() || figure.name.front() == '.' || figure.name.find_first_not_of(name_characters) != std::string::npos) {
@@ -55,8 +66,7 @@ Table numbers_of(const Figure& figure) {
     for (const Series& s : panel.series) {
       const std::string key = unique_key(s.key, used);
       for (const auto& [column, values] : columns_of(s)) {
-        const bool horizontal = std::string(column) == "x" || (along_x(s.style) && std::string(column) != "y");
-        table.add(key + "." + column, horizontal ? figure.x_unit : panel.y_unit, padded(*values, rows));
+        table.add(key + "." + column, unit_of(figure, panel, s.style, column), padded(*values, rows));
       }
     }
   }

@@ -20,7 +20,9 @@ enum class Style {
   band,        ///< x, lo, hi: translucent area
   pale_band,   ///< the same, paler: not to be relied on
   steps,       ///< x, y
-  boxes        ///< x, y, lo, hi: boxes from 0 to y, between lo and hi along x
+  boxes,       ///< x, y, lo, hi: boxes from 0 to y, between lo and hi along x
+  bars,        ///< x, y, lo, hi: boxes from 0 to x, between lo and hi along y
+  cells        ///< x, y, lo, hi, z: rectangles from x − lo to x + lo and y − hi to y + hi, coloured by z about 0
 };
 
 /// One thing drawn. Vectors of equal length; NaN breaks a line and leaves out a point.
@@ -31,6 +33,13 @@ struct Series {
   std::string colour = "#000000";
   std::vector<double> x, y, lo, hi;  ///< in the units of the figure's axes
   double width = 2.0;                ///< of lines [px]
+  std::vector<double> z = {};        ///< cells: what the colour shows, in Figure::z_unit
+};
+
+/// A name at a place of an axis, instead of numbers.
+struct Mark {
+  double at = 0.0;
+  std::string text;
 };
 
 /// One pair of axes; the panels of a figure stand above each other and share x.
@@ -41,6 +50,7 @@ struct Panel {
   double y_step = 0.0;                           ///< distance of the marks on the y axis; 0: chosen
   double height = 300.0;                         ///< of the axes [px]
   bool zero_line = false;
+  std::vector<Mark> y_marks = {};  ///< names instead of numbers
 };
 
 /// A figure as plain data. Texts are plain UTF-8; known symbols ("alpha_T", "C_m") are typeset when drawn.
@@ -53,6 +63,8 @@ struct Figure {
   std::vector<Panel> panels;
   std::vector<std::string> notes;  ///< what a reader must know: left out, not informative; under the figure
   bool equal_axes = false;         ///< one degree is as long in x as in y (one panel)
+  std::vector<Mark> x_marks;       ///< names instead of numbers
+  std::string z_label, z_unit;     ///< of the colours of cells
 };
 
 /// Okabe and Ito's palette, safe for colour-blind readers, dark colours first, without yellow: colour k of k = 0, 1, 2, …; repeats after 6.

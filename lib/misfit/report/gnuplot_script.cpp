@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/report/gnuplot_series.h"
 #include "misfit/report/symbols.h"
 
 namespace misfit::report {
@@ -15,10 +16,17 @@ constexpr double full_width = 900.0;  // [px], as all that follow
 constexpr double square_width = 680.0;
 constexpr double left = 86.0;
 constexpr double right = 24.0;
+constexpr double colour_bar = 100.0;
 constexpr double title_height = 42.0;
 constexpr double legend_row = 21.0;
 constexpr double panel_gap = 16.0;
 constexpr double bottom = 66.0;
+
+/// Room beside the axes of all panels.
+struct Margins {
+  double left = 0.0, right = 0.0, bottom = 0.0;
+  bool slanted = false;  ///< the names below do not fit side by side
+};
 
 /// Where a panel stands, from the top of the figure.
 struct Place {
@@ -39,7 +47,20 @@ std::size_t letters(const std::string& text) {
   return count;
 }
 
-std::string legend_of(const Series& s) { return has_data(s) || s.legend.empty() ? s.legend : s.legend + " (no data)"; }
+Margins margins_of(const Figure& figure) {
+  constexpr double letter = 7.2;
+  Margins m{left, right, bottom, false};
+  for (const Panel& panel : figure.panels) {
+    for (const Mark& mark : panel.y_marks) m.left = std::max(m.left, 30.0 + letter * static_cast<double>(letters(mark.text)));
+    for (const Series& s : panel.series) m.right = s.style == Style::cells ? colour_bar : m.right;
+  }
+  std::size_t longest = 0;
+  for (const Mark& mark : figure.x_marks) longest = std::max(longest, letters(mark.text));
+  const double room = (full_width - m.left - m.right) / static_cast<double>(std::max<std::size_t>(figure.x_marks.size(), 1));
+  m.slanted = letter * static_cast<double>(longest) > room;
+  if (m.slanted) m.bottom += 0.35 * letter * static_cast<double>(longest);
+  return m;
+}
 
 Place place_panel(const Panel& panel, double top, double width) {
   std::size_t entries = 0;
@@ -73,17 +94,28 @@ Range finite_range(const std::vector<const std::vector<double>*>& columns) {
   return range;
 }
 
+/// Both edges of cells about `middle`.
+std::vector<double> beyond(const std::vector<double>& middle, const std::vector<double>& half) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < middle.size(); ++i) out.insert(out.end(), {middle[i] - half[i], middle[i] + half[i]});
+  return out;
+}
+
 Range x_range_of(const Figure& figure) {
   if (figure.x_range) return *figure.x_range;
   std::vector<const std::vector<double>*> columns;
+  std::vector<std::vector<double>> edges;
   bool margin = false;
   for (const Panel& panel : figure.panels) {
     for (const Series& s : panel.series) {
       columns.push_back(&s.x);
       if (s.style == Style::boxes) columns.insert(columns.end(), {&s.lo, &s.hi});
+      if (s.style == Style::cells) edges.push_back(beyond(s.x, s.lo));
+      if (s.style == Style::bars) edges.push_back({0.0});
       margin = margin || s.style == Style::markers || s.style == Style::error_bars;
     }
   }
+  for (const auto& edge : edges) columns.push_back(&edge);
   const Range range = finite_range(columns);
   const double space = margin ? 0.015 * (range[1] - range[0]) : 0.0;  // whole markers at the edges
   return {range[0] - space, range[1] + space};
@@ -98,76 +130,12 @@ void make_equal(Range& x, Range& y, double w, double h) {
   y = {y_middle - 0.5 * scale * h, y_middle + 0.5 * scale * h};
 }
 
-/// Rows drawn of one series, more than the axes have pixels; a point costs a drawing ten times the bytes of a vertex.
-std::size_t drawn_rows(Style style) {
-  const bool vertices = style == Style::line || style == Style::dashed || style == Style::dotted || style == Style::steps;
-  return vertices ? 5000 : 1200;
-}
-
-std::string look(const Series& s) {
-  const std::string colour = "lc rgb '" + s.colour + "'";
-  switch (s.style) {
-    case Style::line:
-      return fmt::format("with lines lw {} dt 1 {}", s.width, colour);
-    case Style::dashed:
-      return fmt::format("with lines lw {} dt (7,5) {}", s.width, colour);
-    case Style::dotted:
-      return fmt::format("with lines lw {} dt (2,4) {}", s.width, colour);
-    case Style::points:
-      return "with points pt 7 ps 0.28 " + colour;
-    case Style::markers:
-      return "with points pt 6 ps 0.7 lw 1.5 " + colour;
-    case Style::error_bars:
-      return "with points pt 7 ps 0.4 " + colour;
-    case Style::x_bars:
-      return "with points pt 13 ps 0.9 " + colour;
-    case Style::band:
-      return "with filledcurves fs transparent solid 0.20 noborder fc rgb '" + s.colour + "'";
-    case Style::pale_band:
-      return "with filledcurves fs transparent solid 0.07 noborder fc rgb '" + s.colour + "'";
-    case Style::steps:
-      return fmt::format("with steps lw {} {}", s.width, colour);
-    case Style::boxes:
-      return "with boxxyerror fc rgb '" + s.colour + "' fs transparent solid 0.45 border lc rgb '" + s.colour + "'";
-  }
-  return "";
-}
-
-std::string columns_text(const Series& s, std::size_t first) {
-  if (s.style == Style::boxes)
-    return fmt::format("(v({0})):(v({1})):(v({2})):(v({3})):(0):(v({1}))", first, first + 1, first + 2, first + 3);
-  if (s.style == Style::band || s.style == Style::pale_band) return fmt::format("(v({})):(v({})):(v({}))", first, first + 1, first + 2);
-  return fmt::format("(v({})):(v({}))", first, first + 1);
-}
-
-/// The bars of a series with errors, as lines from lo to hi: gnuplot's own error bars leave a white halo about the point that hides short
-/// ones.
-std::string bars_clause(const Figure& figure, const Series& s, std::size_t first) {
-  const bool horizontal = s.style == Style::x_bars;
-  if (!horizontal && s.style != Style::error_bars) return "";
-  const std::string from =
-      horizontal ? fmt::format("(v({})):(v({}))", first + 2, first + 1) : fmt::format("(v({})):(v({}))", first, first + 2);
-  const std::string length = fmt::format("(v({})-v({}))", first + 3, first + 2);
-  return fmt::format("'{}.csv' using {}:{} with vectors nohead lw {} lc rgb '{}' notitle, \\\n     ", figure.name, from,
-                     horizontal ? length + ":(0)" : "(0):" + length, horizontal ? 3 : 1.4, s.colour);
-}
-
-std::string clause(const Figure& figure, const Series& s, std::size_t first) {
-  const std::string legend = legend_of(s);
-  if (!has_data(s)) return legend.empty() ? "" : fmt::format("keyentry {} title '{}'", look(s), gnuplot_text(legend));
-  const std::size_t step = (s.x.size() + drawn_rows(s.style) - 1) / drawn_rows(s.style);
-  const std::string every = step > 1 ? fmt::format(" every {}", step) : "";
-  const std::string title = legend.empty() ? "notitle" : "title '" + gnuplot_text(legend) + "'";
-  return bars_clause(figure, s, first) +
-         fmt::format("'{}.csv' using {}{} {} {}", figure.name, columns_text(s, first), every, look(s), title);
-}
-
 std::string plot_command(const Figure& figure, const Panel& panel, std::size_t& column) {
   std::vector<std::string> clauses;
   if (panel.zero_line) clauses.emplace_back("0 with lines lw 1 lc rgb '#777777' notitle");
   bool any = false;
   for (const Series& s : panel.series) {
-    const std::string text = clause(figure, s, column);
+    const std::string text = plot_clause(figure, s, column);
     if (!text.empty()) clauses.push_back(text);
     any = any || has_data(s);
     column += columns_of(s).size();
@@ -201,6 +169,32 @@ std::string head(const Figure& figure, double width, double height) {
          "set tics nomirror out scale 0.6 tc rgb '#222222'\nset multiplot\n";
 }
 
+std::string marks_text(const std::vector<Mark>& marks) {
+  std::string text;
+  for (const Mark& mark : marks) text += fmt::format("{}'{}' {:.9g}", text.empty() ? "" : ", ", gnuplot_text(mark.text), mark.at);
+  return "(" + text + ")";
+}
+
+std::vector<Mark> blank(std::vector<Mark> marks) {
+  for (Mark& mark : marks) mark.text.clear();
+  return marks;
+}
+
+/// Blue for negative, red for positive, white at 0.
+std::string colours_text(const Figure& figure, const Panel& panel) {
+  std::vector<const std::vector<double>*> columns;
+  for (const Series& s : panel.series) {
+    if (s.style == Style::cells) columns.push_back(&s.z);
+  }
+  if (columns.empty()) return "";
+  const Range range = finite_range(columns);
+  const double most = std::max(std::abs(range[0]), std::abs(range[1]));
+  return fmt::format(
+      "set palette defined (-1 '#0072B2', 0 '#ffffff', 1 '#D55E00')\nset cbrange [{:.9g}:{:.9g}]\nset cblabel '{}' offset 0.5,0\n"
+      "set colorbox\n",
+      -most, most, axis_text(figure.z_label, figure.z_unit));
+}
+
 /// The whole drawing [px].
 struct Size {
   double width = 0.0, height = 0.0;
@@ -209,45 +203,30 @@ struct Size {
 std::string panel_text(const Figure& figure, std::size_t k, const Place& place, const Size& size) {
   const auto [width, height] = size;
   const Panel& panel = figure.panels[k];
+  const Margins m = margins_of(figure);
   const bool lowest = k + 1 == figure.panels.size();
   const auto from_below = [&, all = height](double y) { return 1.0 - y / all; };
   std::string text = fmt::format(
       "\nset lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset tmargin at screen {:.5f}\nset bmargin at screen {:.5f}\n",
-      left / width, 1.0 - right / width, from_below(place.top), from_below(place.top + place.height));
+      m.left / width, 1.0 - m.right / width, from_below(place.top), from_below(place.top + place.height));
   text += fmt::format(
       "set key at screen {:.5f}, screen {:.5f} left bottom vertical maxrows {} Left reverse samplen 2.2 width 1 spacing 1.15 tc rgb "
       "'#222222'\n",
-      (left - 12.0) / width, from_below(place.top - 5.0), std::max(place.legend_rows, 1));
-  text += fmt::format("set ylabel '{}' offset 0.5,0\nset ytics {}\n", axis_text(panel.y_label, panel.y_unit),
-                      panel.y_step > 0.0 ? fmt::format("{}", panel.y_step) : "autofreq");
-  return text + (lowest ? fmt::format("set xlabel '{}' offset 0,0.2\nset format x '%g'\n", axis_text(figure.x_label, figure.x_unit))
-                        : std::string("unset xlabel\nset format x ''\n"));
+      (m.left - 12.0) / width, from_below(place.top - 5.0), std::max(place.legend_rows, 1));
+  const std::string y_tics = !panel.y_marks.empty() ? marks_text(panel.y_marks)
+                             : panel.y_step > 0.0   ? fmt::format("{}", panel.y_step)
+                                                    : "autofreq";
+  text += fmt::format("set ylabel '{}' offset 0.5,0\nset ytics {}\n", axis_text(panel.y_label, panel.y_unit), y_tics);
+  text += colours_text(figure, panel);
+  if (!lowest)
+    return text + "unset xlabel\nset format x ''\n" +
+           (figure.x_marks.empty() ? "" : "set xtics " + marks_text(blank(figure.x_marks)) + "\n");
+  text += fmt::format("set xlabel '{}' offset 0,0.2\nset format x '%g'\n", axis_text(figure.x_label, figure.x_unit));
+  if (figure.x_marks.empty()) return text;
+  return text + fmt::format("set xtics {} {}\n", m.slanted ? "rotate by -20 left" : "norotate center", marks_text(figure.x_marks));
 }
 
 }  // namespace
-
-std::vector<std::pair<const char*, const std::vector<double>*>> columns_of(const Series& s) {
-  switch (s.style) {
-    case Style::band:
-    case Style::pale_band:
-      return {{"x", &s.x}, {"lo", &s.lo}, {"hi", &s.hi}};
-    case Style::error_bars:
-    case Style::x_bars:
-    case Style::boxes:
-      return {{"x", &s.x}, {"y", &s.y}, {"lo", &s.lo}, {"hi", &s.hi}};
-    default:
-      return {{"x", &s.x}, {"y", &s.y}};
-  }
-}
-
-bool has_data(const Series& s) {
-  for (std::size_t i = 0; i < s.x.size(); ++i) {
-    bool complete = true;
-    for (const auto& [name, values] : columns_of(s)) complete = complete && std::isfinite((*values)[i]);
-    if (complete) return true;
-  }
-  return false;
-}
 
 std::string gnuplot_script(const Figure& figure) {
   std::vector<Place> places;
@@ -258,11 +237,11 @@ std::string gnuplot_script(const Figure& figure) {
     if (figure.equal_axes) places.back().height = width - left - right;
     top = places.back().top + places.back().height + panel_gap;
   }
-  const double height = top - panel_gap + bottom;
+  const double height = top - panel_gap + margins_of(figure).bottom;
   std::string text = head(figure, width, height);
   if (!figure.title.empty()) {
     text += fmt::format("set label 2 '{}' at screen {:.5f}, screen {:.5f} left font ',15' tc rgb '#111111'\n", gnuplot_text(figure.title),
-                        left / width, 1.0 - 18.0 / height);
+                        margins_of(figure).left / width, 1.0 - 18.0 / height);
   }
   Range x = x_range_of(figure);
   std::size_t column = 1;

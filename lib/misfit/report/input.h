@@ -8,8 +8,11 @@
 
 #include "misfit/data/attitude.h"
 #include "misfit/data/calibration.h"
+#include "misfit/data/candidates.h"
 #include "misfit/data/comparison.h"
+#include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
+#include "misfit/data/ladder.h"
 #include "misfit/data/reference.h"
 #include "misfit/data/track.h"
 
@@ -37,6 +40,9 @@ struct ReportInput {
   std::vector<ExperimentInput> experiments;
   std::optional<Calibration> calibration;
   std::optional<Comparison> comparison;
+  std::optional<Ladder> ladder;
+  std::optional<Diagnosis> diagnosis;
+  std::optional<Discovery> discovery;
   std::vector<Reference> references;
   std::vector<std::string> notes;  ///< further findings or limits, in sentences
   RunFacts run;

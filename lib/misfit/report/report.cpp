@@ -10,6 +10,9 @@ std::filesystem::path write_report(const std::filesystem::path& dir, const Repor
   Page page(input.study.empty() ? "Report" : input.study);
   const Draw draw(dir / "figures", page);
   summary_section(input, page);
+  ladder_section(input, page, draw);
+  diagnosis_section(input, page, draw);
+  discovery_section(input, page, draw);
   curves_section(input, page, draw);
   prediction_section(input, page, draw);
   measured_section(input, page, draw);

@@ -22,6 +22,9 @@ class Draw {
 
 // The sections of the page in their order; each is left out when there is nothing to show.
 void summary_section(const ReportInput& input, Page& page);
+void ladder_section(const ReportInput& input, Page& page, const Draw& draw);
+void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw);
+void discovery_section(const ReportInput& input, Page& page, const Draw& draw);
 void curves_section(const ReportInput& input, Page& page, const Draw& draw);
 void measured_section(const ReportInput& input, Page& page, const Draw& draw);
 void prediction_section(const ReportInput& input, Page& page, const Draw& draw);

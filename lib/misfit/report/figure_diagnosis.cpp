@@ -1,0 +1,241 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "misfit/core/text.h"
+#include "misfit/report/figure_units.h"
+#include "misfit/report/figures_discovery.h"
+
+namespace misfit::report {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string probability(double p) { return p < 1e-300 ? format_probability(p) : "= " + format_probability(p); }
+
+/// Half of the distance to the neighbours: how wide a place is drawn.
+std::vector<double> half_steps(const std::vector<double>& x) {
+  std::vector<double> out(x.size(), 0.5);
+  for (std::size_t i = 0; i < x.size() && x.size() > 1; ++i) out[i] = 0.5 * (i + 1 < x.size() ? x[i + 1] - x[i] : x[i] - x[i - 1]);
+  return out;
+}
+
+/// x ± half as lo and hi.
+void set_edges(const std::vector<double>& half, double share, Series& s) {
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    s.lo.push_back(s.x[i] - share * half[i]);
+    s.hi.push_back(s.x[i] + share * half[i]);
+  }
+}
+
+std::size_t quantity_index(const MissingForce& missing, const std::string& quantity) {
+  const auto found = std::find(missing.quantities.begin(), missing.quantities.end(), quantity);
+  return static_cast<std::size_t>(found - missing.quantities.begin());
+}
+
+}  // namespace
+
+Figure map_figure(const ForceMap& map) {
+  Figure figure;
+  figure.name = as_key("map_" + map.port + "_by_" + map.quantity);
+  figure.title = fmt::format("Missing {} by {} (p {})", map.port, map.quantity, probability(map.p_corrected));
+  figure.caption = fmt::format(
+      "The {} that the data ask for on top of the model where {} is near each place, with all free parameters allowed to follow, ± 1 "
+      "sigma. "
+      "{}",
+      map.port, map.quantity, map.sentence.empty() ? "Nothing stands out here." : "Here " + map.sentence + ".");
+  figure.x_label = map.quantity;
+  figure.x_unit = display_unit(map.quantity_unit);
+  Panel panel{map.port, display_unit(map.port_unit), {}, std::nullopt, 0.0, 230.0, true, {}};
+  const std::vector<double> x = shown(map.x, map.quantity_unit), sigma = shown(map.sigma, map.port_unit);
+  Series amplitude{"amplitude", "missing force, ± 1 sigma", Style::error_bars, palette(1), x, shown(map.amplitude, map.port_unit), {}, {}};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    amplitude.lo.push_back(amplitude.y[i] - sigma[i]);
+    amplitude.hi.push_back(amplitude.y[i] + sigma[i]);
+  }
+  Series line{"line", "", Style::line, palette(1), x, amplitude.y, {}, {}, 1.2};
+  panel.series = {line, amplitude};
+  Panel counts{"samples", "-", {}, std::nullopt, 0.0, 80.0, false, {}};
+  Series samples{"samples", "", Style::boxes, grey, x, map.count, {}, {}};
+  set_edges(half_steps(x), 0.9, samples);
+  counts.series = {samples};
+  figure.panels = {panel, counts};
+  return figure;
+}
+
+Figure pair_figure(const PairMap& map) {
+  Figure figure;
+  figure.name = as_key("map_" + map.port + "_by_" + map.quantity_x + "_and_" + map.quantity_y);
+  figure.title = fmt::format("Missing {} by {} and {} (p {})", map.port, map.quantity_x, map.quantity_y, probability(map.p_corrected));
+  figure.caption =
+      "The colour is the force that the data ask for on top of the model, in units of its own sigma: beyond 3 is unlikely by chance. White "
+      "also where there are too few samples.";
+  figure.x_label = map.quantity_x;
+  figure.x_unit = display_unit(map.unit_x);
+  figure.z_label = "force over its sigma";
+  figure.z_unit = std::string("-");
+  Panel panel{map.quantity_y, display_unit(map.unit_y), {}, std::nullopt, 0.0, 380.0, false, {}};
+  Series cells{"force", "", Style::cells, black, {}, {}, {}, {}};
+  const std::vector<double> x = shown(map.x, map.unit_x), y = shown(map.y, map.unit_y);
+  const std::vector<double> half_x = half_steps(x), half_y = half_steps(y);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (std::size_t j = 0; j < y.size(); ++j) {
+      const std::size_t at = i * y.size() + j;
+      if (!(map.sigma[at] > 0.0)) continue;
+      cells.x.push_back(x[i]);
+      cells.y.push_back(y[j]);
+      cells.lo.push_back(half_x[i]);
+      cells.hi.push_back(half_y[j]);
+      cells.z.push_back(map.amplitude[at] / map.sigma[at]);
+    }
+  }
+  if (!y.empty()) panel.y_range = {y.front() - half_y.front(), y.back() + half_y.back()};
+  panel.series = {cells};
+  figure.panels = {panel};
+  return figure;
+}
+
+Figure innovation_figure(const std::vector<WhitenessReport>& whiteness) {
+  Figure figure;
+  figure.name = "innovations_autocorrelation";
+  figure.title = "Innovations: autocorrelation";
+  figure.caption = "Of a right model they are independent of each other: 95 % of the lags stay inside the band.";
+  figure.x_label = "lag";
+  figure.x_unit = "samples";
+  for (const WhitenessReport& w : whiteness) {
+    Panel panel{w.channel, "-", {}, std::nullopt, 0.0, 150.0, true, {}};
+    const std::string key = as_key(w.experiment + "_" + w.channel);
+    Series rho{key,          fmt::format("{} of {}, Ljung-Box p {}", w.channel, w.experiment, probability(w.ljung_box_p)),
+               Style::boxes, palette(0),
+               {},           {},
+               {},           {}};
+    for (std::size_t lag = 1; lag < w.autocorrelation.size(); ++lag) {
+      rho.x.push_back(static_cast<double>(lag));
+      rho.y.push_back(w.autocorrelation[lag]);
+    }
+    set_edges(std::vector<double>(rho.x.size(), 0.5), 0.7, rho);
+    if (!rho.x.empty()) {
+      const std::string legend = figure.panels.empty() ? "95 % band of white innovations" : "";
+      panel.series.push_back(
+          {key + "_band", legend, Style::band, grey, {0.0, rho.x.back() + 1.0}, {}, {-w.band, -w.band}, {w.band, w.band}});
+    }
+    panel.series.push_back(std::move(rho));
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+Figure periodogram_figure(const std::vector<WhitenessReport>& whiteness) {
+  Figure figure;
+  figure.name = "innovations_periodogram";
+  figure.title = "Innovations: cumulative periodogram";
+  figure.caption =
+      "The share of the variance below each frequency. White innovations follow the diagonal inside the band (Kolmogorov–Smirnov, 95 %); a "
+      "jump is a line in the spectrum, a bend a missing memory.";
+  figure.x_label = "frequency";
+  figure.x_unit = "Hz";
+  Panel panel{"cumulative power", "-", {}, std::array<double, 2>{0.0, 1.0}, 0.25, 320.0, false, {}};
+  for (std::size_t k = 0; k < whiteness.size(); ++k) {
+    const WhitenessReport& w = whiteness[k];
+    if (w.frequency.empty()) continue;
+    if (panel.series.empty()) {
+      const double half = 1.36 / std::sqrt(static_cast<double>(w.frequency.size()));
+      const double last = w.frequency.back();
+      panel.series.push_back(
+          {"white", "band of white innovations", Style::band, grey, {0.0, last}, {}, {-half, 1.0 - half}, {half, 1.0 + half}});
+    }
+    double total = 0.0, sum = 0.0;
+    for (const double p : w.power) total += std::isfinite(p) ? p : 0.0;
+    Series s{as_key(w.experiment + "_" + w.channel),
+             fmt::format("{} of {}, p {}", w.channel, w.experiment, probability(w.periodogram_p)),
+             Style::line,
+             palette(k),
+             w.frequency,
+             {},
+             {},
+             {}};
+    for (const double p : w.power) s.y.push_back((sum += std::isfinite(p) ? p : 0.0) / total);
+    panel.series.push_back(std::move(s));
+  }
+  figure.panels = {panel};
+  return figure;
+}
+
+Figure nis_figure(const NisSeries& series) {
+  Figure figure;
+  figure.name = as_key("nis_" + series.experiment);
+  figure.title = fmt::format("Normalised innovations squared, {}", series.experiment);
+  figure.caption = fmt::format(
+      "Innovations over their predicted sigma, squared and averaged over windows: 1 for a right model, inside the band in 95 % of the "
+      "windows. {:.1f} % lie outside.",
+      100.0 * series.outside);
+  figure.x_label = "time";
+  figure.x_unit = std::string("s");
+  Panel panel{"NIS", "-", {}, std::nullopt, 0.0, 220.0, false, {}};
+  if (!series.t.empty()) {
+    const std::vector<double> ends = {series.t.front(), series.t.back()};
+    panel.series.push_back(
+        {"band", "95 % band of a right model", Style::band, grey, ends, {}, {series.lower, series.lower}, {series.upper, series.upper}});
+  }
+  panel.series.push_back({"nis", "mean over a window", Style::line, palette(0), series.t, series.nis, {}, {}, 1.4});
+  figure.panels = {panel};
+  return figure;
+}
+
+Figure missing_force_figure(const MissingForce& missing, const std::optional<Interval>& zoom) {
+  Figure figure;
+  figure.name = as_key("missing_force_" + missing.experiment) + (zoom ? "_zoom" : "");
+  figure.title = fmt::format("Missing force over time, {}{}", missing.experiment, zoom ? " (part)" : "");
+  figure.caption =
+      "The force that the filter needs on top of the model, from all data (smoothed), ± 1 sigma. That it goes with the motion is expected "
+      "even where nothing is missing: the force causes the motion.";
+  figure.x_label = "time";
+  figure.x_unit = std::string("s");
+  std::size_t from = 0, to = missing.t.size();
+  if (zoom) {
+    from = static_cast<std::size_t>(std::lower_bound(missing.t.begin(), missing.t.end(), zoom->from) - missing.t.begin());
+    to = static_cast<std::size_t>(std::upper_bound(missing.t.begin(), missing.t.end(), zoom->to) - missing.t.begin());
+  }
+  const auto cut = [&](const std::vector<double>& v) {
+    return std::vector<double>(v.begin() + static_cast<std::ptrdiff_t>(from), v.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  const std::vector<double> t = cut(missing.t);
+  for (std::size_t p = 0; p < missing.ports.size(); ++p) {
+    const std::string key = as_key(missing.ports[p]);
+    Panel panel{missing.ports[p], display_unit(missing.port_units[p]), {}, std::nullopt, 0.0, 180.0, true, {}};
+    const std::vector<double> y = shown(cut(missing.force[p]), missing.port_units[p]);
+    const std::vector<double> sigma = shown(cut(missing.sigma[p]), missing.port_units[p]);
+    Series band{key + "_band", "", Style::band, palette(p), t, {}, {}, {}};
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      band.lo.push_back(y[i] - sigma[i]);
+      band.hi.push_back(y[i] + sigma[i]);
+    }
+    panel.series = {band, {key, missing.ports[p] + ", ± 1 sigma", Style::line, palette(p), t, y, {}, {}, 1.2}};
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+Figure missing_force_by_figure(const MissingForce& missing, const std::string& quantity) {
+  Figure figure;
+  figure.name = as_key("missing_force_" + missing.experiment + "_by_" + quantity);
+  figure.title = fmt::format("Missing force against {}, {}", quantity, missing.experiment);
+  figure.caption =
+      "Every sample of the smoothed missing force. For looking only: a dependence on the motion is expected even where nothing is missing; "
+      "the maps above are the test.";
+  const std::size_t q = quantity_index(missing, quantity);
+  figure.x_label = quantity;
+  const std::string unit = q < missing.quantities.size() ? missing.quantity_units[q] : "-";
+  figure.x_unit = display_unit(unit);
+  const std::vector<double> x = q < missing.quantities.size() ? shown(missing.values[q], unit) : std::vector<double>(missing.t.size(), nan);
+  for (std::size_t p = 0; p < missing.ports.size(); ++p) {
+    Panel panel{missing.ports[p], display_unit(missing.port_units[p]), {}, std::nullopt, 0.0, 200.0, true, {}};
+    panel.series = {{as_key(missing.ports[p]), "", Style::points, palette(p), x, shown(missing.force[p], missing.port_units[p]), {}, {}}};
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+}  // namespace misfit::report

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/report/figure_units.h"
+#include "misfit/report/figures_discovery.h"
+
+namespace misfit::report {
+namespace {
+
+std::string added_to(const Rung& rung) {
+  constexpr const char* system = "system:";
+  if (rung.added.empty()) return rung.system;
+  return "+ " + (rung.added.starts_with(system) ? rung.added.substr(std::string(system).size()) : rung.added);
+}
+
+/// The common strength of the random force; nullptr if the method has none.
+const Estimate* strength(const Rung& rung) {
+  for (const auto& [port, e] : rung.force) {
+    if (e.unit != "s") return &e;
+  }
+  return nullptr;
+}
+
+void add_point(Series& series, double x, double value, double half) {
+  series.x.push_back(x);
+  series.y.push_back(value);
+  series.lo.push_back(value - half);
+  series.hi.push_back(value + half);
+}
+
+Panel& panel_for(std::vector<Panel>& panels, const std::string& label, const std::string& unit) {
+  for (Panel& panel : panels) {
+    if (panel.y_label == label && panel.y_unit == unit) return panel;
+  }
+  panels.push_back({label, unit, {}, std::nullopt, 0.0, 170.0, false, {}});
+  return panels.back();
+}
+
+Series& series_for(Panel& panel, const std::string& key, const std::string& legend, Style style, const std::string& colour) {
+  for (Series& s : panel.series) {
+    if (s.key == key) return s;
+  }
+  panel.series.push_back({key, legend, style, colour, {}, {}, {}, {}});
+  return panel.series.back();
+}
+
+void add_force(const Rung& rung, std::vector<Panel>& panels) {
+  const Estimate* e = strength(rung);
+  if (e == nullptr) return;
+  const std::string unit = display_unit(e->unit);
+  const double factor = convert(1.0, e->unit, unit);
+  Series& series =
+      series_for(panel_for(panels, "random force", unit), "force", "random force that is left, ± 1 sigma", Style::error_bars, palette(1));
+  add_point(series, rung.id, e->value * factor, e->sigma * factor);
+}
+
+void add_errors(const Rung& rung, std::vector<Panel>& panels) {
+  for (const auto& [channel, e] : rung.rms) {
+    const std::string unit = display_unit(e.unit);
+    const double factor = convert(1.0, e.unit, unit);
+    Panel& panel = panel_for(panels, "RMS error", unit);
+    const std::string colour = palette(panel.series.size() / 2 + 2);
+    const std::string key = as_key(channel);
+    Series& one = series_for(panel, key + "_1", channel + ", 1 step ahead", Style::markers, colour);
+    one.x.push_back(rung.id);
+    one.y.push_back(e.value * factor);
+    const auto far = rung.k_step.find(channel);
+    if (far == rung.k_step.end() || far->second.empty()) continue;
+    const std::string legend =
+        fmt::format("{}, {} steps ahead", channel, kLadderSteps[std::min(far->second.size(), std::size(kLadderSteps)) - 1]);
+    Series& most = series_for(panel, key + "_far", legend, Style::error_bars, colour);
+    add_point(most, rung.id, far->second.back() * factor, 0.0);
+  }
+}
+
+void add_trim(const Rung& rung, std::vector<Panel>& panels) {
+  if (!rung.trim) return;
+  constexpr double wide = 1.96;
+  const std::string unit = display_unit(rung.trim->unit);
+  const double factor = convert(1.0, rung.trim->unit, unit);
+  Series& series = series_for(panel_for(panels, "trim", unit), "trim", "trim, 95 % interval", Style::error_bars, palette(0));
+  add_point(series, rung.id, rung.trim->value * factor, wide * rung.trim->sigma * factor);
+}
+
+/// From 0 for what is an amount; with some room for all.
+void set_range(Panel& panel) {
+  double low = panel.y_label == "trim" ? INFINITY : 0.0, high = -INFINITY;
+  for (const Series& s : panel.series) {
+    for (const auto* values : {&s.y, &s.lo, &s.hi}) {
+      for (const double v : *values) {
+        if (!std::isfinite(v)) continue;
+        low = std::min(low, v);
+        high = std::max(high, v);
+      }
+    }
+  }
+  if (!(high > low)) return;
+  const double room = 0.08 * (high - low);
+  panel.y_range = {low == 0.0 ? 0.0 : low - room, high + room};
+}
+
+}  // namespace
+
+Figure ladder_figure(const Ladder& ladder) {
+  Figure figure;
+  figure.name = "ladder";
+  figure.title = "The ladder: what each model leaves unexplained";
+  figure.caption =
+      "From left to right one effect more. The random force is what the filter needs on top of the model to explain the motion; errors are "
+      "of predictions from the filtered state. Channels of other systems have other units and stand in panels of their own.";
+  figure.x_label = "model";
+  std::vector<Panel> force, errors, trim;
+  for (const Rung& rung : ladder.rungs) {
+    figure.x_marks.push_back({static_cast<double>(rung.id), added_to(rung)});
+    add_force(rung, force);
+    add_errors(rung, errors);
+    add_trim(rung, trim);
+  }
+  for (auto* panels : {&force, &errors, &trim}) {
+    for (Panel& panel : *panels) {
+      set_range(panel);
+      figure.panels.push_back(std::move(panel));
+    }
+  }
+  const double last = ladder.rungs.empty() ? 1.0 : static_cast<double>(ladder.rungs.back().id);
+  figure.x_range = {-0.5, last + 0.5};
+  return figure;
+}
+
+}  // namespace misfit::report

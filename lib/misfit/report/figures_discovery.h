@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "misfit/data/candidates.h"
+#include "misfit/data/diagnosis.h"
+#include "misfit/data/ladder.h"
+#include "misfit/report/figures.h"
+
+namespace misfit::report {
+
+/// What every rung of the ladder leaves unexplained: the random force ± sigma; per unit the RMS of every channel one step and the most
+/// steps ahead; the trim with its 95 % interval.
+[[nodiscard]] Figure ladder_figure(const Ladder& ladder);
+
+/// Amplitude of the missing force ± 1 sigma over the places of one quantity; below, how many samples each place has.
+[[nodiscard]] Figure map_figure(const ForceMap& map);
+/// The same over two quantities: the colour is the amplitude.
+[[nodiscard]] Figure pair_figure(const PairMap& map);
+/// Autocorrelation of the innovations, one panel per channel, with the band that white ones keep to at 95 % of the lags.
+[[nodiscard]] Figure innovation_figure(const std::vector<WhitenessReport>& whiteness);
+/// Cumulative periodogram of the innovations: white ones stay inside the Kolmogorov–Smirnov band about the diagonal (95 %).
+[[nodiscard]] Figure periodogram_figure(const std::vector<WhitenessReport>& whiteness);
+/// Normalised innovation squared over time with the band of a right model.
+[[nodiscard]] Figure nis_figure(const NisSeries& series);
+/// The smoothed random force over time, one panel per port, with ± 1 sigma. `zoom`: that part only.
+[[nodiscard]] Figure missing_force_figure(const MissingForce& missing, const std::optional<Interval>& zoom);
+/// The same against one quantity.
+[[nodiscard]] Figure missing_force_by_figure(const MissingForce& missing, const std::string& quantity);
+
+/// Predicted and actual drop of the best `most` candidates; the accepted ones in another colour.
+[[nodiscard]] Figure candidates_figure(const std::vector<Candidate>& candidates, std::size_t most = 15);
+
+}  // namespace misfit::report

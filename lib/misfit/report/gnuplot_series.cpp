@@ -1,0 +1,116 @@
+#include "misfit/report/gnuplot_series.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "misfit/report/symbols.h"
+
+namespace misfit::report {
+namespace {
+
+/// Rows drawn of one series, more than the axes have pixels; a point costs a drawing ten times the bytes of a vertex.
+std::size_t drawn_rows(Style style) {
+  const bool vertices = style == Style::line || style == Style::dashed || style == Style::dotted || style == Style::steps;
+  return vertices ? 5000 : 1200;
+}
+
+std::string look(const Series& s) {
+  const std::string colour = "lc rgb '" + s.colour + "'";
+  switch (s.style) {
+    case Style::line:
+      return fmt::format("with lines lw {} dt 1 {}", s.width, colour);
+    case Style::dashed:
+      return fmt::format("with lines lw {} dt (7,5) {}", s.width, colour);
+    case Style::dotted:
+      return fmt::format("with lines lw {} dt (2,4) {}", s.width, colour);
+    case Style::points:
+      return "with points pt 7 ps 0.28 " + colour;
+    case Style::markers:
+      return "with points pt 6 ps 0.7 lw 1.5 " + colour;
+    case Style::error_bars:
+      return "with points pt 7 ps 0.4 " + colour;
+    case Style::x_bars:
+      return "with points pt 13 ps 0.9 " + colour;
+    case Style::band:
+      return "with filledcurves fs transparent solid 0.20 noborder fc rgb '" + s.colour + "'";
+    case Style::pale_band:
+      return "with filledcurves fs transparent solid 0.07 noborder fc rgb '" + s.colour + "'";
+    case Style::steps:
+      return fmt::format("with steps lw {} {}", s.width, colour);
+    case Style::boxes:
+      return "with boxxyerror fc rgb '" + s.colour + "' fs transparent solid 0.45 border lc rgb '" + s.colour + "'";
+    case Style::bars:
+      return "with boxxyerror fc rgb '" + s.colour + "' fs transparent solid 0.6 border lc rgb '" + s.colour + "'";
+    case Style::cells:
+      return "with boxxyerror fs solid 1 noborder lc palette";
+  }
+  return "";
+}
+
+std::string columns_text(const Series& s, std::size_t first) {
+  if (s.style == Style::boxes)
+    return fmt::format("(v({0})):(v({1})):(v({2})):(v({3})):(0):(v({1}))", first, first + 1, first + 2, first + 3);
+  if (s.style == Style::bars)
+    return fmt::format("(v({0})):(v({1})):(0):(v({0})):(v({2})):(v({3}))", first, first + 1, first + 2, first + 3);
+  if (s.style == Style::cells) {
+    return fmt::format("(v({0})):(v({1})):(v({0})-v({2})):(v({0})+v({2})):(v({1})-v({3})):(v({1})+v({3})):(v({4}))", first, first + 1,
+                       first + 2, first + 3, first + 4);
+  }
+  if (s.style == Style::band || s.style == Style::pale_band) return fmt::format("(v({})):(v({})):(v({}))", first, first + 1, first + 2);
+  return fmt::format("(v({})):(v({}))", first, first + 1);
+}
+
+/// The bars of a series with errors, as lines from lo to hi: gnuplot's own error bars leave a white halo about the point that hides short
+/// ones.
+std::string bars_clause(const Figure& figure, const Series& s, std::size_t first) {
+  const bool horizontal = s.style == Style::x_bars;
+  if (!horizontal && s.style != Style::error_bars) return "";
+  const std::string from =
+      horizontal ? fmt::format("(v({})):(v({}))", first + 2, first + 1) : fmt::format("(v({})):(v({}))", first, first + 2);
+  const std::string length = fmt::format("(v({})-v({}))", first + 3, first + 2);
+  return fmt::format("'{}.csv' using {}:{} with vectors nohead lw {} lc rgb '{}' notitle, \\\n     ", figure.name, from,
+                     horizontal ? length + ":(0)" : "(0):" + length, horizontal ? 3 : 1.4, s.colour);
+}
+
+}  // namespace
+
+std::vector<std::pair<const char*, const std::vector<double>*>> columns_of(const Series& s) {
+  switch (s.style) {
+    case Style::band:
+    case Style::pale_band:
+      return {{"x", &s.x}, {"lo", &s.lo}, {"hi", &s.hi}};
+    case Style::cells:
+      return {{"x", &s.x}, {"y", &s.y}, {"lo", &s.lo}, {"hi", &s.hi}, {"z", &s.z}};
+    case Style::error_bars:
+    case Style::x_bars:
+    case Style::boxes:
+    case Style::bars:
+      return {{"x", &s.x}, {"y", &s.y}, {"lo", &s.lo}, {"hi", &s.hi}};
+    default:
+      return {{"x", &s.x}, {"y", &s.y}};
+  }
+}
+
+bool has_data(const Series& s) {
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    bool complete = true;
+    for (const auto& [name, values] : columns_of(s)) complete = complete && std::isfinite((*values)[i]);
+    if (complete) return true;
+  }
+  return false;
+}
+
+std::string legend_of(const Series& s) { return has_data(s) || s.legend.empty() ? s.legend : s.legend + " (no data)"; }
+
+std::string plot_clause(const Figure& figure, const Series& s, std::size_t first) {
+  const std::string legend = legend_of(s);
+  if (!has_data(s)) return legend.empty() ? "" : fmt::format("keyentry {} title '{}'", look(s), gnuplot_text(legend));
+  const std::size_t step = (s.x.size() + drawn_rows(s.style) - 1) / drawn_rows(s.style);
+  const std::string every = step > 1 ? fmt::format(" every {}", step) : "";
+  const std::string title = legend.empty() ? "notitle" : "title '" + gnuplot_text(legend) + "'";
+  return bars_clause(figure, s, first) +
+         fmt::format("'{}.csv' using {}{} {} {}", figure.name, columns_text(s, first), every, look(s), title);
+}
+
+}  // namespace misfit::report

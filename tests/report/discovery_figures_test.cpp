@@ -1,0 +1,253 @@
+// Figures and sections of what the model lacks: ladder, diagnosis, candidates.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "misfit/core/files.h"
+#include "misfit/core/table.h"
+#include "misfit/report/figures_discovery.h"
+#include "misfit/report/report.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit::report {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+const Series* find(const Figure& figure, const std::string& key) {
+  for (const Panel& panel : figure.panels) {
+    for (const Series& s : panel.series) {
+      if (s.key == key) return &s;
+    }
+  }
+  return nullptr;
+}
+
+Rung rung(int id, const std::string& added, double force) {
+  Rung r;
+  r.id = id;
+  r.parent = id - 1;
+  r.added = added;
+  r.system = "parachute_spherical";
+  r.force = {{"correlation_time", {0.1, 0.01, "s"}}, {"moment_y", {force, 0.5, "N m"}}, {"moment_z", {force, 0.5, "N m"}}};
+  r.rms = {{"P_y", {1.80 - 0.02 * id, 0.0, "px"}}, {"P_z", {1.85 - 0.02 * id, 0.0, "px"}}};
+  r.k_step = {{"P_y", {1.8, 2.5, 5.0, 11.0, 20.0, 33.0 - id}}, {"P_z", {1.85, 2.6, 5.1, 11.5, 21.0, 36.0 - id}}};
+  r.trim = Estimate{(12.3 - 0.2 * id) * degree, 0.2 * degree, "rad"};
+  return r;
+}
+
+Ladder ladder() {
+  Rung planar = rung(0, "", 35.0);
+  planar.system = "parachute_planar";
+  planar.force = {{"pitching_moment", {35.0, 0.8, "N m"}}};
+  planar.rms = {{"eta", {0.1 * degree, 0.0, "rad"}}};
+  planar.k_step = {{"eta", {0.1 * degree, 0.2 * degree, 0.5 * degree, 1.1 * degree, 2.0 * degree, 3.0 * degree}}};
+  Rung wake = rung(2, "strut_wake", 26.9);
+  wake.predicted_drop = 275.0;
+  wake.actual_drop = 290.0;
+  wake.parameters = {{"wake_phi", {-1.57, 0.02, "rad"}}};
+  return {{planar, rung(1, "system:parachute_spherical", 31.0), wake}};
+}
+
+ForceMap map() {
+  ForceMap m{"pitching_moment", "N m", "phi", "rad", {}, {}, {}, {}, 120.0, 12, 1e-19, 3e-18, "the in-plane moment is 41 ± 6 N m too high"};
+  for (int i = -6; i <= 6; ++i) {
+    m.x.push_back(30.0 * i * degree);
+    m.amplitude.push_back(i == -3 ? 41.0 : 2.0 * std::sin(i));
+    m.sigma.push_back(i == 5 ? nan : 6.0);
+    m.count.push_back(200.0 + 10.0 * i);
+  }
+  return m;
+}
+
+PairMap pair() {
+  PairMap m{"lateral_moment", "N m", "alpha_T", "rad", "phi", "rad", {}, {}, {}, {}, 80.0, 30, 1e-5, 1e-3};
+  for (int i = 0; i < 6; ++i) m.x.push_back((8.0 + 2.0 * i) * degree);
+  for (int j = -4; j <= 4; ++j) m.y.push_back(40.0 * j * degree);
+  for (int i = 0; i < 6; ++i) {
+    for (int j = -4; j <= 4; ++j) {
+      m.amplitude.push_back(i == 5 && j == 4 ? nan : 10.0 * std::sin(j) * i);
+      m.sigma.push_back(i == 5 && j == 4 ? nan : 8.0);
+    }
+  }
+  return m;
+}
+
+std::vector<WhitenessReport> whiteness() {
+  std::vector<WhitenessReport> out;
+  for (const char* channel : {"P_y", "P_z"}) {
+    WhitenessReport w;
+    w.experiment = "flight";
+    w.channel = channel;
+    w.band = 0.03;
+    for (int lag = 0; lag < 50; ++lag) w.autocorrelation.push_back(lag == 0 ? 1.0 : 0.02 * std::sin(7.0 * lag));
+    for (int k = 1; k <= 300; ++k) {
+      w.frequency.push_back(0.1 * k);
+      w.power.push_back(k == 37 && out.empty() ? 60.0 : 1.0 + 0.3 * std::sin(k));
+    }
+    out.push_back(w);
+  }
+  return out;
+}
+
+MissingForce missing() {
+  MissingForce m;
+  m.experiment = "flight";
+  m.ports = {"moment_y", "moment_z"};
+  m.port_units = {"N m", "N m"};
+  m.quantities = {"phi"};
+  m.quantity_units = {"rad"};
+  m.force.resize(2);
+  m.sigma.resize(2);
+  m.values.resize(1);
+  for (int i = 0; i < 1500; ++i) {
+    m.t.push_back(0.0167 * i);
+    m.force[0].push_back(30.0 * std::sin(0.11 * i));
+    m.force[1].push_back(20.0 * std::cos(0.07 * i));
+    m.sigma[0].push_back(9.0);
+    m.sigma[1].push_back(9.0);
+    m.values[0].push_back(std::remainder(0.03 * i, 2.0 * std::numbers::pi));
+  }
+  return m;
+}
+
+std::vector<Candidate> candidates() {
+  std::vector<Candidate> out(3);
+  out[0].effect = "strut_wake";
+  out[0].predicted_drop = 275.0;
+  out[0].actual_drop = 290.0;
+  out[0].accepted = true;
+  out[1].effect = "unknown:pitching_moment(phi)";
+  out[1].predicted_drop = 180.0;
+  out[1].actual_drop = 170.0;
+  out[2].effect = "coulomb_friction";
+  out[2].predicted_drop = 3.0;
+  for (std::size_t k = 0; k < out.size(); ++k) out[k].rank = static_cast<int>(k) + 1;
+  return out;
+}
+
+TEST(LadderFigure, ForceStandsWithItsSigmaAndTheTrimWithNinetyFivePercent) {
+  const Figure figure = ladder_figure(ladder());
+  const Series* force = find(figure, "force");
+  ASSERT_NE(force, nullptr);
+  EXPECT_EQ(force->y, (std::vector<double>{35.0, 31.0, 26.9}));
+  EXPECT_NEAR(force->hi[0] - force->y[0], 0.8, 1e-12);
+  const Series* trim = find(figure, "trim");
+  ASSERT_NE(trim, nullptr);
+  EXPECT_NEAR(trim->hi[1] - trim->y[1], 1.96 * 0.2, 1e-9);
+  ASSERT_EQ(figure.x_marks.size(), 3U);
+  EXPECT_EQ(figure.x_marks[1].text, "+ parachute_spherical");
+  EXPECT_EQ(figure.x_marks[2].text, "+ strut_wake");
+}
+
+TEST(LadderFigure, ChannelsOfOtherUnitsStandInPanelsOfTheirOwn) {
+  const Figure figure = ladder_figure(ladder());
+  ASSERT_EQ(figure.panels.size(), 4U);
+  EXPECT_EQ(figure.panels[0].y_unit, "N m");
+  EXPECT_EQ(figure.panels[1].y_unit, "deg");
+  EXPECT_EQ(figure.panels[2].y_unit, "px");
+  const Series* eta = find(figure, "eta_far");
+  ASSERT_NE(eta, nullptr);
+  EXPECT_NEAR(eta->y[0], 3.0, 1e-9);
+  EXPECT_EQ(find(figure, "P_y_1")->x, (std::vector<double>{1.0, 2.0}));
+}
+
+TEST(MapFigure, AmplitudesHaveBarsOfOneSigmaInTheUnitsPeopleRead) {
+  const Figure figure = map_figure(map());
+  const Series* amplitude = find(figure, "amplitude");
+  ASSERT_NE(amplitude, nullptr);
+  EXPECT_NEAR(amplitude->x[3], -90.0, 1e-9);
+  EXPECT_EQ(amplitude->y[3], 41.0);
+  EXPECT_NEAR(amplitude->hi[3] - amplitude->lo[3], 12.0, 1e-9);
+  EXPECT_TRUE(figure.panels[0].zero_line);
+  EXPECT_NE(figure.caption.find("41 ± 6 N m too high"), std::string::npos);
+}
+
+TEST(PairFigure, LeavesOutCellsWithTooFewSamplesAndShowsSigmas) {
+  const Figure figure = pair_figure(pair());
+  const Series* cells = find(figure, "force");
+  ASSERT_NE(cells, nullptr);
+  EXPECT_EQ(cells->x.size(), 53U);
+  EXPECT_NEAR(cells->z[9 + 5], 10.0 * std::sin(1) / 8.0, 1e-12);
+}
+
+TEST(PeriodogramFigure, RunsFromNothingToOneAndJumpsAtALine) {
+  const Figure figure = periodogram_figure(whiteness());
+  const Series* line = find(figure, "flight_P_y");
+  ASSERT_NE(line, nullptr);
+  EXPECT_NEAR(line->y.back(), 1.0, 1e-12);
+  EXPECT_GT(line->y[36] - line->y[35], 0.1);
+  EXPECT_LT(line->y[35] - line->y[34], 0.01);
+}
+
+TEST(CandidatesFigure, TheBestIsOnTopAndTheAcceptedHasAColourOfItsOwn) {
+  const Figure figure = candidates_figure(candidates());
+  EXPECT_EQ(figure.panels[0].y_marks.front().text, "strut_wake");
+  EXPECT_GT(figure.panels[0].y_marks.front().at, figure.panels[0].y_marks.back().at);
+  const Series* accepted = find(figure, "accepted");
+  ASSERT_NE(accepted, nullptr);
+  EXPECT_EQ(accepted->x, std::vector<double>{290.0});
+  EXPECT_EQ(find(figure, "actual")->x, std::vector<double>{170.0});
+  EXPECT_EQ(find(figure, "predicted")->x.size(), 3U);
+  EXPECT_EQ(candidates_figure(candidates(), 2).notes.size(), 1U);
+}
+
+ReportInput example() {
+  ReportInput input;
+  input.study = "study";
+  input.ladder = ladder();
+  Diagnosis d;
+  d.method = "filter_error";
+  d.sentences = {"it fails in the wake"};
+  d.maps = {map()};
+  d.pairs = {pair()};
+  d.whiteness = whiteness();
+  d.nis = {{"flight", {0.0, 1.0, 2.0}, {1.0, 1.1, 1.4}, 0.8, 1.2, 0.33}};
+  d.missing = {missing()};
+  input.diagnosis = d;
+  Discovery found;
+  found.candidates = candidates();
+  found.verdict = "add strut_wake";
+  found.tried = {"14 effects"};
+  input.discovery = found;
+  return input;
+}
+
+TEST(DiscoveryReport, TheLadderIsTheFirstPictureAndEveryFigureIsDrawn) {
+  const TemporaryFolder folder;
+  const std::string page = read_file(write_report(folder.path(), example()));
+  EXPECT_EQ(page.find("id=\"ladder-gnuplot_canvas\""), page.find("-gnuplot_canvas\"") - std::string("id=\"ladder").size());
+  for (const char* name : {"ladder", "map_pitching_moment_by_phi", "map_lateral_moment_by_alpha_T_and_phi", "innovations_autocorrelation",
+                           "innovations_periodogram", "nis_flight", "missing_force_flight", "missing_force_flight_zoom",
+                           "missing_force_flight_by_phi", "candidates"}) {
+    for (const char* suffix : {".svg", ".csv", ".gp"})
+      EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures" / (std::string(name) + suffix))) << name << suffix;
+  }
+  expect_parts(page, {"it fails in the wake", "add strut_wake", "14 effects", "26.90 ± 0.50"});
+}
+
+TEST(DiscoveryReport, CellsAndBarsAreInTheTableWithUnits) {
+  const TemporaryFolder folder;
+  static_cast<void>(write_figure(folder.path(), pair_figure(pair())));
+  const std::string text = read_file(folder.path() / "map_lateral_moment_by_alpha_T_and_phi.csv");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "force.x[deg],force.y[deg],force.lo[deg],force.hi[deg],force.z[-]");
+  const std::string svg = read_file(folder.path() / "map_lateral_moment_by_alpha_T_and_phi.svg");
+  EXPECT_EQ(svg.find("no data"), std::string::npos);
+}
+
+TEST(DiscoveryReport, AnEmptyDiagnosisStillGivesAPage) {
+  const TemporaryFolder folder;
+  ReportInput input;
+  input.ladder.emplace();
+  input.diagnosis.emplace();
+  input.discovery.emplace();
+  const std::string page = read_file(write_report(folder.path(), input));
+  expect_parts(page, {"Where the model fails", "What could be missing"});
+}
+
+}  // namespace
+}  // namespace misfit::report
