@@ -78,6 +78,18 @@ std::vector<Penalty> shared_penalties(const FilterEstimate& child, const FilterE
   return penalties;
 }
 
+/// Readings that both models have and neither has set aside: an effect may need inputs that are missing where the other model reads on.
+std::vector<std::vector<Use>> common_use(const FilterEstimate& a, const FilterEstimate& b) {
+  std::vector<std::vector<Use>> use;
+  for (std::size_t e = 0; e < a.data.size(); ++e) {
+    use.push_back(a.data[e].use);
+    for (std::size_t i = 0; i < use.back().size(); ++i) {
+      if (b.data[e].use[i] == Use::none) use.back()[i] = Use::none;
+    }
+  }
+  return use;
+}
+
 struct Gain {
   double drop = 0.0;
   std::optional<double> held_out;
@@ -87,16 +99,17 @@ struct Gain {
 Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   FilterOptions options;
   options.threads = threads;
-  options.noise = child.estimate->noise;
   options.around = parent.estimate->around;
   options.choose_roughness = false;
-  std::vector<std::vector<Use>> use;
-  for (const auto& data : parent.estimate->data) use.push_back(data.use);
-  options.use = use;
-  const FilterEstimate with =
-      estimate_filter(child.estimate->model, shared_penalties(*child.estimate, *parent.estimate), child.prepared.experiments, options);
-  Gain gain{2.0 * (with.objective - parent.estimate->objective), std::nullopt};
-  if (parent.fit.validation_loglik) gain.held_out = with.validation_loglik - parent.estimate->validation_loglik;
+  options.use = common_use(*parent.estimate, *child.estimate);
+  const auto again = [&](const FilterWork& work, std::vector<Penalty> penalties) {
+    options.noise = work.estimate->noise;
+    return estimate_filter(work.estimate->model, std::move(penalties), work.prepared.experiments, options);
+  };
+  const FilterEstimate without = again(parent, parent.estimate->penalties);
+  const FilterEstimate with = again(child, shared_penalties(*child.estimate, *parent.estimate));
+  Gain gain{2.0 * (with.objective - without.objective), std::nullopt};
+  if (parent.fit.validation_loglik) gain.held_out = with.validation_loglik - without.validation_loglik;
   return gain;
 }
 

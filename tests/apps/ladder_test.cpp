@@ -1,0 +1,140 @@
+// add and the ladder, on a short flight.
+
+#include <cmath>
+
+#include "tests/apps/short_flight.h"
+
+namespace {
+
+using namespace program;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  std::string line;
+  while (std::getline(in, line)) lines.push_back(line);
+  return lines;
+}
+
+/// Lines of `after` that `before` does not have.
+std::vector<std::string> new_lines(const std::string& before, const std::string& after) {
+  const std::vector<std::string> old = lines_of(before);
+  std::vector<std::string> out;
+  for (const auto& line : lines_of(after)) {
+    if (std::find(old.begin(), old.end(), line) == old.end()) out.push_back(line);
+  }
+  return out;
+}
+
+class Climbing : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    study = new ShortFlight("parachute_planar");
+    coning = study->add("coning");
+    spherical = study->add("system:parachute_spherical");
+  }
+  static void TearDownTestSuite() { delete study; }
+  static inline ShortFlight* study = nullptr;
+  static inline Outcome coning, spherical;
+};
+
+TEST_F(Climbing, AnEffectIsOneLineMoreAndThePathsStillLead) {
+  ASSERT_EQ(coning.status, 0) << coning.err;
+  const std::string text = content(study->out("rungs/01_coning/study.toml"));
+  std::vector<std::string> differ = new_lines(content(study->path("study.toml")), text);
+  std::erase_if(differ, [](const std::string& line) { return line.find("../../../") != std::string::npos; });
+  EXPECT_EQ(differ, std::vector<std::string>{"coning = {}"});
+  expect_parts(text, {"# Table 2: +-0.1 kg, read as 3 sigma", "sweep = \"../../../static_sweep.csv\"", "track = \"../../../track.csv\""});
+  EXPECT_TRUE(fs::exists(study->out("rungs/01_coning/out/fit/filter_error/fit.json")));
+}
+
+TEST_F(Climbing, TheErrorBeforeAndAfterIsPrintedInItsUnit) {
+  expect_parts(coning.out, {"rung 1: coning added to parachute_planar", "before", "after", "one step ahead, eta", "deg", "held out",
+                            "random force", "N m", "drop:", "actual", "gain of the held-out log-likelihood", "the ladder"});
+  expect_parts(spherical.out, {"rung 2: system:parachute_spherical added to parachute_planar", "32 steps ahead, P_y", "px", "no drop",
+                               "effect 'coning' is left out"});
+  expect_parts(spherical.err, {"going on from rung 1"});
+}
+
+TEST_F(Climbing, TheLadderHoldsEveryRungWithTheKeysOfTheContract) {
+  const json ladder = study->result("ladder.json");
+  ASSERT_EQ(ladder.size(), 3U);
+  for (const auto& rung : ladder) {
+    for (const char* key :
+         {"id", "parent", "study", "added", "predicted_drop", "actual_drop", "held_out_gain", "force", "rms", "validation_rms"})
+      EXPECT_TRUE(rung.contains(key)) << key;
+    EXPECT_TRUE(fs::exists(study->out(rung.at("study").get<std::string>()))) << rung.at("study");
+  }
+  EXPECT_EQ(ladder[1].at("parent"), 0);
+  EXPECT_EQ(ladder[1].at("added"), "coning");
+  EXPECT_GT(ladder[1].at("actual_drop").get<double>(), 50.0);  // 517 over the whole flight of `null`
+  EXPECT_FALSE(ladder[1].at("held_out_gain").is_null());
+  EXPECT_LT(ladder[1].at("force").at("pitching_moment").at("value").get<double>(),
+            ladder[0].at("force").at("pitching_moment").at("value").get<double>());
+  EXPECT_TRUE(ladder[2].at("actual_drop").is_null());
+  EXPECT_EQ(ladder[2].at("rms").at("P_y").at("unit"), "px");
+}
+
+TEST_F(Climbing, AnotherSystemLeavesOutWhatDoesNotSuitItAsAComment) {
+  const std::string text = content(study->out("rungs/02_parachute_spherical/study.toml"));
+  expect_parts(text, {"kind = \"parachute_spherical\"", "# coning = {}  # does not suit parachute_spherical"});
+}
+
+TEST_F(Climbing, TheReportBeginsWithTheLadder) {
+  const Outcome outcome = study->run("report");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string page = content(study->out("report.html"));
+  const std::size_t first = page.find("-gnuplot_canvas\"");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(page.substr(first - 6, 6), "ladder");
+}
+
+TEST_F(Climbing, ARungIsAStudyThatRunsWhereItLies) {
+  const Outcome outcome = program::run({"fit", study->out("rungs/01_coning").string(), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out).at("filter_error").at("status"), "converged");
+}
+
+struct Refusal {
+  const char* name;
+  const char* effect;
+  std::vector<const char*> told;
+};
+
+class WrongAddition : public testing::TestWithParam<Refusal> {};
+
+TEST_P(WrongAddition, IsRefusedInWordsAndLeavesNoRung) {
+  const ShortFlight study("parachute_spherical", 3.0);
+  const Outcome outcome = study.add(GetParam().effect);
+  EXPECT_EQ(outcome.status, 2) << outcome.out;
+  EXPECT_EQ(outcome.out, "");
+  for (const char* part : GetParam().told) expect_parts(outcome.err, {part});
+  EXPECT_FALSE(fs::exists(study.out("rungs")));
+  EXPECT_FALSE(fs::exists(study.out("ladder.json")));
+}
+
+INSTANTIATE_TEST_SUITE_P(EachKind, WrongAddition,
+                         testing::Values(Refusal{"UnknownEffect", "strut_wkae", {"'strut_wkae'", "'strut_wake'"}},
+                                         Refusal{"AlreadyThere", "pitch_damping", {"'pitch_damping'", "already in the model"}},
+                                         Refusal{"PartOfTheSystem", "coning", {"'coning'", "by themselves"}},
+                                         Refusal{"UnknownSystem", "system:parachute_spheric", {"'parachute_spherical'"}},
+                                         Refusal{"SameSystem", "system:parachute_spherical", {"already 'parachute_spherical'"}}),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST(WrongAdditionAsAWhole, WithoutAnEffect) {
+  const Outcome outcome = program::run({"add", "study.toml"});
+  EXPECT_EQ(outcome.status, 2);
+  expect_parts(outcome.err, {"effect"});
+}
+
+TEST(LadderOfAStudyThatChanged, IsBegunAnew) {
+  const ShortFlight study("parachute_planar", 10.0);
+  ASSERT_EQ(study.add("system:parachute_spherical").status, 0);
+  study.change("R_cp = \"3.15 m\"", "R_cp = \"3.16 m\"");
+  const Outcome outcome = study.add("system:parachute_spherical");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  expect_parts(outcome.err, {"begun anew"});
+  EXPECT_EQ(study.result("ladder.json").size(), 2U);
+}
+
+}  // namespace
