@@ -26,6 +26,8 @@ constexpr VerbEntry verbs[] = {
     {"attitude", "angles of the axis from the track", attitude_verb, true},
     {"fit", "estimate the model's curves and parameters", fit_verb, true},
     {"diagnose", "where the model fails: missing force by place, time and quantity, whiteness", diagnose_verb, true},
+    {"discover", "which effect the model lacks, ranked; goes on from the last rung of the study's ladder", discover_verb, true},
+    {"add", "add an effect (or system:KIND) to the last rung: a new study, fitted, and the error before and after", add_verb, true},
     {"compare", "methods side by side and against reference curves", compare_verb, true},
     {"report", "figures and one self-contained page", report_verb, true},
     {"simulate", "run the model: as [simulate] says, or as fitted", simulate_verb, true},

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 
 #include "apps/print.h"
@@ -13,6 +14,9 @@ int run_verb(const Options& options, const Registry& registry) {
   const auto attitudes = attitude_stage(session);
   const std::vector<Fit> fits = fit_stage(session);
   const Comparison comparison = compare_stage(session, fits);
+  const bool filtered = std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == "filter_error"; });
+  const auto diagnosis = filtered ? diagnose_stage(session) : std::nullopt;
+  const auto discovery = filtered ? discover_stage(session) : std::nullopt;
   const auto page = report_stage(session, fits);
   if (options.json) {
     print_file(session.folder.file("compare.json"));
@@ -23,7 +27,11 @@ int run_verb(const Options& options, const Registry& registry) {
   for (std::size_t e = 0; e < attitudes.size(); ++e) {
     if (attitudes[e]) std::cout << attitude_text(session.study.experiments[e].name, *attitudes[e]) << '\n';
   }
-  std::cout << fits_text(fits) << '\n' << comparison_text(comparison) << "\nreport: " << page.string() << '\n';
+  std::cout << fits_text(fits) << '\n' << comparison_text(comparison) << '\n';
+  if (diagnosis) std::cout << diagnosis_text(*diagnosis) << '\n';
+  if (discovery) std::cout << discovery_text(*discovery) << '\n';
+  if (const auto ladder = known_ladder(session)) std::cout << ladder_text(*ladder) << '\n';
+  std::cout << "report: " << page.string() << '\n';
   return status_of(fits);
 }
 

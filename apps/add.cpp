@@ -1,0 +1,39 @@
+#include <iostream>
+
+#include "apps/ladder.h"
+#include "apps/print.h"
+#include "apps/verbs.h"
+
+namespace misfit {
+namespace {
+
+/// What discovery says of the effect: roles, where to start, the drop it predicts. Asked before the effect is added, so that the prediction
+/// is one. nullopt for a change of system, which no discovery ranks.
+std::optional<Candidate> candidate_of(Session& session, const std::string& effect) {
+  if (effect.starts_with("system:")) return std::nullopt;
+  static_cast<void>(study_with_effect(session, effect, std::nullopt, session.folder.path()));  // refuses what cannot be added, before work
+  const std::optional<Discovery> discovery = discover_stage(session);
+  if (!discovery) refuse_declined(session);
+  for (const auto& candidate : discovery->candidates) {
+    if (candidate.effect == effect) return candidate;
+  }
+  session.say("effect '" + effect + "' is not among the candidates: no drop is predicted");
+  return std::nullopt;
+}
+
+}  // namespace
+
+int add_verb(const Options& options, const Registry& registry) {
+  Climb ladder(options, registry);
+  const std::optional<Candidate> candidate = candidate_of(ladder.top(), options.effect);
+  const Rung& rung = ladder.add(options.effect, candidate);
+  if (options.json) {
+    print_file(ladder.original().folder.file("ladder.json"));
+    return 0;
+  }
+  std::cout << rung_text(ladder.ladder(), rung) << '\n' << ladder_text(ladder.ladder());
+  std::cout << "\nstudy of this rung: " << ladder.original().folder.file(rung.study).lexically_normal().string() << '\n';
+  return 0;
+}
+
+}  // namespace misfit

@@ -1,0 +1,62 @@
+#include <algorithm>
+#include <iostream>
+
+#include "apps/ladder.h"
+#include "apps/print.h"
+#include "apps/verbs.h"
+
+namespace misfit {
+namespace {
+
+Discovery discovered(Session& session) {
+  const std::optional<Discovery> discovery = discover_stage(session);
+  if (!discovery) refuse_declined(session);
+  return *discovery;
+}
+
+/// The best accepted candidate that a study can take in one line.
+std::optional<Candidate> next_step(const Discovery& discovery, const Registry& registry) {
+  const std::vector<std::string> known = registry.effect_keys();
+  for (const auto& candidate : discovery.candidates) {
+    if (candidate.accepted && std::find(known.begin(), known.end(), candidate.effect) != known.end()) return candidate;
+  }
+  return std::nullopt;
+}
+
+int climb(Climb& ladder, const Registry& registry, bool json) {
+  constexpr int most_rungs = 12;
+  for (int k = 0; k < most_rungs; ++k) {
+    const Discovery discovery = discovered(ladder.top());
+    if (!json) std::cout << discovery_text(discovery) << '\n' << std::flush;
+    const std::optional<Candidate> next = next_step(discovery, registry);
+    if (!next) break;
+    const Rung& rung = ladder.add(next->effect, next);
+    if (!json) std::cout << rung_text(ladder.ladder(), rung) << '\n' << std::flush;
+  }
+  static_cast<void>(ladder.top_rung());
+  if (json) {
+    print_file(ladder.original().folder.file("ladder.json"));
+  } else {
+    std::cout << ladder_text(ladder.ladder());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int discover_verb(const Options& options, const Registry& registry) {
+  Climb ladder(options, registry);
+  if (options.automatic) return climb(ladder, registry, options.json);
+  Session& session = ladder.top();
+  const Discovery discovery = discovered(session);
+  if (options.json) {
+    print_file(session.folder.file("candidates.json"));
+    return 0;
+  }
+  std::cout << discovery_text(discovery);
+  if (const auto next = next_step(discovery, registry))
+    std::cout << "\nto add it: misfit add " << options.study << " " << next->effect << '\n';
+  return 0;
+}
+
+}  // namespace misfit
