@@ -38,7 +38,7 @@ class Estimation {
 
   FilterEstimate run() {
     set_time();
-    if (!linearise()) throw RunError(failure());
+    if (!start_run()) throw RunError(failure());
     if (!options_.noise) search_noise();
     iterate(25, 0.02);
     if (!options_.use && gate_outliers()) {
@@ -51,6 +51,29 @@ class Estimation {
   }
 
  private:
+  /// The first run. A filter that is too sure of itself loses the motion: its noise is raised until innovations are as large as it expects
+  /// them, within a factor of two.
+  bool start_run() {
+    constexpr int most = 12;
+    bool runs = linearise();
+    for (int k = 0; k < most && !options_.noise; ++k) {
+      double squares = 0.0, count = 0.0;
+      for (const auto& jacobian : out_.jacobians) {
+        squares += jacobian.r.squaredNorm();
+        count += static_cast<double>(jacobian.r.size());
+      }
+      constexpr double expected = 4.0;
+      if (runs && squares <= expected * count) break;
+      out_.noise.force *= 2.0;
+      for (auto& channel : out_.noise.channels) {
+        channel.white *= 1.5;
+        channel.jitter *= 1.5;
+      }
+      runs = linearise();
+    }
+    return runs;
+  }
+
   /// Alternates the blocks until neither gains.
   void iterate(int most, double tolerance) {
     out_.converged = false;

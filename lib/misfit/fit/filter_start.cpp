@@ -1,6 +1,8 @@
 #include "misfit/fit/filter_start.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace misfit {
 namespace {
@@ -37,12 +39,17 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   const Signals& first = *data.front().signals;
   const double h = usual_step(first.t);
   out.force_time = samples_of_memory * h;
-  out.force = share_of_motion * force_size(model, data.front(), reconstruct_states(model.model, first));
+  const ReconstructedStates states = reconstruct_states(model.model, first);
+  out.force = share_of_motion * force_size(model, data.front(), states);
+  // Well above the motion, which the model itself must explain: pack() lets the frequency down to half of this.
+  constexpr double above_motion = 3.0;
+  const double jitter_frequency =
+      std::min(std::max(share_of_rate / h, above_motion * motion_frequency(model.model, states) / (2.0 * std::numbers::pi)), 0.3 / h);
   const auto& outputs = model.model.system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     double white = reading_noise(first.measured[o].values);
     if (!(white > 0.0)) white = outputs[o].noise > 0.0 ? outputs[o].noise : 1.0;
-    out.channels.push_back({white, white, share_of_rate / h, 0.3});
+    out.channels.push_back({white, white, jitter_frequency, 0.3});
   }
   return out;
 }
