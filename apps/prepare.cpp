@@ -122,6 +122,6 @@ std::optional<Prepared> prepare_regression(Session& session, std::vector<std::st
   return prepare_request(session, std::move(*request));
 }
 
-bool averaged_by_attitude(const Session& session) { return session.study.experiments.front().track.has_value(); }
+bool averaged_by_attitude(const Session& session) { return has_track(session.study.experiments.front()); }
 
 }  // namespace misfit
