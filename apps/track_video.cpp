@@ -17,6 +17,7 @@ namespace misfit {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double most_doubled = 0.15;
 constexpr long even_shots = 15;
 constexpr std::size_t lost_shots = 5, trail_length = 40;
 
@@ -57,13 +58,21 @@ Learnt learn(const std::filesystem::path& path, const VideoStudy& study) {
                     "frame)? start = [column, row] or region = [left, top, right, bottom] can say where it is",
                     path.string(), what, survey.frames()));
   }
+  if (!study.start && !study.region && survey.doubled() > most_doubled) {
+    throw RunError(fmt::format(
+        "{}: in {:.0f} % of the fields looked at there are two moving things that look like the marker. If there are two, say which: "
+        "[video] "
+        "start = [column, row]. If there is one, the frames are blends of two fields (an interlaced video that was blurred or scaled "
+        "as a whole), and the original is needed: which of the two was first cannot be told any more",
+        path.string(), 100.0 * survey.doubled()));
+  }
   return {*look, survey.evidence(), survey.still()};
 }
 
 /// Collects what the contact sheet will show.
 class Shots {
  public:
-  explicit Shots(long declared) : every_(std::max(1L, declared / even_shots)) {}
+  explicit Shots(long declared) : every_(declared / even_shots + 1) {}
 
   void offer(const Frame& frame, const Field& field, std::size_t sample, const TrackedSample& found) {
     const bool lost = found.loss != Loss::none;

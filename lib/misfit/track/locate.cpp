@@ -10,12 +10,12 @@
 namespace misfit {
 namespace {
 
-constexpr int most_unknowns = 8;  // centre, three levels, outer, inner, edge
+constexpr int most_unknowns = 10;  // centre, three levels, slope of the ground in x and y, outer, inner, edge
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_unknowns, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_unknowns, most_unknowns>;
 
 constexpr int sectors = 8;
-constexpr double pixel_locking = 0.1;                                        // [px] see locate.h
+constexpr int alike_columns = 4, alike_lines = 2;                            // how far residuals of texture and compression are alike
 constexpr double least_outer = 2.0, largest_outer = 30.0, least_edge = 0.6;  // [px]
 
 /// Pixels taken into account: image columns and rows, ends included.
@@ -54,7 +54,9 @@ class Fitter {
   Fitter(const Field& field, const Marker& marker, const PixelPoint& start, bool fit_shape)
       : field_(field), marker_(marker), at_(start), shape_(fit_shape && marker.kind != MarkerKind::picture) {
     levels_ = 1 + marker.shapes();
-    unknowns_ = 2 + levels_ + (shape_ ? marker.shapes() + 1 : 0);
+    ground_ = marker.kind != MarkerKind::picture;
+    first_shape_ = 2 + levels_ + (ground_ ? 2 : 0);
+    unknowns_ = first_shape_ + (shape_ ? marker.shapes() + 1 : 0);
   }
 
   Location run() {
@@ -119,8 +121,14 @@ class Fitter {
         p.slope(0) -= level * s.by_x[i];
         p.slope(1) -= level * s.by_y[i];
         p.slope(3 + k) = s.value[i];
-        if (shape_) p.slope(2 + levels_ + k) = level * s.by_radius[i];
+        if (shape_) p.slope(first_shape_ + k) = level * s.by_radius[i];
         by_edge += level * s.by_edge[i];
+      }
+      if (ground_) {
+        const double outside = 1.0 - s.value[0];
+        p.slope(2 + levels_) = outside * p.x;
+        p.slope(3 + levels_) = outside * p.y;
+        p.model += outside * (tilt_x_ * p.x + tilt_y_ * p.y);
       }
       if (shape_) p.slope(unknowns_ - 1) = by_edge;
       p.residual = p.grey - p.model;
@@ -166,10 +174,14 @@ class Fitter {
     at_.column += step(0);
     at_.row += step(1);
     for (int k = 0; k < levels_; ++k) marker_.levels[static_cast<std::size_t>(k)] += step(2 + k);
+    if (ground_) {
+      tilt_x_ += step(2 + levels_);
+      tilt_y_ += step(3 + levels_);
+    }
     if (!shape_) return;
-    marker_.outer = std::clamp(marker_.outer + step(2 + levels_), least_outer, largest_outer);
+    marker_.outer = std::clamp(marker_.outer + step(first_shape_), least_outer, largest_outer);
     if (marker_.kind == MarkerKind::ring)
-      marker_.inner = std::clamp(marker_.inner + step(3 + levels_), 0.15 * marker_.outer, 0.9 * marker_.outer);
+      marker_.inner = std::clamp(marker_.inner + step(first_shape_ + 1), 0.15 * marker_.outer, 0.9 * marker_.outer);
     marker_.edge = std::clamp(marker_.edge + step(unknowns_ - 1), least_edge, 0.8 * marker_.outer);
   }
 
@@ -207,15 +219,15 @@ class Fitter {
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
       const Pixel& a = pixels_[i];
       const Vector score = a.weight * a.residual * a.slope;
-      M.noalias() += score * score.transpose();
-      for (std::size_t j = i + 1; j < pixels_.size() && pixels_[j].row <= a.row + 1; ++j) {
+      Vector others = 0.5 * score;
+      for (std::size_t j = i + 1; j < pixels_.size() && pixels_[j].row <= a.row + alike_lines; ++j) {
         const Pixel& b = pixels_[j];
         const int apart = std::abs(b.column - a.column);
-        if (apart > 2) continue;
-        const double weight = (1.0 - apart / 3.0) * (b.row == a.row ? 1.0 : 0.5);
-        const Vector other = (weight * b.weight * b.residual) * b.slope;
-        M.noalias() += score * other.transpose() + other * score.transpose();
+        if (apart > alike_columns) continue;
+        const double weight = (1.0 - apart / (alike_columns + 1.0)) * (1.0 - (b.row - a.row) / (alike_lines + 1.0));
+        others += (weight * b.weight * b.residual) * b.slope;
       }
+      M.noalias() += score * others.transpose() + others * score.transpose();
     }
     const Eigen::LDLT<Matrix> solver(H);
     const auto n = static_cast<double>(pixels_.size());
@@ -225,7 +237,7 @@ class Fitter {
     double left = 0.0;
     for (const Pixel& p : pixels_) left += p.weight * p.residual * p.residual;
     const double plain = 0.5 * (classical(0, 0) + classical(1, 1)) * left / (n - unknowns_);
-    return std::sqrt(std::max(variance, plain) + pixel_locking * pixel_locking);
+    return std::sqrt(std::max(variance, plain));
   }
 
   /// For each sector the least-squares factor of the model about its mean; a factor whose own uncertainty excuses it counts as so much
@@ -262,8 +274,9 @@ class Fitter {
   const Field& field_;
   Marker marker_;
   PixelPoint at_;
-  bool shape_;
-  int levels_ = 2, unknowns_ = 4;
+  bool shape_, ground_ = false;
+  int levels_ = 2, first_shape_ = 4, unknowns_ = 4;
+  double tilt_x_ = 0.0, tilt_y_ = 0.0;  ///< of the ground [grey levels per px]
   std::vector<Pixel> pixels_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "misfit/math/statistics.h"
@@ -183,6 +184,13 @@ std::vector<PixelPoint> Survey::still() const {
   const Group group = best_group();
   if (moving(group).size() == group.members.size()) return {};
   return still_of(group);
+}
+
+double Survey::doubled() const {
+  std::map<std::pair<long, int>, int> count;
+  for (std::size_t k : moving(best_group())) ++count[{found_[k].frame, found_[k].parity}];
+  const auto twice = std::count_if(count.begin(), count.end(), [](const auto& c) { return c.second > 1; });
+  return count.empty() ? 0.0 : static_cast<double>(twice) / static_cast<double>(count.size());
 }
 
 FieldEvidence Survey::evidence() const {

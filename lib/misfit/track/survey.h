@@ -30,6 +30,8 @@ class Survey {
   [[nodiscard]] FieldEvidence evidence() const;
   /// Places where something of the same look stands still while the marker moves.
   [[nodiscard]] std::vector<PixelPoint> still() const;
+  /// Share of the fields with the marker in which it is found at two places that both move: frames blended of two fields, or two markers.
+  [[nodiscard]] double doubled() const;
   [[nodiscard]] long frames() const { return seen_; }
 
  private:

@@ -120,6 +120,7 @@ const TrackedSample& Tracker::add(const Field& field, bool copy) {
     const bool beyond = held_ && (x < reach || y < reach || x > field.image.width - 1.0 - reach || y > field.frame_height() - 1.0 - reach);
     return lose(beyond ? Loss::outside : why);
   }
+  row_step_ = field.row_step;
   if (held_ && stands_still_suspiciously(found->at)) return lose(Loss::copy);
   samples_.push_back({Loss::none, found->at, found->sigma, found->explained});
   if (!held_ || gate() > 0.35 * field.image.width) {
@@ -168,11 +169,40 @@ void drop_short_runs(std::vector<TrackedSample>& samples) {
   }
 }
 
+void add_locking(std::vector<TrackedSample>& samples, int row_step) {
+  std::vector<double> columns, rows;
+  for (const TrackedSample& s : samples) {
+    if (s.loss != Loss::none) continue;
+    columns.push_back(s.at.column);
+    rows.push_back(s.at.row);
+  }
+  const double x = pixel_locking(columns, 1.0), y = pixel_locking(rows, row_step);
+  for (TrackedSample& s : samples) s.sigma = std::sqrt(s.sigma * s.sigma + 0.5 * (x * x + y * y));
+}
+
 }  // namespace
+
+double pixel_locking(const std::vector<double>& positions, double pitch) {
+  constexpr double assumed = 0.1, largest = 0.3;
+  const auto n = static_cast<double>(positions.size());
+  if (positions.size() < 200 || !(mad_sigma(positions) > 10.0 * pitch)) return assumed;
+  std::vector<double> phase;
+  for (double p : positions) phase.push_back(p / pitch - std::floor(p / pitch));
+  std::sort(phase.begin(), phase.end());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < phase.size(); ++k) {
+    const double lack = phase[k] - (static_cast<double>(k) + 0.5) / n;
+    sum += lack;
+    squares += lack * lack;
+  }
+  const double variance = squares / n - sum * sum / (n * n) - 1.0 / (12.0 * n);
+  return std::min(largest, pitch * std::sqrt(2.0 * std::max(0.0, variance)));
+}
 
 std::vector<TrackedSample> Tracker::finish() {
   drop_bends(samples_);
   drop_short_runs(samples_);
+  add_locking(samples_, row_step_);
   return std::move(samples_);
 }
 

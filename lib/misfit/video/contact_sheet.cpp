@@ -10,7 +10,7 @@ namespace {
 
 using video_module::Mark;
 
-constexpr int columns = 5, tile = 300, gap = 6, zoom_side = 96, caption = 22;  // [px of the sheet]
+constexpr int columns = 5, tile = 240, gap = 5, zoom_side = 84, caption = 22;  // [px of the sheet]
 
 /// Where the magnified cut goes: x, y of its corner in the tile.
 std::pair<int, int> zoom_corner(const Shot& shot, double scale, int width, int height) {

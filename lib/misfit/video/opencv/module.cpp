@@ -99,12 +99,13 @@ class OpencvBackend : public Backend {
     return nullptr;
   }
   std::unique_ptr<Sink> create(const std::string& path, int width, int height, double rate, std::string& why) override {
-    const bool avi = path.ends_with(".avi");
-    const int codec = avi ? cv::VideoWriter::fourcc('M', 'J', 'P', 'G') : cv::VideoWriter::fourcc('m', 'p', '4', 'v');
+    const int codec = path.ends_with(".avi")   ? cv::VideoWriter::fourcc('M', 'J', 'P', 'G')
+                      : path.ends_with(".mkv") ? cv::VideoWriter::fourcc('F', 'F', 'V', '1')
+                                               : cv::VideoWriter::fourcc('m', 'p', '4', 'v');
     try {
       cv::VideoWriter writer(path, cv::CAP_FFMPEG, codec, rate, {width, height});
       if (writer.isOpened()) return std::make_unique<OpencvSink>(std::move(writer), width, height);
-      why = "FFmpeg cannot write such a file: .avi (Motion JPEG), .mp4 or .mkv (MPEG-4) are possible, in a folder that can be written";
+      why = "FFmpeg cannot write such a file: .avi (Motion JPEG), .mp4 (MPEG-4) and .mkv (FFV1, without loss) are possible, in a folder that can be written";
     } catch (const cv::Exception& error) {
       why = error.err;
     }
