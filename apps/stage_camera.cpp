@@ -33,15 +33,15 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-Calibration make_calibration(const Session& session) {
+Calibration make_calibration(const Session& session, const fs::path& sweep) {
   const CameraStudy& camera = session.study.camera;
-  if (!camera.sweep) return camera_as_given(model_of(camera), camera.given);
+  if (!camera.from_sweep()) return camera_as_given(model_of(camera), camera.given);
   require_rig(session.study, session.model.rig, true);
   CalibrateOptions options;
   options.model = model_of(camera);
   options.offer = camera.offer;
   options.take_in = camera.take_in;
-  return calibrate(read_sweep(*camera.sweep), session.model.rig, options);
+  return calibrate(read_sweep(sweep), session.model.rig, options);
 }
 
 fs::path attitude_file(const Session& session, std::size_t e) {
@@ -73,11 +73,11 @@ std::optional<Calibration> calibrate_stage(Session& session) {
   if (!session.study.has_camera) return std::nullopt;
   const fs::path file = session.folder.file("camera.json");
   std::vector<fs::path> files;
-  if (session.study.camera.sweep) files.push_back(*session.study.camera.sweep);
+  if (session.study.camera.from_sweep()) files.push_back(sweep_stage(session));
   const auto inputs = session.inputs(settings_of(session), files);
   if (session.folder.up_to_date("calibrate", inputs)) return read_calibration(file);
   const auto begin = std::chrono::steady_clock::now();
-  const Calibration calibration = make_calibration(session);
+  const Calibration calibration = make_calibration(session, files.empty() ? fs::path() : files.front());
   write_calibration(file, calibration);
   session.folder.record({"calibrate", session.options.command, inputs, {"camera.json"}, seconds_since(begin), "", ""});
   return calibration;

@@ -32,6 +32,8 @@ struct TrackFiles {
 /// track.csv, track.json and figures/contact_sheet.png of every experiment that starts from a video (track_NAME… for further ones); nullopt
 /// for others.
 [[nodiscard]] std::vector<std::optional<TrackFacts>> track_stage(Session& session);
+/// The table of the sweep: the study's own, or sweep.csv made from its pictures (with figures/sweep_sheet.png).
+[[nodiscard]] std::filesystem::path sweep_stage(Session& session);
 /// camera.json; nullopt if the study has no camera.
 [[nodiscard]] std::optional<Calibration> calibrate_stage(Session& session);
 /// attitude.csv (attitude_NAME.csv for further experiments); empty for experiments without a track.

@@ -15,6 +15,7 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_unknowns, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_unknowns, most_unknowns>;
 
 constexpr int sectors = 8;
+constexpr double least_sigma = 0.01;                                         // [px] no edge is the formula of marker.h to better than that
 constexpr int alike_columns = 4, alike_lines = 2;                            // how far residuals of texture and compression are alike
 constexpr double least_outer = 2.0, largest_outer = 30.0, least_edge = 0.6;  // [px]
 
@@ -237,7 +238,7 @@ class Fitter {
     double left = 0.0;
     for (const Pixel& p : pixels_) left += p.weight * p.residual * p.residual;
     const double plain = 0.5 * (classical(0, 0) + classical(1, 1)) * left / (n - unknowns_);
-    return std::sqrt(std::max(variance, plain));
+    return std::sqrt(std::max(variance, plain) + least_sigma * least_sigma);
   }
 
   /// For each sector the least-squares factor of the model about its mean; a factor whose own uncertainty excuses it counts as so much

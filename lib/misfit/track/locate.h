@@ -22,7 +22,8 @@ struct Location {
 /// Least squares over the pixels within the marker's reach and a margin (Gauss-Newton with Huber's weights, k = 2 robust standard
 /// deviations), in centre and levels and, with `fit_shape`, in outer, inner and edge. sigma comes from the sandwich H^-1 M H^-1, where M
 /// sums J_i r_i r_j J_j over pixels up to four columns and two lines apart (Bartlett weights): texture and compression make neighbours
-/// alike, which the classical formula does not know. What moves the whole marker alike no residual shows: see pixel_locking. `start` must
+/// alike, which the classical formula does not know. 0.01 px is added for what the shape is not. What moves the whole marker alike no
+/// residual shows: see pixel_locking. `start` must
 /// be within about half an edge or ring width of the centre.
 [[nodiscard]] Location locate(const Field& field, const Marker& marker, const PixelPoint& start, bool fit_shape = false);
 
