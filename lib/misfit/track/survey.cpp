@@ -15,7 +15,7 @@ constexpr std::size_t candidates_per_scale = 5;
 constexpr double start_radius = 40.0;  // [px] about a given start
 constexpr double still_radius = 1.5;   // [px]
 constexpr long frames_wanted = 30, frames_at_most = 60;
-constexpr long patient_frames = 40, stride_after = 8;  // nothing found in the first ones: every eighth frame from there on
+constexpr long patient_frames = 40, stride_after = 20;  // nothing found in the first ones: every twentieth frame from there on
 constexpr std::size_t found_wanted = 12;               // fields, before one size is believed
 
 double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
