@@ -131,7 +131,8 @@ void make_sweep(const Session& session, const std::vector<SweepPicture>& picture
 fs::path sweep_stage(Session& session) {
   const CameraStudy& camera = session.study.camera;
   if (camera.sweep) return *camera.sweep;
-  const fs::path file = session.folder.file("sweep.csv"), sheet = session.folder.file("figures/sweep_sheet.png");
+  fs::path file = session.folder.file("sweep.csv");
+  const fs::path sheet = session.folder.file("figures/sweep_sheet.png");
   const std::vector<SweepPicture> pictures = read_sweep_pictures(*camera.sweep_images);
   std::vector<fs::path> read{*camera.sweep_images};
   for (const SweepPicture& picture : pictures) read.push_back(picture.file);

@@ -146,7 +146,7 @@ Region intersection(const Region& a, const Region& b) {
   return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
 }
 
-std::vector<Candidate> search(const Field& field, const Marker& marker, const Region& region, double least, std::size_t most) {
+std::vector<Match> search(const Field& field, const Marker& marker, const Region& region, double least, std::size_t most) {
   const Pitch pitch = pitch_of(marker, field.row_step);
   const Grid kernel = kernel_of(marker, field.row_step, pitch);
   const double half_x = 0.5 * kernel.width * pitch.x, half_y = 0.5 * kernel.height * pitch.y;
@@ -158,7 +158,7 @@ std::vector<Candidate> search(const Field& field, const Marker& marker, const Re
   if (c1 - c0 < kernel.width * pitch.x || r1 - r0 < kernel.height * pitch.y) return {};
   const Grid grid = shrink(field.image, c0, r0, (c1 - c0) / pitch.x, (r1 - r0) / pitch.y, pitch);
   const Grid map = correlate(grid, kernel);
-  std::vector<Candidate> found;
+  std::vector<Match> found;
   for (int j = 0; j < map.height; ++j) {
     for (int i = 0; i < map.width; ++i) {
       if (map.row(j)[i] < least || !is_peak(map, i, j)) continue;
@@ -167,12 +167,12 @@ std::vector<Candidate> search(const Field& field, const Marker& marker, const Re
       if (contains(wanted, {column, row})) found.push_back({{column, row}, map.row(j)[i]});
     }
   }
-  std::stable_sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::stable_sort(found.begin(), found.end(), [](const Match& a, const Match& b) { return a.score > b.score; });
   const double apart = std::min(marker.reach_x(), marker.reach_y());
-  std::vector<Candidate> kept;
-  for (const Candidate& c : found) {
+  std::vector<Match> kept;
+  for (const Match& c : found) {
     const bool near = std::any_of(kept.begin(), kept.end(),
-                                  [&](const Candidate& k) { return std::hypot(k.at.column - c.at.column, k.at.row - c.at.row) < apart; });
+                                  [&](const Match& k) { return std::hypot(k.at.column - c.at.column, k.at.row - c.at.row) < apart; });
     if (!near) kept.push_back(c);
     if (kept.size() == most) break;
   }

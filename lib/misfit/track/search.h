@@ -16,7 +16,7 @@ struct Region {
   return p.column >= r.left && p.column <= r.right && p.row >= r.top && p.row <= r.bottom;
 }
 
-struct Candidate {
+struct Match {
   PixelPoint at;
   double score = 0.0;  ///< normalised cross-correlation, −1 … 1
 };
@@ -24,6 +24,6 @@ struct Candidate {
 /// Places whose neighbourhood looks like the marker: local maxima of the zero-mean normalised cross-correlation with the marker's picture,
 /// best first, at least a marker's radius apart, not below `least`. Computed on a grid about eight points to the marker, so good to about
 /// one grid step; the marker must lie in the frame, its centre in `region`.
-[[nodiscard]] std::vector<Candidate> search(const Field& field, const Marker& marker, const Region& region, double least, std::size_t most);
+[[nodiscard]] std::vector<Match> search(const Field& field, const Marker& marker, const Region& region, double least, std::size_t most);
 
 }  // namespace misfit

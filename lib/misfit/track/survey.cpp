@@ -16,14 +16,14 @@ constexpr double start_radius = 40.0;  // [px] about a given start
 constexpr double still_radius = 1.5;   // [px]
 constexpr long frames_wanted = 30, frames_at_most = 60;
 constexpr long patient_frames = 40, stride_after = 20;  // nothing found in the first ones: every twentieth frame from there on
-constexpr std::size_t found_wanted = 12;               // fields, before one size is believed
+constexpr std::size_t found_wanted = 12;                // fields, before one size is believed
 
 double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
 
 /// Fits every candidate; keeps the possible ones, each place once (the best explained).
-std::vector<Location> fit_all(const Field& field, const Marker& marker, const std::vector<Candidate>& candidates) {
+std::vector<Location> fit_all(const Field& field, const Marker& marker, const std::vector<Match>& candidates) {
   std::vector<Location> out;
-  for (const Candidate& c : candidates) {
+  for (const Match& c : candidates) {
     const Location found = locate(field, marker, c.at, true);
     if (possible(found, marker.kind)) out.push_back(found);
   }

@@ -45,7 +45,7 @@ class Survey {
     double score = 0.0;
   };
   void look(const Field& field, long number);
-  void keep(const Field& field, const Marker& marker, const std::vector<Candidate>& candidates, long number);
+  void keep(const Field& field, const Marker& marker, const std::vector<Match>& candidates, long number);
   [[nodiscard]] std::vector<Marker> markers_to_try() const;
   [[nodiscard]] Group best_group() const;
   [[nodiscard]] bool similar(const Location& a, const Location& b) const;

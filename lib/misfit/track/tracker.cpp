@@ -81,7 +81,7 @@ std::optional<Location> Tracker::look(const Field& field, Loss& why) {
   }
   std::optional<Location> best;
   double best_merit = -1.0;
-  for (const Candidate& c : search(field, options_.look.marker, region, least_score, candidates)) {
+  for (const Match& c : search(field, options_.look.marker, region, least_score, candidates)) {
     const Location found = locate(field, options_.look.marker, c.at);
     const Loss loss = judge(found, options_.look, contrast_);
     if (loss != Loss::none) {
