@@ -22,6 +22,7 @@ struct VerbEntry {
 
 constexpr VerbEntry verbs[] = {
     {"run", "do everything the study asks for and write the report; stages whose inputs have not changed are skipped", run_verb, true},
+    {"track", "follow the marker through the video: track.csv, contact sheet, what was lost and why", track_verb, true},
     {"calibrate", "camera height, scale and what else the static sweep supports", calibrate_verb, true},
     {"attitude", "angles of the axis from the track", attitude_verb, true},
     {"fit", "estimate the model's curves and parameters", fit_verb, true},
@@ -74,6 +75,9 @@ int dispatch(int argc, char** argv, const Registry& registry) {
   for (const auto& entry : verbs) {
     CLI::App* verb = app.add_subcommand(entry.name, entry.doc);
     add_options(*verb, options, entry.study_required);
+    if (entry.call == track_verb)
+      verb->add_option("--check-video", options.check_video, "also write the video with the track drawn on it (.avi, .mp4 or .mkv)")
+          ->type_name("FILE");
     calls[verb] = entry.call;
   }
   if (argc > 1 && argv[1][0] != '-') {

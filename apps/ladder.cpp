@@ -120,7 +120,9 @@ std::map<std::string, std::string> inputs_of_ladder(const Session& session) {
       if (file) files.push_back(*file);
     }
   }
-  if (session.study.camera.sweep) files.push_back(*session.study.camera.sweep);
+  for (const auto& file : {session.study.camera.sweep, session.study.camera.sweep_images}) {
+    if (file) files.push_back(*file);
+  }
   auto out = session.inputs(session.study.text, files);
   out.erase("program");  // another build refits the rungs, it does not take them down
   return out;

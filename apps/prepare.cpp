@@ -35,10 +35,10 @@ std::vector<double> where_ok(std::vector<double> values, const std::vector<bool>
 }
 
 /// The track as the channels P_y and P_z, with its sigma where it gives one.
-Signals pixels_of(const ExperimentStudy& experiment, const Model& model) {
-  const Track track = read_track(*experiment.track, experiment.columns);
+Signals pixels_of(const ExperimentStudy& experiment, const std::filesystem::path& file, const Model& model) {
+  const Track track = read_track(file, experiment.columns);
   Table table;
-  table.source = experiment.track->string();
+  table.source = file.string();
   table.add("t", "s", track.t);
   table.add("P_y", "px", where_ok(track.P_y, track.ok));
   table.add("P_z", "px", where_ok(track.P_z, track.ok));
@@ -61,7 +61,7 @@ std::vector<Signals> read_experiments(Session& session, const Model& model) {
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     const ExperimentStudy& experiment = session.study.experiments[e];
     if (attitudes[e] && pixels) {
-      out.push_back(pixels_of(experiment, model));
+      out.push_back(pixels_of(experiment, track_files(session, e).track, model));
     } else if (attitudes[e]) {
       ExperimentStudy plain = experiment;
       plain.columns = {};
@@ -122,6 +122,6 @@ std::optional<Prepared> prepare_regression(Session& session, std::vector<std::st
   return prepare_request(session, std::move(*request));
 }
 
-bool averaged_by_attitude(const Session& session) { return session.study.experiments.front().track.has_value(); }
+bool averaged_by_attitude(const Session& session) { return has_track(session.study.experiments.front()); }
 
 }  // namespace misfit

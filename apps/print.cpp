@@ -79,6 +79,13 @@ std::string calibration_text(const Calibration& c) {
   return out;
 }
 
+std::string track_text(const std::string& experiment, const TrackFacts& facts) {
+  std::string out = "track of " + experiment + "\n";
+  for (const auto& sentence : sentences(facts)) out += wrap_text(sentence, 110, "  ") + "\n";
+  for (const auto& warning : facts.warnings) out += wrap_text("! " + warning, 110, "  ") + "\n";
+  return out;
+}
+
 std::string attitude_text(const std::string& experiment, const Attitude& a) {
   const auto known = static_cast<std::size_t>(std::count_if(a.eta.begin(), a.eta.end(), [](double v) { return std::isfinite(v); }));
   double sum = 0.0, squares = 0.0, n = 0.0;

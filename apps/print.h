@@ -9,11 +9,13 @@
 #include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
 #include "misfit/data/ladder.h"
+#include "misfit/data/track_facts.h"
 
 namespace misfit {
 
 // What a person reads on a terminal: aligned, with units and sigmas.
 [[nodiscard]] std::string calibration_text(const Calibration& calibration);
+[[nodiscard]] std::string track_text(const std::string& experiment, const TrackFacts& facts);
 [[nodiscard]] std::string attitude_text(const std::string& experiment, const Attitude& attitude);
 [[nodiscard]] std::string fits_text(const std::vector<Fit>& fits);
 [[nodiscard]] std::string diagnosis_text(const Diagnosis& diagnosis);

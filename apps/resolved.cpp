@@ -70,13 +70,35 @@ void add_geometry(const Session& session, const Prepared& prepared, std::string&
   }
 }
 
+std::string marker_name(const Session& session, const MarkerStudy& marker) {
+  return marker.picture ? path_of(session, *marker.picture) : quoted(marker.kind);
+}
+
+/// [video], if any experiment starts from one.
+void add_video(const Session& session, std::string& text) {
+  const auto& all = session.study.experiments;
+  if (std::none_of(all.begin(), all.end(), [](const ExperimentStudy& e) { return e.video.has_value(); })) return;
+  const VideoStudy& video = session.study.video;
+  text += fmt::format("\n[video]\nfields = {}\ncheck_fields = {}\nmarker = {}\n", quoted(video.fields), video.check_fields,
+                      marker_name(session, video.marker));
+  if (video.start) text += fmt::format("start = {}\n", numbers_of({video.start->column, video.start->row}, 1.0));
+  if (video.region) text += fmt::format("region = {}\n", numbers_of({video.region->begin(), video.region->end()}, 1.0));
+}
+
 void add_camera(const Session& session, std::string& text) {
   const CameraStudy& camera = session.study.camera;
   if (!session.study.has_camera) return;
   text += fmt::format("\n[camera]\nmodel = {}\n", quoted(camera.model));
-  if (camera.sweep) {
-    text += fmt::format("sweep = {}\noffer = {}\ntake_in = {}\n", path_of(session, *camera.sweep), list_of(camera.offer),
-                        list_of(camera.take_in));
+  if (camera.from_sweep()) {
+    text +=
+        fmt::format("{} = {}\noffer = {}\ntake_in = {}\n", camera.sweep ? "sweep" : "sweep_images",
+                    path_of(session, camera.sweep ? *camera.sweep : *camera.sweep_images), list_of(camera.offer), list_of(camera.take_in));
+  }
+  if (camera.sweep_images) text += fmt::format("sweep_marker = {}\n", marker_name(session, camera.sweep_marker));
+  if (camera.sweep_points.size() == 3) {
+    std::vector<double> flat;
+    for (const PixelPoint& p : camera.sweep_points) flat.insert(flat.end(), {p.column, p.row});
+    text += fmt::format("sweep_points = {}\n", numbers_of(flat, 1.0));
   }
   for (const auto& [name, number] : camera.given) text += fmt::format("{} = {}\n", name, number_of(number));
 }
@@ -86,8 +108,14 @@ void add_experiments(const Session& session, const Prepared& prepared, std::stri
     const Signals& s = prepared.experiments[e];
     const ExperimentStudy& study = session.study.experiments[e];
     text += fmt::format("\n[[experiment]]  # {} samples, {:.6g} s to {:.6g} s\nname = {}\n{} = {}\nexclude = {}\n", s.samples(),
-                        s.t.front(), s.t.back(), quoted(s.name), study.track ? "track" : "data",
-                        path_of(session, study.track ? *study.track : *study.data), study.exclude);
+                        s.t.front(), s.t.back(), quoted(s.name),
+                        study.track   ? "track"
+                        : study.video ? "video"
+                                      : "data",
+                        path_of(session, study.track   ? *study.track
+                                         : study.video ? *study.video
+                                                       : *study.data),
+                        study.exclude);
     if (s.validation_from < s.t.back())
       text += fmt::format("validation = [{}, {}]\n", s.validation_from, std::min(s.validation_to, s.t.back() + 1.0));
     if (study.columns.header_of.empty()) continue;
@@ -161,6 +189,7 @@ void write_resolved(const Session& session, const Prepared& prepared) {
   add_geometry(session, prepared, text);
   add_camera(session, text);
   add_experiments(session, prepared, text);
+  add_video(session, text);
   add_model(session, prepared, text);
   add_rest(session, text);
   write_atomically(session.folder.file("resolved.toml"), text);

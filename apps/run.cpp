@@ -10,6 +10,7 @@ namespace misfit {
 
 int run_verb(const Options& options, const Registry& registry) {
   Session session(options, registry);
+  const auto videos = track_stage(session);
   const auto calibration = calibrate_stage(session);
   const auto attitudes = attitude_stage(session);
   const std::vector<Fit> fits = fit_stage(session);
@@ -23,6 +24,9 @@ int run_verb(const Options& options, const Registry& registry) {
     return status_of(fits);
   }
   std::cout << session.study.name << '\n' << session.study.question << "\n\n";
+  for (std::size_t e = 0; e < videos.size(); ++e) {
+    if (videos[e]) std::cout << track_text(session.study.experiments[e].name, *videos[e]) << '\n';
+  }
   if (calibration) std::cout << calibration_text(*calibration) << '\n';
   for (std::size_t e = 0; e < attitudes.size(); ++e) {
     if (attitudes[e]) std::cout << attitude_text(session.study.experiments[e].name, *attitudes[e]) << '\n';

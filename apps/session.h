@@ -21,9 +21,10 @@ struct Options {
   bool has_seed = false;
   unsigned long seed = 1;
   bool quiet = false, json = false;
-  std::string effect;      ///< of `add`
-  bool automatic = false;  ///< discover --auto
-  std::string command;     ///< the command line as typed, for run.json
+  std::string effect;       ///< of `add`
+  bool automatic = false;   ///< discover --auto
+  std::string check_video;  ///< track: write the video with the track drawn to this file
+  std::string command;      ///< the command line as typed, for run.json
 };
 
 /// A study opened for work: what was asked, the run folder, and the hashes that decide what must be done again.

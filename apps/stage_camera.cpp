@@ -33,15 +33,15 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-Calibration make_calibration(const Session& session) {
+Calibration make_calibration(const Session& session, const fs::path& sweep) {
   const CameraStudy& camera = session.study.camera;
-  if (!camera.sweep) return camera_as_given(model_of(camera), camera.given);
+  if (!camera.from_sweep()) return camera_as_given(model_of(camera), camera.given);
   require_rig(session.study, session.model.rig, true);
   CalibrateOptions options;
   options.model = model_of(camera);
   options.offer = camera.offer;
   options.take_in = camera.take_in;
-  return calibrate(read_sweep(*camera.sweep), session.model.rig, options);
+  return calibrate(read_sweep(sweep), session.model.rig, options);
 }
 
 fs::path attitude_file(const Session& session, std::size_t e) {
@@ -73,11 +73,11 @@ std::optional<Calibration> calibrate_stage(Session& session) {
   if (!session.study.has_camera) return std::nullopt;
   const fs::path file = session.folder.file("camera.json");
   std::vector<fs::path> files;
-  if (session.study.camera.sweep) files.push_back(*session.study.camera.sweep);
+  if (session.study.camera.from_sweep()) files.push_back(sweep_stage(session));
   const auto inputs = session.inputs(settings_of(session), files);
   if (session.folder.up_to_date("calibrate", inputs)) return read_calibration(file);
   const auto begin = std::chrono::steady_clock::now();
-  const Calibration calibration = make_calibration(session);
+  const Calibration calibration = make_calibration(session, files.empty() ? fs::path() : files.front());
   write_calibration(file, calibration);
   session.folder.record({"calibrate", session.options.command, inputs, {"camera.json"}, seconds_since(begin), "", ""});
   return calibration;
@@ -85,13 +85,12 @@ std::optional<Calibration> calibrate_stage(Session& session) {
 
 std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
   std::vector<std::optional<Attitude>> out;
+  const auto videos = track_stage(session);
   const std::optional<Calibration> calibration = calibrate_stage(session);
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     stop_if_interrupted();
     const ExperimentStudy& experiment = session.study.experiments[e];
-    if (experiment.video)
-      throw InputError(experiment.where, "this build cannot read video yet: give the tracked marker as track = \"track.csv\"");
-    if (!experiment.track) {
+    if (!has_track(experiment)) {
       out.emplace_back();
       continue;
     }
@@ -102,7 +101,7 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
     const fs::path file = attitude_file(session, e), notes = fs::path(file).replace_extension(".notes.txt");
     std::string settings = settings_of(session);
     for (const auto& [name, header] : experiment.columns.header_of) settings += fmt::format("\ncolumn {}={}", name, header);
-    const auto inputs = session.inputs(settings, {*experiment.track, session.folder.file("camera.json")});
+    const auto inputs = session.inputs(settings, {track_files(session, e).track, session.folder.file("camera.json")});
     const std::string stage = "attitude/" + experiment.name;
     if (session.folder.up_to_date(stage, inputs)) {
       out.emplace_back(read_attitude(file));
@@ -110,8 +109,9 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
       continue;
     }
     const auto begin = std::chrono::steady_clock::now();
-    const Track track = read_track(*experiment.track, experiment.columns);
+    const Track track = read_track(track_files(session, e).track, experiment.columns);
     Attitude result = attitude(track, *calibration, session.model.rig);
+    if (videos[e]) result.notes.insert(result.notes.begin(), videos[e]->warnings.begin(), videos[e]->warnings.end());
     result.notes.insert(result.notes.begin(), track.notes.begin(), track.notes.end());
     write_attitude(file, result);
     write_notes(notes, result.notes);

@@ -137,8 +137,8 @@ std::map<std::string, std::string> inputs_of(const Session& session, const std::
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     const ExperimentStudy& experiment = session.study.experiments[e];
     if (experiment.data) files.push_back(*experiment.data);
-    if (!experiment.track) continue;
-    files.push_back(*experiment.track);
+    if (!has_track(experiment)) continue;
+    files.push_back(track_files(session, e).track);
     files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + experiment.name + ".csv"));
   }
   if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));

@@ -14,12 +14,17 @@ namespace fs = std::filesystem;
 
 std::vector<report::ExperimentInput> experiments_of(Session& session) {
   std::vector<report::ExperimentInput> out;
+  std::vector<std::optional<TrackFacts>> videos = track_stage(session);
   std::vector<std::optional<Attitude>> attitudes = attitude_stage(session);
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     const ExperimentStudy& study = session.study.experiments[e];
     report::ExperimentInput input;
     input.name = study.name;
-    if (study.track) input.track = read_track(*study.track, study.columns);
+    if (has_track(study)) input.track = read_track(track_files(session, e).track, study.columns);
+    if (videos[e]) {
+      input.video = std::move(videos[e]);
+      input.contact_sheet = read_file(track_files(session, e).sheet);
+    }
     input.attitude = std::move(attitudes[e]);
     out.push_back(std::move(input));
   }
@@ -55,6 +60,15 @@ std::vector<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
+/// What an earlier report drew; contact sheets belong to the track stage.
+void remove_figures(const fs::path& folder) {
+  std::error_code none;
+  for (const std::string& name : names_in(folder)) {
+    const fs::path file = folder.parent_path() / name;
+    if (file.extension() != ".png") fs::remove_all(file, none);
+  }
+}
+
 /// Everything the fits left on disk.
 std::vector<fs::path> files_of(const Session& session, const std::vector<Fit>& fits) {
   std::vector<fs::path> files;
@@ -74,8 +88,8 @@ std::vector<fs::path> files_of_report(const Session& session, const std::vector<
   if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     const ExperimentStudy& experiment = session.study.experiments[e];
-    if (!experiment.track) continue;
-    files.push_back(*experiment.track);
+    if (!has_track(experiment)) continue;
+    files.push_back(track_files(session, e).track);
     files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + experiment.name + ".csv"));
   }
   return files;
@@ -120,7 +134,7 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   input.discovery = known_discovery(session);
   input.ladder = known_ladder(session);
   input.run = facts_of(session);
-  fs::remove_all(session.folder.file("figures"));
+  remove_figures(session.folder.file("figures"));
   fs::path page = report::write_report(session.folder.path(), input);
   std::vector<std::string> outputs = names_in(session.folder.file("figures"));
   outputs.emplace_back("report.html");

@@ -13,6 +13,7 @@
 #include "misfit/data/ladder.h"
 #include "misfit/data/reference.h"
 #include "misfit/data/signals.h"
+#include "misfit/data/track_facts.h"
 #include "misfit/fit/equation_error.h"
 #include "misfit/fit/filter_estimate.h"
 
@@ -21,6 +22,18 @@ namespace misfit {
 // Each stage reads what it needs from the session and the run folder, skips its work when nothing it depends on has changed since
 // (run.json), and leaves its result on disk. They are run in this order; each calls the ones it needs.
 
+/// Is there a track of the experiment, given or made from its video?
+[[nodiscard]] bool has_track(const ExperimentStudy& experiment);
+/// Where it is: the study's own file, or what the track stage writes to the run folder (then with facts and contact sheet).
+struct TrackFiles {
+  std::filesystem::path track, facts, sheet;
+};
+[[nodiscard]] TrackFiles track_files(const Session& session, std::size_t experiment);
+/// track.csv, track.json and figures/contact_sheet.png of every experiment that starts from a video (track_NAME… for further ones); nullopt
+/// for others.
+[[nodiscard]] std::vector<std::optional<TrackFacts>> track_stage(Session& session);
+/// The table of the sweep: the study's own, or sweep.csv made from its pictures (with figures/sweep_sheet.png).
+[[nodiscard]] std::filesystem::path sweep_stage(Session& session);
 /// camera.json; nullopt if the study has no camera.
 [[nodiscard]] std::optional<Calibration> calibrate_stage(Session& session);
 /// attitude.csv (attitude_NAME.csv for further experiments); empty for experiments without a track.

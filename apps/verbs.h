@@ -7,6 +7,7 @@
 namespace misfit {
 
 // One function per verb: open the study, call the stages, print. Each in apps/NAME.cpp. Return the exit status.
+int track_verb(const Options& options, const Registry& registry);
 int calibrate_verb(const Options& options, const Registry& registry);
 int attitude_verb(const Options& options, const Registry& registry);
 int simulate_verb(const Options& options, const Registry& registry);

@@ -54,6 +54,7 @@ TEST(CommandLine, AFolderStandsForTheStudyInIt) {
 
 TEST(CommandLine, JsonIsTheOnlyThingOnStdout) {
   const StudyCopy study("mpf_f111");
+  study.start_from_track();
   const std::vector<std::string> options{"--json", "--method", "sliding_bin", "--method", "equation_error"};
   for (const char* verb : {"calibrate", "attitude", "fit", "compare", "report", "run"}) {
     const Outcome outcome = study.run(verb, options);

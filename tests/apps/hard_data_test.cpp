@@ -64,6 +64,7 @@ TEST(BrokenTable, EverySampleLost) {
 
 TEST(BrokenTable, ASweepOfTwoPoints) {
   const StudyCopy study("mpf_f111");
+  study.start_from_track();
   study.change_rows("static_sweep.csv", [](std::size_t row, const Cells& c) {
     std::string line;
     for (const auto& cell : c) line += (line.empty() ? "" : ",") + cell;
@@ -106,6 +107,7 @@ TEST(HoledData, FortyPercentOfTheAnglesMissingStillGiveTheTrim) {
 
 TEST(HoledData, AHoleInTheTrackIsCarriedToTheAttitude) {
   const StudyCopy study("mpf_f111");
+  study.start_from_track();
   study.change_rows("track.csv", [](std::size_t, const Cells& c) {
     const double t = std::stod(c[0]);
     return c[0] + (t > 20.0 && t < 23.0 ? ",," : "," + c[1] + "," + c[2]);
@@ -163,6 +165,7 @@ TEST(AlphaExactlyZero, ThroughoutSaysThatNothingMoves) {
 
 TEST(AlphaExactlyZero, AnApexThatRestsOnTheAxisIsReadAndRefusedInWords) {
   const StudyCopy study("mpf_f111");
+  study.start_from_track();
   study.change(R"(sweep.*\nmodel.*)", "model = \"pinhole\"\nh_c = 0\nK = \"133.8 px/m\"");
   study.change_rows("track.csv", [](std::size_t row, const Cells& c) { return row <= 500 ? c[0] + ",0,0" : ""; });
   const Outcome attitude = study.run("attitude");

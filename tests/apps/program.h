@@ -86,6 +86,8 @@ class StudyCopy {
     EXPECT_NE(before, after) << pattern;
     write("study.toml", after);
   }
+  /// mpf_f111 from its track instead of its video: the same flight, without the seconds that tracking takes.
+  void start_from_track() const { change("video = \"flight.mkv\"", "track = \"track.csv\""); }
   void append(const std::string& text) const { write("study.toml", content(path("study.toml")) + text); }
   /// Every line of a CSV but the header goes through `change`; an empty result drops the line.
   void change_rows(const std::string& name, const std::function<std::string(std::size_t, const std::vector<std::string>&)>& change) const {

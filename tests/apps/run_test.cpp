@@ -101,6 +101,7 @@ TEST_F(RunOnValidation, OutputErrorFindsTheStaticCurveThatWasSimulated) {
 
 TEST(RunOnMpfF111, DrivenMotionEndsInWordsThatNameTheMethodForIt) {
   const StudyCopy study("mpf_f111");
+  study.start_from_track();
   const Outcome outcome = study.run();
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   expect_contract_of_run(study);

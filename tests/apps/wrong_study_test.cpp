@@ -68,6 +68,7 @@ TEST(WrongStudyAsAWhole, WithoutExperiments) {
 
 TEST(WrongStudyAsAWhole, ATrackWithoutACamera) {
   const StudyCopy study("mpf_f111");
+  study.start_from_track();
   study.change(R"(\[camera\]\nsweep.*\nmodel.*\n)", "");
   const Outcome outcome = study.run();
   EXPECT_EQ(outcome.status, 2);

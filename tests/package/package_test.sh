@@ -22,6 +22,16 @@ grep -q pitch_damping "$work/own.txt" || fail "the own program does not list mis
 awk -F, 'END { exit !($1 == 1 && ($2 - 28.6478898)^2 < 1e-6) }' "$work/out/simulation.csv" ||
   fail "the motion with the own effect ends with $(tail -n 1 "$work/out/simulation.csv"), not with t = 1 s, eta = 28.6479 deg"
 
+# Both programs, the installed and the own, find the video module where it was installed.
+cp -r "$here/../../configs/mpf_f111" "$work/video"
+rm -rf "$work/video/out"
+cp "$here/../apps/data/gaps.mkv" "$work/video/flight.mkv"
+for program in "$work/prefix/bin/misfit" "$work/build/own_misfit"; do
+  (cd / && env -u LD_LIBRARY_PATH "$program" track "$work/video/study.toml" --out "$work/tracked" > "$work/track.txt" 2>&1) || fail "$program track: $(cat "$work/track.txt")"
+  grep -q "of 180 samples ok" "$work/track.txt" || fail "$program track says: $(cat "$work/track.txt")"
+  rm -rf "$work/tracked"
+done
+
 # broken NAME: a copy of the project under WORK/NAME, to be spoilt.
 broken() {
   mkdir "$work/$1"

@@ -85,9 +85,9 @@ Study read_study(const fs::path& path) {
   read_head(root, study);
   read_system(root, study);
   study.geometry = root.table("geometry");
+  study_parts::read_video(root, study);
   study_parts::read_camera(root, study);
   study_parts::read_experiments(root, study);
-  study_parts::read_video(root, study);
   study_parts::read_effects(root, study);
   study_parts::read_parameters(root, study);
   study_parts::read_curves(root, study);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -8,17 +9,38 @@
 #include <vector>
 
 #include "misfit/core/config.h"
+#include "misfit/data/image.h"
 #include "misfit/data/track.h"
 
 namespace misfit {
 
+/// What is followed in pictures: "ring", "bright", "dark", or a picture cut from a frame.
+struct MarkerStudy {
+  std::string kind = "ring";  ///< "picture" if `picture` is given
+  std::optional<std::filesystem::path> picture;
+};
+
 /// One entry of [geometry] or [system]: kept raw until the system says which names exist and in which unit.
 struct CameraStudy {
-  std::optional<std::filesystem::path> sweep;   ///< calibrate from it …
-  std::string model = "pinhole";                ///< "pinhole" or "plane_by_plane"
-  std::map<std::string, config::Number> given;  ///< … or h_c, K and any other camera parameter, with sigma where known
-  std::vector<std::string> offer;               ///< optional parameters that calibrate may take in; default all
-  std::vector<std::string> take_in;             ///< optional parameters that calibrate must free whatever the test says
+  std::optional<std::filesystem::path> sweep;         ///< calibrate from it …
+  std::optional<std::filesystem::path> sweep_images;  ///< … or from pictures: a table of angles and image or video files (data/sweep.h)
+  MarkerStudy sweep_marker;                           ///< of the three points in them; default that of [video]
+  std::vector<PixelPoint> sweep_points;               ///< about where points 1, 2, 3 are in the first picture; empty: told by the geometry
+  std::string model = "pinhole";                      ///< "pinhole" or "plane_by_plane"
+  std::map<std::string, config::Number> given;        ///< … or h_c, K and any other camera parameter, with sigma where known
+  std::vector<std::string> offer;                     ///< optional parameters that calibrate may take in; default all
+  std::vector<std::string> take_in;                   ///< optional parameters that calibrate must free whatever the test says
+
+  [[nodiscard]] bool from_sweep() const { return sweep || sweep_images; }
+};
+
+/// [video]: how a video is read and what is followed in it.
+struct VideoStudy {
+  std::string fields = "auto";  ///< "auto", "progressive", "top_first", "bottom_first"
+  bool check_fields = true;     ///< false: `fields` holds even if the pictures contradict it
+  MarkerStudy marker;
+  std::optional<PixelPoint> start;              ///< about where the marker is in the first frame [px]
+  std::optional<std::array<double, 4>> region;  ///< left, top, right, bottom [px]: where it is looked for
 };
 
 struct ExperimentStudy {
@@ -77,6 +99,7 @@ struct Study {
   std::map<std::string, Source> system_where;
   std::optional<config::Section> geometry;  ///< read key by key by whoever knows the units (rig and system); finish() after that
   CameraStudy camera;
+  VideoStudy video;
   bool has_camera = false;
   std::vector<ExperimentStudy> experiments;
   std::vector<EffectStudy> effects;  ///< in file order

@@ -22,6 +22,7 @@ void read_source(const Section& section, const Study& study, ExperimentStudy& ex
 void read_columns(const Section& section, ExperimentStudy& experiment) {
   const auto columns = section.table("columns");
   if (!columns) return;
+  if (experiment.video) section.fail("columns", "has no meaning with video: it names the columns of a file of numbers");
   for (const std::string& name : columns->keys()) experiment.columns.header_of.emplace_back(name, *columns->text(name));
   columns->finish();
 }

@@ -57,13 +57,14 @@ const std::vector<std::string>& optional_camera_parameters() {
 }
 
 void check_camera(const Section& section, const CameraStudy& camera) {
-  if (camera.sweep && !camera.given.empty()) {
+  if (camera.sweep && camera.sweep_images) section.fail("sweep_images", "the sweep is either a table of positions (sweep) or of pictures");
+  if (camera.from_sweep() && !camera.given.empty()) {
     section.fail(camera.given.begin()->first, "a camera is either calibrated from sweep or given; remove one of the two");
   }
-  if (!camera.sweep && (camera.given.count("h_c") == 0 || camera.given.count("K") == 0))
-    section.fail("", "sweep = \"FILE\", or both h_c and K, are needed");
-  if (!camera.sweep && section.has("offer")) section.fail("offer", "has no meaning without sweep");
-  if (!camera.sweep && section.has("take_in")) section.fail("take_in", "has no meaning without sweep");
+  if (!camera.from_sweep() && (camera.given.count("h_c") == 0 || camera.given.count("K") == 0))
+    section.fail("", "sweep = \"FILE\" (or sweep_images), or both h_c and K, are needed");
+  if (!camera.from_sweep() && section.has("offer")) section.fail("offer", "has no meaning without sweep");
+  if (!camera.from_sweep() && section.has("take_in")) section.fail("take_in", "has no meaning without sweep");
 }
 
 /// Absent or "auto"; another text is refused.
@@ -92,6 +93,7 @@ void read_camera(const Section& root, Study& study) {
   study.has_camera = true;
   CameraStudy& camera = study.camera;
   camera.sweep = existing_file(*section, "sweep", study.folder);
+  read_sweep_images(*section, study);
   camera.model = section->choice("model", {"pinhole", "plane_by_plane"}).value_or(camera.model);
   camera.offer = section->texts("offer").value_or(optional_camera_parameters());
   camera.take_in = section->texts("take_in").value_or(std::vector<std::string>{});
@@ -103,20 +105,6 @@ void read_camera(const Section& root, Study& study) {
   }
   section->finish();
   check_camera(*section, camera);
-}
-
-void read_video(const Section& root, const Study& study) {
-  const auto video = root.table("video");
-  if (!video) return;
-  (void)video->choice("fields", {"auto", "progressive", "top_first", "bottom_first"});
-  const std::vector<std::string> shapes{"ring", "bright", "dark"};
-  const auto marker = video->text("marker");
-  if (marker && marker->ends_with(".png")) {
-    (void)existing_file(*video, "marker", study.folder);
-  } else {
-    (void)video->choice("marker", shapes);
-  }
-  video->finish();
 }
 
 void read_effects(const Section& root, Study& study) {

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "misfit/core/error.h"
+#include "misfit/core/files.h"
 #include "misfit/core/table.h"
 
 namespace misfit {
@@ -35,6 +38,63 @@ Sweep read_sweep(const std::filesystem::path& path) {
     if (table.find(point + "y") != nullptr) sweep.P_y[k] = table.values(point + "y", "px");
   }
   return sweep;
+}
+
+void write_sweep(const std::filesystem::path& path, const Sweep& sweep) {
+  Table table;
+  std::vector<double> degrees;
+  for (double theta : sweep.theta) degrees.push_back(theta * 180.0 / std::numbers::pi);
+  table.add("theta", "deg", degrees);
+  for (std::size_t k = 0; k < sweep.P_z.size(); ++k) {
+    const std::string point = fmt::format("P_{}", k + 1);
+    if (!sweep.P_y[k].empty()) table.add(point + "y", "px", sweep.P_y[k]);
+    table.add(point + "z", "px", sweep.P_z[k]);
+  }
+  write_csv(path, table);
+}
+
+namespace {
+
+/// The text in column `index` of line `line` (from 1), without blanks and quotes about it.
+std::string field_of_line(const std::string& text, int line, std::size_t index) {
+  std::istringstream lines(text);
+  std::string row, field;
+  for (int k = 0; k < line; ++k) std::getline(lines, row);
+  std::istringstream fields(row);
+  for (std::size_t k = 0; k <= index; ++k) {
+    field.clear();
+    std::getline(fields, field, ',');
+  }
+  const auto first = field.find_first_not_of(" \t\"\r"), last = field.find_last_not_of(" \t\"\r");
+  return first == std::string::npos ? "" : field.substr(first, last - first + 1);
+}
+
+std::optional<double> time_at(const std::vector<double>& times, std::size_t row) {
+  return times.empty() || std::isnan(times[row]) ? std::nullopt : std::optional(times[row]);
+}
+
+}  // namespace
+
+std::vector<SweepPicture> read_sweep_pictures(const std::filesystem::path& path) {
+  const Table table = read_csv(path, {"file"});
+  const std::vector<double> theta = table.values("theta", "rad");
+  check_angles(table, theta);
+  const auto column = static_cast<std::size_t>(&table.at("file") - table.columns.data());
+  const auto times = [&](const char* name) { return table.find(name) == nullptr ? std::vector<double>{} : table.values(name, "s"); };
+  const std::vector<double> from = times("from"), to = times("to");
+  const std::string text = read_file(path);
+  std::vector<SweepPicture> out;
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    const Source where{table.source, table.line[k], 0};
+    const std::string name = field_of_line(text, table.line[k], column);
+    if (name.empty()) throw InputError(where, "column 'file': the picture of this angle is missing");
+    const std::filesystem::path file = (path.parent_path() / name).lexically_normal();
+    if (!std::filesystem::is_regular_file(file)) throw InputError(where, "no such file '" + name + "' in " + path.parent_path().string());
+    const auto begin = time_at(from, k), end = time_at(to, k);
+    if (begin && end && !(*begin < *end)) throw InputError(where, fmt::format("from = {} s must be before to = {} s", *begin, *end));
+    out.push_back({theta[k], file, begin, end, where});
+  }
+  return out;
 }
 
 }  // namespace misfit

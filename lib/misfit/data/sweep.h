@@ -2,7 +2,10 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <vector>
+
+#include "misfit/core/error.h"
 
 namespace misfit {
 
@@ -18,5 +21,20 @@ struct Sweep {
 
 /// Reads `theta[deg],P_1y[px],P_1z[px],…,P_3z[px]`. P_ky may be absent. InputErrors as read_csv.
 [[nodiscard]] Sweep read_sweep(const std::filesystem::path& path);
+
+/// Writes the same columns; points without any P_y leave that column out.
+void write_sweep(const std::filesystem::path& path, const Sweep& sweep);
+
+/// One position of the rig in pictures: an image, or the part of a video in which the rig stands still.
+struct SweepPicture {
+  double theta = 0.0;  ///< [rad]
+  std::filesystem::path file;
+  std::optional<double> from, to;  ///< [s] of the video; the whole of it without
+  Source where;
+};
+
+/// Reads `theta[deg],file` and, for videos, `from[s],to[s]`; files are taken from the table's folder and must exist (InputError with the
+/// line).
+[[nodiscard]] std::vector<SweepPicture> read_sweep_pictures(const std::filesystem::path& path);
 
 }  // namespace misfit

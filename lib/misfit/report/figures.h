@@ -8,6 +8,7 @@
 #include "misfit/data/calibration.h"
 #include "misfit/data/fit.h"
 #include "misfit/data/reference.h"
+#include "misfit/data/track.h"
 #include "misfit/report/figure.h"
 
 namespace misfit::report {
@@ -37,6 +38,9 @@ struct Interval {
 /// Autocorrelation of the residuals of one channel over their predicted sigma (estimation part), with the ± 1.96/sqrt(n) band that white
 /// residuals keep to at 95 % of the lags. `max_lag` samples.
 [[nodiscard]] Figure autocorrelation_figure(const std::string& method, const ChannelPrediction& channel, std::size_t max_lag = 60);
+
+/// P_y, P_z and sigma of a track over time, with its losses.
+[[nodiscard]] Figure track_figure(const std::string& experiment, const Track& track);
 
 /// theta and psi against time, points as read and the three-point average (Fig. 8).
 [[nodiscard]] Figure orientation_figure(const std::string& experiment, const Attitude& attitude, const Interval& part);

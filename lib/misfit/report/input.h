@@ -15,6 +15,7 @@
 #include "misfit/data/ladder.h"
 #include "misfit/data/reference.h"
 #include "misfit/data/track.h"
+#include "misfit/data/track_facts.h"
 
 namespace misfit::report {
 
@@ -22,6 +23,8 @@ namespace misfit::report {
 struct ExperimentInput {
   std::string name;
   std::optional<Track> track;
+  std::optional<TrackFacts> video;  ///< how the track came out of a video
+  std::string contact_sheet;        ///< PNG, as bytes; empty without video
   std::optional<Attitude> attitude;
 };
 

@@ -26,6 +26,7 @@ void ladder_section(const ReportInput& input, Page& page, const Draw& draw);
 void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw);
 void discovery_section(const ReportInput& input, Page& page, const Draw& draw);
 void curves_section(const ReportInput& input, Page& page, const Draw& draw);
+void track_section(const ReportInput& input, Page& page, const Draw& draw);
 void measured_section(const ReportInput& input, Page& page, const Draw& draw);
 void prediction_section(const ReportInput& input, Page& page, const Draw& draw);
 void parameters_section(const ReportInput& input, Page& page);

@@ -1,0 +1,74 @@
+#include <chrono>
+
+#include "apps/stages.h"
+#include "apps/track_video.h"
+#include "misfit/core/files.h"
+#include "misfit/core/progress.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string suffix(const Session& session, std::size_t e) { return e == 0 ? "" : "_" + session.study.experiments[e].name; }
+
+std::string settings_of(const VideoStudy& video) {
+  std::string text = video.fields + (video.check_fields ? " checked " : " insisted ") + video.marker.kind;
+  if (video.start) text += " start " + std::to_string(video.start->column) + " " + std::to_string(video.start->row);
+  if (video.region)
+    for (double v : *video.region) text += " " + std::to_string(v);
+  return text;
+}
+
+void make_track(Session& session, std::size_t e, const TrackFiles& files, const std::map<std::string, std::string>& inputs) {
+  const ExperimentStudy& experiment = session.study.experiments[e];
+  const auto begin = std::chrono::steady_clock::now();
+  Progress progress("track", session.options.quiet);
+  const VideoTrack result =
+      track_video(*experiment.video, session.study.video, [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+  write_track(files.track, result.track);
+  write_track_facts(files.facts, result.facts);
+  make_writable_folder(files.sheet.parent_path());
+  write_contact_sheet(files.sheet, result.shots);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  session.folder.record({"track/" + experiment.name,
+                         session.options.command,
+                         inputs,
+                         {files.track.filename().string(), files.facts.filename().string(), "figures/" + files.sheet.filename().string()},
+                         seconds,
+                         "",
+                         ""});
+}
+
+}  // namespace
+
+bool has_track(const ExperimentStudy& experiment) { return experiment.track || experiment.video; }
+
+TrackFiles track_files(const Session& session, std::size_t e) {
+  const ExperimentStudy& experiment = session.study.experiments[e];
+  if (experiment.track) return {*experiment.track, {}, {}};
+  const std::string end = suffix(session, e);
+  return {session.folder.file("track" + end + ".csv"), session.folder.file("track" + end + ".json"),
+          session.folder.file("figures/contact_sheet" + end + ".png")};
+}
+
+std::vector<std::optional<TrackFacts>> track_stage(Session& session) {
+  std::vector<std::optional<TrackFacts>> out;
+  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
+    const ExperimentStudy& experiment = session.study.experiments[e];
+    if (!experiment.video) {
+      out.emplace_back();
+      continue;
+    }
+    stop_if_interrupted();
+    const TrackFiles files = track_files(session, e);
+    std::vector<fs::path> read{*experiment.video};
+    if (session.study.video.marker.picture) read.push_back(*session.study.video.marker.picture);
+    const auto inputs = session.inputs(settings_of(session.study.video), read);
+    if (!session.folder.up_to_date("track/" + experiment.name, inputs)) make_track(session, e, files, inputs);
+    out.emplace_back(read_track_facts(files.facts));
+  }
+  return out;
+}
+
+}  // namespace misfit

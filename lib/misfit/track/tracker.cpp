@@ -1,0 +1,209 @@
+#include "misfit/track/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+constexpr double least_score = 0.45;  // of the correlation, before the fit
+constexpr std::size_t candidates = 4;
+constexpr double gate_sigmas = 5.0;
+constexpr double least_gate = 5.0;                    // [px]
+constexpr double first_acceleration = 3.0;            // [px per field²] until seen
+constexpr int patient_fields = 90, stride_after = 3;  // lost for long: every third field is searched
+constexpr double start_radius = 40.0;                 // [px]
+constexpr std::size_t least_run = 3;                  // fields: shorter finds are not believed
+constexpr double least_acceleration = 0.5;
+constexpr double forget = 0.99, forget_contrast = 0.9;
+
+double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
+
+}  // namespace
+
+Tracker::Tracker(TrackerOptions options)
+    : options_(std::move(options)), acceleration_(first_acceleration), contrast_(options_.look.marker.levels[1]) {}
+
+PixelPoint Tracker::expected() const {
+  const double fields = missed_ + 1.0;
+  return {last_.column + fields * velocity_.column, last_.row + fields * velocity_.row};
+}
+
+/// The way covered in n fields is uncertain by n velocity_sigma and n (n + 1)/2 accelerations, as these last.
+double Tracker::gate() const {
+  const double n = missed_ + 1.0;
+  const double floor = std::max(least_gate, 0.5 * (options_.look.marker.reach_x() + options_.look.marker.reach_y()));
+  return std::max(floor, gate_sigmas * (0.5 * n * (n + 1.0) * acceleration_ + n * velocity_sigma_));
+}
+
+void Tracker::begin(const Location& found, const Field& field) {
+  const Marker& marker = options_.look.marker;
+  const double travel = std::max(2.5 * (marker.reach_x() + marker.reach_y()), 0.08 * field.image.width);  // [px] farthest in one field
+  last_ = found.at;
+  velocity_ = {};
+  velocity_sigma_ = travel / gate_sigmas;
+  held_ = true;
+}
+
+void Tracker::correct(const Location& found) {
+  const double n = missed_ + 1.0;
+  const PixelPoint before = expected();
+  if (missed_ == 0 && velocity_sigma_ <= acceleration_) {  // the innovation is then the acceleration
+    const double square = 0.5 * (std::pow(found.at.column - before.column, 2.0) + std::pow(found.at.row - before.row, 2.0));
+    acceleration_ = std::max(least_acceleration, std::sqrt(forget * acceleration_ * acceleration_ + (1.0 - forget) * square));
+  }
+  velocity_ = {(found.at.column - last_.column) / n, (found.at.row - last_.row) / n};
+  velocity_sigma_ = 0.5 * (n - 1.0) * acceleration_;
+  last_ = found.at;
+}
+
+/// Two fields ago it was exactly here, though it should have moved: the file repeats a frame.
+bool Tracker::stands_still_suspiciously(const PixelPoint& at) const {
+  const std::size_t n = samples_.size();
+  if (n < 2 || samples_[n - 2].loss != Loss::none) return false;
+  const double speed = std::hypot(velocity_.column, velocity_.row);
+  return speed > 1.5 && distance(samples_[n - 2].at, at) < std::min(0.5, 0.1 * speed);
+}
+
+std::optional<Location> Tracker::look(const Field& field, Loss& why) {
+  Region region = options_.region.value_or(whole(field));
+  const PixelPoint middle = expected();
+  const double radius = gate();
+  const bool everywhere = !held_ || radius > 0.35 * field.image.width;
+  if (everywhere && missed_ > patient_fields && missed_ % stride_after != 0) return std::nullopt;
+  if (!everywhere)
+    region = intersection(region, {middle.column - radius, middle.row - radius, middle.column + radius, middle.row + radius});
+  if (samples_.empty() && options_.start) {
+    const PixelPoint& s = *options_.start;
+    region = intersection(region, {s.column - start_radius, s.row - start_radius, s.column + start_radius, s.row + start_radius});
+  }
+  std::optional<Location> best;
+  double best_merit = -1.0;
+  for (const Match& c : search(field, options_.look.marker, region, least_score, candidates)) {
+    const Location found = locate(field, options_.look.marker, c.at);
+    const Loss loss = judge(found, options_.look, contrast_);
+    if (loss != Loss::none) {
+      if (why == Loss::not_found) why = loss;
+      continue;
+    }
+    const bool known =
+        std::any_of(options_.still.begin(), options_.still.end(), [&](const PixelPoint& p) { return distance(p, found.at) < 3.0; });
+    const double away = everywhere ? 0.0 : distance(found.at, middle) / radius;
+    if (known || away > 1.0) continue;
+    const double merit = found.explained - 0.3 * away * away;
+    if (merit > best_merit) {
+      best_merit = merit;
+      best = found;
+    }
+  }
+  return best;
+}
+
+const TrackedSample& Tracker::lose(Loss why) {
+  ++missed_;
+  samples_.push_back({why, {}, 0.0, 0.0});
+  if (held_ && missed_ > patient_fields) held_ = false;
+  return samples_.back();
+}
+
+const TrackedSample& Tracker::add_missing() { return lose(Loss::no_frame); }
+
+const TrackedSample& Tracker::add(const Field& field, bool copy) {
+  const bool moves = std::hypot(velocity_.column, velocity_.row) > 0.3;
+  if (copy && (!held_ || moves)) return lose(Loss::copy);
+  Loss why = Loss::not_found;
+  const std::optional<Location> found = look(field, why);
+  if (!found) {
+    const double x = expected().column, y = expected().row, reach = options_.look.marker.reach_x();
+    const bool beyond = held_ && (x < reach || y < reach || x > field.image.width - 1.0 - reach || y > field.frame_height() - 1.0 - reach);
+    return lose(beyond ? Loss::outside : why);
+  }
+  row_step_ = field.row_step;
+  if (held_ && stands_still_suspiciously(found->at)) return lose(Loss::copy);
+  samples_.push_back({Loss::none, found->at, found->sigma, found->explained});
+  if (!held_ || gate() > 0.35 * field.image.width) {
+    begin(*found, field);
+  } else {
+    correct(*found);
+  }
+  missed_ = 0;
+  contrast_ = forget_contrast * contrast_ + (1.0 - forget_contrast) * found->levels[1];
+  return samples_.back();
+}
+
+namespace {
+
+/// Distance from the middle of the neighbours on both sides; negative where one is lost.
+double bend(const std::vector<TrackedSample>& s, std::size_t i) {
+  if (i == 0 || i + 1 >= s.size() || s[i - 1].loss != Loss::none || s[i].loss != Loss::none || s[i + 1].loss != Loss::none) return -1.0;
+  return std::hypot(s[i].at.column - 0.5 * (s[i - 1].at.column + s[i + 1].at.column),
+                    s[i].at.row - 0.5 * (s[i - 1].at.row + s[i + 1].at.row));
+}
+
+void drop_bends(std::vector<TrackedSample>& samples) {
+  std::vector<double> bends;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double b = bend(samples, i);
+    if (b >= 0.0) bends.push_back(b);
+  }
+  if (bends.size() < 20) return;
+  const double limit = std::max(8.0 * median(bends), 3.0);
+  std::vector<std::size_t> wild;
+  for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
+    const double b = bend(samples, i);
+    if (b > limit && b >= bend(samples, i - 1) && b >= bend(samples, i + 1)) wild.push_back(i);
+  }
+  for (std::size_t i : wild) samples[i] = {Loss::implausible, {}, 0.0, 0.0};
+}
+
+void drop_short_runs(std::vector<TrackedSample>& samples) {
+  if (samples.size() < 3 * least_run) return;
+  for (std::size_t i = 0; i < samples.size();) {
+    std::size_t j = i;
+    while (j < samples.size() && samples[j].loss == Loss::none) ++j;
+    if (j > i && j - i < least_run)
+      for (std::size_t k = i; k < j; ++k) samples[k] = {Loss::implausible, {}, 0.0, 0.0};
+    i = std::max(j, i + 1);
+  }
+}
+
+void add_locking(std::vector<TrackedSample>& samples, int row_step) {
+  std::vector<double> columns, rows;
+  for (const TrackedSample& s : samples) {
+    if (s.loss != Loss::none) continue;
+    columns.push_back(s.at.column);
+    rows.push_back(s.at.row);
+  }
+  const double x = pixel_locking(columns, 1.0), y = pixel_locking(rows, row_step);
+  for (TrackedSample& s : samples) s.sigma = std::sqrt(s.sigma * s.sigma + 0.5 * (x * x + y * y));
+}
+
+}  // namespace
+
+double pixel_locking(const std::vector<double>& positions, double pitch) {
+  constexpr double assumed = 0.1, largest = 0.3;
+  const auto n = static_cast<double>(positions.size());
+  if (positions.size() < 200 || !(mad_sigma(positions) > 10.0 * pitch)) return assumed;
+  std::vector<double> phase;
+  for (double p : positions) phase.push_back(p / pitch - std::floor(p / pitch));
+  std::sort(phase.begin(), phase.end());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < phase.size(); ++k) {
+    const double lack = phase[k] - (static_cast<double>(k) + 0.5) / n;
+    sum += lack;
+    squares += lack * lack;
+  }
+  const double variance = squares / n - sum * sum / (n * n) - 1.0 / (12.0 * n);
+  return std::min(largest, pitch * std::sqrt(2.0 * std::max(0.0, variance)));
+}
+
+std::vector<TrackedSample> Tracker::finish() {
+  drop_bends(samples_);
+  drop_short_runs(samples_);
+  add_locking(samples_, row_step_);
+  return std::move(samples_);
+}
+
+}  // namespace misfit

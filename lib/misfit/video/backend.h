@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+/// What the video module gives to misfit::video. The module (lib/misfit/video/opencv) is the only code that is linked to OpenCV; it is
+/// loaded when a video or an image is first read, because loading OpenCV's videoio costs 0.2 s. No exceptions cross this border: an empty
+/// result comes with `why`.
+namespace misfit::video_module {
+
+/// Changes whenever anything in this file does: a module of another build is refused.
+inline constexpr int interface_version = 1;
+
+/// An open video. Frames come in order, in 8-bit grey.
+class Stream {
+ public:
+  Stream() = default;
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  virtual ~Stream() = default;
+
+  int width = 0, height = 0;
+  double rate = 0.0;       ///< frames per second, as the container declares
+  long declared = 0;       ///< frames, as the container declares (some only estimate it from the duration); 0 = not known
+  double timestamp = 0.0;  ///< of the frame last read [s]
+
+  /// Decodes into `grey` (width * height bytes); false at the end.
+  virtual bool next(std::uint8_t* grey) = 0;
+};
+
+/// A video being written, in colour: three bytes per pixel (blue, green, red).
+class Sink {
+ public:
+  Sink() = default;
+  Sink(const Sink&) = delete;
+  Sink& operator=(const Sink&) = delete;
+  virtual ~Sink() = default;
+  virtual void write(const std::uint8_t* bgr) = 0;
+};
+
+/// Something drawn on a picture. `x`, `y` in pixels of it.
+struct Mark {
+  enum class Shape { circle, cross, line, text, box } shape = Shape::circle;
+  double x = 0.0, y = 0.0;
+  double size = 0.0;                ///< radius of a circle, half length of a cross, height of a text
+  double x_end = 0.0, y_end = 0.0;  ///< of a line, of a (filled) box
+  std::uint8_t blue = 0, green = 0, red = 0;
+  std::string text = {};
+};
+
+class Backend {
+ public:
+  Backend() = default;
+  Backend(const Backend&) = delete;
+  Backend& operator=(const Backend&) = delete;
+  virtual ~Backend() = default;
+  virtual std::unique_ptr<Stream> open(const std::string& path, std::string& why) = 0;
+  virtual std::unique_ptr<Sink> create(const std::string& path, int width, int height, double rate, std::string& why) = 0;
+  /// An image file in grey; empty with `why`.
+  virtual std::vector<std::uint8_t> read_image(const std::string& path, int& width, int& height, std::string& why) = 0;
+  /// A PNG of a picture in colour; empty with `why`.
+  virtual std::vector<std::uint8_t> png(const std::uint8_t* bgr, int width, int height, std::string& why) = 0;
+  virtual void draw(std::uint8_t* bgr, int width, int height, const std::vector<Mark>& marks) = 0;
+};
+
+/// What the module exports, as `misfit_video_module`.
+struct Entry {
+  int version = 0;
+  Backend* (*make)() = nullptr;  ///< the module's one backend, which lives as long as the program
+};
+
+}  // namespace misfit::video_module

@@ -1,0 +1,91 @@
+#include "misfit/video/canvas.h"
+
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/video/module.h"
+
+namespace misfit {
+namespace {
+
+using video_module::Mark;
+
+Mark mark(Mark::Shape shape, double x, double y, double size, Colour colour) {
+  Mark m;
+  m.shape = shape;
+  m.x = x;
+  m.y = y;
+  m.size = size;
+  m.red = colour.red;
+  m.green = colour.green;
+  m.blue = colour.blue;
+  return m;
+}
+
+/// Mean of the pixels of the frame within [column, column + size) x [row, row + size): at least the nearest one.
+double grey_at(const Field& field, double column, double row, double size) {
+  const int c0 = static_cast<int>(std::floor(column + 0.5)), c1 = std::max(c0, static_cast<int>(std::ceil(column + size - 0.5)) - 1);
+  const int r0 = static_cast<int>(std::lround(field.image_row(row + 0.5 * size - 0.5)));
+  const int r1 = std::max(r0, r0 + static_cast<int>(size / field.row_step) - 1);
+  double sum = 0.0;
+  int count = 0;
+  for (int r = r0; r <= r1; ++r) {
+    for (int c = c0; c <= c1; ++c) {
+      sum += field.image(std::clamp(c, 0, field.image.width - 1), std::clamp(r, 0, field.image.height - 1));
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+}  // namespace
+
+Canvas::Canvas(int width, int height)
+    : width_(width), height_(height), bgr_(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 24) {}
+
+void Canvas::paste(const Field& field, double left, double top, double width, double height, int x, int y, double scale) {
+  for (int j = 0; j < std::lround(height * scale); ++j) {
+    for (int i = 0; i < std::lround(width * scale); ++i) {
+      const double column = left + i / scale, row = top + j / scale;
+      if (x + i < 0 || y + j < 0 || x + i >= width_ || y + j >= height_) continue;
+      if (column < -0.5 || row < -0.5 || column > field.image.width - 0.5 || row > field.frame_height() - 0.5) continue;
+      const auto grey = static_cast<std::uint8_t>(grey_at(field, column, row, 1.0 / scale));
+      const std::size_t at = 3 * (static_cast<std::size_t>(y + j) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x + i));
+      for (std::size_t k = 0; k < 3; ++k) bgr_[at + k] = grey;
+    }
+  }
+}
+
+void Canvas::draw(const std::vector<Mark>& marks) { video_backend().draw(bgr_.data(), width_, height_, marks); }
+
+void Canvas::write_png(const std::filesystem::path& path) const {
+  std::string why;
+  const std::vector<std::uint8_t> png = video_backend().png(bgr_.data(), width_, height_, why);
+  if (png.empty()) throw RunError(path.string() + ": " + why);
+  write_atomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+Mark circle(double x, double y, double radius, Colour colour) { return mark(Mark::Shape::circle, x, y, radius, colour); }
+Mark cross(double x, double y, double half, Colour colour) { return mark(Mark::Shape::cross, x, y, half, colour); }
+
+Mark line(double x, double y, double x_end, double y_end, Colour colour) {
+  Mark m = mark(Mark::Shape::line, x, y, 0.0, colour);
+  m.x_end = x_end;
+  m.y_end = y_end;
+  return m;
+}
+
+Mark box(double x, double y, double x_end, double y_end, Colour colour) {
+  Mark m = line(x, y, x_end, y_end, colour);
+  m.shape = Mark::Shape::box;
+  return m;
+}
+
+Mark text(double x, double y, double height, std::string words, Colour colour) {
+  Mark m = mark(Mark::Shape::text, x, y, height, colour);
+  m.text = std::move(words);
+  return m;
+}
+
+}  // namespace misfit

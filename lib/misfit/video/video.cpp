@@ -1,0 +1,170 @@
+#include "misfit/video/video.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/video/module.h"
+
+namespace misfit {
+namespace {
+
+constexpr std::size_t queue_length = 16;  // frames decoded ahead
+constexpr double on_grid = 0.25;       // of a frame: how far a timestamp may be from the grid of the frame rate (they are rounded to 1 ms)
+constexpr long largest_gap = 100'000;  // frames: beyond, timestamps are not believed
+
+void check_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) static_cast<void>(read_file(path));  // says what is missing, with the nearest name
+  if (!std::filesystem::is_regular_file(path, error)) throw InputError(path.string() + ": not a file");
+  if (std::filesystem::file_size(path, error) == 0) throw RunError(path.string() + ": not a video: the file is empty");
+}
+
+}  // namespace
+
+struct Video::State {
+  std::unique_ptr<video_module::Stream> stream;
+  VideoFacts facts;
+  std::deque<Frame> queue;
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool ended = false, stop = false;
+  std::thread thread;
+  // of the decoding thread alone
+  Image before = {};
+  long number = -1;
+  double first_timestamp = 0.0, last_timestamp = 0.0;
+  long missing = 0, repeated = 0;
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    {
+      const std::lock_guard lock(mutex);
+      stop = true;
+    }
+    changed.notify_all();
+    if (thread.joinable()) thread.join();
+  }
+
+  /// Place of the frame just read on the grid of the frame rate. Without usable timestamps frames follow each other.
+  long place() {
+    const double timestamp = stream->timestamp;
+    if (number < 0) {
+      first_timestamp = last_timestamp = timestamp;
+      return 0;
+    }
+    const double frames = (timestamp - first_timestamp) * facts.rate;
+    const long grid = std::lround(frames);
+    const bool usable = std::isfinite(frames) && timestamp > last_timestamp && std::abs(frames - static_cast<double>(grid)) < on_grid &&
+                        grid > number && grid - number < largest_gap;
+    last_timestamp = timestamp;
+    return usable ? grid : number + 1;
+  }
+
+  std::optional<Frame> decode() {
+    Frame frame;
+    frame.image = Image(facts.width, facts.height);
+    if (!stream->next(frame.image.pixels.data())) return std::nullopt;
+    frame.number = place();
+    missing += frame.number - number - 1;
+    number = frame.number;
+    frame.repeated = frame.image == before;
+    repeated += frame.repeated ? 1 : 0;
+    before = frame.image;
+    return frame;
+  }
+
+  void run() {
+    for (;;) {
+      std::optional<Frame> frame = decode();
+      std::unique_lock lock(mutex);
+      if (!frame) {
+        ended = true;
+        changed.notify_all();
+        return;
+      }
+      changed.wait(lock, [this] { return queue.size() < queue_length || stop; });
+      if (stop) return;
+      queue.push_back(std::move(*frame));
+      changed.notify_all();
+    }
+  }
+};
+
+Video::Video(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
+  check_file(path);
+  std::string why;
+  state_->stream = video_backend().open(path.string(), why);
+  if (!state_->stream) throw RunError(path.string() + ": not a video: " + why);
+  const video_module::Stream& stream = *state_->stream;
+  VideoFacts& facts = state_->facts;
+  facts.file = path.filename().string();
+  facts.width = stream.width;
+  facts.height = stream.height;
+  facts.rate = stream.rate;
+  facts.declared = stream.declared;
+  if (facts.width <= 0 || facts.height <= 0) throw RunError(path.string() + ": not a video: its pictures have no size");
+  if (!(facts.rate > 0.0) || facts.rate > 1e5)
+    throw RunError(fmt::format("{}: the file declares {} frames per second: times cannot be told", path.string(), facts.rate));
+  state_->thread = std::thread([state = state_.get()] { state->run(); });
+}
+
+Video::Video(Video&&) noexcept = default;
+Video& Video::operator=(Video&&) noexcept = default;
+Video::~Video() = default;
+
+std::optional<Frame> Video::next() {
+  State& s = *state_;
+  std::unique_lock lock(s.mutex);
+  s.changed.wait(lock, [&s] { return !s.queue.empty() || s.ended; });
+  if (s.queue.empty()) {
+    s.facts.finished = true;
+    s.facts.missing = s.missing;
+    s.facts.repeated = s.repeated;
+    return std::nullopt;
+  }
+  Frame frame = std::move(s.queue.front());
+  s.queue.pop_front();
+  ++s.facts.decoded;
+  s.changed.notify_all();
+  return frame;
+}
+
+const VideoFacts& Video::facts() const { return state_->facts; }
+
+std::vector<std::string> notes_of(const VideoFacts& facts) {
+  std::vector<std::string> notes;
+  const long reached = facts.decoded + facts.missing;
+  const long tolerance = 1;  // a container that declares a duration rounds it
+  if (facts.finished && facts.declared > 0 && reached < facts.declared - tolerance) {
+    notes.push_back(
+        fmt::format("{}: the file is truncated or damaged: it declares {} frames ({:.1f} s) and only {} could be decoded, so the "
+                    "video ends after {:.1f} s",
+                    facts.file, facts.declared, static_cast<double>(facts.declared) / facts.rate, facts.decoded,
+                    static_cast<double>(reached) / facts.rate));
+  }
+  if (facts.missing > 0)
+    notes.push_back(
+        fmt::format("{}: {} frames are missing between others, as its timestamps show: their samples are lost", facts.file, facts.missing));
+  if (facts.repeated > 0) notes.push_back(fmt::format("{}: {} frames are exact copies of the frame before", facts.file, facts.repeated));
+  return notes;
+}
+
+Image read_image(const std::filesystem::path& path) {
+  check_file(path);
+  Image image;
+  std::string why;
+  image.pixels = video_backend().read_image(path.string(), image.width, image.height, why);
+  if (image.empty()) throw RunError(path.string() + ": " + why);
+  return image;
+}
+
+}  // namespace misfit

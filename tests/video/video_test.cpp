@@ -1,0 +1,165 @@
+#include "misfit/video/video.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "misfit/core/error.h"
+#include "misfit/video/canvas.h"
+#include "misfit/video/module.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+fs::path flight() { return fs::path(MISFIT_SOURCE_DIR) / "configs/mpf_f111/flight.mkv"; }
+fs::path gaps() { return fs::path(MISFIT_SOURCE_DIR) / "tests/apps/data/gaps.mkv"; }
+
+std::string first_bytes(const fs::path& file, std::size_t count) {
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(count, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+template <class Error>
+std::string error_of(const fs::path& file) {
+  try {
+    Video video(file);
+    while (video.next()) {
+    }
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A picture of which every line differs from every other, and every frame from every other.
+Image stripes(int width, int height, int number) {
+  Image image(width, height);
+  for (int r = 0; r < height; ++r)
+    for (int c = 0; c < width; ++c) image(c, r) = static_cast<std::uint8_t>((40 + 7 * r + 3 * c + 11 * number) % 200);
+  return image;
+}
+
+void write(const fs::path& path, const std::vector<Image>& images, double rate) {
+  std::string why;
+  auto sink = video_backend().create(path.string(), images.front().width, images.front().height, rate, why);
+  ASSERT_TRUE(sink) << why;
+  for (const Image& image : images) {
+    std::vector<std::uint8_t> bgr;
+    for (std::uint8_t grey : image.pixels) bgr.insert(bgr.end(), 3, grey);
+    sink->write(bgr.data());
+  }
+}
+
+TEST(Video, GivesEveryFrameInOrderWithItsNumber) {
+  const TemporaryFolder folder;
+  std::vector<Image> images;
+  for (int n = 0; n < 40; ++n) images.push_back(stripes(64, 48, n));
+  write(folder.path() / "a.mkv", images, 25.0);
+  Video video(folder.path() / "a.mkv");
+  EXPECT_EQ(video.facts().width, 64);
+  EXPECT_EQ(video.facts().height, 48);
+  EXPECT_NEAR(video.facts().rate, 25.0, 1e-9);
+  long n = 0;
+  while (auto frame = video.next()) {
+    ASSERT_EQ(frame->number, n);
+    EXPECT_FALSE(frame->repeated);
+    int worst = 0;
+    for (std::size_t k = 0; k < frame->image.pixels.size(); ++k)
+      worst = std::max(worst, std::abs(frame->image.pixels[k] - images[static_cast<std::size_t>(n)].pixels[k]));
+    EXPECT_LE(worst, 3) << "frame " << n;  // grey → limited-range luma → grey
+    ++n;
+  }
+  EXPECT_EQ(n, 40);
+  EXPECT_TRUE(video.facts().finished);
+  EXPECT_THAT(notes_of(video.facts()), IsEmpty());
+}
+
+TEST(Video, CopiesOfTheFrameBeforeAreMarked) {
+  const TemporaryFolder folder;
+  write(folder.path() / "a.mkv", {stripes(64, 48, 0), stripes(64, 48, 1), stripes(64, 48, 1), stripes(64, 48, 2)}, 25.0);
+  Video video(folder.path() / "a.mkv");
+  std::vector<bool> repeated;
+  while (auto frame = video.next()) repeated.push_back(frame->repeated);
+  EXPECT_EQ(repeated, (std::vector<bool>{false, false, true, false}));
+  EXPECT_EQ(video.facts().repeated, 1);
+}
+
+TEST(Video, GapsBetweenTimestampsAreMissingFrames) {
+  Video video(gaps());
+  std::vector<long> numbers;
+  while (auto frame = video.next()) numbers.push_back(frame->number);
+  EXPECT_EQ(numbers.back(), 89);
+  EXPECT_EQ(video.facts().decoded + video.facts().missing, 90);
+  EXPECT_GT(video.facts().missing, 2);
+  EXPECT_THAT(notes_of(video.facts()), testing::ElementsAre(HasSubstr("missing between others")));
+}
+
+TEST(Video, StoppedEarlyEndsItsThread) {
+  for (int k = 0; k < 3; ++k) {
+    Video video(gaps());
+    ASSERT_TRUE(video.next().has_value());
+  }
+}
+
+TEST(Video, TruncatedIsSaidWithTheCounts) {
+  const TemporaryFolder folder;
+  folder.write("cut.mkv", first_bytes(flight(), 1'500'000));
+  Video video(folder.path() / "cut.mkv");
+  while (video.next()) {
+  }
+  EXPECT_EQ(video.facts().declared, 2380);
+  EXPECT_LT(video.facts().decoded, 1200);
+  EXPECT_GT(video.facts().decoded, 300);
+  EXPECT_THAT(notes_of(video.facts()), testing::ElementsAre(AllOf(HasSubstr("truncated or damaged"), HasSubstr("2380"),
+                                                                  HasSubstr(std::to_string(video.facts().decoded)))));
+}
+
+TEST(Video, MissingFileNamesTheNearest) {
+  EXPECT_THAT(error_of<InputError>(fs::path(MISFIT_SOURCE_DIR) / "configs/mpf_f111/fligth.mkv"),
+              AllOf(HasSubstr("no such file"), HasSubstr("flight.mkv")));
+}
+
+TEST(Video, WhatIsNoVideoIsSaid) {
+  const TemporaryFolder folder;
+  folder.write("empty.mkv", "");
+  folder.write("text.mkv", "t[s],P_y[px]\n0,1\n");
+  folder.write("head.mkv", first_bytes(flight(), 500));
+  EXPECT_THAT(error_of<RunError>(folder.path() / "empty.mkv"), AllOf(HasSubstr("empty.mkv"), HasSubstr("empty")));
+  EXPECT_THAT(error_of<RunError>(folder.path() / "text.mkv"), AllOf(HasSubstr("text.mkv"), HasSubstr("not a video")));
+  EXPECT_THAT(error_of<RunError>(folder.path() / "head.mkv"), HasSubstr("not a video"));
+  EXPECT_THAT(error_of<InputError>(folder.path()), HasSubstr("not a file"));
+}
+
+TEST(ReadImage, IsGreyAndSaysWhatItCannotRead) {
+  const TemporaryFolder folder;
+  Canvas canvas(20, 10);
+  canvas.paste({stripes(20, 10, 0), 0, 1}, 0.0, 0.0, 20.0, 10.0, 0, 0, 1.0);
+  canvas.write_png(folder.path() / "a.png");
+  EXPECT_EQ(read_image(folder.path() / "a.png"), stripes(20, 10, 0));
+  folder.write("b.png", "no picture");
+  EXPECT_THROW((void)read_image(folder.path() / "b.png"), RunError);
+  EXPECT_THROW((void)read_image(folder.path() / "c.png"), InputError);
+}
+
+TEST(Field, LinesLieWhereTheFrameHasThem) {
+  const Image frame = stripes(8, 7, 0);
+  const Field even = field_of(frame, 0), odd = field_of(frame, 1);
+  EXPECT_EQ(even.image.height, 4);
+  EXPECT_EQ(odd.image.height, 3);
+  EXPECT_EQ(odd.image(3, 1), frame(3, 3));
+  EXPECT_DOUBLE_EQ(odd.row_of(1.0), 3.0);
+  EXPECT_DOUBLE_EQ(even.image_row(5.0), 2.5);
+}
+
+}  // namespace
+}  // namespace misfit
