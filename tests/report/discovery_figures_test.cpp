@@ -152,7 +152,7 @@ TEST(LadderFigure, ChannelsOfOtherUnitsStandInPanelsOfTheirOwn) {
   EXPECT_EQ(figure.panels[2].y_unit, "px");
   const Series* eta = find(figure, "eta_far");
   ASSERT_NE(eta, nullptr);
-  EXPECT_NEAR(eta->y[0], 3.0, 1e-9);
+  EXPECT_NEAR(eta->y[0], 1.1, 1e-9);
   EXPECT_EQ(find(figure, "P_y_1")->x, (std::vector<double>{1.0, 2.0}));
 }
 

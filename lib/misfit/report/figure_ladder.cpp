@@ -9,6 +9,8 @@
 namespace misfit::report {
 namespace {
 
+constexpr std::size_t far_ahead = 3;  // of kLadderSteps: 8 steps; beyond, random motion has forgotten where it was
+
 std::string added_to(const Rung& rung) {
   constexpr const char* system = "system:";
   if (rung.added.empty()) return rung.system;
@@ -67,11 +69,11 @@ void add_errors(const Rung& rung, std::vector<Panel>& panels) {
     one.x.push_back(rung.id);
     one.y.push_back(e.value * factor);
     const auto far = rung.k_step.find(channel);
-    if (far == rung.k_step.end() || far->second.empty()) continue;
-    const std::string legend =
-        fmt::format("{}, {} steps ahead", channel, kLadderSteps[std::min(far->second.size(), std::size(kLadderSteps)) - 1]);
-    Series& most = series_for(panel, key + "_far", legend, Style::error_bars, colour);
-    add_point(most, rung.id, far->second.back() * factor, 0.0);
+    if (far == rung.k_step.end() || far->second.size() <= far_ahead) continue;
+    const std::string legend = fmt::format("{}, {} steps ahead", channel, kLadderSteps[far_ahead]);
+    Series& most = series_for(panel, key + "_far", legend, Style::points, colour);
+    most.x.push_back(rung.id);
+    most.y.push_back(far->second[far_ahead] * factor);
   }
 }
 
