@@ -49,7 +49,7 @@ NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterN
     const std::string& name = spec.outputs[o].name;
     push(out, name, channel.white, 1e-2 * usual.white, 1e2 * usual.white);
     push(out, name + "_jitter", channel.jitter, 1e-3 * usual.white, 1e2 * usual.white);
-    push(out, name + "_jitter_frequency", channel.jitter_frequency, 0.2 * usual.jitter_frequency, 3.3 * usual.jitter_frequency);
+    push(out, name + "_jitter_frequency", channel.jitter_frequency, 0.45 * usual.jitter_frequency, 3.3 * usual.jitter_frequency);
     push(out, name + "_jitter_damping", channel.jitter_damping, 0.01, 0.99);
   }
   return out;
