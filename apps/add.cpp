@@ -17,7 +17,7 @@ std::optional<Candidate> candidate_of(Session& session, const std::string& effec
   for (const auto& candidate : discovery->candidates) {
     if (candidate.effect == effect) return candidate;
   }
-  session.say("effect '" + effect + "' is not among the candidates: no drop is predicted");
+  session.say("discovery does not rank effect '" + effect + "' (it has no strength to test, or stands for another): no drop is predicted");
   return std::nullopt;
 }
 

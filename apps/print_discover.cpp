@@ -79,16 +79,17 @@ void add_channels(const std::map<std::string, Estimate>& before, const std::map<
 }
 
 void add_k_step(const Rung& before, const Rung& after, Cells& rows) {
-  constexpr std::size_t last = std::size(kLadderSteps) - 1;
-  const auto at_end = [](const Rung& rung) {
-    std::map<std::string, Estimate> out;
-    for (const auto& [channel, values] : rung.k_step) {
-      const auto rms = rung.rms.find(channel);
-      if (values.size() > last && rms != rung.rms.end()) out[channel] = {values[last], 0.0, rms->second.unit};
-    }
-    return out;
-  };
-  add_channels(at_end(before), at_end(after), fmt::format("{} steps ahead", kLadderSteps[last]).c_str(), rows);
+  for (const std::size_t k : {std::size_t{3}, std::size(kLadderSteps) - 1}) {
+    const auto at = [k](const Rung& rung) {
+      std::map<std::string, Estimate> out;
+      for (const auto& [channel, values] : rung.k_step) {
+        const auto rms = rung.rms.find(channel);
+        if (values.size() > k && rms != rung.rms.end()) out[channel] = {values[k], 0.0, rms->second.unit};
+      }
+      return out;
+    };
+    add_channels(at(before), at(after), fmt::format("{} steps ahead", kLadderSteps[k]).c_str(), rows);
+  }
 }
 
 const Rung* parent_of(const Ladder& ladder, const Rung& rung) {
@@ -158,8 +159,7 @@ std::string discovery_text(const Discovery& d) {
   }
   if (!why.empty()) out += "\n" + why;
   if (!d.force.empty()) out += "\n  random force of this model: " + force_text(d.force) + "\n";
-  for (const auto& tried : d.tried) out += wrap_text("looked at: " + tried, width, "  ") + "\n";
-  return out + fmt::format("  ({:.1f} s)\n", d.seconds);
+  return out + fmt::format("  {} families were looked at, see discovery.json  ({:.1f} s)\n", d.tried.size(), d.seconds);
 }
 
 std::string rung_text(const Ladder& ladder, const Rung& rung) {

@@ -93,9 +93,29 @@ class Methods {
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
   }
 
+  /// The regression with every shape (a clock angle, a frequency) where the study puts it: linear, so that no start is lost in a valley of
+  /// another shape. Its parameters are then as free as the study says.
+  FittedModel with_shapes_kept() {
+    const Model& asked = prepared().model;
+    Model kept = asked;
+    bool any = false;
+    for (auto& p : kept.parameters) {
+      const bool shape = p.free && p.curve < 0 && p.kind == CoefficientKind::shape;
+      if (shape) p.free = false;
+      any = any || shape;
+    }
+    if (!any) return regression();
+    FittedModel start = equation_error(kept, prepared().experiments);
+    for (std::size_t i = 0; i < asked.parameters.size(); ++i) start.model.parameters[i].free = asked.parameters[i].free;
+    std::vector<Penalty> penalties = curve_penalties(start.model);
+    for (std::size_t k = 0; k < penalties.size(); ++k) penalties[k].lambda = start.penalties[k].lambda;
+    start.penalties = std::move(penalties);
+    return start;
+  }
+
   /// Where the trajectory methods start, and whether the regression gave it.
   std::pair<FittedModel, bool> started() {
-    FittedModel start = regression();
+    FittedModel start = with_shapes_kept();
     const bool regressed = start.fit.status != FitStatus::declined && start.fit.status != FitStatus::failed;
     // Of a regression on driven motion only the static curve means something (DESIGN 5).
     if (regressed && start.fit.driven) damping_to_zero(start.model);

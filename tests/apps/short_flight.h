@@ -8,7 +8,7 @@ namespace program {
 class ShortFlight : public StudyCopy {
  public:
   explicit ShortFlight(const std::string& system = "parachute_spherical", double seconds = 20.0) : StudyCopy("mpf_f111") {
-    change("parachute_planar", system);
+    if (system != "parachute_planar") change("parachute_planar", system);
     change("methods = .*", "methods = [\"filter_error\"]");
     change("track = \"track.csv\"", "track = \"track.csv\"\nvalidation = \"last 25 %\"");
     constexpr double rate = 59.94;

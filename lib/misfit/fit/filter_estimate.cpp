@@ -202,21 +202,32 @@ class Estimation {
     take_noise(fit);
   }
 
-  void take_noise(const NoiseFit& fit) {
+  /// False if the model cannot be run with it: all is as before.
+  bool take_noise(const NoiseFit& fit) {
     const FilterNoise before = out_.noise;
     const double objective = objective_;
     out_.noise = fit.noise;
     out_.noise_fit = fit;
     set_time();
-    if (linearise() && objective_ > objective - 1.0) return;
+    if (linearise() && objective_ > objective - 1.0) return true;
     out_.noise = before;
     set_time();
     linearise();
+    return false;
+  }
+
+  /// First about the curves that fit under the assumed noise; these can be too wild to be run with another, then about the start's.
+  void search_noise() {
+    const Eigen::VectorXd start = theta_;
+    physical_step();
+    if (take_noise(best_noise())) return;
+    theta_ = start;
+    linearise();
+    take_noise(best_noise());
   }
 
   /// Starts of the jitter's frequency: the likelihood has a maximum per line it could sit on.
-  void search_noise() {
-    physical_step();
+  NoiseFit best_noise() const {
     NoiseFit best;
     best.minus_loglik = std::numeric_limits<double>::infinity();
     for (const double share : {0.4, 1.0, 2.0}) {
@@ -226,7 +237,7 @@ class Estimation {
       const NoiseFit fit = fit_noise(runs(), start, out_.around, options_.threads, 6);
       if (fit.minus_loglik < best.minus_loglik) best = fit;
     }
-    take_noise(best);
+    return best;
   }
 
   bool gate_outliers() {

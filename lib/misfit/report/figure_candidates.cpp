@@ -34,8 +34,10 @@ Figure candidates_figure(const std::vector<Candidate>& candidates, std::size_t m
     add(predicted, c.predicted_drop, place + apart);
     if (c.actual_drop) add(c.accepted ? accepted : actual, *c.actual_drop, place - apart);
   }
-  panel.series = {predicted, actual};
-  if (!accepted.x.empty()) panel.series.push_back(accepted);
+  panel.series = {predicted};
+  for (const Series* series : {&actual, &accepted}) {
+    if (!series->x.empty()) panel.series.push_back(*series);
+  }
   panel.y_range = {0.4, static_cast<double>(count) + 0.6};
   panel.height = 40.0 + 34.0 * static_cast<double>(count);
   figure.panels = {panel};

@@ -30,6 +30,16 @@ void set_edges(const std::vector<double>& half, double share, Series& s) {
   }
 }
 
+/// A round distance of marks that gives two or three of them up to `most`.
+double round_step(double most) {
+  if (!(most > 0.0)) return 0.0;
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
+  for (const double step : {0.2, 0.5, 1.0, 2.0, 5.0}) {
+    if (most / (step * power) < 3.5) return step * power;
+  }
+  return power;
+}
+
 std::size_t quantity_index(const MissingForce& missing, const std::string& quantity) {
   const auto found = std::find(missing.quantities.begin(), missing.quantities.end(), quantity);
   return static_cast<std::size_t>(found - missing.quantities.begin());
@@ -60,6 +70,7 @@ Figure map_figure(const ForceMap& map) {
   Panel counts{"samples", "-", {}, std::nullopt, 0.0, 80.0, false, {}};
   Series samples{"samples", "", Style::boxes, grey, x, map.count, {}, {}};
   set_edges(half_steps(x), 0.9, samples);
+  for (const double count : map.count) counts.y_step = std::max(counts.y_step, round_step(count));
   counts.series = {samples};
   figure.panels = {panel, counts};
   return figure;

@@ -9,6 +9,8 @@
 namespace misfit::report {
 namespace {
 
+constexpr std::size_t far_ahead = 3;  // of kLadderSteps: 8 steps; beyond, random motion has forgotten where it was
+
 std::string added_to(const Rung& rung) {
   constexpr const char* system = "system:";
   if (rung.added.empty()) return rung.system;
@@ -30,11 +32,23 @@ void add_point(Series& series, double x, double value, double half) {
   series.hi.push_back(value + half);
 }
 
+/// A box about x: width in rungs.
+void add_box(Series& series, double x, double value, double width) {
+  series.x.push_back(x);
+  series.y.push_back(value);
+  series.lo.push_back(x - 0.5 * width);
+  series.hi.push_back(x + 0.5 * width);
+}
+
+/// Series are handed out by reference while others are added: room for all of them from the start.
+constexpr std::size_t most_series = 16;
+
 Panel& panel_for(std::vector<Panel>& panels, const std::string& label, const std::string& unit) {
   for (Panel& panel : panels) {
     if (panel.y_label == label && panel.y_unit == unit) return panel;
   }
-  panels.push_back({label, unit, {}, std::nullopt, 0.0, 170.0, false, {}});
+  panels.push_back({label, unit, {}, std::nullopt, 0.0, 150.0, false, {}});
+  panels.back().series.reserve(most_series);
   return panels.back();
 }
 
@@ -51,27 +65,34 @@ void add_force(const Rung& rung, std::vector<Panel>& panels) {
   if (e == nullptr) return;
   const std::string unit = display_unit(e->unit);
   const double factor = convert(1.0, e->unit, unit);
-  Series& series =
-      series_for(panel_for(panels, "random force", unit), "force", "random force that is left, ± 1 sigma", Style::error_bars, palette(1));
-  add_point(series, rung.id, e->value * factor, e->sigma * factor);
+  constexpr double width = 0.5;
+  Panel& panel = panel_for(panels, "random force", unit);
+  add_box(series_for(panel, "force", "random force that is left, ± 1 sigma", Style::boxes, palette(1)), rung.id, e->value * factor, width);
+  add_point(series_for(panel, "force_sigma", "", Style::error_bars, black), rung.id, e->value * factor, e->sigma * factor);
 }
 
-void add_errors(const Rung& rung, std::vector<Panel>& panels) {
+/// One box per channel, side by side.
+void add_channel(const Rung& rung, const std::string& what, const std::string& channel, const Estimate& e, std::size_t place,
+                 std::vector<Panel>& panels) {
+  const std::string unit = display_unit(e.unit);
+  constexpr double all = 0.5;
+  const double width = all / static_cast<double>(std::max<std::size_t>(rung.rms.size(), 1));
+  const double x = rung.id - 0.5 * all + (static_cast<double>(place) + 0.5) * width;
+  Panel& panel = panel_for(panels, what, unit);
+  Series& series = series_for(panel, as_key(channel + "_" + what), channel, Style::boxes, palette(panel.series.size() % 2 == 0 ? 0 : 2));
+  add_box(series, x, e.value * convert(1.0, e.unit, unit), 0.9 * width);
+}
+
+void add_errors(const Rung& rung, std::vector<Panel>& near, std::vector<Panel>& far) {
+  std::size_t place = 0;
   for (const auto& [channel, e] : rung.rms) {
-    const std::string unit = display_unit(e.unit);
-    const double factor = convert(1.0, e.unit, unit);
-    Panel& panel = panel_for(panels, "RMS error", unit);
-    const std::string colour = palette(panel.series.size() / 2 + 2);
-    const std::string key = as_key(channel);
-    Series& one = series_for(panel, key + "_1", channel + ", 1 step ahead", Style::markers, colour);
-    one.x.push_back(rung.id);
-    one.y.push_back(e.value * factor);
-    const auto far = rung.k_step.find(channel);
-    if (far == rung.k_step.end() || far->second.empty()) continue;
-    const std::string legend =
-        fmt::format("{}, {} steps ahead", channel, kLadderSteps[std::min(far->second.size(), std::size(kLadderSteps)) - 1]);
-    Series& most = series_for(panel, key + "_far", legend, Style::error_bars, colour);
-    add_point(most, rung.id, far->second.back() * factor, 0.0);
+    add_channel(rung, "RMS, 1 step", channel, e, place, near);
+    const auto steps = rung.k_step.find(channel);
+    if (steps != rung.k_step.end() && steps->second.size() > far_ahead) {
+      const std::string what = fmt::format("RMS, {} steps", kLadderSteps[far_ahead]);
+      add_channel(rung, what, channel, {steps->second[far_ahead], 0.0, e.unit}, place, far);
+    }
+    ++place;
   }
 }
 
@@ -89,6 +110,7 @@ void set_range(Panel& panel) {
   double low = panel.y_label == "trim" ? INFINITY : 0.0, high = -INFINITY;
   for (const Series& s : panel.series) {
     for (const auto* values : {&s.y, &s.lo, &s.hi}) {
+      if (s.style == Style::boxes && values != &s.y) continue;  // these run along x
       for (const double v : *values) {
         if (!std::isfinite(v)) continue;
         low = std::min(low, v);
@@ -111,14 +133,14 @@ Figure ladder_figure(const Ladder& ladder) {
       "From left to right one effect more. The random force is what the filter needs on top of the model to explain the motion; errors are "
       "of predictions from the filtered state. Channels of other systems have other units and stand in panels of their own.";
   figure.x_label = "model";
-  std::vector<Panel> force, errors, trim;
+  std::vector<Panel> force, near, far, trim;
   for (const Rung& rung : ladder.rungs) {
     figure.x_marks.push_back({static_cast<double>(rung.id), added_to(rung)});
     add_force(rung, force);
-    add_errors(rung, errors);
+    add_errors(rung, near, far);
     add_trim(rung, trim);
   }
-  for (auto* panels : {&force, &errors, &trim}) {
+  for (auto* panels : {&force, &near, &far, &trim}) {
     for (Panel& panel : *panels) {
       set_range(panel);
       figure.panels.push_back(std::move(panel));

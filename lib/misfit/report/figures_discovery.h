@@ -9,7 +9,7 @@
 
 namespace misfit::report {
 
-/// What every rung of the ladder leaves unexplained: the random force ± sigma; per unit the RMS of every channel one step and the most
+/// What every rung of the ladder leaves unexplained: the random force ± sigma; per unit the RMS of every channel one step and eight
 /// steps ahead; the trim with its 95 % interval.
 [[nodiscard]] Figure ladder_figure(const Ladder& ladder);
 

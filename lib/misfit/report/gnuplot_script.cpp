@@ -16,7 +16,7 @@ constexpr double full_width = 900.0;  // [px], as all that follow
 constexpr double square_width = 680.0;
 constexpr double left = 86.0;
 constexpr double right = 24.0;
-constexpr double colour_bar = 100.0;
+constexpr double colour_bar = 135.0;
 constexpr double title_height = 42.0;
 constexpr double legend_row = 21.0;
 constexpr double panel_gap = 16.0;
@@ -105,20 +105,22 @@ Range x_range_of(const Figure& figure) {
   if (figure.x_range) return *figure.x_range;
   std::vector<const std::vector<double>*> columns;
   std::vector<std::vector<double>> edges;
-  bool margin = false;
+  bool margin = false, bars = false;
   for (const Panel& panel : figure.panels) {
     for (const Series& s : panel.series) {
       columns.push_back(&s.x);
       if (s.style == Style::boxes) columns.insert(columns.end(), {&s.lo, &s.hi});
       if (s.style == Style::cells) edges.push_back(beyond(s.x, s.lo));
       if (s.style == Style::bars) edges.push_back({0.0});
+      bars = bars || s.style == Style::bars;
       margin = margin || s.style == Style::markers || s.style == Style::error_bars;
     }
   }
   for (const auto& edge : edges) columns.push_back(&edge);
   const Range range = finite_range(columns);
   const double space = margin ? 0.015 * (range[1] - range[0]) : 0.0;  // whole markers at the edges
-  return {range[0] - space, range[1] + space};
+  const double beyond_bars = bars ? 0.03 * (range[1] - range[0]) : 0.0;
+  return {range[0] - space, range[1] + space + beyond_bars};
 }
 
 /// Ranges that make one unit equally long on both axes of a panel of size `w` × `h`.
