@@ -37,7 +37,8 @@ double drop_of(const World& world, const Hidden& hidden, const FilterEstimate& w
         hidden.values.at(at->model.parameters[static_cast<std::size_t>(at->strengths[i])].name);
   for (const auto& [name, value] : hidden.values) at->request.parameters[name].value = value;
   const Refit refitted = refit(without, world.experiments, screened, truth, threads);
-  return refitted.ok ? refitted.drop : 0.0;
+  if (!refitted.ok) throw RunError("the truth cannot be refitted: " + refitted.why);
+  return refitted.drop;
 }
 
 void look_at_curves(const World& world, const FilterEstimate& estimate, Row& row) {
