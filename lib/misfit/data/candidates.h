@@ -38,6 +38,8 @@ struct Discovery {
   std::vector<std::string> sentences;     ///< further remarks: groups and what would separate them, phantoms, calibration against flight
   std::vector<std::string> tried;         ///< families and cells that were looked at, in words
   std::map<std::string, Estimate> force;  ///< random force before
+  std::string unexplained_port,
+      unexplained_quantity;  ///< where a force of unknown form depends on what, if that is the verdict; else empty
   double seconds = 0.0;
 };
 

@@ -53,6 +53,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     return;
   }
   if (unexplained) {
+    out.unexplained_port = unexplained->port;
+    out.unexplained_quantity = unexplained->quantity;
     out.verdict = "Something is missing that depends on " + unexplained->quantity + " (a force on " + unexplained->port + ", p " +
                   format_probability(unexplained->p_value) + "), and none of the effects I know explains it.";
     if (best.actual_drop)

@@ -23,6 +23,13 @@ bool invert(const Eigen::MatrixXd& H, Eigen::MatrixXd& inverse) {
   return inverse.allFinite();
 }
 
+/// Where a curve is a straight line to all that the data can tell: a higher weight would only cost digits (λ Ω c of a line is rounding).
+double stiffest(const Linearised& problem, const Penalty& p, double sigma2) {
+  constexpr double straight = 1e9;
+  const auto size = p.omega.rows();
+  return straight * problem.N.block(p.first, p.first, size, size).trace() / (sigma2 * p.omega.trace());
+}
+
 }  // namespace
 
 std::vector<Penalty> curve_penalties(const Model& model) {
@@ -69,7 +76,7 @@ Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, doub
       const double trace = (out.covariance.block(p.first, p.first, size, size) * p.omega).trace();
       const double quadratic = std::max(c.dot(p.omega * c), 1e-300);
       const double target = std::max(p.rank - p.lambda * trace, 1e-3) / quadratic;
-      const double next = std::clamp(target, p.lambda * 1e-2, p.lambda * 1e2);
+      const double next = std::min(std::clamp(target, p.lambda * 1e-2, p.lambda * 1e2), std::max(stiffest(problem, p, sigma2), 1e-300));
       change = std::max(change, std::abs(std::log(next / p.lambda)));
       p.lambda = next;
     }
