@@ -86,7 +86,11 @@ void add_camera(Session& session, ModelRequest& request) {
     const bool known = std::any_of(spec.constants.begin(), spec.constants.end(), [&](const ConstantSpec& c) { return c.name == name; });
     if (!known || request.constants.contains(name)) continue;
     request.constants[name] = calibration->value(name);
-    if (calibration->sigma(name) > 0.0) request.constant_sigmas[name] = calibration->sigma(name);
+    if (!(calibration->sigma(name) > 0.0)) continue;
+    request.constant_sigmas[name] = calibration->sigma(name);
+    // Free, with the calibration as its prior: so its uncertainty is in every interval (marginal sigmas; their correlations are left out,
+    // which makes intervals a little wider). A study can fix it again.
+    if (!request.parameters.contains(name)) request.parameters[name].free = true;
   }
 }
 

@@ -44,16 +44,19 @@ RowMatrix visited_by_filter(const FilterEstimate& estimate) {
   return out;
 }
 
-/// Standard deviations of the logarithms of the noise parameters; 0 where a parameter sits at its bound.
+/// Standard deviations of the logarithms of the noise parameters; 0 where a parameter sits at its bound or is not determined.
 std::vector<double> noise_sigmas(const NoiseFit& fit) {
+  constexpr double determined = 1.0;
   Eigen::MatrixXd information = fit.information;
+  std::vector<bool> known;
   for (Eigen::Index i = 0; i < information.rows(); ++i) {
-    if (fit.at_bound[static_cast<std::size_t>(i)]) information(i, i) += 1e12;
-    information(i, i) += 1e-9;
+    known.push_back(!fit.at_bound[static_cast<std::size_t>(i)] && information(i, i) > determined);
+    if (!known.back()) information(i, i) += 1e12;
   }
   const Eigen::MatrixXd covariance = information.inverse();
   std::vector<double> out;
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i) out.push_back(std::sqrt(std::max(covariance(i, i), 0.0)));
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
+    out.push_back(known[static_cast<std::size_t>(i)] ? std::sqrt(std::max(covariance(i, i), 0.0)) : 0.0);
   return out;
 }
 
@@ -70,14 +73,20 @@ void add_noise(const FilterEstimate& estimate, Fit& fit) {
     fit.force[named.name] = as_estimate(0, named.unit);
   }
   fit.force["correlation_time"] = as_estimate(1, "s");
+  if (!(sigmas[0] > 0.0)) fit.facts["random_force"] = "the data ask for no random force: the motion is not driven";
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     const std::string& name = spec.outputs[o].name;
     const std::string& unit = spec.outputs[o].unit;
     fit.noise[name] = as_estimate(2 + 4 * o, unit);
+    if (!(sigmas[3 + 4 * o] > 0.0)) {
+      fit.facts["jitter of " + name] = "none: the reading noise is white";
+      continue;
+    }
     fit.noise[name + "_jitter"] = as_estimate(3 + 4 * o, unit);
     fit.noise[name + "_jitter_frequency"] = as_estimate(4 + 4 * o, "Hz");
     fit.noise[name + "_jitter_damping"] = as_estimate(5 + 4 * o, "-");
   }
+  fit.driven = sigmas[0] > 0.0;
 }
 
 void add_predictions(const FilterEstimate& estimate, Fit& fit) {
@@ -160,7 +169,6 @@ Fit filter_fit(const FilterEstimate& estimate) {
   fit.method = "filter_error";
   fit.status = estimate.converged ? FitStatus::converged : FitStatus::not_converged;
   fit.message = estimate.message;
-  fit.driven = true;
   fit.loglik = estimate.loglik;
   std::size_t validated = 0;
   for (const auto& trace : estimate.traces) validated += trace.validated;

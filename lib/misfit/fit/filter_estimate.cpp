@@ -263,8 +263,8 @@ class Estimation {
       step.head(n) = out_.covariance * gradient.head(n);
       Eigen::MatrixXd information = out_.noise_fit.information;
       for (Eigen::Index i = 0; i < q; ++i) {
-        if (out_.noise_fit.at_bound[static_cast<std::size_t>(i)]) information(i, i) += 1e12;
-        information(i, i) += 1e-6;
+        constexpr double determined = 1.0;  // below, not even its logarithm is known to one unit: a shape of something that is not there
+        if (out_.noise_fit.at_bound[static_cast<std::size_t>(i)] || information(i, i) < determined) information(i, i) += 1e12;
       }
       step.tail(q) = information.ldlt().solve(gradient.tail(q));
       out_.left = 0.5 * gradient.dot(step);

@@ -42,7 +42,7 @@ NoiseStep::Jitter jitter_step(const ChannelNoise& noise, double h) {
 NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around) {
   NoiseVector out;
   push(out, "force", noise.force, 1e-3 * around.force, 1e3 * around.force);
-  push(out, "force_time", noise.force_time, 1e-2 * around.force_time, 1e2 * around.force_time);
+  push(out, "force_time", noise.force_time, 0.15 * around.force_time, 1e2 * around.force_time);  // shorter than a sample is white
   for (std::size_t o = 0; o < noise.channels.size(); ++o) {
     const ChannelNoise& channel = noise.channels[o];
     const ChannelNoise& usual = around.channels[o];
