@@ -1,4 +1,4 @@
-#include "misfit/model/registry.h"
+#include "misfit/model/system_of.h"
 
 namespace {
 
@@ -11,7 +11,8 @@ using namespace misfit;
 /// With induced_angle = false: alpha_T = eta, the paper's Eq. 8; then alpha_T carries the sign of eta.
 /// The wind follows the dynamic pressure, V_felt = V sqrt(q/qbar), so that a port on the pressure changes both.
 struct ParachutePlanar {
-  static constexpr int NX = 2, NU = 2, NP = 2, NF = 1, NQ = 10, NK = 7, NY = 1;
+  [[maybe_unused]] static constexpr int NU = 2;
+  static constexpr int NX = 2, NP = 2, NF = 1, NQ = 10, NK = 7, NY = 1;
   enum Constant { D, S, R_cp, m, m_a, qbar, V };
   enum QuantityIndex { eta, pitch_rate, phi, phi_rate, gravity_direction, dynamic_pressure, wind_speed, inertia, alpha_T, wind_cross_axis };
   enum QuantityPort { pressure_port, inertia_port };

@@ -1,5 +1,5 @@
 #include "misfit/math/camera.h"
-#include "misfit/model/registry.h"
+#include "misfit/model/system_of.h"
 
 namespace {
 
@@ -13,7 +13,8 @@ using namespace misfit;
 /// along n does nothing, so tau_x is never needed. At s = 0 theta^ = ẑ, phi^ = ŷ: any pair of unit vectors serves there, because what is
 /// regular enters as a vector. Felt wind at the centre of pressure: v = (V, wind_y, wind_z) − R_cp n'.
 struct ParachuteSpherical {
-  static constexpr int NX = 4, NU = 0, NP = 4, NF = 4, NQ = 17, NK = 18, NY = 2;
+  [[maybe_unused]] static constexpr int NU = 0;
+  static constexpr int NX = 4, NP = 4, NF = 4, NQ = 17, NK = 18, NY = 2;
   enum State { y, z, dy, dz };
   enum Constant { D, S, R_cp, m, m_a, qbar, V, R, l_b, l_s, first_camera };
   enum QuantityIndex {

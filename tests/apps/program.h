@@ -65,6 +65,18 @@ inline Outcome run(
   return outcome;
 }
 
+inline std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells{""};
+  for (const char c : line) {
+    if (c == ',') {
+      cells.emplace_back();
+    } else {
+      cells.back().push_back(c);
+    }
+  }
+  return cells;
+}
+
 /// A copy of configs/NAME without its results, to be changed and run.
 class StudyCopy {
  public:
@@ -74,9 +86,10 @@ class StudyCopy {
   }
   [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
   [[nodiscard]] fs::path out(const std::string& name) const { return folder_.path() / "out" / name; }
-  [[nodiscard]] Outcome run(const std::string& verb = "run", std::vector<std::string> options = {}) const {
-    options.insert(options.begin(), {verb, path("study.toml").string()});
-    return program::run(options);
+  [[nodiscard]] Outcome run(const std::string& verb = "run", const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> arguments{verb, path("study.toml").string()};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return program::run(arguments);
   }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   /// Replaces the first match in study.toml; a test that changes nothing would prove nothing.
@@ -93,21 +106,9 @@ class StudyCopy {
   void change_rows(const std::string& name, const std::function<std::string(std::size_t, const std::vector<std::string>&)>& change) const {
     std::istringstream lines(content(path(name)));
     std::string text, line;
-    std::size_t row = 0;
-    while (std::getline(lines, line)) {
-      if (row > 0) {
-        std::vector<std::string> cells{""};
-        for (const char c : line) {
-          if (c == ',') {
-            cells.emplace_back();
-          } else {
-            cells.back().push_back(c);
-          }
-        }
-        line = change(row, cells);
-      }
+    for (std::size_t row = 0; std::getline(lines, line); ++row) {
+      if (row > 0) line = change(row, cells_of(line));
       if (row == 0 || !line.empty()) text += line + "\n";
-      ++row;
     }
     write(name, text);
   }

@@ -98,7 +98,7 @@ void linearisation_against_hand_kernel() {
 void whole_fit(benchmark::State& state, bool given) {
   const World world(given);
   int linearisations = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const Model model = assemble(world.request, world.registry);
     const FittedModel fitted = output_error(equation_error(model, world.experiments), world.experiments);
     linearisations = fitted.fit.linearisations;

@@ -1,4 +1,4 @@
-#include "misfit/model/registry.h"
+#include "misfit/model/system_of.h"
 
 namespace {
 
@@ -7,7 +7,8 @@ using namespace misfit;
 /// A cart on a spring, driven by a held force: another system than the parachute, with two dynamic ports, a zero-order input, an optional
 /// constant in an output, and outputs that are not called like a quantity.
 struct TestOscillator {
-  static constexpr int NX = 2, NU = 1, NP = 1, NF = 2, NQ = 4, NK = 3, NY = 2;
+  [[maybe_unused]] static constexpr int NU = 1;
+  static constexpr int NX = 2, NP = 1, NF = 2, NQ = 4, NK = 3, NY = 2;
   enum Constant { mass, stiffness, gain };
 
   explicit TestOscillator(const SystemOptions& /*options*/) {}

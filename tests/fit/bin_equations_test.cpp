@@ -29,7 +29,7 @@ struct Sample {
 Eigen::Vector3d eq_11(const std::vector<Sample>& bin, bool gravity) {
   const auto k = table_1();
   const double I = (k.at("m") + k.at("m_a")) * k.at("R_cp") * k.at("R_cp");
-  const double qSD = k.at("qbar") * k.at("S") * k.at("D");
+  const double moment_scale = k.at("qbar") * k.at("S") * k.at("D");
   const auto n = static_cast<Eigen::Index>(bin.size());
   Eigen::MatrixXd A(n, 3);
   Eigen::VectorXd moment(n);
@@ -38,7 +38,7 @@ Eigen::Vector3d eq_11(const std::vector<Sample>& bin, bool gravity) {
     const Sample& s = bin[static_cast<std::size_t>(i)];
     A.row(i) << s.rate, s.alpha, 1.0;
     const double weight = gravity ? k.at("m") * standard_gravity * k.at("R_cp") * std::cos(s.phi) * std::cos(s.alpha) : 0.0;
-    moment[i] = (I * s.acceleration - weight) / qSD;
+    moment[i] = (I * s.acceleration - weight) / moment_scale;
     mean += s.alpha / static_cast<double>(n);
   }
   const Eigen::Vector3d c = A.colPivHouseholderQr().solve(moment);
@@ -117,7 +117,7 @@ TEST(SlidingBin, EqualsDenseLeastSquaresWithGravityOverAnyClockAngleAndOtherBins
 
 TEST(SlidingBin, TakesTheGravityTermOffAtItsWorkedSize) {
   // m g R_cp/I = 0.206 x 9.80665 x 3.15/(0.5 x 3.15²) = 6.3635352/4.96125 = 1.2826475 rad/s²; with phi = 60 deg and alpha_T = 10 deg:
-  // 1.2826475 x 0.5 x 0.98480775 = 0.63158 rad/s². Static gain qSD/I = 2276.1948/4.96125 = 458.79462; damping gain at 0.3 rad/s:
+  // 1.2826475 x 0.5 x 0.98480775 = 0.63158 rad/s². Static gain moment_scale/I = 2276.1948/4.96125 = 458.79462; damping gain at 0.3 rad/s:
   // x 1.5816/70.2 x 0.3.
   const Model model = assemble(eq_8({"static_moment", "pitch_damping", "gravity"}), registry());
   Signals signals = measured(even_times(11, 0.1), {});

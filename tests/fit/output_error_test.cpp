@@ -75,7 +75,7 @@ Oscillation oscillation(const std::vector<double>& t, const std::vector<double>&
   for (std::size_t i = begin + 1; i < x.size(); ++i) {
     high = std::max(high, x[i]);
     low = std::min(low, x[i]);
-    if (!(x[i - 1] < mean && x[i] >= mean)) continue;
+    if (x[i - 1] >= mean || x[i] < mean) continue;
     crossings.push_back(t[i - 1] + (t[i] - t[i - 1]) * (mean - x[i - 1]) / (x[i] - x[i - 1]));
     highs.push_back(high);
     lows.push_back(low);
@@ -83,7 +83,7 @@ Oscillation oscillation(const std::vector<double>& t, const std::vector<double>&
     low = 1e9;
   }
   double peak = 0.0, trough = 0.0;
-  const double cycles = static_cast<double>(crossings.size() - 1);
+  const auto cycles = static_cast<double>(crossings.size() - 1);
   for (std::size_t k = 1; k < crossings.size(); ++k) peak += highs[k] / cycles, trough += lows[k] / cycles;
   return {(peak - trough) / 2.0, cycles / (crossings.back() - crossings.front())};
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 // y = a exp(b x) at x = 0, 0.1, …, with the values given.
-LeastSquares::Evaluate exponential(std::vector<double> y) {
+LeastSquares::Evaluate exponential(const std::vector<double>& y) {
   return [y](const double* const* p, double* r, double** J) {
     const double a = p[0][0];
     const double b = p[0][1];

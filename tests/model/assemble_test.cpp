@@ -9,7 +9,6 @@ namespace {
 
 using namespace testing_models;
 using testing::AllOf;
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string message_of(const ModelRequest& request) {

@@ -50,7 +50,7 @@ std::size_t pieces_of_line(const std::string& svg) {
   std::size_t pieces = 0;
   const std::string part = first_series(svg);
   for (std::size_t at = part.find(" d='M"); at != std::string::npos; at = part.find(" d='M", at + 1)) {
-    const std::string path = part.substr(at, part.find("'", at + 4) - at);
+    const std::string path = part.substr(at, part.find('\'', at + 4) - at);
     pieces += count(path, "M");
   }
   return pieces;

@@ -165,7 +165,7 @@ std::optional<std::string> Section::text(std::string_view key) const {
 }
 
 std::optional<std::string> Section::choice(std::string_view key, const std::vector<std::string>& allowed) const {
-  const auto chosen = text(key);
+  auto chosen = text(key);
   if (chosen && std::find(allowed.begin(), allowed.end(), *chosen) == allowed.end()) {
     state_->fail(key, *state_->node(key), "not one of the choices" + suggest(*chosen, allowed));
   }

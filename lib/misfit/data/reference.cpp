@@ -143,7 +143,7 @@ std::optional<Estimate> stable_zero(const std::vector<double>& x, const std::vec
   const Polynomial p = fit_polynomial(between(points, means.x[first], means.x[last]), order, lo, known);
   const double below = std::max(means.x[first], lo - (hi - lo));  // the smooth curve may cross just outside the bracket of the noisy means
   const double above = std::min(means.x[last], hi + (hi - lo));
-  if (!(p.at(below) > 0.0 && p.at(above) <= 0.0)) return std::nullopt;
+  if (!(p.at(below) > 0.0) || !(p.at(above) <= 0.0)) return std::nullopt;
   const double trim = zero_between(p, below, above);
   const double slope = p.slope(trim);
   if (!(slope < 0.0)) return std::nullopt;

@@ -220,7 +220,7 @@ std::optional<Estimate> stable_zero(const CurveEstimate& curve) {
   double most = 0.0;
   for (std::size_t i = 1; i < curve.x.size(); ++i) {
     const double a = curve.value[i - 1], b = curve.value[i];
-    if (!(a > 0.0 && b <= 0.0) || !(curve.x[i - 1] > 0.0)) continue;
+    if (!(a > 0.0) || !(b <= 0.0) || !(curve.x[i - 1] > 0.0)) continue;
     const double count = curve.count[i - 1] + curve.count[i];
     if (!(count > most)) continue;
     most = count;

@@ -30,7 +30,7 @@ struct Regression {
 
 class Regressor {
  public:
-  Regressor(const Model& model, const std::vector<Signals>& experiments) : model_(model), experiments_(experiments) {
+  Regressor(const Model& model, const std::vector<Signals>& experiments) : experiments_(experiments) {
     for (const auto& experiment : experiments) {
       states_.push_back(reconstruct_states(model, experiment));
       inputs_.push_back(input_table(experiment, model.inputs()));
@@ -82,12 +82,76 @@ class Regressor {
     }
   }
 
-  const Model& model_;
   const std::vector<Signals>& experiments_;
   std::vector<ReconstructedStates> states_;
   std::vector<InputTable> inputs_;
   std::vector<int> rows_;
 };
+
+/// Rounds of the regression: the first is exact for strengths and curves, the others are for shapes. False, with status and message, where
+/// there is no answer.
+bool solve(const Regressor& regressor, FittedModel& out, Smoothed& smoothed) {
+  const std::vector<int> free = out.model.free_parameters();
+  constexpr int rounds = 4;
+  for (int round = 0; round < rounds; ++round) {
+    Regression regression = regressor.linearise(out.model);
+    ++out.fit.linearisations;
+    set_priors(out.model, regression.sums);
+    if (regression.sums.count < 2.0 * static_cast<double>(free.size()) || free.empty()) {
+      out.fit.status = FitStatus::declined;
+      out.fit.message = free.empty() ? "every parameter is fixed: there is nothing to estimate"
+                                     : "only " + std::to_string(static_cast<long>(regression.sums.count)) + " usable samples for " +
+                                           std::to_string(free.size()) + " unknowns";
+      return false;
+    }
+    smoothed = smooth(regression.sums, out.penalties);
+    if (!smoothed.ok) break;
+    const double moved = (smoothed.theta - regression.sums.theta).cwiseAbs().maxCoeff();
+    for (std::size_t c = 0; c < free.size(); ++c) {
+      Parameter& p = out.model.parameters[static_cast<std::size_t>(free[c])];
+      const double value = smoothed.theta[static_cast<Eigen::Index>(c)];
+      p.value = p.curve >= 0 ? value : std::clamp(value, p.lower, p.upper);
+    }
+    if (round > 0 && moved < 1e-9 * (1.0 + smoothed.theta.cwiseAbs().maxCoeff())) break;
+  }
+  out.fit.status = smoothed.ok ? FitStatus::converged : FitStatus::failed;
+  out.fit.message =
+      smoothed.ok ? "linear regression solved" : "the regression is singular: some coefficients are not determined by these data";
+  return smoothed.ok;
+}
+
+/// Are the residuals white beyond the stencils, up to half a period of the motion?
+void test_residuals(const Regressor& regressor, const std::vector<Signals>& experiments, double sigma2, FittedModel& out) {
+  const Regression regression = regressor.linearise(out.model);
+  const double step = usual_step(experiments.front().t);
+  const double frequency = motion_frequency(out.model, regressor.states(0));
+  const double half_period = frequency > 0.0 ? 3.14159265358979 / frequency : 20.0 * step;
+  constexpr int beyond_stencil = 5;
+  const int last_lag = std::max(beyond_stencil + 5, static_cast<int>(half_period / step));
+  const WhitenessTest test = whiteness(regression.residuals.front(), beyond_stencil, last_lag);
+  out.fit.driven = looks_driven(test);
+  const std::string unit = rate_unit(out.model.system->spec().states[static_cast<std::size_t>(regressor.rows().front())].unit);
+  out.fit.noise["equation_residual"] = {std::sqrt(sigma2), 0.0, unit};
+  out.fit.facts["whiteness"] = "equation residuals at lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) +
+                               " samples: largest autocorrelation " + format_value(test.largest) + " at lag " +
+                               std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
+}
+
+void describe_all(const Regressor& regressor, const std::vector<Signals>& experiments, const Eigen::MatrixXd& covariance,
+                  FittedModel& out) {
+  RowMatrix visited = visited_quantities(out.model, experiments.front(), regressor.states(0));
+  for (std::size_t e = 1; e < experiments.size(); ++e) {
+    const RowMatrix more = visited_quantities(out.model, experiments[e], regressor.states(e));
+    visited.conservativeResize(visited.rows() + more.rows(), visited.cols());
+    visited.bottomRows(more.rows()) = more;
+  }
+  describe(out.model, covariance, visited, out.fit);
+  const ReconstructedStates& states = regressor.states(0);
+  const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+  const InputTable inputs = input_table(experiments.front(), out.model.inputs());
+  const auto sample = static_cast<std::size_t>(known);
+  out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
+}
 
 }  // namespace
 
@@ -102,59 +166,10 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
                       "' and their rates, so its equations cannot be regressed";
     return out;
   }
-  const std::vector<int> free = model.free_parameters();
   Smoothed smoothed;
-  Regression regression;
-  constexpr int rounds = 4;  // the first is exact for strengths and curves; the others for shapes
-  for (int round = 0; round < rounds; ++round) {
-    regression = regressor.linearise(out.model);
-    ++out.fit.linearisations;
-    set_priors(out.model, regression.sums);
-    if (regression.sums.count < 2.0 * static_cast<double>(free.size()) || free.empty()) {
-      out.fit.status = FitStatus::declined;
-      out.fit.message = free.empty() ? "every parameter is fixed: there is nothing to estimate"
-                                     : "only " + std::to_string(static_cast<long>(regression.sums.count)) + " usable samples for " +
-                                           std::to_string(free.size()) + " unknowns";
-      return out;
-    }
-    smoothed = smooth(regression.sums, out.penalties);
-    if (!smoothed.ok) break;
-    const double moved = (smoothed.theta - regression.sums.theta).cwiseAbs().maxCoeff();
-    for (std::size_t c = 0; c < free.size(); ++c) {
-      Parameter& p = out.model.parameters[static_cast<std::size_t>(free[c])];
-      p.value = p.curve >= 0 ? smoothed.theta[static_cast<Eigen::Index>(c)]
-                             : std::clamp(smoothed.theta[static_cast<Eigen::Index>(c)], p.lower, p.upper);
-    }
-    if (round > 0 && moved < 1e-9 * (1.0 + smoothed.theta.cwiseAbs().maxCoeff())) break;
-  }
-  out.fit.status = smoothed.ok ? FitStatus::converged : FitStatus::failed;
-  out.fit.message =
-      smoothed.ok ? "linear regression solved" : "the regression is singular: some coefficients are not determined by these data";
-  if (!smoothed.ok) return out;
-  regression = regressor.linearise(out.model);
-  const double frequency = motion_frequency(model, regressor.states(0));
-  const double half_period = frequency > 0.0 ? 3.14159265358979 / frequency : 20.0 * usual_step(experiments.front().t);
-  constexpr int beyond_stencil = 5;
-  const int last_lag = std::max(beyond_stencil + 5, static_cast<int>(half_period / usual_step(experiments.front().t)));
-  const WhitenessTest test = whiteness(regression.residuals.front(), beyond_stencil, last_lag);
-  out.fit.driven = looks_driven(test);
-  const std::string unit = rate_unit(model.system->spec().states[static_cast<std::size_t>(regressor.rows().front())].unit);
-  out.fit.noise["equation_residual"] = {std::sqrt(smoothed.sigma2), 0.0, unit};
-  out.fit.facts["whiteness"] = "equation residuals at lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) +
-                               " samples: largest autocorrelation " + format_value(test.largest) + " at lag " +
-                               std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
-  RowMatrix visited = visited_quantities(out.model, experiments.front(), regressor.states(0));
-  for (std::size_t e = 1; e < experiments.size(); ++e) {
-    const RowMatrix more = visited_quantities(out.model, experiments[e], regressor.states(e));
-    visited.conservativeResize(visited.rows() + more.rows(), visited.cols());
-    visited.bottomRows(more.rows()) = more;
-  }
-  describe(out.model, smoothed.covariance, visited, out.fit);
-  const ReconstructedStates& states = regressor.states(0);
-  const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
-  const InputTable inputs = input_table(experiments.front(), model.inputs());
-  const auto sample = static_cast<std::size_t>(known);
-  out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
+  if (!solve(regressor, out, smoothed)) return out;
+  test_residuals(regressor, experiments, smoothed.sigma2, out);
+  describe_all(regressor, experiments, smoothed.covariance, out);
   if (out.fit.driven) {
     out.fit.warnings.push_back(
         "the motion is driven (" + out.fit.facts["whiteness"] +

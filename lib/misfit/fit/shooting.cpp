@@ -79,7 +79,7 @@ bool Shooting::evaluate(Piece& piece, double defect_weight, const double* const*
   fill_rows(piece, r, J);
   if (piece.next < 0) return true;
   const int n = model_.states();
-  const std::size_t first = static_cast<std::size_t>(s.y.size());
+  const auto first = static_cast<std::size_t>(s.y.size());
   if (J != nullptr && J[2] != nullptr) std::fill_n(J[2], (first + static_cast<std::size_t>(n)) * static_cast<std::size_t>(n), 0.0);
   for (int j = 0; j < n; ++j) {
     const double weight = defect_weight / state_scale_[static_cast<std::size_t>(j)];
@@ -166,7 +166,7 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   options.function_tolerance = pass.tolerance;
   options.initial_radius = pass.initial_radius;
   options.sparse = pieces.size() > 4;
-  const LeastSquares::Summary summary = problem.solve(options);
+  LeastSquares::Summary summary = problem.solve(options);
   linearisations_ += summary.linearisations;
   if (!summary.usable) return summary;
   const std::vector<double>& solved = problem.block(theta_block);

@@ -22,7 +22,7 @@ std::vector<double> autocorrelation(const std::vector<double>& residuals, int ma
   std::vector<double> rho;
   for (int lag = 0; lag <= max_lag; ++lag) {
     double product = 0.0, pairs = 0.0;
-    for (std::size_t i = static_cast<std::size_t>(lag); i < residuals.size(); ++i) {
+    for (auto i = static_cast<std::size_t>(lag); i < residuals.size(); ++i) {
       const double p = (residuals[i] - mean) * (residuals[i - static_cast<std::size_t>(lag)] - mean);
       if (std::isfinite(p)) product += p, pairs += 1.0;
     }

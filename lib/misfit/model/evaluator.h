@@ -144,7 +144,7 @@ class Evaluator {
   void find_twins();
   void base_and_derived(const Point& at, const double* own);
   void own_drifts(const Point& at, const double* own, double* drifts);
-  void own_drifts_linear(const Point& at, const double* own, Slots& slots, double* dx, double* D);
+  void own_drifts_linear(const Point& at, const double* own, Slots& slots, double* drifts, double* own_rows);
   void base_and_derived_linear(const Point& at, const double* own, Slots& slots);
   void outputs_as_quantities(const Point& at, Slots& slots);
   void linearise_outputs_simply(const Point& at, const Slots& slots, double* y, double* D);

@@ -21,7 +21,7 @@ std::filesystem::path write_report(const std::filesystem::path& dir, const Repor
   calibration_section(input, page, draw);
   notes_section(input, page);
   provenance_section(input, page);
-  const std::filesystem::path path = dir / "report.html";
+  std::filesystem::path path = dir / "report.html";
   write_atomically(path, page.text());
   return path;
 }

@@ -1,0 +1,184 @@
+// One effect put in its place: ports, quantities, constants, coefficients.
+
+#include "misfit/core/units.h"
+#include "misfit/model/assembler.h"
+#include "misfit/model/role_units.h"
+
+namespace misfit {
+
+void Assembler::bind(std::size_t i) {
+  const EffectRequest& request = request_.effects[i];
+  const EffectSpec& spec = effect(i).spec();
+  for (std::size_t j = 0; j < i; ++j) {
+    if (request_.effects[j].name == request.name) throw InputError(request.where, "effect '" + request.name + "' is named twice");
+  }
+  if (std::find(system().includes.begin(), system().includes.end(), spec.key) != system().includes.end()) {
+    throw InputError(request.where, "effect '" + request.name + "': the equations of system '" + system().key + "' have '" + spec.key +
+                                        "' by themselves, it would count twice");
+  }
+  BoundEffect bound;
+  bound.effect = &effect(i);
+  bound.name = request.name;
+  check_roles(request, spec);
+  role_units_ = role_units(request, spec);
+  bind_ports(request, spec, bound);
+  for (const auto& role : spec.quantities) bound.quantities.push_back(bind_quantity(request, role, bound.kind));
+  for (const auto& name : spec.constants) bound.constants.push_back(bind_constant(request, name));
+  bound.first_state = static_cast<int>(model_.own_states.size());
+  for (const auto& state : spec.states) {
+    model_.own_states.push_back(state);
+    model_.own_state_names.push_back(request.name + "." + state.name);
+    model_.own_state_units.push_back(bind_unit(state.unit, role_units_));
+  }
+  for (std::size_t c = 0; c < spec.coefficients.size(); ++c)
+    bound.coefficients.push_back(bind_coefficient(names_[i][c], spec.coefficients[c], request, bound.kind));
+  model_.effects.push_back(std::move(bound));
+}
+
+void Assembler::check_roles(const EffectRequest& request, const EffectSpec& spec) {
+  std::vector<std::string> valid;
+  for (const auto& role : spec.quantities) valid.emplace_back(role.name);
+  for (const auto& role : spec.ports) valid.emplace_back(role.name);
+  for (const auto& [role, target] : request.roles) {
+    if (std::find(valid.begin(), valid.end(), role) == valid.end()) {
+      throw InputError(request.where, "effect '" + request.name + "' (" + spec.key + ") has no role '" + role + "'" + suggest(role, valid));
+    }
+  }
+}
+
+bool Assembler::is_left_out(const EffectRequest& request, const Role& role) {
+  return role.completes[0] != '\0' && request.roles.contains(role.completes) && !request.roles.contains(role.name);
+}
+
+void Assembler::bind_ports(const EffectRequest& request, const EffectSpec& spec, BoundEffect& bound) const {
+  bool first = true;
+  for (const auto& role : spec.ports) {
+    if (is_left_out(request, role)) {
+      bound.ports.push_back(-1);
+      continue;
+    }
+    const std::string target = target_of(request, role, [&](const std::string& name) { return find_port(name).has_value(); });
+    const auto place = find_port(target);
+    if (!place) {
+      if (role.optional && !request.roles.contains(role.name)) {
+        bound.ports.push_back(-1);
+        continue;
+      }
+      throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no port '" + target + "'" +
+                                          suggest(target, port_names()));
+    }
+    check_unit(request, role, "port '" + target + "'", place->unit);
+    if (!first && place->kind != bound.kind) {
+      throw InputError(request.where,
+                       "effect '" + request.name + "' cannot add to '" + target + "' beside its other ports: they are of different kinds");
+    }
+    bound.kind = place->kind;
+    first = false;
+    bound.ports.push_back(place->index);
+  }
+}
+
+void Assembler::check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit) {
+  if (role.unit[0] == '*') return;  // a generic role takes any unit
+  if (!parse_unit(role.unit).same_dimension(parse_unit(unit))) {
+    throw InputError(request.where,
+                     "effect '" + request.name + "': role '" + role.name + "' needs [" + role.unit + "], " + what + " has [" + unit + "]");
+  }
+}
+
+int Assembler::bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const {
+  if (is_left_out(request, role)) return -1;
+  const std::string target = target_of(request, role, [&](const std::string& name) { return find_quantity(name) >= 0; });
+  const int index = find_quantity(target);
+  if (index < 0) {
+    if (role.optional && !request.roles.contains(role.name)) return -1;
+    throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no quantity '" + target + "'" +
+                                        suggest(target, quantity_names()));
+  }
+  check_order(request.where, "effect '" + request.name + "'", target, index, kind);
+  check_unit(request, role, "quantity '" + target + "'", unit_of_quantity(index));
+  return index;
+}
+
+void Assembler::check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const {
+  if (kind == PortKind::quantity && index >= system().base_quantities) {
+    throw InputError(where, who + " changes a quantity and so cannot read '" + target + "', which depends on such changes");
+  }
+  if (kind != PortKind::sensor && index >= static_cast<int>(system().quantities.size())) {
+    throw InputError(where, who + " cannot read the predicted output '" + target + "': only effects on sensors can");
+  }
+}
+
+int Assembler::bind_constant(const EffectRequest& request, const std::string& name) const {
+  const auto& constants = system().constants;
+  for (std::size_t i = 0; i < constants.size(); ++i) {
+    if (constants[i].name == name) return static_cast<int>(i);
+  }
+  throw InputError(request.where, "effect '" + request.name + "' needs '" + name + "', which system '" + system().key + "' does not have");
+}
+
+BoundCoefficient Assembler::bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request,
+                                             PortKind kind) {
+  if (spec.borrowed) return {};  // see lend_coefficients()
+  const auto curve = curve_request(name, spec);
+  if (curve) return {-1, add_curve(name, spec, *curve, request, kind)};
+  if (spec.over_sine) throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"alpha_T\" }");
+  Parameter p = as_parameter(name, spec);
+  apply_request(p);
+  model_.parameters.push_back(p);
+  return {static_cast<int>(model_.parameters.size()) - 1, -1};
+}
+
+Parameter Assembler::as_parameter(const std::string& name, const CoefficientSpec& spec) const {
+  Parameter p{name, bind_unit(spec.unit, role_units_), spec.doc};
+  p.value = spec.value;
+  p.lower = spec.lower;
+  p.upper = spec.upper;
+  p.scale = spec.scale;
+  p.free = !spec.fixed;
+  p.kind = spec.kind;
+  return p;
+}
+
+int Assembler::add_curve(const std::string& name, const CoefficientSpec& spec, const CurveRequest& request, const EffectRequest& by,
+                         PortKind kind) {
+  used_curves_.insert(name);
+  if (request.of.empty()) throw InputError(request.where, "curve " + name + ": `of` must name a quantity" + suggest("", quantity_names()));
+  Curve curve;
+  curve.name = name;
+  curve.of = request.of;
+  curve.unit = bind_unit(spec.unit, role_units_);
+  curve.quantity = find_quantity(request.of);
+  if (curve.quantity < 0) {
+    throw InputError(request.where, "curve " + name + ": system '" + system().key + "' has no quantity '" + request.of + "'" +
+                                        suggest(request.of, quantity_names()));
+  }
+  check_order(request.where, "effect '" + by.name + "'", request.of, curve.quantity, kind);
+  const bool own = curve.quantity < static_cast<int>(system().quantities.size());
+  curve.of_unit = unit_of_quantity(curve.quantity);
+  curve.over_sine = spec.over_sine && own && !system().quantities[static_cast<std::size_t>(curve.quantity)].carries_sign;
+  curve.roughness = request.roughness;
+  curve.scale = spec.scale;
+  try {
+    curve.spline = CubicSpline(request.knots, spec.parity);
+  } catch (const InputError& error) {
+    throw InputError(request.where, "curve " + name + ": " + error.what());
+  }
+  curve.first = static_cast<int>(model_.parameters.size());
+  add_curve_parameters(curve, spec);
+  model_.curves.push_back(std::move(curve));
+  return static_cast<int>(model_.curves.size()) - 1;
+}
+
+void Assembler::add_curve_parameters(const Curve& curve, const CoefficientSpec& spec) {
+  Parameter p = as_parameter(curve.name, spec);
+  p.free = true;
+  apply_request(p);
+  p.curve = static_cast<int>(model_.curves.size());
+  for (int i = 0; i < curve.spline.size(); ++i) {
+    p.name = curve.name + "[" + std::to_string(i) + "]";
+    model_.parameters.push_back(p);
+  }
+}
+
+}  // namespace misfit

@@ -1,0 +1,142 @@
+// What things are called in a model, and where a name leads.
+
+#include "misfit/core/units.h"
+#include "misfit/model/assembler.h"
+#include "misfit/model/role_units.h"
+
+namespace misfit {
+
+void Assembler::name_coefficients() {
+  names_.clear();
+  std::map<std::string, int> uses;
+  for (const auto& constant : system().constants) ++uses[constant.name];
+  for (std::size_t i = 0; i < request_.effects.size(); ++i) {
+    std::vector<std::string> own;
+    for (const auto& c : effect(i).spec().coefficients) {
+      const auto renamed = system().coefficient_names.find(c.name);
+      own.push_back(renamed == system().coefficient_names.end() ? c.name : renamed->second);
+      if (!c.borrowed) ++uses[own.back()];
+    }
+    names_.push_back(own);
+  }
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    for (std::size_t c = 0; c < names_[i].size(); ++c) {
+      auto& name = names_[i][c];
+      if (!effect(i).spec().coefficients[c].borrowed && uses[name] > 1) name = request_.effects[i].name + "." + name;
+    }
+  }
+}
+
+void Assembler::lend_coefficients() {
+  for (std::size_t i = 0; i < model_.effects.size(); ++i) {
+    const auto& coefficients = effect(i).spec().coefficients;
+    for (std::size_t c = 0; c < coefficients.size(); ++c) {
+      if (!coefficients[c].borrowed) continue;
+      BoundEffect& borrower = model_.effects[i];
+      const auto lent = owned_coefficient(coefficients[c].name);
+      if (!lent) {
+        throw InputError(request_.effects[i].where, "effect '" + borrower.name + "' changes what another effect adds by its coefficient '" +
+                                                        coefficients[c].name + "', and no effect of the model has one" +
+                                                        suggest(coefficients[c].name, owned_names()));
+      }
+      if (lent->curve >= 0) {
+        const Curve& curve = model_.curves[static_cast<std::size_t>(lent->curve)];
+        check_order(request_.effects[i].where, "effect '" + borrower.name + "'", curve.of, curve.quantity, borrower.kind);
+      }
+      borrower.coefficients[c] = *lent;
+    }
+  }
+}
+
+std::optional<BoundCoefficient> Assembler::owned_coefficient(const std::string& name) const {
+  for (std::size_t i = 0; i < model_.effects.size(); ++i) {
+    const auto& coefficients = effect(i).spec().coefficients;
+    for (std::size_t c = 0; c < coefficients.size(); ++c) {
+      if (!coefficients[c].borrowed && name == coefficients[c].name) return model_.effects[i].coefficients[c];
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> Assembler::owned_names() const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model_.effects.size(); ++i) {
+    for (const auto& c : effect(i).spec().coefficients) {
+      if (!c.borrowed) names.emplace_back(c.name);
+    }
+  }
+  return names;
+}
+
+std::optional<CurveRequest> Assembler::curve_request(const std::string& name, const CoefficientSpec& spec) const {
+  const auto found = request_.curves.find(name);
+  if (found != request_.curves.end()) return found->second;
+  const auto number = request_.parameters.find(name);
+  if (spec.curve_of[0] == '\0' || (number != request_.parameters.end() && number->second.value)) return std::nullopt;
+  CurveRequest request;
+  request.of = spec.curve_of;
+  return request;
+}
+
+std::map<std::string, std::string> Assembler::role_units(const EffectRequest& request, const EffectSpec& spec) const {
+  std::map<std::string, std::string> units;
+  for (const auto& role : spec.quantities) {
+    const int index = find_quantity(target_of(request, role, [&](const std::string& name) { return find_quantity(name) >= 0; }));
+    units[role.name] = index < 0 ? "-" : unit_of_quantity(index);
+  }
+  for (const auto& role : spec.ports) {
+    const auto place = find_port(target_of(request, role, [&](const std::string& name) { return find_port(name).has_value(); }));
+    units[role.name] = place ? place->unit : "-";
+  }
+  return units;
+}
+
+const std::string& Assembler::unit_of_quantity(int index) const {
+  const auto i = static_cast<std::size_t>(index);
+  const auto own = system().quantities.size();
+  return i < own ? system().quantities[i].unit : system().outputs[i - own].unit;
+}
+
+std::optional<Assembler::Place> Assembler::find_port(const std::string& name) const {
+  // Dynamic ports first: a quantity port may share the name of the quantity that it changes, never that of a dynamic port.
+  const auto search = [&](const auto& list, PortKind kind) -> std::optional<Place> {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (list[i].name == name) return Place{kind, static_cast<int>(i), list[i].unit};
+    }
+    return std::nullopt;
+  };
+  if (auto place = search(system().dynamic_ports, PortKind::dynamic)) return place;
+  if (auto place = search(system().quantity_ports, PortKind::quantity)) return place;
+  if (auto place = search(system().outputs, PortKind::sensor)) return place;
+  if (name == "sample_time") return Place{PortKind::sensor, model_.outputs(), "s"};
+  return std::nullopt;
+}
+
+std::vector<std::string> Assembler::port_names() const {
+  std::vector<std::string> names;
+  for (const auto& port : system().dynamic_ports) names.push_back(port.name);
+  for (const auto& port : system().quantity_ports) names.push_back(port.name);
+  for (const auto& output : system().outputs) names.push_back(output.name);
+  names.emplace_back("sample_time");
+  return names;
+}
+
+int Assembler::find_quantity(const std::string& name) const {
+  const auto& list = system().quantities;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].name == name) return static_cast<int>(i);
+  }
+  const auto& outputs = system().outputs;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (outputs[i].name == name) return static_cast<int>(list.size() + i);
+  }
+  return -1;
+}
+
+std::vector<std::string> Assembler::quantity_names() const {
+  std::vector<std::string> names;
+  for (const auto& quantity : system().quantities) names.push_back(quantity.name);
+  return names;
+}
+
+}  // namespace misfit

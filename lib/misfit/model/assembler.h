@@ -1,0 +1,88 @@
+#pragma once
+
+// Inside of assemble(): not for other files.
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "misfit/model/model.h"
+
+namespace misfit {
+
+/// Work in progress: the model and what is needed to fill it. Resolving one effect needs every table of names at once, so that this is one
+/// class; names, binding and checks stand in files of their own.
+class Assembler {
+ public:
+  Assembler(const ModelRequest& request, const Registry& registry);
+
+  Model run();
+  std::map<std::string, std::string> curves_without_knots();
+  std::map<std::string, std::string> parameter_units();
+
+ private:
+  const SystemSpec& system() const { return model_.system->spec(); }
+  const Effect& effect(std::size_t i) const { return registry_.effect(request_.effects[i].kind, request_.effects[i].where); }
+  void add_constants();
+  static void check_bounds(const Parameter& p, const Source& where);
+  void apply_request(Parameter& p);
+  /// Bare names where unique, EFFECT.NAME where two effects of the model, or an effect and the system, would share one; a system may
+  /// rename.
+  void name_coefficients();
+  /// Borrowed coefficients, once all effects are bound: that of the first effect which owns one of the name.
+  void lend_coefficients();
+  std::optional<BoundCoefficient> owned_coefficient(const std::string& name) const;
+  std::vector<std::string> owned_names() const;
+  std::optional<CurveRequest> curve_request(const std::string& name, const CoefficientSpec& spec) const;
+  void bind(std::size_t i);
+  /// Unit of what each role stands for; "-" where an optional role is absent (a wrong name is reported when it is bound).
+  std::map<std::string, std::string> role_units(const EffectRequest& request, const EffectSpec& spec) const;
+  const std::string& unit_of_quantity(int index) const;
+  static void check_roles(const EffectRequest& request, const EffectSpec& spec);
+  /// An optional role that completes another is not looked for where the study binds that one alone.
+  static bool is_left_out(const EffectRequest& request, const Role& role);
+  /// The name a role stands for: as the study binds it, else itself if `exists`, else the system's default for the role.
+  template <class Exists>
+  std::string target_of(const EffectRequest& request, const Role& role, const Exists& exists) const {
+    const auto bound = request.roles.find(role.name);
+    if (bound != request.roles.end()) return bound->second;
+    if (exists(role.name)) return role.name;
+    const auto fallback = system().roles.find(role.name);
+    return fallback == system().roles.end() ? role.name : fallback->second;
+  }
+  struct Place {
+    PortKind kind;
+    int index;
+    std::string unit;
+  };
+  std::optional<Place> find_port(const std::string& name) const;
+  std::vector<std::string> port_names() const;
+  void bind_ports(const EffectRequest& request, const EffectSpec& spec, BoundEffect& bound) const;
+  static void check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit);
+  int bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const;
+  /// Effects on quantity ports read base quantities only; only effects on sensors read predicted outputs (DESIGN 4, order of evaluation).
+  void check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const;
+  int find_quantity(const std::string& name) const;
+  std::vector<std::string> quantity_names() const;
+  int bind_constant(const EffectRequest& request, const std::string& name) const;
+  BoundCoefficient bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request, PortKind kind);
+  Parameter as_parameter(const std::string& name, const CoefficientSpec& spec) const;
+  int add_curve(const std::string& name, const CoefficientSpec& spec, const CurveRequest& request, const EffectRequest& by, PortKind kind);
+  /// One parameter per spline coefficient. What [parameters] says of the curve holds for each: they sum to one, so bounds on them are
+  /// bounds on the curve.
+  void add_curve_parameters(const Curve& curve, const CoefficientSpec& spec);
+  void check_everything_used() const;
+  void check_sizes() const;
+
+  const ModelRequest& request_;
+  const Registry& registry_;
+  Model model_;
+  std::vector<std::vector<std::string>> names_;
+  std::set<std::string> used_parameters_, used_curves_;
+  std::map<std::string, std::string> role_units_;  // of the effect being bound
+};
+
+}  // namespace misfit

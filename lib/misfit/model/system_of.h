@@ -1,0 +1,183 @@
+#pragma once
+
+// How a system is written: a struct with its formulas once, as models/parachute/parachute_spherical.cpp.
+
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "misfit/math/scalar.h"
+#include "misfit/model/registry.h"
+
+namespace misfit {
+
+/// Turns a struct with templated formulas into a System. `S` has static NX, NU, NP (quantity ports), NF (dynamic ports), NQ, NK, NY and
+///   template <class T, class K> void quantities(const T* x, const double* u, double t, const K* k, const T* P, uint64_t needed, T* q)
+///   const template <class T, class K> void rates(const T* x, const double* u, double t, const K* k, const T* P, const T* F, T* dx) const
+///   template <class T, class K> void outputs(const T* x, const double* u, double t, const K* k, T* y) const
+///   SystemSpec spec() const;   std::vector<DerivedCurve> derived_curves(const double* k) const
+/// All first derivatives come from Jets as wide as what varies: states alone in the common case.
+template <class S>
+class SystemOf final : public System {
+ public:
+  explicit SystemOf(S system) : system_(std::move(system)), spec_(system_.spec()) {}
+
+  [[nodiscard]] const SystemSpec& spec() const override { return spec_; }
+  [[nodiscard]] std::vector<DerivedCurve> derived_curves(const double* k) const override { return system_.derived_curves(k); }
+
+  void quantities(const Point& at, const double* P, std::uint64_t needed, double* q) const override {
+    system_.template quantities<double, double>(at.x, at.u, at.t, at.k, P, needed, q);
+  }
+  void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
+                            const QuantityDerivatives& d) const override {
+    if (d.k != nullptr) {
+      differentiate_quantities<S::NX + S::NP + S::NK>(at, P, needed, q, d);
+    } else if (d.P != nullptr && S::NP > 0) {
+      differentiate_quantities<S::NX + S::NP>(at, P, needed, q, d);
+    } else {
+      differentiate_quantities<S::NX>(at, P, needed, q, d);
+    }
+  }
+  void rates(const Point& at, const double* P, const double* F, double* dx) const override {
+    system_.template rates<double, double>(at.x, at.u, at.t, at.k, P, F, dx);
+  }
+  void linearise_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const override {
+    if (d.k != nullptr) {
+      differentiate_rates<S::NX + S::NF + S::NP + S::NK>(at, P, F, dx, d);
+    } else if (d.P != nullptr && S::NP > 0) {
+      differentiate_rates<S::NX + S::NF + S::NP>(at, P, F, dx, d);
+    } else {
+      differentiate_rates<S::NX + S::NF>(at, P, F, dx, d);
+    }
+  }
+  void outputs(const Point& at, double* y) const override { system_.template outputs<double, double>(at.x, at.u, at.t, at.k, y); }
+  void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const override {
+    if (y_k != nullptr) {
+      differentiate_outputs<S::NX + S::NK>(at, y, y_x, y_k);
+    } else {
+      differentiate_outputs<S::NX>(at, y, y_x, y_k);
+    }
+  }
+  bool read_states(const double* y, const double* k, double* x) const override {
+    if constexpr (requires { system_.read_states(y, k, x); }) return system_.read_states(y, k, x);
+    return false;
+  }
+
+ private:
+  template <class T>
+  static void seed(T* jets, const double* values, int count, int first) {
+    for (int i = 0; i < count; ++i) jets[i] = T(values[i], first + i);
+  }
+  template <class T>
+  static void plain(T* jets, const double* values, int count) {
+    for (int i = 0; i < count; ++i) jets[i] = T(values[i]);
+  }
+  template <class T>
+  static void block(const T& jet, int first, int count, double* row) {
+    for (int i = 0; i < count; ++i) row[i] = jet.v[first + i];
+  }
+  static constexpr std::size_t at_least_one(int n) { return static_cast<std::size_t>(n > 0 ? n : 1); }
+
+  template <int W>
+  void differentiate_quantities(const Point& at, const double* P, std::uint64_t needed, double* q, const QuantityDerivatives& d) const {
+    using T = Jet<W>;
+    constexpr bool with_P = W >= S::NX + S::NP && S::NP > 0;
+    constexpr bool with_k = W > S::NX + S::NP;
+    std::array<T, at_least_one(S::NX)> x;
+    seed(x.data(), at.x, S::NX, 0);
+    std::array<T, at_least_one(S::NP)> ports;
+    if constexpr (with_P) {
+      seed(ports.data(), P, S::NP, S::NX);
+    } else {
+      plain(ports.data(), P, S::NP);
+    }
+    std::array<T, static_cast<std::size_t>(S::NQ)> out;
+    if constexpr (with_k) {
+      std::array<T, at_least_one(S::NK)> k;
+      seed(k.data(), at.k, S::NK, S::NX + S::NP);
+      system_.template quantities<T, T>(x.data(), at.u, at.t, k.data(), ports.data(), needed, out.data());
+    } else {
+      system_.template quantities<T, double>(x.data(), at.u, at.t, at.k, ports.data(), needed, out.data());
+    }
+    for (int i = 0; i < S::NQ; ++i) {
+      if ((needed >> static_cast<unsigned>(i) & 1U) == 0U) continue;
+      const T& jet = out[static_cast<std::size_t>(i)];
+      q[i] = jet.a;
+      block(jet, 0, S::NX, d.x + i * S::NX);
+      if constexpr (with_P) {
+        if (d.P != nullptr) block(jet, S::NX, S::NP, d.P + i * S::NP);
+      }
+      if constexpr (with_k) block(jet, S::NX + S::NP, S::NK, d.k + i * S::NK);
+    }
+  }
+
+  template <int W>
+  void differentiate_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const {
+    using T = Jet<W>;
+    constexpr bool with_P = W >= S::NX + S::NF + S::NP && S::NP > 0;
+    constexpr bool with_k = W > S::NX + S::NF + S::NP;
+    std::array<T, at_least_one(S::NX)> x;
+    seed(x.data(), at.x, S::NX, 0);
+    std::array<T, at_least_one(S::NF)> forces;
+    seed(forces.data(), F, S::NF, S::NX);
+    std::array<T, at_least_one(S::NP)> ports;
+    if constexpr (with_P) {
+      seed(ports.data(), P, S::NP, S::NX + S::NF);
+    } else {
+      plain(ports.data(), P, S::NP);
+    }
+    std::array<T, at_least_one(S::NX)> out;
+    if constexpr (with_k) {
+      std::array<T, at_least_one(S::NK)> k;
+      seed(k.data(), at.k, S::NK, S::NX + S::NF + S::NP);
+      system_.template rates<T, T>(x.data(), at.u, at.t, k.data(), ports.data(), forces.data(), out.data());
+    } else {
+      system_.template rates<T, double>(x.data(), at.u, at.t, at.k, ports.data(), forces.data(), out.data());
+    }
+    for (int i = 0; i < S::NX; ++i) {
+      const T& jet = out[static_cast<std::size_t>(i)];
+      dx[i] = jet.a;
+      block(jet, 0, S::NX, d.x + i * S::NX);
+      block(jet, S::NX, S::NF, d.F + i * S::NF);
+      if constexpr (with_P) {
+        if (d.P != nullptr) block(jet, S::NX + S::NF, S::NP, d.P + i * S::NP);
+      }
+      if constexpr (with_k) block(jet, S::NX + S::NF + S::NP, S::NK, d.k + i * S::NK);
+    }
+  }
+
+  template <int W>
+  void differentiate_outputs(const Point& at, double* y, double* y_x, double* y_k) const {
+    using T = Jet<W>;
+    std::array<T, at_least_one(S::NX)> x;
+    seed(x.data(), at.x, S::NX, 0);
+    std::array<T, static_cast<std::size_t>(S::NY)> out;
+    if constexpr (W > S::NX) {
+      std::array<T, at_least_one(S::NK)> k;
+      seed(k.data(), at.k, S::NK, S::NX);
+      system_.template outputs<T, T>(x.data(), at.u, at.t, k.data(), out.data());
+    } else {
+      system_.template outputs<T, double>(x.data(), at.u, at.t, at.k, out.data());
+    }
+    for (int i = 0; i < S::NY; ++i) {
+      const T& jet = out[static_cast<std::size_t>(i)];
+      y[i] = jet.a;
+      block(jet, 0, S::NX, y_x + i * S::NX);
+      if constexpr (W > S::NX) block(jet, S::NX, S::NK, y_k + i * S::NK);
+    }
+  }
+
+  S system_;
+  SystemSpec spec_;
+};
+
+}  // namespace misfit
+
+/// The last line of a system's file: `Type::flags()` lists the options and `Type(const SystemOptions&)` makes it.
+#define MISFIT_SYSTEM(key, Type)                                                                                                       \
+  void misfit_register_##key(misfit::Registry& registry);                                                                              \
+  void misfit_register_##key(misfit::Registry& registry) {                                                                             \
+    registry.add(misfit::SystemType{#key, Type::flags(), [](const misfit::SystemOptions& options) -> std::unique_ptr<misfit::System> { \
+                                      return std::make_unique<misfit::SystemOf<Type>>(Type(options));                                  \
+                                    }});                                                                                               \
+  }
