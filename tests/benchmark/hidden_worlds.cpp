@@ -76,7 +76,6 @@ std::vector<Recipe> listed() {
        [](Dice& dice, double size) {
          return std::map<std::string, double>{{"C_lag", 0.12 * size}, {"tau_lag", dice.uniform(0.05, 0.3)}};
        }},
-      {{"side_moment", "side_moment", {"alpha_T"}, {}}, one("C_n", 0.010)},
       {{"magnus", "magnus", {"pitch_rate", "lateral_rate"}, {}}, one("C_spin", 0.1)},
       {{"camera_roll", "camera_roll", {}, {}}, one("roll_error", 3.0 * degree)},
       {{"image_centre", "image_centre", {}, {}}, [](Dice& dice, double size) {
@@ -233,9 +232,6 @@ World draw_world(const std::string& kind, int number, double seconds, const Regi
   for (const auto& h : world.hidden) full.effects.push_back({h.effect, h.effect, {}, {}});
   full.effects.push_back({"gust", "gust", {}, {}});
   full.effects.push_back({"apex_jitter", "apex_jitter", {}, {}});
-  for (const auto& h : world.hidden) {
-    if (h.effect == "side_moment") full.parameters["C_n"].value = h.values.at("C_n");  // a number, not a curve
-  }
   world.truth = assemble(full, truth);
   vary_curves(world.truth, dice);
   world.trim = zero_of_static(world.truth);

@@ -78,6 +78,11 @@ ScoreTest::ScoreTest(const FilterEstimate& estimate) {
   information_.compute(information);
 }
 
+Eigen::VectorXd ScoreTest::step_beside(const Eigen::MatrixXd& C, const Eigen::VectorXd& amplitude) const {
+  if (!any_) return {};
+  return information_.solve(gradient_ - J_.transpose() * (C * amplitude));
+}
+
 Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& C) const {
   if (!any_) return C;
   return C - J_ * information_.solve(J_.transpose() * C);

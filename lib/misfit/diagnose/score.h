@@ -31,6 +31,8 @@ class ScoreTest {
   [[nodiscard]] Eigen::Index rows() const { return r_.size(); }
   /// C: rows × columns, ∂(predicted − measured)/√S by each added coefficient at its off value.
   [[nodiscard]] ScoreResult test(const Eigen::MatrixXd& C, const ColumnPriors* priors = nullptr) const;
+  /// What one Gauss–Newton step over all of them moves the free parameters by, the added coefficients going to `amplitude`.
+  [[nodiscard]] Eigen::VectorXd step_beside(const Eigen::MatrixXd& C, const Eigen::VectorXd& amplitude) const;
   /// C − J I22⁻¹ Jᵀ C …: what of the columns the free parameters cannot imitate (for correlations between candidates).
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& C) const;
 

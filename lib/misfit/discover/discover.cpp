@@ -98,6 +98,7 @@ class Search {
     for (auto& e : entries_) {
       if (e.candidate.described || e.candidate.p_value > 5.0 * options_.p_accept || e.candidate.predicted_drop < 0.5 * best) continue;
       if (refits++ >= options_.most_refits) break;
+      e.candidate.predicted_drop = predicted_drop(estimate_, score_, *e.screened, registry_, options_.threads);
       e.refit = refit(estimate_, experiments_, *e.screened, registry_, options_.threads);
       take_refit(e);
     }

@@ -83,6 +83,33 @@ std::vector<std::vector<Use>> without_last_quarter(const FilterEstimate& estimat
 
 }  // namespace
 
+double predicted_drop(const FilterEstimate& without, const ScoreTest& score, const Screened& screened, const Registry& registry,
+                      int threads) {
+  Model model = start_model(without, screened, registry);
+  const Eigen::VectorXd step = score.step_beside(screened.columns, screened.result.amplitude);
+  const std::vector<int> free = without.model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const int at = model.find_parameter(without.model.parameters[static_cast<std::size_t>(free[c])].name);
+    Parameter& p = model.parameters[static_cast<std::size_t>(at)];
+    p.value = std::clamp(p.value + step[static_cast<Eigen::Index>(c)], p.lower, p.upper);
+  }
+  FilterModel forced = with_random_force(model);
+  forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = without.noise.force_time;
+  FilterRunner runner(forced, false);
+  runner.set_parameters(forced.model.values());
+  std::vector<FilterData> data;
+  std::vector<FilterTrace> traces(without.data.size());
+  for (std::size_t e = 0; e < without.data.size(); ++e) {
+    data.push_back(filter_data_like(forced, without.data[e]));
+    if (!runner.run(data[e], without.noise, traces[e])) return screened.result.chi2;
+  }
+  constexpr int steps_of_noise = 3;
+  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, without.around, threads, steps_of_noise);
+  const double objective = -noise.minus_loglik + log_prior(model, same_roughness(model, without));
+  const double drop = 2.0 * (objective - without.objective - prior_of_off(*screened.specimen));
+  return std::max(drop, screened.result.chi2);  // a step too long for the linearisation says nothing
+}
+
 Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened, const Registry& registry,
             int threads) {
   Refit out;

@@ -16,6 +16,11 @@ struct Refit {
 [[nodiscard]] Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened,
                           const Registry& registry, int threads);
 
+/// Drop of one Gauss–Newton step of all parameters from the estimate, noise included: the model is run there once and the noise fitted
+/// about that run, since what is explained leaves the random force. Never below the score's chi², which holds the noise.
+[[nodiscard]] double predicted_drop(const FilterEstimate& without, const ScoreTest& score, const Screened& screened,
+                                    const Registry& registry, int threads);
+
 /// Gain of the held-out log-likelihood. Where the study holds nothing out, both models are fitted again without the last quarter of every
 /// experiment, and judged on it.
 [[nodiscard]] double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, const std::vector<Signals>& experiments,

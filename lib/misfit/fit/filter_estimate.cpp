@@ -14,6 +14,20 @@ namespace {
 
 constexpr double gate = 5.0;  // sigmas: beyond, a reading is set aside as an outlier (5.7e-7 of good ones)
 
+double log_prior_at(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta) {
+  const std::vector<int> free = model.free_parameters();
+  double sum = 0.0;
+  for (const auto& p : penalties) {
+    const auto c = theta.segment(p.first, p.omega.rows());
+    sum -= 0.5 * p.lambda * c.dot(p.omega * c);
+  }
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    if (p.prior_sigma) sum -= 0.5 * std::pow((theta[static_cast<Eigen::Index>(c)] - p.prior_mean) / *p.prior_sigma, 2);
+  }
+  return sum;
+}
+
 class Estimation {
  public:
   Estimation(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments, const FilterOptions& options)
@@ -97,18 +111,7 @@ class Estimation {
     for (std::size_t c = 0; c < free_.size(); ++c) all[static_cast<std::size_t>(free_[c])] = theta[static_cast<Eigen::Index>(c)];
     return all;
   }
-  double penalty(const Eigen::VectorXd& theta) const {
-    double sum = 0.0;
-    for (const auto& p : out_.penalties) {
-      const auto c = theta.segment(p.first, p.omega.rows());
-      sum -= 0.5 * p.lambda * c.dot(p.omega * c);
-    }
-    for (std::size_t c = 0; c < free_.size(); ++c) {
-      const Parameter& p = out_.model.parameters[static_cast<std::size_t>(free_[c])];
-      if (p.prior_sigma) sum -= 0.5 * std::pow((theta[static_cast<Eigen::Index>(c)] - p.prior_mean) / *p.prior_sigma, 2);
-    }
-    return sum;
-  }
+  double penalty(const Eigen::VectorXd& theta) const { return log_prior_at(out_.model, out_.penalties, theta); }
 
   /// Full run with derivatives at theta_.
   bool linearise() {
@@ -356,6 +359,14 @@ class Estimation {
 FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
                                const FilterOptions& options) {
   return Estimation(start, std::move(penalties), experiments, options).run();
+}
+
+double log_prior(const Model& model, const std::vector<Penalty>& penalties) {
+  const std::vector<int> free = model.free_parameters();
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t c = 0; c < free.size(); ++c)
+    theta[static_cast<Eigen::Index>(c)] = model.parameters[static_cast<std::size_t>(free[c])].value;
+  return log_prior_at(model, penalties, theta);
 }
 
 }  // namespace misfit
