@@ -10,7 +10,7 @@ class ShortFlight : public StudyCopy {
   explicit ShortFlight(const std::string& system = "parachute_spherical", double seconds = 20.0) : StudyCopy("mpf_f111") {
     if (system != "parachute_planar") change("parachute_planar", system);
     change("methods = .*", "methods = [\"filter_error\"]");
-    change("track = \"track.csv\"", "track = \"track.csv\"\nvalidation = \"last 25 %\"");
+    change("\nvideo = .*", "\ntrack = \"track.csv\"\nvalidation = \"last 25 %\"");
     constexpr double rate = 59.94;
     const auto rows = static_cast<std::size_t>(seconds * rate);
     keep_rows("track.csv", rows);

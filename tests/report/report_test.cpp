@@ -31,7 +31,7 @@ ReportInput example() {
   declined.status = FitStatus::declined;
   declined.message = "the motion is driven; filter_error can work on it";
   input.fits = {fit, declined};
-  input.experiments = {{"flight", Track{}, std::nullopt}};
+  input.experiments = {{"flight", Track{}, std::nullopt, "", std::nullopt}};
   input.experiments[0].track->notes = {"12 samples lost"};
   TrimDifference trim;
   trim.reference = true;
