@@ -60,6 +60,8 @@ class Estimation {
       iterate(6, 0.02);
     }
     if (options_.verify) polish();
+    const bool runs = std::all_of(out_.traces.begin(), out_.traces.end(), [](const FilterTrace& trace) { return trace.finite; });
+    if (!runs && !linearise()) throw RunError(failure());
     finish();
     return std::move(out_);
   }
