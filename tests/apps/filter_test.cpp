@@ -42,7 +42,7 @@ TEST_F(OnAShortFlight, TheCameraComesFromItsCalibration) {
   const json camera = study->result("camera.json");
   const std::string resolved = content(study->out("resolved.toml"));
   std::smatch match;
-  ASSERT_TRUE(std::regex_search(resolved, match, std::regex(R"(\nh_c = \{ free = false, value = ([-+0-9.e]+))"))) << resolved;
+  ASSERT_TRUE(std::regex_search(resolved, match, std::regex(R"(\nh_c = \{ free = true, value = ([-+0-9.e]+))"))) << resolved;
   EXPECT_NEAR(std::stod(match[1]), camera.at("h_c").at("value").get<double>(), 1e-9);
 }
 
@@ -82,7 +82,8 @@ TEST(FilterErrorOnHardData, FiveSecondsGiveAnAnswer) {
 
 TEST(FilterErrorOnHardData, EveryParameterFixedIsStillDiagnosed) {
   const ShortFlight study;
-  study.change(R"(\[curves\]\n.*\n.*\n)", "[parameters]\nC_m = { free = false }\nC_mq = { free = false }\n");
+  study.change(R"(\[curves\]\n.*\n.*\n)",
+               "[parameters]\nC_m = { free = false }\nC_mq = { free = false }\nh_c = { free = false }\nK = { free = false }\n");
   const Outcome outcome = study.run("fit");
   ASSERT_EQ(outcome.status, 0) << outcome.err << outcome.out;
   expect_parts(outcome.out, {"every parameter is fixed"});

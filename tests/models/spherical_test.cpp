@@ -108,7 +108,7 @@ TEST(SphericalParachute, WithoutGravityNothingKnowsWhereUpIs) {
 }
 
 TEST(SphericalParachute, FrictionOpposesTheRotationWhateverThePlaneOfTheTilt) {
-  const Model free = with({}), rubbing = with({effect("coulomb_friction")}, {{"friction", 20.0}});
+  const Model free = with({}), rubbing = with({effect("coulomb_friction")}, {{"friction", 20.0}, {"width", 0.01}});
   for (const State& x : some_states) {
     const State a = rates(free, x), b = rates(rubbing, x);
     const double speed = std::sqrt(x[2] * x[2] + x[3] * x[3] + n_x_rate(x) * n_x_rate(x));
