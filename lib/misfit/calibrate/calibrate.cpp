@@ -130,6 +130,23 @@ void note_outliers(Calibration& calibration, std::size_t points) {
   }
 }
 
+/// What was not offered and the sweep asks for all the same: in the tests, not in the camera.
+void add_what_was_not_offered(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options, Calibration& calibration) {
+  CalibrateOptions everything = options;
+  everything.offer = optional_camera_parameters();
+  const auto offered = [&](const std::string& name) {
+    return std::count(options.offer.begin(), options.offer.end(), name) + std::count(options.take_in.begin(), options.take_in.end(), name) >
+           0;
+  };
+  if (std::all_of(everything.offer.begin(), everything.offer.end(), offered)) return;
+  for (CameraTest test : calibrate(sweep, geometry, everything).tests) {
+    if (!test.taken_in || offered(test.name)) continue;
+    test.taken_in = false;
+    calibration.notes.push_back("the sweep asks for " + test.name + " (drop " + format_value(test.drop) + "), which was not offered");
+    calibration.tests.push_back(std::move(test));
+  }
+}
+
 }  // namespace
 
 Calibration calibrate(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options) {
@@ -159,6 +176,7 @@ Calibration calibrate(const Sweep& sweep, const RigGeometry& geometry, const Cal
   note_separability(calibration);
   if (!selection.fit.inside)
     calibration.notes.emplace_back("a parameter ended at the edge of what is physical: do not believe this calibration");
+  add_what_was_not_offered(sweep, geometry, options, calibration);
   return calibration;
 }
 

@@ -6,6 +6,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
+#include "misfit/core/units.h"
 #include "misfit/discover/refit.h"
 #include "misfit/discover/screen.h"
 #include "misfit/discover/verdict.h"
@@ -244,7 +245,32 @@ class Search {
     out_.tried.push_back(curves);
     const std::optional<Unexplained> open = unexplained();
     write_verdict(out_, open, options_.p_accept);
+    add_likenesses();
     add_camera_remarks(options_.calibration, out_);
+  }
+
+  /// Sensor effects that would imitate an accepted physical one if the calibration did not forbid it: how far off they would have to be.
+  void add_likenesses() {
+    if (out_.candidates.empty() || !out_.candidates.front().accepted || out_.candidates.front().family == "sensor") return;
+    for (const auto& s : screened_) {
+      if (s.specimen->family != "sensor" || !s.specimen->has_priors || !s.runs) continue;
+      const ScoreResult free = score_.test(s.columns);
+      constexpr double good_part = 0.4;
+      if (free.chi2 < good_part * out_.candidates.front().score) continue;
+      std::string numbers, allowed;
+      for (std::size_t i = 0; i < s.specimen->strengths.size(); ++i) {
+        const Parameter& p = s.specimen->model.parameters[static_cast<std::size_t>(s.specimen->strengths[i])];
+        const auto k = static_cast<Eigen::Index>(i);
+        const std::string unit = display_unit(p.unit);
+        numbers += (i == 0 ? "" : ", ") + p.name + " = " +
+                   format_value(convert(free.amplitude[k], p.unit, unit), convert(free.sigma[k], p.unit, unit)) + " " + unit;
+        if (s.specimen->priors.precision[k] > 0.0)
+          allowed += (allowed.empty() ? "" : ", ") + format_value(convert(1.0 / std::sqrt(s.specimen->priors.precision[k]), p.unit, unit)) +
+                     " " + unit;
+      }
+      out_.sentences.push_back(s.specimen->effect + " with " + numbers + " would imitate part of it (predicted drop " +
+                               format_value(free.chi2) + "), but the calibration allows only sigmas of " + allowed);
+    }
   }
 
   /// What depends on a quantity in a way that no named effect has.

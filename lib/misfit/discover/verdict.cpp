@@ -19,7 +19,8 @@ std::string numbers(const Candidate& c) {
   for (const auto& [name, estimate] : c.parameters) {
     const std::string unit = display_unit(estimate.unit);
     out += (out.empty() ? "" : ", ") + name + " = " +
-           format_value(convert(estimate.value, estimate.unit, unit), convert(estimate.sigma, estimate.unit, unit)) + " " + unit;
+           format_value(convert(estimate.value, estimate.unit, unit), convert(estimate.sigma, estimate.unit, unit)) +
+           (unit == "-" ? "" : " " + unit);
   }
   return out;
 }
@@ -83,8 +84,16 @@ void add_camera_remarks(const Calibration* calibration, Discovery& out) {
     if (!test.taken_in && test.p_value < clear) wanted.push_back(test.name);
   }
   if (wanted.empty()) return;
-  out.sentences.push_back("the calibration sweep and the camera of this model disagree: the sweep asks for " + joined(wanted) +
-                          ", which the model's camera does not have");
+  for (auto& c : out.candidates) {
+    if (wanted.size() > 1 && std::find(wanted.begin(), wanted.end(), c.effect) != wanted.end()) c.group = wanted;
+  }
+  const std::string disagreement = "the calibration sweep asks for " + joined(wanted) + ", which the camera of this study does not have";
+  const bool physics = !out.candidates.empty() && out.candidates.front().accepted && out.candidates.front().family != "sensor";
+  if (physics) {
+    out.sentences.push_back("sweep and flight disagree: " + disagreement + "; calibrate with them offered, then ask again");
+  } else {
+    out.verdict = "The camera, not the physics: " + disagreement + ". Calibrate with them offered, then ask again.";
+  }
 }
 
 }  // namespace misfit
