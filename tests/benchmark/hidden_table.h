@@ -17,10 +17,10 @@ struct Row {
   std::string named, group, quantity;  ///< accepted effect, its group joined by '+', quantity of an unknown dependence
   std::string nearest;                 ///< first in the list, accepted or not
   bool named_first = false, right_group = false, right_quantity = false;
-  double predicted_drop = 0.0, actual_drop = 0.0;  ///< of the true effect where it was refitted, else 0
-  double trim_error = 0.0, trim_sigma = 0.0;       ///< [deg] of the fit without what is hidden
-  double band_share = 0.0;                         ///< share of samples whose angle has the true C_m inside the 95 % band
-  double fit_seconds = 0.0, discover_seconds = 0.0;
+  double predicted_drop = 0.0, actual_drop = 0.0;    ///< of the true effect where it was refitted, else 0
+  double trim_error = 0.0, trim_sigma = 0.0;         ///< [deg] of the fit without what is hidden
+  double band_share = 0.0;                           ///< share of samples whose angle has the true C_m inside the 95 % band
+  double fit_seconds = 0.0, discover_seconds = 0.0;  ///< of processor time
 };
 
 [[nodiscard]] std::vector<Row> read_rows(const std::filesystem::path& file);  ///< empty if there is no such file

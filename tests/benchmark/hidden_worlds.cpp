@@ -35,53 +35,54 @@ struct Recipe {
 std::vector<Recipe> listed() {
   const auto wake = [](const std::string& depth, const std::string& push, const std::string& phi, const std::string& width) {
     return [=](Dice& dice, double size) {
-      return std::map<std::string, double>{{depth, 0.3 * size}, {push, 0.1 * size}, {phi, dice.angle()}, {width, dice.uniform(0.3, 0.5)}};
+      return std::map<std::string, double>{{depth, 0.2 * size}, {push, 0.07 * size}, {phi, dice.angle()}, {width, dice.uniform(0.3, 0.5)}};
     };
   };
   const auto one = [](const std::string& name, double usual) {
     return [=](Dice& dice, double size) { return std::map<std::string, double>{{name, dice.sign() * usual * size}}; };
   };
-  return {
-      {{"strut_wake", "strut_wake", {"phi"}, {}}, wake("wake_depth", "wake_push", "wake_phi", "wake_width")},
-      {{"wake_with_cosine_edge", "strut_wake", {"phi"}, {}}, wake("edge_depth", "edge_push", "edge_phi", "edge_width")},
-      {{"vortex_shedding", "vortex_shedding", {}, {}},
-       [](Dice& dice, double size) {
-         const double a = dice.angle(), p = dice.angle(), s = 0.0030 * size;
-         return std::map<std::string, double>{{"y_cosine", s * std::cos(a) * std::cos(p)},
-                                              {"y_sine", s * std::cos(a) * std::sin(p)},
-                                              {"z_cosine", s * std::sin(a) * std::cos(p)},
-                                              {"z_sine", s * std::sin(a) * std::sin(p)},
-                                              {"shedding_frequency", dice.uniform(1.0, 4.0)}};
-       }},
-      {{"drifting_vortices", "vortex_shedding", {}, {}},
-       [](Dice& dice, double size) {
-         const double a = dice.angle(), s = 0.0030 * size;
-         // Over the flight the frequency moves by up to about one width of a line.
-         return std::map<std::string, double>{{"drift_y", s * std::cos(a)},
-                                              {"drift_z", s * std::sin(a)},
-                                              {"drift_from", dice.uniform(1.0, 4.0)},
-                                              {"drift_rate", dice.uniform(-1.0, 1.0) * 6e-4}};
-       }},
-      {{"flow_angularity", "flow_angularity", {}, {}},
-       [](Dice& dice, double size) {
-         const double a = dice.angle(), s = 1.15 * degree * size;
-         return std::map<std::string, double>{{"flow_theta", s * std::cos(a)}, {"flow_psi", s * std::sin(a)}};
-       }},
-      {{"coulomb_friction", "coulomb_friction", {"pitch_rate", "lateral_rate"}, {}},
-       [](Dice&, double size) {
-         return std::map<std::string, double>{{"friction", 9.0 * size}};
-       }},
-      {{"lateral_damping", "lateral_damping", {"lateral_rate"}, {}}, one("C_lateral", 0.2)},
-      {{"aerodynamic_lag", "aerodynamic_lag", {}, {}},
-       [](Dice& dice, double size) {
-         return std::map<std::string, double>{{"C_lag", 0.12 * size}, {"tau_lag", dice.uniform(0.05, 0.3)}};
-       }},
-      {{"magnus", "magnus", {"pitch_rate", "lateral_rate"}, {}}, one("C_spin", 0.1)},
-      {{"camera_roll", "camera_roll", {}, {}}, one("roll_error", 3.0 * degree)},
-      {{"image_centre", "image_centre", {}, {}}, [](Dice& dice, double size) {
-         const double a = dice.angle();
-         return std::map<std::string, double>{{"centre_y_error", 7.0 * size * std::cos(a)}, {"centre_z_error", 7.0 * size * std::sin(a)}};
-       }}};
+  return {{{"strut_wake", "strut_wake", {"phi"}, {}}, wake("wake_depth", "wake_push", "wake_phi", "wake_width")},
+          {{"wake_with_cosine_edge", "strut_wake", {"phi"}, {}}, wake("edge_depth", "edge_push", "edge_phi", "edge_width")},
+          {{"vortex_shedding", "vortex_shedding", {}, {}},
+           [](Dice& dice, double size) {
+             const double a = dice.angle(), p = dice.angle(), s = 0.0030 * size;
+             return std::map<std::string, double>{{"y_cosine", s * std::cos(a) * std::cos(p)},
+                                                  {"y_sine", s * std::cos(a) * std::sin(p)},
+                                                  {"z_cosine", s * std::sin(a) * std::cos(p)},
+                                                  {"z_sine", s * std::sin(a) * std::sin(p)},
+                                                  {"shedding_frequency", dice.uniform(1.0, 4.0)}};
+           }},
+          {{"drifting_vortices", "vortex_shedding", {}, {}},
+           [](Dice& dice, double size) {
+             const double a = dice.angle(), s = 0.0030 * size;
+             // Over the flight the frequency moves by up to about one width of a line.
+             return std::map<std::string, double>{{"drift_y", s * std::cos(a)},
+                                                  {"drift_z", s * std::sin(a)},
+                                                  {"drift_from", dice.uniform(1.0, 4.0)},
+                                                  {"drift_rate", dice.uniform(-1.0, 1.0) * 6e-4}};
+           }},
+          {{"flow_angularity", "flow_angularity", {}, {}},
+           [](Dice& dice, double size) {
+             const double a = dice.angle(), s = 1.15 * degree * size;
+             return std::map<std::string, double>{{"flow_theta", s * std::cos(a)}, {"flow_psi", s * std::sin(a)}};
+           }},
+          {{"coulomb_friction", "coulomb_friction", {"pitch_rate", "lateral_rate"}, {}},
+           [](Dice&, double size) {
+             return std::map<std::string, double>{{"friction", 13.0 * size}};
+           }},
+          {{"lateral_damping", "lateral_damping", {"lateral_rate"}, {}}, one("C_lateral", 0.7)},
+          {{"aerodynamic_lag", "aerodynamic_lag", {}, {}},
+           [](Dice& dice, double size) {
+             return std::map<std::string, double>{{"C_lag", 0.12 * size}, {"tau_lag", dice.uniform(0.05, 0.3)}};
+           }},
+          {{"magnus", "magnus", {"pitch_rate", "lateral_rate"}, {}}, one("C_spin", 0.35)},
+          {{"camera_roll", "camera_roll", {}, {}}, one("roll_error", 8.0 * degree)},
+          {{"image_centre", "image_centre", {}, {}}, [](Dice& dice, double /*size*/) {
+             // As its prior says (Table 2): a larger one is rightly taken for wind.
+             std::normal_distribution<double> shift(0.0, 10.0 / 3.0);
+             const double right = shift(dice.random);
+             return std::map<std::string, double>{{"centre_y_error", right}, {"centre_z_error", shift(dice.random)}};
+           }}};
 }
 
 std::vector<Recipe> unlisted() {

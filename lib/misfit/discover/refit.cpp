@@ -131,7 +131,12 @@ Refit refit(const FilterEstimate& without, const std::vector<Signals>& experimen
     const Parameter& p = out.estimate.model.parameters[static_cast<std::size_t>(at)];
     const auto column = std::find(free.begin(), free.end(), at) - free.begin();
     const bool known = column < static_cast<std::ptrdiff_t>(free.size()) && out.estimate.covariance.size() > 0;
-    out.parameters[p.name] = {p.value, known ? std::sqrt(std::max(out.estimate.covariance(column, column), 0.0)) : 0.0, p.unit};
+    double sigma = known ? std::sqrt(std::max(out.estimate.covariance(column, column), 0.0)) : 0.0;
+    // With the gains held the covariance believes too much of a sensor effect (specimen_columns): the screen's is from whole runs.
+    const auto strength = std::find(screened.specimen->strengths.begin(), screened.specimen->strengths.end(), at);
+    const auto place = strength - screened.specimen->strengths.begin();
+    if (screened.specimen->family == "sensor" && place < screened.result.sigma.size()) sigma = screened.result.sigma[place];
+    out.parameters[p.name] = {p.value, sigma, p.unit};
   }
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "misfit/core/work_queue.h"
@@ -38,6 +39,47 @@ struct CellResult {
   ScoreResult result;
   Eigen::MatrixXd columns;
 };
+
+CellResult test_cell(const FilterEstimate& estimate, const ScoreTest& score, const Specimen& specimen, const std::vector<double>& at) {
+  CellResult cell;
+  cell.columns = specimen_columns(estimate, specimen, at);
+  if (cell.columns.size() > 0)
+    cell.result = one_sided(specimen, score.test(cell.columns, specimen.has_priors ? &specimen.priors : nullptr));
+  return cell;
+}
+
+/// Distance between neighbouring cells along one scanned shape.
+double spacing(const Specimen& specimen, std::size_t shape) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& cell : specimen.cells) {
+    const double away = std::abs(cell[shape] - specimen.cells.front()[shape]);
+    if (away > 0.0) least = std::min(least, away);
+  }
+  return std::isfinite(least) ? least : 0.0;
+}
+
+/// Looks between the best cell and its neighbours, twice as finely each time: a shape between two cells would otherwise seem weaker than
+/// it is.
+void look_closer(const FilterEstimate& estimate, const ScoreTest& score, Screened& best) {
+  const Specimen& specimen = *best.specimen;
+  constexpr double fractions[] = {0.5, 0.25};
+  for (const double fraction : fractions) {
+    for (std::size_t i = 0; i < specimen.shapes.size(); ++i) {
+      const Parameter& p = specimen.model.parameters[static_cast<std::size_t>(specimen.shapes[i])];
+      const std::vector<double> middle = best.cell;
+      for (const double side : {-1.0, 1.0}) {
+        std::vector<double> at = middle;
+        at[i] = std::clamp(at[i] + side * fraction * spacing(specimen, i), p.lower, p.upper);
+        if (at[i] == middle[i]) continue;
+        CellResult cell = test_cell(estimate, score, specimen, at);
+        if (cell.columns.size() == 0 || !(cell.result.chi2 > best.result.chi2)) continue;
+        best.result = cell.result;
+        best.columns = std::move(cell.columns);
+        best.cell = at;
+      }
+    }
+  }
+}
 
 /// Frequencies whose line in the score of the force steps stands out most, as cells; their count among all scanned.
 std::vector<double> frequency_peaks(const Specimen& specimen, const ForceColumns& path, double& scanned) {
@@ -130,10 +172,7 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
   for (std::size_t s = 0; s < specimens.size(); ++s) results[s].resize(cells[s].size());
   run_jobs(jobs.size(), threads, [&](std::size_t j) {
     const Specimen& specimen = specimens[jobs[j].specimen];
-    CellResult& cell = results[jobs[j].specimen][jobs[j].cell];
-    cell.columns = specimen_columns(estimate, specimen, cells[jobs[j].specimen][jobs[j].cell]);
-    if (cell.columns.size() > 0)
-      cell.result = one_sided(specimen, score.test(cell.columns, specimen.has_priors ? &specimen.priors : nullptr));
+    results[jobs[j].specimen][jobs[j].cell] = test_cell(estimate, score, specimen, cells[jobs[j].specimen][jobs[j].cell]);
   });
   run_jobs(specimens.size(), threads, [&](std::size_t s) {
     Screened& best = out[s];
@@ -153,6 +192,10 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
     }
     if (specimens[s].frequency >= 0) best.cells_effective = std::max(frequencies[s], 1.0);
     if (!best.runs || best.result.dof == 0) return;
+    constexpr double worth_a_closer_look = 0.1;
+    if (!specimens[s].shapes.empty() &&
+        sidak(chi_square_tail(best.result.chi2, best.result.dof), best.cells_effective) < worth_a_closer_look)
+      look_closer(estimate, score, best);
     const double sides = specimens[s].strengths.size() == 1 && specimens[s].one_sided.front() ? 0.5 : 1.0;
     best.log_p = log_chi_square_tail(best.result.chi2, best.result.dof) + std::log(sides);
     best.p_value = sidak(std::exp(best.log_p), best.cells_effective);

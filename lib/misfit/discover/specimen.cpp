@@ -1,6 +1,7 @@
 #include "misfit/discover/specimen.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "misfit/core/error.h"
@@ -136,6 +137,55 @@ std::vector<std::string> names_of_ports(const Model& model) {
   return out;
 }
 
+Eigen::Index counted_rows(const FilterEstimate& estimate) {
+  Eigen::Index rows = 0;
+  for (const auto& jacobian : estimate.jacobians) rows += jacobian.r.size();
+  return rows;
+}
+
+Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const Specimen& specimen, const FilterModel& forced) {
+  FilterRunner runner(forced, true);
+  runner.set_parameters(forced.model.values());
+  Eigen::MatrixXd out(counted_rows(estimate), static_cast<Eigen::Index>(specimen.strengths.size()));
+  Eigen::Index at = 0;
+  FilterTrace trace;
+  FilterJacobian jacobian;
+  for (const auto& known : estimate.data) {
+    const FilterData data = filter_data_like(forced, known);
+    if (!runner.run(data, estimate.noise, trace, &jacobian)) return {};
+    out.middleRows(at, jacobian.r.size()) = jacobian.J;
+    at += jacobian.r.size();
+  }
+  return out;
+}
+
+/// A sensor effect turns or shifts what the states mean, and the gains with them: held gains would take their mismatch for information (a
+/// camera that rolls looked 40 times better known than it is). Differences of whole runs, the gains free to follow.
+Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Specimen& specimen, const FilterModel& forced) {
+  FilterRunner runner(forced, false);
+  std::vector<double> values = forced.model.values();
+  Eigen::MatrixXd out(counted_rows(estimate), static_cast<Eigen::Index>(specimen.strengths.size()));
+  std::array<FilterTrace, 2> sides;
+  for (std::size_t c = 0; c < specimen.strengths.size(); ++c) {
+    const auto parameter = static_cast<std::size_t>(specimen.strengths[c]);
+    constexpr double share_of_scale = 1e-2;
+    const double h = share_of_scale * forced.model.parameters[parameter].scale;
+    Eigen::Index row = 0;
+    for (std::size_t e = 0; e < estimate.data.size(); ++e) {
+      const FilterData data = filter_data_like(forced, estimate.data[e]);
+      for (std::size_t side = 0; side < 2; ++side) {
+        values[parameter] = side == 0 ? -h : h;
+        runner.set_parameters(values);
+        if (!runner.run(data, estimate.noise, sides[side])) return {};
+      }
+      for (std::size_t at : estimate.jacobians[e].index)
+        out(row++, static_cast<Eigen::Index>(c)) = (sides[0].e[at] - sides[1].e[at]) / (2.0 * h * std::sqrt(estimate.traces[e].S[at]));
+    }
+    values[parameter] = 0.0;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Specimen> specimens(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
@@ -177,21 +227,8 @@ Eigen::MatrixXd specimen_columns(const FilterEstimate& estimate, const Specimen&
   for (std::size_t i = 0; i < specimen.shapes.size(); ++i)
     forced.model.parameters[static_cast<std::size_t>(specimen.shapes[i])].value = cell[i];
   if (cell.size() > specimen.shapes.size()) forced.model.parameters[static_cast<std::size_t>(specimen.frequency)].value = cell.back();
-  FilterRunner runner(forced, true);
-  runner.set_parameters(forced.model.values());
-  Eigen::Index rows = 0;
-  for (const auto& jacobian : estimate.jacobians) rows += jacobian.r.size();
-  Eigen::MatrixXd out(rows, static_cast<Eigen::Index>(specimen.strengths.size()));
-  Eigen::Index at = 0;
-  FilterTrace trace;
-  FilterJacobian jacobian;
-  for (std::size_t e = 0; e < estimate.data.size(); ++e) {
-    FilterData data = filter_data_like(forced, estimate.data[e]);
-    if (!runner.run(data, estimate.noise, trace, &jacobian)) return {};
-    out.middleRows(at, jacobian.r.size()) = jacobian.J;
-    at += jacobian.r.size();
-  }
-  return out;
+  return specimen.family == "sensor" ? columns_of_whole_runs(estimate, specimen, forced)
+                                     : columns_with_gains_held(estimate, specimen, forced);
 }
 
 }  // namespace misfit
