@@ -114,8 +114,9 @@ std::vector<double> with_gains_held(const Cart& cart, const FilterTrace& trace, 
     const NoiseStep step = discretise(cart.noise, t1 - t0);
     for (Eigen::Index o = 0; o < 2; ++o) {
       const auto& p = step.jitter[static_cast<std::size_t>(o)].phi;
-      jitter.segment(2 * o, 2) =
-          Eigen::Vector2d(p[0] * jitter[2 * o] + p[1] * jitter[2 * o + 1], p[2] * jitter[2 * o] + p[3] * jitter[2 * o + 1]);
+      const double first = jitter[2 * o], second = jitter[2 * o + 1];
+      jitter[2 * o] = p[0] * first + p[1] * second;
+      jitter[2 * o + 1] = p[2] * first + p[3] * second;
     }
   }
   return out;
