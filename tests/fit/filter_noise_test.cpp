@@ -32,7 +32,8 @@ TEST(Discretise, RandomForceOnAFreeMassIsVanLoans) {
       for (Eigen::Index j = 0; j < 3; ++j) {
         const double left = i == 0 ? 1.0 : Phi(i, 0), right = j == 0 ? 1.0 : Phi(j, 0);
         const double scale = std::sqrt(Q(i, i) * Q(j, j));
-        EXPECT_NEAR(step.m[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * left * right, Q(i, j), accuracy * scale) << h << i << j;
+        EXPECT_NEAR(step.m[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * left * right, Q(i, j), accuracy * scale)
+            << h << i << j;
       }
     }
   }

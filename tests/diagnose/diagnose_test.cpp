@@ -1,0 +1,41 @@
+#include "misfit/diagnose/diagnose.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/fit/flight.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_flight;
+
+TEST(Diagnose, SaysNowhereWhereNothingIsMissing) {
+  const std::vector<Signals> flights = {fly(20.0, 21)};
+  const Diagnosis found = diagnose(fitted(request_for(flights), flights));
+  for (const auto& map : found.maps) EXPECT_GT(map.p_corrected, 0.01) << map.port << " over " << map.quantity;
+  ASSERT_FALSE(found.sentences.empty());
+  EXPECT_THAT(found.sentences.front(), testing::StartsWith("nowhere"));
+}
+
+TEST(Diagnose, MapsShowWhereAPlantedForceActs) {
+  const std::vector<Signals> flights = {
+      fly(25.0, 22, {effect("strut_wake")}, {{"wake_depth", 0.5}, {"wake_push", 0.25}, {"wake_phi", -1.2}, {"wake_width", 0.4}})};
+  const Diagnosis found = diagnose(fitted(request_for(flights), flights));
+  ASSERT_FALSE(found.maps.empty());
+  EXPECT_EQ(found.maps.front().quantity, "phi");
+  EXPECT_LT(found.maps.front().p_corrected, 1e-4);
+  EXPECT_THAT(found.sentences.front(), testing::HasSubstr("where phi is between"));
+  EXPECT_THAT(found.sentences, testing::Contains(testing::StartsWith("time explains nothing of it")));
+}
+
+TEST(Diagnose, DoesNotDependOnThreads) {
+  const std::vector<Signals> flights = {fly(8.0, 23)};
+  const FilterEstimate estimate = fitted(request_for(flights), flights);
+  const Diagnosis one = diagnose(estimate, {1}), two = diagnose(estimate, {2});
+  ASSERT_EQ(one.maps.size(), two.maps.size());
+  for (std::size_t i = 0; i < one.maps.size(); ++i) EXPECT_EQ(one.maps[i].chi2, two.maps[i].chi2);
+}
+
+}  // namespace
+}  // namespace misfit

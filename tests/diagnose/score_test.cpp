@@ -1,0 +1,106 @@
+#include "misfit/diagnose/score.h"
+
+#include <gtest/gtest.h>
+
+#include "misfit/math/statistics.h"
+#include "tests/fit/cart_filter.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_cart;
+
+/// An estimate that is nothing but linear least squares: residuals and derivatives of one free parameter.
+FilterEstimate linear_estimate(const Eigen::VectorXd& r, const Eigen::VectorXd& column) {
+  FilterEstimate estimate;
+  estimate.model = assemble(cart({}), registry());
+  estimate.model.parameters[0].free = true;
+  FilterJacobian jacobian;
+  jacobian.J = column;
+  jacobian.r = r;
+  estimate.jacobians = {jacobian};
+  return estimate;
+}
+
+TEST(ScoreTest, Chi2IsChi2WhereNothingIsMissing) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  constexpr int trials = 400, rows = 60;
+  double sum = 0.0;
+  int beyond = 0;
+  for (int k = 0; k < trials; ++k) {
+    const auto draw = [&] { return normal(random); };
+    const Eigen::VectorXd column = Eigen::VectorXd::NullaryExpr(rows, draw), r = Eigen::VectorXd::NullaryExpr(rows, draw);
+    Eigen::MatrixXd C = Eigen::MatrixXd::NullaryExpr(rows, 3, draw);
+    C.col(0) += 5.0 * column;  // mostly what the model has already
+    const ScoreResult result = ScoreTest(linear_estimate(r, column)).test(C);
+    ASSERT_EQ(result.dof, 3);
+    sum += result.chi2;
+    beyond += chi_square_tail(result.chi2, 3) < 0.05 ? 1 : 0;
+  }
+  EXPECT_NEAR(sum / trials, 3.0, 4.0 * std::sqrt(6.0 / trials));
+  EXPECT_NEAR(beyond / static_cast<double>(trials), 0.05, 4.0 * std::sqrt(0.05 * 0.95 / trials));
+}
+
+TEST(ScoreTest, IsTheLeastSquaresAnswerForWhatIsAdded) {
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> normal;
+  const auto draw = [&] { return normal(random); };
+  const Eigen::VectorXd column = Eigen::VectorXd::NullaryExpr(40, draw);
+  const Eigen::MatrixXd C = Eigen::MatrixXd::NullaryExpr(40, 2, draw);
+  const Eigen::VectorXd r = Eigen::VectorXd::NullaryExpr(40, draw) - C * Eigen::Vector2d(2.0, -1.0);
+  const ScoreTest score(linear_estimate(r, column));
+  const ScoreResult result = score.test(C);
+  Eigen::MatrixXd all(40, 3);
+  all << column, C;
+  const Eigen::VectorXd best = all.colPivHouseholderQr().solve(-r), alone = column.colPivHouseholderQr().solve(-r);
+  EXPECT_NEAR(result.amplitude[0], best[1], 1e-6);
+  EXPECT_NEAR(result.amplitude[1], best[2], 1e-6);
+  EXPECT_NEAR(result.chi2, (r + column * alone).squaredNorm() - (r + all * best).squaredNorm(), 1e-4);
+  EXPECT_NEAR(score.step_beside(C, result.amplitude)[0], best[0], 1e-5);
+  const Eigen::MatrixXd inverse = (all.transpose() * all).inverse();
+  EXPECT_NEAR(result.sigma[0], std::sqrt(inverse(1, 1)), 1e-6);
+  EXPECT_LT((column.transpose() * score.projected(C)).norm(), 1e-3);
+}
+
+TEST(ScoreTest, AColumnTheModelHasIsKnownAsSuch) {
+  std::mt19937_64 random(13);
+  std::normal_distribution<double> normal;
+  const auto draw = [&] { return normal(random); };
+  const Eigen::VectorXd column = Eigen::VectorXd::NullaryExpr(50, draw), r = Eigen::VectorXd::NullaryExpr(50, draw);
+  const Eigen::MatrixXd C = column + 0.02 * Eigen::VectorXd::NullaryExpr(50, draw);
+  EXPECT_LT(ScoreTest(linear_estimate(r, column)).test(C).independent, 0.01);
+}
+
+TEST(ScoreTest, PriorsPullTheAmplitude) {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(4), r = Eigen::VectorXd::Constant(4, -1.0);
+  const Eigen::MatrixXd C = Eigen::MatrixXd::Ones(4, 1);
+  const ColumnPriors priors{Eigen::VectorXd::Constant(1, 4.0), Eigen::VectorXd::Constant(1, 3.0)};
+  const ScoreResult result = ScoreTest(linear_estimate(r, none)).test(C, &priors);
+  EXPECT_NEAR(result.amplitude[0], 2.0, 1e-12) << "half way between the data's 1 and the prior's 3";
+}
+
+/// A force of one unit over every step is what a constant effect adds.
+TEST(ForceColumns, OfAConstantIsTheColumnOfAConstantForce) {
+  Cart cart(80, 5, {effect("own_weight")});
+  for (auto& p : cart.model.model.parameters) p.free = p.name == "share";
+  FilterJacobian jacobian;
+  FilterEstimate estimate;
+  estimate.traces = {cart.run(&jacobian)};
+  estimate.model = assemble(testing_models::cart({effect("own_weight")}), registry());
+  estimate.forced = cart.model;
+  estimate.noise = cart.noise;
+  estimate.data = {cart.data};
+  estimate.jacobians = {jacobian};
+  const ForceColumns path(estimate);
+  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(80, 1);
+  const Eigen::MatrixXd columns = path.columns(0, ones, ones);
+  ASSERT_EQ(columns.rows(), jacobian.J.rows());
+  const double weight = 2.0 * 9.80665;
+  EXPECT_LT((weight * columns - jacobian.J).norm(), 1e-8 * jacobian.J.norm());
+  // The score of single steps adds up to that of the constant force.
+  EXPECT_NEAR(path.score_of_steps(0).sum(), -columns.col(0).dot(jacobian.r), 1e-6 * columns.norm() * jacobian.r.norm());
+}
+
+}  // namespace
+}  // namespace misfit

@@ -1,0 +1,81 @@
+#include "misfit/fit/filter_estimate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "misfit/core/error.h"
+#include "misfit/fit/filter_error.h"
+#include "tests/fit/flight.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_flight;
+
+void expect_within(const Estimate& estimate, double truth, const std::string& name) {
+  EXPECT_GT(estimate.sigma, 0.0) << name;
+  EXPECT_LT(std::abs(estimate.value - truth), 3.0 * estimate.sigma) << name << ' ' << estimate.value << " ± " << estimate.sigma;
+}
+
+TEST(EstimateFilter, RecoversForceJitterAndTrim) {
+  const std::vector<Signals> flights = {fly(30.0, 3)};
+  const FilterEstimate estimate = fitted(request_for(flights), flights);
+  EXPECT_TRUE(estimate.converged) << estimate.message;
+  EXPECT_LT(estimate.left, 0.5);
+  Fit fit = filter_fit(estimate);
+  expect_within(fit.force.at("moment_y"), 27.0, "force");
+  EXPECT_LT(fit.force.at("moment_y").sigma, 4.0);
+  expect_within(fit.force.at("correlation_time"), 0.1, "correlation time");
+  expect_within(fit.noise.at("P_y"), 0.5, "white");
+  expect_within(fit.noise.at("P_z_jitter"), 1.0, "jitter");
+  expect_within(fit.noise.at("P_z_jitter_frequency"), 9.0, "jitter frequency");
+  ASSERT_TRUE(fit.trim.has_value());
+  expect_within(*fit.trim, 12.0 * degree, "trim");
+}
+
+TEST(EstimateFilter, MissingSamplesAreBridged) {
+  Signals flight = fly(20.0, 4);
+  std::mt19937 random(1);
+  for (std::size_t k = 0; k < flight.samples(); ++k) {
+    if (random() % 5 >= 2) continue;
+    for (auto& channel : flight.measured) channel.values[k] = std::numeric_limits<double>::quiet_NaN();
+  }
+  const std::vector<Signals> flights = {flight};
+  const Fit fit = filter_fit(fitted(request_for(flights), flights));
+  expect_within(fit.force.at("moment_y"), 27.0, "force");
+  ASSERT_TRUE(fit.trim.has_value());
+  expect_within(*fit.trim, 12.0 * degree, "trim");
+  ASSERT_TRUE(fit.facts.contains("gaps: flight"));
+}
+
+TEST(EstimateFilter, WildReadingsAreSetAsideAndTheRestKept) {
+  Signals flight = fly(15.0, 5);
+  for (std::size_t k : {200U, 400U, 650U}) flight.measured[0].values[k] += 60.0;
+  const std::vector<Signals> flights = {flight};
+  const FilterEstimate estimate = fitted(request_for(flights), flights);
+  EXPECT_GE(estimate.outliers, 3);
+  EXPECT_LE(estimate.outliers, 9) << "a wild reading spoils the next predictions as well: up to two neighbours go with it";
+  for (std::size_t k : {200U, 400U, 650U}) EXPECT_EQ(estimate.data[0].use[2 * k], Use::none) << k;
+}
+
+TEST(EstimateFilter, AsksForReadingsWhereThereAreNone) {
+  Signals flight = fly(5.0, 6);
+  const ModelRequest request = request_for({flight});
+  for (auto& channel : flight.measured) std::fill(channel.values.begin(), channel.values.end(), std::numeric_limits<double>::quiet_NaN());
+  FittedModel start;
+  start.model = assemble(request, registry());
+  const FilterError answer = filter_error(start, {flight});
+  EXPECT_EQ(answer.fit.status, FitStatus::declined);
+  EXPECT_THAT(answer.fit.message, testing::HasSubstr("no sample at which the states"));
+}
+
+TEST(LogPrior, IsThatOfTheEstimate) {
+  const std::vector<Signals> flights = {fly(8.0, 7)};
+  const FilterEstimate estimate = fitted(request_for(flights), flights);
+  EXPECT_NEAR(log_prior(estimate.model, estimate.penalties), estimate.objective - estimate.loglik, 1e-6);
+}
+
+}  // namespace
+}  // namespace misfit
