@@ -63,7 +63,7 @@ struct FilterWork {
 /// fit/METHOD/… for every method asked for, in order, and resolved.toml.
 [[nodiscard]] std::vector<Fit> fit_stage(Session& session);
 /// The same for these methods.
-[[nodiscard]] std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& methods);
+[[nodiscard]] std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& names);
 /// filter_error's estimate: the one of this run of the program, else estimated again (about two seconds, and the same answer). RunError
 /// with the fit's words if it declined.
 [[nodiscard]] std::shared_ptr<const FilterWork> filter_work(Session& session);
