@@ -65,7 +65,7 @@ FilterNoise unpack(const std::vector<double>& logs) {
 }
 
 NoiseStep discretise(const FilterNoise& noise, double h) {
-  // Five-point Gauss–Legendre over the step: exact to rounding for h below tau, 1e-6 at h = 5 tau.
+  // Five-point Gauss–Legendre over the step: relative error 1e-12 for h below tau/5, 5e-9 at tau, 3e-7 at 2 tau.
   static constexpr std::array<double, 5> node = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
   static constexpr std::array<double, 5> weight = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                                    0.2369268850561891};
