@@ -80,7 +80,7 @@ TEST(Specimens, LeaveOutWhatDoesNotSuit) {
     EXPECT_THAT(names, testing::Not(testing::Contains(other))) << "in the model, driven by noise, of another system, or specialised";
 }
 
-/// The model turns with a rolled camera: held gains would call the roll known 40 times better than it is.
+/// The model turns with a rolled camera: held gains would call the roll known nine times better than it is.
 TEST(Specimens, ARolledCameraIsHardlySeenInTheMotion) {
   const Flight flight(fly(15.0, 36));
   for (const auto& s : specimens(flight.estimate, flight.request, registry(), nullptr)) {
