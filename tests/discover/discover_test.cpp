@@ -27,7 +27,7 @@ TEST(Discover, IsSilentWhereNothingIsMissing) {
 }
 
 TEST(Discover, NamesAPlantedFriction) {
-  const Discovery found = Flight(fly(20.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}})).discover();
+  const Discovery found = Flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}})).discover();
   ASSERT_FALSE(found.candidates.empty());
   const Candidate& first = found.candidates.front();
   EXPECT_EQ(first.effect, "coulomb_friction") << found.verdict;
