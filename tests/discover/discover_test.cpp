@@ -27,7 +27,7 @@ TEST(Discover, IsSilentWhereNothingIsMissing) {
 }
 
 TEST(Discover, NamesAPlantedFriction) {
-  const Discovery found = Flight(fly(20.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}})).discover();
+  const Discovery found = Flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}})).discover();
   ASSERT_FALSE(found.candidates.empty());
   const Candidate& first = found.candidates.front();
   EXPECT_EQ(first.effect, "coulomb_friction") << found.verdict;
@@ -80,7 +80,7 @@ TEST(Specimens, LeaveOutWhatDoesNotSuit) {
     EXPECT_THAT(names, testing::Not(testing::Contains(other))) << "in the model, driven by noise, of another system, or specialised";
 }
 
-/// The model turns with a rolled camera: held gains would call the roll known 40 times better than it is.
+/// The model turns with a rolled camera: held gains would call the roll known nine times better than it is.
 TEST(Specimens, ARolledCameraIsHardlySeenInTheMotion) {
   const Flight flight(fly(15.0, 36));
   for (const auto& s : specimens(flight.estimate, flight.request, registry(), nullptr)) {

@@ -160,7 +160,8 @@ Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const Sp
 }
 
 /// A sensor effect turns or shifts what the states mean, and the gains with them: held gains would take their mismatch for information (a
-/// camera that rolls looked 40 times better known than it is). Differences of whole runs, the gains free to follow.
+/// camera that rolls looked nine times better known than it is, lens distortion three times). Differences of whole runs, the gains free to
+/// follow.
 Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Specimen& specimen, const FilterModel& forced) {
   FilterRunner runner(forced, false);
   std::vector<double> values = forced.model.values();
