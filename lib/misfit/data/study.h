@@ -57,9 +57,9 @@ struct ExperimentStudy {
 
 /// One line of [effects].
 struct EffectStudy {
-  std::string name;                          ///< key in the study: "bearing"
-  std::string kind;                          ///< effect's key: "coulomb_friction"; default = name
-  std::map<std::string, std::string> roles;  ///< role → quantity or port, as bound by the study
+  std::string name;                             ///< key in the study: "bearing"
+  std::string kind;                             ///< effect's key: "coulomb_friction"; default = name
+  std::map<std::string, std::string> roles;     ///< role → quantity or port, as bound by the study
   std::map<std::string, config::Number> start;  ///< parameter → value to start from, as written (unit checked by the model)
   Source where;
 };

@@ -105,7 +105,9 @@ class OpencvBackend : public Backend {
     try {
       cv::VideoWriter writer(path, cv::CAP_FFMPEG, codec, rate, {width, height});
       if (writer.isOpened()) return std::make_unique<OpencvSink>(std::move(writer), width, height);
-      why = "FFmpeg cannot write such a file: .avi (Motion JPEG), .mp4 (MPEG-4) and .mkv (FFV1, without loss) are possible, in a folder that can be written";
+      why =
+          "FFmpeg cannot write such a file: .avi (Motion JPEG), .mp4 (MPEG-4) and .mkv (FFV1, without loss) are possible, in a folder that "
+          "can be written";
     } catch (const cv::Exception& error) {
       why = error.err;
     }
