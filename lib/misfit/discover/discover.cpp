@@ -153,17 +153,16 @@ class Search {
 
   void accept() {
     if (entries_.empty() || !entries_.front().refit) return;
+    if (!(entries_.front().candidate.p_value < options_.p_accept)) {
+      entries_.front().candidate.why = "not significant: family-wise p " + format_probability(entries_.front().candidate.p_value);
+      return;
+    }
+    if (!first_that_holds_out()) {
+      left_ = what_is_left(entries_.front());
+      return;
+    }
     Entry& best = entries_.front();
     Candidate& c = best.candidate;
-    if (!(c.p_value < options_.p_accept)) {
-      c.why = "not significant: family-wise p " + format_probability(c.p_value);
-      return;
-    }
-    c.held_out_gain = held_out_gain(estimate_, best.refit->estimate, experiments_, options_.threads);
-    if (!(*c.held_out_gain > 0.0)) {
-      c.why = "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
-      return;
-    }
     left_ = what_is_left(best);
     if (left_) {
       c.why = "most of the departure remains: after it an unknown " + left_->port + "(" + left_->quantity + ") still has p " +
@@ -178,6 +177,23 @@ class Search {
       other.why = !other.group.empty() ? "these data cannot tell it from " + c.effect
                                        : "explains less than " + c.effect + "; screened again once that is in";
     }
+  }
+
+  /// Brings to the front the best, or of its group the first, that makes the held-out readings more likely; false: none does.
+  bool first_that_holds_out() {
+    const std::vector<std::string> group = entries_.front().candidate.group;
+    for (auto e = entries_.begin(); e != entries_.end(); ++e) {
+      Candidate& c = e->candidate;
+      const bool in_group = std::find(group.begin(), group.end(), c.effect) != group.end();
+      if (!e->refit || (e != entries_.begin() && !in_group)) continue;
+      c.held_out_gain = held_out_gain(estimate_, e->refit->estimate, experiments_, options_.threads);
+      if (*c.held_out_gain > 0.0) {
+        std::rotate(entries_.begin(), e, e + 1);
+        return true;
+      }
+      c.why = "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
+    }
+    return false;
   }
 
   /// An unknown curve of a quantity that the effect reads, significant after it and worth a good part of what it explained: then the effect
@@ -281,6 +297,8 @@ class Search {
     const UnknownCurve& best = unknown_.front();
     const double p = sidak(best.p_value, families_);
     if (!(p < options_.p_accept)) return std::nullopt;
+    const bool named_better = !entries_.empty() && entries_.front().refit && entries_.front().log_p < best.log_p;
+    if (named_better) return std::nullopt;  // what a known effect explains better is not unknown, though it is not accepted
     return Unexplained{best.port, best.quantity, p};
   }
 
