@@ -63,6 +63,11 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
                               "): " + best.why);
     return;
   }
+  if (best.actual_drop && best.p_value < p_accept) {
+    out.verdict = "Nothing can be accepted: " + best.effect + " comes nearest (drop " + format_value(*best.actual_drop) +
+                  ", family-wise p " + format_probability(best.p_value) + "), but " + best.why + ". More data would decide.";
+    return;
+  }
   double least = 1.0;
   std::string nearest;
   for (const auto& c : out.candidates) {
