@@ -13,6 +13,7 @@ struct ImageCentre {
   static constexpr const char* source = "paper Table 2: P_y, P_z +-10 px, read as 3 sigma";
   static constexpr const char* excludes =
       "a camera that shakes or drifts; wind that is not along the tunnel axis looks the same (flow_angularity)";
+  static constexpr const char* specialises = "bias";  // which would shift P_z without the prior that the calibration gives
   static constexpr Role ports[] = {{"P_y", "px"}, {"P_z", "px"}};
   static constexpr CoefficientSpec coefficients[] = {
       {"centre_y_error", CoefficientKind::strength, 0.0, "px", -1e4, 1e4, 3.0, "shift of P_y beyond the calibration", Parity::none, "",

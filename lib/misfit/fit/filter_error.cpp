@@ -181,6 +181,12 @@ Fit filter_fit(const FilterEstimate& estimate) {
   fit.facts["left_by_exact_derivatives"] = "one more Newton step on the exact likelihood would raise it by " + format_value(estimate.left);
   if (estimate.left > 0.5)
     fit.warnings.push_back("the exact derivatives of the likelihood say that it could still rise by " + format_value(estimate.left));
+  if (!estimate.rough.empty()) {
+    const auto [first_at, last_at] = std::minmax_element(estimate.rough.begin(), estimate.rough.end());
+    fit.warnings.push_back(
+        std::to_string(estimate.rough.size()) + " readings between t = " + format_value(*first_at) + " and " + format_value(*last_at) +
+        " s do not count: there a change of 0.05 sigma of a parameter throws the filter off, the model cannot be followed");
+  }
   if (estimate.outliers > 0)
     fit.warnings.push_back(std::to_string(estimate.outliers) +
                            " readings more than 5 sigma from their prediction were set aside as outliers");

@@ -6,27 +6,11 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
-#include "misfit/core/work_queue.h"
+#include "misfit/fit/filter_exact.h"
 #include "misfit/fit/filter_start.h"
 
 namespace misfit {
 namespace {
-
-constexpr double gate = 5.0;  // sigmas: beyond, a reading is set aside as an outlier (5.7e-7 of good ones)
-
-double log_prior_at(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta) {
-  const std::vector<int> free = model.free_parameters();
-  double sum = 0.0;
-  for (const auto& p : penalties) {
-    const auto c = theta.segment(p.first, p.omega.rows());
-    sum -= 0.5 * p.lambda * c.dot(p.omega * c);
-  }
-  for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    if (p.prior_sigma) sum -= 0.5 * std::pow((theta[static_cast<Eigen::Index>(c)] - p.prior_mean) / *p.prior_sigma, 2);
-  }
-  return sum;
-}
 
 class Estimation {
  public:
@@ -55,10 +39,7 @@ class Estimation {
     if (!start_run()) throw RunError(failure());
     if (!options_.noise) search_noise();
     iterate(25, 0.02);
-    if (!options_.use && gate_outliers()) {
-      linearise();
-      iterate(6, 0.02);
-    }
+    if (!options_.use) gate_outliers();
     if (options_.verify) polish();
     const bool runs = std::all_of(out_.traces.begin(), out_.traces.end(), [](const FilterTrace& trace) { return trace.finite; });
     if (!runs && !linearise()) throw RunError(failure());
@@ -98,7 +79,7 @@ class Estimation {
       const bool choosing = std::any_of(out_.penalties.begin(), out_.penalties.end(), [](const Penalty& p) { return p.chosen; });
       const double edf = out_.edf;
       physical_step();
-      noise_step(k < 3 ? 3 : 6);
+      noise_step(k < 3 ? 3 : kRefinements);
       const bool settled = !choosing || std::abs(out_.edf - edf) < 0.05;
       if (k > 0 && settled && std::abs(objective_ - before) < tolerance) {
         out_.converged = true;
@@ -135,23 +116,7 @@ class Estimation {
     return true;
   }
 
-  /// Objective at other values, exact (no derivatives); −infinity where the run fails.
-  double objective_at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* keep = nullptr) const {
-    FilterModel forced = out_.forced;
-    forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = noise.force_time;
-    FilterRunner runner(forced, false);
-    std::vector<double> all = values(theta);
-    all[static_cast<std::size_t>(forced.time_parameter)] = noise.force_time;
-    runner.set_parameters(all);
-    double sum = penalty(theta);
-    std::vector<FilterTrace> own(out_.data.size());
-    std::vector<FilterTrace>& traces = keep != nullptr ? *keep : own;
-    for (std::size_t e = 0; e < out_.data.size(); ++e) {
-      if (!runner.run(out_.data[e], noise, traces[e])) return -std::numeric_limits<double>::infinity();
-      sum += traces[e].loglik;
-    }
-    return sum;
-  }
+  double objective_at(const Eigen::VectorXd& theta, const FilterNoise& noise) const { return ExactObjective(out_, free_).at(theta, noise); }
 
   Linearised normal_equations() const {
     Linearised sums;
@@ -245,38 +210,77 @@ class Estimation {
     return best;
   }
 
-  bool gate_outliers() {
-    const auto ny = static_cast<std::size_t>(out_.model.outputs());
-    for (std::size_t e = 0; e < out_.data.size(); ++e) {
-      FilterData& data = out_.data[e];
-      const FilterTrace& trace = out_.traces[e];
-      for (std::size_t i = 0; i < trace.samples * ny; ++i) {
-        if (data.use[i] == Use::none || !(trace.S[i] > 0.0) || std::abs(trace.e[i]) <= gate * std::sqrt(trace.S[i])) continue;
-        data.use[i] = Use::none;
-        ++out_.outliers;
+  /// Sets outliers aside and estimates again, until none comes or goes: what was estimated with them in may have called good ones wild.
+  void gate_outliers() {
+    constexpr int rounds = 4;
+    std::vector<FilterData> all = out_.data;
+    std::vector<std::vector<std::size_t>> before(all.size()), now(all.size());
+    FilterRunner runner(out_.forced, false);
+    for (int round = 0; round < rounds; ++round) {
+      FilterTrace trace;
+      out_.outliers = 0;
+      runner.set_parameters(values(theta_));
+      for (std::size_t e = 0; e < all.size(); ++e) {
+        if (!runner.run_gated(all[e], out_.noise, trace, now[e])) return;
+        out_.outliers += static_cast<int>(now[e].size());
       }
+      if (now == before) return;
+      for (std::size_t e = 0; e < all.size(); ++e) {
+        out_.data[e].use = all[e].use;
+        for (std::size_t at : now[e]) out_.data[e].use[at] = Use::none;
+      }
+      before = now;
+      linearise();
+      iterate(15, 0.02);
     }
-    return out_.outliers > 0;
   }
 
-  /// Gradient of the exact objective over (θ, log noise) by central differences, and a scoring step by it.
+  /// Steps by the exact derivatives. Readings at which the filter's linearisation breaks still move it, but no longer count.
   void polish() {
-    for (int k = 0; k < 2; ++k) {
-      const Eigen::VectorXd gradient = exact_gradient();
-      const Eigen::Index n = theta_.size(), q = gradient.size() - n;
-      Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient.size());
-      step.head(n) = out_.covariance * gradient.head(n);
-      Eigen::MatrixXd information = out_.noise_fit.information;
-      for (Eigen::Index i = 0; i < q; ++i) {
-        constexpr double determined = 1.0;  // below, not even its logarithm is known to one unit: a shape of something that is not there
-        if (out_.noise_fit.at_bound[static_cast<std::size_t>(i)] || information(i, i) < determined) information(i, i) += 1e12;
+    constexpr int most = 6;
+    for (int k = 0; k < most; ++k) {
+      const ExactDerivatives exact = exact_derivatives(out_, theta_, options_.threads);
+      if (!options_.use && uncount(exact.rough)) {
+        linearise();
+        iterate(15, 0.02);
+        continue;
       }
-      step.tail(q) = information.ldlt().solve(gradient.tail(q));
-      out_.left = 0.5 * gradient.dot(step);
-      constexpr double enough = 0.02;
-      if (out_.left < enough) return;
-      if (!try_step(step)) return;
+      const Eigen::VectorXd step = newton_step(exact.gradient);
+      out_.left = 0.5 * exact.gradient.dot(step);
+      constexpr double enough = 0.02, nearly = 0.5;
+      const double before = objective_, promised = out_.left;
+      if (out_.left < enough || !try_step(step)) return;
+      // A short step that gains what was promised ends at the maximum; a longer one is looked at again.
+      if (promised < nearly) {
+        out_.left = std::abs(promised - (objective_ - before));
+        return;
+      }
     }
+  }
+
+  bool uncount(const std::vector<std::vector<std::size_t>>& rough) {
+    bool any = false;
+    for (std::size_t e = 0; e < rough.size(); ++e) {
+      for (std::size_t at : rough[e]) {
+        out_.data[e].use[at] = Use::update;
+        out_.rough.push_back(out_.data[e].signals->t[at / static_cast<std::size_t>(out_.model.outputs())]);
+        any = true;
+      }
+    }
+    return any;
+  }
+
+  Eigen::VectorXd newton_step(const Eigen::VectorXd& gradient) const {
+    const Eigen::Index n = theta_.size(), q = gradient.size() - n;
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient.size());
+    step.head(n) = out_.covariance * gradient.head(n);
+    Eigen::MatrixXd information = out_.noise_fit.information;
+    for (Eigen::Index i = 0; i < q; ++i) {
+      constexpr double determined = 1.0;  // below, not even its logarithm is known to one unit: a shape of something that is not there
+      if (out_.noise_fit.at_bound[static_cast<std::size_t>(i)] || information(i, i) < determined) information(i, i) += 1e12;
+    }
+    step.tail(q) = information.ldlt().solve(gradient.tail(q));
+    return step;
   }
 
   bool try_step(const Eigen::VectorXd& step) {
@@ -296,32 +300,6 @@ class Estimation {
     return false;
   }
 
-  Eigen::VectorXd exact_gradient() const {
-    const auto n = static_cast<std::size_t>(theta_.size());
-    const std::vector<double>& logs = out_.noise_fit.logs;
-    Eigen::VectorXd gradient(static_cast<Eigen::Index>(n + logs.size()));
-    run_jobs(n + logs.size(), options_.threads, [&](std::size_t i) {
-      const auto place = static_cast<Eigen::Index>(i);
-      double h = 1e-3, plus = 0.0, minus = 0.0;
-      if (i < n) {
-        h = 0.05 * std::sqrt(std::max(out_.covariance(place, place), 1e-300));
-        Eigen::VectorXd there = theta_;
-        there[place] += h;
-        plus = objective_at(there, out_.noise);
-        there[place] -= 2.0 * h;
-        minus = objective_at(there, out_.noise);
-      } else {
-        std::vector<double> there = logs;
-        there[i - n] += h;
-        plus = objective_at(theta_, unpack(there));
-        there[i - n] -= 2.0 * h;
-        minus = objective_at(theta_, unpack(there));
-      }
-      gradient[place] = std::isfinite(plus) && std::isfinite(minus) ? (plus - minus) / (2.0 * h) : 0.0;
-    });
-    return gradient;
-  }
-
   void finish() {
     for (std::size_t c = 0; c < free_.size(); ++c)
       out_.model.parameters[static_cast<std::size_t>(free_[c])].value = theta_[static_cast<Eigen::Index>(c)];
@@ -338,7 +316,11 @@ class Estimation {
       }
     }
     for (const auto& trace : out_.traces) out_.validation_loglik += trace.validation_loglik;
-    out_.message = out_.converged ? "the likelihood no longer rises" : "iteration limit: the likelihood may still rise";
+    constexpr double near = 0.5, far = 2.0;  // as much as a sigma, two sigmas of one parameter
+    if (options_.verify) out_.converged = out_.left < near || (out_.converged && out_.left < far);
+    out_.message = out_.converged    ? "the likelihood no longer rises"
+                   : out_.left > far ? "the exact derivatives of the likelihood say that it could still rise by " + format_value(out_.left)
+                                     : "iteration limit: the likelihood may still rise";
   }
 
   std::string failure() const {

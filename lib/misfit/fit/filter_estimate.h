@@ -37,6 +37,7 @@ struct FilterEstimate {
   bool converged = false;
   std::string message;
   int outliers = 0;
+  std::vector<double> rough;  ///< times [s] of readings that move the filter but do not count: its linearisation breaks there
   int linearisations = 0;
 };
 

@@ -53,8 +53,10 @@ class Scoring {
     Stack present = run_all(runs_, unpack(at));
     double best = cost(present, counts_);
     double damping = 1e-3;
+    bool fresh = false;  // derivatives are those at `at`
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
       derivatives(at, present);
+      fresh = true;
       bool moved = false;
       double expected = 0.0;
       for (int attempt = 0; attempt < 6 && !moved; ++attempt) {
@@ -64,6 +66,7 @@ class Scoring {
         const double value = cost(there, counts_);
         if (value < best) {
           moved = true;
+          fresh = false;
           damping = std::max(damping * 0.2, 1e-6);
           at = next;
           present = std::move(there);
@@ -77,7 +80,7 @@ class Scoring {
         break;
       }
     }
-    derivatives(at, present);
+    if (!fresh && max_iterations > kRefinements) derivatives(at, present);
     out.logs = at;
     out.noise = unpack(at);
     out.minus_loglik = best;

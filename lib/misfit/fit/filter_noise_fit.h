@@ -11,6 +11,8 @@ struct LinearisedRuns {
   const std::vector<FilterTrace>* traces = nullptr;
 };
 
+inline constexpr int kRefinements = 2;  ///< iterations up to which `information` may be left from the step before
+
 struct NoiseFit {
   FilterNoise noise;
   double minus_loglik = 0.0;

@@ -62,6 +62,10 @@ struct FilterJacobian {
   std::vector<std::size_t> index;  ///< sample · ny + channel of each row
 };
 
+inline constexpr double kOutlierGate = 5.0;  ///< sigmas: beyond, a reading is set aside as an outlier (5.7e-7 of good ones)
+
+struct PassWishes;  // filter_pass.h
+
 /// Runs the filter. One object per thread and experiment set; keeps pointers to model and data.
 class FilterRunner {
  public:
@@ -71,10 +75,13 @@ class FilterRunner {
   void set_parameters(const std::vector<double>& values);  ///< all of FilterModel::model, force_time included
   /// Fills `trace`; `jacobian` may be null. Returns trace.finite.
   bool run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, FilterJacobian* jacobian = nullptr, bool keep_P = false);
+  /// Passes over readings more than kOutlierGate sigmas from their prediction as it comes to them, so that a wild one does not spoil the
+  /// predictions by which its neighbours are judged; while nothing is taken in, the prediction's sigma grows and with it the gate.
+  /// `set_aside`: sample · ny + channel of each.
+  bool run_gated(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, std::vector<std::size_t>& set_aside);
 
  private:
-  template <int M, int NY>
-  bool run_as(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, FilterJacobian* jacobian, bool keep_P);
+  bool run_with(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const PassWishes& wishes);
 
   const FilterModel* model_;
   Model own_;

@@ -1,0 +1,122 @@
+#include "misfit/fit/filter_exact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "misfit/core/work_queue.h"
+
+namespace misfit {
+namespace {
+
+/// What each counted reading adds to the log-likelihood, constants left out.
+double log_density(const FilterTrace& trace, std::size_t i) {
+  return trace.S[i] > 0.0 ? -0.5 * (std::log(trace.S[i]) + trace.e[i] * trace.e[i] / trace.S[i]) : 0.0;
+}
+
+/// Adds to `rough` the readings whose log density bends between the three runs.
+void find_rough(const FilterData& data, const FilterTrace& here, const FilterTrace& plus, const FilterTrace& minus,
+                std::vector<std::size_t>& rough) {
+  constexpr double bend = 0.05;
+  for (std::size_t i = 0; i < data.use.size(); ++i) {
+    if (data.use[i] != Use::counted) continue;
+    if (!(std::abs(log_density(plus, i) + log_density(minus, i) - 2.0 * log_density(here, i)) <= bend)) rough.push_back(i);
+  }
+}
+
+struct OneDerivative {
+  double slope = 0.0;
+  std::vector<std::vector<std::size_t>> rough;
+};
+
+class Differences {
+ public:
+  Differences(const FilterEstimate& estimate, const Eigen::VectorXd& theta)
+      : estimate_(estimate), theta_(theta), objective_(estimate, estimate.model.free_parameters()) {}
+
+  [[nodiscard]] OneDerivative by_parameter(std::size_t i) const {
+    constexpr double share = 0.05;
+    const auto place = static_cast<Eigen::Index>(i);
+    const double h = share * std::sqrt(std::max(estimate_.covariance(place, place), 1e-300));
+    std::vector<FilterTrace> above(estimate_.data.size()), below = above;
+    Eigen::VectorXd there = theta_;
+    there[place] += h;
+    const double plus = objective_.at(there, estimate_.noise, &above);
+    there[place] -= 2.0 * h;
+    const double minus = objective_.at(there, estimate_.noise, &below);
+    OneDerivative out{0.0, std::vector<std::vector<std::size_t>>(above.size())};
+    if (!std::isfinite(plus) || !std::isfinite(minus)) return out;
+    out.slope = (plus - minus) / (2.0 * h);
+    for (std::size_t e = 0; e < above.size(); ++e) find_rough(estimate_.data[e], estimate_.traces[e], above[e], below[e], out.rough[e]);
+    return out;
+  }
+
+  [[nodiscard]] OneDerivative by_noise(std::size_t i) const {
+    constexpr double h = 1e-3;
+    std::vector<double> there = estimate_.noise_fit.logs;
+    there[i] += h;
+    const double plus = objective_.at(theta_, unpack(there));
+    there[i] -= 2.0 * h;
+    const double minus = objective_.at(theta_, unpack(there));
+    return {std::isfinite(plus) && std::isfinite(minus) ? (plus - minus) / (2.0 * h) : 0.0, {}};
+  }
+
+ private:
+  const FilterEstimate& estimate_;
+  const Eigen::VectorXd& theta_;
+  ExactObjective objective_;
+};
+
+}  // namespace
+
+double log_prior_at(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta) {
+  const std::vector<int> free = model.free_parameters();
+  double sum = 0.0;
+  for (const auto& p : penalties) {
+    const auto c = theta.segment(p.first, p.omega.rows());
+    sum -= 0.5 * p.lambda * c.dot(p.omega * c);
+  }
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    if (p.prior_sigma) sum -= 0.5 * std::pow((theta[static_cast<Eigen::Index>(c)] - p.prior_mean) / *p.prior_sigma, 2);
+  }
+  return sum;
+}
+
+double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* traces) const {
+  FilterModel forced = estimate_->forced;
+  forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = noise.force_time;
+  FilterRunner runner(forced, false);
+  std::vector<double> all = forced.model.values();
+  for (std::size_t c = 0; c < free_.size(); ++c) all[static_cast<std::size_t>(free_[c])] = theta[static_cast<Eigen::Index>(c)];
+  runner.set_parameters(all);
+  double sum = log_prior_at(estimate_->model, estimate_->penalties, theta);
+  std::vector<FilterTrace> own(traces == nullptr ? estimate_->data.size() : 0);
+  std::vector<FilterTrace>& runs = traces != nullptr ? *traces : own;
+  for (std::size_t e = 0; e < estimate_->data.size(); ++e) {
+    if (!runner.run(estimate_->data[e], noise, runs[e])) return -std::numeric_limits<double>::infinity();
+    sum += runs[e].loglik;
+  }
+  return sum;
+}
+
+ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads) {
+  const auto n = static_cast<std::size_t>(theta.size());
+  const Differences differences(estimate, theta);
+  std::vector<OneDerivative> parts(n + estimate.noise_fit.logs.size());
+  run_jobs(parts.size(), threads, [&](std::size_t i) { parts[i] = i < n ? differences.by_parameter(i) : differences.by_noise(i - n); });
+  ExactDerivatives out{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parts.size())),
+                       std::vector<std::vector<std::size_t>>(estimate.data.size())};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    out.gradient[static_cast<Eigen::Index>(i)] = parts[i].slope;
+    for (std::size_t e = 0; e < parts[i].rough.size(); ++e)
+      out.rough[e].insert(out.rough[e].end(), parts[i].rough[e].begin(), parts[i].rough[e].end());
+  }
+  for (auto& rough : out.rough) {
+    std::sort(rough.begin(), rough.end());
+    rough.erase(std::unique(rough.begin(), rough.end()), rough.end());
+  }
+  return out;
+}
+
+}  // namespace misfit
