@@ -45,7 +45,8 @@ RowMatrix visited_by_filter(const FilterEstimate& estimate) {
 }
 
 /// Standard deviations of the logarithms of the noise parameters; 0 where a parameter sits at its bound or is not determined.
-std::vector<double> noise_sigmas(const NoiseFit& fit) {
+std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
+  const NoiseFit& fit = estimate.noise_fit;
   constexpr double determined = 1.0;
   Eigen::MatrixXd information = fit.information;
   std::vector<bool> known;
@@ -53,7 +54,10 @@ std::vector<double> noise_sigmas(const NoiseFit& fit) {
     known.push_back(!fit.at_bound[static_cast<std::size_t>(i)] && information(i, i) > determined);
     if (!known.back()) information(i, i) += 1e12;
   }
-  const Eigen::MatrixXd covariance = information.inverse();
+  const Eigen::Index q = information.rows();
+  const Eigen::MatrixXd covariance = estimate.joint_covariance.size() > 0
+                                         ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q))
+                                         : Eigen::MatrixXd(information.inverse());
   std::vector<double> out;
   for (Eigen::Index i = 0; i < covariance.rows(); ++i)
     out.push_back(known[static_cast<std::size_t>(i)] ? std::sqrt(std::max(covariance(i, i), 0.0)) : 0.0);
@@ -63,7 +67,7 @@ std::vector<double> noise_sigmas(const NoiseFit& fit) {
 void add_noise(const FilterEstimate& estimate, Fit& fit) {
   const SystemSpec& spec = estimate.model.system->spec();
   const NoiseVector vector = pack(estimate.noise, spec, estimate.around);
-  const std::vector<double> sigmas = noise_sigmas(estimate.noise_fit);
+  const std::vector<double> sigmas = noise_sigmas(estimate);
   const auto as_estimate = [&](std::size_t i, const std::string& unit) {
     const double value = std::exp(vector.value[i]);
     return Estimate{value, value * sigmas[i], unit};

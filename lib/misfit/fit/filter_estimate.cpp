@@ -245,7 +245,8 @@ class Estimation {
         iterate(15, 0.02);
         continue;
       }
-      const Eigen::VectorXd step = newton_step(exact.gradient);
+      if (!invert_scaled(joint_precision(out_, exact), out_.joint_covariance)) return;
+      const Eigen::VectorXd step = out_.joint_covariance * exact.gradient;
       out_.left = 0.5 * exact.gradient.dot(step);
       constexpr double enough = 0.02, nearly = 0.5;
       const double before = objective_, promised = out_.left;
@@ -270,24 +271,13 @@ class Estimation {
     return any;
   }
 
-  Eigen::VectorXd newton_step(const Eigen::VectorXd& gradient) const {
-    const Eigen::Index n = theta_.size(), q = gradient.size() - n;
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient.size());
-    step.head(n) = out_.covariance * gradient.head(n);
-    Eigen::MatrixXd information = out_.noise_fit.information;
-    for (Eigen::Index i = 0; i < q; ++i) {
-      constexpr double determined = 1.0;  // below, not even its logarithm is known to one unit: a shape of something that is not there
-      if (out_.noise_fit.at_bound[static_cast<std::size_t>(i)] || information(i, i) < determined) information(i, i) += 1e12;
-    }
-    step.tail(q) = information.ldlt().solve(gradient.tail(q));
-    return step;
-  }
-
   bool try_step(const Eigen::VectorXd& step) {
     const Eigen::Index n = theta_.size();
     for (double share = 1.0; share > 0.1; share *= 0.5) {
+      const NoiseVector bounds = pack(out_.noise, out_.model.system->spec(), out_.around);
       std::vector<double> logs = out_.noise_fit.logs;
-      for (std::size_t i = 0; i < logs.size(); ++i) logs[i] += share * step[n + static_cast<Eigen::Index>(i)];
+      for (std::size_t i = 0; i < logs.size(); ++i)
+        logs[i] = std::clamp(logs[i] + share * step[n + static_cast<Eigen::Index>(i)], bounds.lower[i], bounds.upper[i]);
       const FilterNoise noise = unpack(logs);
       const Eigen::VectorXd there = inside_bounds(theta_ + share * step.head(n));
       if (!(objective_at(there, noise) > objective_)) continue;
@@ -314,6 +304,7 @@ class Estimation {
         out_.covariance = smoothed.covariance;
         out_.edf = smoothed.edf;
       }
+      if (out_.joint_covariance.size() > 0) out_.covariance = out_.joint_covariance.topLeftCorner(theta_.size(), theta_.size());
     }
     for (const auto& trace : out_.traces) out_.validation_loglik += trace.validation_loglik;
     constexpr double near = 0.5, far = 2.0;  // as much as a sigma, two sigmas of one parameter

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "misfit/core/work_queue.h"
 
@@ -24,48 +25,81 @@ void find_rough(const FilterData& data, const FilterTrace& here, const FilterTra
   }
 }
 
+/// Whitened derivatives of innovations (first half) and of variances (second half) of the counted readings, all experiments in order.
+void whitened(const std::vector<FilterData>& data, const std::vector<FilterTrace>& here, const std::vector<FilterTrace>& plus,
+              const std::vector<FilterTrace>& minus, double per_step, Eigen::Ref<Eigen::VectorXd> column) {
+  const Eigen::Index rows = column.size() / 2;
+  Eigen::Index row = 0;
+  for (std::size_t e = 0; e < data.size(); ++e) {
+    for (std::size_t i = 0; i < data[e].use.size(); ++i) {
+      if (data[e].use[i] != Use::counted) continue;
+      const double S = here[e].S[i];
+      column[row] = (plus[e].e[i] - minus[e].e[i]) * per_step / std::sqrt(S);
+      column[rows + row++] = (plus[e].S[i] - minus[e].S[i]) * per_step / (std::numbers::sqrt2 * S);
+    }
+  }
+}
+
 struct OneDerivative {
   double slope = 0.0;
   std::vector<std::vector<std::size_t>> rough;
 };
 
+/// Central differences; each fills its column of the whitened derivatives.
 class Differences {
  public:
   Differences(const FilterEstimate& estimate, const Eigen::VectorXd& theta)
       : estimate_(estimate), theta_(theta), objective_(estimate, estimate.model.free_parameters()) {}
 
-  [[nodiscard]] OneDerivative by_parameter(std::size_t i) const {
+  OneDerivative by_parameter(std::size_t i, Eigen::Ref<Eigen::VectorXd> column) const {
     constexpr double share = 0.05;
     const auto place = static_cast<Eigen::Index>(i);
     const double h = share * std::sqrt(std::max(estimate_.covariance(place, place), 1e-300));
-    std::vector<FilterTrace> above(estimate_.data.size()), below = above;
     Eigen::VectorXd there = theta_;
     there[place] += h;
+    Runs above(estimate_.data.size()), below = above;
     const double plus = objective_.at(there, estimate_.noise, &above);
     there[place] -= 2.0 * h;
     const double minus = objective_.at(there, estimate_.noise, &below);
-    OneDerivative out{0.0, std::vector<std::vector<std::size_t>>(above.size())};
+    OneDerivative out = between(plus, minus, h, above, below, column);
+    out.rough.resize(above.size());
     if (!std::isfinite(plus) || !std::isfinite(minus)) return out;
-    out.slope = (plus - minus) / (2.0 * h);
     for (std::size_t e = 0; e < above.size(); ++e) find_rough(estimate_.data[e], estimate_.traces[e], above[e], below[e], out.rough[e]);
     return out;
   }
 
-  [[nodiscard]] OneDerivative by_noise(std::size_t i) const {
+  OneDerivative by_noise(std::size_t i, Eigen::Ref<Eigen::VectorXd> column) const {
     constexpr double h = 1e-3;
     std::vector<double> there = estimate_.noise_fit.logs;
+    Runs above(estimate_.data.size()), below = above;
     there[i] += h;
-    const double plus = objective_.at(theta_, unpack(there));
+    const double plus = objective_.at(theta_, unpack(there), &above);
     there[i] -= 2.0 * h;
-    const double minus = objective_.at(theta_, unpack(there));
-    return {std::isfinite(plus) && std::isfinite(minus) ? (plus - minus) / (2.0 * h) : 0.0, {}};
+    const double minus = objective_.at(theta_, unpack(there), &below);
+    return between(plus, minus, h, above, below, column);
   }
 
  private:
+  using Runs = std::vector<FilterTrace>;
+
+  OneDerivative between(double plus, double minus, double h, const Runs& above, const Runs& below,
+                        Eigen::Ref<Eigen::VectorXd> column) const {
+    column.setZero();
+    if (!std::isfinite(plus) || !std::isfinite(minus)) return {};
+    whitened(estimate_.data, estimate_.traces, above, below, 1.0 / (2.0 * h), column);
+    return {(plus - minus) / (2.0 * h), {}};
+  }
+
   const FilterEstimate& estimate_;
   const Eigen::VectorXd& theta_;
   ExactObjective objective_;
 };
+
+Eigen::Index counted_readings(const FilterEstimate& estimate) {
+  std::ptrdiff_t sum = 0;
+  for (const auto& data : estimate.data) sum += std::count(data.use.begin(), data.use.end(), Use::counted);
+  return sum;
+}
 
 }  // namespace
 
@@ -104,9 +138,15 @@ ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::
   const auto n = static_cast<std::size_t>(theta.size());
   const Differences differences(estimate, theta);
   std::vector<OneDerivative> parts(n + estimate.noise_fit.logs.size());
-  run_jobs(parts.size(), threads, [&](std::size_t i) { parts[i] = i < n ? differences.by_parameter(i) : differences.by_noise(i - n); });
-  ExactDerivatives out{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parts.size())),
+  Eigen::MatrixXd columns(2 * counted_readings(estimate), static_cast<Eigen::Index>(parts.size()));
+  run_jobs(parts.size(), threads, [&](std::size_t i) {
+    auto column = columns.col(static_cast<Eigen::Index>(i));
+    parts[i] = i < n ? differences.by_parameter(i, column) : differences.by_noise(i - n, column);
+  });
+  ExactDerivatives out{Eigen::VectorXd::Zero(columns.cols()), Eigen::MatrixXd::Zero(columns.cols(), columns.cols()),
                        std::vector<std::vector<std::size_t>>(estimate.data.size())};
+  out.information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     out.gradient[static_cast<Eigen::Index>(i)] = parts[i].slope;
     for (std::size_t e = 0; e < parts[i].rough.size(); ++e)
@@ -115,6 +155,21 @@ ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::
   for (auto& rough : out.rough) {
     std::sort(rough.begin(), rough.end());
     rough.erase(std::unique(rough.begin(), rough.end()), rough.end());
+  }
+  return out;
+}
+
+Eigen::MatrixXd joint_precision(const FilterEstimate& estimate, const ExactDerivatives& exact) {
+  const auto n = static_cast<Eigen::Index>(estimate.model.free_parameters().size());
+  Eigen::MatrixXd out = exact.information;
+  Linearised priors;
+  priors.N = Eigen::MatrixXd::Zero(n, n);
+  priors.theta = Eigen::VectorXd::Zero(n);
+  set_priors(estimate.model, priors);
+  out.topLeftCorner(n, n) += precision_of(priors, estimate.penalties, 1.0);
+  for (Eigen::Index i = n; i < out.rows(); ++i) {
+    constexpr double determined = 1.0, pin = 1e12;
+    if (estimate.noise_fit.at_bound[static_cast<std::size_t>(i - n)] || out(i, i) < determined) out(i, i) += pin;
   }
   return out;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+// References
+//   [DK] J. Durbin, S. J. Koopman, Time Series Analysis by State Space Methods (2012), 7.3: information of the innovations form.
+
 #include "misfit/fit/filter_estimate.h"
 
 namespace misfit {
@@ -22,12 +25,20 @@ class ExactObjective {
 /// side.
 struct ExactDerivatives {
   Eigen::VectorXd gradient;  ///< by the free parameters, then by the logarithms of the noise; 0 where a run beside fails
+  /// Fisher information of the counted readings over the same unknowns, nothing held: with innovations e and their variances S,
+  /// Σ ∂e ∂e/S + ½ Σ ∂S ∂S/S² [DK]. Unlike that of the Gauss–Newton steps it knows that gains and variances move with the parameters, and
+  /// that curves and noise are estimated together.
+  Eigen::MatrixXd information;
   /// Per experiment, readings (sample · ny + channel, sorted) whose log density bends by more than 0.05 under such a small change of some
   /// parameter, 20 times what all readings together should: there the filter's linearisation breaks, its run is as good as random, and the
   /// likelihood has kinks that no maximum can be found on.
   std::vector<std::vector<std::size_t>> rough;
 };
 [[nodiscard]] ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads);
+
+/// The posterior precision over (parameters, log noise): information, priors and roughness. A noise parameter that is at its bound, or of
+/// which the data do not even know the logarithm to one unit (the shape of something that is not there), is pinned.
+[[nodiscard]] Eigen::MatrixXd joint_precision(const FilterEstimate& estimate, const ExactDerivatives& exact);
 
 /// log prior of the free parameters at `theta`, roughness included (constants left out).
 [[nodiscard]] double log_prior_at(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta);

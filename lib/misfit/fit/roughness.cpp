@@ -7,22 +7,6 @@
 namespace misfit {
 namespace {
 
-Eigen::MatrixXd precision(const Linearised& problem, const std::vector<Penalty>& penalties, double sigma2) {
-  Eigen::MatrixXd H = problem.N / sigma2;
-  H.diagonal() += problem.prior_precision;
-  for (const auto& p : penalties) H.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
-  return H;
-}
-
-/// Solves with the diagonal scaled to one: columns of different units differ by many orders of magnitude.
-bool invert(const Eigen::MatrixXd& H, Eigen::MatrixXd& inverse) {
-  const Eigen::VectorXd scale = H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * H * scale.asDiagonal());
-  if (factor.info() != Eigen::Success) return false;
-  inverse = scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(H.rows(), H.cols())) * scale.asDiagonal();
-  return inverse.allFinite();
-}
-
 /// Where a curve is a straight line to all that the data can tell: a higher weight would only cost digits (λ Ω c of a line is rounding).
 double stiffest(const Linearised& problem, const Penalty& p, double sigma2) {
   constexpr double straight = 1e9;
@@ -31,6 +15,21 @@ double stiffest(const Linearised& problem, const Penalty& p, double sigma2) {
 }
 
 }  // namespace
+
+Eigen::MatrixXd precision_of(const Linearised& problem, const std::vector<Penalty>& penalties, double sigma2) {
+  Eigen::MatrixXd H = problem.N / sigma2;
+  H.diagonal() += problem.prior_precision;
+  for (const auto& p : penalties) H.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
+  return H;
+}
+
+bool invert_scaled(const Eigen::MatrixXd& H, Eigen::MatrixXd& inverse) {
+  const Eigen::VectorXd scale = H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * H * scale.asDiagonal());
+  if (factor.info() != Eigen::Success) return false;
+  inverse = scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(H.rows(), H.cols())) * scale.asDiagonal();
+  return inverse.allFinite();
+}
 
 std::vector<Penalty> curve_penalties(const Model& model) {
   std::vector<Penalty> penalties;
@@ -58,8 +57,8 @@ Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, doub
   double sigma2 = sigma2_given > 0.0 ? sigma2_given : std::max(problem.rss / std::max(problem.count, 1.0), 1e-300);
   constexpr int most = 60;
   for (int round = 0; round < most; ++round) {
-    const Eigen::MatrixXd H = precision(problem, penalties, sigma2);
-    if (!invert(H, out.covariance)) return out;
+    const Eigen::MatrixXd H = precision_of(problem, penalties, sigma2);
+    if (!invert_scaled(H, out.covariance)) return out;
     Eigen::VectorXd b = (problem.N * problem.theta - problem.g) / sigma2;
     b += problem.prior_precision.cwiseProduct(problem.prior_mean);
     out.theta = out.covariance * b;

@@ -50,6 +50,13 @@ struct Smoothed {
 /// touches.
 void set_priors(const Model& model, Linearised& sums);
 
+/// N/σ² + Σ λ Ω + priors; its inverse is the covariance.
+[[nodiscard]] Eigen::MatrixXd precision_of(const Linearised& problem, const std::vector<Penalty>& penalties, double sigma2);
+
+/// Inverse of a symmetric positive definite matrix, solved with its diagonal scaled to one: columns of different units differ by many
+/// orders of magnitude. False if it is not positive definite.
+[[nodiscard]] bool invert_scaled(const Eigen::MatrixXd& H, Eigen::MatrixXd& inverse);
+
 /// Maximises the marginal likelihood over the λ marked `chosen` and σ² for the linearised problem [FS], updating `penalties`. With
 /// `sigma2_given` > 0 the variance is kept.
 [[nodiscard]] Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, double sigma2_given = 0.0);
