@@ -38,7 +38,7 @@ class Estimation {
     set_time();
     if (!start_run()) throw RunError(failure());
     if (!options_.noise) search_noise();
-    iterate(25, 0.02);
+    iterate(25, options_.verify ? 0.2 : 0.02);  // the exact derivatives step over both blocks at once
     if (!options_.use) gate_outliers();
     if (options_.verify) polish();
     const bool runs = std::all_of(out_.traces.begin(), out_.traces.end(), [](const FilterTrace& trace) { return trace.finite; });
@@ -231,7 +231,7 @@ class Estimation {
       }
       before = now;
       linearise();
-      iterate(15, 0.02);
+      iterate(15, options_.verify ? 0.2 : 0.02);
     }
   }
 
@@ -242,7 +242,7 @@ class Estimation {
       const ExactDerivatives exact = exact_derivatives(out_, theta_, options_.threads);
       if (!options_.use && uncount(exact.rough)) {
         linearise();
-        iterate(15, 0.02);
+        iterate(15, options_.verify ? 0.2 : 0.02);
         continue;
       }
       if (!invert_scaled(joint_precision(out_, exact), out_.joint_covariance)) return;
