@@ -93,34 +93,40 @@ void add_noise(const FilterEstimate& estimate, Fit& fit) {
   fit.driven = sigmas[0] > 0.0;
 }
 
+/// Sum of squares of one-step prediction errors, and how many.
+struct Squares {
+  double sum = 0.0, count = 0.0;
+  void add(double error) {
+    sum += error * error;
+    count += 1.0;
+  }
+  [[nodiscard]] double root() const { return std::sqrt(sum / count); }
+};
+
+/// One channel of one experiment; adds its errors to `fitted` and `held_out`.
+ChannelPrediction predict_channel(const FilterData& data, const FilterTrace& trace, const OutputSpec& output, std::size_t o,
+                                  Squares& fitted, Squares& held_out) {
+  const Signals& signals = *data.signals;
+  ChannelPrediction p{signals.name, output.name, output.unit, signals.t, signals.measured[o].values, {}, {}, {}};
+  for (std::size_t k = 0; k < signals.samples(); ++k) {
+    const std::size_t at = k * static_cast<std::size_t>(trace.ny) + o;
+    p.predicted.push_back(trace.y[at]);
+    p.sigma.push_back(std::sqrt(trace.y_variance[at]));
+    p.held_out.push_back(signals.held_out(k));
+    if (data.use[at] == Use::counted) fitted.add(p.measured[k] - trace.y[at]);
+    if (data.use[at] == Use::validation) held_out.add(p.measured[k] - trace.y[at]);
+  }
+  return p;
+}
+
 void add_predictions(const FilterEstimate& estimate, Fit& fit) {
   const auto& outputs = estimate.model.system->spec().outputs;
-  const std::size_t ny = outputs.size();
-  for (std::size_t o = 0; o < ny; ++o) {
-    double squares = 0.0, count = 0.0, held_squares = 0.0, held_count = 0.0;
-    for (std::size_t e = 0; e < estimate.data.size(); ++e) {
-      const FilterData& data = estimate.data[e];
-      const FilterTrace& trace = estimate.traces[e];
-      const Signals& signals = *data.signals;
-      ChannelPrediction p{signals.name, outputs[o].name, outputs[o].unit, signals.t, signals.measured[o].values, {}, {}, {}};
-      for (std::size_t k = 0; k < signals.samples(); ++k) {
-        const std::size_t at = k * ny + o;
-        p.predicted.push_back(trace.y[at]);
-        p.sigma.push_back(std::sqrt(trace.y_variance[at]));
-        p.held_out.push_back(signals.held_out(k));
-        const double error = p.measured[k] - trace.y[at];
-        if (data.use[at] == Use::counted) {
-          squares += error * error;
-          count += 1.0;
-        } else if (data.use[at] == Use::validation) {
-          held_squares += error * error;
-          held_count += 1.0;
-        }
-      }
-      fit.predictions.push_back(std::move(p));
-    }
-    if (count > 0.0) fit.rms[outputs[o].name] = {std::sqrt(squares / count), 0.0, outputs[o].unit};
-    if (held_count > 0.0) fit.validation_rms[outputs[o].name] = {std::sqrt(held_squares / held_count), 0.0, outputs[o].unit};
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    Squares fitted, held_out;
+    for (std::size_t e = 0; e < estimate.data.size(); ++e)
+      fit.predictions.push_back(predict_channel(estimate.data[e], estimate.traces[e], outputs[o], o, fitted, held_out));
+    if (fitted.count > 0.0) fit.rms[outputs[o].name] = {fitted.root(), 0.0, outputs[o].unit};
+    if (held_out.count > 0.0) fit.validation_rms[outputs[o].name] = {held_out.root(), 0.0, outputs[o].unit};
   }
 }
 
@@ -158,11 +164,12 @@ void describe_gaps(const FilterEstimate& estimate, Fit& fit) {
     fit.facts["gaps: " + signals.name] =
         std::to_string(missing) + " samples (" + format_value(share) + " %) are missing; the filter predicts across them";
     constexpr double by_chance = 0.02;
-    if (static_cast<double>(extreme) > 5.0 * by_chance * static_cast<double>(missing) && extreme >= 5)
+    if (static_cast<double>(extreme) > 5.0 * by_chance * static_cast<double>(missing) && extreme >= 5) {
       fit.warnings.push_back("experiment '" + signals.name + "': the gaps are not random: in " + std::to_string(extreme) + " of " +
                              std::to_string(missing) +
                              " missing samples the motion is predicted beyond 99 % of what was measured (it left the picture): extreme "
                              "motion is under-represented");
+    }
   }
 }
 
@@ -200,47 +207,6 @@ Fit filter_fit(const FilterEstimate& estimate) {
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
   fit.linearisations = estimate.linearisations;
   return fit;
-}
-
-std::map<std::string, std::vector<double>> k_step_errors(const FilterEstimate& estimate, bool validation) {
-  constexpr std::size_t stride = 3;  // starts; neighbours say the same
-  const auto& outputs = estimate.model.system->spec().outputs;
-  const std::size_t ny = outputs.size();
-  constexpr std::size_t lengths = std::size(kLadderSteps);
-  std::vector<std::vector<double>> squares(ny, std::vector<double>(lengths, 0.0)), counts = squares;
-  const Model fixed = all_fixed(estimate.forced.model);
-  Stepper stepper(fixed);
-  std::array<double, kMaxStates> x{};
-  std::array<double, kMaxOutputs + 1> y{};
-  for (std::size_t e = 0; e < estimate.data.size(); ++e) {
-    const FilterData& data = estimate.data[e];
-    const FilterTrace& trace = estimate.traces[e];
-    const auto n = static_cast<std::size_t>(trace.n);
-    const Signals& signals = *data.signals;
-    stepper.prepare(data.start.data(), data.inputs.at(data.first), signals.t[data.first]);
-    for (std::size_t k = data.first; k + 1 < signals.samples(); k += stride) {
-      for (std::size_t i = 0; i < n; ++i) x[i] = trace.predicted[k * n + i] + trace.moved[k * n + i];
-      std::size_t next = 0;
-      for (std::size_t j = 1; next < lengths && k + j < signals.samples(); ++j) {
-        if (!stepper.step(x.data(), {signals.t[k + j - 1], signals.t[k + j], data.inputs.at(k + j - 1), data.inputs.at(k + j)})) break;
-        if (static_cast<int>(j) != kLadderSteps[next]) continue;
-        stepper.evaluator().predict(x.data(), data.inputs.at(k + j), signals.t[k + j], y.data());
-        for (std::size_t o = 0; o < ny; ++o) {
-          if (data.use[(k + j) * ny + o] != (validation ? Use::validation : Use::counted)) continue;
-          const double error = signals.measured[o].values[k + j] - y[o];
-          squares[o][next] += error * error;
-          counts[o][next] += 1.0;
-        }
-        ++next;
-      }
-    }
-  }
-  std::map<std::string, std::vector<double>> out;
-  for (std::size_t o = 0; o < ny; ++o) {
-    for (std::size_t l = 0; l < lengths; ++l)
-      out[outputs[o].name].push_back(counts[o][l] > 0.0 ? std::sqrt(squares[o][l] / counts[o][l]) : std::nan(""));
-  }
-  return out;
 }
 
 FilterError filter_error(const FittedModel& start, const std::vector<Signals>& experiments, const FilterOptions& options) {

@@ -51,7 +51,7 @@ class Differences {
   Differences(const FilterEstimate& estimate, const Eigen::VectorXd& theta)
       : estimate_(estimate), theta_(theta), objective_(estimate, estimate.model.free_parameters()) {}
 
-  OneDerivative by_parameter(std::size_t i, Eigen::Ref<Eigen::VectorXd> column) const {
+  OneDerivative by_parameter(std::size_t i, const Eigen::Ref<Eigen::VectorXd>& column) const {
     constexpr double share = 0.05;
     const auto place = static_cast<Eigen::Index>(i);
     const double h = share * std::sqrt(std::max(estimate_.covariance(place, place), 1e-300));
@@ -68,7 +68,7 @@ class Differences {
     return out;
   }
 
-  OneDerivative by_noise(std::size_t i, Eigen::Ref<Eigen::VectorXd> column) const {
+  OneDerivative by_noise(std::size_t i, const Eigen::Ref<Eigen::VectorXd>& column) const {
     constexpr double h = 1e-3;
     std::vector<double> there = estimate_.noise_fit.logs;
     Runs above(estimate_.data.size()), below = above;

@@ -59,6 +59,7 @@ class FilterPass {
 
  private:
   using StateVector = typename Kalman<M, NY>::StateVector;
+  static constexpr Eigen::Index twice(int count) { return 2 * static_cast<Eigen::Index>(count); }
   static constexpr double kLogTwoPi = 1.8378770664093453;
 
   void begin_derivatives() {
@@ -68,7 +69,7 @@ class FilterPass {
     wishes_.jacobian->r.resize(rows);
     wishes_.jacobian->index.clear();
     s_model_ = RowMatrix::Zero(n_, columns);
-    s_jitter_ = RowMatrix::Zero(2 * ny_, columns);
+    s_jitter_ = RowMatrix::Zero(twice(ny_), columns);
     s_work_.resize(n_, columns);
     s_row_.resize(columns);
   }
@@ -86,9 +87,9 @@ class FilterPass {
     const auto NY_ = static_cast<std::size_t>(ny_);
     std::copy_n(x_.begin(), n_, trace_.predicted.begin() + static_cast<std::ptrdiff_t>(k * N_));
     if (wishes_.keep_P) {
-      Eigen::Map<RowMatrix> joint(trace_.P.data() + k * N_ * (N_ + 2 * NY_), n_, n_ + 2 * ny_);
+      Eigen::Map<RowMatrix> joint(trace_.P.data() + k * N_ * (N_ + 2 * NY_), n_, n_ + twice(ny_));
       joint.leftCols(n_) = kalman_.P;
-      joint.rightCols(2 * ny_) = kalman_.C;
+      joint.rightCols(twice(ny_)) = kalman_.C;
     }
     slots_.clear();
     evaluator_.linearise_outputs(x_.data(), data_.inputs.at(k), signals_.t[k], slots_, y_.data(), O_.data());
@@ -104,7 +105,7 @@ class FilterPass {
         y_[channel] += motion_[channel] * y_[NY_];
       }
       Eigen::Map<Eigen::VectorXd>(trace_.H.data() + at * N_, n_) = a_;
-      trace_.y[at] = y_[channel] + kalman_.j[2 * o];
+      trace_.y[at] = y_[channel] + kalman_.j[twice(o)];
       trace_.y_variance[at] = kalman_.variance(a_, o, noise_.channels[channel].white);
     }
   }
@@ -118,7 +119,7 @@ class FilterPass {
     a_ = Eigen::Map<const Eigen::VectorXd>(trace_.H.data() + at * N_, n_);
     const double S = kalman_.variance(a_, o, noise_.channels[channel].white);
     const double z = signals_.measured[channel].values[k] - y_[channel];
-    const double innovation = z - a_.dot(kalman_.x) - kalman_.j[2 * o];
+    const double innovation = z - a_.dot(kalman_.x) - kalman_.j[twice(o)];
     if (!(S > 0.0) || !std::isfinite(innovation)) return false;
     if (wishes_.set_aside != nullptr && innovation * innovation > kOutlierGate * kOutlierGate * S) {
       wishes_.set_aside->push_back(at);
@@ -130,7 +131,7 @@ class FilterPass {
     count(use, -0.5 * (kLogTwoPi + std::log(S) + innovation * innovation / S));
     kalman_.update(innovation, S);
     Eigen::Map<Eigen::VectorXd>(trace_.K.data() + at * N_, n_) = kalman_.gain;
-    Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * static_cast<std::size_t>(ny_), 2 * ny_) = kalman_.gain_jitter;
+    Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * static_cast<std::size_t>(ny_), twice(ny_)) = kalman_.gain_jitter;
     if (wishes_.jacobian != nullptr) differentiate_reading(at, o, use);
     return true;
   }
@@ -147,7 +148,7 @@ class FilterPass {
 
   void differentiate_reading(std::size_t at, int o, Use use) {
     s_row_.noalias() = a_.transpose() * s_model_;
-    s_row_ += s_jitter_.row(2 * o);
+    s_row_ += s_jitter_.row(twice(o));
     const double* row = output_row(o) + n_;
     for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += row[c];
     if (evaluator_.shifts_time()) {
@@ -190,9 +191,9 @@ class FilterPass {
     s_model_.swap(s_work_);
     for (int o = 0; o < ny_; ++o) {
       const auto& p = noise_step.jitter[static_cast<std::size_t>(o)].phi;
-      s_row_ = s_jitter_.row(2 * o);
-      s_jitter_.row(2 * o) = p[0] * s_row_ + p[1] * s_jitter_.row(2 * o + 1);
-      s_jitter_.row(2 * o + 1) = p[2] * s_row_ + p[3] * s_jitter_.row(2 * o + 1);
+      s_row_ = s_jitter_.row(twice(o));
+      s_jitter_.row(twice(o)) = p[0] * s_row_ + p[1] * s_jitter_.row(twice(o) + 1);
+      s_jitter_.row(twice(o) + 1) = p[2] * s_row_ + p[3] * s_jitter_.row(twice(o) + 1);
     }
     return true;
   }

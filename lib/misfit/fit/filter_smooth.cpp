@@ -82,7 +82,7 @@ RowMatrix adjoint_of(const FilterTrace& trace, const FilterData& data, const Fil
 }
 
 Smoothing smooth_states(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise) {
-  const Eigen::Index n = trace.n, all = n + 2 * trace.ny;
+  const Eigen::Index n = trace.n, all = n + 2 * static_cast<Eigen::Index>(trace.ny);
   const auto N = static_cast<std::size_t>(n);
   Smoothing out;
   out.x = out.variance = RowMatrix::Zero(static_cast<Eigen::Index>(trace.samples), n);

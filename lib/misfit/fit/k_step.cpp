@@ -1,0 +1,80 @@
+#include <array>
+#include <cmath>
+
+#include "misfit/data/ladder.h"
+#include "misfit/fit/filter_error.h"
+
+namespace misfit {
+namespace {
+
+constexpr std::size_t lengths = std::size(kLadderSteps);
+
+/// Squared errors per channel and length.
+struct Errors {
+  std::vector<std::vector<double>> squares, counts;
+  explicit Errors(std::size_t channels) : squares(channels, std::vector<double>(lengths, 0.0)), counts(squares) {}
+};
+
+/// Free runs of one experiment: from the filtered state of every third sample (neighbours say the same) as far as the longest length.
+class FreeRuns {
+ public:
+  FreeRuns(Stepper& stepper, const FilterData& data, const FilterTrace& trace, Use counted, Errors& errors)
+      : stepper_(stepper), data_(data), trace_(trace), signals_(*data.signals), counted_(counted), errors_(errors) {}
+
+  void run() {
+    constexpr std::size_t stride = 3;
+    stepper_.prepare(data_.start.data(), data_.inputs.at(data_.first), signals_.t[data_.first]);
+    for (std::size_t k = data_.first; k + 1 < signals_.samples(); k += stride) run_from(k);
+  }
+
+ private:
+  void run_from(std::size_t k) {
+    const auto n = static_cast<std::size_t>(trace_.n);
+    std::array<double, kMaxStates> x{};
+    for (std::size_t i = 0; i < n; ++i) x[i] = trace_.predicted[k * n + i] + trace_.moved[k * n + i];
+    std::size_t next = 0;
+    for (std::size_t j = 1; next < lengths && k + j < signals_.samples(); ++j) {
+      const Interval interval{signals_.t[k + j - 1], signals_.t[k + j], data_.inputs.at(k + j - 1), data_.inputs.at(k + j)};
+      if (!stepper_.step(x.data(), interval)) return;
+      if (static_cast<int>(j) == kLadderSteps[next]) compare(x.data(), k + j, next++);
+    }
+  }
+
+  void compare(const double* x, std::size_t k, std::size_t length) {
+    std::array<double, kMaxOutputs + 1> y{};
+    stepper_.evaluator().predict(x, data_.inputs.at(k), signals_.t[k], y.data());
+    for (std::size_t o = 0; o < errors_.squares.size(); ++o) {
+      if (data_.use[k * errors_.squares.size() + o] != counted_) continue;
+      errors_.squares[o][length] += std::pow(signals_.measured[o].values[k] - y[o], 2);
+      errors_.counts[o][length] += 1.0;
+    }
+  }
+
+  Stepper& stepper_;
+  const FilterData& data_;
+  const FilterTrace& trace_;
+  const Signals& signals_;
+  Use counted_;
+  Errors& errors_;
+};
+
+}  // namespace
+
+std::map<std::string, std::vector<double>> k_step_errors(const FilterEstimate& estimate, bool validation) {
+  const auto& outputs = estimate.model.system->spec().outputs;
+  const Model fixed = all_fixed(estimate.forced.model);
+  Stepper stepper(fixed);
+  Errors errors(outputs.size());
+  for (std::size_t e = 0; e < estimate.data.size(); ++e)
+    FreeRuns(stepper, estimate.data[e], estimate.traces[e], validation ? Use::validation : Use::counted, errors).run();
+  std::map<std::string, std::vector<double>> out;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    for (std::size_t l = 0; l < lengths; ++l) {
+      const double count = errors.counts[o][l];
+      out[outputs[o].name].push_back(count > 0.0 ? std::sqrt(errors.squares[o][l] / count) : std::nan(""));
+    }
+  }
+  return out;
+}
+
+}  // namespace misfit
