@@ -77,10 +77,11 @@ void add_drop(const Rung& rung, std::vector<Panel>& panels) {
   constexpr double width = 0.25;
   if (!rung.predicted_drop && !rung.actual_drop) return;
   Panel& panel = panel_for(panels, "drop", "");
-  Series& predicted = series_for(panel, "predicted_drop", "drop, predicted before", Style::boxes, grey);
-  Series& actual = series_for(panel, "actual_drop", "drop, after fitting again", Style::boxes, palette(2));
-  if (rung.predicted_drop) add_box(predicted, rung.id - 0.5 * width, *rung.predicted_drop, 0.9 * width);
-  if (rung.actual_drop) add_box(actual, rung.id + 0.5 * width, *rung.actual_drop, 0.9 * width);
+  const auto add = [&](const char* key, const char* legend, const std::string& colour, double side, double drop) {
+    add_box(series_for(panel, key, legend, Style::boxes, colour), rung.id + 0.5 * side * width, drop, 0.9 * width);
+  };
+  if (rung.predicted_drop) add("predicted_drop", "drop, predicted before", grey, -1.0, *rung.predicted_drop);
+  if (rung.actual_drop) add("actual_drop", "drop, after fitting again", palette(2), 1.0, *rung.actual_drop);
 }
 
 /// How the errors of a ladder are drawn.
@@ -163,6 +164,8 @@ void set_range(Panel& panel) {
       }
     }
   }
+  constexpr double least_drop = 10.0;  // less is nothing, and is not to look like much
+  if (panel.y_label == "drop") high = std::max(high, least_drop);
   if (!(high > low)) return;
   const double room = 0.08 * (high - low);
   panel.y_range = {low == 0.0 ? 0.0 : low - room, high + room};
