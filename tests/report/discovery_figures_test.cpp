@@ -160,7 +160,7 @@ TEST(LadderFigure, ChannelsOfDifferentSystemsAreDrawnOverTheirFirstValue) {
   const Figure figure = ladder_figure(ladder());
   std::vector<std::string> units;
   for (const Panel& panel : figure.panels) units.push_back(panel.y_unit);
-  EXPECT_EQ(units, (std::vector<std::string>{"", "N m", "%", "%", "deg"}));
+  EXPECT_EQ(units, (std::vector<std::string>{"", "N m", "% of first", "% of first", "deg"}));
   EXPECT_EQ(find(figure, "eta_RMS__8_steps")->y, std::vector<double>{100.0});
   EXPECT_NEAR(find(figure, "P_y_RMS__1_step")->y.at(1), 100.0 * 1.76 / 1.78, 1e-9);
 }

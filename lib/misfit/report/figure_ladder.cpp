@@ -113,7 +113,7 @@ void add_channel(const Rung& rung, const std::string& what, const std::string& c
   const std::string colour = colour_of(channel, errors);
   if (errors.relative) {
     const double first = errors.first.emplace(key, e.value).first->second;
-    Panel& panel = panel_for(panels, what + ", of the first", "%");
+    Panel& panel = panel_for(panels, what, "% of first");
     for (const Style style : {Style::line, Style::markers}) {
       Series& series = series_for(panel, key + (style == Style::line ? "_line" : ""), style == Style::line ? "" : channel, style, colour);
       series.x.push_back(rung.id);
@@ -153,7 +153,7 @@ void add_trim(const Rung& rung, std::vector<Panel>& panels) {
 
 /// From 0 for what is an amount; with some room for all.
 void set_range(Panel& panel) {
-  double low = panel.y_label == "trim" || panel.y_unit == "%" ? INFINITY : 0.0, high = -INFINITY;
+  double low = panel.y_label == "trim" || panel.y_unit.starts_with("%") ? INFINITY : 0.0, high = -INFINITY;
   for (const Series& s : panel.series) {
     for (const auto* values : {&s.y, &s.lo, &s.hi}) {
       if (s.style == Style::boxes && values != &s.y) continue;  // these run along x
