@@ -10,11 +10,12 @@
 #include "misfit/compare/motion_statistics.h"
 #include "misfit/compare/noisy_run.h"
 #include "misfit/fit/states.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
 
-constexpr std::size_t runs = 199;  // the smallest p-value is then 1/200
+constexpr std::size_t runs = 99;  // the smallest p-value is then 1/100
 
 /// Quantities that are of interest beside the channels, where the system has them, and whether only their distribution is looked at: a rate
 /// of an angle that is undefined at zero tilt is unbounded there.
@@ -129,7 +130,8 @@ void simulate(const FilterWork& work, const StochasticModel& model, std::uint64_
   for (std::size_t p = 0; p < paths.size(); ++p) e.simulated[run].push_back(motion_numbers(paths[p], e.scales[p]));
 }
 
-void compare_experiment(const Experiment& e, SimulatedMotion& out) {
+void compare_experiment(const Experiment& e, SimulatedMotion& out, std::vector<double>& p_values) {
+  MotionDistances distances;
   std::vector<std::vector<MotionNumbers>> made;
   for (const auto& run : e.simulated) {
     if (!run.empty()) made.push_back(run);
@@ -145,8 +147,10 @@ void compare_experiment(const Experiment& e, SimulatedMotion& out) {
   for (std::size_t p = 0; p < e.paths.size(); ++p) {
     std::vector<MotionNumbers> numbers;
     for (const auto& run : made) numbers.push_back(run[p]);
-    out.series.push_back(compare_motion(e.measured.name, e.paths[p], e.scales[p], motion_numbers(e.paths[p], e.scales[p]), numbers));
+    out.series.push_back(
+        compare_motion(e.measured.name, e.paths[p], e.scales[p], motion_numbers(e.paths[p], e.scales[p]), numbers, distances));
   }
+  p_values.push_back(overall_p_value(distances));
 }
 
 }  // namespace
@@ -170,10 +174,12 @@ SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int
         simulate(work, stochastic, (static_cast<std::uint64_t>(seed) << 32U) + job, run, experiments[e]);
       },
       progress);
+  std::vector<double> p_values;
   for (const auto& e : experiments) {
     note_gaps(e.measured, out);
-    compare_experiment(e, out);
+    compare_experiment(e, out, p_values);
   }
+  if (!p_values.empty()) out.p_value = sidak(*std::min_element(p_values.begin(), p_values.end()), static_cast<double>(p_values.size()));
   conclude_motion(out);
   out.notes.emplace_back("the parameters are held at their estimates: the bands do not hold their uncertainty");
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -41,12 +41,15 @@ const MotionGroup& group(const MotionSeries& series, const std::string& name) {
   throw std::runtime_error("no group " + name);
 }
 
-MotionSeries compared(const MotionPath& measured, unsigned first_seed, std::size_t runs) {
+MotionSeries compared(const MotionPath& measured, unsigned first_seed, std::size_t runs, double* overall = nullptr) {
   const MotionScales scales = scales_of(measured, step);
   std::vector<MotionNumbers> simulated;
   for (std::size_t k = 0; k < runs; ++k)
     simulated.push_back(motion_numbers(random_motion(first_seed + static_cast<unsigned>(k), 1.0, measured.values.size()), scales));
-  return compare_motion("flight", measured, scales, motion_numbers(measured, scales), simulated);
+  MotionDistances distances;
+  MotionSeries out = compare_motion("flight", measured, scales, motion_numbers(measured, scales), simulated, distances);
+  if (overall != nullptr) *overall = overall_p_value(distances);
+  return out;
 }
 
 TEST(MotionScales, ThePeriodIsThatOfTheMotion) {
@@ -97,25 +100,30 @@ TEST(CompareMotion, MotionOfTheSameKindStaysInTheBand) {
 TEST(CompareMotion, LargerMotionIsNamed) {
   SimulatedMotion motion;
   motion.runs = 99;
-  motion.series = {compared(random_motion(1, 1.6), 100, 99)};
+  motion.series = {compared(random_motion(1, 1.6), 100, 99, &motion.p_value)};
   const MotionGroup& distribution = group(motion.series[0], "distribution");
   EXPECT_DOUBLE_EQ(distribution.p_value, 0.01);
   EXPECT_TRUE(distribution.numbers[1].outside);
   EXPECT_GT(group(motion.series[0], "autocorrelation").p_value, 0.01) << "of the same shape";
   conclude_motion(motion);
-  EXPECT_THAT(motion.sentences,
-              testing::Contains(testing::StartsWith("the distribution of x (flight) is not what the fitted model makes")));
+  EXPECT_DOUBLE_EQ(motion.p_value, 0.01);
+  EXPECT_THAT(motion.sentences.front(), testing::StartsWith("the fitted model does not make motion like the measured one: p 0.01"));
+  EXPECT_THAT(motion.sentences, testing::Contains(testing::StartsWith("the distribution of x (flight): p 0.01")));
 }
 
 /// By exchange of the measured motion with any simulated one, P(p ≤ 0.1) is at most 0.1: of 150 trials 15 are expected, 27 is three sigma.
 TEST(CompareMotion, PValuesOfTheSameKindAreSpreadEvenly) {
-  int small = 0;
+  int small = 0, small_overall = 0;
   for (unsigned trial = 0; trial < 150; ++trial) {
-    const MotionSeries series = compared(random_motion(10000 + trial, 1.0, 400), 20000 + 100 * trial, 19);
+    double overall = 1.0;
+    const MotionSeries series = compared(random_motion(10000 + trial, 1.0, 400), 20000 + 100 * trial, 19, &overall);
     small += group(series, "distribution").p_value <= 0.1 ? 1 : 0;
+    small_overall += overall <= 0.1 ? 1 : 0;
   }
-  EXPECT_LE(small, 27);
-  EXPECT_GE(small, 4);
+  for (int count : {small, small_overall}) {
+    EXPECT_LE(count, 27);
+    EXPECT_GE(count, 4);
+  }
 }
 
 }  // namespace

@@ -56,7 +56,8 @@ Comparison example() {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const MotionGroup spread{"distribution", "rad", {{"mean", nan, 13.0 * degree, 12.0 * degree, 12.5 * degree, 14.0 * degree, false}}, 0.4};
   const MotionGroup power{"spectrum", "dB", {{"power", 1.5, -3.0, -2.0, -1.0, 0.0, true}}, 0.005};
-  c.motion = SimulatedMotion{"filter_error", 199, 1, {{"flight", "alpha_T", "rad", {spread, power}}}, {"a sentence"}, {"a note"}, 2.0};
+  c.motion =
+      SimulatedMotion{"filter_error", 199, 1, {{"flight", "alpha_T", "rad", {spread, power}}}, 0.02, {"a sentence"}, {"a note"}, 2.0};
   return c;
 }
 
@@ -98,6 +99,7 @@ TEST(Comparison, ReadsBackWhatWasWritten) {
   EXPECT_NEAR(back.reference_trims.at("static_test").value, 12.2 * degree, 1e-15);
   ASSERT_TRUE(back.motion.has_value());
   EXPECT_EQ(back.motion->runs, 199U);
+  EXPECT_EQ(back.motion->p_value, 0.02);
   EXPECT_EQ(back.motion->sentences, c.motion->sentences);
   const std::vector<MotionGroup>& groups = back.motion->series.at(0).groups;
   EXPECT_NEAR(groups.at(0).numbers.at(0).high, 14.0 * degree, 1e-15);

@@ -38,13 +38,23 @@ struct MotionScales {
 using MotionNumbers = std::vector<std::vector<double>>;
 [[nodiscard]] MotionNumbers motion_numbers(const MotionPath& path, const MotionScales& scales);
 
-/// The measured path against simulated ones: bands and p-values [MC]. A motion's distance from the others is Σ ((number − mean)/sd)² over a
-/// group, mean and standard deviation being those of all other motions, simulated or measured; p = share of motions at least as far as the
-/// measured one. With n runs p is at least 1/(n + 1). The parameters are held at their estimates: the band does not hold their uncertainty.
-[[nodiscard]] MotionSeries compare_motion(const std::string& experiment, const MotionPath& measured, const MotionScales& scales,
-                                          const MotionNumbers& numbers, const std::vector<MotionNumbers>& simulated);
+/// A motion's distance from the others in each group, Σ ((number − mean)/sd)² with mean and standard deviation of all other motions,
+/// simulated or measured: group × motion, the measured one first.
+using MotionDistances = std::vector<std::vector<double>>;
 
-/// What lies outside, in sentences.
+/// The measured path against simulated ones: bands, and p-values by rank [MC]: the share of motions at least as far from the others as the
+/// measured one. With n runs p is at least 1/(n + 1). The parameters are held at their estimates: the band does not hold their uncertainty.
+/// The distances of its groups are added to `distances`.
+[[nodiscard]] MotionSeries compare_motion(const std::string& experiment, const MotionPath& measured, const MotionScales& scales,
+                                          const MotionNumbers& numbers, const std::vector<MotionNumbers>& simulated,
+                                          MotionDistances& distances);
+
+/// One p-value for all groups, however they depend on each other: by rank of each motion's largest distance, distances as logarithms over
+/// their mean and standard deviation in the group.
+[[nodiscard]] double overall_p_value(const MotionDistances& distances);
+
+/// What lies outside, in sentences: by groups only if the motion as a whole departs (SimulatedMotion::p_value ≤ 0.01), since of many groups
+/// one departs by chance.
 void conclude_motion(SimulatedMotion& motion);
 
 }  // namespace misfit

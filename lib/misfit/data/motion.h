@@ -35,6 +35,7 @@ struct SimulatedMotion {
   std::size_t runs = 0;    ///< per experiment
   std::size_t failed = 0;  ///< of all, left the finite numbers
   std::vector<MotionSeries> series;
+  double p_value = 1.0;                ///< of the measured motion as a whole: share of motions as far from the others in any group
   std::vector<std::string> sentences;  ///< which measured statistics the model does not make
   std::vector<std::string> notes;      ///< what to know before believing it
   double seconds = 0.0;

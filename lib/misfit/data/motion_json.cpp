@@ -55,13 +55,9 @@ Json motion_to_json(const SimulatedMotion& motion) {
     for (const MotionGroup& g : s.groups) groups.push_back(to_json(g));
     series.push_back({{"experiment", s.experiment}, {"series", s.name}, {"unit", display_unit(s.unit)}, {"groups", groups}});
   }
-  return {{"method", motion.method},
-          {"runs", motion.runs},
-          {"failed", motion.failed},
-          {"series", series},
-          {"sentences", motion.sentences},
-          {"notes", motion.notes},
-          {"seconds", number_or_null(motion.seconds)}};
+  return {
+      {"method", motion.method}, {"runs", motion.runs},           {"failed", motion.failed}, {"p_value", number_or_null(motion.p_value)},
+      {"series", series},        {"sentences", motion.sentences}, {"notes", motion.notes},   {"seconds", number_or_null(motion.seconds)}};
 }
 
 SimulatedMotion motion_from_json(const Json& object) {
@@ -69,6 +65,7 @@ SimulatedMotion motion_from_json(const Json& object) {
   motion.method = object.at("method");
   motion.runs = object.at("runs");
   motion.failed = object.at("failed");
+  motion.p_value = number_or_nan(object, "p_value");
   for (const Json& s : object.at("series")) {
     motion.series.push_back({s.at("experiment"), s.at("series"), si_of(s.at("unit")), {}});
     for (const Json& g : s.at("groups")) motion.series.back().groups.push_back(group_from(g));

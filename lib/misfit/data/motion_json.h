@@ -5,7 +5,8 @@
 
 namespace misfit {
 
-/// The key "simulated_motion" of compare.json: {"method","runs","failed","series":[{"experiment","series","unit","groups":[{"group","unit",
+/// The key "simulated_motion" of compare.json:
+/// {"method","runs","failed","p_value","series":[{"experiment","series","unit","groups":[{"group","unit",
 /// "p_value","statistics":[{"name","at","measured","low","median","high","outside"}]}]}],"sentences","notes","seconds"}; angles in degrees,
 /// null for what is not known.
 [[nodiscard]] Json motion_to_json(const SimulatedMotion& motion);

@@ -8,6 +8,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/diagnose/features.h"
+#include "misfit/discover/candidate.h"
 #include "misfit/discover/likeness.h"
 #include "misfit/discover/refit.h"
 #include "misfit/discover/screen.h"
@@ -86,31 +87,7 @@ class Search {
       Entry entry;
       entry.screened = &s;
       entry.log_p = s.log_p;
-      Candidate& c = entry.candidate;
-      c.effect = s.specimen->effect;
-      c.family = s.specimen->family;
-      c.ports = s.specimen->port_names;
-      c.score = s.result.chi2;
-      c.dof = s.result.dof;
-      c.predicted_drop = s.result.chi2;
-      c.p_value = sidak(s.p_value, families_);
-      c.described = s.runs && s.result.independent < 0.01 && !s.specimen->has_priors;
-      for (std::size_t i = 0; i < s.specimen->strengths.size() && s.runs; ++i) {
-        const Parameter& p = s.specimen->model.parameters[static_cast<std::size_t>(s.specimen->strengths[i])];
-        const auto k = static_cast<Eigen::Index>(i);
-        c.parameters[p.name] = {s.result.amplitude[k], s.result.sigma[k], p.unit};
-      }
-      for (std::size_t i = 0; i < s.cell.size() && s.runs; ++i) {  // where a refit would start from: its shapes, without a sigma
-        const int shape = i < s.specimen->shapes.size() ? s.specimen->shapes[i] : s.specimen->frequency;
-        const Parameter& p = s.specimen->model.parameters[static_cast<std::size_t>(shape)];
-        c.parameters[p.name] = {s.cell[i], 0.0, p.unit};
-      }
-      if (!s.runs) {
-        c.p_value = 1.0;
-        c.why = "the model cannot be run with it";
-      } else if (c.described) {
-        c.why = "already described by the model: the free parameters imitate it to better than 99 %";
-      }
+      entry.candidate = named_candidate(s, families_);
       entries_.push_back(std::move(entry));
     }
     sort_entries();
@@ -202,12 +179,12 @@ class Search {
       return;
     }
     if (!first_that_holds_out()) {
-      left_ = what_is_left(entries_.front());
+      left_ = left_after(entries_.front());
       return;
     }
     Entry& best = entries_.front();
     Candidate& c = best.candidate;
-    left_ = what_is_left(best);
+    left_ = left_after(best);
     if (left_) {
       c.why = "most of the departure remains: after it an unknown " + left_->port + "(" + left_->quantity + ") still has p " +
               format_probability(left_->p_value);
@@ -245,24 +222,8 @@ class Search {
     return false;
   }
 
-  /// An unknown curve of a quantity that the effect reads, significant after it and worth a good part of what it explained: then the effect
-  /// is only a likeness of what is missing.
-  std::optional<UnknownCurve> what_is_left(const Entry& best) const {
-    const FilterEstimate& with = best.refit->estimate;
-    const ScoreTest score(with);
-    const ForceColumns path(with);
-    std::vector<UnknownCurve> after = unknown_curves(with, score, path, options_.threads);
-    std::optional<UnknownCurve> worst;
-    for (auto& curve : after) {
-      curve.p_value = sidak(curve.p_value, static_cast<double>(after.size()));
-      const auto& read = best.screened->specimen->quantities;
-      const bool reads = std::find(read.begin(), read.end(), curve.quantity_index) != read.end();
-      constexpr double good_part = 0.2;
-      if (!reads || curve.p_value > options_.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < good_part * best.refit->drop)
-        continue;
-      if (!worst || curve.log_p < worst->log_p) worst = curve;
-    }
-    return worst;
+  std::optional<UnknownCurve> left_after(const Entry& e) const {
+    return what_is_left(e.refit->estimate, *e.screened->specimen, e.refit->drop, options_);
   }
 
   void list_unknown() {
@@ -275,25 +236,8 @@ class Search {
       out_.candidates.push_back(e.candidate);
     }
     std::stable_sort(unknown_.begin(), unknown_.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.log_p < b.log_p; });
-    for (const auto& curve : unknown_) {
-      Candidate c;
-      c.effect = "unknown:" + curve.port + "(" + curve.quantity + ")";
-      c.family = "unknown";
-      c.ports = {curve.port};
-      c.score = c.predicted_drop = curve.result.chi2;
-      c.dof = curve.result.dof;
-      c.p_value = sidak(curve.p_value, families_);
-      c.why = c.p_value < options_.p_accept ? "a force that depends on " + curve.quantity + ", of unknown form"
-                                            : "not significant: family-wise p " + format_probability(c.p_value);
-      out_.candidates.push_back(std::move(c));
-    }
-    // By significance, but an accepted effect first: an unknown curve can always imitate it.
-    std::stable_sort(out_.candidates.begin(), out_.candidates.end(), [](const Candidate& a, const Candidate& b) {
-      if (a.accepted != b.accepted) return a.accepted;
-      if (a.actual_drop.has_value() != b.actual_drop.has_value()) return a.actual_drop.has_value();
-      return false;
-    });
-    for (std::size_t i = 0; i < out_.candidates.size(); ++i) out_.candidates[i].rank = static_cast<int>(i) + 1;
+    for (const auto& curve : unknown_) out_.candidates.push_back(unknown_candidate(curve, families_, options_.p_accept));
+    rank_candidates(out_.candidates);
   }
 
   void describe_search() {

@@ -1,9 +1,11 @@
 #include "misfit/discover/likeness.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 
@@ -28,6 +30,23 @@ void add_likenesses(const std::vector<Screened>& screened, const ScoreTest& scor
     out.sentences.push_back(s.specimen->effect + " with " + numbers + " would imitate part of it (predicted drop " +
                             format_value(free.chi2) + "), but the calibration allows only sigmas of " + allowed);
   }
+}
+
+std::optional<UnknownCurve> what_is_left(const FilterEstimate& with, const Specimen& specimen, double drop,
+                                         const DiscoverOptions& options) {
+  const ScoreTest score(with);
+  const ForceColumns path(with);
+  std::vector<UnknownCurve> after = unknown_curves(with, score, path, options.threads);
+  std::optional<UnknownCurve> worst;
+  for (auto& curve : after) {
+    curve.p_value = sidak(curve.p_value, static_cast<double>(after.size()));
+    const auto& read = specimen.quantities;
+    const bool reads = std::find(read.begin(), read.end(), curve.quantity_index) != read.end();
+    constexpr double good_part = 0.2;
+    if (!reads || curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < good_part * drop) continue;
+    if (!worst || curve.log_p < worst->log_p) worst = curve;
+  }
+  return worst;
 }
 
 }  // namespace misfit
