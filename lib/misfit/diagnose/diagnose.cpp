@@ -143,8 +143,8 @@ void conclude(Diagnosis& out) {
     const bool repeated = std::find(quantities.begin(), quantities.end(), map.port + map.quantity) != quantities.end();
     if (map.sentence.empty() || said >= 3 || repeated) continue;
     quantities.push_back(map.port + map.quantity);
-    out.sentences.push_back(map.sentence + "; a force on " + map.port + " that depends on " + map.quantity + ": the whole map, all its " +
-                            std::to_string(map.dof) + " places together, has p " + format_probability(map.p_corrected));
+    out.sentences.push_back(map.sentence + "; the map of " + map.port + " over " + map.quantity + " as a whole departs from zero with p " +
+                            format_probability(map.p_corrected));
     ++said;
   }
   if (said == 0) {
