@@ -24,10 +24,10 @@ TEST(DiscoverAuto, ARolledCameraBelievedStraightIsNotAddedButCalibrated) {
 }
 
 TEST(DiscoverAuto, AddsWhatIsAcceptedAndLooksAgain) {
-  const ShortFlight study("parachute_spherical", 30.0);
+  const ShortFlight study("parachute_spherical", 25.0);
   const Outcome outcome = study.run("discover", {"--auto"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  std::printf("discover --auto on 30 s: %.1f s\n", outcome.seconds);
+  std::printf("discover --auto on 25 s: %.1f s\n", outcome.seconds);
   const json ladder = study.result("ladder.json");
   ASSERT_GE(ladder.size(), 2U) << outcome.out;
   EXPECT_EQ(ladder[1].at("added"), "strut_wake");

@@ -140,8 +140,8 @@ TEST(Simulate, AsTheSectionSaysGivesTheMotionThatWasMadeElsewhere) {
 /// P_z = l_b K (R n_z + h_c)/(l_s − R n_x): the first sample is the start itself, seen by the calibrated camera.
 TEST(Simulate, SeesTheMotionThroughTheCalibratedCamera) {
   const StudyCopy study("null");
-  study.write("c_m.csv", "alpha_T[deg],C_m[-]\n0,0.075\n12,0\n30,-0.11\n");
-  study.write("c_mq.csv", "alpha_T[deg],C_mq[-]\n0,-0.25\n30,-0.25\n");
+  study.write("c_m.csv", "alpha_T[deg],C_m[-]\n0,0.075\n6,0.037\n12,0\n18,-0.037\n24,-0.074\n30,-0.11\n");
+  study.write("c_mq.csv", "alpha_T[deg],C_mq[-]\n0,-0.25\n10,-0.25\n20,-0.25\n30,-0.25\n");
   study.append(
       "\n[curves]\nC_m = { of = \"alpha_T\", table = \"c_m.csv\" }\nC_mq = { of = \"alpha_T\", table = \"c_mq.csv\" }\n"
       "[simulate]\nduration = \"1 s\"\nstep = 0.0166833\ninitial = { n_z = 0.2 }\n");
