@@ -11,8 +11,8 @@
 namespace misfit {
 
 struct DiagnoseOptions {
-  int threads = 0;      ///< 0: one per core; does not change the answer
-  ProgressFn progress;  ///< called with (done, total) maps
+  int threads = 0;           ///< 0: one per core; does not change the answer
+  ProgressFn progress = {};  ///< called with (done, total) maps
 };
 
 /// Where the fitted model fails, from its innovations, which under a right model are independent of everything known one step before

@@ -18,8 +18,8 @@ struct DiscoverOptions {
   const Calibration* calibration = nullptr;  ///< its covariance and tests are priors of sensor effects
   double p_accept = 0.01;                    ///< family-wise
   int most_refits = 6;
-  std::string only;     ///< key of an effect: it alone is screened, and the drop of one Gauss–Newton step predicted; nothing is refitted
-  ProgressFn progress;  ///< called with (done, total) as the search goes on
+  std::string only;  ///< key of an effect: it alone is screened, and the drop of one Gauss–Newton step predicted; nothing is refitted
+  ProgressFn progress = {};  ///< called with (done, total) as the search goes on
 };
 
 /// Ranks what the model could lack (DESIGN 6): score tests of every effect in the registry that suits the system and of unknown curves,
