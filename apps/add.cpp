@@ -12,13 +12,7 @@ namespace {
 std::optional<Candidate> candidate_of(Session& session, const std::string& effect) {
   if (effect.starts_with("system:")) return std::nullopt;
   static_cast<void>(study_with_effect(session, effect, std::nullopt, session.folder.path()));  // refuses what cannot be added, before work
-  const std::optional<Discovery> discovery = discover_stage(session);
-  if (!discovery) refuse_declined(session);
-  for (const auto& candidate : discovery->candidates) {
-    if (candidate.effect == effect) return candidate;
-  }
-  session.say("discovery does not rank effect '" + effect + "' (it has no strength to test, or stands for another): no drop is predicted");
-  return std::nullopt;
+  return predict_effect(session, effect);
 }
 
 }  // namespace
@@ -27,11 +21,12 @@ int add_verb(const Options& options, const Registry& registry) {
   Climb ladder(options, registry);
   const std::optional<Candidate> candidate = candidate_of(ladder.top(), options.effect);
   const Rung& rung = ladder.add(options.effect, candidate);
+  report_ladder(ladder);
   if (options.json) {
     print_file(ladder.original().folder.file("ladder.json"));
     return 0;
   }
-  std::cout << rung_text(ladder.ladder(), rung) << '\n' << ladder_text(ladder.ladder());
+  std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.top_fit()) << '\n' << ladder_text(ladder.ladder());
   std::cout << "\nstudy of this rung: " << ladder.original().folder.file(rung.study).lexically_normal().string() << '\n';
   return 0;
 }

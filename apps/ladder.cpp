@@ -20,14 +20,6 @@ constexpr const char* ladder_name = "ladder.json";
 constexpr const char* method = "filter_error";
 constexpr const char* system_prefix = "system:";
 
-/// The options of the command for another study, its results in the out/ beside it.
-Options options_for(const Options& options, const fs::path& study) {
-  Options other = options;
-  other.study = study.string();
-  other.out.clear();
-  return other;
-}
-
 /// filter_error's fit and estimate; RunError in its words if it declined.
 std::shared_ptr<const FilterWork> fitted(Session& session) {
   const Fit fit = fit_stage(session, {method}).front();
@@ -134,7 +126,25 @@ std::string file_name(const std::string& added) {
   return name;
 }
 
+/// Why discovery could not say beforehand what an effect would bring.
+std::string not_predicted(const Effect& effect, const std::optional<Candidate>& from) {
+  const auto& coefficients = effect.spec().coefficients;
+  const bool strength = std::any_of(coefficients.begin(), coefficients.end(),
+                                    [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.borrowed; });
+  const std::string name = effect.spec().key;
+  if (!strength) return "no drop is predicted for " + name + ": it has no strength that could be 0, it is in the model or not";
+  if (!from) return "no drop is predicted for " + name + ": it is driven by noise, or another effect stands for it";
+  return "no drop is predicted for " + name + ": " + (from->why.empty() ? "its score is 0" : from->why);
+}
+
 }  // namespace
+
+Options options_for(const Options& options, const fs::path& study) {
+  Options other = options;
+  other.study = study.string();
+  other.out.clear();
+  return other;
+}
 
 std::optional<Ladder> known_ladder(const Session& session) {
   const fs::path file = session.folder.file(ladder_name);
@@ -176,6 +186,8 @@ const Rung& Climb::top_rung() {
   return ladder_.rungs.back();
 }
 
+const Fit& Climb::top_fit() { return filter_work(top())->fit; }
+
 std::string Climb::relative_study(const Session& session) const {
   const fs::path from = fs::absolute(original_.folder.path()).lexically_normal();
   return fs::absolute(session.study.file).lexically_normal().lexically_relative(from).generic_string();
@@ -203,6 +215,7 @@ const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>
   make_writable_folder(folder);
   write_atomically(folder / "study.toml", text);
   Session above(options_for(options_, folder / "study.toml"), registry_);
+  above.below = below.folder.path();
   const auto work = fitted(above);
   Rung rung = rung_of(above, *work);
   rung.id = id;
@@ -214,7 +227,8 @@ const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>
     for (const auto& left : left_out) rung.note += "; effect '" + left + "' is left out: it does not suit " + name;
   } else {
     rung.parameters = new_parameters(*work, *below_work);
-    if (from) rung.predicted_drop = from->actual_drop || from->predicted_drop > 0.0 ? from->predicted_drop : std::optional<double>();
+    if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
+    if (!rung.predicted_drop) rung.note = not_predicted(registry_.effect(effect), from);
     if (same_channels(work->estimate->model, below_work->estimate->model)) {
       const Gain gain = gain_of(*work, *below_work, options_.threads);
       rung.actual_drop = gain.drop;
@@ -226,6 +240,15 @@ const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>
   top_.emplace(options_for(options_, folder / "study.toml"), registry_);
   top_->filter = work;
   return ladder_.rungs.back();
+}
+
+void report_ladder(Climb& climb) {
+  Session& session = climb.original();
+  try {
+    session.say("report: " + report_stage(session, fit_stage(session)).lexically_normal().string());
+  } catch (const RunError& error) {
+    session.say(std::string("no report: ") + error.what());  // the rung stands without it
+  }
 }
 
 }  // namespace misfit

@@ -73,27 +73,6 @@ std::vector<Signals> read_experiments(Session& session, const Model& model) {
   return out;
 }
 
-/// A system that predicts the image sees it through the study's camera: values and sigmas of the calibration, and its projection.
-void add_camera(Session& session, ModelRequest& request) {
-  const SystemType& type = session.registry.system(request.system, request.system_where);
-  const SystemSpec spec = type.make(request.options)->spec();
-  if (!predicts_pixels(spec)) return;
-  const std::optional<Calibration> calibration = calibrate_stage(session);
-  if (!calibration) return;
-  const auto has_flag = std::find(type.flags.begin(), type.flags.end(), "plane_by_plane") != type.flags.end();
-  if (has_flag) request.options.flags.emplace("plane_by_plane", calibration->model == CameraModel::plane_by_plane);
-  for (const char* name : camera_parameter_names) {
-    const bool known = std::any_of(spec.constants.begin(), spec.constants.end(), [&](const ConstantSpec& c) { return c.name == name; });
-    if (!known || request.constants.contains(name)) continue;
-    request.constants[name] = calibration->value(name);
-    if (!(calibration->sigma(name) > 0.0)) continue;
-    request.constant_sigmas[name] = calibration->sigma(name);
-    // Free, with the calibration as its prior: so its uncertainty is in every interval (marginal sigmas; their correlations are left out,
-    // which makes intervals a little wider). A study can fix it again.
-    if (!request.parameters.contains(name)) request.parameters[name].free = true;
-  }
-}
-
 void start_from_tables(const Session& session, Model& model) {
   for (const auto& [name, curve] : session.study.curves) {
     const Curve* target = model.find_curve(name);
@@ -117,6 +96,26 @@ Prepared prepare_request(Session& session, ModelRequest request) {
 }
 
 }  // namespace
+
+void add_camera(Session& session, ModelRequest& request) {
+  const SystemType& type = session.registry.system(request.system, request.system_where);
+  const SystemSpec spec = type.make(request.options)->spec();
+  if (!predicts_pixels(spec)) return;
+  const std::optional<Calibration> calibration = calibrate_stage(session);
+  if (!calibration) return;
+  const auto has_flag = std::find(type.flags.begin(), type.flags.end(), "plane_by_plane") != type.flags.end();
+  if (has_flag) request.options.flags.emplace("plane_by_plane", calibration->model == CameraModel::plane_by_plane);
+  for (const char* name : camera_parameter_names) {
+    const bool known = std::any_of(spec.constants.begin(), spec.constants.end(), [&](const ConstantSpec& c) { return c.name == name; });
+    if (!known || request.constants.contains(name)) continue;
+    request.constants[name] = calibration->value(name);
+    if (!(calibration->sigma(name) > 0.0)) continue;
+    request.constant_sigmas[name] = calibration->sigma(name);
+    // Free, with the calibration as its prior: so its uncertainty is in every interval (marginal sigmas; their correlations are left out,
+    // which makes intervals a little wider). A study can fix it again.
+    if (!request.parameters.contains(name)) request.parameters[name].free = true;
+  }
+}
 
 Prepared prepare(Session& session) { return prepare_request(session, session.model.request); }
 

@@ -51,11 +51,16 @@ std::string fit_text(const Fit& fit) {
   }
   for (const auto& curve : fit.curves) rows.push_back({"curve " + curve.name, curve_text(curve)});
   if (rows.size() > 1) out += align_columns(rows);
-  for (const auto& warning : fit.warnings) out += wrap_text("! " + warning, 110, "  ") + "\n";
-  return out;
+  return out + warnings_text(fit);
 }
 
 }  // namespace
+
+std::string warnings_text(const Fit& fit) {
+  std::string out;
+  for (const auto& warning : fit.warnings) out += wrap_text("! " + warning, 110, "  ") + "\n";
+  return out;
+}
 
 std::string calibration_text(const Calibration& c) {
   std::vector<std::vector<std::string>> rows{{"camera", "value"}};

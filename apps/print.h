@@ -23,6 +23,8 @@ namespace misfit {
 /// Error before and after of a rung and its parent, per channel in its unit.
 [[nodiscard]] std::string rung_text(const Ladder& ladder, const Rung& rung);
 [[nodiscard]] std::string ladder_text(const Ladder& ladder);
+/// What a fit warns of, one paragraph each.
+[[nodiscard]] std::string warnings_text(const Fit& fit);
 /// 1 if every method failed or declined although some were asked for, else 0.
 [[nodiscard]] int status_of(const std::vector<Fit>& fits);
 /// The content of a result file, to stdout: for --json.

@@ -100,14 +100,15 @@ const Rung* parent_of(const Ladder& ladder, const Rung& rung) {
 }
 
 std::string drop_text(const Rung& rung) {
-  if (!rung.actual_drop) return wrap_text(rung.note, width, "  ") + "\n";
+  const std::string note = rung.note.empty() ? "" : wrap_text(as_sentence(rung.note), width, "  ") + "\n";
+  if (!rung.actual_drop) return note;
   std::string out =
       fmt::format("  drop: {} predicted, {:.1f} actual", rung.predicted_drop ? number(rung.predicted_drop) : "none", *rung.actual_drop);
   out += fmt::format(" for {} parameter{}", rung.parameters.size(), rung.parameters.size() == 1 ? "" : "s");
   out += rung.held_out_gain ? fmt::format("; gain of the held-out log-likelihood {:+.1f}\n", *rung.held_out_gain)
                             : "; nothing is held out in this study (validation = \"last 25 %\" would do it)\n";
   if (*rung.actual_drop < 1.0) out += "  ! the added effect explains nothing in these data\n";
-  return out;
+  return out + note;
 }
 
 }  // namespace
@@ -193,7 +194,11 @@ std::string ladder_text(const Ladder& ladder) {
     rows.push_back({std::to_string(r.id), r.added.empty() ? "(the study)" : r.added, r.system, number(r.actual_drop),
                     number(r.predicted_drop), number(r.held_out_gain, "{:+.1f}"), force_text(r.force), r.trim ? shown(*r.trim) : "–"});
   }
-  return "the ladder\n" + align_columns(rows);
+  std::string notes;
+  for (const auto& r : ladder.rungs) {
+    if (!r.note.empty()) notes += wrap_text(fmt::format("rung {}: {}", r.id, r.note), width, "  ") + "\n";
+  }
+  return "the ladder\n" + align_columns(rows) + notes;
 }
 
 }  // namespace misfit

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <iostream>
+#include <set>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
@@ -28,6 +29,32 @@ fs::path folder_of(const Options& options, const Study& study) {
   return options.out.empty() ? study.folder / "out" : fs::path(options.out);
 }
 
+RunFolder open_folder(const Options& options, const Study& study) {
+  RunFolder folder(folder_of(options, study), options.command, study.seed, study.file);
+  if (const auto other = folder.other_study())
+    throw InputError("the run folder " + folder.path().string() + " holds the results of another study, " + other->string() +
+                     ": give this one a folder of its own (--out out-" + study.file.stem().string() + ", say), or remove that one");
+  return folder;
+}
+
+/// How run.json names a file: "out/…" for those of the run folder, else relative to the study. The same however the two were typed.
+std::string shown_path(const fs::path& file, const fs::path& study, const fs::path& run) {
+  const auto from = [whole = fs::absolute(file).lexically_normal()](const fs::path& folder) {
+    return whole.lexically_relative(fs::absolute(folder).lexically_normal());
+  };
+  const fs::path inside = from(run);
+  if (!inside.empty() && *inside.begin() != "..") return ("out" / inside).generic_string();
+  const fs::path beside = from(study);
+  return beside.empty() ? file.filename().string() : beside.generic_string();
+}
+
+/// Inputs of a stage without the place of their files: a rung names the same video by another path.
+std::multiset<std::pair<std::string, std::string>> by_file_name(const std::map<std::string, std::string>& inputs) {
+  std::multiset<std::pair<std::string, std::string>> out;
+  for (const auto& [file, hash] : inputs) out.emplace(fs::path(file).filename().string(), hash);
+  return out;
+}
+
 std::string hash_of_program() {
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
@@ -41,16 +68,32 @@ Session::Session(const Options& o, const Registry& r)
       registry(r),
       study(open_study(o)),
       model(read_model(study, r)),
-      folder(folder_of(o, study), o.command, study.seed),
+      folder(open_folder(o, study)),
       program(hash_of_program()) {}
 
 std::map<std::string, std::string> Session::inputs(const std::string& settings, const std::vector<fs::path>& files) const {
   std::map<std::string, std::string> out{{"program", program}, {"settings", hash_text(settings)}};
   for (const auto& file : files) {
-    const fs::path shown = file.lexically_relative(study.folder);
-    out[shown.empty() ? file.filename().string() : shown.string()] = hash_file(file);
+    out[shown_path(file, study.folder, folder.path())] = hash_file(file);
   }
   return out;
+}
+
+bool Session::copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs) {
+  if (below.empty()) return false;
+  const RunFolder from(below, options.command, study.seed);
+  const auto known = from.stages().find(stage);
+  if (known == from.stages().end() || !from.up_to_date(stage, known->second.inputs) ||
+      by_file_name(known->second.inputs) != by_file_name(inputs))
+    return false;
+  StageRecord record{stage, options.command + "  # copied from " + below.lexically_normal().string(), inputs, known->second.outputs, 0.0};
+  for (const auto& output : record.outputs) {
+    make_writable_folder(folder.file(output).parent_path());
+    write_atomically(folder.file(output), read_file(from.file(output)));
+    record.command += ", " + output + " " + hash_file(folder.file(output));
+  }
+  folder.record(record);
+  return true;
 }
 
 void Session::say(const std::string& line) const {

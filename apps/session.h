@@ -27,9 +27,10 @@ struct Options {
   std::string command;      ///< the command line as typed, for run.json
 };
 
-/// A study opened for work: what was asked, the run folder, and the hashes that decide what must be done again.
 struct FilterWork;
 
+/// A study opened for work: what was asked, the run folder, and the hashes that decide what must be done again. InputError if the run
+/// folder holds the results of another study.
 struct Session {
   Session(const Options& options, const Registry& registry);
 
@@ -39,12 +40,16 @@ struct Session {
   StudyModel model;
   RunFolder folder;
   std::string program;                       ///< hash of the running program: another build does everything again
+  std::filesystem::path below = {};          ///< run folder of the rung below: what it read from videos and pictures need not be read again
   std::shared_ptr<const FilterWork> filter;  ///< filter_error as estimated in this run of the program, for the stages after it (stages.h)
 
   [[nodiscard]] std::vector<std::string> methods() const { return options.methods.empty() ? study.methods : options.methods; }
   /// {"program", "settings"} and the files, hashed: the inputs of a stage.
   [[nodiscard]] std::map<std::string, std::string> inputs(const std::string& settings,
                                                           const std::vector<std::filesystem::path>& files) const;
+  /// True if this stage was done from the same inputs in the run folder of the rung below: its files are then copied from there, and
+  /// run.json says so with their hashes.
+  [[nodiscard]] bool copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs);
   /// A line on stderr unless quiet.
   void say(const std::string& line) const;
 };

@@ -62,6 +62,7 @@ void curves_from_tables(const Session& session, Model& model) {
 Case from_section(Session& session) {
   const SimulateStudy& ask = *session.study.simulate;
   ModelRequest request = session.model.request;
+  add_camera(session, request);
   knots_from_tables(session, request);
   Case out{assemble(request, session.registry), {}, {}};
   curves_from_tables(session, out.model);

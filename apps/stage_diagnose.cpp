@@ -3,6 +3,7 @@
 
 #include "apps/stages.h"
 #include "misfit/core/error.h"
+#include "misfit/core/progress.h"
 #include "misfit/diagnose/diagnose.h"
 
 namespace misfit {
@@ -72,7 +73,12 @@ std::optional<Diagnosis> diagnose_stage(Session& session) {
   const auto inputs = session.inputs("diagnose", files_of_filter(session));
   const auto work = filter_work(session);
   const auto begin = std::chrono::steady_clock::now();
-  Diagnosis diagnosis = diagnose(*work->estimate, {session.options.threads});
+  Diagnosis diagnosis;
+  {
+    Progress progress("diagnose", session.options.quiet);
+    diagnosis =
+        diagnose(*work->estimate, {session.options.threads, [&](std::size_t done, std::size_t total) { progress.update(done, total); }});
+  }
   write_diagnosis(session.folder.path(), diagnosis);
   record(session, "diagnose", inputs, files_of(diagnosis), seconds_since(begin));
   return diagnosis;

@@ -1,8 +1,9 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
 #include "apps/stages.h"
-#include "misfit/compare/compare.h"
 #include "misfit/core/files.h"
 #include "misfit/core/version.h"
 #include "misfit/report/report.h"
@@ -69,21 +70,10 @@ void remove_figures(const fs::path& folder) {
   }
 }
 
-/// Everything the fits left on disk.
-std::vector<fs::path> files_of(const Session& session, const std::vector<Fit>& fits) {
-  std::vector<fs::path> files;
-  for (const auto& fit : fits) {
-    for (const auto& entry : fs::directory_iterator(session.folder.file("fit/" + fit.method))) files.push_back(entry.path());
-  }
-  return files;
-}
-
 std::vector<fs::path> files_of_report(const Session& session, const std::vector<Fit>& fits) {
-  std::vector<fs::path> files = files_of(session, fits);
+  std::vector<fs::path> files = files_of_fits(session, fits);
   files.push_back(session.folder.file("compare.json"));
-  for (const char* name : {"diagnosis.json", "missing_force.csv", "candidates.json", "discovery.json", "ladder.json"}) {
-    if (fs::exists(session.folder.file(name))) files.push_back(session.folder.file(name));
-  }
+  if (fs::exists(session.folder.file("ladder.json"))) files.push_back(session.folder.file("ladder.json"));
   for (const auto& [curve, file] : session.study.reference) files.push_back(file);
   if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
@@ -95,27 +85,20 @@ std::vector<fs::path> files_of_report(const Session& session, const std::vector<
   return files;
 }
 
+/// What diagnose and discover found of the study's own model and of the last rung that was asked.
+void add_findings(const Session& session, report::ReportInput& input, std::vector<fs::path>& files) {
+  Findings own = findings_of(session, input.notes);
+  input.diagnosis = std::move(own.diagnosis);
+  input.discovery = std::move(own.discovery);
+  files.insert(files.end(), own.files.begin(), own.files.end());
+  if (!input.ladder) return;
+  auto above = findings_of_last_rung(session, *input.ladder, input.notes);
+  if (!above) return;
+  files.insert(files.end(), above->findings.files.begin(), above->findings.files.end());
+  input.rung = report::RungInput{above->rung, above->added, std::move(above->findings.diagnosis), std::move(above->findings.discovery)};
+}
+
 }  // namespace
-
-std::vector<Reference> references(const Session& session) {
-  std::vector<Reference> out;
-  for (const auto& [curve, file] : session.study.reference) out.push_back(read_reference(file, curve));
-  return out;
-}
-
-Comparison compare_stage(Session& session, const std::vector<Fit>& fits) {
-  stop_if_interrupted();
-  const fs::path file = session.folder.file("compare.json");
-  std::vector<fs::path> files = files_of(session, fits);
-  for (const auto& [curve, reference] : session.study.reference) files.push_back(reference);
-  const auto inputs = session.inputs("", files);
-  if (session.folder.up_to_date("compare", inputs)) return read_comparison(file);
-  const auto begin = std::chrono::steady_clock::now();
-  Comparison comparison = compare(fits, references(session));
-  write_comparison(file, comparison);
-  session.folder.record({"compare", session.options.command, inputs, {"compare.json"}, seconds_since(begin), "", ""});
-  return comparison;
-}
 
 fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   stop_if_interrupted();
@@ -123,16 +106,16 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   input.comparison = compare_stage(session, fits);
   input.experiments = experiments_of(session);
   input.calibration = calibrate_stage(session);
-  const auto inputs = session.inputs(session.study.text, files_of_report(session, fits));
+  input.ladder = known_ladder(session);
+  std::vector<fs::path> files = files_of_report(session, fits);
+  add_findings(session, input, files);
+  const auto inputs = session.inputs(session.study.text + fmt::format("{}", fmt::join(input.notes, "\n")), files);
   if (session.folder.up_to_date("report", inputs)) return session.folder.file("report.html");
   const auto begin = std::chrono::steady_clock::now();
   input.study = session.study.name;
   input.question = session.study.question;
   input.fits = fits;
   input.references = references(session);
-  input.diagnosis = known_diagnosis(session);
-  input.discovery = known_discovery(session);
-  input.ladder = known_ladder(session);
   input.run = facts_of(session);
   remove_figures(session.folder.file("figures"));
   fs::path page = report::write_report(session.folder.path(), input);

@@ -138,7 +138,7 @@ fs::path sweep_stage(Session& session) {
   for (const SweepPicture& picture : pictures) read.push_back(picture.file);
   if (camera.sweep_marker.picture) read.push_back(*camera.sweep_marker.picture);
   const auto inputs = session.inputs(settings_of(camera), read);
-  if (session.folder.up_to_date("sweep", inputs)) return file;
+  if (session.folder.up_to_date("sweep", inputs) || session.copied_from_below("sweep", inputs)) return file;
   const auto begin = std::chrono::steady_clock::now();
   make_sweep(session, pictures, file, sheet);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -65,7 +65,8 @@ std::vector<std::optional<TrackFacts>> track_stage(Session& session) {
     std::vector<fs::path> read{*experiment.video};
     if (session.study.video.marker.picture) read.push_back(*session.study.video.marker.picture);
     const auto inputs = session.inputs(settings_of(session.study.video), read);
-    if (!session.folder.up_to_date("track/" + experiment.name, inputs)) make_track(session, e, files, inputs);
+    const std::string stage = "track/" + experiment.name;
+    if (!session.folder.up_to_date(stage, inputs) && !session.copied_from_below(stage, inputs)) make_track(session, e, files, inputs);
     out.emplace_back(read_track_facts(files.facts));
   }
   return out;

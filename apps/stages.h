@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "apps/session.h"
+#include "misfit/core/work_queue.h"
 #include "misfit/data/attitude.h"
 #include "misfit/data/calibration.h"
 #include "misfit/data/candidates.h"
@@ -45,6 +46,8 @@ struct Prepared {
   Model model;
   std::vector<Signals> experiments;
 };
+/// A system that predicts the image sees it through the study's camera: values and sigmas of the calibration, and its projection.
+void add_camera(Session& session, ModelRequest& request);
 /// For the study's own system.
 [[nodiscard]] Prepared prepare(Session& session);
 /// For the regression form of sliding_bin; nullopt where the system has none. Names of effects it leaves out go to `left_out`.
@@ -67,7 +70,11 @@ struct FilterWork {
 /// filter_error's estimate: the one of this run of the program, else estimated again (about two seconds, and the same answer). RunError
 /// with the fit's words if it declined.
 [[nodiscard]] std::shared_ptr<const FilterWork> filter_work(Session& session);
+/// Everything the fits left on disk.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_fits(const Session& session, const std::vector<Fit>& fits);
 [[nodiscard]] std::vector<Reference> references(const Session& session);
+/// Statistics of motions that the fitted model of filter_error makes, against the measured one (DESIGN 6).
+[[nodiscard]] SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int threads, const ProgressFn& progress);
 /// compare.json.
 [[nodiscard]] Comparison compare_stage(Session& session, const std::vector<Fit>& fits);
 /// figures/ and report.html; returns the page.
@@ -77,9 +84,27 @@ std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fit
 [[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);
 /// candidates.json and discovery.json; nullopt if filter_error declined.
 [[nodiscard]] std::optional<Discovery> discover_stage(Session& session);
+/// What discovery says of one effect: from the whole search where that is on disk, else it alone is screened. nullopt if it cannot be
+/// screened (it has no strength, or is driven by noise, or stands for another).
+[[nodiscard]] std::optional<Candidate> predict_effect(Session& session, const std::string& effect);
 /// What these stages left on disk, where it still belongs to the fit that is there.
 [[nodiscard]] std::optional<Diagnosis> known_diagnosis(const Session& session);
 [[nodiscard]] std::optional<Discovery> known_discovery(const Session& session);
+/// Both, and the files they are in; what is on disk but of another fit is said in `notes`.
+struct Findings {
+  std::optional<Diagnosis> diagnosis;
+  std::optional<Discovery> discovery;
+  std::vector<std::filesystem::path> files;
+};
+[[nodiscard]] Findings findings_of(const Session& session, std::vector<std::string>& notes);
+/// Of the last rung that has any.
+struct RungFindings {
+  int rung = 0;
+  std::string added;
+  Findings findings;
+};
+[[nodiscard]] std::optional<RungFindings> findings_of_last_rung(const Session& session, const Ladder& ladder,
+                                                                std::vector<std::string>& notes);
 [[nodiscard]] std::map<std::string, std::string> inputs_of_discovery(const Session& session);
 /// ladder.json where it still belongs to the study and its data (apps/ladder.h).
 [[nodiscard]] std::optional<Ladder> known_ladder(const Session& session);

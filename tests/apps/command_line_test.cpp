@@ -137,6 +137,25 @@ TEST(Simulate, AsTheSectionSaysGivesTheMotionThatWasMadeElsewhere) {
   for (std::size_t i = 0; i < simulated.size(); ++i) EXPECT_NEAR(simulated[i][1], truth[i][2], 0.1) << "sample " << i;
 }
 
+/// P_z = l_b K (R n_z + h_c)/(l_s − R n_x): the first sample is the start itself, seen by the calibrated camera.
+TEST(Simulate, SeesTheMotionThroughTheCalibratedCamera) {
+  const StudyCopy study("null");
+  study.write("c_m.csv", "alpha_T[deg],C_m[-]\n0,0.075\n6,0.037\n12,0\n18,-0.037\n24,-0.074\n30,-0.11\n");
+  study.write("c_mq.csv", "alpha_T[deg],C_mq[-]\n0,-0.25\n10,-0.25\n20,-0.25\n30,-0.25\n");
+  study.append(
+      "\n[curves]\nC_m = { of = \"alpha_T\", table = \"c_m.csv\" }\nC_mq = { of = \"alpha_T\", table = \"c_mq.csv\" }\n"
+      "[simulate]\nduration = \"1 s\"\nstep = 0.0166833\ninitial = { n_z = 0.2 }\n");
+  const Outcome outcome = study.run("simulate");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json camera = study.result("camera.json");
+  const double K = camera.at("K").at("value"), h_c = camera.at("h_c").at("value");
+  const double n_x = std::sqrt(1.0 - 0.04), expected = 5.69 * K * (3.447 * 0.2 + h_c) / (5.61 - 3.447 * n_x);
+  const auto rows = rows_of(study.out("simulation.csv"));
+  ASSERT_EQ(rows.size(), 60U);
+  EXPECT_GT(K, 2.0) << "as calibrated, not the default";
+  EXPECT_NEAR(rows[0][2], expected, 1e-3 * expected);
+}
+
 TEST(Simulate, AfterAFitFollowsTheMeasuredMotion) {
   const StudyCopy study("validation");
   const Outcome outcome = study.run("simulate", {"--method", "output_error", "--json"});

@@ -79,10 +79,18 @@ TEST_F(Climbing, AnotherSystemLeavesOutWhatDoesNotSuitItAsAComment) {
   expect_parts(text, {"kind = \"parachute_spherical\"", "# coning = {}  # does not suit parachute_spherical"});
 }
 
-TEST_F(Climbing, TheReportBeginsWithTheLadder) {
-  const Outcome outcome = study->run("report");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+TEST_F(Climbing, AnEffectWithoutStrengthIsAddedWithoutAPredictionAndThatIsSaid) {
+  expect_parts(coning.out, {"no drop is predicted for coning: it has no strength", "rung 1: no drop is predicted"});
+  EXPECT_FALSE(fs::exists(study->out("candidates.json"))) << "nothing was searched";
+  const json rung = study->result("ladder.json").at(1);
+  EXPECT_TRUE(rung.at("predicted_drop").is_null());
+  expect_parts(rung.at("note").get<std::string>(), {"it has no strength"});
+}
+
+TEST_F(Climbing, AddWritesTheReportAndItBeginsWithTheLadder) {
+  expect_parts(spherical.err, {"report: ", "report.html"});
   const std::string page = content(study->out("report.html"));
+  expect_parts(page, {"no drop is predicted for coning"});
   const std::size_t first = page.find("-gnuplot_canvas\"");
   ASSERT_NE(first, std::string::npos);
   EXPECT_EQ(page.substr(first - 6, 6), "ladder");
@@ -92,6 +100,24 @@ TEST_F(Climbing, ARungIsAStudyThatRunsWhereItLies) {
   const Outcome outcome = program::run({"fit", study->out("rungs/01_coning").string(), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(json::parse(outcome.out).at("filter_error").at("status"), "converged");
+}
+
+TEST(AddAfterAWholeSearch, TakesItsPredictionAndTheReportKeepsWhatWasFound) {
+  const ShortFlight study("parachute_spherical", 12.0);
+  ASSERT_EQ(study.run("diagnose").status, 0);
+  ASSERT_EQ(study.run("discover").status, 0);
+  const Outcome outcome = study.add("strut_wake");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::optional<double> predicted;
+  for (const auto& candidate : study.result("candidates.json")) {
+    if (candidate.at("effect") == "strut_wake") predicted = candidate.at("predicted_drop").get<double>();
+  }
+  EXPECT_EQ(study.result("ladder.json").at(1).at("predicted_drop").get<double>(), predicted);
+  expect_parts(content(study.out("report.html")), {"<h2>Where the model fails", "<h2>What could be missing", "(rung 0)"});
+  fs::remove(study.out("report.html"));
+  const Outcome from_elsewhere = program::run({"report", fs::relative(study.path("study.toml")).string()});
+  ASSERT_EQ(from_elsewhere.status, 0) << from_elsewhere.err;
+  expect_parts(content(study.out("report.html")), {"<h2>Where the model fails", "<h2>What could be missing"});
 }
 
 struct Refusal {

@@ -103,6 +103,23 @@ TEST(RunOnAVideo, CurvesAgreeWithThoseOfTheTrackWithinTheirBands) {
   }
 }
 
+TEST(ARungOfAVideoStudy, TakesTheTrackOfTheStudyBelowInsteadOfReadingTheVideoAgain) {
+  const ShortStudy study;
+  study.change("methods = [^\n]*", "methods = [\"filter_error\"]");
+  ASSERT_EQ(study.run("track").status, 0);
+  const Outcome outcome = program::run({"add", study.path("study.toml").string(), "system:parachute_spherical"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string rung = "rungs/01_parachute_spherical/out/";
+  EXPECT_EQ(content(study.out(rung + "track.csv")), content(study.out("track.csv")));
+  const auto stage = study.result(rung + "run.json").at("stages").at("track/flight");
+  EXPECT_THAT(stage.at("command").get<std::string>(), AllOf(HasSubstr("copied from"), HasSubstr("track.csv ")));
+  EXPECT_EQ(stage.at("inputs").at("../../../gaps.mkv"),
+            study.result("run.json").at("stages").at("track/flight").at("inputs").at("gaps.mkv"));
+  const auto before = fs::last_write_time(study.out(rung + "track.csv"));
+  EXPECT_EQ(program::run({"track", study.out("rungs/01_parachute_spherical").string()}).status, 0);
+  EXPECT_EQ(fs::last_write_time(study.out(rung + "track.csv")), before) << "the rung itself has no reason to read the video";
+}
+
 void expect_refused(const StudyCopy& study, int status, const std::vector<std::string>& parts) {
   const Outcome outcome = study.run("track");
   EXPECT_EQ(outcome.status, status) << outcome.out;

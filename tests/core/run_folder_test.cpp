@@ -95,6 +95,17 @@ TEST_F(RanBefore, EarlierStagesAreKept) {
   EXPECT_EQ(RunFolder(out(), "", 7).stages().size(), 2U);
 }
 
+TEST(RunFolder, KnowsWhoseResultsItHolds) {
+  const TemporaryFolder folder;
+  const auto out = folder.path() / "out", first = folder.write("study.toml", ""), second = folder.write("other.toml", "");
+  RunFolder(out, "", 1, first).record({"calibrate", "", inputs, {}, 0.0});
+  EXPECT_EQ(nlohmann::json::parse(read_file(out / "run.json"))["study"], "../study.toml");
+  EXPECT_FALSE(RunFolder(out, "", 1, first).other_study().has_value());
+  EXPECT_EQ(RunFolder(out, "", 1, second).other_study(), first);
+  std::filesystem::rename(first, folder.path() / "renamed.toml");
+  EXPECT_FALSE(RunFolder(out, "", 1, folder.path() / "renamed.toml").other_study().has_value()) << "a study that was renamed";
+}
+
 TEST(RunFolder, BelowARegularFileIsRefused) {
   const TemporaryFolder folder;
   const auto file = folder.write("x", "");

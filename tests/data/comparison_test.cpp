@@ -53,6 +53,11 @@ Comparison example() {
   c.trims.push_back(trim);
   c.not_compared = {{"equation_error", "declined: too few samples"}};
   c.reference_trims = {{"static_test", {12.2 * degree, 0.0, "rad"}}};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const MotionGroup spread{"distribution", "rad", {{"mean", nan, 13.0 * degree, 12.0 * degree, 12.5 * degree, 14.0 * degree, false}}, 0.4};
+  const MotionGroup power{"spectrum", "dB", {{"power", 1.5, -3.0, -2.0, -1.0, 0.0, true}}, 0.005};
+  c.motion =
+      SimulatedMotion{"filter_error", 199, 1, {{"flight", "alpha_T", "rad", {spread, power}}}, 0.02, {"a sentence"}, {"a note"}, 2.0};
   return c;
 }
 
@@ -70,6 +75,10 @@ TEST(Comparison, JsonIsInDegreesAndNullWhereNotKnown) {
   EXPECT_TRUE(root["trims"][0]["sigmas"].is_null());
   EXPECT_TRUE(root["reference_trims_deg"]["static_test"]["sigma"].is_null());
   EXPECT_EQ(root["not_compared"][0]["what"], "equation_error");
+  const nlohmann::json& group = root["simulated_motion"]["series"][0]["groups"][0];
+  EXPECT_EQ(group["unit"], "deg");
+  EXPECT_NEAR(group["statistics"][0]["measured"].get<double>(), 13.0, 1e-12);
+  EXPECT_TRUE(group["statistics"][0]["at"].is_null());
 }
 
 TEST(Comparison, ReadsBackWhatWasWritten) {
@@ -88,6 +97,16 @@ TEST(Comparison, ReadsBackWhatWasWritten) {
   EXPECT_NEAR(back.trims[0].difference.value, degree, 1e-15);
   EXPECT_TRUE(std::isnan(back.trims[0].sigmas));
   EXPECT_NEAR(back.reference_trims.at("static_test").value, 12.2 * degree, 1e-15);
+  ASSERT_TRUE(back.motion.has_value());
+  EXPECT_EQ(back.motion->runs, 199U);
+  EXPECT_EQ(back.motion->p_value, 0.02);
+  EXPECT_EQ(back.motion->sentences, c.motion->sentences);
+  const std::vector<MotionGroup>& groups = back.motion->series.at(0).groups;
+  EXPECT_NEAR(groups.at(0).numbers.at(0).high, 14.0 * degree, 1e-15);
+  EXPECT_EQ(groups.at(1).unit, "dB");
+  EXPECT_EQ(groups.at(1).numbers.at(0).measured, -3.0);
+  EXPECT_TRUE(groups.at(1).numbers.at(0).outside);
+  EXPECT_EQ(groups.at(1).p_value, 0.005);
 }
 
 TEST(Comparison, ABrokenFileIsNamed) {

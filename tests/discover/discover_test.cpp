@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "misfit/discover/screen.h"
+#include "misfit/discover/verdict.h"
 #include "tests/fit/flight.h"
 
 namespace misfit {
@@ -37,6 +38,72 @@ TEST(Discover, NamesAPlantedFriction) {
   ASSERT_TRUE(first.actual_drop.has_value());
   EXPECT_GT(first.predicted_drop, 0.7 * *first.actual_drop);
   EXPECT_LT(first.predicted_drop, 1.4 * *first.actual_drop);
+}
+
+TEST(Discover, OnlyOneEffectIsPredictedAsInTheWholeSearch) {
+  const Flight flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}}));
+  const Discovery whole = flight.discover();
+  DiscoverOptions options;
+  options.only = "coulomb_friction";
+  const Discovery one = misfit::discover(flight.estimate, flight.request, registry(), flight.signals, options);
+  ASSERT_EQ(one.candidates.size(), 1U);
+  const auto same =
+      std::find_if(whole.candidates.begin(), whole.candidates.end(), [](const Candidate& c) { return c.effect == "coulomb_friction"; });
+  ASSERT_NE(same, whole.candidates.end());
+  EXPECT_DOUBLE_EQ(one.candidates[0].score, same->score);
+  EXPECT_DOUBLE_EQ(one.candidates[0].predicted_drop, same->predicted_drop);
+  EXPECT_FALSE(one.candidates[0].actual_drop.has_value());
+  EXPECT_LT(one.candidates[0].p_value, 0.01);
+  options.only = "coning";  // in the spherical system already
+  EXPECT_TRUE(misfit::discover(flight.estimate, flight.request, registry(), flight.signals, options).candidates.empty());
+}
+
+TEST(Verdict, AStrengthAtItsBoundIsNamedAndOneAtZeroIsNot) {
+  Model model = assemble(spherical({effect("strut_wake"), effect("coulomb_friction")}), registry());
+  const int depth = model.find_parameter("wake_depth"), friction = model.find_parameter("friction");
+  set(model, "wake_depth", 1.0 - 1e-5);
+  set(model, "friction", 0.0);
+  const auto found = ends_at_bound(model, {friction, depth});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(*found, "its strength wake_depth ends at the bound 1: not believable");
+  set(model, "wake_depth", 0.98);
+  EXPECT_FALSE(ends_at_bound(model, {friction, depth}).has_value());
+}
+
+/// The friction planted is 25 N m, a study that says "at most 10" stops the refit there.
+TEST(Discover, DoesNotAcceptWhatEndsAtItsBound) {
+  const Flight flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}}));
+  ModelRequest request = flight.request;
+  request.parameters["friction"].upper = 10.0;
+  const Discovery found = misfit::discover(flight.estimate, request, registry(), flight.signals);
+  const auto friction =
+      std::find_if(found.candidates.begin(), found.candidates.end(), [](const Candidate& c) { return c.effect == "coulomb_friction"; });
+  ASSERT_NE(friction, found.candidates.end());
+  EXPECT_FALSE(friction->accepted);
+  EXPECT_THAT(friction->why, testing::HasSubstr("friction ends at the bound 10 N m: not believable")) << found.verdict;
+}
+
+Calibration asking_for_roll() {
+  Calibration calibration;
+  CameraTest roll;
+  roll.name = "camera_roll";
+  roll.p_value = 1e-9;
+  calibration.tests = {roll};
+  return calibration;
+}
+
+TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
+  const Calibration calibration = asking_for_roll();
+  Discovery d;
+  d.candidates.resize(1);
+  d.candidates[0].effect = "camera_roll";
+  d.candidates[0].family = "sensor";
+  d.candidates[0].accepted = true;
+  add_camera_remarks(&calibration, d);
+  EXPECT_FALSE(d.candidates[0].accepted);
+  EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("calibrate with them offered"));
+  EXPECT_THAT(d.verdict, testing::StartsWith("The camera, not the physics"));
+  EXPECT_THAT(d.sweep_asks, testing::ElementsAre("camera_roll"));
 }
 
 TEST(Screen, AStrengthThatCannotBeNegativeIsNot) {

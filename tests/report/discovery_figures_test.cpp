@@ -146,15 +146,30 @@ TEST(LadderFigure, ForceStandsWithItsSigmaAndTheTrimWithNinetyFivePercent) {
   EXPECT_EQ(figure.x_marks[2].text, "+ strut_wake");
 }
 
-TEST(LadderFigure, ChannelsOfOtherUnitsStandInPanelsOfTheirOwn) {
+TEST(LadderFigure, ChannelsOfOneSystemKeepTheirUnits) {
+  Ladder one = ladder();
+  one.rungs.erase(one.rungs.begin());
+  const Figure figure = ladder_figure(one);
+  std::vector<std::string> units;
+  for (const Panel& panel : figure.panels) units.push_back(panel.y_unit);
+  EXPECT_EQ(units, (std::vector<std::string>{"", "N m", "px", "px", "deg"}));
+  EXPECT_EQ(find(figure, "P_y_RMS__1_step")->y, (std::vector<double>{1.78, 1.76}));
+}
+
+TEST(LadderFigure, ChannelsOfDifferentSystemsAreDrawnOverTheirFirstValue) {
   const Figure figure = ladder_figure(ladder());
   std::vector<std::string> units;
   for (const Panel& panel : figure.panels) units.push_back(panel.y_unit);
-  EXPECT_EQ(units, (std::vector<std::string>{"N m", "deg", "px", "deg", "px", "deg"}));
-  const Series* eta = find(figure, "eta_RMS__8_steps");
-  ASSERT_NE(eta, nullptr);
-  EXPECT_NEAR(eta->y[0], 1.1, 1e-9);
-  EXPECT_EQ(find(figure, "P_y_RMS__1_step")->y, (std::vector<double>{1.78, 1.76}));
+  EXPECT_EQ(units, (std::vector<std::string>{"", "N m", "% of first", "% of first", "deg"}));
+  EXPECT_EQ(find(figure, "eta_RMS__8_steps")->y, std::vector<double>{100.0});
+  EXPECT_NEAR(find(figure, "P_y_RMS__1_step")->y.at(1), 100.0 * 1.76 / 1.78, 1e-9);
+}
+
+TEST(LadderFigure, DropsStandSideBySideWhereThereAreAny) {
+  const Figure figure = ladder_figure(ladder());
+  EXPECT_EQ(find(figure, "predicted_drop")->y, std::vector<double>{275.0});
+  EXPECT_EQ(find(figure, "actual_drop")->y, std::vector<double>{290.0});
+  EXPECT_LT(find(figure, "predicted_drop")->hi[0], find(figure, "actual_drop")->lo[0] + 1e-9);
 }
 
 TEST(MapFigure, AmplitudesHaveBarsOfOneSigmaInTheUnitsPeopleRead) {
@@ -195,6 +210,18 @@ TEST(CandidatesFigure, TheBestIsOnTopAndTheAcceptedHasAColourOfItsOwn) {
   EXPECT_EQ(find(figure, "actual")->x, std::vector<double>{170.0});
   EXPECT_EQ(find(figure, "predicted")->x.size(), 3U);
   EXPECT_EQ(candidates_figure(candidates(), 2).notes.size(), 1U);
+}
+
+TEST(CandidatesFigure, ProbabilitiesStandBesideTheDropsWithTheThreshold) {
+  std::vector<Candidate> list = candidates();
+  list[0].p_value = 0.0;
+  list[1].p_value = 1e-4;
+  const Figure figure = candidates_figure(list);
+  ASSERT_EQ(figure.panels.size(), 2U);
+  EXPECT_TRUE(figure.panels[1].beside.has_value());
+  EXPECT_EQ(find(figure, "minus_log10_p")->x, (std::vector<double>{20.0, 4.0, 0.0}));
+  EXPECT_EQ(find(figure, "threshold")->x, (std::vector<double>{2.0, 2.0}));
+  EXPECT_EQ(figure.notes.size(), 1U) << "says that the longest bar is cut";
 }
 
 ReportInput example() {
@@ -238,6 +265,16 @@ TEST(DiscoveryReport, CellsAndBarsAreInTheTableWithUnits) {
   EXPECT_EQ(text.substr(0, text.find('\n')), "force.x[deg],force.y[deg],force.lo[deg],force.hi[deg],force.z[-]");
   const std::string svg = read_file(folder.path() / "map_lateral_moment_by_alpha_T_and_phi.svg");
   EXPECT_EQ(svg.find("no data"), std::string::npos);
+}
+
+TEST(DiscoveryReport, ARungsFindingsStandUnderItsName) {
+  const TemporaryFolder folder;
+  ReportInput input = example();
+  input.rung = RungInput{2, "strut_wake", std::nullopt, input.discovery};
+  input.rung->discovery->verdict = "nothing more";
+  const std::string page = read_file(write_report(folder.path(), input));
+  expect_parts(page, {"Of the study", "(rung 0)", "What could still be missing after rung 2, strut_wake added", "nothing more"});
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures/rung_02_candidates.svg"));
 }
 
 TEST(DiscoveryReport, AnEmptyDiagnosisStillGivesAPage) {

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "misfit/compare/compare.h"
 #include "misfit/core/units.h"
 
@@ -50,6 +53,42 @@ std::string curves_text(const Comparison& c) {
   return align_columns(rows);
 }
 
+std::string as_text(double value, double factor) { return std::isfinite(value) ? fmt::format("{:.3g}", value * factor) : "–"; }
+
+void add_group(const MotionSeries& s, const MotionGroup& g, Cells& rows) {
+  const std::string unit = display_unit(g.unit);
+  const double factor = unit == g.unit ? 1.0 : convert(1.0, g.unit, unit);
+  const std::string p = fmt::format("{:.3f}", g.p_value);
+  if (g.name == "autocorrelation" || g.name == "spectrum") {
+    const auto outside = std::count_if(g.numbers.begin(), g.numbers.end(), [](const MotionNumber& n) { return n.outside; });
+    rows.push_back({s.name, g.name, fmt::format("{} of {} outside", outside, g.numbers.size()), "", "", p});
+    return;
+  }
+  bool first = true;
+  for (const MotionNumber& n : g.numbers) {
+    const bool always = n.name == "mean" || n.name == "standard deviation" || n.at == 0.05 || n.at == 0.5 || n.at == 0.95;
+    if (!always && !n.outside) continue;
+    rows.push_back({s.name, g.name == "amplitude" ? "amplitude, " + n.name : n.name, as_text(n.measured, factor) + " " + unit,
+                    as_text(n.low, factor) + " … " + as_text(n.high, factor), n.outside ? "outside" : "", first ? p : ""});
+    first = false;
+  }
+}
+
+std::string motion_text(const SimulatedMotion& motion) {
+  Cells rows = {{"series", "statistic", "measured", "simulated, 95 %", "", "p of the group"}};
+  std::string experiment, out;
+  for (const MotionSeries& s : motion.series) {
+    if (s.experiment != experiment) rows.push_back({s.experiment, "", "", "", "", ""});
+    experiment = s.experiment;
+    for (const MotionGroup& g : s.groups) add_group(s, g, rows);
+  }
+  out = fmt::format("\nmotion as the fitted model makes it ({} runs) against the measured one  ({:.1f} s)\n", motion.runs, motion.seconds);
+  if (rows.size() > 1) out += align_columns(rows);
+  for (const auto& sentence : motion.sentences) out += wrap_text(sentence, 100, "  ") + "\n";
+  for (const auto& note : motion.notes) out += wrap_text("! " + note, 100, "  ") + "\n";
+  return out;
+}
+
 }  // namespace
 
 std::string comparison_text(const Comparison& comparison) {
@@ -60,6 +99,7 @@ std::string comparison_text(const Comparison& comparison) {
   text += curves_text(comparison);
   if (!comparison.not_compared.empty()) text += "\n";
   for (const NotCompared& n : comparison.not_compared) text += wrap_text("not compared: " + n.what + " (" + n.why + ")", 100, "  ") + "\n";
+  if (comparison.motion) text += motion_text(*comparison.motion);
   return text;
 }
 

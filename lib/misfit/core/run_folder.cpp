@@ -33,11 +33,12 @@ StageRecord from_json(const std::string& stage, const json& entry) {
   return record;
 }
 
-std::map<std::string, StageRecord> read_stages(const std::filesystem::path& path) {
+std::map<std::string, StageRecord> read_stages(const std::filesystem::path& path, std::filesystem::path& study) {
   std::map<std::string, StageRecord> stages;
   if (!std::filesystem::exists(path)) return stages;
   try {
     const json run = json::parse(read_file(path));
+    study = run.value("study", std::string());
     for (const auto& [stage, entry] : run.at("stages").items()) stages[stage] = from_json(stage, entry);
   } catch (const json::exception& error) {
     fmt::print(stderr, "{}: cannot be understood, all stages will run again ({})\n", path.string(), error.what());
@@ -51,10 +52,21 @@ std::map<std::string, StageRecord> read_stages(const std::filesystem::path& path
 
 }  // namespace
 
-RunFolder::RunFolder(std::filesystem::path dir, std::string command, unsigned long seed)
-    : dir_(std::move(dir)), command_(std::move(command)), seed_(seed) {
+RunFolder::RunFolder(std::filesystem::path dir, std::string command, unsigned long seed, std::filesystem::path study)
+    : dir_(std::move(dir)),
+      command_(std::move(command)),
+      seed_(seed),
+      study_(study.empty() ? study : std::filesystem::absolute(study).lexically_normal()) {
   make_writable_folder(dir_);
-  stages_ = read_stages(file("run.json"));
+  stages_ = read_stages(file("run.json"), study_before_);
+}
+
+std::optional<std::filesystem::path> RunFolder::other_study() const {
+  if (study_.empty() || study_before_.empty()) return std::nullopt;
+  const std::filesystem::path before = (std::filesystem::absolute(dir_) / study_before_).lexically_normal();
+  std::error_code error;
+  if (!std::filesystem::exists(before, error) || std::filesystem::equivalent(before, study_, error)) return std::nullopt;
+  return before;
 }
 
 bool RunFolder::up_to_date(const std::string& stage, const std::map<std::string, std::string>& inputs) const {
@@ -75,6 +87,7 @@ void RunFolder::record(const StageRecord& record) {
 
 void RunFolder::write() const {
   json run = {{"version", version()}, {"commit", commit()}, {"seed", seed_}, {"command", command_}, {"stages", json::object()}};
+  if (!study_.empty()) run["study"] = study_.lexically_relative(std::filesystem::absolute(dir_).lexically_normal()).generic_string();
   for (const auto& [stage, record] : stages_) run["stages"][stage] = to_json(record);
   write_atomically(file("run.json"), run.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,9 @@ struct StageRecord {
 /// The output folder of a study. run.json is rewritten (atomically) after every stage.
 class RunFolder {
  public:
-  /// Makes the folder and reads run.json if there is one (an unreadable one is treated as absent, said on stderr).
-  RunFolder(std::filesystem::path dir, std::string command, unsigned long seed);
+  /// Makes the folder and reads run.json if there is one (an unreadable one is treated as absent, said on stderr). `study`: the file whose
+  /// results these are; run.json names it relative to the folder.
+  RunFolder(std::filesystem::path dir, std::string command, unsigned long seed, std::filesystem::path study = {});
 
   [[nodiscard]] const std::filesystem::path& path() const { return dir_; }
   [[nodiscard]] std::filesystem::path file(const std::string& name) const { return dir_ / name; }
@@ -31,12 +33,16 @@ class RunFolder {
   [[nodiscard]] bool up_to_date(const std::string& stage, const std::map<std::string, std::string>& inputs) const;
   void record(const StageRecord& record);
   [[nodiscard]] const std::map<std::string, StageRecord>& stages() const { return stages_; }
+  /// The study that run.json names, if it is another one than this folder was opened for and still exists (one that was renamed or moved is
+  /// taken to be this one).
+  [[nodiscard]] std::optional<std::filesystem::path> other_study() const;
 
  private:
   void write() const;
   std::filesystem::path dir_;
   std::string command_;
   unsigned long seed_;
+  std::filesystem::path study_, study_before_;  ///< as given, absolute; as run.json has it
   std::map<std::string, StageRecord> stages_;
 };
 

@@ -54,11 +54,9 @@ void write_discovery(const std::filesystem::path& dir, const Discovery& discover
   make_writable_folder(dir);
   Json candidates = Json::array();
   for (const auto& candidate : discovery.candidates) candidates.push_back(to_json(candidate));
-  const Json root = {{"verdict", discovery.verdict},
-                     {"sentences", discovery.sentences},
-                     {"tried", discovery.tried},
-                     {"force", estimates_to_json(discovery.force)},
-                     {"seconds", number_or_null(discovery.seconds)}};
+  const Json root = {{"verdict", discovery.verdict},       {"sentences", discovery.sentences},
+                     {"tried", discovery.tried},           {"force", estimates_to_json(discovery.force)},
+                     {"sweep_asks", discovery.sweep_asks}, {"seconds", number_or_null(discovery.seconds)}};
   write_atomically(dir / "candidates.json", candidates.dump(1) + "\n");
   write_atomically(dir / "discovery.json", root.dump(1) + "\n");
 }
@@ -70,6 +68,7 @@ Discovery read_discovery(const std::filesystem::path& dir) {
     d.sentences = root.at("sentences").get<std::vector<std::string>>();
     d.tried = root.at("tried").get<std::vector<std::string>>();
     d.force = estimates_from_json(root.at("force"));
+    d.sweep_asks = root.value("sweep_asks", std::vector<std::string>{});
     d.seconds = number_or_nan(root, "seconds");
     return d;
   });

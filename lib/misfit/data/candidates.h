@@ -39,7 +39,8 @@ struct Discovery {
   std::vector<std::string> tried;         ///< families and cells that were looked at, in words
   std::map<std::string, Estimate> force;  ///< random force before
   std::string unexplained_port,
-      unexplained_quantity;  ///< where a force of unknown form depends on what, if that is the verdict; else empty
+      unexplained_quantity;             ///< where a force of unknown form depends on what, if that is the verdict; else empty
+  std::vector<std::string> sweep_asks;  ///< camera parameters that the calibration sweep asks for and the camera of the study does not have
   double seconds = 0.0;
 };
 

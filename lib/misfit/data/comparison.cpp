@@ -5,7 +5,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/core/units.h"
-#include "misfit/data/json_number.h"
+#include "misfit/data/motion_json.h"
 
 namespace misfit {
 namespace {
@@ -120,6 +120,7 @@ Comparison comparison_from(const Json& root) {
     if (const std::optional<Estimate> trim = degrees_from_json(object)) c.reference_trims[name] = *trim;
   }
   for (const Json& object : root.at("not_compared")) c.not_compared.push_back({object.at("what"), object.at("why")});
+  if (root.contains("simulated_motion") && !root.at("simulated_motion").is_null()) c.motion = motion_from_json(root.at("simulated_motion"));
   return c;
 }
 
@@ -131,7 +132,8 @@ void write_comparison(const std::filesystem::path& path, const Comparison& compa
                {"references", Json::array()},
                {"trims", Json::array()},
                {"reference_trims_deg", Json::object()},
-               {"not_compared", Json::array()}};
+               {"not_compared", Json::array()},
+               {"simulated_motion", comparison.motion ? motion_to_json(*comparison.motion) : Json(nullptr)}};
   for (const MethodSummary& m : comparison.methods) root["methods"][m.method] = to_json(m);
   for (const CurveDifference& d : comparison.curves) root[d.reference ? "references" : "curves"].push_back(to_json(d));
   for (const TrimDifference& d : comparison.trims) root["trims"].push_back(to_json(d));

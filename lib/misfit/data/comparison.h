@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "misfit/data/fit.h"
+#include "misfit/data/motion.h"
 
 namespace misfit {
 
@@ -58,12 +59,13 @@ struct Comparison {
   std::vector<TrimDifference> trims;
   std::vector<NotCompared> not_compared;
   std::map<std::string, Estimate> reference_trims;  ///< name → trim [rad]
+  std::optional<SimulatedMotion> motion;            ///< missing: no fitted model with its random force
 };
 
 /// compare.json:
 /// {"methods":{METHOD:{"status","message","driven","trim_deg","slopes","at_trim","rms","validation_rms","loglik","validation_loglik"}},
-/// "curves":[…],"references":[…],"trims":[…],"reference_trims_deg":{…},"not_compared":[…]}; null for what is not known, angles of curves in
-/// degrees.
+/// "curves":[…],"references":[…],"trims":[…],"reference_trims_deg":{…},"not_compared":[…],"simulated_motion":{…}}; null for what is not
+/// known, angles of curves in degrees.
 void write_comparison(const std::filesystem::path& path, const Comparison& comparison);
 
 /// The other way; InputError with the file's name if it is not of that form.

@@ -74,12 +74,13 @@ ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features
 }
 
 std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
-                               const std::vector<Features>& features, int threads) {
+                               const std::vector<Features>& features, const DiagnoseOptions& options) {
   const SystemSpec& spec = estimate.model.system->spec();
   const std::size_t ports = spec.dynamic_ports.size();
   std::vector<ForceMap> maps(ports * features.size());
-  run_jobs(maps.size(), threads,
-           [&](std::size_t k) { maps[k] = map_of(score, path, features[k / ports], spec, static_cast<int>(k % ports)); });
+  run_jobs(
+      maps.size(), options.threads,
+      [&](std::size_t k) { maps[k] = map_of(score, path, features[k / ports], spec, static_cast<int>(k % ports)); }, options.progress);
   for (auto& map : maps) {
     map.p_corrected = sidak(map.p_value, static_cast<double>(maps.size()));
     if (map.p_corrected < significant) map.sentence = where_it_fails(map);
@@ -142,7 +143,8 @@ void conclude(Diagnosis& out) {
     const bool repeated = std::find(quantities.begin(), quantities.end(), map.port + map.quantity) != quantities.end();
     if (map.sentence.empty() || said >= 3 || repeated) continue;
     quantities.push_back(map.port + map.quantity);
-    out.sentences.push_back(map.sentence + " (p " + format_probability(map.p_corrected) + ")");
+    out.sentences.push_back(map.sentence + "; the map of " + map.port + " over " + map.quantity + " as a whole departs from zero with p " +
+                            format_probability(map.p_corrected));
     ++said;
   }
   if (said == 0) {
@@ -153,7 +155,7 @@ void conclude(Diagnosis& out) {
   }
   const auto time = std::find_if(out.maps.begin(), out.maps.end(), [](const ForceMap& map) { return map.quantity == "time"; });
   if (said > 0 && time != out.maps.end() && time->p_corrected > significant)
-    out.sentences.push_back("time explains nothing of it: p " + format_probability(time->p_corrected));
+    out.sentences.push_back("time explains nothing of it: the map over time has p " + format_probability(time->p_corrected));
   for (const auto& report : out.whiteness) {
     const double count = 3.0 * static_cast<double>(out.whiteness.size());
     if (sidak(report.peak_p, count) < significant)
@@ -176,7 +178,7 @@ Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& option
   const ForceColumns path(estimate);
   const std::vector<Features> features = features_of(estimate, path);
   out.whiteness = whiteness_of(estimate);
-  out.maps = all_maps(estimate, score, path, features, options.threads);
+  out.maps = all_maps(estimate, score, path, features, options);
   out.pairs = pair_maps(estimate, score, path, features, out.maps);
   out.nis = nis_of(estimate);
   out.missing = missing_force_of(estimate);

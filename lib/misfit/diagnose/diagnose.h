@@ -4,13 +4,15 @@
 //   [HK] A. C. Harvey, S. J. Koopman, J. Business & Economic Statistics 10 (1992): diagnostic checking of unobserved-components models.
 //   [LB] G. M. Ljung, G. E. P. Box, Biometrika 65 (1978).
 
+#include "misfit/core/work_queue.h"
 #include "misfit/data/diagnosis.h"
 #include "misfit/fit/filter_estimate.h"
 
 namespace misfit {
 
 struct DiagnoseOptions {
-  int threads = 0;  ///< 0: one per core; does not change the answer
+  int threads = 0;           ///< 0: one per core; does not change the answer
+  ProgressFn progress = {};  ///< called with (done, total) maps
 };
 
 /// Where the fitted model fails, from its innovations, which under a right model are independent of everything known one step before

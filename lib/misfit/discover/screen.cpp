@@ -147,7 +147,7 @@ double log_chi_square_tail(double x, double dof) {
 }
 
 std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
-                             const std::vector<Specimen>& specimens, int threads) {
+                             const std::vector<Specimen>& specimens, int threads, const ProgressFn& progress) {
   std::vector<Screened> out(specimens.size());
   std::vector<std::vector<std::vector<double>>> cells(specimens.size());
   std::vector<double> frequencies(specimens.size(), 1.0);
@@ -170,10 +170,13 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
   }
   std::vector<std::vector<CellResult>> results(specimens.size());
   for (std::size_t s = 0; s < specimens.size(); ++s) results[s].resize(cells[s].size());
-  run_jobs(jobs.size(), threads, [&](std::size_t j) {
-    const Specimen& specimen = specimens[jobs[j].specimen];
-    results[jobs[j].specimen][jobs[j].cell] = test_cell(estimate, score, specimen, cells[jobs[j].specimen][jobs[j].cell]);
-  });
+  run_jobs(
+      jobs.size(), threads,
+      [&](std::size_t j) {
+        const Specimen& specimen = specimens[jobs[j].specimen];
+        results[jobs[j].specimen][jobs[j].cell] = test_cell(estimate, score, specimen, cells[jobs[j].specimen][jobs[j].cell]);
+      },
+      progress);
   run_jobs(specimens.size(), threads, [&](std::size_t s) {
     Screened& best = out[s];
     best.specimen = &specimens[s];
@@ -204,11 +207,12 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
   return out;
 }
 
-std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path, int threads) {
-  const std::vector<Features> features = features_of(estimate, path, 8);
+std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path, int threads,
+                                         const ProgressFn& progress) {
+  const std::vector<Features> features = features_of(estimate, path, hats_of_unknown_curves);
   const auto& ports = estimate.model.system->spec().dynamic_ports;
   std::vector<UnknownCurve> out(features.size() * ports.size());
-  run_jobs(out.size(), threads, [&](std::size_t k) {
+  const auto test = [&](std::size_t k) {
     const Features& f = features[k / ports.size()];
     UnknownCurve& curve = out[k];
     curve.port_index = static_cast<int>(k % ports.size());
@@ -219,7 +223,8 @@ std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const S
     if (curve.result.dof == 0) return;
     curve.log_p = log_chi_square_tail(curve.result.chi2, curve.result.dof);
     curve.p_value = std::exp(curve.log_p);
-  });
+  };
+  run_jobs(out.size(), threads, test, progress);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "misfit/core/work_queue.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/discover/specimen.h"
 
@@ -21,7 +22,10 @@ struct Screened {
 /// Score tests of all cells of all specimens. Frequencies are scanned in steps of 1/(4T) by their line in the score of the force steps, and
 /// the strongest are then tested exactly. Independent of the number of threads.
 [[nodiscard]] std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
-                                           const std::vector<Specimen>& specimens, int threads);
+                                           const std::vector<Specimen>& specimens, int threads, const ProgressFn& progress = {});
+
+/// Hats per quantity of the unknown curves.
+inline constexpr int hats_of_unknown_curves = 8;
 
 /// Unknown curves: hat functions of every quantity on every dynamic port.
 struct UnknownCurve {
@@ -31,7 +35,7 @@ struct UnknownCurve {
   double log_p = 0.0, p_value = 1.0;
 };
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
-                                                       int threads);
+                                                       int threads, const ProgressFn& progress = {});
 
 /// log P(chi² > x), accurate where the probability underflows.
 [[nodiscard]] double log_chi_square_tail(double x, double dof);

@@ -1,6 +1,7 @@
 #include "misfit/discover/verdict.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
@@ -81,6 +82,20 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
                 " candidates none reaches a family-wise p of " + format_value(p_accept) + " with a held-out gain" + closest + ".";
 }
 
+std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths) {
+  constexpr double close = 1e-3;
+  for (const int index : strengths) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(index)];
+    for (const double bound : {p.lower, p.upper}) {
+      if (bound == 0.0 || !std::isfinite(bound) || std::abs(p.value - bound) > close * p.scale) continue;
+      const std::string unit = display_unit(p.unit);
+      return "its strength " + p.name + " ends at the bound " + format_value(convert(bound, p.unit, unit)) +
+             (unit == "-" ? "" : " " + unit) + ": not believable";
+    }
+  }
+  return std::nullopt;
+}
+
 void add_camera_remarks(const Calibration* calibration, Discovery& out) {
   if (calibration == nullptr) return;
   std::vector<std::string> wanted;
@@ -89,6 +104,7 @@ void add_camera_remarks(const Calibration* calibration, Discovery& out) {
     if (!test.taken_in && test.p_value < clear) wanted.push_back(test.name);
   }
   if (wanted.empty()) return;
+  out.sweep_asks = wanted;
   for (auto& c : out.candidates) {
     if (wanted.size() > 1 && std::find(wanted.begin(), wanted.end(), c.effect) != wanted.end()) c.group = wanted;
   }
@@ -97,6 +113,11 @@ void add_camera_remarks(const Calibration* calibration, Discovery& out) {
   if (physics) {
     out.sentences.push_back("sweep and flight disagree: " + disagreement + "; calibrate with them offered, then ask again");
   } else {
+    for (auto& c : out.candidates) {
+      if (!c.accepted) continue;
+      c.accepted = false;
+      c.why = "the calibration sweep asks for " + joined(wanted) + ": calibrate with them offered, then ask again (" + c.why + ")";
+    }
     out.verdict = "The camera, not the physics: " + disagreement + ". Calibrate with them offered, then ask again.";
   }
 }

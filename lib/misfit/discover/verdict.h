@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "misfit/discover/discover.h"
 
 namespace misfit {
@@ -13,7 +15,12 @@ struct Unexplained {
 /// The verdict in one sentence, and what would separate a group.
 void write_verdict(Discovery& discovery, const std::optional<Unexplained>& unexplained, double p_accept);
 
-/// Remarks on the camera: what the sweep asks for and the model does not have.
+/// "its strength friction ends at the bound 40 N m: not believable" for the first of these parameters that lies within a thousandth of its
+/// scale of a bound other than 0; nullopt if none does. A strength at 0 is an effect that is off, and its drop says so.
+[[nodiscard]] std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths);
+
+/// Remarks on the camera: what the sweep asks for and the model does not have (kept in Discovery::sweep_asks). A sensor effect is then not
+/// accepted: its drop is the sweep's prior, which a calibration has to follow up, not the flight.
 void add_camera_remarks(const Calibration* calibration, Discovery& discovery);
 
 }  // namespace misfit

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
@@ -15,6 +16,25 @@ namespace misfit::report {
 namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
+using Put = std::function<void(Figure)>;
+
+/// Draws figures of a rung under names of their own.
+Put put_for(const Draw& draw, const std::string& prefix) {
+  return [&draw, prefix](Figure figure) {
+    figure.name = prefix + figure.name;
+    draw(figure);
+  };
+}
+
+/// "rung 2, strut_wake added": which model a section is about.
+std::string name_of(const RungInput& rung) { return fmt::format("rung {}, {} added", rung.id, rung.added); }
+std::string prefix_of(const RungInput& rung) { return fmt::format("rung_{:02}_", rung.id); }
+
+/// Said only where there is a choice.
+void say_which(const ReportInput& input, const std::string& of, Page& page) {
+  if (input.ladder && input.ladder->rungs.size() > 1) page.paragraph("Of " + of + ".");
+}
+constexpr const char* own_model = "the study's own model, before anything was added (rung 0)";
 
 std::string shown(const Estimate& e) {
   const Row row("", e.value, e.sigma, e.unit.empty() ? "-" : e.unit);
@@ -69,7 +89,7 @@ void maps_table(const Diagnosis& d, Page& page) {
   page.table(rows);
 }
 
-void force_figures(const Diagnosis& d, const Draw& draw) {
+void force_figures(const Diagnosis& d, const Put& draw) {
   constexpr double part = 10.0;
   for (const MissingForce& missing : d.missing) {
     draw(missing_force_figure(missing, std::nullopt));
@@ -96,10 +116,9 @@ void ladder_section(const ReportInput& input, Page& page, const Draw& draw) {
   page.list(remarks);
 }
 
-void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw) {
-  if (!input.diagnosis) return;
-  const Diagnosis& d = *input.diagnosis;
-  page.section("Where the model fails");
+namespace {
+
+void show_diagnosis(const Diagnosis& d, Page& page, const Put& draw) {
   for (const auto& sentence : d.sentences) page.paragraph(sentence);
   const std::size_t drawn = maps_to_draw(d.maps);
   for (std::size_t k = 0; k < drawn; ++k) draw(map_figure(d.maps[k]));
@@ -117,10 +136,7 @@ void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw) {
   force_figures(d, draw);
 }
 
-void discovery_section(const ReportInput& input, Page& page, const Draw& draw) {
-  if (!input.discovery) return;
-  const Discovery& d = *input.discovery;
-  page.section("What could be missing");
+void show_discovery(const Discovery& d, Page& page, const Put& draw) {
   page.paragraph(d.verdict, "question");
   for (const auto& sentence : d.sentences) page.paragraph(sentence);
   if (d.candidates.empty()) return;
@@ -137,6 +153,30 @@ void discovery_section(const ReportInput& input, Page& page, const Draw& draw) {
   page.table(rows);
   if (!d.tried.empty()) page.subsection("What was looked at");
   page.list(d.tried);
+}
+
+}  // namespace
+
+void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw) {
+  if (input.diagnosis) {
+    page.section("Where the model fails");
+    say_which(input, own_model, page);
+    show_diagnosis(*input.diagnosis, page, put_for(draw, ""));
+  }
+  if (!input.rung || !input.rung->diagnosis) return;
+  page.section("Where the model of " + name_of(*input.rung) + ", fails");
+  show_diagnosis(*input.rung->diagnosis, page, put_for(draw, prefix_of(*input.rung)));
+}
+
+void discovery_section(const ReportInput& input, Page& page, const Draw& draw) {
+  if (input.discovery) {
+    page.section("What could be missing");
+    say_which(input, own_model, page);
+    show_discovery(*input.discovery, page, put_for(draw, ""));
+  }
+  if (!input.rung || !input.rung->discovery) return;
+  page.section("What could still be missing after " + name_of(*input.rung));
+  show_discovery(*input.rung->discovery, page, put_for(draw, prefix_of(*input.rung)));
 }
 
 }  // namespace misfit::report

@@ -42,6 +42,12 @@ struct Mark {
   std::string text;
 };
 
+/// An x axis that is not the figure's.
+struct OwnX {
+  std::string label;
+  std::array<double, 2> range{};
+};
+
 /// One pair of axes; the panels of a figure stand above each other and share x.
 struct Panel {
   std::string y_label, y_unit;
@@ -50,7 +56,8 @@ struct Panel {
   double y_step = 0.0;                           ///< distance of the marks on the y axis; 0: chosen
   double height = 300.0;                         ///< of the axes [px]
   bool zero_line = false;
-  std::vector<Mark> y_marks = {};  ///< names instead of numbers
+  std::vector<Mark> y_marks = {};   ///< names instead of numbers
+  std::optional<OwnX> beside = {};  ///< stands to the right of the panel before it, with this x axis and the same places along y, unnamed
 };
 
 /// A figure as plain data. Texts are plain UTF-8; known symbols ("alpha_T", "C_m") are typeset when drawn.

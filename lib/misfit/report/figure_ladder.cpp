@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures_discovery.h"
@@ -71,26 +72,71 @@ void add_force(const Rung& rung, std::vector<Panel>& panels) {
   add_point(series_for(panel, "force_sigma", "", Style::error_bars, black), rung.id, e->value * factor, e->sigma * factor);
 }
 
-/// One box per channel, side by side.
+/// Predicted and actual drop side by side.
+void add_drop(const Rung& rung, std::vector<Panel>& panels) {
+  constexpr double width = 0.25;
+  if (!rung.predicted_drop && !rung.actual_drop) return;
+  Panel& panel = panel_for(panels, "drop", "");
+  const auto add = [&](const char* key, const char* legend, const std::string& colour, double side, double drop) {
+    add_box(series_for(panel, key, legend, Style::boxes, colour), rung.id + 0.5 * side * width, drop, 0.9 * width);
+  };
+  if (rung.predicted_drop) add("predicted_drop", "drop, predicted before", grey, -1.0, *rung.predicted_drop);
+  if (rung.actual_drop) add("actual_drop", "drop, after fitting again", palette(2), 1.0, *rung.actual_drop);
+}
+
+/// How the errors of a ladder are drawn.
+struct Errors {
+  bool relative = false;                ///< systems with other channels: each channel over its first value
+  std::map<std::string, double> first;  ///< label + channel → first value
+  std::vector<std::string> channels;    ///< in the order of their colours
+};
+
+bool channels_change(const Ladder& ladder) {
+  const auto same = [&](const Rung& rung) {
+    return std::equal(rung.rms.begin(), rung.rms.end(), ladder.rungs.front().rms.begin(), ladder.rungs.front().rms.end(),
+                      [](const auto& a, const auto& b) { return a.first == b.first; });
+  };
+  return !std::all_of(ladder.rungs.begin(), ladder.rungs.end(), same);
+}
+
+std::string colour_of(const std::string& channel, Errors& errors) {
+  const auto found = std::find(errors.channels.begin(), errors.channels.end(), channel);
+  const auto place = static_cast<std::size_t>(found - errors.channels.begin());
+  if (found == errors.channels.end()) errors.channels.push_back(channel);
+  return palette(place == 1 ? 2 : place == 2 ? 3 : place);  // 1 is the random force
+}
+
+/// One box per channel, side by side; or, relative, a line of markers.
 void add_channel(const Rung& rung, const std::string& what, const std::string& channel, const Estimate& e, std::size_t place,
-                 std::vector<Panel>& panels) {
+                 std::vector<Panel>& panels, Errors& errors) {
+  const std::string key = as_key(channel + "_" + what);
+  const std::string colour = colour_of(channel, errors);
+  if (errors.relative) {
+    const double first = errors.first.emplace(key, e.value).first->second;
+    Panel& panel = panel_for(panels, what, "% of first");
+    for (const Style style : {Style::line, Style::markers}) {
+      Series& series = series_for(panel, key + (style == Style::line ? "_line" : ""), style == Style::line ? "" : channel, style, colour);
+      series.x.push_back(rung.id);
+      series.y.push_back(100.0 * e.value / first);
+    }
+    return;
+  }
   const std::string unit = display_unit(e.unit);
   constexpr double all = 0.5;
   const double width = all / static_cast<double>(std::max<std::size_t>(rung.rms.size(), 1));
   const double x = rung.id - 0.5 * all + (static_cast<double>(place) + 0.5) * width;
-  Panel& panel = panel_for(panels, what, unit);
-  Series& series = series_for(panel, as_key(channel + "_" + what), channel, Style::boxes, palette(panel.series.size() % 2 == 0 ? 0 : 2));
+  Series& series = series_for(panel_for(panels, what, unit), key, channel, Style::boxes, colour);
   add_box(series, x, e.value * convert(1.0, e.unit, unit), 0.9 * width);
 }
 
-void add_errors(const Rung& rung, std::vector<Panel>& near, std::vector<Panel>& far) {
+void add_errors(const Rung& rung, std::vector<Panel>& near, std::vector<Panel>& far, Errors& errors) {
   std::size_t place = 0;
   for (const auto& [channel, e] : rung.rms) {
-    add_channel(rung, "RMS, 1 step", channel, e, place, near);
+    add_channel(rung, "RMS, 1 step", channel, e, place, near, errors);
     const auto steps = rung.k_step.find(channel);
     if (steps != rung.k_step.end() && steps->second.size() > far_ahead) {
       const std::string what = fmt::format("RMS, {} steps", kLadderSteps[far_ahead]);
-      add_channel(rung, what, channel, {steps->second[far_ahead], 0.0, e.unit}, place, far);
+      add_channel(rung, what, channel, {steps->second[far_ahead], 0.0, e.unit}, place, far, errors);
     }
     ++place;
   }
@@ -107,7 +153,7 @@ void add_trim(const Rung& rung, std::vector<Panel>& panels) {
 
 /// From 0 for what is an amount; with some room for all.
 void set_range(Panel& panel) {
-  double low = panel.y_label == "trim" ? INFINITY : 0.0, high = -INFINITY;
+  double low = panel.y_label == "trim" || panel.y_unit.starts_with("%") ? INFINITY : 0.0, high = -INFINITY;
   for (const Series& s : panel.series) {
     for (const auto* values : {&s.y, &s.lo, &s.hi}) {
       if (s.style == Style::boxes && values != &s.y) continue;  // these run along x
@@ -118,6 +164,8 @@ void set_range(Panel& panel) {
       }
     }
   }
+  constexpr double least_drop = 10.0;  // less is nothing, and is not to look like much
+  if (panel.y_label == "drop") high = std::max(high, least_drop);
   if (!(high > low)) return;
   const double room = 0.08 * (high - low);
   panel.y_range = {low == 0.0 ? 0.0 : low - room, high + room};
@@ -130,17 +178,23 @@ Figure ladder_figure(const Ladder& ladder) {
   figure.name = "ladder";
   figure.title = "The ladder: what each model leaves unexplained";
   figure.caption =
-      "From left to right one effect more. The random force is what the filter needs on top of the model to explain the motion; errors are "
-      "of predictions from the filtered state. Channels of other systems have other units and stand in panels of their own.";
+      "From left to right one effect more. Drop = 2 (log-likelihood with the effect − without); a change of system has none. The random "
+      "force is what the filter needs on top of the model to explain the motion; errors are of predictions from the filtered state.";
   figure.x_label = "model";
-  std::vector<Panel> force, near, far, trim;
+  std::vector<Panel> drop, force, near, far, trim;
+  Errors errors;
+  errors.relative = channels_change(ladder);
+  if (errors.relative)
+    figure.caption +=
+        " Its systems predict other channels, in other units: each error is drawn over that of the first rung that predicts the channel.";
   for (const Rung& rung : ladder.rungs) {
     figure.x_marks.push_back({static_cast<double>(rung.id), added_to(rung)});
+    add_drop(rung, drop);
     add_force(rung, force);
-    add_errors(rung, near, far);
+    add_errors(rung, near, far, errors);
     add_trim(rung, trim);
   }
-  for (auto* panels : {&force, &near, &far, &trim}) {
+  for (auto* panels : {&drop, &force, &near, &far, &trim}) {
     for (Panel& panel : *panels) {
       set_range(panel);
       figure.panels.push_back(std::move(panel));

@@ -9,8 +9,9 @@
 
 namespace misfit::report {
 
-/// What every rung of the ladder leaves unexplained: the random force ± sigma; per unit the RMS of every channel one step and eight
-/// steps ahead; the trim with its 95 % interval.
+/// What every rung of the ladder brings and leaves unexplained: predicted and actual drop; the random force ± sigma; the RMS of every
+/// channel one step and eight steps ahead, in its unit, or where the systems of the ladder predict different channels over that of the
+/// first rung that has the channel; the trim with its 95 % interval.
 [[nodiscard]] Figure ladder_figure(const Ladder& ladder);
 
 /// Amplitude of the missing force ± 1 sigma over the places of one quantity; below, how many samples each place has.
@@ -28,7 +29,8 @@ namespace misfit::report {
 /// The same against one quantity.
 [[nodiscard]] Figure missing_force_by_figure(const MissingForce& missing, const std::string& quantity);
 
-/// Predicted and actual drop of the best `most` candidates; the accepted ones in another colour.
+/// Predicted and actual drop of the best `most` candidates, the accepted ones in another colour; beside them −log10 of their family-wise
+/// p-values (at most 20) with the line at p = 0.01.
 [[nodiscard]] Figure candidates_figure(const std::vector<Candidate>& candidates, std::size_t most = 15);
 
 }  // namespace misfit::report

@@ -21,6 +21,7 @@ constexpr double title_height = 42.0;
 constexpr double legend_row = 21.0;
 constexpr double panel_gap = 16.0;
 constexpr double bottom = 66.0;
+constexpr double left_column = 0.65;
 
 /// Room beside the axes of all panels.
 struct Margins {
@@ -101,12 +102,14 @@ std::vector<double> beyond(const std::vector<double>& middle, const std::vector<
   return out;
 }
 
+/// Of the panels that share x.
 Range x_range_of(const Figure& figure) {
   if (figure.x_range) return *figure.x_range;
   std::vector<const std::vector<double>*> columns;
   std::vector<std::vector<double>> edges;
   bool margin = false, bars = false;
   for (const Panel& panel : figure.panels) {
+    if (panel.beside) continue;
     for (const Series& s : panel.series) {
       columns.push_back(&s.x);
       if (s.style == Style::boxes) columns.insert(columns.end(), {&s.lo, &s.hi});
@@ -202,11 +205,30 @@ struct Size {
   double width = 0.0, height = 0.0;
 };
 
+bool has_columns(const Figure& figure) {
+  return std::any_of(figure.panels.begin(), figure.panels.end(), [](const Panel& panel) { return panel.beside.has_value(); });
+}
+
+/// Room beside the axes of one panel: of two columns the left one is twice as wide.
+Margins margins_of_panel(const Figure& figure, const Panel& panel, double width) {
+  Margins m = margins_of(figure);
+  if (!has_columns(figure)) return m;
+  constexpr double gap = 26.0;
+  const double split = m.left + left_column * (width - m.left - m.right);
+  if (panel.beside) {
+    m.left = split + gap;
+  } else {
+    m.right = width - split;
+  }
+  return m;
+}
+
 std::string panel_text(const Figure& figure, std::size_t k, const Place& place, const Size& size) {
   const auto [width, height] = size;
   const Panel& panel = figure.panels[k];
-  const Margins m = margins_of(figure);
-  const bool lowest = k + 1 == figure.panels.size();
+  const Margins m = margins_of_panel(figure, panel, width);
+  const std::size_t below = k + 1 + (k + 1 < figure.panels.size() && figure.panels[k + 1].beside && !panel.beside ? 1U : 0U);
+  const bool lowest = below == figure.panels.size();
   const auto from_below = [&, all = height](double y) { return 1.0 - y / all; };
   std::string text = fmt::format(
       "\nset lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset tmargin at screen {:.5f}\nset bmargin at screen {:.5f}\n",
@@ -215,14 +237,16 @@ std::string panel_text(const Figure& figure, std::size_t k, const Place& place, 
       "set key at screen {:.5f}, screen {:.5f} left bottom vertical maxrows {} Left reverse samplen 2.2 width 1 spacing 1.15 tc rgb "
       "'#222222'\n",
       (m.left - 12.0) / width, from_below(place.top - 5.0), std::max(place.legend_rows, 1));
-  const std::string y_tics = !panel.y_marks.empty() ? marks_text(panel.y_marks)
-                             : panel.y_step > 0.0   ? fmt::format("{}", panel.y_step)
-                                                    : "autofreq";
+  const std::string y_tics = panel.beside             ? marks_text(blank(figure.panels[k - 1].y_marks))
+                             : !panel.y_marks.empty() ? marks_text(panel.y_marks)
+                             : panel.y_step > 0.0     ? fmt::format("{}", panel.y_step)
+                                                      : "autofreq";
   text += fmt::format("set ylabel '{}' offset 0.5,0\nset ytics {}\n", axis_text(panel.y_label, panel.y_unit), y_tics);
   text += colours_text(figure, panel);
   if (!lowest)
     return text + "unset xlabel\nset format x ''\n" +
            (figure.x_marks.empty() ? "" : "set xtics " + marks_text(blank(figure.x_marks)) + "\n");
+  if (panel.beside) return text + fmt::format("set xlabel '{}' offset 0,0.2\nset format x '%g'\n", axis_text(panel.beside->label, ""));
   text += fmt::format("set xlabel '{}' offset 0,0.2\nset format x '%g'\n", axis_text(figure.x_label, figure.x_unit));
   if (figure.x_marks.empty()) return text;
   return text + fmt::format("set xtics {} {}\n", m.slanted ? "rotate by -20 left" : "norotate center", marks_text(figure.x_marks));
@@ -235,7 +259,11 @@ std::string gnuplot_script(const Figure& figure) {
   const double width = figure.equal_axes ? square_width : full_width;
   double top = figure.title.empty() ? 14.0 : title_height;
   for (const Panel& panel : figure.panels) {
-    places.push_back(place_panel(panel, top, width));
+    if (panel.beside && !places.empty()) {
+      places.push_back(places.back());  // its legend has the rows of its neighbour's
+      continue;
+    }
+    places.push_back(place_panel(panel, top, has_columns(figure) ? left_column * width : width));
     if (figure.equal_axes) places.back().height = width - left - right;
     top = places.back().top + places.back().height + panel_gap;
   }
@@ -245,10 +273,11 @@ std::string gnuplot_script(const Figure& figure) {
     text += fmt::format("set label 2 '{}' at screen {:.5f}, screen {:.5f} left font ',15' tc rgb '#111111'\n", gnuplot_text(figure.title),
                         margins_of(figure).left / width, 1.0 - 18.0 / height);
   }
-  Range x = x_range_of(figure);
+  Range shared = x_range_of(figure);
   std::size_t column = 1;
   for (std::size_t k = 0; k < figure.panels.size(); ++k) {
     std::optional<Range> y = figure.panels[k].y_range;
+    Range x = figure.panels[k].beside ? figure.panels[k].beside->range : shared;
     if (figure.equal_axes) {
       std::vector<const std::vector<double>*> columns;
       for (const Series& s : figure.panels[k].series) columns.push_back(&s.y);

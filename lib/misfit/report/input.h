@@ -36,6 +36,14 @@ struct RunFacts {
   std::vector<std::pair<std::string, double>> stages;  ///< stage → seconds
 };
 
+/// What was found of the model of a rung.
+struct RungInput {
+  int id = 0;
+  std::string added;
+  std::optional<Diagnosis> diagnosis;
+  std::optional<Discovery> discovery;
+};
+
 /// All that a report shows. The report computes nothing: what is not here is not in it.
 struct ReportInput {
   std::string study, question;
@@ -44,8 +52,9 @@ struct ReportInput {
   std::optional<Calibration> calibration;
   std::optional<Comparison> comparison;
   std::optional<Ladder> ladder;
-  std::optional<Diagnosis> diagnosis;
+  std::optional<Diagnosis> diagnosis;  ///< of the study's own model, as the next
   std::optional<Discovery> discovery;
+  std::optional<RungInput> rung;  ///< the same of a rung of the ladder: the last that was looked at
   std::vector<Reference> references;
   std::vector<std::string> notes;  ///< further findings or limits, in sentences
   RunFacts run;

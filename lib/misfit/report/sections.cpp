@@ -9,6 +9,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/report/figures.h"
+#include "misfit/report/figures_simulated.h"
 #include "misfit/report/rows.h"
 
 namespace misfit::report {
@@ -85,6 +86,33 @@ void prediction_section(const ReportInput& input, Page& page, const Draw& draw) 
       draw(autocorrelation_figure(fit.method, channel));
     }
   }
+}
+
+void simulated_section(const ReportInput& input, Page& page, const Draw& draw) {
+  if (!input.comparison || !input.comparison->motion) return;
+  const SimulatedMotion& motion = *input.comparison->motion;
+  page.section("Simulated against measured motion");
+  page.paragraph(
+      "Random motion cannot be matched sample by sample: what a right model must make is motion of the same kind. A group of statistics "
+      "with a "
+      "small p is one that the fitted model does not make.");
+  page.list(motion.sentences);
+  page.list(motion.notes);
+  std::vector<std::string> experiments;
+  for (const MotionSeries& s : motion.series) {
+    if (std::find(experiments.begin(), experiments.end(), s.experiment) == experiments.end()) experiments.push_back(s.experiment);
+  }
+  for (const std::string& experiment : experiments) {
+    for (const char* group : {"distribution", "autocorrelation", "spectrum"}) draw(simulated_figure(motion, experiment, group));
+  }
+  std::vector<std::vector<std::string>> rows = {{"experiment", "series", "statistics", "p", "outside their band"}};
+  for (const MotionSeries& s : motion.series) {
+    for (const MotionGroup& g : s.groups) {
+      const auto outside = std::count_if(g.numbers.begin(), g.numbers.end(), [](const MotionNumber& n) { return n.outside; });
+      rows.push_back({s.experiment, s.name, g.name, fmt::format("{:.3f}", g.p_value), fmt::format("{} of {}", outside, g.numbers.size())});
+    }
+  }
+  page.table(rows);
 }
 
 void notes_section(const ReportInput& input, Page& page) {

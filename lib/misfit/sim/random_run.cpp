@@ -16,12 +16,13 @@ void inputs_at(const Model& model, const double* u0, const double* u1, double fr
 /// One realisation in progress.
 class RandomRun {
  public:
-  RandomRun(Stepper& stepper, std::mt19937_64& random)
-      : stepper_(stepper), random_(random), model_(stepper.evaluator().model()), nx_(model_.system_states()) {}
+  RandomRun(Stepper& stepper, std::mt19937_64& random, const std::vector<double>& further)
+      : stepper_(stepper), random_(random), further_(further), model_(stepper.evaluator().model()), nx_(model_.system_states()) {}
 
   bool advance(double* x, const Interval& whole) {
     stepper_.prepare(x, whole.u0, whole.t0);
     stepper_.evaluator().diffusion(x, whole.u0, whole.t0, intensity_.data());
+    for (std::size_t i = 0; i < further_.size(); ++i) intensity_[i] = std::hypot(intensity_[i], further_[i]);
     constexpr double largest_product = 0.1, most = 1e5;
     const double h = whole.t1 - whole.t0;
     const double parts = std::clamp(std::ceil(stepper_.fastest_rate() * h / largest_product), 1.0, most);
@@ -46,6 +47,7 @@ class RandomRun {
 
   Stepper& stepper_;
   std::mt19937_64& random_;
+  const std::vector<double>& further_;
   const Model& model_;
   int nx_;
   std::array<double, kMaxStates> intensity_{};
@@ -61,8 +63,8 @@ bool has_random_states(Evaluator& evaluator, const double* x, const double* u, d
 }
 
 void run_randomly(Stepper& stepper, const Signals& signals, const InputTable& inputs, const double* x0, std::mt19937_64& random,
-                  Segment& out) {
-  RandomRun run(stepper, random);
+                  Segment& out, const std::vector<double>& further) {
+  RandomRun run(stepper, random, further);
   std::array<double, kMaxStates> x{};
   std::copy_n(x0, stepper.states(), x.begin());
   out.first = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <random>
+#include <vector>
 
 #include "misfit/sim/trajectory.h"
 
@@ -14,7 +15,9 @@ namespace misfit {
 /// the noise (Strang splitting; weak order two for noise that does not depend on the state). The stationary variance of an
 /// Ornstein–Uhlenbeck process is then x coth(x) ≤ 1.0034 times the true one (x = step/tau). Noise intensities are taken at the start of
 /// each interval. The state starts at x0 as given: gusts from 0 need some time constants to reach their size.
+/// `further`: noise intensity added to that of each own state [unit/sqrt(s)] (in squares); empty: none. For a random force whose noise the
+/// model does not carry itself.
 void run_randomly(Stepper& stepper, const Signals& signals, const InputTable& inputs, const double* x0, std::mt19937_64& random,
-                  Segment& out);
+                  Segment& out, const std::vector<double>& further = {});
 
 }  // namespace misfit

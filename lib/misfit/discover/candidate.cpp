@@ -1,0 +1,60 @@
+#include "misfit/discover/candidate.h"
+
+#include <algorithm>
+
+#include "misfit/core/text.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+
+Candidate named_candidate(const Screened& s, double families) {
+  constexpr double imitated = 0.01;  // 1 − R² of the columns with those of the free parameters
+  const Specimen& specimen = *s.specimen;
+  Candidate c;
+  c.effect = specimen.effect;
+  c.family = specimen.family;
+  c.ports = specimen.port_names;
+  c.score = c.predicted_drop = s.result.chi2;
+  c.dof = s.result.dof;
+  if (!s.runs) {
+    c.why = "the model cannot be run with it";
+    return c;
+  }
+  c.p_value = sidak(s.p_value, families);
+  c.described = s.result.independent < imitated && !specimen.has_priors;
+  for (std::size_t i = 0; i < specimen.strengths.size(); ++i) {
+    const Parameter& p = specimen.model.parameters[static_cast<std::size_t>(specimen.strengths[i])];
+    const auto k = static_cast<Eigen::Index>(i);
+    c.parameters[p.name] = {s.result.amplitude[k], s.result.sigma[k], p.unit};
+  }
+  for (std::size_t i = 0; i < s.cell.size(); ++i) {
+    const int shape = i < specimen.shapes.size() ? specimen.shapes[i] : specimen.frequency;
+    const Parameter& p = specimen.model.parameters[static_cast<std::size_t>(shape)];
+    c.parameters[p.name] = {s.cell[i], 0.0, p.unit};
+  }
+  if (c.described) c.why = "already described by the model: the free parameters imitate it to better than 99 %";
+  return c;
+}
+
+Candidate unknown_candidate(const UnknownCurve& curve, double families, double p_accept) {
+  Candidate c;
+  c.effect = "unknown:" + curve.port + "(" + curve.quantity + ")";
+  c.family = "unknown";
+  c.ports = {curve.port};
+  c.score = c.predicted_drop = curve.result.chi2;
+  c.dof = curve.result.dof;
+  c.p_value = sidak(curve.p_value, families);
+  c.why = c.p_value < p_accept ? "a force that depends on " + curve.quantity + ", of unknown form"
+                               : "not significant: family-wise p " + format_probability(c.p_value);
+  return c;
+}
+
+void rank_candidates(std::vector<Candidate>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.accepted != b.accepted) return a.accepted;
+    return a.actual_drop.has_value() && !b.actual_drop.has_value();
+  });
+  for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].rank = static_cast<int>(i) + 1;
+}
+
+}  // namespace misfit

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "misfit/discover/screen.h"
+
+namespace misfit {
+
+/// What the screen says of an effect, as a candidate among so many families: score, p-value, strengths after one step, and the shapes of
+/// its best cell (without sigma), where a refit would start.
+[[nodiscard]] Candidate named_candidate(const Screened& screened, double families);
+
+/// The same of an unknown curve.
+[[nodiscard]] Candidate unknown_candidate(const UnknownCurve& curve, double families, double p_accept);
+
+/// Ranks from 1 for candidates that come by significance: what was accepted first (an unknown curve can always imitate it), then what was
+/// refitted.
+void rank_candidates(std::vector<Candidate>& candidates);
+
+}  // namespace misfit

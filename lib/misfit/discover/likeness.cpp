@@ -1,0 +1,52 @@
+#include "misfit/discover/likeness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+
+void add_likenesses(const std::vector<Screened>& screened, const ScoreTest& score, Discovery& out) {
+  if (out.candidates.empty() || !out.candidates.front().accepted || out.candidates.front().family == "sensor") return;
+  for (const auto& s : screened) {
+    if (s.specimen->family != "sensor" || !s.specimen->has_priors || !s.runs) continue;
+    const ScoreResult free = score.test(s.columns);
+    constexpr double good_part = 0.4;
+    if (free.chi2 < good_part * out.candidates.front().score) continue;
+    std::string numbers, allowed;
+    for (std::size_t i = 0; i < s.specimen->strengths.size(); ++i) {
+      const Parameter& p = s.specimen->model.parameters[static_cast<std::size_t>(s.specimen->strengths[i])];
+      const auto k = static_cast<Eigen::Index>(i);
+      const std::string unit = display_unit(p.unit);
+      numbers += (i == 0 ? "" : ", ") + p.name + " = " +
+                 format_value(convert(free.amplitude[k], p.unit, unit), convert(free.sigma[k], p.unit, unit)) + " " + unit;
+      if (s.specimen->priors.precision[k] > 0.0)
+        allowed += (allowed.empty() ? "" : ", ") + format_value(convert(1.0 / std::sqrt(s.specimen->priors.precision[k]), p.unit, unit)) +
+                   " " + unit;
+    }
+    out.sentences.push_back(s.specimen->effect + " with " + numbers + " would imitate part of it (predicted drop " +
+                            format_value(free.chi2) + "), but the calibration allows only sigmas of " + allowed);
+  }
+}
+
+std::optional<UnknownCurve> what_is_left(const FilterEstimate& with, const Specimen& specimen, double drop,
+                                         const DiscoverOptions& options) {
+  const ScoreTest score(with);
+  const ForceColumns path(with);
+  std::vector<UnknownCurve> after = unknown_curves(with, score, path, options.threads);
+  std::optional<UnknownCurve> worst;
+  for (auto& curve : after) {
+    curve.p_value = sidak(curve.p_value, static_cast<double>(after.size()));
+    const auto& read = specimen.quantities;
+    const bool reads = std::find(read.begin(), read.end(), curve.quantity_index) != read.end();
+    constexpr double good_part = 0.2;
+    if (!reads || curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < good_part * drop) continue;
+    if (!worst || curve.log_p < worst->log_p) worst = curve;
+  }
+  return worst;
+}
+
+}  // namespace misfit

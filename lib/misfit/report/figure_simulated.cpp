@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "misfit/report/figure_units.h"
+#include "misfit/report/figures_simulated.h"
+
+namespace misfit::report {
+namespace {
+
+struct Look {
+  const char* group;
+  const char* title;
+  const char* caption;
+  const char* x_label;
+  const char* x_unit;
+};
+constexpr Look looks[] = {
+    {"distribution", "Distribution of the motion", "Value below which the motion is for that share of the time.", "share of the time", "-"},
+    {"autocorrelation", "Autocorrelation of the motion", "How much the motion still knows of what it was that long before.", "lag", "s"},
+    {"spectrum", "Spectrum of the motion", "Power per frequency; 10 dB are a factor of ten.", "frequency", "Hz"}};
+
+Series empty(const std::string& key, const std::string& legend, Style style, const std::string& colour) {
+  return {key, legend, style, colour, {}, {}, {}, {}};
+}
+
+Panel panel_of(const MotionSeries& series, const MotionGroup& group) {
+  const std::string unit = display_unit(group.unit);
+  const double factor = unit == group.unit ? 1.0 : convert(1.0, group.unit, unit);
+  const std::string key = as_key(series.name);
+  Series band = empty(key + "_band", fmt::format("{}: 95 % of the simulated motions", series.name), Style::band, palette(0));
+  Series middle = empty(key + "_median", "", Style::line, palette(0));
+  Series measured = empty(key + "_measured", fmt::format("measured (p {:.3f})", group.p_value), Style::markers, black);
+  Series outside = empty(key + "_outside", "measured, outside the band", Style::markers, palette(1));
+  for (const MotionNumber& n : group.numbers) {
+    if (!std::isfinite(n.at)) continue;
+    for (Series* s : {&band, &middle}) s->x.push_back(n.at);
+    band.lo.push_back(n.low * factor);
+    band.hi.push_back(n.high * factor);
+    middle.y.push_back(n.median * factor);
+    Series& points = n.outside ? outside : measured;
+    points.x.push_back(n.at);
+    points.y.push_back(n.measured * factor);
+  }
+  Panel panel{series.name, unit, {std::move(band), std::move(middle), std::move(measured)}, std::nullopt, 0.0, 170.0, false};
+  if (!outside.x.empty()) panel.series.push_back(std::move(outside));
+  panel.zero_line = group.name == "autocorrelation";
+  return panel;
+}
+
+}  // namespace
+
+Figure simulated_figure(const SimulatedMotion& motion, const std::string& experiment, const std::string& group) {
+  Figure figure;
+  figure.name = as_key("simulated_" + group + "_" + experiment);
+  for (const Look& look : looks) {
+    if (group != look.group) continue;
+    figure.title = fmt::format("{}: {}", look.title, experiment);
+    figure.caption =
+        fmt::format("{} The band holds 95 % of {} motions that the model fitted by {} makes with its random force and its noise.",
+                    look.caption, motion.runs, motion.method);
+    figure.x_label = look.x_label;
+    figure.x_unit = look.x_unit;
+  }
+  for (const MotionSeries& series : motion.series) {
+    for (const MotionGroup& g : series.groups) {
+      if (series.experiment == experiment && g.name == group) figure.panels.push_back(panel_of(series, g));
+    }
+  }
+  return figure;
+}
+
+}  // namespace misfit::report
