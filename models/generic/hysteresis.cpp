@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "misfit/math/regular.h"
 #include "misfit/model/registry.h"
 
@@ -24,9 +26,10 @@ struct Hysteresis {
   static constexpr CoefficientSpec coefficients[] = {
       {"hysteresis", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "limit of the force"},
       scanned({"yield", CoefficientKind::shape, 0.1, "{displacement}", 1e-9, 1e6, 0.1, "motion over which the force comes to its limit"},
-              {0.03, 0.5, 4, "|displacement|"}),
+              {0.06, 0.5, 4, "|displacement|"}),
       held({"loop", CoefficientKind::shape, 0.5, "-", 0.0, 1.0, 0.1, "0.5: turning back starts with the slope of the first loading"}),
-      held(scanned({"hysteresis_width", CoefficientKind::shape, 0.05, "{rate}", 1e-9, 1e6, 0.05, "rounding of the rate about 0"},
+      held(scanned({"hysteresis_width", CoefficientKind::shape, 0.05, "{rate}", 1e-9, 1e6, 0.05,
+                    "rounding of the rate about 0: a fiftieth of the largest rate"},
                    {0.02, 0.02, 1, "|rate|"}))};
   static constexpr OwnStateSpec states[] = {{"z", "-", 0.0}};
 
@@ -38,10 +41,11 @@ struct Hysteresis {
     drift[0] = (rate - loop * smooth_abs(rate, in.c[3]) * size * z - (1.0 - loop) * rate * z * z) / in.c[1];
   }
 
-  /// Of the elastic part, sqrt(force/(yield inertia)), and of z while the motion goes on.
+  /// Of the elastic part, sqrt(force/(yield inertia)), and of z at the largest rate, of which the width is taken to be a fiftieth.
   static double fastest_rate(const Reads<double, double>& in) {
+    constexpr double rates_per_width = 50.0;
     const double inertia = in.q[2] > 0.0 ? in.q[2] : 1.0;
-    return std::sqrt(std::abs(in.c[0]) / (in.c[1] * inertia)) + 2.0 * std::abs(in.q[0]) / in.c[1];
+    return std::max(std::sqrt(std::abs(in.c[0]) / (in.c[1] * inertia)), rates_per_width * in.c[3] / in.c[1]);
   }
 
   static std::vector<Example> examples() {

@@ -27,7 +27,8 @@ struct Overflow {
     F[0] = -in.c[0] * above(T(in.q[0] - in.c[1]));
   }
 
-  static double fastest_rate(const Reads<double, double>& in) { return in.q[0] > in.c[1] ? in.c[0] : 0.0; }
+  /// Asked at the start of a run: the level may come to the edge later.
+  static double fastest_rate(const Reads<double, double>& in) { return in.c[0]; }
 
   static std::vector<Example> examples() {
     return {{{}, {10.5}, {0.4, 10.0}, {}, 0.0, {-0.2}, {}, "by hand: 0.4 x 0.5"},

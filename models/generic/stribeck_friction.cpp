@@ -32,8 +32,10 @@ struct StribeckFriction {
   static void add(const Reads<T, K>& in, T* F) {
     const T along = in.q[0] / in.c[1], across = in.q[2] / in.c[1];
     const T s = along * along + across * across;
-    const T share = in.c[2];
-    const T excess = in.c[0] * (tanh_over(T(s / (share * share))) / share - tanh_over(s));
+    const T steep = 1.0 / in.c[2];
+    // tanh a - tanh b = tanh(a - b) (1 - tanh a tanh b): of two equal numbers never the wrong sign.
+    const T fading = above(T(1.0 - steep * s * tanh_over(T(steep * steep * s)) * tanh_over(s)));
+    const T excess = in.c[0] * (steep - 1.0) * tanh_over(T((steep - 1.0) * (steep - 1.0) * s)) * fading;
     F[0] = -excess * along;
     F[1] = -excess * across;
   }
