@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "apps/init_text.h"
 #include "apps/verbs.h"
@@ -76,17 +78,25 @@ nlohmann::ordered_json as_json(const RecordingSurvey& survey) {
   return json;
 }
 
-void draw(const RecordingSurvey& survey, const std::vector<std::string>& names, const fs::path& folder) {
+/// About ten swings where the model swings, else some hundred samples [s].
+double length_of_zoom(const GuessedModel& model, double step) {
+  constexpr double swings = 10.0, samples = 800.0;
+  for (const auto& output : model.outputs) {
+    if (output.guess.order == 2) return swings * 2.0 * std::numbers::pi / std::sqrt(output.guess.stiffness);
+  }
+  return samples * step;
+}
+
+void draw(const RecordingSurvey& survey, const GuessedModel& model, const std::vector<std::string>& names, const fs::path& folder) {
+  const double zoom = length_of_zoom(model, survey.step);
   for (std::size_t i = 0; i < survey.parts.size(); ++i) {
     const Table& part = survey.parts[i];
     const std::vector<double>& t = part.columns.front().values;
     write_figure(folder / "figures", report::recording_figure(survey, i, names[i], std::nullopt));
-    constexpr std::size_t long_record = 2000;
-    if (t.size() <= long_record) continue;
-    constexpr double samples = 800.0;
-    write_figure(
-        folder / "figures",
-        report::recording_figure(survey, i, names[i], report::typical_interval(t, part.columns.back().values, samples * survey.step)));
+    constexpr double long_record = 2.5;
+    if (t.back() - t.front() < long_record * zoom) continue;
+    write_figure(folder / "figures",
+                 report::recording_figure(survey, i, names[i], report::typical_interval(t, part.columns.back().values, zoom)));
   }
 }
 
@@ -102,7 +112,7 @@ int init_verb(const Options& options, const Registry& /*registry*/) {
   for (std::size_t i = 0; i < names.size(); ++i) write_csv(folder / (names[i] + ".csv"), survey.parts[i], all_digits);
   write_atomically(folder / "model.toml", model_text(model, survey));
   write_atomically(folder / "study.toml", study_text(data.stem().string(), names, survey));
-  draw(survey, names, folder);
+  draw(survey, model, names, folder);
   if (options.json) {
     std::cout << as_json(survey).dump(1) << '\n';
     return 0;

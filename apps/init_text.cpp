@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "misfit/core/units.h"
@@ -71,7 +72,12 @@ const ColumnSurvey& column_called(const RecordingSurvey& survey, const std::stri
 double noise_of(const std::vector<double>& values, double resolution) {
   const double sigma = reading_noise(values);
   const double rounding = resolution / std::sqrt(12.0);
-  return std::max(std::isfinite(sigma) ? sigma : 0.0, rounding);
+  constexpr double least = 1e-5;  // of the range: smoothed readings seem to have no noise at all
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double v : values) {
+    if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+  }
+  return std::max({std::isfinite(sigma) ? sigma : 0.0, rounding, least * (high - low)});
 }
 
 }  // namespace

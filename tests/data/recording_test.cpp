@@ -122,6 +122,13 @@ TEST(Recording, TheStepOfADigitisedColumnIsFound) {
   EXPECT_NE(column(s, "z").resolution, 0.005);
 }
 
+TEST(Recording, AReadingThatStandsAtItsLimitIsSaid) {
+  const RecordingSurvey s =
+      survey(rows("t_s,u,y", 300, [](int k) { return fmt::format("{},{},{}", k, std::cos(0.07 * k), std::min(0.8, std::sin(0.05 * k))); }));
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("'y' stands at its highest value, 0.8")));
+  EXPECT_EQ(s.remarks.size(), 1U);
+}
+
 TEST(Recording, SaysWhatIsWrong) {
   const auto numbers = [](int k) { return fmt::format("{},{}", 0.1 * k, std::sin(0.1 * k)); };
   EXPECT_THAT(refusal(rows("a,b", 50, numbers)), HasSubstr("no column of time"));

@@ -1,9 +1,13 @@
 #include "misfit/data/column_facts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
+
+#include "misfit/core/text.h"
 
 namespace misfit {
 namespace {
@@ -26,6 +30,23 @@ constexpr std::array<std::string_view, 24> input_words = {
     "u",     "in",    "input",    "force",  "torque", "voltage", "cmd",     "command",  "ref",        "setpoint", "valve",    "pump",
     "drive", "motor", "throttle", "heater", "power",  "pwm",     "control", "stimulus", "excitation", "demand",   "actuator", "duty"};
 constexpr std::array<std::string_view, 7> segment_words = {"segment", "seg", "trial", "run", "episode", "block", "id"};
+
+/// How many samples in a row stand at one value: the longest stand at `value`, and the longest at any other.
+struct Stands {
+  std::size_t at = 0, elsewhere = 0;
+};
+
+Stands longest_stands(const std::vector<double>& values, double value) {
+  Stands out;
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    run = i > 0 && values[i] == values[i - 1] ? run + 1 : 1;
+    std::size_t& longest = values[i] == value ? out.at : out.elsewhere;
+    longest = std::max(longest, run);
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -69,6 +90,22 @@ double share_held(const std::vector<double>& values) {
     equal += values[i] == values[i - 1] ? 1U : 0U;
   }
   return pairs == 0 ? 0.0 : static_cast<double>(equal) / static_cast<double>(pairs);
+}
+
+std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values) {
+  std::vector<std::string> out;
+  const std::vector<double> known = finite(values);
+  if (known.empty()) return out;
+  const auto [low, high] = std::minmax_element(known.begin(), known.end());
+  for (const bool upper : {true, false}) {
+    const Stands stands = longest_stands(values, upper ? *high : *low);
+    constexpr std::size_t long_stand = 10;
+    if (stands.at < long_stand || stands.at < 2 * stands.elsewhere) continue;
+    out.push_back(fmt::format("column '{}' stands at its {} value, {}, for up to {} samples: something is full, or the sensor reads no {}",
+                              header, upper ? "highest" : "lowest", format_value(upper ? *high : *low), stands.at,
+                              upper ? "higher" : "lower"));
+  }
+  return out;
 }
 
 bool is_called_time(const std::string& name) { return is_called(name, time_words); }

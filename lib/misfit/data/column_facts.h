@@ -18,6 +18,10 @@ namespace misfit {
 /// Share of the samples that equal the one before.
 [[nodiscard]] double share_held(const std::vector<double>& values);
 
+/// A sentence for the highest and one for the lowest value, if an otherwise moving column stands there for ten samples or more, and twice
+/// as long as anywhere else.
+[[nodiscard]] std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values);
+
 // By name, case and a number behind it ("u1") aside.
 [[nodiscard]] bool is_called_time(const std::string& name);
 [[nodiscard]] bool is_called_input(const std::string& name);

@@ -125,6 +125,7 @@ class Surveyor {
                   (counter.empty() ? "" : " ('" + counter + "' counts rows, but over which interval?)") + "; write one as t[s]");
     ColumnSurvey& c = out_.columns[time_];
     c.use = ColumnUse::time;
+    c.resolution = 0.0;
     if (c.unit == "-") {
       c.unit = std::string("s");
       out_.remarks.push_back(fmt::format("column '{}' names no unit: taken as seconds", c.header));
@@ -214,7 +215,8 @@ class Surveyor {
         c.why = fmt::format("stands still between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
         c.use = ColumnUse::output;
-        c.why = open.size() == 1 ? "the only column that was measured" : "not called like an input, and it never stands still";
+        c.why = open.size() == 1 ? "the only column that was measured" : "not called like an input, and it moves";
+        for (auto& remark : limit_remarks(c.header, values(i))) out_.remarks.push_back(std::move(remark));
       }
     }
     const bool any = std::any_of(open.begin(), open.end(), [&](std::size_t i) { return out_.columns[i].use == ColumnUse::output; });
