@@ -117,8 +117,8 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
     model.input_units.push_back(si_unit(c->unit));
     const bool steps = c->held > 0.2;
     model.holds.emplace_back("zero_order");
-    model.hold_reasons.emplace_back(steps ? "it stands still between jumps"
-                                          : "what a computer puts out stands until the next sample; \"first_order\" if it was measured");
+    model.hold_reasons.emplace_back(
+        steps ? "" : "; what a computer puts out stands until the next sample, \"first_order\" if it was measured between");
     data.inputs.push_back(longest->values(c->name, model.input_units.back()));
   }
   for (const ColumnSurvey* c : survey.of_use(ColumnUse::output)) {
@@ -153,7 +153,7 @@ std::string model_text(const GuessedModel& model, const RecordingSurvey& survey)
   }
   if (!model.inputs.empty()) text += "\n[inputs]\n";
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    text += fmt::format("{} = {{ unit = \"{}\", hold = \"{}\" }}   # {}: {}\n", model.inputs[i], model.input_units[i], model.holds[i],
+    text += fmt::format("{} = {{ unit = \"{}\", hold = \"{}\" }}   # {}{}\n", model.inputs[i], model.input_units[i], model.holds[i],
                         column_called(survey, model.inputs[i]).why, model.hold_reasons[i]);
   }
   text += "\n[parameters]\n";

@@ -33,8 +33,7 @@ TEST(Places, AMotionHasItsRateAndWhatThatIsTheRateOf) {
 }
 
 TEST(Places, SensorsAndInputsAreTriedWhereTheSystemHasADefaultForThem) {
-  EXPECT_THAT(places("sensor_scale", "test_tanks"),
-              ElementsAre(Roles{}, Roles{{"output", "y1"}, {"reading", "y1"}}, Roles{{"output", "y2"}, {"reading", "y2"}}));
+  EXPECT_THAT(places("sensor_scale", "test_tanks"), ElementsAre(Roles{}, Roles{{"output", "y1"}}, Roles{{"output", "y2"}}));
   EXPECT_THAT(places("input_gain", "test_tanks"),
               ElementsAre(Roles{}, Roles{{"input", "u"}, {"port", "dx1/dt"}}, Roles{{"input", "u"}, {"port", "dx2/dt"}}));
   EXPECT_THAT(places("sensor_scale", "parachute_spherical"), ElementsAre(Roles{}));
