@@ -4,24 +4,30 @@ namespace {
 
 using namespace misfit;
 
-/// Friction that differs between the two directions: half the difference of the two Coulomb levels, so that coulomb_friction keeps the
-/// mean.
+/// Friction that differs between the two directions: half the difference of the two Coulomb levels. It needs coulomb_friction in the model,
+/// which keeps the mean and whose width it shares.
 struct DirectionalFriction {
   static constexpr const char* formula = "F = -asymmetry tanh(rate/width)^2";
   static constexpr const char* symbols =
-      "asymmetry half the difference of the friction forward and backward [port], width of the smoothing [rate], rate along the port [any]";
+      "asymmetry half the difference of the friction forward and backward [port], width of coulomb_friction [rate], rate along the port "
+      "[any]";
   static constexpr const char* valid =
-      "rates that are mostly above the width; friction forward is friction + asymmetry, backward friction - asymmetry (coulomb_friction)";
+      "rates that are mostly above the width; friction forward is friction + asymmetry, backward friction - asymmetry";
   static constexpr const char* size = "a hydraulic cylinder with unequal seals: some 10 % of its friction";
   static constexpr const char* source =
       "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994), section 2: friction that depends on the direction";
   static constexpr const char* excludes = "the mean of both directions (coulomb_friction), unequal viscous parts";
+  static constexpr CoefficientSpec lent_width() {
+    CoefficientSpec spec = borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction");
+    spec.value = 0.1;
+    spec.lower = 1e-6;
+    return spec;
+  }
   static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}};
   static constexpr Role ports[] = {{"port", "*"}};
   static constexpr CoefficientSpec coefficients[] = {
       {"asymmetry", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "friction forward less the mean of both directions"},
-      held(scanned({"direction_width", CoefficientKind::shape, 0.1, "{rate}", 1e-6, 1e6, 0.05, "rate at which it has 58 % of its size"},
-                   {0.02, 0.02, 1, "|rate|"}))};
+      lent_width()};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {

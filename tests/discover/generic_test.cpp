@@ -85,6 +85,11 @@ TEST(DiscoverGeneric, NamesAHiddenCubicStiffness) {
   expect_first(in_cart("cubic_stiffness", {{"cubic_stiffness", 12.0}}), "cubic_stiffness", "cubic_stiffness", 12.0, 0.2);
 }
 
+/// Hysteresis with a small yield is nearly the same, and has a shape to spare.
+TEST(DiscoverGeneric, NamesAHiddenCoulombFriction) {
+  expect_first(in_cart("coulomb_friction", {{"friction", 1.5}}), "coulomb_friction", "friction", 1.5, 0.2);
+}
+
 TEST(DiscoverGeneric, NamesNothingWhereNothingIsHidden) {
   for (const auto& c : in_cart("", {}).candidates) EXPECT_FALSE(c.accepted) << c.effect << ": " << c.why;
 }
