@@ -4,6 +4,13 @@ namespace {
 
 using namespace misfit;
 
+constexpr CoefficientSpec lent_width() {
+  CoefficientSpec spec = borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction");
+  spec.value = 0.1;
+  spec.lower = 1e-6;
+  return spec;
+}
+
 /// Friction that differs between the two directions: half the difference of the two Coulomb levels. It needs coulomb_friction in the model,
 /// which keeps the mean and whose width it shares.
 struct DirectionalFriction {
@@ -17,12 +24,6 @@ struct DirectionalFriction {
   static constexpr const char* source =
       "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994), section 2: friction that depends on the direction";
   static constexpr const char* excludes = "the mean of both directions (coulomb_friction), unequal viscous parts";
-  static constexpr CoefficientSpec lent_width() {
-    CoefficientSpec spec = borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction");
-    spec.value = 0.1;
-    spec.lower = 1e-6;
-    return spec;
-  }
   static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}};
   static constexpr Role ports[] = {{"port", "*"}};
   static constexpr CoefficientSpec coefficients[] = {

@@ -5,6 +5,13 @@ namespace {
 
 using namespace misfit;
 
+constexpr CoefficientSpec lent_width() {
+  CoefficientSpec spec = borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction");
+  spec.value = 0.1;
+  spec.lower = 1e-6;
+  return spec;
+}
+
 /// Friction that is higher at the start of the motion: the excess over the sliding friction, which rises with it over its width and has
 /// faded at some times that. It needs coulomb_friction in the model, whose width it shares: by itself it would be taken for friction with a
 /// width of its own.
@@ -19,12 +26,6 @@ struct StribeckFriction {
       "Makkar, Dixon, Sawyer, Hu, IEEE/ASME AIM (2005): tanh(g2 v) - tanh(g3 v) as the Stribeck part of a smooth friction";
   static constexpr const char* excludes = "the sliding friction itself (coulomb_friction), sticking, memory of the contact (hysteresis)";
   static constexpr bool dissipative = true;
-  static constexpr CoefficientSpec lent_width() {
-    CoefficientSpec spec = borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction");
-    spec.value = 0.1;
-    spec.lower = 1e-6;
-    return spec;
-  }
   static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}, {"rate_lateral", "*", true, false, "rate"}};
   static constexpr Role ports[] = {{"port", "*"}, {"port_lateral", "*", true, false, "port"}};
   static constexpr CoefficientSpec coefficients[] = {

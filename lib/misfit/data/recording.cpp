@@ -63,10 +63,11 @@ class Surveyor {
     const std::vector<double> known = finite(column.values);
     s.missing = column.values.size() - known.size() - column.text;
     if (column.text > 0) {
-      if (known.size() > column.text)
+      if (known.size() > column.text) {
         fail(column.text_line,
              fmt::format("column '{}': '{}' is not a number (a missing value is an empty cell or NaN); {} cell{} of {} are text", s.header,
                          column.first_text, column.text, column.text == 1 ? "" : "s", column.values.size()));
+      }
       s.use = ColumnUse::text;
       s.why = "text";
       return s;
