@@ -53,9 +53,30 @@ struct Regression {
   std::vector<double> inputs;
 };
 
-/// y(k) = a1 y(k − d) + a2 y(k − 2d) + Σ c u(k − d) + constant over the rows where nothing is missing and no gap lies between.
+/// Means of an input over stretches of rows.
+class Means {
+ public:
+  explicit Means(const std::vector<double>& u) : sum_(u.size() + 1, 0.0), count_(u.size() + 1, 0.0) {
+    for (std::size_t k = 0; k < u.size(); ++k) {
+      const bool known = std::isfinite(u[k]);
+      sum_[k + 1] = sum_[k] + (known ? u[k] : 0.0);
+      count_[k + 1] = count_[k] + (known ? 1.0 : 0.0);
+    }
+  }
+  /// Over rows from … to − 1; NaN if none is known.
+  [[nodiscard]] double operator()(std::size_t from, std::size_t to) const { return (sum_[to] - sum_[from]) / (count_[to] - count_[from]); }
+
+ private:
+  std::vector<double> sum_, count_;
+};
+
+/// y(k) = a1 y(k − d) + a2 y(k − 2d) + Σ (c1 u1 + c2 u2) + constant, u1 and u2 the means of an input over the last d rows and those before
+/// (an input may change many times between the rows compared), over the rows where nothing is missing and no gap lies between.
 std::optional<Regression> regress(const GuessData& data, std::size_t d, double step, const Spread& spread) {
-  const auto n = static_cast<Eigen::Index>(data.inputs.size()) + 3;
+  const auto inputs = static_cast<Eigen::Index>(data.inputs.size());
+  const Eigen::Index n = 3 + 2 * inputs;
+  std::vector<Means> means;
+  for (const auto& u : data.inputs) means.emplace_back(u);
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n), row(n);
   Eigen::Index rows = 0;
@@ -67,7 +88,11 @@ std::optional<Regression> regress(const GuessData& data, std::size_t d, double s
     row[0] = (data.y[k - d] - spread.mean) / spread.sigma;
     row[1] = (data.y[k - 2 * d] - spread.mean) / spread.sigma;
     row[2] = 1.0;
-    for (Eigen::Index i = 3; i < n; ++i) row[i] = data.inputs[static_cast<std::size_t>(i - 3)][k - d];
+    for (Eigen::Index i = 0; i < inputs; ++i) {
+      const Means& mean = means[static_cast<std::size_t>(i)];
+      row[3 + 2 * i] = mean(k - d, k);
+      row[4 + 2 * i] = mean(k - 2 * d, k - d);
+    }
     const double y = (data.y[k] - spread.mean) / spread.sigma;
     if (!row.allFinite() || !std::isfinite(y)) continue;
     normal.noalias() += row * row.transpose();
@@ -78,7 +103,7 @@ std::optional<Regression> regress(const GuessData& data, std::size_t d, double s
   const Eigen::VectorXd solved = normal.completeOrthogonalDecomposition().solve(right);
   if (!solved.allFinite()) return std::nullopt;
   Regression out{solved[0], solved[1], solved[2] * spread.sigma, {}};
-  for (Eigen::Index i = 3; i < n; ++i) out.inputs.push_back(solved[i] * spread.sigma);
+  for (Eigen::Index i = 3; i < n; i += 2) out.inputs.push_back((solved[i] + solved[i + 1]) * spread.sigma);
   return out;
 }
 
