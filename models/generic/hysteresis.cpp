@@ -36,9 +36,9 @@ struct Hysteresis {
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F, T* drift) {
     const T &rate = in.q[0], &z = in.z[0], &loop = in.c[2];
-    const T size = value_of(z) < 0.0 ? T(-z) : z;
+    const T bend = value_of(z) < 0.0 ? T(-z) : z;
     F[0] = -in.c[0] * z;
-    drift[0] = (rate - loop * smooth_abs(rate, in.c[3]) * size * z - (1.0 - loop) * rate * z * z) / in.c[1];
+    drift[0] = (rate - loop * smooth_abs(rate, in.c[3]) * bend * z - (1.0 - loop) * rate * z * z) / in.c[1];
   }
 
   /// Of the elastic part, sqrt(force/(yield inertia)), and of z at the largest rate, of which the width is taken to be a fiftieth.

@@ -24,9 +24,9 @@ struct QuadraticDrag {
   static void add(const Reads<T, K>& in, T* F) {
     using std::sqrt;
     const T squared = in.q[0] * in.q[0] + in.q[1] * in.q[1];
-    const T size = value_of(squared) > 0.0 ? T(sqrt(squared)) : T(0.0);  // at rest the product has slope 0, whatever the direction
-    F[0] = -in.c[0] * size * in.q[0];
-    F[1] = -in.c[0] * size * in.q[1];
+    const T fast = value_of(squared) > 0.0 ? T(sqrt(squared)) : T(0.0);  // at rest the product has slope 0, whatever the direction
+    F[0] = -in.c[0] * fast * in.q[0];
+    F[1] = -in.c[0] * fast * in.q[1];
   }
 
   static std::vector<Example> examples() {
