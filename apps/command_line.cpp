@@ -32,10 +32,18 @@ constexpr VerbEntry verbs[] = {
     {"compare", "methods side by side and against reference curves", compare_verb, true},
     {"report", "figures and one self-contained page", report_verb, true},
     {"simulate", "run the model: as [simulate] says, or as fitted", simulate_verb, true},
+    {"init", "look at a file of columns and write a study to start from: data, linear model, figures", init_verb, true},
     {"effects", "the effects this program knows, or those of a study: formula, roles, ports, coefficients, source", effects_verb, false},
 };
 
 void add_options(CLI::App& verb, Options& options, bool study_required) {
+  if (verb.get_name() == "init") {
+    verb.add_option("data", options.study, "file of columns under a line of names")->type_name("DATA.csv")->required();
+    verb.add_flag("--force", options.force, "write over a study that is there");
+    verb.add_option("--out", options.out, "folder of the study (default: called like the data, in the present folder)")->type_name("DIR");
+    verb.add_flag("--json", options.json, "print what was found as JSON");
+    return;
+  }
   auto* study = verb.add_option("study", options.study, "study.toml, or the folder that holds it")->type_name("STUDY");
   if (study_required) study->required();
   if (verb.get_name() == "add")
@@ -91,7 +99,8 @@ int dispatch(int argc, char** argv, const Registry& registry) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   const CLI::App* chosen = app.get_subcommands().front();
-  options.has_seed = chosen->count("--seed") > 0;
+  const CLI::Option* seed = chosen->get_option_no_throw("--seed");
+  options.has_seed = seed != nullptr && seed->count() > 0;
   watch_interrupts();
   return calls.at(chosen)(options, registry);
 }

@@ -148,15 +148,16 @@ std::string discovery_text(const Discovery& d) {
     if (rows.size() > most) break;
     std::string group;
     for (const auto& name : c.group) group += (group.empty() ? "" : ", ") + name;
-    rows.push_back({std::to_string(c.rank), c.effect, number(c.predicted_drop), number(c.actual_drop), number(c.held_out_gain, "{:+.1f}"),
-                    format_probability(c.p_value), group.empty() ? "–" : group, c.accepted ? "yes" : "no"});
+    rows.push_back({std::to_string(c.rank), effect_at(c.effect, c.roles), number(c.predicted_drop), number(c.actual_drop),
+                    number(c.held_out_gain, "{:+.1f}"), format_probability(c.p_value), group.empty() ? "–" : group,
+                    c.accepted ? "yes" : "no"});
   }
   if (rows.size() > 1) out += "\n" + align_columns(rows);
   if (d.candidates.size() > most) out += fmt::format("  and {} more in candidates.json\n", d.candidates.size() - most);
   std::string why;
   for (const auto& c : d.candidates) {
     if (c.rank > 5 || c.why.empty()) continue;
-    why += wrap_text(c.effect + ": " + c.why, width, "  ") + "\n";
+    why += wrap_text(effect_at(c.effect, c.roles) + ": " + c.why, width, "  ") + "\n";
   }
   if (!why.empty()) out += "\n" + why;
   if (!d.force.empty()) out += "\n  random force of this model: " + force_text(d.force) + "\n";

@@ -23,6 +23,7 @@ struct Options {
   bool quiet = false, json = false;
   std::string effect;       ///< of `add`
   bool automatic = false;   ///< discover --auto
+  bool force = false;       ///< init: write over a study
   std::string check_video;  ///< track: write the video with the track drawn to this file
   std::string command;      ///< the command line as typed, for run.json
 };

@@ -18,6 +18,7 @@ int diagnose_verb(const Options& options, const Registry& registry);
 int discover_verb(const Options& options, const Registry& registry);
 int add_verb(const Options& options, const Registry& registry);
 int run_verb(const Options& options, const Registry& registry);
+int init_verb(const Options& options, const Registry& registry);
 int effects_verb(const Options& options, const Registry& registry);
 
 }  // namespace misfit

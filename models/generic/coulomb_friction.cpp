@@ -1,3 +1,4 @@
+#include "misfit/math/regular.h"
 #include "misfit/model/registry.h"
 
 namespace {
@@ -22,21 +23,10 @@ struct CoulombFriction {
        Parity::none, "", false, true}};
   static constexpr bool dissipative = true;
 
-  /// tanh(sqrt(s))/sqrt(s), regular at 0.
-  template <class T>
-  static T slope(const T& s) {
-    using std::sqrt;
-    using std::tanh;
-    constexpr double small = 1e-4;  // the next term of the series is 17 s³/315: 5e-14
-    if (value_of(s) < small) return 1.0 - s / 3.0 + 2.0 * s * s / 15.0;
-    const T r = sqrt(s);
-    return tanh(r) / r;
-  }
-
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     const T along = in.q[0] / in.c[1], across = in.q[2] / in.c[1];
-    const T friction = in.c[0] * slope(T(along * along + across * across));
+    const T friction = in.c[0] * tanh_over(T(along * along + across * across));
     F[0] = -friction * along;
     F[1] = -friction * across;
   }

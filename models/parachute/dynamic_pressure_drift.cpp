@@ -12,6 +12,7 @@ struct DynamicPressureDrift {
   static constexpr const char* size = "0.5 Pa/s over 80 s: 40 Pa, 5 % of 736 Pa and of every moment";
   static constexpr const char* source = "definition; tunnels hold q to about 1 %";
   static constexpr const char* excludes = "gusts, unsteadiness faster than the recording";
+  static constexpr const char* specialises = "drift";
   static constexpr Role ports[] = {{"dynamic_pressure", "Pa"}};
   static constexpr CoefficientSpec coefficients[] = {
       {"pressure_drift", CoefficientKind::strength, 0.0, "Pa/s", -1e4, 1e4, 0.5, "rate of change of the dynamic pressure"},

@@ -51,7 +51,8 @@ struct TestOscillator {
                    {"stiffness", "N/m", "spring", 0.0, 1e9, true, 0.0},
                    {"gain", "1/m", "of the position sensor", -1e3, 1e3, false, 1.0}};
     s.outputs = {{"position_reading", "-", -1, 1e-3}, {"speed_reading", "m/s", 1, 1e-3}};
-    s.roles = {{"rate", "v"}, {"level", "x"}, {"port", "force"}, {"output", "position_reading"}, {"reading", "position_reading"}};
+    s.roles = {{"rate", "v"},         {"level", "x"},    {"port", "force"}, {"output", "position_reading"}, {"reading", "position_reading"},
+               {"displacement", "x"}, {"input", "drive"}};
     s.fastest_rate = 2.0;
     return s;
   }

@@ -47,6 +47,44 @@ TEST(Binding, AGenericEffectHasTheUnitsOfWhatItIsBoundTo) {
   EXPECT_THAT(planar.own_state_units, ElementsAre("rad"));
 }
 
+TEST(Binding, AStudyMayCallTheFirstOfAKindByItsBareNameAndAnyByItsEffect) {
+  ModelRequest r = cart({effect("viscous_friction", {}, "bearing"), effect("viscous_friction", {{"rate", "x"}, {"port", "slip"}}, "leak")});
+  r.parameters["viscosity"].value = 3.0;
+  r.parameters["leak.viscosity"].value = 0.5;
+  const Model m = assemble(r, registry());
+  const auto value = [](const Model& model, const std::string& name) {
+    return model.parameters.at(static_cast<std::size_t>(model.find_parameter(name))).value;
+  };
+  EXPECT_EQ(value(m, "bearing.viscosity"), 3.0);
+  EXPECT_EQ(value(m, "leak.viscosity"), 0.5);
+  ModelRequest alone = cart({effect("viscous_friction", {}, "bearing")});
+  alone.parameters["bearing.viscosity"].value = 2.0;
+  EXPECT_EQ(value(assemble(alone, registry()), "viscosity"), 2.0);
+  alone.parameters["leak.viscosity"].value = 2.0;
+  EXPECT_THROW(static_cast<void>(assemble(alone, registry())), InputError);
+}
+
+TEST(Binding, ARoleMayNeedTheUnitOfAnother) {
+  const auto spill = [](const std::string& level, const std::string& port) {
+    return tanks({effect("overflow", {{"level", level}, {"port", port}})});
+  };
+  EXPECT_NO_THROW(static_cast<void>(assemble(spill("x1", "dx2/dt"), registry())));
+  try {
+    static_cast<void>(assemble(spill("u", "dx1/dt"), registry()));
+    ADD_FAILURE() << "volts cannot spill into metres per second";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("role 'port' needs [V/s], port 'dx1/dt' has [m/s]"));
+  }
+  EXPECT_THROW(static_cast<void>(assemble(cart({effect("overflow")}), registry())), InputError) << "a force is no rate of a level";
+}
+
+TEST(Binding, ASensorReadsTheOutputThatItIsBoundTo) {
+  const Model m = assemble(cart({effect("sensor_lag", {{"output", "speed_reading"}})}), registry());
+  const SystemSpec& spec = m.system->spec();
+  EXPECT_EQ(m.effects.front().quantities.front(), static_cast<int>(spec.quantities.size()) + 1);
+  EXPECT_EQ(m.own_state_units.front(), "m/s");
+}
+
 TEST(Binding, ABorrowedCoefficientIsThatOfTheOtherEffect) {
   const Model m = assemble(spherical({effect("strut_wake")}), registry());
   EXPECT_EQ(std::count_if(m.parameters.begin(), m.parameters.end(), [](const auto& p) { return p.name == "C_m[0]"; }), 1);

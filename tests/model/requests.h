@@ -67,6 +67,16 @@ inline ModelRequest cart(const std::vector<EffectRequest>& effects) {
   return r;
 }
 
+/// Two tanks that drain in 20 s and 25 s.
+inline ModelRequest tanks(const std::vector<EffectRequest>& effects) {
+  ModelRequest r;
+  r.system = "test_tanks";
+  r.system_where = {"study.toml", 4, 1};
+  r.constants = {{"drain_1", 0.05}, {"drain_2", 0.04}, {"pump", 0.01}};
+  r.effects = effects;
+  return r;
+}
+
 inline void set(Model& model, const std::string& name, double value) {
   const int index = model.find_parameter(name);
   if (index < 0) throw std::logic_error("no parameter " + name);

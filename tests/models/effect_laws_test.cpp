@@ -90,10 +90,11 @@ TEST_P(EffectLaws, UnitsParseAndNameOnlyItsOwnRoles) {
   std::map<std::string, std::string> roles;
   for (const auto* list : {&spec_.quantities, &spec_.ports}) {
     for (const auto& role : *list) {
-      if (std::string(role.unit) != "*") {
+      const bool generic = role.unit[0] == '*' || role.unit[0] == '{';
+      if (!generic) {
         EXPECT_NO_THROW(static_cast<void>(parse_unit(role.unit))) << role.name;
       }
-      roles[role.name] = std::string(role.unit) == "*" ? "-" : role.unit;
+      roles[role.name] = generic ? "-" : role.unit;
     }
   }
   const auto check = [&](const std::string& unit, const std::string& of) {
@@ -103,6 +104,11 @@ TEST_P(EffectLaws, UnitsParseAndNameOnlyItsOwnRoles) {
       EXPECT_TRUE(roles.contains(role)) << of << " [" << unit << "] names '" << role << "', which is no role of the effect";
     }
   };
+  for (const auto* list : {&spec_.quantities, &spec_.ports}) {
+    for (const auto& role : *list) {
+      if (role.unit[0] == '{') check(role.unit, role.name);
+    }
+  }
   for (const auto& c : spec_.coefficients) check(c.unit, c.name);
   for (const auto& z : spec_.states) check(z.unit, z.name);
 }
@@ -120,6 +126,25 @@ TEST_P(EffectLaws, NamesAreUnique) {
   expect_unique(spec_.quantities, "quantity");
   expect_unique(spec_.ports, "port");
   EXPECT_EQ(std::set<std::string>(spec_.constants.begin(), spec_.constants.end()).size(), spec_.constants.size());
+}
+
+TEST_P(EffectLaws, ScansNameWhatTheyAreSharesOfAndLieInsideBounds) {
+  for (const auto& c : spec_.coefficients) {
+    const std::string over = c.scan.over;
+    if (c.scan.count <= 0) continue;
+    EXPECT_EQ(c.kind, CoefficientKind::shape) << c.name;
+    EXPECT_LE(c.scan.from, c.scan.to) << c.name;
+    if (over.empty()) {
+      EXPECT_GE(c.scan.from, c.lower) << c.name;
+      EXPECT_LE(c.scan.to, c.upper) << c.name;
+      continue;
+    }
+    EXPECT_GT(c.scan.from, 0.0) << c.name << ": shares of a size";
+    const std::string role = over.front() == '|' ? over.substr(1, over.size() - 2) : over;
+    EXPECT_TRUE(role == "step" ||
+                std::any_of(spec_.quantities.begin(), spec_.quantities.end(), [&](const Role& r) { return role == r.name; }))
+        << c.name << " is looked for over '" << over << "'";
+  }
 }
 
 TEST_P(EffectLaws, DefaultsLieInsideBoundsAndStrengthsMayBeZero) {

@@ -13,15 +13,26 @@ using namespace testing_models;
 
 class EffectInSystems : public testing::TestWithParam<std::string> {};
 
+/// The first effect that owns a coefficient of this name.
+std::string owner_of(const std::string& coefficient) {
+  for (const auto& key : registry().effect_keys()) {
+    for (const auto& c : registry().effect(key).spec().coefficients) {
+      if (!c.borrowed && c.name == coefficient) return key;
+    }
+  }
+  throw std::logic_error("nobody lends " + coefficient);
+}
+
 /// A system in which the effect binds with its default roles, if there is one.
 std::vector<Model> models_with(const std::string& key) {
   std::vector<Model> models;
   const auto& coefficients = registry().effect(key).spec().coefficients;
-  const bool borrows = std::any_of(coefficients.begin(), coefficients.end(), [](const auto& c) { return c.borrowed; });
-  for (const auto& request : {parachute(true), parachute(false), spherical(), cart({})}) {
+  for (const auto& request : {parachute(true), parachute(false), spherical(), cart({}), tanks({})}) {
     ModelRequest alone = request;
     alone.effects = {effect(key)};
-    if (borrows) alone.effects.push_back(effect("static_moment"));
+    for (const auto& c : coefficients) {
+      if (c.borrowed) alone.effects.push_back(effect(owner_of(c.name)));
+    }
     alone.curves.clear();
     for (const auto& [name, of] : curves_without_knots(alone, registry())) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};
     try {

@@ -50,6 +50,12 @@ Candidate candidate_from(const Json& object) {
 
 }  // namespace
 
+std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles) {
+  std::string bindings;
+  for (const auto& [role, target] : roles) bindings += (bindings.empty() ? "" : ", ") + role + " = " + target;
+  return bindings.empty() ? effect : effect + " (" + bindings + ")";
+}
+
 void write_discovery(const std::filesystem::path& dir, const Discovery& discovery) {
   make_writable_folder(dir);
   Json candidates = Json::array();

@@ -31,6 +31,9 @@ struct Candidate {
   std::map<std::string, Estimate> force;       ///< random force per port after refitting
 };
 
+/// "overflow (level = x1, port = dx1/dt)"; the key alone where all roles are the defaults.
+[[nodiscard]] std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles);
+
 /// What could be missing, best first.
 struct Discovery {
   std::vector<Candidate> candidates;

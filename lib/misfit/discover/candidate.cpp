@@ -12,6 +12,7 @@ Candidate named_candidate(const Screened& s, double families) {
   const Specimen& specimen = *s.specimen;
   Candidate c;
   c.effect = specimen.effect;
+  c.roles = specimen.roles;
   c.family = specimen.family;
   c.ports = specimen.port_names;
   c.score = c.predicted_drop = s.result.chi2;

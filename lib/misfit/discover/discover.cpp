@@ -93,6 +93,8 @@ class Search {
     sort_entries();
   }
 
+  static std::string named(const Candidate& c) { return effect_at(c.effect, c.roles); }
+
   void sort_entries() {
     std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
       if (a.candidate.described != b.candidate.described) return b.candidate.described;
@@ -148,23 +150,25 @@ class Search {
   void find_groups() {
     if (entries_.empty() || !entries_.front().refit) return;
     Entry& best = entries_.front();
-    std::vector<std::string> group = {best.candidate.effect};
+    std::vector<Entry*> members = {&best};
     for (std::size_t k = 1; k < entries_.size(); ++k) {
-      const Entry& other = entries_[k];
+      Entry& other = entries_[k];
       if (!other.refit || std::abs(other.refit->drop - best.refit->drop) > tie) continue;
       if (adds_to(*best.refit, other) || adds_to(*other.refit, best)) continue;
-      group.push_back(other.candidate.effect);
+      members.push_back(&other);
     }
-    if (group.size() < 2) return;
-    for (auto& e : entries_) {
-      if (std::find(group.begin(), group.end(), e.candidate.effect) != group.end()) e.candidate.group = group;
-    }
+    if (members.size() < 2) return;
+    std::vector<std::string> group;
+    for (const Entry* e : members) group.push_back(named(e->candidate));
+    for (Entry* e : members) e->candidate.group = group;
   }
 
   /// Has `other` a significant score in the model that holds the refitted effect?
   bool adds_to(const Refit& in, const Entry& other) const {
     const std::vector<Specimen> list = specimens(in.estimate, in.request, registry_, options_.calibration);
-    const auto specimen = std::find_if(list.begin(), list.end(), [&](const Specimen& s) { return s.effect == other.candidate.effect; });
+    const auto specimen = std::find_if(list.begin(), list.end(), [&](const Specimen& s) {
+      return s.effect == other.candidate.effect && s.roles == other.candidate.roles;
+    });
     if (specimen == list.end()) return false;
     const Eigen::MatrixXd columns = specimen_columns(in.estimate, *specimen, other.screened->cell);
     if (columns.size() == 0) return false;
@@ -195,8 +199,8 @@ class Search {
     for (std::size_t k = 1; k < entries_.size(); ++k) {
       Candidate& other = entries_[k].candidate;
       if (!other.why.empty() || !entries_[k].refit) continue;
-      other.why = !other.group.empty() ? "these data cannot tell it from " + c.effect
-                                       : "explains less than " + c.effect + "; screened again once that is in";
+      other.why = !other.group.empty() ? "these data cannot tell it from " + named(c)
+                                       : "explains less than " + named(c) + "; screened again once that is in";
     }
   }
 
@@ -206,7 +210,7 @@ class Search {
     const std::vector<std::string> group = entries_.front().candidate.group;
     for (auto e = entries_.begin(); e != entries_.end(); ++e) {
       Candidate& c = e->candidate;
-      const bool in_group = std::find(group.begin(), group.end(), c.effect) != group.end();
+      const bool in_group = std::find(group.begin(), group.end(), named(c)) != group.end();
       if (!e->refit || (e != entries_.begin() && !in_group)) continue;
       if (const auto bound = ends_at_bound(e->refit->estimate.model, e->screened->specimen->strengths)) {
         c.why = *bound;
@@ -246,7 +250,7 @@ class Search {
       out_.force[named.name] = {estimate_.noise.force, 0.0, named.unit};
     }
     for (const auto& s : screened_) {
-      out_.tried.push_back(s.specimen->effect + " (" + s.specimen->family + "): " + std::to_string(s.cells) +
+      out_.tried.push_back(effect_at(s.specimen->effect, s.specimen->roles) + " (" + s.specimen->family + "): " + std::to_string(s.cells) +
                            (s.cells == 1 ? " cell" : " cells") + ", " + format_value(std::round(s.cells_effective)) + " effective");
     }
     std::string curves = "unknown curves:";

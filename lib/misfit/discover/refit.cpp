@@ -18,8 +18,7 @@ std::vector<Penalty> same_roughness(const Model& model, const FilterEstimate& fr
   std::vector<Penalty> out = curve_penalties(model);
   for (auto& p : out) {
     for (const auto& known : from.penalties) {
-      if (model.curves[static_cast<std::size_t>(p.curve)].name == from.model.curves[static_cast<std::size_t>(known.curve)].name)
-        p.lambda = known.lambda;
+      if (p.curve == known.curve) p.lambda = known.lambda;  // the effect's own curves follow behind
     }
   }
   return out;
@@ -29,11 +28,9 @@ std::vector<Penalty> same_roughness(const Model& model, const FilterEstimate& fr
 Model start_model(const FilterEstimate& without, const Screened& screened, const Registry& registry) {
   const Specimen& specimen = *screened.specimen;
   Model model = assemble(specimen.request, registry);
-  for (const auto& p : without.model.parameters) {
-    const int at = model.find_parameter(p.name);
-    if (at < 0) continue;
-    model.parameters[static_cast<std::size_t>(at)].value = p.value;
-    model.parameters[static_cast<std::size_t>(at)].free = p.free;
+  for (std::size_t i = 0; i < without.model.parameters.size(); ++i) {  // the effect's own follow behind; names may have changed
+    model.parameters[i].value = without.model.parameters[i].value;
+    model.parameters[i].free = without.model.parameters[i].free;
   }
   for (std::size_t i = 0; i < specimen.strengths.size(); ++i) {
     Parameter& p = model.parameters[static_cast<std::size_t>(specimen.strengths[i])];
@@ -89,8 +86,7 @@ double predicted_drop(const FilterEstimate& without, const ScoreTest& score, con
   const Eigen::VectorXd step = score.step_beside(screened.columns, screened.result.amplitude);
   const std::vector<int> free = without.model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c) {
-    const int at = model.find_parameter(without.model.parameters[static_cast<std::size_t>(free[c])].name);
-    Parameter& p = model.parameters[static_cast<std::size_t>(at)];
+    Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
     p.value = std::clamp(p.value + step[static_cast<Eigen::Index>(c)], p.lower, p.upper);
   }
   FilterModel forced = with_random_force(model);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/discover/places.h"
 
 namespace misfit {
 namespace {
@@ -24,6 +25,11 @@ bool in_model(const ModelRequest& request, const std::string& key) {
   return std::any_of(request.effects.begin(), request.effects.end(), [&](const EffectRequest& e) { return e.kind == key; });
 }
 
+/// The same effect at the same place.
+bool same_place(const BoundEffect& a, const BoundEffect& b) {
+  return a.effect == b.effect && a.kind == b.kind && a.ports == b.ports && a.quantities == b.quantities;
+}
+
 bool specialised(const Registry& registry, const std::vector<std::string>& suiting, const std::string& key) {
   return std::any_of(suiting.begin(), suiting.end(),
                      [&](const std::string& other) { return registry.effect(other).spec().specialises == key; });
@@ -34,10 +40,20 @@ bool has_strength(const EffectSpec& spec) {
                      [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.borrowed; });
 }
 
+/// The kind, or kind_2, … where the model has one already.
+std::string name_of_another(const ModelRequest& request, const EffectSpec& spec) {
+  std::string name = spec.key;
+  const auto taken = [&] {
+    return std::any_of(request.effects.begin(), request.effects.end(), [&](const EffectRequest& e) { return e.name == name; });
+  };
+  for (int number = 2; taken(); ++number) name = spec.key + "_" + std::to_string(number);
+  return name;
+}
+
 /// The request with the effect; coefficients that default to curves are numbers.
-ModelRequest with_effect(const ModelRequest& request, const Effect& effect) {
+ModelRequest with_effect(const ModelRequest& request, const Effect& effect, const Roles& roles) {
   ModelRequest out = request;
-  out.effects.push_back({effect.spec().key, effect.spec().key, {}, {}});
+  out.effects.push_back({name_of_another(request, effect.spec()), effect.spec().key, roles, {}});
   for (const auto& c : effect.spec().coefficients) {
     if (c.borrowed || c.curve_of[0] == '\0') continue;
     ParameterRequest number;
@@ -45,13 +61,6 @@ ModelRequest with_effect(const ModelRequest& request, const Effect& effect) {
     number.free = true;
     out.parameters[c.name] = number;
   }
-  return out;
-}
-
-std::vector<double> grid(const ScanSpec& scan) {
-  std::vector<double> out;
-  for (int i = 0; i < scan.count; ++i)
-    out.push_back(scan.count == 1 ? scan.from : scan.from + (scan.to - scan.from) * i / (scan.count - 1));
   return out;
 }
 
@@ -76,7 +85,7 @@ void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::
   out.priors.mean[i] = mean;
 }
 
-void fill(const Effect& effect, const Calibration* calibration, Specimen& out) {
+void fill(const Effect& effect, const Calibration* calibration, const Visited& visited, Specimen& out) {
   const BoundEffect& bound = out.model.effects.back();
   const auto& coefficients = effect.spec().coefficients;
   std::vector<std::vector<double>> axes;
@@ -93,7 +102,7 @@ void fill(const Effect& effect, const Calibration* calibration, Specimen& out) {
       strength_specs.push_back(&coefficients[c]);
     } else if (coefficients[c].scan.count > 0) {
       out.shapes.push_back(parameter);
-      axes.push_back(grid(coefficients[c].scan));
+      axes.push_back(visited.grid(bound, c));
     } else if (coefficients[c].scan.count < 0) {
       out.frequency = parameter;
       out.frequency_from = coefficients[c].scan.from;
@@ -187,36 +196,54 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Spec
   return out;
 }
 
+/// The model with the effect there, all held at the estimate; nullopt where the effect does not suit.
+std::optional<Specimen> specimen_at(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                    const Effect& effect, const Roles& roles) {
+  Specimen out;
+  out.effect = effect.spec().key;
+  out.roles = roles;
+  out.request = with_effect(request, effect, roles);
+  try {
+    out.model = assemble(out.request, registry);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  const auto any_unit = [](const Role& r) { return r.unit[0] == '*' || r.unit[0] == '{'; };
+  const bool generic = std::any_of(effect.spec().ports.begin(), effect.spec().ports.end(), any_unit);
+  out.family = out.model.effects.back().kind == PortKind::sensor ? "sensor" : generic ? "generic" : "physics";
+  for (auto& p : out.model.parameters) p.free = false;
+  for (std::size_t i = 0; i < estimate.model.parameters.size(); ++i)  // the effect's own follow behind
+    out.model.parameters[i].value = estimate.model.parameters[i].value;
+  out.port_names = names_of_ports(out.model);
+  return out;
+}
+
+/// In the model, or among those listed: a default role may be the very place that the system suggests.
+bool stands_already(const Specimen& specimen, const std::vector<Specimen>& listed) {
+  const auto& effects = specimen.model.effects;
+  return std::any_of(effects.begin(), effects.end() - 1, [&](const BoundEffect& e) { return same_place(e, effects.back()); }) ||
+         std::any_of(listed.begin(), listed.end(), [&](const Specimen& s) { return same_place(s.model.effects.back(), effects.back()); });
+}
+
 }  // namespace
 
 std::vector<Specimen> specimens(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                 const Calibration* calibration) {
   std::vector<Specimen> out;
   std::vector<std::string> suiting;
+  const Visited visited(estimate);
+  const SystemSpec& system = estimate.model.system->spec();
   for (const std::string& key : registry.effect_keys()) {
     const Effect& effect = registry.effect(key);
-    if (in_model(request, key) || !has_strength(effect.spec()) || driven_by_noise(effect)) continue;
-    Specimen specimen;
-    specimen.effect = key;
-    specimen.request = with_effect(request, effect);
-    try {
-      specimen.model = assemble(specimen.request, registry);
-    } catch (const InputError&) {
-      continue;  // does not suit this system
+    if (!has_strength(effect.spec()) || driven_by_noise(effect)) continue;
+    for (const Roles& roles : places_of(effect.spec(), system)) {
+      if (roles.empty() && in_model(request, key)) continue;
+      std::optional<Specimen> specimen = specimen_at(estimate, request, registry, effect, roles);
+      if (!specimen || stands_already(*specimen, out)) continue;
+      fill(effect, calibration, visited, *specimen);
+      if (std::find(suiting.begin(), suiting.end(), key) == suiting.end()) suiting.push_back(key);
+      out.push_back(std::move(*specimen));
     }
-    const bool generic =
-        std::any_of(effect.spec().ports.begin(), effect.spec().ports.end(), [](const Role& r) { return r.unit[0] == '*'; });
-    const PortKind kind = specimen.model.effects.back().kind;
-    specimen.family = kind == PortKind::sensor ? "sensor" : generic ? "generic" : "physics";
-    for (auto& p : specimen.model.parameters) p.free = false;
-    for (const auto& p : estimate.model.parameters) {
-      const int at = specimen.model.find_parameter(p.name);
-      if (at >= 0) specimen.model.parameters[static_cast<std::size_t>(at)].value = p.value;
-    }
-    fill(effect, calibration, specimen);
-    specimen.port_names = names_of_ports(specimen.model);
-    suiting.push_back(key);
-    out.push_back(std::move(specimen));
   }
   std::erase_if(out, [&](const Specimen& s) { return specialised(registry, suiting, s.effect); });
   return out;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,14 +11,15 @@ namespace misfit {
 
 /// An effect put to the model as a question: its strengths are free and 0, everything else is held; shapes stand at one of the cells.
 struct Specimen {
-  std::string effect, family;              ///< family: "physics", "generic", "sensor"
-  ModelRequest request;                    ///< the model's, with the effect as a number everywhere
-  Model model;                             ///< values of the estimate; only the strengths free
-  std::vector<int> strengths;              ///< parameters, in the order of the columns
-  std::vector<bool> one_sided;             ///< strengths that cannot be negative
-  std::vector<int> shapes;                 ///< parameters that are scanned, in the order of a cell's values
-  std::vector<std::vector<double>> cells;  ///< at least one (empty where nothing is scanned)
-  int frequency = -1;                      ///< shape that is a frequency to be scanned finely
+  std::string effect, family;                ///< family: "physics", "generic", "sensor"
+  std::map<std::string, std::string> roles;  ///< as a study would bind them; empty: the defaults
+  ModelRequest request;                      ///< the model's, with the effect as a number everywhere
+  Model model;                               ///< values of the estimate; only the strengths free
+  std::vector<int> strengths;                ///< parameters, in the order of the columns
+  std::vector<bool> one_sided;               ///< strengths that cannot be negative
+  std::vector<int> shapes;                   ///< parameters that are scanned, in the order of a cell's values
+  std::vector<std::vector<double>> cells;    ///< at least one (empty where nothing is scanned)
+  int frequency = -1;                        ///< shape that is a frequency to be scanned finely
   double frequency_from = 0.0, frequency_to = 0.0;
   ColumnPriors priors;  ///< of the strengths
   bool has_priors = false;
@@ -26,7 +28,8 @@ struct Specimen {
   std::vector<int> quantities;  ///< of the system that it reads
 };
 
-/// Every effect of the registry that suits the model's system, is not in it, and has a strength. Left out: effects driven by noise (the
+/// Every effect of the registry that suits the model's system, is not in it, and has a strength; generic ones at each place that the system
+/// suggests (places.h). Left out: effects driven by noise (the
 /// filter has them), and generic ones that a system's own effect specialises.
 [[nodiscard]] std::vector<Specimen> specimens(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                               const Calibration* calibration);

@@ -28,7 +28,7 @@ std::string numbers(const Candidate& c) {
 
 bool is_sensor(const Discovery& discovery, const std::string& effect) {
   return std::any_of(discovery.candidates.begin(), discovery.candidates.end(),
-                     [&](const Candidate& c) { return c.effect == effect && c.family == "sensor"; });
+                     [&](const Candidate& c) { return effect_at(c.effect, c.roles) == effect && c.family == "sensor"; });
 }
 
 void separate(const Candidate& best, Discovery& discovery) {
@@ -49,8 +49,9 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
   }
   const Candidate& best = out.candidates.front();
   if (best.accepted) {
-    out.verdict = "Missing: " + best.effect + " (drop " + format_value(best.actual_drop.value_or(best.predicted_drop)) +
-                  ", family-wise p " + format_probability(best.p_value) + "): " + numbers(best) + ".";
+    out.verdict = "Missing: " + effect_at(best.effect, best.roles) + " (drop " +
+                  format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise p " + format_probability(best.p_value) +
+                  "): " + numbers(best) + ".";
     separate(best, out);
     return;
   }
@@ -60,13 +61,14 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     out.verdict = "Something is missing that depends on " + unexplained->quantity + " (a force on " + unexplained->port + ", p " +
                   format_probability(unexplained->p_value) + "), and none of the effects I know explains it.";
     if (best.actual_drop)
-      out.sentences.push_back("the nearest named effect is " + best.effect + " (drop " + format_value(*best.actual_drop) +
-                              "): " + best.why);
+      out.sentences.push_back("the nearest named effect is " + effect_at(best.effect, best.roles) + " (drop " +
+                              format_value(*best.actual_drop) + "): " + best.why);
     return;
   }
   if (best.actual_drop && best.p_value < p_accept) {
-    out.verdict = "Nothing can be accepted: " + best.effect + " comes nearest (drop " + format_value(*best.actual_drop) +
-                  ", family-wise p " + format_probability(best.p_value) + "), but " + best.why + ". More data would decide.";
+    out.verdict = "Nothing can be accepted: " + effect_at(best.effect, best.roles) + " comes nearest (drop " +
+                  format_value(*best.actual_drop) + ", family-wise p " + format_probability(best.p_value) + "), but " + best.why +
+                  ". More data would decide.";
     return;
   }
   double least = 1.0;
@@ -74,7 +76,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
   for (const auto& c : out.candidates) {
     if (c.p_value < least) {
       least = c.p_value;
-      nearest = c.effect;
+      nearest = effect_at(c.effect, c.roles);
     }
   }
   const std::string closest = nearest.empty() ? "" : "; the nearest is " + nearest + " with p " + format_probability(least);

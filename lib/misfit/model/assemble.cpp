@@ -57,6 +57,9 @@ std::map<std::string, std::string> Assembler::parameter_units() {
       if (!spec.coefficients[c].borrowed) units[names_[i][c]] = bind_unit(spec.coefficients[c].unit, roles);
     }
   }
+  for (const auto& [name, alias] : aliases_) {
+    if (units.contains(name)) units.emplace(alias, units.at(name));
+  }
   return units;
 }
 
@@ -90,9 +93,11 @@ void Assembler::check_bounds(const Parameter& p, const Source& where) {
 }
 
 void Assembler::apply_request(Parameter& p) {
-  const auto found = request_.parameters.find(p.name);
+  auto found = request_.parameters.find(p.name);
+  const auto alias = aliases_.find(p.name);
+  if (found == request_.parameters.end() && alias != aliases_.end()) found = request_.parameters.find(alias->second);
   if (found == request_.parameters.end()) return;
-  used_parameters_.insert(p.name);
+  used_parameters_.insert(found->first);
   const ParameterRequest& r = found->second;
   if (r.lower) p.lower = *r.lower;
   if (r.upper) p.upper = *r.upper;

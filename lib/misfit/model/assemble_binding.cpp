@@ -78,11 +78,12 @@ void Assembler::bind_ports(const EffectRequest& request, const EffectSpec& spec,
   }
 }
 
-void Assembler::check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit) {
+void Assembler::check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit) const {
   if (role.unit[0] == '*') return;  // a generic role takes any unit
-  if (!parse_unit(role.unit).same_dimension(parse_unit(unit))) {
+  const std::string needed = bind_unit(role.unit, role_units_);
+  if (!parse_unit(needed).same_dimension(parse_unit(unit))) {
     throw InputError(request.where,
-                     "effect '" + request.name + "': role '" + role.name + "' needs [" + role.unit + "], " + what + " has [" + unit + "]");
+                     "effect '" + request.name + "': role '" + role.name + "' needs [" + needed + "], " + what + " has [" + unit + "]");
   }
 }
 

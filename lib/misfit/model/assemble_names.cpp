@@ -25,6 +25,24 @@ void Assembler::name_coefficients() {
       if (!effect(i).spec().coefficients[c].borrowed && uses[name] > 1) name = request_.effects[i].name + "." + name;
     }
   }
+  name_aliases();
+}
+
+void Assembler::name_aliases() {
+  std::set<std::string> owned;
+  for (const auto& constant : system().constants) owned.insert(constant.name);
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    const std::string prefix = request_.effects[i].name + ".";
+    for (std::size_t c = 0; c < names_[i].size(); ++c) {
+      if (effect(i).spec().coefficients[c].borrowed) continue;
+      const std::string& name = names_[i][c];
+      const bool prefixed = name.starts_with(prefix);
+      const std::string bare = prefixed ? name.substr(prefix.size()) : name;
+      const bool first = owned.insert(bare).second;
+      if (!prefixed) aliases_[name] = prefix + name;
+      if (prefixed && first) aliases_[name] = bare;
+    }
+  }
 }
 
 void Assembler::lend_coefficients() {

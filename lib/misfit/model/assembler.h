@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "misfit/model/model.h"
@@ -32,6 +33,9 @@ class Assembler {
   /// Bare names where unique, EFFECT.NAME where two effects of the model, or an effect and the system, would share one; a system may
   /// rename.
   void name_coefficients();
+  /// A study may use another name than the model does: the bare one for the first effect that owns it, so that adding a second effect of a
+  /// kind leaves the lines of the first as they are; and EFFECT.NAME where the bare one would do.
+  void name_aliases();
   /// Borrowed coefficients, once all effects are bound: that of the first effect which owns one of the name.
   void lend_coefficients();
   std::optional<BoundCoefficient> owned_coefficient(const std::string& name) const;
@@ -44,11 +48,14 @@ class Assembler {
   static void check_roles(const EffectRequest& request, const EffectSpec& spec);
   /// An optional role that completes another is not looked for where the study binds that one alone.
   static bool is_left_out(const EffectRequest& request, const Role& role);
-  /// The name a role stands for: as the study binds it, else itself if `exists`, else the system's default for the role.
+  /// The name a role stands for: as the study binds it, else itself if `exists`, else the system's default for the role. A sensor whose
+  /// `output` the study binds reads that same output.
   template <class Exists>
   std::string target_of(const EffectRequest& request, const Role& role, const Exists& exists) const {
     const auto bound = request.roles.find(role.name);
     if (bound != request.roles.end()) return bound->second;
+    const auto own_output = request.roles.find("output");
+    if (std::string_view(role.name) == "reading" && own_output != request.roles.end()) return own_output->second;
     if (exists(role.name)) return role.name;
     const auto fallback = system().roles.find(role.name);
     return fallback == system().roles.end() ? role.name : fallback->second;
@@ -61,7 +68,7 @@ class Assembler {
   std::optional<Place> find_port(const std::string& name) const;
   std::vector<std::string> port_names() const;
   void bind_ports(const EffectRequest& request, const EffectSpec& spec, BoundEffect& bound) const;
-  static void check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit);
+  void check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit) const;
   int bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const;
   /// Effects on quantity ports read base quantities only; only effects on sensors read predicted outputs (DESIGN 4, order of evaluation).
   void check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const;
@@ -81,6 +88,7 @@ class Assembler {
   const Registry& registry_;
   Model model_;
   std::vector<std::vector<std::string>> names_;
+  std::map<std::string, std::string> aliases_;  // name in the model → what a study may call it as well
   std::set<std::string> used_parameters_, used_curves_;
   std::map<std::string, std::string> role_units_;  // of the effect being bound
 };

@@ -27,7 +27,8 @@ enum class CoefficientKind {
 
 /// What an effect reads or writes, by role. A role is bound by the study, else to the quantity or port of the same name, else to the
 /// system's default for the role. An optional role that the system lacks reads 0 or is not written. Unit "*": a generic effect, any unit
-/// will do.
+/// will do; with another role in braces a generic effect that needs a relation: "{level}/s" suits only ports that are the rate of the
+/// level.
 struct Role {
   const char* name = "";
   const char* unit = "";
@@ -39,8 +40,11 @@ struct Role {
 
 /// Where discovery looks for a shape before the refit refines it.
 struct ScanSpec {
-  double from = 0.0, to = 0.0;  ///< [unit]
+  double from = 0.0, to = 0.0;  ///< [unit], or shares of what `over` names
   int count = 0;  ///< values, ends included; 0: not scanned (the default value serves); −1: a frequency [Hz], steps of 1/(4T)
+  /// For effects of any unit, which cannot know sizes beforehand. "level" (a role): 0 to 1 stand for the ends of the range that it visits;
+  /// "|level|": shares of its largest size; "step": multiples of the sampling interval, in equal ratios. "": plain numbers.
+  const char* over = "";
 };
 
 /// A number the effect owns; where the study says so, a curve of any quantity.
@@ -70,6 +74,16 @@ constexpr CoefficientSpec borrowed_coefficient(const char* name, const char* uni
   constexpr double huge = 1e6;
   CoefficientSpec spec{name, CoefficientKind::shape, 0.0, unit, -huge, huge, 1.0, doc};
   spec.borrowed = true;
+  return spec;
+}
+
+/// The same coefficient, looked for over `scan`; held unless a study frees it.
+constexpr CoefficientSpec scanned(CoefficientSpec spec, const ScanSpec& scan) {
+  spec.scan = scan;
+  return spec;
+}
+constexpr CoefficientSpec held(CoefficientSpec spec) {
+  spec.fixed = true;
   return spec;
 }
 

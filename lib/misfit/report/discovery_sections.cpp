@@ -145,9 +145,9 @@ void show_discovery(const Discovery& d, Page& page, const Put& draw) {
   for (const Candidate& c : d.candidates) {
     std::string group;
     for (const auto& name : c.group) {
-      if (name != c.effect) group += (group.empty() ? "" : ", ") + name;
+      if (name != effect_at(c.effect, c.roles)) group += (group.empty() ? "" : ", ") + name;
     }
-    rows.push_back({std::to_string(c.rank), c.effect, number(c.predicted_drop), number(c.actual_drop), number(c.held_out_gain),
+    rows.push_back({std::to_string(c.rank), effect_at(c.effect, c.roles), number(c.predicted_drop), number(c.actual_drop), number(c.held_out_gain),
                     format_probability(c.p_value), group.empty() ? "–" : group, c.accepted ? "yes" : "no", c.why});
   }
   page.table(rows);

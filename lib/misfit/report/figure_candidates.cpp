@@ -29,7 +29,7 @@ Panel drop_panel(const std::vector<Candidate>& candidates, std::size_t count) {
   for (std::size_t k = 0; k < count; ++k) {
     const Candidate& c = candidates[k];
     const auto place = static_cast<double>(count - k);
-    panel.y_marks.push_back({place, c.effect});
+    panel.y_marks.push_back({place, effect_at(c.effect, c.roles)});
     add_bar(predicted, c.predicted_drop, place + apart, half);
     if (c.actual_drop) add_bar(c.accepted ? accepted : actual, *c.actual_drop, place - apart, half);
   }

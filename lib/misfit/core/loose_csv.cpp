@@ -1,0 +1,180 @@
+#include "misfit/core/loose_csv.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+
+namespace misfit {
+namespace {
+
+constexpr std::string_view blanks = " \t\r";
+
+std::string_view trim(std::string_view text) {
+  const auto from = text.find_first_not_of(blanks);
+  if (from == std::string_view::npos) return {};
+  text = text.substr(from, text.find_last_not_of(blanks) - from + 1);
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+  return text;
+}
+
+/// Cells of a line; a ' ' separates by any run of blanks. Separators inside quotation marks belong to the cell.
+std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
+  std::vector<std::string_view> cells;
+  if (delimiter == ' ') {
+    for (auto from = line.find_first_not_of(blanks); from != std::string_view::npos;) {
+      const auto to = std::min(line.find_first_of(blanks, from), line.size());
+      cells.push_back(trim(line.substr(from, to - from)));
+      from = line.find_first_not_of(blanks, to);
+    }
+    return cells;
+  }
+  std::size_t from = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line[i] == '"') quoted = !quoted;
+    if (i < line.size() && (line[i] != delimiter || quoted)) continue;
+    cells.push_back(trim(line.substr(from, i - from)));
+    from = i + 1;
+  }
+  return cells;
+}
+
+bool is_missing(std::string_view cell) {
+  std::string lower;
+  for (const char c : cell) lower += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+  constexpr std::array<std::string_view, 7> words = {"", "nan", "-nan", "na", "n/a", "null", "none"};
+  return std::find(words.begin(), words.end(), lower) != words.end();
+}
+
+/// nullopt if the cell is neither a finite number nor a word for a missing one.
+std::optional<double> number_of(std::string_view cell, bool decimal_comma) {
+  if (is_missing(cell)) return std::numeric_limits<double>::quiet_NaN();
+  std::string text(cell.front() == '+' ? cell.substr(1) : cell);
+  if (decimal_comma) std::replace(text.begin(), text.end(), ',', '.');
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+struct Line {
+  std::string_view text;
+  int number = 0;
+};
+
+class LooseReader {
+ public:
+  explicit LooseReader(const std::filesystem::path& path) : content_(read_file(path)) { table_.source = path.string(); }
+
+  LooseTable read() {
+    split_lines();
+    if (lines_.empty()) fail(0, "the file is empty: columns of numbers under a line of names are expected, as t[s],u[V],y[V]");
+    find_delimiter();
+    read_header();
+    if (table_.columns.size() < 2)
+      fail(lines_.front().number,
+           "one column alone ('" + table_.columns.front().header + "') is no recording: a time and what was measured are needed");
+    if (first_row_ >= lines_.size()) fail(0, "no rows below the header");
+    for (std::size_t i = first_row_; i < lines_.size(); ++i) read_row(lines_[i]);
+    return std::move(table_);
+  }
+
+ private:
+  [[noreturn]] void fail(int line, const std::string& message) const { throw InputError({table_.source, line, 0}, message); }
+
+  void split_lines() {
+    std::string_view rest = content_;
+    if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+    for (int number = 1; !rest.empty(); ++number) {
+      const auto end = std::min(rest.find('\n'), rest.size());
+      std::string_view line = rest.substr(0, end);
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+      while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+      if (line.find_first_not_of(blanks) == std::string_view::npos) continue;
+      if (line.front() == '#' || line.front() == '%') {
+        ++table_.comments;
+        if (lines_.empty()) last_comment_ = line.substr(std::min(line.find_first_not_of("#% "), line.size()));
+        continue;
+      }
+      lines_.push_back({line, number});
+    }
+  }
+
+  /// The separator that splits the first lines into the most cells, equally many on each; a comma may also be a decimal comma.
+  void find_delimiter() {
+    const std::size_t looked_at = std::min<std::size_t>(lines_.size(), 20);
+    std::size_t most = 1;
+    for (const char candidate : {';', '\t', ',', ' '}) {
+      const std::size_t cells = cells_of(lines_.back().text, candidate).size();
+      bool equal = true;
+      for (std::size_t i = lines_.size() > 1 ? 1 : 0; i < looked_at; ++i)
+        equal = equal && cells_of(lines_[i].text, candidate).size() == cells;
+      const bool only_blank = candidate == ' ' && most > 1;  // blanks after commas are no separators
+      if (!equal || cells <= most || only_blank || (candidate == ',' && most > 1)) continue;
+      most = cells;
+      table_.delimiter = candidate;
+    }
+    if (table_.delimiter == ',') return;
+    const std::string_view row = lines_.back().text;
+    table_.decimal_comma = row.find(',') != std::string_view::npos && row.find('.') == std::string_view::npos;
+  }
+
+  [[nodiscard]] bool all_numbers(const std::vector<std::string_view>& cells) const {
+    return std::all_of(cells.begin(), cells.end(), [&](std::string_view c) { return !c.empty() && number_of(c, table_.decimal_comma); });
+  }
+
+  void read_header() {
+    std::vector<std::string_view> names = cells_of(lines_.front().text, table_.delimiter);
+    first_row_ = 1;
+    if (all_numbers(names)) {
+      const auto commented = cells_of(last_comment_, table_.delimiter);
+      if (commented.size() != names.size() || all_numbers(commented))
+        fail(lines_.front().number, "no header: the first line holds numbers; put the names of the columns above it, as t[s],u[V],y[V]");
+      names = commented;
+      first_row_ = 0;
+    }
+    for (const std::string_view name : names) {
+      LooseColumn column;
+      column.header = name.empty() ? "column_" + std::to_string(table_.columns.size() + 1) : std::string(name);
+      for (const auto& earlier : table_.columns) {
+        if (earlier.header == column.header) fail(lines_.front().number, "the header names column '" + column.header + "' twice");
+      }
+      table_.columns.push_back(std::move(column));
+    }
+  }
+
+  void read_row(const Line& line) {
+    std::vector<std::string_view> cells = cells_of(line.text, table_.delimiter);
+    if (cells.size() == table_.columns.size() + 1 && cells.back().empty()) cells.pop_back();  // a separator at the end of the line
+    if (cells.size() != table_.columns.size())
+      fail(line.number, std::to_string(cells.size()) + " cells where the header has " + std::to_string(table_.columns.size()));
+    for (std::size_t j = 0; j < cells.size(); ++j) {
+      LooseColumn& column = table_.columns[j];
+      const auto value = number_of(cells[j], table_.decimal_comma);
+      if (!value && column.text++ == 0) {
+        column.text_line = line.number;
+        column.first_text = std::string(cells[j]);
+      }
+      column.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+    table_.line.push_back(line.number);
+  }
+
+  std::string content_;
+  std::string_view last_comment_;
+  std::vector<Line> lines_;
+  std::size_t first_row_ = 1;
+  LooseTable table_;
+};
+
+}  // namespace
+
+LooseTable read_loose_csv(const std::filesystem::path& path) { return LooseReader(path).read(); }
+
+}  // namespace misfit

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace misfit {
+
+/// A column as a foreign program wrote it.
+struct LooseColumn {
+  std::string header;          ///< as in the file
+  std::vector<double> values;  ///< NaN where empty, "nan", "NA" or "null", or where `text` counts
+  std::size_t text = 0;        ///< cells that are no number
+  int text_line = 0;           ///< line of the first of them
+  std::string first_text;
+};
+
+struct LooseTable {
+  std::string source;
+  char delimiter = ',';        ///< ',', ';', '\t' or ' ' (blanks)
+  bool decimal_comma = false;  ///< "1,5" is one and a half
+  std::size_t comments = 0;    ///< lines that begin with '#' or '%'
+  std::vector<int> line;       ///< of each row
+  std::vector<LooseColumn> columns;
+
+  [[nodiscard]] std::size_t rows() const { return line.size(); }
+};
+
+/// Reads numbers in columns however they are separated: by commas, semicolons, tabs or blanks, found from the lines themselves; with a
+/// decimal point, or a decimal comma where the separator is another. The header may be the last comment line. Quotation marks around cells
+/// are taken off. InputError: no such file, nothing in it, no header ("the first line holds numbers"), no rows, rows of another length,
+/// one column alone, a name used twice.
+[[nodiscard]] LooseTable read_loose_csv(const std::filesystem::path& path);
+
+}  // namespace misfit

@@ -1,0 +1,115 @@
+#include "misfit/data/column_facts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "misfit/core/text.h"
+
+namespace misfit {
+namespace {
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return text;
+}
+
+/// The name, or the name with a number behind it ("u1"), is among the words.
+template <std::size_t N>
+bool is_called(const std::string& name, const std::array<std::string_view, N>& words) {
+  std::string bare = lower_case(name);
+  while (!bare.empty() && ((bare.back() >= '0' && bare.back() <= '9') || bare.back() == '_')) bare.pop_back();
+  return std::find(words.begin(), words.end(), bare) != words.end();
+}
+
+constexpr std::array<std::string_view, 8> time_words = {"t", "time", "zeit", "timestamp", "sec", "seconds", "tijd", "temps"};
+constexpr std::array<std::string_view, 24> input_words = {
+    "u",     "in",    "input",    "force",  "torque", "voltage", "cmd",     "command",  "ref",        "setpoint", "valve",    "pump",
+    "drive", "motor", "throttle", "heater", "power",  "pwm",     "control", "stimulus", "excitation", "demand",   "actuator", "duty"};
+constexpr std::array<std::string_view, 7> segment_words = {"segment", "seg", "trial", "run", "episode", "block", "id"};
+
+/// How many samples in a row stand at one value: the longest stand at `value`, and the longest at any other.
+struct Stands {
+  std::size_t at = 0, elsewhere = 0;
+};
+
+Stands longest_stands(const std::vector<double>& values, double value) {
+  Stands out;
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    run = i > 0 && values[i] == values[i - 1] ? run + 1 : 1;
+    std::size_t& longest = values[i] == value ? out.at : out.elsewhere;
+    longest = std::max(longest, run);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> finite(const std::vector<double>& values) {
+  std::vector<double> out = values;
+  std::erase_if(out, [](double v) { return !std::isfinite(v); });
+  return out;
+}
+
+bool is_integer(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return v == std::round(v); });
+}
+
+/// The step of a digitised column: the smallest difference of neighbouring values, if all others are whole multiples of it and it is not
+/// the scatter of the values themselves.
+double resolution_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  constexpr std::size_t fewest = 3;
+  if (values.size() < fewest) return 0.0;
+  double least = values.back() - values.front();
+  const double noise = 1e-9 * std::max(std::abs(values.front()), std::abs(values.back()));
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] - values[i - 1] > noise) least = std::min(least, values[i] - values[i - 1]);
+  }
+  const double steps = (values.back() - values.front()) / least;
+  if (!(steps < 1e7)) return 0.0;
+  for (const double v : values) {
+    const double k = (v - values.front()) / least;
+    constexpr double whole = 0.02;
+    if (std::abs(k - std::round(k)) > whole) return 0.0;
+  }
+  return least;
+}
+
+double share_held(const std::vector<double>& values) {
+  std::size_t equal = 0, pairs = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (!std::isfinite(values[i]) || !std::isfinite(values[i - 1])) continue;
+    ++pairs;
+    equal += values[i] == values[i - 1] ? 1U : 0U;
+  }
+  return pairs == 0 ? 0.0 : static_cast<double>(equal) / static_cast<double>(pairs);
+}
+
+std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values) {
+  std::vector<std::string> out;
+  const std::vector<double> known = finite(values);
+  if (known.empty()) return out;
+  const auto [low, high] = std::minmax_element(known.begin(), known.end());
+  for (const bool upper : {true, false}) {
+    const Stands stands = longest_stands(values, upper ? *high : *low);
+    constexpr std::size_t long_stand = 10;
+    if (stands.at < long_stand || stands.at < 2 * stands.elsewhere) continue;
+    out.push_back(fmt::format("column '{}' stands at its {} value, {}, for up to {} samples: something is full, or the sensor reads no {}",
+                              header, upper ? "highest" : "lowest", format_value(upper ? *high : *low), stands.at,
+                              upper ? "higher" : "lower"));
+  }
+  return out;
+}
+
+bool is_called_time(const std::string& name) { return is_called(name, time_words); }
+bool is_called_input(const std::string& name) { return is_called(name, input_words); }
+bool is_called_segment(const std::string& name) { return is_called(name, segment_words); }
+
+}  // namespace misfit

@@ -1,0 +1,30 @@
+#pragma once
+
+// What the values and the name of one column say: not for other files than recording.cpp.
+
+#include <string>
+#include <vector>
+
+namespace misfit {
+
+/// Without what is not finite.
+[[nodiscard]] std::vector<double> finite(const std::vector<double>& values);
+[[nodiscard]] bool is_integer(const std::vector<double>& values);
+
+/// The step of a digitised column: the smallest difference of its values, if all others are whole multiples of it (to 2 %); 0 if there is
+/// none. Not finite values are not allowed.
+[[nodiscard]] double resolution_of(std::vector<double> values);
+
+/// Share of the samples that equal the one before.
+[[nodiscard]] double share_held(const std::vector<double>& values);
+
+/// A sentence for the highest and one for the lowest value, if an otherwise moving column stands there for ten samples or more, and twice
+/// as long as anywhere else.
+[[nodiscard]] std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values);
+
+// By name, case and a number behind it ("u1") aside.
+[[nodiscard]] bool is_called_time(const std::string& name);
+[[nodiscard]] bool is_called_input(const std::string& name);
+[[nodiscard]] bool is_called_segment(const std::string& name);
+
+}  // namespace misfit

@@ -1,0 +1,300 @@
+#include "misfit/data/recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "misfit/core/error.h"
+#include "misfit/core/loose_csv.h"
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+#include "misfit/data/column_facts.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+class Surveyor {
+ public:
+  explicit Surveyor(const std::filesystem::path& path) : table_(read_loose_csv(path)) {
+    out_.source = table_.source;
+    out_.rows = table_.rows();
+  }
+
+  RecordingSurvey run() {
+    describe_format();
+    for (const auto& column : table_.columns) out_.columns.push_back(look_at(column));
+    make_names_unique();
+    find_time();
+    cut();
+    find_gaps();
+    find_segments();
+    find_inputs_and_outputs();
+    find_rates();
+    fill_parts();
+    return std::move(out_);
+  }
+
+ private:
+  [[noreturn]] void fail(int line, const std::string& message) const { throw InputError({table_.source, line, 0}, message); }
+  const std::vector<double>& values(std::size_t column) const { return table_.columns[column].values; }
+
+  void describe_format() {
+    const char* between = table_.delimiter == ','    ? "commas"
+                          : table_.delimiter == ';'  ? "semicolons"
+                          : table_.delimiter == '\t' ? "tabs"
+                                                     : "blanks";
+    out_.format = fmt::format("{} between cells, decimal {}", between, table_.decimal_comma ? "commas" : "points");
+    if (table_.comments > 0) out_.format += fmt::format(", {} comment line{}", table_.comments, table_.comments == 1 ? "" : "s");
+  }
+
+  ColumnSurvey look_at(const LooseColumn& column) {
+    ColumnSurvey s;
+    const NameAndUnit header = read_header(column.header);
+    s.header = column.header;
+    s.name = header.name;
+    s.unit = header.unit.empty() ? "-" : header.unit;
+    if (!header.not_understood.empty())
+      out_.remarks.push_back(
+          fmt::format("column '{}': the unit '{}' is not known, its numbers are taken as they are", s.header, header.not_understood));
+    const std::vector<double> known = finite(column.values);
+    s.missing = column.values.size() - known.size() - column.text;
+    if (column.text > 0) {
+      if (known.size() > column.text) {
+        fail(column.text_line,
+             fmt::format("column '{}': '{}' is not a number (a missing value is an empty cell or NaN); {} cell{} of {} are text", s.header,
+                         column.first_text, column.text, column.text == 1 ? "" : "s", column.values.size()));
+      }
+      s.use = ColumnUse::text;
+      s.why = "text";
+      return s;
+    }
+    if (known.empty()) {
+      s.use = ColumnUse::constant;
+      s.why = "no value at all";
+      return s;
+    }
+    const auto [low, high] = std::minmax_element(known.begin(), known.end());
+    s.low = *low;
+    s.high = *high;
+    s.held = share_held(column.values);
+    if (s.low == s.high) {
+      s.use = ColumnUse::constant;
+      s.why = "never changes: " + format_value(s.low);
+    } else {
+      s.resolution = resolution_of(known);
+    }
+    if (s.missing > 0)
+      out_.remarks.push_back(fmt::format("column '{}': {} of {} values are missing", s.header, s.missing, column.values.size()));
+    return s;
+  }
+
+  void make_names_unique() {
+    std::set<std::string> taken;
+    for (auto& c : out_.columns) {
+      const std::string stem = c.name;
+      for (int k = 2; !taken.insert(c.name).second; ++k) c.name = stem + "_" + std::to_string(k);
+    }
+  }
+
+  /// Share of the steps that run forward.
+  double forward(std::size_t column) const {
+    const std::vector<double> t = finite(values(column));
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < t.size(); ++i) count += t[i] > t[i - 1] ? 1U : 0U;
+    return t.size() < 2 ? 0.0 : static_cast<double>(count) / static_cast<double>(t.size() - 1);
+  }
+
+  void find_time() {
+    constexpr double mostly = 0.5;
+    std::string counter;
+    for (const bool by_name : {true, false}) {
+      for (std::size_t i = 0; i < out_.columns.size() && time_ == none; ++i) {
+        ColumnSurvey& c = out_.columns[i];
+        if (c.use != ColumnUse::unused || !(forward(i) > mostly)) continue;
+        const Unit unit = parse_unit(c.unit);
+        const bool of_time = unit.same_dimension(parse_unit("s"));
+        if (by_name ? is_called_time(c.name) && (of_time || c.unit == "-") : of_time) time_ = i;
+        if (time_ == none && counter.empty() && forward(i) == 1.0 && is_integer(finite(values(i)))) counter = c.header;
+      }
+    }
+    if (time_ == none)
+      fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, and runs forward") +
+                  (counter.empty() ? "" : " ('" + counter + "' counts rows, but over which interval?)") + "; write one as t[s]");
+    ColumnSurvey& c = out_.columns[time_];
+    c.use = ColumnUse::time;
+    c.resolution = 0.0;
+    if (c.unit == "-") {
+      c.unit = std::string("s");
+      out_.remarks.push_back(fmt::format("column '{}' names no unit: taken as seconds", c.header));
+    }
+    c.why = "runs forward" + (c.unit == "s" ? std::string() : ", in " + c.unit);
+    const double factor = convert(1.0, c.unit, "s");
+    for (const double v : values(time_)) t_.push_back(factor * v);
+  }
+
+  /// Stretches in which time runs forward; rows without a time of their own are left out.
+  void cut() {
+    std::size_t without = 0, repeated = 0;
+    for (std::size_t i = 0; i < t_.size(); ++i) {
+      if (!std::isfinite(t_[i])) {
+        ++without;
+        continue;
+      }
+      if (!pieces_.empty() && t_[i] == t_[pieces_.back().back()]) {
+        ++repeated;
+        continue;
+      }
+      if (pieces_.empty() || t_[i] < t_[pieces_.back().back()]) pieces_.emplace_back();
+      pieces_.back().push_back(i);
+    }
+    if (without > 0) out_.remarks.push_back(fmt::format("{} rows without a time are left out", without));
+    if (repeated > 0) out_.remarks.push_back(fmt::format("{} rows repeat the time of the row before and are left out", repeated));
+    if (pieces_.size() > 1) {
+      out_.remarks.push_back(fmt::format("time runs backward {} time{}: {} recordings in one file, an experiment each", pieces_.size() - 1,
+                                         pieces_.size() == 2 ? "" : "s", pieces_.size()));
+    }
+    constexpr std::size_t fewest = 10;
+    const auto longest = std::max_element(pieces_.begin(), pieces_.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    if (pieces_.empty() || longest->size() < fewest) fail(0, fmt::format("{} rows: too few to be a recording", t_.size()));
+    const std::size_t before = pieces_.size();
+    std::erase_if(pieces_, [](const auto& piece) { return piece.size() < fewest; });
+    if (pieces_.size() < before)
+      out_.remarks.push_back(fmt::format("{} of them with fewer than {} rows are left out", before - pieces_.size(), fewest));
+  }
+
+  void find_gaps() {
+    std::vector<double> steps;
+    for (const auto& piece : pieces_) {
+      for (std::size_t k = 1; k < piece.size(); ++k) steps.push_back(t_[piece[k]] - t_[piece[k - 1]]);
+    }
+    out_.step = median(steps);
+    out_.jitter = mad_sigma(steps);
+    constexpr double gap = 1.5;
+    for (const auto& piece : pieces_) {
+      for (std::size_t k = 1; k < piece.size(); ++k) {
+        if (t_[piece[k]] - t_[piece[k - 1]] > gap * out_.step) out_.gaps.push_back({t_[piece[k - 1]], t_[piece[k]]});
+      }
+    }
+    if (out_.gaps.empty()) return;
+    const auto longest =
+        std::max_element(out_.gaps.begin(), out_.gaps.end(), [](const Gap& a, const Gap& b) { return a.to - a.from < b.to - b.from; });
+    out_.remarks.push_back(fmt::format("{} gap{} in time, the longest from {} s to {} s: the model runs on over {}", out_.gaps.size(),
+                                       out_.gaps.size() == 1 ? "" : "s", format_value(longest->from), format_value(longest->to),
+                                       out_.gaps.size() == 1 ? "it" : "them"));
+  }
+
+  void find_segments() {
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      ColumnSurvey& c = out_.columns[i];
+      constexpr double nearly_always = 0.95;
+      if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i))) || c.held < nearly_always) continue;
+      c.use = ColumnUse::segment;
+      c.why = "whole numbers that stay: a count of pieces";
+      out_.remarks.push_back(fmt::format("column '{}' numbers pieces {} to {}, time runs on across them: kept together as one recording",
+                                         c.header, format_value(c.low), format_value(c.high)));
+    }
+  }
+
+  void find_inputs_and_outputs() {
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      if (out_.columns[i].use == ColumnUse::unused) open.push_back(i);
+    }
+    if (open.empty()) fail(0, "beside time no column changes: nothing was measured");
+    constexpr double stands = 0.5;
+    for (const std::size_t i : open) {
+      ColumnSurvey& c = out_.columns[i];
+      if (open.size() > 1 && is_called_input(c.name)) {
+        c.use = ColumnUse::input;
+        c.why = "called like an input";
+      } else if (open.size() > 1 && c.held > stands) {
+        c.use = ColumnUse::input;
+        c.why = fmt::format("stands still between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
+      } else {
+        c.use = ColumnUse::output;
+        c.why = open.size() == 1 ? "the only column that was measured" : "not called like an input, and it moves";
+        for (auto& remark : limit_remarks(c.header, values(i))) out_.remarks.push_back(std::move(remark));
+      }
+    }
+    const bool any = std::any_of(open.begin(), open.end(), [&](std::size_t i) { return out_.columns[i].use == ColumnUse::output; });
+    if (any) return;
+    ColumnSurvey& last = out_.columns[open.back()];
+    last.use = ColumnUse::output;
+    last.why = "every column looks like an input; the last is taken as what was measured";
+  }
+
+  /// An output that is another's derivative: correlated to better than 0.99 with its central difference, with a slope within 10 % of 1.
+  void find_rates() {
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      for (std::size_t j = 0; j < out_.columns.size() && out_.columns[i].use == ColumnUse::output; ++j) {
+        if (i == j || out_.columns[j].use != ColumnUse::output || !is_rate(i, j)) continue;
+        out_.columns[i].use = ColumnUse::rate;
+        out_.columns[i].rate_of = out_.columns[j].name;
+        out_.columns[i].why = "the rate of change of " + out_.columns[j].name;
+      }
+    }
+  }
+
+  bool is_rate(std::size_t rate, std::size_t of) const {
+    const Unit a = parse_unit(out_.columns[rate].unit), b = parse_unit(rate_unit(out_.columns[of].unit));
+    if (out_.columns[rate].unit != "-" && !a.same_dimension(b)) return false;
+    const double factor = out_.columns[rate].unit == "-" ? 1.0 : b.to_si / a.to_si;
+    double xx = 0.0, xy = 0.0, yy = 0.0;
+    for (const auto& piece : pieces_) {
+      for (std::size_t k = 1; k + 1 < piece.size(); ++k) {
+        const double x = factor * (values(of)[piece[k + 1]] - values(of)[piece[k - 1]]) / (t_[piece[k + 1]] - t_[piece[k - 1]]);
+        const double y = values(rate)[piece[k]];
+        if (!std::isfinite(x) || !std::isfinite(y)) continue;
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+      }
+    }
+    constexpr double alike = 0.98, near_one = 0.1;
+    return xx > 0.0 && yy > 0.0 && xy * xy > alike * xx * yy && std::abs(xy / xx - 1.0) < near_one;
+  }
+
+  void fill_parts() {
+    for (const auto& piece : pieces_) {
+      Table part;
+      part.source = table_.source;
+      std::vector<double> t;
+      for (const std::size_t row : piece) t.push_back(t_[row]);
+      part.add("t", "s", std::move(t));
+      for (const ColumnUse use : {ColumnUse::input, ColumnUse::output, ColumnUse::rate}) {
+        for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+          if (out_.columns[i].use != use) continue;
+          std::vector<double> kept;
+          for (const std::size_t row : piece) kept.push_back(values(i)[row]);
+          part.add(out_.columns[i].name, out_.columns[i].unit, std::move(kept));
+        }
+      }
+      out_.parts.push_back(std::move(part));
+    }
+  }
+
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  LooseTable table_;
+  RecordingSurvey out_;
+  std::size_t time_ = none;
+  std::vector<double> t_;                         // [s], a value per row
+  std::vector<std::vector<std::size_t>> pieces_;  // rows in which time runs forward
+};
+
+}  // namespace
+
+std::vector<const ColumnSurvey*> RecordingSurvey::of_use(ColumnUse use) const {
+  std::vector<const ColumnSurvey*> out;
+  for (const auto& c : columns) {
+    if (c.use == use) out.push_back(&c);
+  }
+  return out;
+}
+
+RecordingSurvey survey_recording(const std::filesystem::path& path) { return Surveyor(path).run(); }
+
+}  // namespace misfit

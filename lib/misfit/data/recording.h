@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "misfit/core/table.h"
+
+namespace misfit {
+
+enum class ColumnUse { time, input, output, rate, segment, constant, text, unused };
+
+/// What can be said of one column by looking at it.
+struct ColumnSurvey {
+  std::string header;  ///< as in the file
+  std::string name;    ///< usable in formulas: letters, digits and '_'
+  std::string unit;    ///< from the header ("u_V", "theta[deg]", "omega1_radps"); "-" if it names none
+  ColumnUse use = ColumnUse::unused;
+  std::string why;  ///< of the use, in words
+  std::size_t missing = 0;
+  double low = 0.0, high = 0.0;
+  double resolution = 0.0;  ///< all values are multiples of it apart [unit]; 0: no such step found
+  double held = 0.0;        ///< share of samples equal to the one before
+  std::string rate_of;      ///< rate: name of the column whose derivative it is
+};
+
+/// An interval in which no sample was taken.
+struct Gap {
+  double from = 0.0, to = 0.0;  ///< [s]
+};
+
+/// A recording as found in somebody's file.
+struct RecordingSurvey {
+  std::string source;
+  std::string format;  ///< "commas, decimal points, 3 comment lines"
+  std::size_t rows = 0;
+  std::vector<ColumnSurvey> columns;
+  double step = 0.0, jitter = 0.0;   ///< median interval and its robust scatter [s]
+  std::vector<Gap> gaps;             ///< intervals of more than 1.5 usual steps
+  std::vector<std::string> remarks;  ///< what was set right, what is odd: one sentence each
+  /// One table per stretch in which time runs forward: `t[s]`, then inputs, outputs and rates as name[unit]; rows whose time is missing or
+  /// repeated are left out.
+  std::vector<Table> parts;
+
+  [[nodiscard]] std::vector<const ColumnSurvey*> of_use(ColumnUse use) const;
+};
+
+/// Looks at a file of columns, asking nothing. Time: a column called so or in a unit of time that runs forward; inputs by name ("u",
+/// "force", "valve", …) or because they stand still between jumps; the rest are outputs, one that is the derivative of another its rate.
+/// InputError: what read_loose_csv() refuses, text among numbers, no time column, nothing that could be an output, too few rows.
+[[nodiscard]] RecordingSurvey survey_recording(const std::filesystem::path& path);
+
+/// "omega1_radps" → {"omega1", "rad/s"}; "theta[deg]" → {"theta", "deg"}; "Flow (l/min)" → {"Flow", ""} as litres are not known.
+struct NameAndUnit {
+  std::string name, unit;      ///< unit empty if the header names none that is known
+  std::string not_understood;  ///< a unit in brackets that is not known
+};
+[[nodiscard]] NameAndUnit read_header(const std::string& header);
+
+}  // namespace misfit

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/fit/filter_estimate.h"
+
+namespace misfit {
+
+/// Bindings of roles, as a study would write them.
+using Roles = std::map<std::string, std::string>;
+
+/// Where in a system an effect could act: first its default roles ({}), then, for a generic effect, every place that the system itself
+/// suggests. A dynamic port of the random force whose conjugate is a state gives `port` with that state: as `rate`, and what it is the rate
+/// of as `displacement` and `level`; or, where it is the rate of nothing, as `level`. `to_port` is each other such port. `input` is each
+/// input and `output` each output (`reading` follows it), if the system has a default for `input`, or for `reading`: its way of saying
+/// that generic effects make sense there. Units are not looked at: assemble() refuses what does not suit.
+[[nodiscard]] std::vector<Roles> places_of(const EffectSpec& effect, const SystemSpec& system);
+
+/// What a recording visits: sizes for the shapes of effects that take any unit.
+class Visited {
+ public:
+  explicit Visited(const FilterEstimate& estimate);
+
+  struct Range {
+    double low = 0.0, high = 0.0;
+  };
+  /// 0.5 % to 99.5 % of the values of a quantity along the filter's path, or, counted on after the quantities, of a measured output;
+  /// nullopt where it never changes or is not known.
+  [[nodiscard]] std::optional<Range> range(int quantity) const;
+  [[nodiscard]] double step() const { return step_; }  ///< usual sampling interval [s]
+
+  /// Values of a shape to look at (ScanSpec), kept within its bounds; the default alone where `over` names what is not known.
+  [[nodiscard]] std::vector<double> grid(const BoundEffect& effect, std::size_t coefficient) const;
+
+ private:
+  std::vector<std::optional<Range>> ranges_;
+  double step_ = 0.0;
+};
+
+}  // namespace misfit

@@ -1,0 +1,43 @@
+#pragma once
+
+// Functions with a corner or a root where a model passes through 0, written so that value and first derivative are finite everywhere.
+
+#include <cmath>
+
+#include "misfit/math/scalar.h"
+
+namespace misfit {
+
+/// tanh(r)/r of s = r² ≥ 0: a direction times a saturating size, without a root at 0.
+template <class T>
+T tanh_over(const T& s) {
+  using std::sqrt;
+  using std::tanh;
+  constexpr double small = 1e-4;  // the next term of the series is 17 s³/315: 5e-14
+  if (value_of(s) < small) return 1.0 - s / 3.0 + 2.0 * s * s / 15.0;
+  const T r = sqrt(s);
+  return tanh(r) / r;
+}
+
+/// |x| rounded over `width` > 0: x tanh(x/width); below |x| by less than 0.28 width.
+template <class T, class W>
+T smooth_abs(const T& x, const W& width) {
+  using std::tanh;
+  return x * tanh(T(x / width));
+}
+
+/// max(x, 0); the derivative is that of the active branch, 0 at x = 0.
+template <class T>
+T above(const T& x) {
+  return value_of(x) > 0.0 ? x : T(0.0);
+}
+
+/// What of x lies beyond ±half_width: x − half_width above, x + half_width below, 0 between.
+template <class T, class W>
+T beyond(const T& x, const W& half_width) {
+  if (value_of(x) > value_of(half_width)) return T(x - half_width);
+  if (value_of(x) < -value_of(half_width)) return T(x + half_width);
+  return T(0.0);
+}
+
+}  // namespace misfit

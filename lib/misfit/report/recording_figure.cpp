@@ -1,0 +1,68 @@
+#include "misfit/report/recording_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "misfit/report/figure_units.h"
+
+namespace misfit::report {
+namespace {
+
+/// A value with the place of the row before it broken, so that no line is drawn across a gap.
+Series curve(const Column& column, const std::vector<double>& t, const std::vector<Gap>& gaps, std::size_t colour, const Interval& part) {
+  Series s{as_key(column.name), "", Style::line, palette(colour), {}, {}, {}, {}, 1.2};
+  const std::vector<double> values = shown(column.values, column.unit.empty() ? "-" : column.unit);
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    if (t[k] < part.from || t[k] > part.to) continue;
+    const bool after_gap = std::any_of(gaps.begin(), gaps.end(), [&](const Gap& g) { return g.to == t[k]; });
+    if (after_gap && !s.x.empty()) {
+      s.x.push_back(t[k]);
+      s.y.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+    s.x.push_back(t[k]);
+    s.y.push_back(values[k]);
+  }
+  return s;
+}
+
+std::string use_of(const RecordingSurvey& survey, const std::string& name) {
+  for (const auto& c : survey.columns) {
+    if (c.name != name) continue;
+    if (c.use == ColumnUse::input) return "input";
+    if (c.use == ColumnUse::rate) return "rate of " + c.rate_of;
+    return "output";
+  }
+  return "";
+}
+
+}  // namespace
+
+Figure recording_figure(const RecordingSurvey& survey, std::size_t part, const std::string& name, const std::optional<Interval>& zoom) {
+  const Table& table = survey.parts.at(part);
+  const std::vector<double>& t = table.columns.front().values;
+  const Interval all = zoom.value_or(Interval{t.front(), t.back()});
+  Figure figure;
+  figure.name = as_key("data_" + name) + (zoom ? "_zoom" : "");
+  figure.title = name + ": the recording" + (zoom ? " (part)" : "");
+  figure.caption = fmt::format("The columns of {} as misfit reads them; {} rows, one each {:g} s.", name, t.size(), survey.step);
+  figure.x_label = "time";
+  figure.x_unit = std::string("s");
+  for (std::size_t i = 1; i < table.columns.size(); ++i) {
+    const Column& column = table.columns[i];
+    const std::string unit = column.unit.empty() ? "-" : display_unit(column.unit);
+    Panel panel{column.name + " (" + use_of(survey, column.name) + ")", unit, {}, std::nullopt, 0.0, 170.0, false};
+    panel.series.push_back(curve(column, t, survey.gaps, i - 1, all));
+    figure.panels.push_back(std::move(panel));
+  }
+  for (const Gap& gap : survey.gaps) {
+    constexpr std::size_t most = 5;
+    if (gap.from < all.from || gap.to > all.to || figure.notes.size() >= most) continue;
+    figure.notes.push_back(fmt::format("no samples from {:g} s to {:g} s", gap.from, gap.to));
+  }
+  return figure;
+}
+
+}  // namespace misfit::report

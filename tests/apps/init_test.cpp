@@ -1,0 +1,85 @@
+// misfit init: a file of columns becomes a study, or words say why not.
+#include <gmock/gmock.h>
+
+#include "tests/apps/program.h"
+
+namespace {
+
+using namespace program;
+using testing::HasSubstr;
+
+/// A swing that an input pushes: semicolons, decimal commas, milliseconds.
+std::string swing() {
+  std::string text = "# a logger wrote this\nt_ms;u_V;angle[deg]\n";
+  double y = 10.0, rate = 0.0;
+  for (int k = 0; k < 600; ++k) {
+    const double u = k / 50 % 2;
+    std::string row = std::to_string(20 * k) + ";" + std::to_string(u) + ";" + std::to_string(y) + "\n";
+    for (char& c : row)
+      if (c == '.') c = ',';
+    text += row;
+    rate += 0.02 * (-9.0 * (y - 5.0 * u) - 0.3 * rate);
+    y += 0.02 * rate;
+  }
+  return text;
+}
+
+TEST(Init, WritesAStudyWithModelDataAndFigures) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.write("swing.csv", swing()), out = folder.path() / "study";
+  const Outcome outcome = run({"init", data.string(), "--out", out.string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("semicolons between cells, decimal commas, 1 comment line"));
+  EXPECT_THAT(outcome.out, HasSubstr("one sample each 0.02 s (50 Hz)"));
+  EXPECT_EQ(first_line(out / "swing.csv"), "t[s],u[V],angle[deg]");
+  const std::string model = content(out / "model.toml");
+  EXPECT_THAT(model, HasSubstr("angle_rate = { unit = \"rad/s\", rate_of = \"angle\""));
+  EXPECT_THAT(model, HasSubstr("u = { unit = \"V\", hold = \"zero_order\" }"));
+  EXPECT_THAT(model, HasSubstr("angle_gain_u = { unit = \"rad/V\""));
+  EXPECT_THAT(content(out / "study.toml"), HasSubstr("data = \"swing.csv\""));
+  for (const char* file : {"data_swing.svg", "data_swing.csv", "data_swing.gp"}) EXPECT_TRUE(fs::exists(out / "figures" / file)) << file;
+}
+
+TEST(Init, NeverWritesOverAStudyUnlessForced) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.write("swing.csv", swing()), out = folder.path() / "study";
+  fs::create_directory(out);
+  folder.write("study/study.toml", "mine");
+  const Outcome refused = run({"init", data.string(), "--out", out.string()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--force"));
+  EXPECT_EQ(content(out / "study.toml"), "mine");
+  EXPECT_EQ(run({"init", data.string(), "--out", out.string(), "--force"}).status, 0);
+  EXPECT_THAT(content(out / "study.toml"), HasSubstr("[study]"));
+}
+
+TEST(Init, PrintsWhatItFoundAsJson) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.write("swing.csv", swing());
+  const Outcome outcome = run({"init", data.string(), "--out", (folder.path() / "s").string(), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found.at("rows"), 600);
+  EXPECT_EQ(found.at("columns").at(1).at("use"), "input");
+  EXPECT_EQ(found.at("columns").at(2).at("use"), "output");
+}
+
+TEST(Init, RefusesInWordsWhatIsNoRecording) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& text, const char* word) {
+    const fs::path data = folder.write("x.csv", text);
+    const Outcome outcome = run({"init", data.string(), "--out", (folder.path() / "none").string()});
+    EXPECT_EQ(outcome.status, 2) << text;
+    EXPECT_THAT(outcome.err, HasSubstr(word));
+    EXPECT_FALSE(fs::exists(folder.path() / "none")) << "nothing is written";
+  };
+  refused("", "empty");
+  refused("y\n1\n", "one column");
+  refused("a,b\n1,2\n3,1\n2,2\n", "no column of time");
+  refused("t_s,y\n0,1\n1,two\n2,3\n", "'two' is not a number");
+  const Outcome missing = run({"init", (folder.path() / "nowhere.csv").string()});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.err, HasSubstr("no such file"));
+}
+
+}  // namespace

@@ -1,0 +1,76 @@
+#include "misfit/core/loose_csv.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+LooseTable read(const std::string& content) {
+  const TemporaryFolder folder;
+  return read_loose_csv(folder.write("x.csv", content));
+}
+
+std::string refusal(const std::string& content) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("x.csv", content);
+  return message_of<InputError>([&] { static_cast<void>(read_loose_csv(file)); });
+}
+
+TEST(LooseCsv, FindsCommasSemicolonsTabsAndBlanks) {
+  for (const char delimiter : {',', ';', '\t', ' '}) {
+    std::string text = "t,u,y\n0,1.5,2\n1,-3e2,4\n";
+    std::replace(text.begin(), text.end(), ',', delimiter);
+    const LooseTable table = read(text);
+    EXPECT_EQ(table.delimiter, delimiter);
+    ASSERT_EQ(table.columns.size(), 3U) << delimiter;
+    EXPECT_THAT(table.columns[1].values, ElementsAre(1.5, -300.0));
+    EXPECT_FALSE(table.decimal_comma);
+  }
+}
+
+TEST(LooseCsv, ReadsADecimalCommaWhereSemicolonsSeparate) {
+  const LooseTable table = read("Zeit [s];Druck (Pa)\r\n0,0;1,25\r\n0,1;-2,5e1\r\n");
+  EXPECT_TRUE(table.decimal_comma);
+  EXPECT_EQ(table.columns[1].header, "Druck (Pa)");
+  EXPECT_THAT(table.columns[0].values, ElementsAre(0.0, 0.1));
+  EXPECT_THAT(table.columns[1].values, ElementsAre(1.25, -25.0));
+}
+
+TEST(LooseCsv, TakesTheHeaderFromTheLastComment) {
+  const LooseTable table = read("# made by a logger\n# t y\n0 1\n1 2\n");
+  EXPECT_EQ(table.comments, 2U);
+  EXPECT_EQ(table.columns.back().header, "y");
+  EXPECT_EQ(table.rows(), 2U);
+}
+
+TEST(LooseCsv, KeepsCountOfWhatIsMissingOrText) {
+  const LooseTable table = read("t,y,\"a, note\"\n0,,x\n1,NaN,\"y, z\"\n2,n/a,3\n3,4,\n");
+  EXPECT_EQ(table.columns[2].header, "a, note");
+  EXPECT_EQ(table.columns[1].text, 0U);
+  EXPECT_TRUE(std::isnan(table.columns[1].values[2]));
+  EXPECT_EQ(table.columns[2].text, 2U);
+  EXPECT_EQ(table.columns[2].text_line, 2);
+  EXPECT_EQ(table.columns[2].first_text, "x");
+}
+
+TEST(LooseCsv, SaysWhatIsWrong) {
+  EXPECT_THAT(refusal(""), HasSubstr("the file is empty"));
+  EXPECT_THAT(refusal("\n \n# only words\n"), HasSubstr("the file is empty"));
+  EXPECT_THAT(refusal("y\n1\n2\n"), HasSubstr("one column alone ('y')"));
+  EXPECT_THAT(refusal("t,y\n"), HasSubstr("no rows"));
+  EXPECT_THAT(refusal("0,1\n1,2\n"), HasSubstr("first line holds numbers"));
+  EXPECT_THAT(refusal("t,y,y\n0,1,2\n1,2,3\n"), HasSubstr("'y' twice"));
+  EXPECT_THAT(refusal("t,y\n0,1\n1,2,3\n2,3\n"), HasSubstr("x.csv:3"));
+}
+
+}  // namespace
+}  // namespace misfit

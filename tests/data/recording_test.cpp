@@ -1,0 +1,143 @@
+#include "misfit/data/recording.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "misfit/core/error.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit {
+namespace {
+
+using testing::AnyOf;
+using testing::Contains;
+using testing::HasSubstr;
+
+RecordingSurvey survey(const std::string& content) {
+  const TemporaryFolder folder;
+  return survey_recording(folder.write("x.csv", content));
+}
+
+std::string refusal(const std::string& content) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("x.csv", content);
+  return message_of<InputError>([&] { static_cast<void>(survey_recording(file)); });
+}
+
+std::string rows(const std::string& header, int count, const std::function<std::string(int)>& row) {
+  std::string out = header + "\n";
+  for (int k = 0; k < count; ++k) out += row(k) + "\n";
+  return out;
+}
+
+const ColumnSurvey& column(const RecordingSurvey& s, const std::string& name) {
+  for (const auto& c : s.columns) {
+    if (c.name == name) return c;
+  }
+  throw std::logic_error("no column " + name);
+}
+
+TEST(RecordingHeader, NamesAndUnitsAreToldApart) {
+  const auto expect = [](const char* header, const char* name, const char* unit) {
+    const NameAndUnit read = read_header(header);
+    EXPECT_EQ(read.name, name) << header;
+    EXPECT_EQ(read.unit, unit) << header;
+  };
+  expect("t_s", "t", "s");
+  expect("u_V", "u", "V");
+  expect("omega1_radps", "omega1", "rad/s");
+  expect("theta[deg]", "theta", "deg");
+  expect("Druck (kPa)", "Druck", "kPa");
+  expect("v_m_s", "v", "m/s");
+  expect("torque_Nm", "torque", "N m");
+  expect("x1", "x1", "");
+  expect("a_b", "a_b", "");
+  EXPECT_EQ(read_header("Flow [l/min]").not_understood, "l/min");
+  EXPECT_EQ(read_header("1st \xC3\xA4ngle").name, "c1st_ngle");
+}
+
+TEST(Recording, TimeInputAndOutputAreFoundWithTheirReasons) {
+  const RecordingSurvey s = survey(
+      rows("k,t_ms,valve,level_cm", 200, [](int k) { return fmt::format("{},{},{},{}", k, 250 * k, k / 20 % 2, std::sin(0.1 * k)); }));
+  EXPECT_EQ(column(s, "t").use, ColumnUse::time);
+  EXPECT_DOUBLE_EQ(s.step, 0.25);
+  EXPECT_EQ(column(s, "valve").use, ColumnUse::input);
+  EXPECT_EQ(column(s, "level").use, ColumnUse::output);
+  EXPECT_EQ(column(s, "level").unit, "cm");
+  ASSERT_EQ(s.parts.size(), 1U);
+  EXPECT_DOUBLE_EQ(s.parts[0].columns[0].values.back(), 0.25 * 199);
+  EXPECT_EQ(s.parts[0].find("level")->unit, "cm");
+}
+
+TEST(Recording, WhatStandsStillBetweenJumpsIsAnInputWhateverItIsCalled) {
+  const RecordingSurvey s =
+      survey(rows("time[s],a,b", 200, [](int k) { return fmt::format("{},{},{}", 0.1 * k, (k / 20 * 7) % 5, std::cos(0.3 * k)); }));
+  EXPECT_EQ(column(s, "a").use, ColumnUse::input);
+  EXPECT_THAT(column(s, "a").why, HasSubstr("stands still"));
+  EXPECT_EQ(column(s, "b").use, ColumnUse::output);
+}
+
+TEST(Recording, AMeasuredRateIsKnownByItsValues) {
+  const RecordingSurvey s = survey(rows("t_s,theta_rad,omega_degps", 300, [](int k) {
+    const double t = 0.01 * k;
+    return fmt::format("{},{},{}", t, std::sin(3.0 * t), 3.0 * std::cos(3.0 * t) * 180.0 / 3.14159265358979);
+  }));
+  EXPECT_EQ(column(s, "omega").use, ColumnUse::rate);
+  EXPECT_EQ(column(s, "omega").rate_of, "theta");
+}
+
+TEST(Recording, GapsRepeatedTimesMissingValuesAndConstantsAreSaid) {
+  const RecordingSurvey s = survey(rows("t_s,y,c,segment", 100, [](int k) {
+    const double t = k == 31 ? 3.0 : k >= 60 ? 0.1 * k + 5.0 : 0.1 * k;
+    return fmt::format("{},{},2.5,{}", t, k == 10 || k == 11 ? std::string("nan") : fmt::format("{}", std::sin(t)), k / 50);
+  }));
+  EXPECT_EQ(column(s, "y").missing, 2U);
+  EXPECT_EQ(column(s, "c").use, ColumnUse::constant);
+  EXPECT_EQ(column(s, "segment").use, ColumnUse::segment);
+  ASSERT_EQ(s.gaps.size(), 2U) << "the row left out, and the pause";
+  EXPECT_NEAR(s.gaps.back().to - s.gaps.back().from, 5.1, 1e-9);
+  EXPECT_EQ(s.parts[0].rows(), 99U);
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("repeat")));
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("2 of 100 values are missing")));
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("gaps in time")));
+}
+
+TEST(Recording, TimeThatRunsBackwardBeginsAnotherExperiment) {
+  const RecordingSurvey s = survey(rows("t_s,y", 100, [](int k) { return fmt::format("{},{}", 0.1 * (k % 60), std::sin(0.3 * k)); }));
+  ASSERT_EQ(s.parts.size(), 2U);
+  EXPECT_EQ(s.parts[0].rows(), 60U);
+  EXPECT_EQ(s.parts[1].rows(), 40U);
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("backward")));
+}
+
+TEST(Recording, TheStepOfADigitisedColumnIsFound) {
+  const RecordingSurvey s = survey(rows("t_s,y_V,z_V", 400, [](int k) {
+    return fmt::format("{},{},{:.9f}", 0.1 * k, 0.005 * std::round(std::sin(0.05 * k) / 0.005), std::sin(0.05 * k));
+  }));
+  EXPECT_NEAR(column(s, "y").resolution, 0.005, 1e-9);
+  EXPECT_NE(column(s, "z").resolution, 0.005);
+}
+
+TEST(Recording, AReadingThatStandsAtItsLimitIsSaid) {
+  const RecordingSurvey s =
+      survey(rows("t_s,u,y", 300, [](int k) { return fmt::format("{},{},{}", k, std::cos(0.07 * k), std::min(0.8, std::sin(0.05 * k))); }));
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("'y' stands at its highest value, 0.8")));
+  EXPECT_EQ(s.remarks.size(), 1U);
+}
+
+TEST(Recording, SaysWhatIsWrong) {
+  const auto numbers = [](int k) { return fmt::format("{},{}", 0.1 * k, std::sin(0.1 * k)); };
+  EXPECT_THAT(refusal(rows("a,b", 50, numbers)), HasSubstr("no column of time"));
+  EXPECT_THAT(refusal(rows("n,y", 50, [](int k) { return fmt::format("{},{}", k, std::sin(0.1 * k)); })), HasSubstr("'n' counts rows"));
+  EXPECT_THAT(refusal(rows("t_s,y", 50, [&](int k) { return k == 7 ? std::string("0.7,broken") : numbers(k); })),
+              testing::AllOf(HasSubstr("x.csv:9"), HasSubstr("'broken' is not a number")));
+  EXPECT_THAT(refusal(rows("t_s,y", 50, [](int k) { return fmt::format("{},7", 0.1 * k); })), HasSubstr("nothing was measured"));
+  EXPECT_THAT(refusal(rows("t_s,y", 5, numbers)), HasSubstr("too few"));
+}
+
+}  // namespace
+}  // namespace misfit
