@@ -5,6 +5,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/model/declared.h"
 
 namespace misfit {
 namespace {
@@ -38,9 +39,10 @@ std::string hash_of_program() {
 
 Session::Session(const Options& o, const Registry& r)
     : options(o),
-      registry(r),
       study(open_study(o)),
-      model(read_model(study, r)),
+      declared(study_registry(study, r)),
+      registry(*declared),
+      model(read_model(study, registry)),
       folder(folder_of(o, study), o.command, study.seed),
       program(hash_of_program()) {}
 

@@ -253,7 +253,7 @@ double Evaluator::fastest_rate(const double* x, const double* u, double t) {
   const Point at{x, u, t, p_.data()};
   base_and_derived(at, x + nx_);
   system_->outputs(at, q_.data() + nq_);
-  double fastest = system_->spec().fastest_rate;
+  double fastest = system_->fastest_rate(at);
   std::array<double, kMaxWidth> values;
   for (const auto* list : {&quantity_, &dynamic_, &sensor_}) {
     for (const auto& use : *list) {
@@ -262,6 +262,12 @@ double Evaluator::fastest_rate(const double* x, const double* u, double t) {
     }
   }
   return fastest;
+}
+
+std::string Evaluator::explain(const double* x, const double* u, double t) {
+  std::array<double, kMaxStates> dx{};
+  rates(x, u, t, dx.data());
+  return system_->explain({x, u, t, p_.data()}, P_.data(), F_.data());
 }
 
 void Evaluator::diffusion(const double* x, const double* u, double t, double* intensity) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "misfit/model/model.h"
@@ -83,6 +84,8 @@ class Evaluator {
 
   /// Fastest rate of the system and its effects at this state [1/s].
   [[nodiscard]] double fastest_rate(const double* x, const double* u, double t);
+  /// Why rates() is not finite at this state, in words: see System::explain(). Empty if it is not known.
+  [[nodiscard]] std::string explain(const double* x, const double* u, double t);
   /// Noise intensity of each own state [unit/sqrt(s)] (states() − the system's, in their order); zeros for deterministic memory.
   void diffusion(const double* x, const double* u, double t, double* intensity);
   /// Value of every quantity at a state (for maps, figures and simulated tables).
