@@ -18,7 +18,8 @@ std::vector<Model> models_with(const std::string& key) {
   std::vector<Model> models;
   const auto& coefficients = registry().effect(key).spec().coefficients;
   const bool borrows = std::any_of(coefficients.begin(), coefficients.end(), [](const auto& c) { return c.borrowed; });
-  for (const auto& request : {parachute(true), parachute(false), spherical(), cart({})}) {
+  for (const auto& request : {parachute(true), parachute(false), spherical(), cart({}), declared("pendulum", {}),
+                              declared("cascaded_tanks", {}), declared("duffing", {})}) {
     ModelRequest alone = request;
     alone.effects = {effect(key)};
     if (borrows) alone.effects.push_back(effect("static_moment"));

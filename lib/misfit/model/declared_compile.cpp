@@ -187,7 +187,23 @@ class Compiler {
       if (same != state_nodes_.end()) spec().outputs[o].observes = static_cast<int>(same - state_nodes_.begin());
       output_nodes_.push_back(node);
       note_inputs(node);
+      note_readable(static_cast<int>(o), node);
     }
+  }
+
+  /// An output that is a straight line of one state, as theta + offset: the state can be read from it.
+  void note_readable(int output, int node) {
+    const Leaves& n = out_->leaves;
+    if (spec().outputs[static_cast<std::size_t>(output)].observes >= 0) return;
+    int state = -1;
+    for (int leaf : g().leaves_of(node)) {
+      if (leaf >= n.k(0) && leaf < n.P(0)) continue;
+      if (state >= 0 || leaf >= n.nx) return;
+      state = leaf;
+    }
+    if (state < 0 || uses(g().derivatives(node, {g().leaf(state)}).front(), state)) return;
+    out_->readable.emplace_back(output, state);
+    spec().readable_states.push_back(state);
   }
 
   bool uses(int node, int leaf) {

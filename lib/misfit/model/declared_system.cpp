@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "misfit/core/text.h"
 #include "misfit/model/declared.h"
@@ -76,6 +77,20 @@ class DeclaredSystem final : public System {
     write(tape.value, r, y);
     block(tape.by_x, r, rows * spec_.states.size(), y_x);
     block(tape.by_k, r, rows * spec_.constants.size(), y_k);
+  }
+
+  bool read_states(const double* y, const double* k, double* x) const override {
+    const std::array<double, kMaxStates> zero{};
+    std::array<double, kMaxOutputs> y0{};
+    std::array<double, static_cast<std::size_t>(kMaxOutputs* kMaxStates)> slope{};
+    linearise_outputs({zero.data(), zero.data(), 0.0, k}, y0.data(), slope.data(), nullptr);
+    bool known = true;
+    for (const auto& [output, state] : c_->readable) {
+      const double by = slope[static_cast<std::size_t>(output) * spec_.states.size() + static_cast<std::size_t>(state)];
+      known = known && by != 0.0;
+      x[state] = known ? (y[output] - y0[static_cast<std::size_t>(output)]) / by : 0.0;
+    }
+    return known && !c_->readable.empty();
   }
 
   /// From the Jacobian, every smoothed jump at its steepest: the largest |J_ii| and sqrt|J_ij J_ji|. A state near a bound is taken a twentieth of

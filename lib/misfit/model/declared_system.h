@@ -40,6 +40,7 @@ struct Compiled {
   std::vector<formula::Syntax> texts;  ///< nodes of the graph have origins in them …
   std::vector<int> first_origin;       ///< … from this number on
   std::vector<int> rate_nodes;
+  std::vector<std::pair<int, int>> readable;  ///< output → the one state on which it depends, along a straight line
   // Values alone; with derivatives by x (and F); by constants too; by quantity ports as well.
   Tape rates, rates_x, rates_k, rates_all, rates_steep;
   Tape quantities, quantities_x, quantities_k, quantities_all;

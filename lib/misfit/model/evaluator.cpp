@@ -46,7 +46,12 @@ void Evaluator::flatten() {
   for (const auto& bound : model_->effects) flatten_effect(bound);
   quantity_effects_ = !quantity_.empty();
   general_ = quantity_effects_ || free_constants_;
-  general_rates_ = quantity_effects_ || rates_move_with_constants();
+  general_rates_ = quantity_effects_;
+  constants_in_rates_ = rates_move_with_constants();
+  for (int k = 0; constants_in_rates_ && k < nk_; ++k) {
+    const int column = column_of_[static_cast<std::size_t>(k)];
+    if (column >= 0) free_constants_in_rates_.push_back({k, column});
+  }
   find_twins();
   for (const auto& use : dynamic_) plan_effect(use);
   fill_numbers();
