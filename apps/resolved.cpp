@@ -164,7 +164,8 @@ bool add_declared(const Session& session, const std::string& name, std::string& 
   const auto& all = session.study.effects;
   const auto found = std::find_if(all.begin(), all.end(), [&](const EffectStudy& e) { return e.name == name; });
   if (found == all.end() || !found->declared) return false;
-  text += fmt::format("{} = {{ port = {}, formula = {}, strengths = [", key_of(name), quoted(found->declared->port), quoted(found->declared->formula));
+  text += fmt::format("{} = {{ port = {}, formula = {}, strengths = [", key_of(name), quoted(found->declared->port),
+                      quoted(found->declared->formula));
   std::string parameters;
   bool any = false;
   for (const auto& c : session.registry.effect(name).spec().coefficients) {
@@ -172,8 +173,8 @@ bool add_declared(const Session& session, const std::string& name, std::string& 
       text += (any ? ", " : "") + quoted(c.name);
       any = true;
     }
-    parameters += fmt::format("{}{} = {{ unit = {}, value = {}, bounds = [{}, {}], scale = {}, free = {} }}", parameters.empty() ? "" : ", ", c.name,
-                              quoted(c.unit), c.value, c.lower, c.upper, c.scale, !c.fixed);
+    parameters += fmt::format("{}{} = {{ unit = {}, value = {}, bounds = [{}, {}], scale = {}, free = {} }}",
+                              parameters.empty() ? "" : ", ", c.name, quoted(c.unit), c.value, c.lower, c.upper, c.scale, !c.fixed);
   }
   text += "], parameters = { " + parameters + " } }\n";
   return true;

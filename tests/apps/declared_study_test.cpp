@@ -19,8 +19,9 @@ TEST(CascadedTanks, AreFittedFromTheShippedStudy) {
 
 TEST(CascadedTanks, TakeAnEffectDeclaredInTheStudyAndResolvedCanBeRunAgain) {
   const StudyCopy study("cascaded_tanks");
-  study.append("[effects.spill]\nport = \"dx2/dt\"\nformula = \"c*max(x1 - level, 0)\"\n"
-               "parameters = { c = { unit = \"1/s\", value = 0.002, bounds = [0, 1] }, level = { unit = \"V\", value = 5.0, bounds = [0, 20] } }\n");
+  study.append(
+      "[effects.spill]\nport = \"dx2/dt\"\nformula = \"c*max(x1 - level, 0)\"\n"
+      "parameters = { c = { unit = \"1/s\", value = 0.002, bounds = [0, 1] }, level = { unit = \"V\", value = 5.0, bounds = [0, 20] } }\n");
   const Outcome outcome = study.run();
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json fit = json::parse(content(study.out("fit/output_error/fit.json")));

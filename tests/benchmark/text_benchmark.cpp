@@ -1,4 +1,5 @@
-// A model as text against the same model in C++: the planar parachute with polynomial moments, five free coefficients (issue 5: a factor 5).
+// A model as text against the same model in C++: the planar parachute with polynomial moments, five free coefficients (issue 5: a factor
+// 5).
 
 #include <benchmark/benchmark.h>
 #include <misfit_models_registry.h>
@@ -102,8 +103,11 @@ int main() {
   using namespace misfit;
   const World world;
   check_alike(world);
-  compare("linearised right-hand sides, 4761", [&](const Model& m) { right_hand_sides(world, m); }, world);
-  compare("linearised trajectory, 4761 samples", [&](const Model& m) { trajectory(world, m, true); }, world);
-  compare("plain trajectory, 4761 samples", [&](const Model& m) { trajectory(world, m, false); }, world);
+  compare(
+      "linearised right-hand sides, 4761", [&](const Model& m) { right_hand_sides(world, m); }, world);
+  compare(
+      "linearised trajectory, 4761 samples", [&](const Model& m) { trajectory(world, m, true); }, world);
+  compare(
+      "plain trajectory, 4761 samples", [&](const Model& m) { trajectory(world, m, false); }, world);
   return 0;
 }

@@ -117,16 +117,18 @@ TEST(DeclaredEffect, WithAKinkAtAFreeLevelConverges) {
   const auto known = registry_with(tanks_text);
   auto with = std::make_shared<Registry>(Registry::over(*known));
   with->add(declared_effect(effect_in_one_line("spill", R"({ port = "dx2/dt", formula = "c*max(x1 - level, 0)",
-      parameters = { c = { unit = "1/s", value = 0.005, bounds = [0, 1] }, level = { unit = "V", value = 9.0, bounds = [0, 30] } } })"),
+      parameters = {
+    c = {unit = "1/s", value = 0.005, bounds = [ 0, 1 ]}, level = { unit = "V", value = 9.0, bounds = [ 0, 30 ] } }
+})"),
                             known->system("text").make({})->spec()));
-  ModelRequest request = request_of("text", {effect("spill")});
-  request.parameters["k2"].free = false;
-  request.parameters["k2"].value = 0.05;
-  const FittedModel fitted = fit(assemble(request, *with), {tanks(truth, 4, 800)});
-  ASSERT_EQ(fitted.fit.status, FitStatus::converged) << fitted.fit.message;
-  expect_recovered(fitted.fit, "c", truth.spill);
-  expect_recovered(fitted.fit, "level", truth.level);
-  EXPECT_NEAR(fitted.fit.rms.at("y").value, 0.01, 0.001);
+ModelRequest request = request_of("text", {effect("spill")});
+request.parameters["k2"].free = false;
+request.parameters["k2"].value = 0.05;
+const FittedModel fitted = fit(assemble(request, *with), {tanks(truth, 4, 800)});
+ASSERT_EQ(fitted.fit.status, FitStatus::converged) << fitted.fit.message;
+expect_recovered(fitted.fit, "c", truth.spill);
+expect_recovered(fitted.fit, "level", truth.level);
+EXPECT_NEAR(fitted.fit.rms.at("y").value, 0.01, 0.001);
 }
 
 /// A damped oscillation, y'' = −30 y − 0.4 y' + 10 u, in small steps.

@@ -95,11 +95,11 @@ TEST_P(FormulaDerivatives, AreThoseOfCentralDifferences) {
 
 INSTANTIATE_TEST_SUITE_P(Every, FormulaDerivatives,
                          testing::Values("x + 2*y - x*y/x", "x/y + y/x", "-x^3/y^2 + x", "sqrt(x*y)*n", "exp(a*n)", "log(n*a)", "log10(n)",
-                                         "sin(a)*cos(n*a)", "tan(a)", "asin(a)", "acos(a*a)", "atan(n)", "atan2(y, x)*a", "sinh(n)", "cosh(n)",
-                                         "tanh(n*a)", "abs(x - y)", "sign(x)*x", "min(x, y)*n", "max(x, 2*y)", "hypot(x, y)", "saturate(n, a, 2)",
-                                         "smooth_step(x, y)", "sign(x - y, y)", "abs(x - y, y)", "min(x, y, y)", "max(x, y, y)",
-                                         "saturate(x, y/2, y, y)", "if(x > y, x^2, x*y)", "n^a", "n^1.7", "n^0.3", "n^-2", "pow(a, n)",
-                                         "k*sqrt(max(x - y, 0)/n)*t", "if(x > y, sqrt(x - y), sqrt(y - x))"));
+                                         "sin(a)*cos(n*a)", "tan(a)", "asin(a)", "acos(a*a)", "atan(n)", "atan2(y, x)*a", "sinh(n)",
+                                         "cosh(n)", "tanh(n*a)", "abs(x - y)", "sign(x)*x", "min(x, y)*n", "max(x, 2*y)", "hypot(x, y)",
+                                         "saturate(n, a, 2)", "smooth_step(x, y)", "sign(x - y, y)", "abs(x - y, y)", "min(x, y, y)",
+                                         "max(x, y, y)", "saturate(x, y/2, y, y)", "if(x > y, x^2, x*y)", "n^a", "n^1.7", "n^0.3", "n^-2",
+                                         "pow(a, n)", "k*sqrt(max(x - y, 0)/n)*t", "if(x > y, sqrt(x - y), sqrt(y - x))"));
 
 TEST(FormulaDerivatives, OfABranchNotTakenAreNothingEvenWhereItIsNotDefined) {
   const Made made("if(x > 0, sqrt(x)*n, y/x*sqrt(x) + log(x/y)*0)");
@@ -113,7 +113,8 @@ TEST(FormulaDerivatives, OfABranchNotTakenAreNothingEvenWhereItIsNotDefined) {
 }
 
 TEST(FormulaDerivatives, AreFiniteWhereFunctionsHaveNone) {
-  for (const char* text : {"sqrt(x)", "hypot(x, y)", "atan2(y, x)", "abs(x)", "sign(x)*y", "asin(1 + a*0 + x/v*k)", "(x/v*k)^0.5", "max(x, y)"}) {
+  for (const char* text :
+       {"sqrt(x)", "hypot(x, y)", "atan2(y, x)", "abs(x)", "sign(x)*y", "asin(1 + a*0 + x/v*k)", "(x/v*k)^0.5", "max(x, y)"}) {
     Point at = somewhere;
     at[0] = at[1] = 0.0;
     for (double v : Made(text)(at)) EXPECT_TRUE(std::isfinite(v)) << text;

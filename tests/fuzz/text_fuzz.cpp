@@ -34,7 +34,8 @@ void try_formula(const std::string& text) {
   formula::Graph graph;
   const formula::Names known{[&](const std::string& name) -> std::optional<formula::Meaning> {
                                for (std::size_t i = 0; i < names.size(); ++i) {
-                                 if (name == names[i]) return formula::Meaning{graph.leaf(static_cast<int>(i)), formula::measure_of(units[i])};
+                                 if (name == names[i])
+                                   return formula::Meaning{graph.leaf(static_cast<int>(i)), formula::measure_of(units[i])};
                                }
                                return std::nullopt;
                              },
@@ -84,9 +85,7 @@ void try_study(const std::string& text) {
   run_once(assemble(model.request, *known));
 }
 
-void try_effect(const std::string& line) {
-  try_study("[system]\nkind = \"cascaded_tanks\"\n[effects]\nmore = " + line + "\n");
-}
+void try_effect(const std::string& line) { try_study("[system]\nkind = \"cascaded_tanks\"\n[effects]\nmore = " + line + "\n"); }
 
 }  // namespace
 
@@ -96,10 +95,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data) + 1, size - 1);
   try {
     switch (data[0]) {
-      case 'f': try_formula(text); break;
-      case 'e': try_effect(text); break;
-      case 's': try_system(text); break;
-      default: try_study(text);
+      case 'f':
+        try_formula(text);
+        break;
+      case 'e':
+        try_effect(text);
+        break;
+      case 's':
+        try_system(text);
+        break;
+      default:
+        try_study(text);
     }
   } catch (const InputError&) {  // refused in words
   }

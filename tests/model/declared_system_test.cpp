@@ -70,8 +70,8 @@ TEST(DeclaredDuffing, TakesEffectsOnItsPortsQuantitiesAndInputs) {
   for (const std::string port : {"push", "dv/dt", "dy/dt", "u", "spring", "y"}) {
     auto with = std::make_shared<Registry>(Registry::over(*known));
     const std::string unit = port == "u" || port == "y" ? "V" : port == "dy/dt" ? "V/s" : "V/s^2";
-    with->add(declared_effect(effect_in_one_line("extra", "{ port = \"" + port + "\", formula = \"c\", parameters = { c = { unit = \"" + unit +
-                                                             "\", value = 0.25 } } }"),
+    with->add(declared_effect(effect_in_one_line("extra", "{ port = \"" + port + "\", formula = \"c\", parameters = { c = { unit = \"" +
+                                                              unit + "\", value = 0.25 } } }"),
                               known->system("text").make({})->spec()));
     const Model without = assemble(request_of("text"), *known), model = assemble(request_of("text", {effect("extra")}), *with);
     Evaluator plain(without), more(model);
@@ -95,11 +95,8 @@ x1 = { unit = "V", min = 0.0, max = 2.0 }
 [parameters]
 k1 = { unit = "V^0.5/s", value = 0.5, free = true }
 [equations]
-x1 = "-k1*sqrt(x1)"
-[outputs]
-y = { unit = "V", formula = "x1" }
-)");
-  const Model model = assemble(request_of("text"), *known);
+x1 = "-k1*sqrt(x1)"[outputs] y = {unit = "V", formula = "x1"}) ");
+      const Model model = assemble(request_of("text"), *known);
   Evaluator evaluator(model);
   double dx[1], D[kRowStride], y[2];
   const double below = -0.3, above = 2.5;
@@ -116,7 +113,8 @@ y = { unit = "V", formula = "x1" }
 TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
   EXPECT_THAT(error_of(replaced(duffing_text, "damping*v", "dampng*v")),
               AllOf(HasSubstr("text.toml:19:"), HasSubstr("equation v"), HasSubstr("did you mean 'damping'")));
-  EXPECT_THAT(error_of(replaced(duffing_text, "gain*u -", "gain*v -")), AllOf(HasSubstr("text.toml:19:"), HasSubstr("measure different things")));
+  EXPECT_THAT(error_of(replaced(duffing_text, "gain*u -", "gain*v -")),
+              AllOf(HasSubstr("text.toml:19:"), HasSubstr("measure different things")));
   EXPECT_THAT(error_of(replaced(duffing_text, "y = \"v\"", "y = \"v*y\"")),
               AllOf(HasSubstr("equation y"), HasSubstr("[V/s V]"), HasSubstr("needs [V/s]")));
   EXPECT_THAT(error_of(replaced(duffing_text, "[inputs]", "[input]")), HasSubstr("input"));
@@ -142,13 +140,11 @@ x1 = { unit = "V" }
 [parameters]
 k1 = { unit = "V^0.5/s", value = 0.05, free = true }
 [equations]
-x1 = "-k1*sqrt(x1)"
-[outputs]
-y = { unit = "V", formula = "x1" }
-)");
-  const Model model = assemble(request_of("text"), *known);
+x1 = "-k1*sqrt(x1)"[outputs] y = {unit = "V", formula = "x1"}) ");
+      const Model model = assemble(request_of("text"), *known);
   const double x = -0.2;
-  EXPECT_EQ(Evaluator(model).explain(&x, nullptr, 84.0), "x1 is -0.2 V: sqrt(x1) is not finite there, in equation x1; with k1 = 0.05 V^0.5/s");
+  EXPECT_EQ(Evaluator(model).explain(&x, nullptr, 84.0),
+            "x1 is -0.2 V: sqrt(x1) is not finite there, in equation x1; with k1 = 0.05 V^0.5/s");
 }
 
 TEST(DeclaredSystems, InitialStatesAreFreeSharedOrFixedAndAStudyMayChangeThat) {
@@ -175,13 +171,18 @@ TEST(DeclaredEffects, TellStrengthsFromShapes) {
     for (const auto& c : made->spec().coefficients) out += std::string(c.name) + (c.kind == CoefficientKind::strength ? "+" : "") + " ";
     return out;
   };
-  EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "c*max(y - level, 0)", parameters = { c = { unit = "1/s^2" }, level = { unit = "V" } } })"),
+  EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "c*max(y - level, 0)", parameters = {
+    c = {unit = "1/s^2"}, level = { unit = "V" } }
+})"),
             "c+ level ");
-  EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "a*y + b*y^3", parameters = { a = { unit = "1/s^2" }, b = { unit = "1/V^2/s^2" } } })"), "a+ b+ ");
-  EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "c*(y - level)", parameters = { c = { unit = "1/s^2" }, level = { unit = "V" } } })"), "c+ level ");
-}
+EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "a*y + b*y^3", parameters = { a = { unit = "1/s^2" }, b = { unit = "1/V^2/s^2" } } })"),
+          "a+ b+ ");
+  EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "c*(y - level)", parameters = {
+  c = {unit = "1/s^2"}, level = { unit = "V" } }
+  })"), "c+ level ");
+  }
 
-TEST(DeclaredEffects, ErrorsAreWords) {
+  TEST(DeclaredEffects, ErrorsAreWords) {
   const auto known = registry_with(duffing_text);
   const SystemSpec system = known->system("text").make({})->spec();
   const auto error = [&](const std::string& line) -> std::string {
@@ -192,14 +193,19 @@ TEST(DeclaredEffects, ErrorsAreWords) {
     }
     return {};
   };
-  EXPECT_THAT(error(R"({ port = "dw/dt", formula = "c", parameters = { c = { unit = "-" } } })"), AllOf(HasSubstr("no port 'dw/dt'"), HasSubstr("dv/dt")));
-  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "c*max(y - levl, 0)", parameters = { c = { unit = "1/s^2" }, level = { unit = "V" } } })"),
+  EXPECT_THAT(error(R"({ port = "dw/dt", formula = "c", parameters = { c = { unit = "-" } } })"),
+              AllOf(HasSubstr("no port 'dw/dt'"), HasSubstr("dv/dt")));
+  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "c*max(y - levl, 0)", parameters = {
+    c = {unit = "1/s^2"}, level = { unit = "V" } }
+  })"),
               AllOf(HasSubstr("study.toml:2:"), HasSubstr("'levl'"), HasSubstr("did you mean 'level'")));
-  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s" } } })"), AllOf(HasSubstr("[V/s]"), HasSubstr("needs [V/s^2]")));
+  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s" } } })"),
+              AllOf(HasSubstr("[V/s]"), HasSubstr("needs [V/s^2]")));
   EXPECT_THAT(error(R"({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s^2" }, d = { unit = "V" } } })"),
               HasSubstr("nothing depends on its parameter 'd'"));
-  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "exp(c)*v*stiffness/damping", parameters = { c = { unit = "-" } } })"), HasSubstr("switches it off"));
-}
+  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "exp(c)*v*stiffness/damping", parameters = { c = { unit = "-" } } })"),
+              HasSubstr("switches it off"));
+  }
 
-}  // namespace
-}  // namespace misfit
+  }  // namespace
+  }  // namespace misfit

@@ -101,11 +101,8 @@ x = { unit = "-" }
 [parameters]
 k = { unit = "1/s", value = 10.0 }
 [equations]
-x = "k*exp(x)"
-[outputs]
-y = { unit = "-", formula = "x" }
-)");
-  const Model model = assemble(request_of("text"), *known);
+x = "k*exp(x)"[outputs] y = {unit = "-", formula = "x"}) ");
+      const Model model = assemble(request_of("text"), *known);
   Stepper stepper(model);
   double x = 1.0;
   stepper.prepare(&x, nullptr, 0.0);

@@ -15,19 +15,21 @@ struct Column {
   Eigen::Index at;
 };
 
-/// N of the columns, the initial states projected out.
+/// N of the columns, all scaled to unit diagonal, the initial states projected out.
 Eigen::MatrixXd reduced(const Linearised& problem, const std::vector<Column>& columns, Eigen::Index free) {
   const auto n = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index states = problem.N.rows() - free;
+  const Eigen::VectorXd scale = problem.N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd all = scale.asDiagonal() * problem.N * scale.asDiagonal();
   Eigen::MatrixXd N(n, n), C(n, states);
   for (Eigen::Index a = 0; a < n; ++a) {
     const Eigen::Index row = columns[static_cast<std::size_t>(a)].at;
-    for (Eigen::Index b = 0; b < n; ++b) N(a, b) = problem.N(row, columns[static_cast<std::size_t>(b)].at);
-    C.row(a) = problem.N.row(row).tail(states);
-    if (problem.prior_precision.size() > row) N(a, a) += problem.prior_precision[row];
+    for (Eigen::Index b = 0; b < n; ++b) N(a, b) = all(row, columns[static_cast<std::size_t>(b)].at);
+    C.row(a) = all.row(row).tail(states);
+    if (problem.prior_precision.size() > row) N(a, a) += problem.prior_precision[row] * scale[row] * scale[row];
   }
   if (states == 0) return N;
-  return N - C * problem.N.bottomRightCorner(states, states).completeOrthogonalDecomposition().solve(C.transpose());
+  return N - C * all.bottomRightCorner(states, states).completeOrthogonalDecomposition().solve(C.transpose());
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -68,10 +70,10 @@ std::string undetermined(const Model& model, const Linearised& problem) {
   }
   if (!idle.empty()) return "nothing in these data depends on " + joined(idle) + "; fix it, or take it out of the model";
   if (columns.size() < 2) return {};
-  Eigen::MatrixXd N = reduced(problem, columns, static_cast<Eigen::Index>(free.size()));
+  const Eigen::MatrixXd N = reduced(problem, columns, static_cast<Eigen::Index>(free.size()));
   Eigen::VectorXd size(N.rows());
-  for (Eigen::Index a = 0; a < N.rows(); ++a) size[a] = 1.0 / std::sqrt(problem.N(columns[static_cast<std::size_t>(a)].at, columns[static_cast<std::size_t>(a)].at));
-  N = size.asDiagonal() * N * size.asDiagonal();
+  for (Eigen::Index a = 0; a < N.rows(); ++a)
+    size[a] = 1.0 / std::sqrt(problem.N(columns[static_cast<std::size_t>(a)].at, columns[static_cast<std::size_t>(a)].at));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(N);
   if (solver.info() != Eigen::Success || solver.eigenvalues()[0] > nothing * solver.eigenvalues().maxCoeff()) return {};
   const Eigen::VectorXd direction = solver.eigenvectors().col(0);

@@ -138,8 +138,7 @@ class Estimator {
       if (round > 0 && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
       if (!solve({0, 10.0, 1e8, 60, 1e-7})) return failed(last_.message);
       const Smoothed smoothed = smooth_present(shooting_, penalties_, linearised);
-      if (!smoothed.ok)
-        return failed(shooting_.failure().empty() ? not_determined(linearised) : "");
+      if (!smoothed.ok) return failed(shooting_.failure().empty() ? not_determined(linearised) : "");
       const std::vector<double> sigma = channel_sigmas(shooting_, shooting_.run(false), experiments_, smoothed.edf);
       const bool same_roughness = !any_chosen(penalties_) || std::abs(smoothed.edf - before) < 0.1;
       const bool settled = same_roughness && std::abs(sigma.front() / shooting_.sigma().front() - 1.0) < 0.01;

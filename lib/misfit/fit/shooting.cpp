@@ -110,7 +110,7 @@ void Shooting::note_failure(const Segment& segment, std::size_t experiment) {
 }
 
 double Shooting::holding(std::size_t state) const {
-  constexpr double tight = 1e4;  // in sigmas of a defect: far below anything the data can show, far above rounding
+  constexpr double tight = 1e3;  // per sigma of a defect: far below anything the data can show, far above rounding
   const double weight = tight / state_scale_[state];
   return weight * weight;
 }
@@ -200,7 +200,8 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   }
   for (auto& piece : pieces) {
     const auto start = history_[piece.experiment].row(static_cast<Eigen::Index>(piece.first));
-    piece.block = bounded_states ? problem.add_block({start.begin(), start.end()}, least, most) : problem.add_block({start.begin(), start.end()});
+    piece.block =
+        bounded_states ? problem.add_block({start.begin(), start.end()}, least, most) : problem.add_block({start.begin(), start.end()});
   }
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     Piece& piece = pieces[k];

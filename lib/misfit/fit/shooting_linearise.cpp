@@ -125,7 +125,8 @@ void Shooting::hold_initial(Linearised& out) const {
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
       const StateSpec& state = model_.state_specs[j];
-      const Eigen::Index own = columns + n * static_cast<Eigen::Index>(e) + static_cast<Eigen::Index>(j), first = columns + static_cast<Eigen::Index>(j);
+      const Eigen::Index own = columns + n * static_cast<Eigen::Index>(e) + static_cast<Eigen::Index>(j),
+                         first = columns + static_cast<Eigen::Index>(j);
       const double weight = holding(j);
       if (state.initial == Initial::fixed) {
         out.N(own, own) += weight;

@@ -142,8 +142,7 @@ class Builder {
     const Measure common = alike(0, at_->arguments.size() - 1);
     if (f == "abs") return {rounded_abs(a, width(1)), common};
     if (f == "sign") return {width(1) < 0 ? g_.make(Op::sign, a) : g_.make(Op::tanh, g_.div(a, width(1))), {}};
-    if (f == "smooth_step")
-      return {g_.mul(g_.constant(0.5), g_.add(g_.constant(1.0), g_.make(Op::tanh, g_.div(a, arg(1).node)))), {}};
+    if (f == "smooth_step") return {g_.mul(g_.constant(0.5), g_.add(g_.constant(1.0), g_.make(Op::tanh, g_.div(a, arg(1).node)))), {}};
     const int b = arg(1).node;
     if (f == "atan2") return {g_.make(Op::atan2, a, b), {}};
     if (f == "hypot") return {g_.make(Op::hypot, a, b), common};

@@ -8,7 +8,8 @@ namespace misfit::formula {
 int arity(Op op) {
   switch (op) {
     case Op::constant:
-    case Op::leaf: return 0;
+    case Op::leaf:
+      return 0;
     case Op::neg:
     case Op::sqrt:
     case Op::exp:
@@ -24,9 +25,12 @@ int arity(Op op) {
     case Op::tanh:
     case Op::abs:
     case Op::sign:
-    case Op::negate: return 1;
-    case Op::select: return 3;
-    default: return 2;
+    case Op::negate:
+      return 1;
+    case Op::select:
+      return 3;
+    default:
+      return 2;
   }
 }
 
@@ -71,13 +75,16 @@ int Graph::fold(Op op, int a, int b, int c) {
     case Op::ratio:
       if (is(a, 0.0)) return a;
       return is(b, 1.0) ? a : -1;
-    case Op::neg: return node(a).op == Op::neg ? node(a).a : -1;
+    case Op::neg:
+      return node(a).op == Op::neg ? node(a).a : -1;
     case Op::select:
       if (is_constant(a)) return node(a).value != 0.0 ? b : c;
       return b == c ? b : -1;
     case Op::min:
-    case Op::max: return a == b ? a : -1;
-    default: return -1;
+    case Op::max:
+      return a == b ? a : -1;
+    default:
+      return -1;
   }
 }
 
@@ -194,43 +201,68 @@ class Sweep {
   void unary(int n, const Node& at) {
     const int a = at.a;
     switch (at.op) {
-      case Op::neg: return push(a, g_.neg(seed_));
-      case Op::sqrt: return push(a, g_.make(Op::ratio, g_.mul(g_.constant(0.5), seed_), n));
-      case Op::exp: return push(a, times(n));
-      case Op::log: return push(a, over(a));
-      case Op::sin: return push(a, times(g_.make(Op::cos, a)));
-      case Op::cos: return push(a, g_.neg(times(g_.make(Op::sin, a))));
-      case Op::tan: return push(a, times(g_.add(one(), square(n))));
-      case Op::asin: return push(a, g_.make(Op::ratio, seed_, g_.make(Op::sqrt, g_.sub(one(), square(a)))));
-      case Op::acos: return push(a, g_.neg(g_.make(Op::ratio, seed_, g_.make(Op::sqrt, g_.sub(one(), square(a))))));
-      case Op::atan: return push(a, over(g_.add(one(), square(a))));
-      case Op::sinh: return push(a, times(g_.make(Op::cosh, a)));
-      case Op::cosh: return push(a, times(g_.make(Op::sinh, a)));
-      case Op::tanh: return push(a, steepest_ ? seed_ : times(g_.sub(one(), square(n))));
-      case Op::abs: return push(a, times(g_.make(Op::sign, a)));
-      default: return;  // sign, negate: flat
+      case Op::neg:
+        return push(a, g_.neg(seed_));
+      case Op::sqrt:
+        return push(a, g_.make(Op::ratio, g_.mul(g_.constant(0.5), seed_), n));
+      case Op::exp:
+        return push(a, times(n));
+      case Op::log:
+        return push(a, over(a));
+      case Op::sin:
+        return push(a, times(g_.make(Op::cos, a)));
+      case Op::cos:
+        return push(a, g_.neg(times(g_.make(Op::sin, a))));
+      case Op::tan:
+        return push(a, times(g_.add(one(), square(n))));
+      case Op::asin:
+        return push(a, g_.make(Op::ratio, seed_, g_.make(Op::sqrt, g_.sub(one(), square(a)))));
+      case Op::acos:
+        return push(a, g_.neg(g_.make(Op::ratio, seed_, g_.make(Op::sqrt, g_.sub(one(), square(a))))));
+      case Op::atan:
+        return push(a, over(g_.add(one(), square(a))));
+      case Op::sinh:
+        return push(a, times(g_.make(Op::cosh, a)));
+      case Op::cosh:
+        return push(a, times(g_.make(Op::sinh, a)));
+      case Op::tanh:
+        return push(a, steepest_ ? seed_ : times(g_.sub(one(), square(n))));
+      case Op::abs:
+        return push(a, times(g_.make(Op::sign, a)));
+      default:
+        return;  // sign, negate: flat
     }
   }
 
   void binary(int n, const Node& at) {
     const int a = at.a, b = at.b;
     switch (at.op) {
-      case Op::add: return push(a, seed_), push(b, seed_);
-      case Op::sub: return push(a, seed_), push(b, g_.neg(seed_));
-      case Op::mul: return push(a, times(b)), push(b, times(a));
+      case Op::add:
+        return push(a, seed_), push(b, seed_);
+      case Op::sub:
+        return push(a, seed_), push(b, g_.neg(seed_));
+      case Op::mul:
+        return push(a, times(b)), push(b, times(a));
       case Op::div: {
         const int w = over(b);
         push(a, w);
         seed_ = w;
         return push(b, g_.neg(times(n)));
       }
-      case Op::atan2: return round(a, b, g_.add(square(a), square(b)), true);
-      case Op::hypot: return round(a, b, n, false);
-      case Op::min: return choose(g_.make(Op::less_equal, a, b), a, b);
-      case Op::max: return choose(g_.make(Op::less_equal, b, a), a, b);
-      case Op::select: return choose(at.a, at.b, at.c);
-      case Op::pow: return power(n, a, b);
-      default: return;  // comparisons are flat; gate and ratio stand in derivatives alone
+      case Op::atan2:
+        return round(a, b, g_.add(square(a), square(b)), true);
+      case Op::hypot:
+        return round(a, b, n, false);
+      case Op::min:
+        return choose(g_.make(Op::less_equal, a, b), a, b);
+      case Op::max:
+        return choose(g_.make(Op::less_equal, b, a), a, b);
+      case Op::select:
+        return choose(at.a, at.b, at.c);
+      case Op::pow:
+        return power(n, a, b);
+      default:
+        return;  // comparisons are flat; gate and ratio stand in derivatives alone
     }
   }
 

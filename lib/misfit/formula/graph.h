@@ -12,52 +12,115 @@
 namespace misfit::formula {
 
 enum class Op : std::uint8_t {
-  constant, leaf, add, sub, mul, div, neg, sqrt, exp, log, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, abs, sign, min, max, hypot,
+  constant,
+  leaf,
+  add,
+  sub,
+  mul,
+  div,
+  neg,
+  sqrt,
+  exp,
+  log,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  atan2,
+  sinh,
+  cosh,
+  tanh,
+  abs,
+  sign,
+  min,
+  max,
+  hypot,
   pow,
-  less, less_equal, equal, both, either, negate,  ///< truth: 1 or 0
-  select,                                         ///< a != 0 ? b : c
-  gate,                                           ///< a·b, and 0 where a is 0 whatever b is: a branch that is not taken moves nothing
-  ratio                                           ///< a/b, and 0 where a or b is 0
+  less,
+  less_equal,
+  equal,
+  both,
+  either,
+  negate,  ///< truth: 1 or 0
+  select,  ///< a != 0 ? b : c
+  gate,    ///< a·b, and 0 where a is 0 whatever b is: a branch that is not taken moves nothing
+  ratio    ///< a/b, and 0 where a or b is 0
 };
 
 /// What an operation computes; also used to fold constants.
 [[nodiscard]] inline double apply(Op op, double a, double b, double c) {
   switch (op) {
-    case Op::add: return a + b;
-    case Op::sub: return a - b;
-    case Op::mul: return a * b;
-    case Op::div: return a / b;
-    case Op::neg: return -a;
-    case Op::sqrt: return std::sqrt(a);
-    case Op::exp: return std::exp(a);
-    case Op::log: return std::log(a);
-    case Op::sin: return std::sin(a);
-    case Op::cos: return std::cos(a);
-    case Op::tan: return std::tan(a);
-    case Op::asin: return std::asin(a);
-    case Op::acos: return std::acos(a);
-    case Op::atan: return std::atan(a);
-    case Op::atan2: return std::atan2(a, b);
-    case Op::sinh: return std::sinh(a);
-    case Op::cosh: return std::cosh(a);
-    case Op::tanh: return std::tanh(a);
-    case Op::abs: return std::abs(a);
-    case Op::sign: return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : a;
-    case Op::min: return b < a ? b : a;
-    case Op::max: return b > a ? b : a;
-    case Op::hypot: return std::hypot(a, b);
-    case Op::pow: return std::pow(a, b);
-    case Op::less: return a < b ? 1.0 : 0.0;
-    case Op::less_equal: return a <= b ? 1.0 : 0.0;
-    case Op::equal: return a == b ? 1.0 : 0.0;
-    case Op::both: return a != 0.0 && b != 0.0 ? 1.0 : 0.0;
-    case Op::either: return a != 0.0 || b != 0.0 ? 1.0 : 0.0;
-    case Op::negate: return a == 0.0 ? 1.0 : 0.0;
-    case Op::select: return a != 0.0 ? b : c;
-    case Op::gate: return a == 0.0 ? 0.0 : a * b;
-    case Op::ratio: return a == 0.0 || b == 0.0 ? 0.0 : a / b;
+    case Op::add:
+      return a + b;
+    case Op::sub:
+      return a - b;
+    case Op::mul:
+      return a * b;
+    case Op::div:
+      return a / b;
+    case Op::neg:
+      return -a;
+    case Op::sqrt:
+      return std::sqrt(a);
+    case Op::exp:
+      return std::exp(a);
+    case Op::log:
+      return std::log(a);
+    case Op::sin:
+      return std::sin(a);
+    case Op::cos:
+      return std::cos(a);
+    case Op::tan:
+      return std::tan(a);
+    case Op::asin:
+      return std::asin(a);
+    case Op::acos:
+      return std::acos(a);
+    case Op::atan:
+      return std::atan(a);
+    case Op::atan2:
+      return std::atan2(a, b);
+    case Op::sinh:
+      return std::sinh(a);
+    case Op::cosh:
+      return std::cosh(a);
+    case Op::tanh:
+      return std::tanh(a);
+    case Op::abs:
+      return std::abs(a);
+    case Op::sign:
+      return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : a;
+    case Op::min:
+      return b < a ? b : a;
+    case Op::max:
+      return b > a ? b : a;
+    case Op::hypot:
+      return std::hypot(a, b);
+    case Op::pow:
+      return std::pow(a, b);
+    case Op::less:
+      return a < b ? 1.0 : 0.0;
+    case Op::less_equal:
+      return a <= b ? 1.0 : 0.0;
+    case Op::equal:
+      return a == b ? 1.0 : 0.0;
+    case Op::both:
+      return a != 0.0 && b != 0.0 ? 1.0 : 0.0;
+    case Op::either:
+      return a != 0.0 || b != 0.0 ? 1.0 : 0.0;
+    case Op::negate:
+      return a == 0.0 ? 1.0 : 0.0;
+    case Op::select:
+      return a != 0.0 ? b : c;
+    case Op::gate:
+      return a == 0.0 ? 0.0 : a * b;
+    case Op::ratio:
+      return a == 0.0 || b == 0.0 ? 0.0 : a / b;
     case Op::constant:
-    case Op::leaf: break;
+    case Op::leaf:
+      break;
   }
   return a;
 }
@@ -98,10 +161,10 @@ class Graph {
   /// The same formula with leaf `number` replaced by a node.
   int substitute(int i, int number, int by);
 
-  /// ∂out/∂(each of `leaves`, node numbers), as nodes, by a reverse sweep. Kinks: the derivative of the branch taken, at the kink itself that
-  /// of the first argument (max, min), of `then` where the condition holds (if), 0 (abs, sign). Where a function has no finite derivative
-  /// (sqrt and fractional powers at 0, asin and acos at ±1, hypot and atan2 at the origin) it is taken as 0. `steepest`: tanh at its
-  /// steepest everywhere, for the fastest rate.
+  /// ∂out/∂(each of `leaves`, node numbers), as nodes, by a reverse sweep. Kinks: the derivative of the branch taken, at the kink itself
+  /// that of the first argument (max, min), of `then` where the condition holds (if), 0 (abs, sign). Where a function has no finite
+  /// derivative (sqrt and fractional powers at 0, asin and acos at ±1, hypot and atan2 at the origin) it is taken as 0. `steepest`: tanh at
+  /// its steepest everywhere, for the fastest rate.
   std::vector<int> derivatives(int out, const std::vector<int>& leaves, bool steepest = false);
 
  private:

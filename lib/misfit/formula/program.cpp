@@ -35,7 +35,9 @@ Program::Program(const Graph& graph, const std::vector<int>& roots, int leaves) 
       continue;
     }
     const int count = arity(node.op);
-    const auto register_of = [&](int k, bool used) { return used ? place[static_cast<std::size_t>(k)] : place[static_cast<std::size_t>(node.a)]; };
+    const auto register_of = [&](int k, bool used) {
+      return used ? place[static_cast<std::size_t>(k)] : place[static_cast<std::size_t>(node.a)];
+    };
     steps_.push_back({node.op, register_of(node.a, true), register_of(node.b, count > 1), register_of(node.c, count > 2), at, n});
   }
   for (int root : roots) places_.push_back(place[static_cast<std::size_t>(root)]);

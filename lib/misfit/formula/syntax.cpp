@@ -13,10 +13,10 @@ struct Function {
   const char* name;
   std::size_t least, most;  ///< arguments
 };
-constexpr std::array<Function, 23> functions = {{{"sqrt", 1, 1},  {"exp", 1, 1},  {"log", 1, 1},      {"log10", 1, 1},      {"sin", 1, 1},
-                                                 {"cos", 1, 1},   {"tan", 1, 1},  {"asin", 1, 1},     {"acos", 1, 1},       {"atan", 1, 1},
-                                                 {"atan2", 2, 2}, {"sinh", 1, 1}, {"cosh", 1, 1},     {"tanh", 1, 1},       {"abs", 1, 2},
-                                                 {"sign", 1, 2},  {"min", 2, 3},  {"max", 2, 3},      {"hypot", 2, 2},      {"saturate", 3, 4},
+constexpr std::array<Function, 23> functions = {{{"sqrt", 1, 1},  {"exp", 1, 1},  {"log", 1, 1},        {"log10", 1, 1}, {"sin", 1, 1},
+                                                 {"cos", 1, 1},   {"tan", 1, 1},  {"asin", 1, 1},       {"acos", 1, 1},  {"atan", 1, 1},
+                                                 {"atan2", 2, 2}, {"sinh", 1, 1}, {"cosh", 1, 1},       {"tanh", 1, 1},  {"abs", 1, 2},
+                                                 {"sign", 1, 2},  {"min", 2, 3},  {"max", 2, 3},        {"hypot", 2, 2}, {"saturate", 3, 4},
                                                  {"if", 3, 3},    {"pow", 2, 2},  {"smooth_step", 2, 2}}};
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -87,8 +87,19 @@ struct Binary {
   const char* text;
   int strength;
 };
-constexpr std::array<Binary, 13> binaries = {
-    {{"or", 1}, {"and", 2}, {"<", 4}, {"<=", 4}, {">", 4}, {">=", 4}, {"==", 4}, {"!=", 4}, {"+", 5}, {"-", 5}, {"*", 6}, {"/", 6}, {"^", 8}}};
+constexpr std::array<Binary, 13> binaries = {{{"or", 1},
+                                              {"and", 2},
+                                              {"<", 4},
+                                              {"<=", 4},
+                                              {">", 4},
+                                              {">=", 4},
+                                              {"==", 4},
+                                              {"!=", 4},
+                                              {"+", 5},
+                                              {"-", 5},
+                                              {"*", 6},
+                                              {"/", 6},
+                                              {"^", 8}}};
 constexpr int strength_of_not = 3, strength_of_sign = 7, strength_of_power = 8;
 
 /// Recursive descent by precedence. Every way down that can repeat goes through `enter`, which counts the depth.
@@ -99,8 +110,9 @@ class Parser {
   Syntax run() {
     const auto length = out_.source.text.size();
     if (length > static_cast<std::size_t>(kMaxLength)) {
-      out_.source.fail(0, 0, "the formula has " + std::to_string(length) + " characters; at most " + std::to_string(kMaxLength) +
-                                 " are possible: split it with [quantities]");
+      out_.source.fail(0, 0,
+                       "the formula has " + std::to_string(length) + " characters; at most " + std::to_string(kMaxLength) +
+                           " are possible: split it with [quantities]");
     }
     tokens_ = Lexer(out_.source).run();
     if (tokens_.size() == 1) out_.source.fail(0, 0, "the formula is empty");
@@ -212,7 +224,8 @@ class Parser {
     }
     if (arguments.size() < function->least || arguments.size() > function->most) {
       const std::string most = function->most > function->least ? " or " + std::to_string(function->most) : "";
-      out_.source.fail(begin, last_end(), name + " takes " + std::to_string(function->least) + most + " arguments, not " + std::to_string(arguments.size()));
+      out_.source.fail(begin, last_end(),
+                       name + " takes " + std::to_string(function->least) + most + " arguments, not " + std::to_string(arguments.size()));
     }
     return add(Expression::Kind::call, name, std::move(arguments), begin);
   }

@@ -6,13 +6,14 @@
 
 #include "misfit/core/error.h"
 
-// Formulas as text, up to the syntax tree. Grammar, loosest first (^ binds to the right, and tighter than a sign on its left: -x^2 = -(x^2)):
+// Formulas as text, up to the syntax tree. Grammar, loosest first (^ binds to the right, and tighter than a sign on its left: -x^2 =
+// -(x^2)):
 //   or | and | not | < <= > >= == != | + - | * / | - + (sign) | ^ | number, name, name(…), (…)
 
 namespace misfit::formula {
 
-inline constexpr int kMaxDepth = 200;     ///< of parentheses, calls, signs and powers inside each other
-inline constexpr int kMaxLength = 4096;   ///< characters of one formula
+inline constexpr int kMaxDepth = 200;    ///< of parentheses, calls, signs and powers inside each other
+inline constexpr int kMaxLength = 4096;  ///< characters of one formula
 
 /// One node of the syntax tree.
 struct Expression {

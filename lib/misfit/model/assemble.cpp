@@ -78,7 +78,8 @@ void Assembler::add_states() {
       throw InputError(request.where, "[initial] " + name + " = " + with_unit(state.start, state.unit) + " is outside its range, " +
                                           with_unit(state.lower, state.unit) + " to " + with_unit(state.upper, state.unit));
     }
-    if (state.initial == Initial::fixed && !std::isfinite(state.start)) throw InputError(request.where, "[initial] " + name + " is fixed and needs a value");
+    if (state.initial == Initial::fixed && !std::isfinite(state.start))
+      throw InputError(request.where, "[initial] " + name + " is fixed and needs a value");
   }
 }
 

@@ -10,7 +10,8 @@ namespace misfit {
 
 /// A system declared as text (TOML). Keys:
 ///   [system]     doc, source, fastest_rate [1/s]
-///   [states]     NAME = { unit, initial, min, max, scale, rate_of }  initial: "free" (default), "shared" between experiments, a number (fixed), or
+///   [states]     NAME = { unit, initial, min, max, scale, rate_of }  initial: "free" (default), "shared" between experiments, a number
+///   (fixed), or
 ///                { value, kind = "free" | "shared" | "fixed" }; a state never leaves min … max
 ///   [inputs]     NAME = { unit, hold = "zero_order" | "first_order" (default), doc }
 ///   [parameters] NAME = { unit, value, bounds, free = false, sigma, doc }

@@ -95,8 +95,10 @@ class Compiler {
   std::optional<Meaning> find(const std::string& name, bool in_equation) {
     const auto at = [](const auto& list, int i) -> const auto& { return list[static_cast<std::size_t>(i)]; };
     if (name == "t") return Meaning{g().leaf(out_->leaves.t()), formula::measure_of("s")};
-    if (const int i = index_of(spec().states, name); i >= 0) return Meaning{at(state_nodes_, i), formula::measure_of(at(spec().states, i).unit)};
-    if (const int i = index_of(spec().inputs, name); i >= 0) return Meaning{at(input_nodes_, i), formula::measure_of(at(spec().inputs, i).unit)};
+    if (const int i = index_of(spec().states, name); i >= 0)
+      return Meaning{at(state_nodes_, i), formula::measure_of(at(spec().states, i).unit)};
+    if (const int i = index_of(spec().inputs, name); i >= 0)
+      return Meaning{at(input_nodes_, i), formula::measure_of(at(spec().inputs, i).unit)};
     if (const int i = index_of(spec().constants, name); i >= 0)
       return Meaning{g().leaf(out_->leaves.k(i)), formula::measure_of(at(spec().constants, i).unit)};
     if (const int i = index_of(spec().quantities, name); i >= 0)
@@ -130,8 +132,9 @@ class Compiler {
   /// Built when first asked for, so that quantities may stand in any order.
   int quantity_node(int i) {
     int& node = quantity_nodes_[static_cast<std::size_t>(i)];
-    if (node == in_work) throw InputError(d_.quantities[static_cast<std::size_t>(i)].syntax.source.where,
-                                          "quantity " + spec().quantities[static_cast<std::size_t>(i)].name + " depends on itself");
+    if (node == in_work)
+      throw InputError(d_.quantities[static_cast<std::size_t>(i)].syntax.source.where,
+                       "quantity " + spec().quantities[static_cast<std::size_t>(i)].name + " depends on itself");
     if (node == unbuilt) {
       node = in_work;
       const int own = build(d_.quantities[static_cast<std::size_t>(i)], false);
@@ -272,9 +275,12 @@ class Compiler {
     if (d_.roles && d_.roles->has("force_ports")) s.force_ports = *d_.roles->texts("force_ports");
     for (const auto& port : s.force_ports) check_role("force_ports", port, ports);
     s.roles["port"] = role("port", own_ports_ > 0 ? ports.front() : s.force_ports.empty() ? ports.front() : s.force_ports.front(), ports);
-    const auto& port = *std::find_if(s.dynamic_ports.begin(), s.dynamic_ports.end(), [&](const PortSpec& p) { return p.name == s.roles["port"]; });
+    const auto& port =
+        *std::find_if(s.dynamic_ports.begin(), s.dynamic_ports.end(), [&](const PortSpec& p) { return p.name == s.roles["port"]; });
     const auto moving = std::find_if(s.states.begin(), s.states.end(), [](const StateSpec& state) { return state.rate_of >= 0; });
-    const std::string by_default = !port.conjugate.empty() ? port.conjugate : moving != s.states.end() ? moving->name : s.states.front().name;
+    const std::string by_default = !port.conjugate.empty()    ? port.conjugate
+                                   : moving != s.states.end() ? moving->name
+                                                              : s.states.front().name;
     s.roles["rate"] = role("rate", by_default, quantities);
     const int rate = index_of(s.states, s.roles["rate"]);
     const int level = rate < 0 ? -1 : s.states[static_cast<std::size_t>(rate)].rate_of;
@@ -283,7 +289,8 @@ class Compiler {
     for (auto& p : s.dynamic_ports) {
       if (p.conjugate.empty()) p.conjugate = s.roles["rate"];
       if (index_of(s.quantities, p.conjugate) < 0)
-        throw InputError(d_.where, "[ports] " + p.name + ": rate = '" + p.conjugate + "' is no quantity" + suggest(p.conjugate, quantities));
+        throw InputError(d_.where,
+                         "[ports] " + p.name + ": rate = '" + p.conjugate + "' is no quantity" + suggest(p.conjugate, quantities));
     }
     if (d_.roles) d_.roles->finish();
   }
@@ -294,7 +301,8 @@ class Compiler {
   }
   void check_role(const char* name, const std::string& given, const std::vector<std::string>& valid) {
     if (std::find(valid.begin(), valid.end(), given) == valid.end())
-      throw InputError(d_.roles ? d_.roles->where(name) : d_.where, std::string("[roles] ") + name + ": there is no '" + given + "'" + suggest(given, valid));
+      throw InputError(d_.roles ? d_.roles->where(name) : d_.where,
+                       std::string("[roles] ") + name + ": there is no '" + given + "'" + suggest(given, valid));
   }
 
   enum Wanted : unsigned { by_x = 1, by_F = 2, by_k = 4, by_P = 8, steepest = 16 };
@@ -310,8 +318,8 @@ class Compiler {
       int first, count;
       std::vector<Tape::Entry>* into;
     };
-    for (const Block& block : {Block{by_x, n.x(0), n.nx, &out.by_x}, Block{by_F, n.F(0), n.nf, &out.by_F}, Block{by_k, n.k(0), n.nk, &out.by_k},
-                               Block{by_P, n.P(0), n.np, &out.by_P}}) {
+    for (const Block& block : {Block{by_x, n.x(0), n.nx, &out.by_x}, Block{by_F, n.F(0), n.nf, &out.by_F},
+                               Block{by_k, n.k(0), n.nk, &out.by_k}, Block{by_P, n.P(0), n.np, &out.by_P}}) {
       if ((wanted & block.flag) == 0U) continue;
       std::vector<int> leaves;
       for (int i = 0; i < block.count; ++i) leaves.push_back(g().leaf(block.first + i));

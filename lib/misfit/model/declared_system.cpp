@@ -33,7 +33,8 @@ class DeclaredSystem final : public System {
     write(c_->quantities.value, r, q);
   }
 
-  void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q, const QuantityDerivatives& d) const override {
+  void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
+                            const QuantityDerivatives& d) const override {
     if (needed == 0U) return;
     const Tape& tape = d.P != nullptr ? c_->quantities_all : d.k != nullptr ? c_->quantities_k : c_->quantities_x;
     const std::size_t rows = spec_.quantities.size();
@@ -82,7 +83,7 @@ class DeclaredSystem final : public System {
   bool read_states(const double* y, const double* k, double* x) const override {
     const std::array<double, kMaxStates> zero{};
     std::array<double, kMaxOutputs> y0{};
-    std::array<double, static_cast<std::size_t>(kMaxOutputs* kMaxStates)> slope{};
+    std::array<double, static_cast<std::size_t>(kMaxOutputs * kMaxStates)> slope{};
     linearise_outputs({zero.data(), zero.data(), 0.0, k}, y0.data(), slope.data(), nullptr);
     bool known = true;
     for (const auto& [output, state] : c_->readable) {
@@ -93,8 +94,8 @@ class DeclaredSystem final : public System {
     return known && !c_->readable.empty();
   }
 
-  /// From the Jacobian, every smoothed jump at its steepest: the largest |J_ii| and sqrt|J_ij J_ji|. A state near a bound is taken a twentieth of
-  /// its scale inside, where a root has a slope.
+  /// From the Jacobian, every smoothed jump at its steepest: the largest |J_ii| and sqrt|J_ij J_ji|. A state near a bound is taken a
+  /// twentieth of its scale inside, where a root has a slope.
   [[nodiscard]] double fastest_rate(const Point& at) const override {
     const int n = static_cast<int>(spec_.states.size());
     std::array<double, kMaxStates> x{}, dx{};
@@ -106,7 +107,7 @@ class DeclaredSystem final : public System {
       if (std::isfinite(state.upper)) x[i] = std::min(x[i], state.upper - inside * state.scale);
     }
     Registers r;
-    std::array<double, static_cast<std::size_t>(kMaxStates* kMaxStates)> J;
+    std::array<double, static_cast<std::size_t>(kMaxStates * kMaxStates)> J;
     run(c_->rates_steep, {x.data(), at.u, at.t, at.k}, no_forces.data(), no_forces.data(), r);
     write(c_->rates_steep.value, r, dx.data());
     block(c_->rates_steep.by_x, r, static_cast<std::size_t>(n * n), J.data());
@@ -222,7 +223,9 @@ class DeclaredSystem final : public System {
 
 }  // namespace
 
-std::unique_ptr<System> make_system(std::shared_ptr<const Compiled> compiled) { return std::make_unique<DeclaredSystem>(std::move(compiled)); }
+std::unique_ptr<System> make_system(std::shared_ptr<const Compiled> compiled) {
+  return std::make_unique<DeclaredSystem>(std::move(compiled));
+}
 
 }  // namespace misfit::declared
 

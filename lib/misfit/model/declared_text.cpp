@@ -60,7 +60,8 @@ class Reader {
     for (const std::string& name : section->keys()) {
       if (!formula::is_name(name))
         section->fail(name, "a name has letters, digits and underscores, begins with a letter and is no function of formulas");
-      if (!names_.insert(name).second) section->fail(name, "the name '" + name + "' is taken by a state, input, parameter, quantity or port");
+      if (!names_.insert(name).second)
+        section->fail(name, "the name '" + name + "' is taken by a state, input, parameter, quantity or port");
       if (!section->is_table(name)) section->fail(name, "a table is expected, as { unit = \"V\" }");
       const Section entry = *section->table(name);
       read(entry, name);
@@ -181,12 +182,14 @@ class Reader {
     for (std::size_t j = 0; j < states.size(); ++j) {
       if (rate_of_[j].empty()) continue;
       const auto found = std::find(names.begin(), names.end(), rate_of_[j]);
-      if (found == names.end()) throw InputError(rate_of_where_[j], "rate_of: there is no state '" + rate_of_[j] + "'" + suggest(rate_of_[j], names));
+      if (found == names.end())
+        throw InputError(rate_of_where_[j], "rate_of: there is no state '" + rate_of_[j] + "'" + suggest(rate_of_[j], names));
       const auto of = static_cast<std::size_t>(found - names.begin());
       if (of == j) throw InputError(rate_of_where_[j], "a state cannot be its own rate");
       const auto wanted = formula::measure_of(rate_unit(states[of].unit));
       if (!formula::measure_of(states[j].unit).fits(wanted))
-        throw InputError(rate_of_where_[j], "the rate of '" + states[of].name + "' has [" + wanted.text() + "], not [" + states[j].unit + "]");
+        throw InputError(rate_of_where_[j],
+                         "the rate of '" + states[of].name + "' has [" + wanted.text() + "], not [" + states[j].unit + "]");
       states[j].rate_of = static_cast<int>(of);
     }
   }
@@ -198,7 +201,8 @@ class Reader {
     std::vector<std::string> names;
     for (const auto& state : states) names.push_back(state.name);
     for (const std::string& key : section->keys()) {
-      if (std::find(names.begin(), names.end(), key) == names.end()) section->fail(key, "there is no state '" + key + "'" + suggest(key, names));
+      if (std::find(names.begin(), names.end(), key) == names.end())
+        section->fail(key, "there is no state '" + key + "'" + suggest(key, names));
     }
     for (std::size_t j = 0; j < states.size(); ++j) {
       if (section->has(states[j].name)) {
@@ -219,8 +223,9 @@ class Reader {
     output.unit = unit(s);
     output.noise = number(s, "noise", output.unit, 0.0);
     const std::string of = "output " + name;
-    out_.outputs.push_back(s.has("formula") ? formula_of(s, "formula", of, output.unit)
-                                            : Formula{formula::parse({name, of, s.where()}), formula::measure_of(output.unit), output.unit});
+    out_.outputs.push_back(s.has("formula")
+                               ? formula_of(s, "formula", of, output.unit)
+                               : Formula{formula::parse({name, of, s.where()}), formula::measure_of(output.unit), output.unit});
     out_.spec.outputs.push_back(output);
   }
 

@@ -106,8 +106,8 @@ class Evaluator {
   void add_value(const Use& use, const double* own, double t, double* targets, double* drifts);
   void add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts,
                   double* drift_rows);
-  // The common case, nothing on quantity ports: quantities depend on the state and on free constants alone, and derivatives by parameters are
-  // kept as a short list of entries instead of rows.
+  // The common case, nothing on quantity ports: quantities depend on the state and on free constants alone, and derivatives by parameters
+  // are kept as a short list of entries instead of rows.
   struct Link {
     int place, other;  // place among the numbers that an effect reads (or writes), and what stands there
   };
@@ -161,8 +161,8 @@ class Evaluator {
   int n_, nx_, ny_, nf_, np_, nq_, nk_, columns_;
   std::uint64_t needed_ = 0;
   bool shifts_time_ = false, quantity_effects_ = false, free_constants_ = false, general_ = false;
-  bool general_rates_ = false;        // as general_, of the rates: constants of the sensor may be free
-  bool constants_in_rates_ = false;   // some free constant acts on the rates
+  bool general_rates_ = false;                 // as general_, of the rates: constants of the sensor may be free
+  bool constants_in_rates_ = false;            // some free constant acts on the rates
   std::vector<Link> free_constants_in_rates_;  // constant → column
   std::vector<Use> quantity_, dynamic_, sensor_;
   std::vector<Plan> plans_;     // of dynamic_

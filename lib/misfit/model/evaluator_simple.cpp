@@ -98,8 +98,7 @@ void Evaluator::add_entries(Plan& plan, const double* own, double t, Slots& slot
   const double* coefficients = values + plan.nq;
   double* states = values + plan.nq + plan.nc;
   for (int i = 0; i < plan.nz; ++i) states[i] = own[plan.first_state + i];
-  plan.effect->linearise({values, coefficients, states, states + plan.nz, t}, out.data(), J.data(),
-                         constants_in_rates_);
+  plan.effect->linearise({values, coefficients, states, states + plan.nz, t}, out.data(), J.data(), constants_in_rates_);
   for (const Link& output : plan.outputs) {
     const double value = out[static_cast<std::size_t>(output.place)];
     if (output.other < nf_) {

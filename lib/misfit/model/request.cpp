@@ -92,8 +92,8 @@ void read_initial(const Study& study, const SystemSpec& spec, ModelRequest& requ
     if (!initial.value) continue;
     out.value = initial.value->value;
     for (const auto& state : spec.states) {
-      const bool unlike = state.name == name && !initial.value->unit.empty() &&
-                          !parse_unit(initial.value->unit).same_dimension(parse_unit(state.unit));
+      const bool unlike =
+          state.name == name && !initial.value->unit.empty() && !parse_unit(initial.value->unit).same_dimension(parse_unit(state.unit));
       if (unlike) throw InputError(initial.where, "[initial] " + name + " needs [" + state.unit + "], not [" + initial.value->unit + "]");
     }
   }

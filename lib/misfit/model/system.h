@@ -13,9 +13,9 @@
 namespace misfit {
 
 enum class Initial {
-  free,   ///< unknown, in every experiment another one
-  shared, ///< unknown, the same in all experiments
-  fixed   ///< StateSpec::start
+  free,    ///< unknown, in every experiment another one
+  shared,  ///< unknown, the same in all experiments
+  fixed    ///< StateSpec::start
 };
 
 struct StateSpec {
@@ -53,10 +53,10 @@ struct ConstantSpec {
   std::string name, unit, doc;
   double lower = 0.0, upper = 0.0;  ///< inclusive
   bool required = true;
-  double value = 0.0;  ///< when not required
-  bool free = false;          ///< unless a study says otherwise
-  double prior_sigma = 0.0;   ///< Gaussian about the value [unit]; 0: no prior
-  bool strength = false;      ///< the rates are linear in it: a regression finds it
+  double value = 0.0;        ///< when not required
+  bool free = false;         ///< unless a study says otherwise
+  double prior_sigma = 0.0;  ///< Gaussian about the value [unit]; 0: no prior
+  bool strength = false;     ///< the rates are linear in it: a regression finds it
   /// Acts on the outputs, and on quantities of the sensor, alone: where it is free, the rates keep their fast derivatives.
   bool of_sensor = false;
 };
@@ -143,7 +143,8 @@ class System {
   virtual void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const = 0;
   /// Fastest rate of the system without effects, at this state [1/s].
   [[nodiscard]] virtual double fastest_rate(const Point& /*at*/) const { return spec().fastest_rate; }
-  /// Why rates() is not finite here, in words: the part of the formula, the states and parameters in it. Empty if it is finite or not known.
+  /// Why rates() is not finite here, in words: the part of the formula, the states and parameters in it. Empty if it is finite or not
+  /// known.
   [[nodiscard]] virtual std::string explain(const Point& /*at*/, const double* /*P*/, const double* /*F*/) const { return {}; }
   /// The inverse of outputs() for SystemSpec::readable_states: fills those entries of x. False where the outputs have no such state.
   virtual bool read_states(const double* /*y*/, const double* /*k*/, double* /*x*/) const { return false; }

@@ -77,7 +77,8 @@ void Stepper::note_failure(const double* x, const Interval& interval) {
         const std::string why = evaluator_.explain(stage.data(), u.data(), t);
         const auto& states = evaluator_.model().state_specs;
         for (std::size_t i = 0; why.empty() && i < states.size(); ++i)
-          failure_ += (i == 0 ? "" : ", ") + states[i].name + " = " + format_value(stage[i]) + (states[i].unit == "-" ? "" : " " + states[i].unit);
+          failure_ +=
+              (i == 0 ? "" : ", ") + states[i].name + " = " + format_value(stage[i]) + (states[i].unit == "-" ? "" : " " + states[i].unit);
         failure_ += why;
         return;
       }

@@ -30,7 +30,8 @@ class Stepper {
   void prepare(const double* x, const double* u, double t);
   [[nodiscard]] double fastest_rate() const { return fastest_rate_; }
 
-  /// Where the last step that returned false left the finite numbers, in words: time, states, formula and parameters where the system can say.
+  /// Where the last step that returned false left the finite numbers, in words: time, states, formula and parameters where the system can
+  /// say.
   [[nodiscard]] const std::string& failure() const { return failure_; }
 
   /// Advances x in place. False if a state is no longer finite (x is then unspecified).

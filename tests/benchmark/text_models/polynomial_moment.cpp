@@ -12,8 +12,11 @@ struct PolynomialMoment {
   static constexpr const char* size = "as static_moment and pitch_damping";
   static constexpr const char* source = "paper Eq. 8 with polynomials";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role quantities[] = {
-      {"dynamic_pressure", "Pa"}, {"wind_speed", "m/s", false, true}, {"wind_cross_axis", "-"}, {"alpha_T", "rad"}, {"pitch_rate", "rad/s"}};
+  static constexpr Role quantities[] = {{"dynamic_pressure", "Pa"},
+                                        {"wind_speed", "m/s", false, true},
+                                        {"wind_cross_axis", "-"},
+                                        {"alpha_T", "rad"},
+                                        {"pitch_rate", "rad/s"}};
   static constexpr Role ports[] = {{"pitching_moment", "N m"}};
   static constexpr const char* constants[] = {"S", "D"};
   static constexpr CoefficientSpec coefficients[] = {
@@ -31,7 +34,14 @@ struct PolynomialMoment {
   }
 
   static std::vector<Example> examples() {
-    return {{{2.0, 3.0}, {100.0, 30.0, 0.5, 0.1, 2.0}, {1.0, 2.0, 3.0, 4.0, 5.0}, {}, 0.0, {600.0 * (0.5 * 1.0203 + 0.05 * 4.05 * 2.0)}, {}, "by hand"}};
+    return {{{2.0, 3.0},
+             {100.0, 30.0, 0.5, 0.1, 2.0},
+             {1.0, 2.0, 3.0, 4.0, 5.0},
+             {},
+             0.0,
+             {600.0 * (0.5 * 1.0203 + 0.05 * 4.05 * 2.0)},
+             {},
+             "by hand"}};
   }
 };
 
