@@ -26,12 +26,11 @@ class Compiler {
     build_outputs();
     check_parameters();
     describe_quantities();
-    make_tapes();
+    make_tapes(*out_, all_quantity_nodes_, output_nodes_, d_.where);
     out_->spec = std::move(d_.spec);
     return out_;
   }
 
-  /// The nodes that roles.cpp looks at.
  private:
   formula::Graph& g() { return out_->graph; }
   SystemSpec& spec() { return d_.spec; }
@@ -259,104 +258,11 @@ class Compiler {
     spec().quantities = std::move(all);
     if (spec().quantities.size() + spec().outputs.size() > static_cast<std::size_t>(kMaxQuantities))
       throw InputError(d_.where, "states, inputs, quantities and outputs are together too many");
-    set_roles();
+    set_roles(d_, own_ports_);
   }
   void add_quantity(QuantitySpec q, int node, std::vector<QuantitySpec>& all) {
     all.push_back(std::move(q));
     all_quantity_nodes_.push_back(node);
-  }
-
-  void set_roles() {
-    SystemSpec& s = spec();
-    std::vector<std::string> quantities, ports, outputs;
-    for (const auto& q : s.quantities) quantities.push_back(q.name);
-    for (const auto& p : s.dynamic_ports) ports.push_back(p.name);
-    for (const auto& o : s.outputs) outputs.push_back(o.name);
-    if (d_.roles && d_.roles->has("force_ports")) s.force_ports = *d_.roles->texts("force_ports");
-    for (const auto& port : s.force_ports) check_role("force_ports", port, ports);
-    s.roles["port"] = role("port", own_ports_ > 0 ? ports.front() : s.force_ports.empty() ? ports.front() : s.force_ports.front(), ports);
-    const auto& port =
-        *std::find_if(s.dynamic_ports.begin(), s.dynamic_ports.end(), [&](const PortSpec& p) { return p.name == s.roles["port"]; });
-    const auto moving = std::find_if(s.states.begin(), s.states.end(), [](const StateSpec& state) { return state.rate_of >= 0; });
-    const std::string by_default = !port.conjugate.empty()    ? port.conjugate
-                                   : moving != s.states.end() ? moving->name
-                                                              : s.states.front().name;
-    s.roles["rate"] = role("rate", by_default, quantities);
-    const int rate = index_of(s.states, s.roles["rate"]);
-    const int level = rate < 0 ? -1 : s.states[static_cast<std::size_t>(rate)].rate_of;
-    s.roles["level"] = role("level", level < 0 ? s.roles["rate"] : s.states[static_cast<std::size_t>(level)].name, quantities);
-    s.roles["output"] = role("output", outputs.front(), outputs);
-    for (auto& p : s.dynamic_ports) {
-      if (p.conjugate.empty()) p.conjugate = s.roles["rate"];
-      if (index_of(s.quantities, p.conjugate) < 0)
-        throw InputError(d_.where,
-                         "[ports] " + p.name + ": rate = '" + p.conjugate + "' is no quantity" + suggest(p.conjugate, quantities));
-    }
-    if (d_.roles) d_.roles->finish();
-  }
-  std::string role(const char* name, const std::string& fallback, const std::vector<std::string>& valid) {
-    const std::string given = d_.roles ? d_.roles->text(name).value_or(fallback) : fallback;
-    check_role(name, given, valid);
-    return given;
-  }
-  void check_role(const char* name, const std::string& given, const std::vector<std::string>& valid) {
-    if (std::find(valid.begin(), valid.end(), given) == valid.end())
-      throw InputError(d_.roles ? d_.roles->where(name) : d_.where,
-                       std::string("[roles] ") + name + ": there is no '" + given + "'" + suggest(given, valid));
-  }
-
-  enum Wanted : unsigned { by_x = 1, by_F = 2, by_k = 4, by_P = 8, steepest = 16 };
-
-  Tape tape(const std::vector<int>& nodes, unsigned wanted) {
-    const Leaves& n = out_->leaves;
-    std::vector<int> roots = nodes;
-    std::vector<std::pair<std::vector<Tape::Entry>*, Tape::Entry>> entries;
-    Tape out;
-    for (std::size_t row = 0; row < nodes.size(); ++row) out.value.push_back({static_cast<int>(row), static_cast<int>(row)});
-    struct Block {
-      unsigned flag;
-      int first, count;
-      std::vector<Tape::Entry>* into;
-    };
-    for (const Block& block : {Block{by_x, n.x(0), n.nx, &out.by_x}, Block{by_F, n.F(0), n.nf, &out.by_F},
-                               Block{by_k, n.k(0), n.nk, &out.by_k}, Block{by_P, n.P(0), n.np, &out.by_P}}) {
-      if ((wanted & block.flag) == 0U) continue;
-      std::vector<int> leaves;
-      for (int i = 0; i < block.count; ++i) leaves.push_back(g().leaf(block.first + i));
-      for (std::size_t row = 0; row < nodes.size(); ++row) {
-        const std::vector<int> slopes = g().derivatives(nodes[row], leaves, (wanted & steepest) != 0U);
-        for (std::size_t i = 0; i < slopes.size(); ++i) {
-          if (g().is(slopes[i], 0.0)) continue;
-          block.into->push_back({static_cast<int>(row) * block.count + static_cast<int>(i), static_cast<int>(roots.size())});
-          roots.push_back(slopes[i]);
-        }
-      }
-    }
-    try {
-      out.program = formula::Program(g(), roots, n.count());
-    } catch (const InputError& error) {
-      throw InputError(d_.where, error.what());
-    }
-    for (auto* list : {&out.value, &out.by_x, &out.by_F, &out.by_k, &out.by_P}) {
-      for (auto& entry : *list) entry.from = out.program.place(static_cast<std::size_t>(entry.from));
-    }
-    return out;
-  }
-
-  void make_tapes() {
-    Compiled& c = *out_;
-    c.rates = tape(c.rate_nodes, 0U);
-    c.rates_x = tape(c.rate_nodes, by_x | by_F);
-    c.rates_k = tape(c.rate_nodes, by_x | by_F | by_k);
-    c.rates_all = tape(c.rate_nodes, by_x | by_F | by_k | by_P);
-    c.rates_steep = tape(c.rate_nodes, by_x | steepest);
-    c.quantities = tape(all_quantity_nodes_, 0U);
-    c.quantities_x = tape(all_quantity_nodes_, by_x);
-    c.quantities_k = tape(all_quantity_nodes_, by_x | by_k);
-    c.quantities_all = tape(all_quantity_nodes_, by_x | by_k | by_P);
-    c.outputs = tape(output_nodes_, 0U);
-    c.outputs_x = tape(output_nodes_, by_x);
-    c.outputs_k = tape(output_nodes_, by_x | by_k);
   }
 
   static constexpr int unbuilt = -1, in_work = -2;

@@ -6,14 +6,13 @@
 
 #include "misfit/formula/build.h"
 #include "misfit/formula/program.h"
+#include "misfit/model/declared_parameter.h"
 
 namespace misfit {
 namespace {
 
 using formula::Meaning;
 using formula::Program;
-
-constexpr double huge = 1e9;
 
 /// Registers: what it reads in the order of a linearisation — quantities, coefficients, constants — then the time.
 class FormulaEffect final : public Effect {
@@ -111,34 +110,19 @@ class Maker {
       if (find_quantity(name) != nullptr || find_constant(name) != nullptr)
         declared_.parameters->fail(name, "the system has a '" + name + "' already");
       const config::Section s = *declared_.parameters->table(name);
+      const declared::ParameterText text = declared::read_parameter(s);
       CoefficientSpec c;
       c.name = keep(name);
       c.kind = CoefficientKind::shape;
-      const auto unit = s.text("unit");
-      if (!unit) s.fail("unit", "the unit is missing, as unit = \"m/s\"; \"-\" if it has none");
-      c.unit = keep(*unit);
-      try {
-        measures_.push_back(formula::measure_of(*unit));
-      } catch (const InputError& error) {
-        s.fail("unit", error.what());
-      }
-      const auto value = s.number("value", *unit);
-      c.value = value ? value->value : 0.0;
-      c.lower = -huge;
-      c.upper = huge;
-      if (const auto bounds = s.numbers("bounds", *unit)) {
-        if (bounds->size() != 2 || !(bounds->front() < bounds->back())) s.fail("bounds", "must be [lower, upper], lower below upper");
-        c.lower = bounds->front();
-        c.upper = bounds->back();
-      }
-      if (c.value < c.lower || c.value > c.upper) s.fail("value", "is outside its bounds");
-      const auto scale = s.number("scale", *unit);
-      c.scale = scale ? scale->value : c.value != 0.0 ? std::abs(c.value) : 1.0;
-      if (!(c.scale > 0.0)) s.fail("scale", "must be positive");
-      c.fixed = !s.flag("free").value_or(true);
-      const auto sigma = s.number("sigma", *unit);
-      if (sigma) c.prior_sigma = sigma->value;
-      c.doc = keep(s.text("doc").value_or("declared in the study"));
+      c.unit = keep(text.unit);
+      c.value = text.value.value_or(std::clamp(0.0, text.lower, text.upper));
+      c.lower = text.lower;
+      c.upper = text.upper;
+      c.scale = text.scale.value_or(c.value != 0.0 ? std::abs(c.value) : 1.0);
+      c.fixed = !text.free.value_or(true);
+      c.prior_sigma = text.sigma.value_or(0.0);
+      c.doc = keep(text.doc.empty() ? "declared in the study" : text.doc);
+      measures_.push_back(text.measure);
       s.finish();
       spec().coefficients.push_back(c);
     }

@@ -47,6 +47,12 @@ struct Compiled {
   Tape outputs, outputs_x, outputs_k;
 };
 
+/// Default roles and force ports, and what [roles] says instead; the first `own_ports` dynamic ports are those of [ports].
+void set_roles(Declaration& declaration, int own_ports);
+
+/// All programs of `c`, whose graph is complete.
+void make_tapes(Compiled& c, const std::vector<int>& quantities, const std::vector<int>& outputs, const Source& where);
+
 /// Builds graph and programs. InputError where a formula is wrong.
 [[nodiscard]] std::shared_ptr<const Compiled> compile(Declaration declaration);
 

@@ -6,13 +6,12 @@
 #include <set>
 
 #include "misfit/core/units.h"
+#include "misfit/model/declared_parameter.h"
 
 namespace misfit::declared {
 namespace {
 
 using config::Section;
-
-constexpr double huge = 1e9;
 
 class Reader {
  public:
@@ -70,17 +69,6 @@ class Reader {
     section->finish();
   }
 
-  std::string unit(const Section& s) {
-    const auto text = s.text("unit");
-    if (!text) s.fail("unit", "the unit is missing, as unit = \"m/s\"; \"-\" if it has none");
-    try {
-      static_cast<void>(formula::measure_of(*text));
-    } catch (const InputError& error) {
-      s.fail("unit", error.what());
-    }
-    return *text;
-  }
-
   static double number(const Section& s, const char* key, const std::string& of, double fallback) {
     const auto n = s.number(key, of);
     return n ? n->value : fallback;
@@ -89,7 +77,7 @@ class Reader {
   void read_state(const Section& s, const std::string& name) {
     StateSpec state;
     state.name = name;
-    state.unit = unit(s);
+    state.unit = read_unit(s);
     state.lower = number(s, "min", state.unit, state.lower);
     state.upper = number(s, "max", state.unit, state.upper);
     if (!(state.lower < state.upper)) s.fail("max", "must be above min");
@@ -123,30 +111,24 @@ class Reader {
   void read_input(const Section& s, const std::string& name) {
     InputSpec input;
     input.name = name;
-    input.unit = unit(s);
+    input.unit = read_unit(s);
     input.doc = s.text("doc").value_or("");
     if (s.choice("hold", {"zero_order", "first_order"}).value_or("first_order") == "zero_order") input.hold = Hold::zero_order;
     out_.spec.inputs.push_back(input);
   }
 
   void read_parameter(const Section& s, const std::string& name) {
+    const ParameterText text = declared::read_parameter(s);
     ConstantSpec p;
     p.name = name;
-    p.unit = unit(s);
-    p.doc = s.text("doc").value_or("");
-    p.lower = -huge;
-    p.upper = huge;
-    if (const auto bounds = s.numbers("bounds", p.unit)) {
-      if (bounds->size() != 2 || !(bounds->front() < bounds->back())) s.fail("bounds", "must be [lower, upper], lower below upper");
-      p.lower = bounds->front();
-      p.upper = bounds->back();
-    }
-    p.required = !s.has("value");
-    p.value = number(s, "value", p.unit, 0.0);
-    if (!p.required && (p.value < p.lower || p.value > p.upper)) s.fail("value", "is outside its bounds");
-    p.free = s.flag("free").value_or(false);
-    p.prior_sigma = number(s, "sigma", p.unit, 0.0);
-    if (s.has("sigma") && !(p.prior_sigma > 0.0)) s.fail("sigma", "must be positive");
+    p.unit = text.unit;
+    p.doc = text.doc;
+    p.lower = text.lower;
+    p.upper = text.upper;
+    p.required = !text.value;
+    p.value = text.value.value_or(0.0);
+    p.free = text.free.value_or(false);
+    p.prior_sigma = text.sigma.value_or(0.0);
     out_.spec.constants.push_back(p);
   }
 
@@ -159,7 +141,7 @@ class Reader {
   void read_quantity(const Section& s, const std::string& name) {
     QuantitySpec q;
     q.name = name;
-    q.unit = unit(s);
+    q.unit = read_unit(s);
     q.doc = s.text("doc").value_or("");
     q.carries_sign = true;
     out_.quantities.push_back(formula_of(s, "formula", "quantity " + name, q.unit));
@@ -169,7 +151,7 @@ class Reader {
   void read_port(const Section& s, const std::string& name) {
     PortSpec port;
     port.name = name;
-    port.unit = unit(s);
+    port.unit = read_unit(s);
     port.doc = s.text("doc").value_or("");
     port.conjugate = s.text("rate").value_or("");
     out_.spec.dynamic_ports.push_back(port);
@@ -220,7 +202,7 @@ class Reader {
   void read_output(const Section& s, const std::string& name) {
     OutputSpec output;
     output.name = name;
-    output.unit = unit(s);
+    output.unit = read_unit(s);
     output.noise = number(s, "noise", output.unit, 0.0);
     const std::string of = "output " + name;
     out_.outputs.push_back(s.has("formula")
