@@ -13,7 +13,7 @@ namespace {
 using namespace testing_models;
 using testing::HasSubstr;
 
-const std::string tanks_text = R"(
+const std::string tanks_text = R"toml(
 [states]
 x1 = { unit = "V", min = 0.0, scale = 5.0, initial = "shared" }
 x2 = { unit = "V", min = 0.0, scale = 5.0, initial = "shared" }
@@ -29,7 +29,7 @@ x1 = "-k1*sqrt(x1) + k4*u"
 x2 = "k2*sqrt(x1) - k3*sqrt(x2)"
 [outputs]
 y = { unit = "V", formula = "x2", noise = 0.01 }
-)";
+)toml";
 
 struct TankTruth {
   double k1 = 0.055, k2 = 0.05, k3 = 0.06, k4 = 0.045, spill = 0.0, level = 1e9, x1 = 4.0, x2 = 5.2;
@@ -116,19 +116,19 @@ TEST(DeclaredEffect, WithAKinkAtAFreeLevelConverges) {
   truth.level = 12.0;
   const auto known = registry_with(tanks_text);
   auto with = std::make_shared<Registry>(Registry::over(*known));
-  with->add(declared_effect(effect_in_one_line("spill", R"({ port = "dx2/dt", formula = "c*max(x1 - level, 0)",
-      parameters = {
-    c = {unit = "1/s", value = 0.005, bounds = [ 0, 1 ]}, level = { unit = "V", value = 9.0, bounds = [ 0, 30 ] } }
-})"),
-                            known->system("text").make({})->spec()));
-ModelRequest request = request_of("text", {effect("spill")});
-request.parameters["k2"].free = false;
-request.parameters["k2"].value = 0.05;
-const FittedModel fitted = fit(assemble(request, *with), {tanks(truth, 4, 800)});
-ASSERT_EQ(fitted.fit.status, FitStatus::converged) << fitted.fit.message;
-expect_recovered(fitted.fit, "c", truth.spill);
-expect_recovered(fitted.fit, "level", truth.level);
-EXPECT_NEAR(fitted.fit.rms.at("y").value, 0.01, 0.001);
+  with->add(declared_effect(
+      effect_in_one_line(
+          "spill",
+          R"toml({ port = "dx2/dt", formula = "c*max(x1 - level, 0)", parameters = { c = { unit = "1/s", value = 0.005, bounds = [0, 1] }, level = { unit = "V", value = 9.0, bounds = [0, 30] } } })toml"),
+      known->system("text").make({})->spec()));
+  ModelRequest request = request_of("text", {effect("spill")});
+  request.parameters["k2"].free = false;
+  request.parameters["k2"].value = 0.05;
+  const FittedModel fitted = fit(assemble(request, *with), {tanks(truth, 4, 800)});
+  ASSERT_EQ(fitted.fit.status, FitStatus::converged) << fitted.fit.message;
+  expect_recovered(fitted.fit, "c", truth.spill);
+  expect_recovered(fitted.fit, "level", truth.level);
+  EXPECT_NEAR(fitted.fit.rms.at("y").value, 0.01, 0.001);
 }
 
 /// A damped oscillation, y'' = −30 y − 0.4 y' + 10 u, in small steps.

@@ -89,14 +89,17 @@ TEST(DeclaredDuffing, TakesEffectsOnItsPortsQuantitiesAndInputs) {
 }
 
 TEST(DeclaredSystems, KeepStatesInTheirRange) {
-  const auto known = registry_with(R"(
+  const auto known = registry_with(R"toml(
 [states]
 x1 = { unit = "V", min = 0.0, max = 2.0 }
 [parameters]
 k1 = { unit = "V^0.5/s", value = 0.5, free = true }
 [equations]
-x1 = "-k1*sqrt(x1)"[outputs] y = {unit = "V", formula = "x1"}) ");
-      const Model model = assemble(request_of("text"), *known);
+x1 = "-k1*sqrt(x1)"
+[outputs]
+y = { unit = "V", formula = "x1" }
+)toml");
+  const Model model = assemble(request_of("text"), *known);
   Evaluator evaluator(model);
   double dx[1], D[kRowStride], y[2];
   const double below = -0.3, above = 2.5;
@@ -112,11 +115,11 @@ x1 = "-k1*sqrt(x1)"[outputs] y = {unit = "V", formula = "x1"}) ");
 
 TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
   EXPECT_THAT(error_of(replaced(duffing_text, "damping*v", "dampng*v")),
-              AllOf(HasSubstr("text.toml:19:"), HasSubstr("equation v"), HasSubstr("did you mean 'damping'")));
+              AllOf(HasSubstr("text.toml:18:"), HasSubstr("equation v"), HasSubstr("did you mean 'damping'")));
   EXPECT_THAT(error_of(replaced(duffing_text, "gain*u -", "gain*v -")),
-              AllOf(HasSubstr("text.toml:19:"), HasSubstr("measure different things")));
+              AllOf(HasSubstr("text.toml:18:"), HasSubstr("measure different things")));
   EXPECT_THAT(error_of(replaced(duffing_text, "y = \"v\"", "y = \"v*y\"")),
-              AllOf(HasSubstr("equation y"), HasSubstr("[V/s V]"), HasSubstr("needs [V/s]")));
+              AllOf(HasSubstr("equation y"), HasSubstr("[V^2/s]"), HasSubstr("needs [V/s]")));
   EXPECT_THAT(error_of(replaced(duffing_text, "[inputs]", "[input]")), HasSubstr("input"));
   EXPECT_THAT(error_of(replaced(duffing_text, "v = \"gain", "w = \"gain")), HasSubstr("no state 'w'"));
   EXPECT_THAT(error_of(replaced(duffing_text, "gain = {", "unused = { unit = \"-\", value = 1 }\ngain = {")),
@@ -134,14 +137,17 @@ TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
 }
 
 TEST(DeclaredSystems, SayWhereAFormulaIsNotDefined) {
-  const auto known = registry_with(R"(
+  const auto known = registry_with(R"toml(
 [states]
 x1 = { unit = "V" }
 [parameters]
 k1 = { unit = "V^0.5/s", value = 0.05, free = true }
 [equations]
-x1 = "-k1*sqrt(x1)"[outputs] y = {unit = "V", formula = "x1"}) ");
-      const Model model = assemble(request_of("text"), *known);
+x1 = "-k1*sqrt(x1)"
+[outputs]
+y = { unit = "V", formula = "x1" }
+)toml");
+  const Model model = assemble(request_of("text"), *known);
   const double x = -0.2;
   EXPECT_EQ(Evaluator(model).explain(&x, nullptr, 84.0),
             "x1 is -0.2 V: sqrt(x1) is not finite there, in equation x1; with k1 = 0.05 V^0.5/s");
@@ -171,18 +177,19 @@ TEST(DeclaredEffects, TellStrengthsFromShapes) {
     for (const auto& c : made->spec().coefficients) out += std::string(c.name) + (c.kind == CoefficientKind::strength ? "+" : "") + " ";
     return out;
   };
-  EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "c*max(y - level, 0)", parameters = {
-    c = {unit = "1/s^2"}, level = { unit = "V" } }
-})"),
-            "c+ level ");
-EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "a*y + b*y^3", parameters = { a = { unit = "1/s^2" }, b = { unit = "1/V^2/s^2" } } })"),
-          "a+ b+ ");
-  EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "c*(y - level)", parameters = {
-  c = {unit = "1/s^2"}, level = { unit = "V" } }
-  })"), "c+ level ");
-  }
+  EXPECT_EQ(
+      kinds(
+          R"toml({ port = "dv/dt", formula = "c*max(y - level, 0)", parameters = { c = { unit = "1/s^2" }, level = { unit = "V" } } })toml"),
+      "c+ level ");
+  EXPECT_EQ(
+      kinds(R"toml({ port = "dv/dt", formula = "a*y + b*y^3", parameters = { a = { unit = "1/s^2" }, b = { unit = "1/V^2/s^2" } } })toml"),
+      "a+ b+ ");
+  EXPECT_EQ(
+      kinds(R"toml({ port = "dv/dt", formula = "c*(y - level)", parameters = { c = { unit = "1/s^2" }, level = { unit = "V" } } })toml"),
+      "c+ level ");
+}
 
-  TEST(DeclaredEffects, ErrorsAreWords) {
+TEST(DeclaredEffects, ErrorsAreWords) {
   const auto known = registry_with(duffing_text);
   const SystemSpec system = known->system("text").make({})->spec();
   const auto error = [&](const std::string& line) -> std::string {
@@ -193,19 +200,19 @@ EXPECT_EQ(kinds(R"({ port = "dv/dt", formula = "a*y + b*y^3", parameters = { a =
     }
     return {};
   };
-  EXPECT_THAT(error(R"({ port = "dw/dt", formula = "c", parameters = { c = { unit = "-" } } })"),
+  EXPECT_THAT(error(R"toml({ port = "dw/dt", formula = "c", parameters = { c = { unit = "-" } } })toml"),
               AllOf(HasSubstr("no port 'dw/dt'"), HasSubstr("dv/dt")));
-  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "c*max(y - levl, 0)", parameters = {
-    c = {unit = "1/s^2"}, level = { unit = "V" } }
-  })"),
-              AllOf(HasSubstr("study.toml:2:"), HasSubstr("'levl'"), HasSubstr("did you mean 'level'")));
-  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s" } } })"),
+  EXPECT_THAT(
+      error(
+          R"toml({ port = "dv/dt", formula = "c*max(y - levl, 0)", parameters = { c = { unit = "1/s^2" }, level = { unit = "V" } } })toml"),
+      AllOf(HasSubstr("study.toml:2:"), HasSubstr("'levl'"), HasSubstr("did you mean 'level'")));
+  EXPECT_THAT(error(R"toml({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s" } } })toml"),
               AllOf(HasSubstr("[V/s]"), HasSubstr("needs [V/s^2]")));
-  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s^2" }, d = { unit = "V" } } })"),
+  EXPECT_THAT(error(R"toml({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s^2" }, d = { unit = "V" } } })toml"),
               HasSubstr("nothing depends on its parameter 'd'"));
-  EXPECT_THAT(error(R"({ port = "dv/dt", formula = "exp(c)*v*stiffness/damping", parameters = { c = { unit = "-" } } })"),
+  EXPECT_THAT(error(R"toml({ port = "dv/dt", formula = "exp(c)*v*stiffness/damping", parameters = { c = { unit = "-" } } })toml"),
               HasSubstr("switches it off"));
-  }
+}
 
-  }  // namespace
-  }  // namespace misfit
+}  // namespace
+}  // namespace misfit

@@ -10,7 +10,7 @@
 
 namespace misfit::testing_models {
 
-inline const std::string duffing_text = R"(
+inline const std::string duffing_text = R"toml(
 [states]
 y = { unit = "V", scale = 0.1 }
 v = { unit = "V/s", scale = 4.0 }
@@ -30,7 +30,7 @@ y = "v"
 v = "gain*u - damping*v - spring + push"
 [outputs]
 y = { unit = "V", noise = 1e-3 }
-)";
+)toml";
 
 /// A registry over that of the tests with one more system, of the name `key`.
 inline std::shared_ptr<Registry> registry_with(const std::string& text, const std::string& key = "text") {

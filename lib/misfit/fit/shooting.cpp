@@ -110,8 +110,9 @@ void Shooting::note_failure(const Segment& segment, std::size_t experiment) {
 }
 
 double Shooting::holding(std::size_t state) const {
-  constexpr double tight = 1e3;  // per sigma of a defect: far below anything the data can show, far above rounding
-  const double weight = tight / state_scale_[state];
+  constexpr double tight = 1e3;   // per sigma of a defect: far below anything the data can show, far above rounding
+  constexpr double small = 1e-2;  // of the state's typical size: where nothing measures it, a sigma of a defect is only a guess
+  const double weight = tight / std::min(state_scale_[state], small * model_.state_specs[state].scale);
   return weight * weight;
 }
 
