@@ -49,21 +49,9 @@ enum class Op : std::uint8_t {
   ratio    ///< a/b, and 0 where a or b is 0
 };
 
-/// What an operation computes; also used to fold constants.
-[[nodiscard]] inline double apply(Op op, double a, double b, double c) {
+/// Functions of one number.
+[[nodiscard]] inline double apply_function(Op op, double a) {
   switch (op) {
-    case Op::add:
-      return a + b;
-    case Op::sub:
-      return a - b;
-    case Op::mul:
-      return a * b;
-    case Op::div:
-      return a / b;
-    case Op::neg:
-      return -a;
-    case Op::sqrt:
-      return std::sqrt(a);
     case Op::exp:
       return std::exp(a);
     case Op::log:
@@ -80,14 +68,50 @@ enum class Op : std::uint8_t {
       return std::acos(a);
     case Op::atan:
       return std::atan(a);
-    case Op::atan2:
-      return std::atan2(a, b);
     case Op::sinh:
       return std::sinh(a);
     case Op::cosh:
       return std::cosh(a);
     case Op::tanh:
       return std::tanh(a);
+    default:
+      return a;
+  }
+}
+
+/// Comparisons and what joins them.
+[[nodiscard]] inline bool holds(Op op, double a, double b) {
+  switch (op) {
+    case Op::less:
+      return a < b;
+    case Op::less_equal:
+      return a <= b;
+    case Op::equal:
+      return a == b;
+    case Op::both:
+      return a != 0.0 && b != 0.0;
+    case Op::either:
+      return a != 0.0 || b != 0.0;
+    default:
+      return a == 0.0;
+  }
+}
+
+/// What an operation computes; also used to fold constants.
+[[nodiscard]] inline double apply(Op op, double a, double b, double c) {
+  switch (op) {
+    case Op::add:
+      return a + b;
+    case Op::sub:
+      return a - b;
+    case Op::mul:
+      return a * b;
+    case Op::div:
+      return a / b;
+    case Op::neg:
+      return -a;
+    case Op::sqrt:
+      return std::sqrt(a);
     case Op::abs:
       return std::abs(a);
     case Op::sign:
@@ -96,33 +120,28 @@ enum class Op : std::uint8_t {
       return b < a ? b : a;
     case Op::max:
       return b > a ? b : a;
+    case Op::atan2:
+      return std::atan2(a, b);
     case Op::hypot:
       return std::hypot(a, b);
     case Op::pow:
       return std::pow(a, b);
-    case Op::less:
-      return a < b ? 1.0 : 0.0;
-    case Op::less_equal:
-      return a <= b ? 1.0 : 0.0;
-    case Op::equal:
-      return a == b ? 1.0 : 0.0;
-    case Op::both:
-      return a != 0.0 && b != 0.0 ? 1.0 : 0.0;
-    case Op::either:
-      return a != 0.0 || b != 0.0 ? 1.0 : 0.0;
-    case Op::negate:
-      return a == 0.0 ? 1.0 : 0.0;
     case Op::select:
       return a != 0.0 ? b : c;
     case Op::gate:
       return a == 0.0 ? 0.0 : a * b;
     case Op::ratio:
       return a == 0.0 || b == 0.0 ? 0.0 : a / b;
-    case Op::constant:
-    case Op::leaf:
-      break;
+    case Op::less:
+    case Op::less_equal:
+    case Op::equal:
+    case Op::both:
+    case Op::either:
+    case Op::negate:
+      return holds(op, a, b) ? 1.0 : 0.0;
+    default:
+      return apply_function(op, a);
   }
-  return a;
 }
 
 /// Number of nodes that an operation reads.
