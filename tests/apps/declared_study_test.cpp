@@ -29,4 +29,36 @@ TEST(CascadedTanks, TakeAnEffectDeclaredInTheStudyAndResolvedCanBeRunAgain) {
   EXPECT_TRUE(fit["parameters"].contains("level"));
 }
 
+TEST(CascadedTanks, AreFittedAgainWhenTheFileOfTheirSystemChanges) {
+  const StudyCopy study("cascaded_tanks");
+  std::string text = content(fs::path(MISFIT_SOURCE_DIR) / "models" / "cascaded_tanks.toml");
+  study.write("tanks.toml", text);
+  study.change("kind = \"cascaded_tanks\"", "file = \"tanks.toml\"");
+  ASSERT_EQ(study.run("fit").status, 0);
+  const double k4 = study.fit("output_error")["parameters"]["k4"]["value"].get<double>();
+  const auto at = text.find("value = 0.05, bounds = [0.0, 10.0], doc");  // of k2, which sets the scale of the upper level
+  ASSERT_NE(at, std::string::npos);
+  study.write("tanks.toml", text.replace(at, 12, "value = 0.06"));
+  ASSERT_EQ(study.run("fit").status, 0);
+  EXPECT_NEAR(study.fit("output_error")["parameters"]["k4"]["value"].get<double>() / k4, std::pow(0.05 / 0.06, 2), 0.01);
+}
+
+TEST(CascadedTanks, WithFourFreeParametersAreToldThatThreeActTogether) {
+  const StudyCopy study("cascaded_tanks");
+  study.append("[parameters]\nk2 = { free = true }\n");
+  const Outcome outcome = study.run("fit");
+  EXPECT_NE(outcome.out.find("do not tell k1, k2 and k4 apart"), std::string::npos) << outcome.out;
+}
+
+TEST(CascadedTanks, WithAWrongFormulaAreRefusedAtItsPlace) {
+  const StudyCopy study("cascaded_tanks");
+  study.append(
+      "[effects]\nspill = { port = \"dx2/dt\", formula = \"c*max(x1 - levl, 0)\", parameters = { c = { unit = \"1/s\" }, level = { unit = "
+      "\"V\" } } }\n");
+  const Outcome outcome = study.run("fit");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(std::regex_search(outcome.err, std::regex(R"(study\.toml:\d+:\d+: effect spill, 'levl')"))) << outcome.err;
+  EXPECT_NE(outcome.err.find("did you mean 'level'"), std::string::npos) << outcome.err;
+}
+
 }  // namespace
