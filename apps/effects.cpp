@@ -5,6 +5,7 @@
 
 #include "apps/verbs.h"
 #include "misfit/core/text.h"
+#include "misfit/model/declared.h"
 
 namespace misfit {
 namespace {
@@ -36,11 +37,10 @@ std::string states_of(const EffectSpec& spec) {
 }
 
 /// Names as the study calls them, or every effect the program knows.
-std::vector<std::string> chosen(const Options& options, const Registry& registry) {
-  if (options.study.empty()) return registry.effect_keys();
+std::vector<std::string> chosen(const std::optional<Study>& study, const Registry& registry) {
+  if (!study) return registry.effect_keys();
   std::vector<std::string> keys;
-  const Study study = read_study(options.study);
-  for (const auto& effect : study.effects) keys.push_back(registry.effect(effect.kind, effect.where).spec().key);
+  for (const auto& effect : study->effects) keys.push_back(registry.effect(effect.kind, effect.where).spec().key);
   return keys;
 }
 
@@ -67,9 +67,13 @@ nlohmann::ordered_json as_json(const EffectSpec& spec) {
 
 }  // namespace
 
-int effects_verb(const Options& options, const Registry& registry) {
+int effects_verb(const Options& options, const Registry& base) {
+  std::optional<Study> study;
+  if (!options.study.empty()) study = read_study(options.study);
+  const auto declared = study ? study_registry(*study, base) : nullptr;
+  const Registry& registry = study ? *declared : base;
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const auto& key : chosen(options, registry)) {
+  for (const auto& key : chosen(study, registry)) {
     const EffectSpec& spec = registry.effect(key).spec();
     if (options.json) {
       all.push_back(as_json(spec));

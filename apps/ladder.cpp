@@ -115,6 +115,7 @@ std::map<std::string, std::string> inputs_of_ladder(const Session& session) {
   for (const auto& file : {session.study.camera.sweep, session.study.camera.sweep_images}) {
     if (file) files.push_back(*file);
   }
+  if (session.study.system_file) files.push_back(*session.study.system_file);
   auto out = session.inputs(session.study.text, files);
   out.erase("program");  // another build refits the rungs, it does not take them down
   return out;

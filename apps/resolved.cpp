@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "apps/stages.h"
 #include "misfit/core/files.h"
@@ -33,13 +34,20 @@ std::string numbers_of(const std::vector<double>& values, double scale) {
   return "[" + out + "]";
 }
 
+/// As seen from resolved.toml, which can be run where it lies.
+std::string path_of(const Session& session, const std::filesystem::path& file) {
+  return quoted(std::filesystem::relative(file, session.folder.path()).generic_string());
+}
+
 void add_head(const Session& session, std::string& text) {
   const Study& study = session.study;
   text +=
       fmt::format("# Written by misfit {} ({}): the study with all defaults and everything chosen from the data.\n", version(), commit());
   text += fmt::format("[study]\nname = {}\nquestion = {}\nmethods = {}\nseed = {}\n", quoted(study.name), quoted(study.question),
                       list_of(session.methods()), study.seed);
-  text += fmt::format("\n[system]\nkind = {}\n", quoted(session.model.request.system));
+  text += "\n[system]\n";
+  text += study.system_file ? fmt::format("file = {}\n", path_of(session, *study.system_file))
+                            : fmt::format("kind = {}\n", quoted(session.model.request.system));
   for (const auto& [name, flag] : session.model.request.options.flags) text += fmt::format("{} = {}\n", name, flag);
 }
 
@@ -48,11 +56,6 @@ std::string key_of(const std::string& name) {
   const bool bare = !name.empty() && std::all_of(name.begin(), name.end(),
                                                  [](unsigned char c) { return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '-'); });
   return bare ? name : quoted(name);
-}
-
-/// As seen from resolved.toml, which can be run where it lies.
-std::string path_of(const Session& session, const std::filesystem::path& file) {
-  return quoted(std::filesystem::relative(file, session.folder.path()).generic_string());
 }
 
 std::string number_of(const config::Number& number) {
@@ -156,9 +159,44 @@ void add_curve_parameter(const Session& session, const std::string& curve, std::
   text += fmt::format("{} = {{ {} }}\n", key_of(curve), entries);
 }
 
+/// An effect that the study declares by a formula; false if it is none.
+bool add_declared(const Session& session, const std::string& name, std::string& text) {
+  const auto& all = session.study.effects;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const EffectStudy& e) { return e.name == name; });
+  if (found == all.end() || !found->declared) return false;
+  text += fmt::format("{} = {{ port = {}, formula = {}, strengths = [", key_of(name), quoted(found->declared->port),
+                      quoted(found->declared->formula));
+  std::string parameters;
+  bool any = false;
+  for (const auto& c : session.registry.effect(name).spec().coefficients) {
+    if (c.kind == CoefficientKind::strength) {
+      text += (any ? ", " : "") + quoted(c.name);
+      any = true;
+    }
+    parameters += fmt::format("{}{} = {{ unit = {}, value = {}, bounds = [{}, {}], scale = {}, free = {} }}",
+                              parameters.empty() ? "" : ", ", c.name, quoted(c.unit), c.value, c.lower, c.upper, c.scale, !c.fixed);
+  }
+  text += "], parameters = { " + parameters + " } }\n";
+  return true;
+}
+
+/// [initial] for states whose first value is not simply free.
+void add_initial(const Prepared& prepared, std::string& text) {
+  std::string entries;
+  for (const auto& state : prepared.model.state_specs) {
+    const bool valued = std::isfinite(state.start);
+    if (state.initial == Initial::free && !valued) continue;
+    const char* kind = state.initial == Initial::free ? "free" : state.initial == Initial::shared ? "shared" : "fixed";
+    entries += valued ? fmt::format("{} = {{ kind = \"{}\", value = {} }}  # {}\n", state.name, kind, state.start, state.unit)
+                      : fmt::format("{} = \"{}\"\n", state.name, kind);
+  }
+  if (!entries.empty()) text += "\n[initial]\n" + entries;
+}
+
 void add_model(const Session& session, const Prepared& prepared, std::string& text) {
   text += "\n[effects]\n";
   for (const auto& effect : prepared.request.effects) {
+    if (add_declared(session, effect.name, text)) continue;
     text += fmt::format("{} = {{ kind = {}", key_of(effect.name), quoted(effect.kind));
     for (const auto& [role, target] : effect.roles) text += fmt::format(", {} = {}", role, quoted(target));
     text += " }\n";
@@ -191,6 +229,7 @@ void write_resolved(const Session& session, const Prepared& prepared) {
   add_experiments(session, prepared, text);
   add_video(session, text);
   add_model(session, prepared, text);
+  add_initial(prepared, text);
   add_rest(session, text);
   write_atomically(session.folder.file("resolved.toml"), text);
 }

@@ -6,6 +6,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/model/declared.h"
 
 namespace misfit {
 namespace {
@@ -65,9 +66,10 @@ std::string hash_of_program() {
 
 Session::Session(const Options& o, const Registry& r)
     : options(o),
-      registry(r),
       study(open_study(o)),
-      model(read_model(study, r)),
+      declared(study_registry(study, r)),
+      registry(*declared),
+      model(read_model(study, registry)),
       folder(open_folder(o, study)),
       program(hash_of_program()) {}
 

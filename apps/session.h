@@ -36,8 +36,9 @@ struct Session {
   Session(const Options& options, const Registry& registry);
 
   Options options;
-  const Registry& registry;
   Study study;
+  std::shared_ptr<const Registry> declared;  ///< what the program knows and what the study declares
+  const Registry& registry;                  ///< the same
   StudyModel model;
   RunFolder folder;
   std::string program;                       ///< hash of the running program: another build does everything again

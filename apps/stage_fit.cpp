@@ -154,6 +154,7 @@ class Methods {
 
 std::map<std::string, std::string> inputs_of(const Session& session, const std::string& method) {
   std::vector<fs::path> files;
+  if (session.study.system_file) files.push_back(*session.study.system_file);
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     const ExperimentStudy& experiment = session.study.experiments[e];
     if (experiment.data) files.push_back(*experiment.data);

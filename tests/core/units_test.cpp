@@ -10,7 +10,7 @@
 namespace misfit {
 namespace {
 
-using Dimension = std::array<int, 6>;
+using Dimension = std::array<double, 6>;
 
 TEST(ParseUnit, ReadsProductsQuotientsAndPowers) {
   EXPECT_EQ(parse_unit("kg m^2").dimension, (Dimension{2, 1, 0, 0, 0, 0}));

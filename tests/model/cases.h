@@ -118,6 +118,10 @@ inline std::vector<Case> cases() {
                                      {"width", 0.2},
                                      {"viscosity", 5.0}})},
       {"lagging_flow", with_values(spherical({effect("aerodynamic_lag"), effect("vortex_shedding")}), {{"C_lag", 0.3}, {"y_sine", 0.01}})},
+      {"declared_pendulum", declared("pendulum", {})},
+      {"declared_with_effects",
+       declared("pendulum", {effect("coulomb_friction"), effect("viscous_friction"), effect("bias"), effect("lag")})},
+      {"declared_with_changed_input", declared("duffing", {effect("viscous_friction"), effect("bias", {{"output", "u"}}, "zero_of_u")})},
       {"cart_curve_of_an_output", with_scale_curve(cart({effect("sensor_scale"), effect("coulomb_friction")}))}};
   std::vector<Case> all;
   for (const auto& c : fixed) {

@@ -77,6 +77,15 @@ inline ModelRequest tanks(const std::vector<EffectRequest>& effects) {
   return r;
 }
 
+/// A system of models/*.toml.
+inline ModelRequest declared(const std::string& system, const std::vector<EffectRequest>& effects) {
+  ModelRequest r;
+  r.system = system;
+  r.system_where = {"study.toml", 4, 1};
+  r.effects = effects;
+  return r;
+}
+
 inline void set(Model& model, const std::string& name, double value) {
   const int index = model.find_parameter(name);
   if (index < 0) throw std::logic_error("no parameter " + name);

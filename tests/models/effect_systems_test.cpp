@@ -27,7 +27,8 @@ std::string owner_of(const std::string& coefficient) {
 std::vector<Model> models_with(const std::string& key) {
   std::vector<Model> models;
   const auto& coefficients = registry().effect(key).spec().coefficients;
-  for (const auto& request : {parachute(true), parachute(false), spherical(), cart({}), tanks({})}) {
+  for (const auto& request : {parachute(true), parachute(false), spherical(), cart({}), tanks({}), declared("pendulum", {}),
+                              declared("cascaded_tanks", {}), declared("duffing", {})}) {
     ModelRequest alone = request;
     alone.effects = {effect(key)};
     for (const auto& c : coefficients) {

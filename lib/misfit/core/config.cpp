@@ -113,6 +113,14 @@ Source Section::where(std::string_view key) const {
   return state_->where;
 }
 
+Source Section::where_text(std::string_view key) const {
+  const toml::node* node = state_->node(key);
+  if (node == nullptr || !node->is_string()) return where(key);
+  Source place = state_->place(node->source());
+  ++place.column;
+  return place;
+}
+
 Source Section::where() const { return state_->where; }
 std::string Section::path() const { return state_->path; }
 std::filesystem::path Section::file() const { return state_->file; }

@@ -33,7 +33,8 @@ class Section {
   [[nodiscard]] std::vector<std::string> keys() const;     ///< in file order (by line)
   [[nodiscard]] Source where(std::string_view key) const;  ///< place of the key (of the table itself if absent)
   [[nodiscard]] Source where() const;
-  [[nodiscard]] std::string path() const;  ///< "geometry", "effects.bearing": for messages
+  [[nodiscard]] Source where_text(std::string_view key) const;  ///< of the first character of a string value (inside its quotes)
+  [[nodiscard]] std::string path() const;                       ///< "geometry", "effects.bearing": for messages
   [[nodiscard]] std::filesystem::path file() const;
 
   /// A number in SI. Accepts 0.5, "24 in" (dimension checked against `unit`, converted to it) and, where `sigma_allowed`,

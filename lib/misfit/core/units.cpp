@@ -13,7 +13,7 @@
 namespace misfit {
 namespace {
 
-using Dimension = std::array<int, 6>;  // exponents of m, kg, s, A, K, px
+using Dimension = std::array<double, 6>;  // exponents of m, kg, s, A, K, px
 
 struct Known {
   const char* name;
@@ -111,8 +111,13 @@ class UnitReader {
       }
     }
     if (expected) refuse("a unit is missing at the end");
-    unit_.angle = angle_power_ == 1;
+    unit_.angle = angle_power_ == 1.0;
     return unit_;
+  }
+
+  std::vector<std::pair<std::string, double>> symbols() {
+    static_cast<void>(read());
+    return std::move(symbols_);
   }
 
  private:
@@ -139,19 +144,36 @@ class UnitReader {
     return out;
   }
 
-  int power() {
-    const bool caret = take("^");
-    if (!caret && (rest_.empty() || !is_digit(rest_.front()))) return 1;
-    int value = 0;
-    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-    if (error != std::errc() || std::abs(value) > 12) refuse("a power must be a whole number from -12 to 12");
+  /// A number after '^', perhaps a fraction in parentheses, or digits.
+  double power() {
+    if (!take("^")) return rest_.empty() || !is_digit(rest_.front()) ? 1.0 : number(true);
+    if (!take("(")) return number(false);
+    double value = number(false);
+    if (take("/")) {
+      const double below = number(false);
+      if (below == 0.0) refuse("a power cannot be divided by 0");
+      value /= below;
+    }
+    if (!take(")")) refuse("')' is missing after a power");
+    return value;
+  }
+
+  double number(bool whole) {
+    double value = 0.0;
+    const char* last = rest_.data() + rest_.size();
+    if (whole) last = rest_.data() + std::min(rest_.size(), rest_.find_first_not_of("0123456789"));
+    const auto [end, error] = std::from_chars(rest_.data(), last, value, std::chars_format::fixed);
+    constexpr double most = 12.0;
+    if (error != std::errc() || !(std::abs(value) <= most)) refuse("a power must be a number from -12 to 12");
     rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
     return value;
   }
 
   void factor(int sign) {
-    const Known& known = find_unit(name(), whole_);
-    const int exponent = sign * power();
+    const std::string_view symbol = name();
+    const Known& known = find_unit(symbol, whole_);
+    const double exponent = sign * power();
+    if (symbol != "-" && symbol != "1") symbols_.emplace_back(symbol, exponent);
     unit_.to_si *= std::pow(known.to_si, exponent);
     for (std::size_t i = 0; i < unit_.dimension.size(); ++i) unit_.dimension[i] += exponent * known.dimension[i];
     if (known.angle) angle_power_ += exponent;
@@ -160,7 +182,8 @@ class UnitReader {
 
   std::string_view whole_, rest_;
   Unit unit_;
-  int angle_power_ = 0;
+  double angle_power_ = 0.0;
+  std::vector<std::pair<std::string, double>> symbols_;
   bool started_ = false;
 };
 
@@ -171,6 +194,16 @@ std::string_view trim(std::string_view text) {
 }
 
 }  // namespace
+
+bool Unit::same_dimension(const Unit& other) const {
+  constexpr double rounding = 1e-9;
+  for (std::size_t i = 0; i < dimension.size(); ++i) {
+    if (std::abs(dimension[i] - other.dimension[i]) > rounding) return false;
+  }
+  return true;
+}
+
+std::vector<std::pair<std::string, double>> unit_symbols(std::string_view text) { return UnitReader(trim(text)).symbols(); }
 
 Unit parse_unit(std::string_view text) { return UnitReader(trim(text)).read(); }
 

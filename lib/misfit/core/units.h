@@ -3,6 +3,8 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace misfit {
 
@@ -10,17 +12,21 @@ namespace misfit {
 /// "-", "" and "%" (0.01). No offsets: temperatures are differences or kelvin.
 struct Unit {
   double to_si = 1.0;
-  std::array<int, 6> dimension{};
-  bool angle = false;  ///< rad or deg to the first power: kept only to choose the printed unit
+  std::array<double, 6> dimension{};  ///< may be broken: V^0.5
+  bool angle = false;                 ///< rad or deg to the first power: kept only to choose the printed unit
 
-  [[nodiscard]] bool same_dimension(const Unit& other) const { return dimension == other.dimension; }
+  /// Exponents may differ by rounding.
+  [[nodiscard]] bool same_dimension(const Unit& other) const;
 };
 
 /// Parses "kg m^2", "px/m", "N m", "deg/s", "1/s", "m/s^2", "in", "Pa", "V". Factors are separated by blank, '*' or '·', a '/'
-/// divides by the ONE factor that follows it; powers are integers after '^' (also negative) or a digit ("m2").
+/// divides by the ONE factor that follows it; powers stand after '^' (also negative or broken: "V^0.5", "V^(1/2)") or are a digit ("m2").
 /// Known: m mm cm km in ft; kg g lb; s ms min h Hz; rad deg; N kN lbf; Pa kPa hPa bar psf psi; J W; A V mV Ohm; K; px pix pixel; - % 1.
 /// Throws InputError naming the unknown part and the nearest known unit.
 [[nodiscard]] Unit parse_unit(std::string_view text);
+
+/// The factors of a unit as written, with their powers: "V^0.5/s" → (V, 0.5), (s, −1). "-" and "1" are left out. Throws as parse_unit().
+[[nodiscard]] std::vector<std::pair<std::string, double>> unit_symbols(std::string_view text);
 
 /// A number with its unit, as written by a user: "24 in" → 0.6096 with dimension m. A bare number has an empty unit.
 struct Quantity {

@@ -56,11 +56,27 @@ struct ExperimentStudy {
 };
 
 /// One line of [effects].
+/// An effect that the study itself declares: `port` and a formula.
+struct FormulaStudy {
+  std::string formula, port;
+  Source where;                               ///< of the formula's first character
+  std::vector<std::string> strengths;         ///< coefficients that switch it off; empty: told by the formula
+  std::optional<config::Section> parameters;  ///< NAME = { unit, value, bounds, … }: its coefficients
+};
+
 struct EffectStudy {
   std::string name;                             ///< key in the study: "bearing"
   std::string kind;                             ///< effect's key: "coulomb_friction"; default = name
   std::map<std::string, std::string> roles;     ///< role → quantity or port, as bound by the study
   std::map<std::string, config::Number> start;  ///< parameter → value to start from, as written (unit checked by the model)
+  Source where;
+  std::optional<FormulaStudy> declared;
+};
+
+/// [initial] NAME: what is known of the state at the first sample.
+struct InitialStudy {
+  std::string kind;                     ///< "free", "shared", "fixed"; empty: as the system says
+  std::optional<config::Number> value;  ///< as written (unit checked by the model)
   Source where;
 };
 
@@ -104,6 +120,7 @@ struct Study {
   std::vector<ExperimentStudy> experiments;
   std::vector<EffectStudy> effects;  ///< in file order
   std::map<std::string, ParameterStudy> parameters;
+  std::map<std::string, InitialStudy> initial;
   std::map<std::string, CurveStudy> curves;
   std::map<std::string, std::filesystem::path> reference;  ///< curve → file
   std::optional<SimulateStudy> simulate;

@@ -107,6 +107,48 @@ void read_camera(const Section& root, Study& study) {
   check_camera(*section, camera);
 }
 
+namespace {
+
+FormulaStudy read_formula(const Section& section) {
+  FormulaStudy out;
+  out.formula = *section.text("formula");
+  out.where = section.where_text("formula");
+  const auto port = section.text("port");
+  if (!port) section.fail("port", "a formula adds to a port: name it, as port = \"dx2/dt\"");
+  out.port = *port;
+  out.strengths = section.texts("strengths").value_or(std::vector<std::string>{});
+  out.parameters = section.table("parameters");
+  return out;
+}
+
+InitialStudy read_one_initial(const Section& initial, const std::string& key) {
+  InitialStudy out;
+  out.where = initial.where(key);
+  const auto is_kind = [](const std::string& text) { return text == "free" || text == "shared"; };
+  if (initial.is_table(key)) {
+    const Section table = *initial.table(key);
+    out.kind = table.choice("kind", {"free", "shared", "fixed"}).value_or("");
+    if (table.has("value")) out.value = table.is_text("value") ? number_as_written(table, "value") : *table.number("value", "");
+    table.finish();
+    if (out.kind == "fixed" && !out.value) table.fail("value", "a fixed initial state needs a value");
+  } else if (initial.is_text(key) && is_kind(*initial.text(key))) {
+    out.kind = *initial.text(key);
+  } else {
+    out.value = initial.is_text(key) ? number_as_written(initial, key) : *initial.number(key, "");
+    out.kind = "fixed";
+  }
+  return out;
+}
+
+}  // namespace
+
+void read_initial(const Section& root, Study& study) {
+  const auto initial = root.table("initial");
+  if (!initial) return;
+  for (const std::string& key : initial->keys()) study.initial[key] = read_one_initial(*initial, key);
+  initial->finish();
+}
+
 void read_effects(const Section& root, Study& study) {
   const auto effects = root.table("effects");
   if (!effects) return;
@@ -116,9 +158,10 @@ void read_effects(const Section& root, Study& study) {
     EffectStudy effect;
     effect.name = key;
     effect.where = effects->where(key);
-    effect.kind = section.text("kind").value_or(key);
+    if (section.has("formula")) effect.declared = read_formula(section);
+    effect.kind = effect.declared ? key : section.text("kind").value_or(key);
     for (const std::string& role : section.keys()) {
-      if (role != "kind" && role != "start") effect.roles[role] = section.text(role).value_or("");
+      if (!effect.declared && role != "kind" && role != "start") effect.roles[role] = section.text(role).value_or("");
     }
     if (const auto start = section.table("start")) {
       for (const std::string& name : start->keys())

@@ -23,6 +23,16 @@ std::vector<int> dynamic_states(const Model& model, const std::vector<bool>& sho
   return rows;
 }
 
+/// States of the system that no channel shows, joined; empty if there are none.
+std::string hidden_states(const Model& model, const std::vector<bool>& shown) {
+  std::string names;
+  const auto& states = model.system->spec().states;
+  for (std::size_t j = 0; j < states.size(); ++j) {
+    if (!shown[j]) names += (names.empty() ? "the state " : ", ") + states[j].name;
+  }
+  return names;
+}
+
 struct Regression {
   Linearised sums;
   std::vector<std::vector<double>> residuals;  ///< per experiment and row, NaN where not used
@@ -164,6 +174,11 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
     out.fit.status = FitStatus::declined;
     out.fit.message = "the measured channels do not show the states of system '" + model.system->spec().key +
                       "' and their rates, so its equations cannot be regressed";
+    return out;
+  }
+  if (const std::string hidden = hidden_states(model, regressor.states(0).shown); !hidden.empty()) {
+    out.fit.status = FitStatus::declined;
+    out.fit.message = "no channel shows " + hidden + " of system '" + model.system->spec().key + "', so its equations cannot be regressed";
     return out;
   }
   Smoothed smoothed;

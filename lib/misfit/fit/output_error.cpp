@@ -6,6 +6,7 @@
 
 #include "misfit/core/text.h"
 #include "misfit/fit/curves.h"
+#include "misfit/fit/identifiable.h"
 #include "misfit/fit/output_error_result.h"
 
 namespace misfit {
@@ -137,9 +138,7 @@ class Estimator {
       if (round > 0 && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
       if (!solve({0, 10.0, 1e8, 60, 1e-7})) return failed(last_.message);
       const Smoothed smoothed = smooth_present(shooting_, penalties_, linearised);
-      if (!smoothed.ok)
-        return failed(shooting_.failure().empty() ? "the information matrix is singular: some parameters are not determined by these data"
-                                                  : "");
+      if (!smoothed.ok) return failed(shooting_.failure().empty() ? not_determined(linearised) : "");
       const std::vector<double> sigma = channel_sigmas(shooting_, shooting_.run(false), experiments_, smoothed.edf);
       const bool same_roughness = !any_chosen(penalties_) || std::abs(smoothed.edf - before) < 0.1;
       const bool settled = same_roughness && std::abs(sigma.front() / shooting_.sigma().front() - 1.0) < 0.01;
@@ -148,6 +147,11 @@ class Estimator {
       if (settled) break;
     }
     return finish(last_);
+  }
+
+  std::string not_determined(const Linearised& linearised) const {
+    const std::string which = linearised.N.size() > 0 ? undetermined(shooting_.model(), linearised) : "";
+    return which.empty() ? "the information matrix is singular: some parameters are not determined by these data" : which;
   }
 
   /// On motion that is driven a failure to simulate is what had to be expected: then the method declines, in words.
@@ -178,7 +182,8 @@ class Estimator {
     std::vector<Penalty> kept = penalties_;
     for (auto& p : kept) p.chosen = false;
     const Smoothed smoothed = smooth(linearised, kept, 1.0);
-    if (!smoothed.ok) return failed("the information matrix is singular: some parameters are not determined by these data");
+    if (!smoothed.ok) return failed(not_determined(linearised));
+    if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(which);
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
     const std::vector<Segment> runs = shooting_.run(true);
     const auto& outputs = out.model.system->spec().outputs;

@@ -20,6 +20,14 @@ Shooting::Shooting(Model model, const std::vector<Signals>& experiments, std::ve
       values_(model_.values()),
       stepper_(std::make_unique<Stepper>(model_)) {
   for (const auto& experiment : experiments) inputs_.push_back(input_table(experiment, model_.inputs()));
+  for (RowMatrix& history : history_) {
+    for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
+      const StateSpec& state = model_.state_specs[j];
+      auto column = history.col(static_cast<Eigen::Index>(j)).array();
+      column = column.max(state.lower).min(state.upper);
+      if (state.initial == Initial::fixed && history.rows() > 0) history(0, static_cast<Eigen::Index>(j)) = state.start;
+    }
+  }
 }
 
 bool Shooting::counts(std::size_t experiment, std::size_t i, std::size_t o) const {
@@ -98,6 +106,44 @@ bool Shooting::evaluate(Piece& piece, double defect_weight, const double* const*
 void Shooting::note_failure(const Segment& segment, std::size_t experiment) {
   failure_ = "the simulated motion left the finite numbers at t = " + format_value(experiments_[experiment].t[segment.failed_at]) +
              " s of '" + experiments_[experiment].name + "'";
+  if (!stepper_->failure().empty()) failure_ += " (" + stepper_->failure() + ")";
+}
+
+double Shooting::holding(std::size_t state) const {
+  constexpr double tight = 1e3;   // per sigma of a defect: far below anything the data can show, far above rounding
+  constexpr double small = 1e-2;  // of the state's typical size: where nothing measures it, a sigma of a defect is only a guess
+  const double weight = tight / std::min(state_scale_[state], small * model_.state_specs[state].scale);
+  return weight * weight;
+}
+
+/// Initial states that are fixed or shared, by stiff residuals.
+void Shooting::add_initial(LeastSquares& problem, const std::vector<Piece>& pieces) const {
+  int first = -1;
+  for (const Piece& piece : pieces) {
+    if (piece.first != 0) continue;
+    if (first < 0) first = piece.block;
+    for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
+      const StateSpec& state = model_.state_specs[j];
+      const bool fixed = state.initial == Initial::fixed, tied = state.initial == Initial::shared && piece.block != first;
+      if (!fixed && !tied) continue;
+      const double weight = std::sqrt(holding(j)), value = fixed ? state.start : 0.0;
+      const auto n = static_cast<std::size_t>(model_.states());
+      const auto row = [j, n](double* J, double slope) {
+        if (J == nullptr) return;
+        std::fill_n(J, n, 0.0);
+        J[j] = slope;
+      };
+      std::vector<int> blocks{piece.block};
+      if (tied) blocks.push_back(first);
+      problem.add_residuals(blocks, 1, [weight, value, j, tied, row](const double* const* x, double* r, double** J) {
+        r[0] = weight * (x[0][j] - (tied ? x[1][j] : value));
+        if (J == nullptr) return true;
+        row(J[0], weight);
+        if (tied) row(J[1], -weight);
+        return true;
+      });
+    }
+  }
 }
 
 void Shooting::add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const {
@@ -145,9 +191,18 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   }
   const int theta_block = bounded ? problem.add_block(theta, lower, upper) : problem.add_block(theta);
   std::vector<Piece> pieces = cut(pass.length);
+  const auto n = static_cast<std::size_t>(model_.states());
+  std::vector<double> least(n, -std::numeric_limits<double>::infinity()), most(n, std::numeric_limits<double>::infinity());
+  bool bounded_states = false;
+  for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
+    least[j] = model_.state_specs[j].lower;
+    most[j] = model_.state_specs[j].upper;
+    bounded_states = bounded_states || std::isfinite(least[j]) || std::isfinite(most[j]);
+  }
   for (auto& piece : pieces) {
     const auto start = history_[piece.experiment].row(static_cast<Eigen::Index>(piece.first));
-    piece.block = problem.add_block({start.begin(), start.end()});
+    piece.block =
+        bounded_states ? problem.add_block({start.begin(), start.end()}, least, most) : problem.add_block({start.begin(), start.end()});
   }
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     Piece& piece = pieces[k];
@@ -160,6 +215,7 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
       return evaluate(piece, weight, x, r, J);
     });
   }
+  add_initial(problem, pieces);
   add_priors(problem, theta_block, penalties);
   LeastSquares::Options options;
   options.max_iterations = pass.max_iterations;

@@ -77,6 +77,10 @@ class Shooting {
   [[nodiscard]] double weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r) const;
   [[nodiscard]] double counted(const Piece& piece) const;
   std::vector<Piece> cut(std::size_t length) const;
+  void add_initial(LeastSquares& problem, const std::vector<Piece>& pieces) const;
+  /// Stiffness by which an initial state is held [1/unit²]: fixed to its value, or shared with the first experiment.
+  [[nodiscard]] double holding(std::size_t state) const;
+  void hold_initial(Linearised& out) const;
   void add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const;
   void remember(std::vector<Piece>& pieces, const LeastSquares& problem);
   void note_failure(const Segment& segment, std::size_t experiment);

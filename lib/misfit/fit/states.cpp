@@ -102,6 +102,12 @@ std::vector<std::vector<double>> read_all(const Model& model, const Signals& sig
 
 }  // namespace
 
+double start_of(const StateSpec& state) {
+  if (std::isfinite(state.start)) return state.start;
+  if (std::isfinite(state.lower)) return std::min(state.lower + state.scale, state.upper);
+  return std::isfinite(state.upper) ? state.upper - state.scale : 0.0;
+}
+
 ReconstructedStates reconstruct_states(const Model& model, const Signals& signals) {
   const auto& spec = model.system->spec();
   const auto samples = static_cast<Eigen::Index>(signals.samples());
@@ -118,6 +124,9 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
   if (!spec.readable_states.empty() && signals.measured.size() == spec.outputs.size()) {
     const std::vector<std::vector<double>> values = read_all(model, signals);
     for (std::size_t r = 0; r < values.size(); ++r) add_series(model, signals, spec.readable_states[r], values[r], h, out);
+  }
+  for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
+    if (!out.shown[j]) out.x.col(static_cast<Eigen::Index>(j)).setConstant(start_of(model.state_specs[j]));
   }
   for (std::size_t z = 0; z < model.own_states.size(); ++z)
     out.x.col(model.system_states() + static_cast<Eigen::Index>(z)).setConstant(model.own_states[z].initial);

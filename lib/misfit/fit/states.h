@@ -10,7 +10,7 @@ namespace misfit {
 
 /// States and their derivatives read from the measured channels by local polynomials; what start values and regressions need.
 struct ReconstructedStates {
-  RowMatrix x;              ///< samples × states; 0 for a state that no channel shows
+  RowMatrix x;              ///< samples × states; start_of() for a state that no channel shows
   RowMatrix dx;             ///< samples × states: time derivative, where known
   std::vector<bool> ok;     ///< all shown states and their derivatives are known at this sample
   std::vector<bool> shown;  ///< per state: measured itself or the rate of a measured one
@@ -21,6 +21,9 @@ struct ReconstructedStates {
 /// shown if an output observes it, if System::read_states() gives it, or if it is the rate of one that is. Own states of effects start at
 /// their declared initial value.
 [[nodiscard]] ReconstructedStates reconstruct_states(const Model& model, const Signals& signals);
+
+/// What a state is taken to be before anything shows it: its declared start, else one scale inside its range, else 0.
+[[nodiscard]] double start_of(const StateSpec& state);
 
 /// Usual step of the time base: the median difference [s].
 [[nodiscard]] double usual_step(const std::vector<double>& t);

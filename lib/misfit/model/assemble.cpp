@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "misfit/core/text.h"
 #include "misfit/model/assembler.h"
 #include "misfit/model/role_units.h"
@@ -23,6 +25,7 @@ Assembler::Assembler(const ModelRequest& request, const Registry& registry) : re
 }
 
 Model Assembler::run() {
+  add_states();
   add_constants();
   name_coefficients();
   for (std::size_t i = 0; i < request_.effects.size(); ++i) bind(i);
@@ -63,12 +66,32 @@ std::map<std::string, std::string> Assembler::parameter_units() {
   return units;
 }
 
-void Assembler::add_constants() {
+void Assembler::add_states() {
+  model_.state_specs = system().states;
   std::vector<std::string> names;
-  for (const auto& constant : system().constants) names.push_back(constant.name);
+  for (const auto& state : system().states) names.push_back(state.name);
+  for (const auto& [name, request] : request_.initial) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      throw InputError(request.where, "[initial]: system '" + system().key + "' has no state '" + name + "'" + suggest(name, names));
+    StateSpec& state = model_.state_specs[static_cast<std::size_t>(found - names.begin())];
+    if (request.value) state.start = *request.value;
+    if (request.initial) state.initial = *request.initial;
+    if (state.start < state.lower || state.start > state.upper) {
+      throw InputError(request.where, "[initial] " + name + " = " + with_unit(state.start, state.unit) + " is outside its range, " +
+                                          with_unit(state.lower, state.unit) + " to " + with_unit(state.upper, state.unit));
+    }
+    if (state.initial == Initial::fixed && !std::isfinite(state.start))
+      throw InputError(request.where, "[initial] " + name + " is fixed and needs a value");
+  }
+}
+
+void Assembler::add_constants() {
   for (const auto& constant : system().constants) {
     const auto given = request_.constants.find(constant.name);
-    if (given == request_.constants.end() && constant.required) {
+    const auto asked = request_.parameters.find(constant.name);
+    const bool valued = asked != request_.parameters.end() && asked->second.value;
+    if (given == request_.constants.end() && constant.required && !valued) {
       throw InputError(request_.system_where, "[geometry] " + constant.name + " is missing: " + constant.doc + " [" + constant.unit + "]");
     }
     Parameter p{constant.name, constant.unit, constant.doc};
@@ -76,7 +99,11 @@ void Assembler::add_constants() {
     p.lower = constant.lower;
     p.upper = constant.upper;
     const auto where = request_.constants_where.find(constant.name);
-    check_bounds(p, where == request_.constants_where.end() ? Source{} : where->second);
+    if (!valued) check_bounds(p, where == request_.constants_where.end() ? Source{} : where->second);
+    p.free = constant.free;
+    if (constant.prior_sigma > 0.0) p.prior_sigma = constant.prior_sigma;
+    if (constant.strength) p.kind = CoefficientKind::strength;
+    if (valued) p.value = *asked->second.value;
     p.scale = p.value != 0.0 ? std::abs(p.value) : 1.0;
     const auto sigma = request_.constant_sigmas.find(constant.name);
     if (sigma != request_.constant_sigmas.end()) p.prior_sigma = sigma->second;

@@ -46,7 +46,12 @@ void Evaluator::flatten() {
   for (const auto& bound : model_->effects) flatten_effect(bound);
   quantity_effects_ = !quantity_.empty();
   general_ = quantity_effects_ || free_constants_;
-  general_rates_ = quantity_effects_ || rates_move_with_constants();
+  general_rates_ = quantity_effects_;
+  constants_in_rates_ = rates_move_with_constants();
+  for (int k = 0; constants_in_rates_ && k < nk_; ++k) {
+    const int column = column_of_[static_cast<std::size_t>(k)];
+    if (column >= 0) free_constants_in_rates_.push_back({k, column});
+  }
   find_twins();
   for (const auto& use : dynamic_) plan_effect(use);
   fill_numbers();
@@ -253,7 +258,7 @@ double Evaluator::fastest_rate(const double* x, const double* u, double t) {
   const Point at{x, u, t, p_.data()};
   base_and_derived(at, x + nx_);
   system_->outputs(at, q_.data() + nq_);
-  double fastest = system_->spec().fastest_rate;
+  double fastest = system_->fastest_rate(at);
   std::array<double, kMaxWidth> values;
   for (const auto* list : {&quantity_, &dynamic_, &sensor_}) {
     for (const auto& use : *list) {
@@ -262,6 +267,12 @@ double Evaluator::fastest_rate(const double* x, const double* u, double t) {
     }
   }
   return fastest;
+}
+
+std::string Evaluator::explain(const double* x, const double* u, double t) {
+  std::array<double, kMaxStates> dx{};
+  rates(x, u, t, dx.data());
+  return system_->explain({x, u, t, p_.data()}, P_.data(), F_.data());
 }
 
 void Evaluator::diffusion(const double* x, const double* u, double t, double* intensity) {

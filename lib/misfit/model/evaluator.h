@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "misfit/model/model.h"
@@ -63,7 +64,7 @@ class Evaluator {
   /// dx and its derivative rows D[i·kRowStride + …] for i < states(): ∂/∂x, then ∂/∂(slot). New slots may be added.
   void linearise_rates(const double* x, const double* u, double t, Slots& slots, double* dx, double* D);
   /// The same for the inner loop: D gets the columns ∂/∂x only, and B the (few) derivatives by slots. False, with nothing done, where the
-  /// model needs full rows (effects on quantity ports, free constants).
+  /// model needs full rows (effects on quantity ports).
   bool linearise_rates_sparsely(const double* x, const double* u, double t, Slots& slots, double* dx, double* D);
   /// ∂(dx_row)/∂(slot) of the last linearise_rates_sparsely(); several entries of one place add up.
   struct Entry {
@@ -83,6 +84,8 @@ class Evaluator {
 
   /// Fastest rate of the system and its effects at this state [1/s].
   [[nodiscard]] double fastest_rate(const double* x, const double* u, double t);
+  /// Why rates() is not finite at this state, in words: see System::explain(). Empty if it is not known.
+  [[nodiscard]] std::string explain(const double* x, const double* u, double t);
   /// Noise intensity of each own state [unit/sqrt(s)] (states() − the system's, in their order); zeros for deterministic memory.
   void diffusion(const double* x, const double* u, double t, double* intensity);
   /// Value of every quantity at a state (for maps, figures and simulated tables).
@@ -103,8 +106,8 @@ class Evaluator {
   void add_value(const Use& use, const double* own, double t, double* targets, double* drifts);
   void add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts,
                   double* drift_rows);
-  // The common case, nothing on quantity ports and no free constant: quantities depend on the state alone and derivatives by parameters are
-  // kept as a short list of entries instead of rows.
+  // The common case, nothing on quantity ports: quantities depend on the state and on free constants alone, and derivatives by parameters
+  // are kept as a short list of entries instead of rows.
   struct Link {
     int place, other;  // place among the numbers that an effect reads (or writes), and what stands there
   };
@@ -113,6 +116,7 @@ class Evaluator {
     int width, nq, nc, nz, first_state;
     std::vector<Link> quantities, curves;  // place → quantity, curve
     std::vector<Link> numbers, columns;    // place → parameter; those that are free coefficients: place → column
+    std::vector<Link> constants;           // place → column of free constants that it reads
     std::vector<Link> outputs;             // place among the outputs → row of force_x_
     std::vector<double> values;
   };
@@ -136,6 +140,7 @@ class Evaluator {
   void add_entries(Plan& plan, const double* own, double t, Slots& slots, double* drifts);
   template <int NX>
   void chain_output(const Plan& plan, int row, const double* j, Slots& slots);
+  void chain_constants(double weight, int quantity, int row, Slots& slots);
   void plan_effect(const Use& use);
   void fill_numbers();
   void evaluate_curves(Slots& slots);
@@ -156,7 +161,9 @@ class Evaluator {
   int n_, nx_, ny_, nf_, np_, nq_, nk_, columns_;
   std::uint64_t needed_ = 0;
   bool shifts_time_ = false, quantity_effects_ = false, free_constants_ = false, general_ = false;
-  bool general_rates_ = false;  // as general_, of the rates: constants of the sensor may be free
+  bool general_rates_ = false;                 // as general_, of the rates: constants of the sensor may be free
+  bool constants_in_rates_ = false;            // some free constant acts on the rates
+  std::vector<Link> free_constants_in_rates_;  // constant → column
   std::vector<Use> quantity_, dynamic_, sensor_;
   std::vector<Plan> plans_;     // of dynamic_
   std::vector<int> observed_;   // state of each output; empty: outputs are to be evaluated

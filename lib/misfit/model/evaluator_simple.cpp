@@ -51,7 +51,8 @@ void Evaluator::evaluate_curves(Slots& slots) {
 
 /// Order of the numbers as in gather(): quantities, coefficients, own states, constants. A quantity that is absent stays 0.
 void Evaluator::plan_effect(const Use& use) {
-  Plan plan{use.effect, use.nq + use.nc + use.nz, use.nq, use.nc, use.nz, use.first_state, {}, {}, {}, {}, {}, {}};
+  const int width = use.nq + use.nc + use.nz + (constants_in_rates_ ? use.nk : 0);
+  Plan plan{use.effect, width, use.nq, use.nc, use.nz, use.first_state, {}, {}, {}, {}, {}, {}, {}};
   plan.values.assign(static_cast<std::size_t>(use.nq + use.nc + use.nz + use.nk), 0.0);
   for (int i = 0; i < use.nq; ++i) {
     const int quantity = use.quantity[static_cast<std::size_t>(i)];
@@ -67,7 +68,12 @@ void Evaluator::plan_effect(const Use& use) {
     const int column = column_of_[static_cast<std::size_t>(parameter)];
     if (column >= 0) plan.columns.push_back({use.nq + i, column});
   }
-  for (int i = 0; i < use.nk; ++i) plan.numbers.push_back({use.nq + use.nc + use.nz + i, use.constant[static_cast<std::size_t>(i)]});
+  for (int i = 0; i < use.nk; ++i) {
+    const int place = use.nq + use.nc + use.nz + i, constant = use.constant[static_cast<std::size_t>(i)];
+    plan.numbers.push_back({place, constant});
+    const int column = column_of_[static_cast<std::size_t>(constant)];
+    if (constants_in_rates_ && column >= 0) plan.constants.push_back({place, column});
+  }
   for (int o = 0; o < use.ports; ++o) {
     const int port = use.port[static_cast<std::size_t>(o)];
     if (port >= 0) plan.outputs.push_back({o, port});
@@ -92,7 +98,7 @@ void Evaluator::add_entries(Plan& plan, const double* own, double t, Slots& slot
   const double* coefficients = values + plan.nq;
   double* states = values + plan.nq + plan.nc;
   for (int i = 0; i < plan.nz; ++i) states[i] = own[plan.first_state + i];
-  plan.effect->linearise({values, coefficients, states, states + plan.nz, t}, out.data(), J.data(), false);
+  plan.effect->linearise({values, coefficients, states, states + plan.nz, t}, out.data(), J.data(), constants_in_rates_);
   for (const Link& output : plan.outputs) {
     const double value = out[static_cast<std::size_t>(output.place)];
     if (output.other < nf_) {
@@ -101,6 +107,14 @@ void Evaluator::add_entries(Plan& plan, const double* own, double t, Slots& slot
       drifts[output.other - nf_] = value;
     }
     chain_output<NX>(plan, output.other, J.data() + static_cast<std::ptrdiff_t>(output.place) * plan.width, slots);
+  }
+}
+
+/// A quantity moves with free constants of the system as well.
+void Evaluator::chain_constants(double weight, int quantity, int row, Slots& slots) {
+  for (const Link& k : free_constants_in_rates_) {
+    const double slope = q_k_[static_cast<std::size_t>(quantity * nk_ + k.place)];
+    if (slope != 0.0) entries_.push_back({row, slots.slot(k.other), weight * slope});
   }
 }
 
@@ -114,11 +128,16 @@ void Evaluator::chain_output(const Plan& plan, int row, const double* j, Slots& 
     const double* from = q_x_.data() + static_cast<std::ptrdiff_t>(quantity) * nx;
     for (int x = 0; x < nx; ++x) sum[static_cast<std::size_t>(x)] += weight * from[x];
   };
-  for (const Link& link : plan.quantities) chain(j[link.place], link.other);
+  for (const Link& link : plan.quantities) {
+    chain(j[link.place], link.other);
+    if (constants_in_rates_) chain_constants(j[link.place], link.other, row, slots);
+  }
+  for (const Link& link : plan.constants) entries_.push_back({row, slots.slot(link.other), j[link.place]});
   for (const Link& link : plan.columns) entries_.push_back({row, slots.slot(link.other), j[link.place]});
   for (const Link& link : plan.curves) {
     const CurveState& curve = curve_[static_cast<std::size_t>(link.other)];
     chain(j[link.place] * curve.slope, curve.quantity);
+    if (constants_in_rates_) chain_constants(j[link.place] * curve.slope, curve.quantity, row, slots);
     if (curve.free) curve_entries_.push_back({row, link.other, j[link.place]});
   }
   double* by_x = force_x_.data() + static_cast<std::ptrdiff_t>(row) * n_;
@@ -131,14 +150,14 @@ template <int NX, int N>
 void Evaluator::linearise_rates_simply(const Point& at, Slots& slots, double* dx, double* D) {
   const int nx = NX > 0 ? NX : nx_;
   const int n = N > 0 ? N : n_;
-  system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), nullptr, nullptr});
+  system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), nullptr, constants_in_rates_ ? q_k_.data() : nullptr});
   evaluate_curves(slots);
   for (int f = 0; f < nf_; ++f) F_[static_cast<std::size_t>(f)] = 0.0;
   for (double& value : force_x_) value = 0.0;
   entries_.clear();
   curve_entries_.clear();
   for (auto& plan : plans_) add_entries<NX>(plan, at.x + nx, at.t, slots, dx + nx);
-  system_->linearise_rates(at, P_.data(), F_.data(), dx, {r_x_.data(), nullptr, r_F_.data(), nullptr});
+  system_->linearise_rates(at, P_.data(), F_.data(), dx, {r_x_.data(), nullptr, r_F_.data(), constants_in_rates_ ? r_k_.data() : nullptr});
 
   slot_entries_.clear();
   for (int i = 0; i < n; ++i) {
@@ -153,6 +172,10 @@ void Evaluator::linearise_rates_simply(const Point& at, Slots& slots, double* dx
       const double* by_x = force_x_.data() + static_cast<std::ptrdiff_t>(from) * n;
       for (int x = 0; x < n; ++x) sum[static_cast<std::size_t>(x)] += weight * by_x[x];
       take_entries(weight, from, i);
+    }
+    for (const Link& k : free_constants_in_rates_) {
+      const double slope = i < nx ? r_k_[static_cast<std::size_t>(i * nk_ + k.place)] : 0.0;
+      if (slope != 0.0) slot_entries_.push_back({i, slots.slot(k.other), slope});
     }
     double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
     for (int x = 0; x < n; ++x) row[x] = sum[static_cast<std::size_t>(x)];

@@ -33,7 +33,8 @@ const Curve* Model::find_curve(const std::string& name) const {
 }
 
 std::vector<std::string> Model::needed_inputs() const {
-  std::set<std::string> names;
+  const auto& by_equations = system->spec().equation_inputs;
+  std::set<std::string> names(by_equations.begin(), by_equations.end());
   const auto& quantities = system->spec().quantities;
   const auto note = [&](int index) {
     if (index < 0 || index >= static_cast<int>(quantities.size())) return;

@@ -43,6 +43,12 @@ struct ModelRequest {
   std::vector<EffectRequest> effects;
   std::map<std::string, ParameterRequest> parameters;
   std::map<std::string, CurveRequest> curves;  ///< by the coefficient's name in the model
+  struct InitialRequest {
+    std::optional<Initial> initial;
+    std::optional<double> value;  ///< SI
+    Source where;
+  };
+  std::map<std::string, InitialRequest> initial;  ///< of states of the system
 };
 
 /// One row of the parameter table.
@@ -92,6 +98,8 @@ struct Model {
   std::vector<BoundEffect> effects;
   std::vector<Parameter> parameters;  ///< system constants first, in the order of the system
   std::vector<Curve> curves;
+  /// States of the system with what the study says of their initial values; own states of effects are not among them.
+  std::vector<StateSpec> state_specs;
   std::vector<OwnStateSpec> own_states;
   std::vector<std::string> own_state_names;  ///< "effect.state"
   std::vector<std::string> own_state_units;

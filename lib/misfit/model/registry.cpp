@@ -1,5 +1,6 @@
 #include "misfit/model/registry.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace misfit {
@@ -19,6 +20,12 @@ void EffectSpec::set_texts(const std::array<const char*, 7>& texts) {
   for (std::size_t i = 0; i < texts.size(); ++i) *fields[i] = texts[i];
 }
 
+Registry Registry::over(const Registry& base) {
+  Registry out;
+  out.base_ = &base;
+  return out;
+}
+
 void Registry::add(std::unique_ptr<Effect> effect) {
   const std::string key = effect->spec().key;
   if (!effects_.emplace(key, std::move(effect)).second) throw std::logic_error("effect '" + key + "' registered twice");
@@ -31,17 +38,29 @@ void Registry::add(SystemType system) {
 
 const Effect& Registry::effect(const std::string& key, const Source& where) const {
   const auto found = effects_.find(key);
+  if (found == effects_.end() && base_ != nullptr) return base_->effect(key, where);
   if (found == effects_.end()) throw InputError(where, "unknown effect '" + key + "'" + suggest(key, effect_keys()));
   return *found->second;
 }
 
 const SystemType& Registry::system(const std::string& key, const Source& where) const {
   const auto found = systems_.find(key);
+  if (found == systems_.end() && base_ != nullptr) return base_->system(key, where);
   if (found == systems_.end()) throw InputError(where, "unknown system '" + key + "'" + suggest(key, system_keys()));
   return found->second;
 }
 
-std::vector<std::string> Registry::effect_keys() const { return keys_of(effects_); }
-std::vector<std::string> Registry::system_keys() const { return keys_of(systems_); }
+std::vector<std::string> Registry::effect_keys() const { return base_ != nullptr ? base_->effect_keys() : keys_of(effects_); }
+
+std::vector<std::string> Registry::system_keys() const {
+  std::vector<std::string> keys = keys_of(systems_);
+  if (base_ != nullptr) {
+    for (const auto& key : base_->system_keys()) {
+      if (!systems_.contains(key)) keys.push_back(key);
+    }
+    std::sort(keys.begin(), keys.end());
+  }
+  return keys;
+}
 
 }  // namespace misfit

@@ -83,6 +83,22 @@ void read_starts(const Study& study, const std::map<std::string, std::string>& u
   }
 }
 
+void read_initial(const Study& study, const SystemSpec& spec, ModelRequest& request) {
+  for (const auto& [name, initial] : study.initial) {
+    ModelRequest::InitialRequest& out = request.initial[name];
+    out.where = initial.where;
+    if (!initial.kind.empty())
+      out.initial = initial.kind == "fixed" ? Initial::fixed : initial.kind == "shared" ? Initial::shared : Initial::free;
+    if (!initial.value) continue;
+    out.value = initial.value->value;
+    for (const auto& state : spec.states) {
+      const bool unlike =
+          state.name == name && !initial.value->unit.empty() && !parse_unit(initial.value->unit).same_dimension(parse_unit(state.unit));
+      if (unlike) throw InputError(initial.where, "[initial] " + name + " needs [" + state.unit + "], not [" + initial.value->unit + "]");
+    }
+  }
+}
+
 bool is_angle(const SystemSpec& spec, const std::string& quantity) {
   for (const auto& q : spec.quantities) {
     if (q.name == quantity) return parse_unit(q.unit).angle;
@@ -108,12 +124,12 @@ void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& reque
 StudyModel read_model(const Study& study, const Registry& registry) {
   StudyModel out;
   ModelRequest& request = out.request;
-  if (study.system_kind.empty())
+  if (study.system_kind.empty() && !study.system_file)
     throw InputError({study.file.string(), 0, 0}, "[system] kind is missing" + suggest("", registry.system_keys()));
-  request.system = study.system_kind;
+  request.system = study.system_file ? study.system_file->stem().string() : study.system_kind;
   request.options.flags = study.system_flags;
   for (const auto& [name, number] : study.system_numbers) request.options.numbers[name] = number.value;
-  const auto where = study.system_where.find("kind");
+  const auto where = study.system_where.find(study.system_file ? "file" : "kind");
   request.system_where = where == study.system_where.end() ? Source{study.file.string(), 0, 0} : where->second;
   const SystemType& type = registry.system(request.system, request.system_where);
   for (const auto& [name, number] : study.system_numbers) {
@@ -132,6 +148,7 @@ StudyModel read_model(const Study& study, const Registry& registry) {
     request.parameters[name] = read_parameter(parameter, unit == units.end() ? "-" : unit->second);
   }
   read_starts(study, units, request);
+  read_initial(study, spec, request);
   read_curves(study, spec, request);
   return out;
 }

@@ -1,6 +1,9 @@
 #include "misfit/model/role_units.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -10,9 +13,9 @@
 namespace misfit {
 namespace {
 
-using Factors = std::vector<std::pair<std::string, int>>;  // symbol, power; in the order met
+using Factors = std::vector<std::pair<std::string, double>>;  // symbol, power; in the order met
 
-void multiply(Factors& factors, const std::string& symbol, int power) {
+void multiply(Factors& factors, const std::string& symbol, double power) {
   if (symbol == "-" || symbol == "1" || symbol.empty()) return;
   for (auto& [known, sum] : factors) {
     if (known == symbol) {
@@ -24,23 +27,23 @@ void multiply(Factors& factors, const std::string& symbol, int power) {
 }
 
 /// "m^2" → ("m", 2); "s2" → ("s", 2).
-std::pair<std::string, int> symbol_and_power(std::string_view factor) {
+std::pair<std::string, double> symbol_and_power(std::string_view factor) {
   const auto end = factor.find_first_of("^0123456789");
-  if (end == std::string_view::npos || end == 0) return {std::string(factor), 1};
+  if (end == std::string_view::npos || end == 0) return {std::string(factor), 1.0};
   const auto power = factor.substr(factor[end] == '^' ? end + 1 : end);
-  return {std::string(factor.substr(0, end)), std::stoi(std::string(power))};
+  return {std::string(factor.substr(0, end)), std::stod(std::string(power))};
 }
 
 /// Multiplies `factors` by unit^power: '/' divides by the one factor that follows it (units.h). `units` gives the roles in braces.
-void multiply_unit(Factors& factors, std::string_view unit, int power, const std::map<std::string, std::string>& units) {
-  int sign = 1;
+void multiply_unit(Factors& factors, std::string_view unit, double power, const std::map<std::string, std::string>& units) {
+  double sign = 1.0;
   while (!unit.empty()) {
     if (unit.front() == ' ' || unit.front() == '*') {
       unit.remove_prefix(1);
       continue;
     }
     if (unit.front() == '/') {
-      sign = -1;
+      sign = -1.0;
       unit.remove_prefix(1);
       continue;
     }
@@ -56,7 +59,7 @@ void multiply_unit(Factors& factors, std::string_view unit, int power, const std
       multiply(factors, symbol, sign * power * own);
       unit.remove_prefix(end);
     }
-    sign = 1;
+    sign = 1.0;
   }
 }
 
@@ -68,13 +71,13 @@ std::string bind_unit(const std::string& unit, const std::map<std::string, std::
   multiply_unit(factors, unit, 1, units);
   std::string above, below;
   for (const auto& [symbol, power] : factors) {
-    const int size = power < 0 ? -power : power;
-    if (size == 0) continue;
-    std::string& side = power > 0 ? above : below;
-    if (power < 0) side += '/';
-    if (power > 0 && !side.empty()) side += ' ';
+    const double size = std::abs(power);
+    if (size == 0.0) continue;
+    std::string& side = power > 0.0 ? above : below;
+    if (power < 0.0) side += '/';
+    if (power > 0.0 && !side.empty()) side += ' ';
     side += symbol;
-    if (size > 1) side += '^' + std::to_string(size);
+    if (size != 1.0) side += fmt::format("^{}", size);
   }
   if (above.empty() && below.empty()) return "-";
   return (above.empty() ? "1" : above) + below;

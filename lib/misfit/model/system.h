@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,10 +12,20 @@
 
 namespace misfit {
 
+enum class Initial {
+  free,    ///< unknown, in every experiment another one
+  shared,  ///< unknown, the same in all experiments
+  fixed    ///< StateSpec::start
+};
+
 struct StateSpec {
   std::string name, unit;
   int rate_of = -1;    ///< index of the state whose time derivative this one is; −1: none
   double scale = 1.0;  ///< typical size [unit]: how uncertain it is before anything is measured
+  Initial initial = Initial::free;
+  double start = std::numeric_limits<double>::quiet_NaN();  ///< initial value, where one is given: to start from, or fixed [unit]
+  /// What it cannot leave (a level that is never negative): the step map sets it back to the bound after every step.
+  double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
 };
 
 enum class Hold { zero_order, first_order };  ///< how an input runs between its samples
@@ -42,7 +53,10 @@ struct ConstantSpec {
   std::string name, unit, doc;
   double lower = 0.0, upper = 0.0;  ///< inclusive
   bool required = true;
-  double value = 0.0;  ///< when not required
+  double value = 0.0;        ///< when not required
+  bool free = false;         ///< unless a study says otherwise
+  double prior_sigma = 0.0;  ///< Gaussian about the value [unit]; 0: no prior
+  bool strength = false;     ///< the rates are linear in it: a regression finds it
   /// Acts on the outputs, and on quantities of the sensor, alone: where it is free, the rates keep their fast derivatives.
   bool of_sensor = false;
 };
@@ -74,6 +88,7 @@ struct SystemSpec {
   std::string key, doc, formula, source;
   std::vector<StateSpec> states;
   std::vector<InputSpec> inputs;
+  std::vector<std::string> equation_inputs;  ///< inputs that the system's own equations need
   std::vector<QuantitySpec> quantities;
   int base_quantities = 0;
   std::vector<PortSpec> quantity_ports, dynamic_ports;
@@ -126,6 +141,11 @@ class System {
   virtual void outputs(const Point& at, double* y) const = 0;
   /// y, ∂y/∂x (outputs × states), and, if not null, ∂y/∂k (outputs × constants).
   virtual void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const = 0;
+  /// Fastest rate of the system without effects, at this state [1/s].
+  [[nodiscard]] virtual double fastest_rate(const Point& /*at*/) const { return spec().fastest_rate; }
+  /// Why rates() is not finite here, in words: the part of the formula, the states and parameters in it. Empty if it is finite or not
+  /// known.
+  [[nodiscard]] virtual std::string explain(const Point& /*at*/, const double* /*P*/, const double* /*F*/) const { return {}; }
   /// The inverse of outputs() for SystemSpec::readable_states: fills those entries of x. False where the outputs have no such state.
   virtual bool read_states(const double* /*y*/, const double* /*k*/, double* /*x*/) const { return false; }
 };

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "misfit/core/text.h"
+
 namespace misfit {
 namespace {
 
@@ -23,6 +25,11 @@ Eigen::Map<Block> block(double* at) { return Eigen::Map<Block>(at); }
 
 Stepper::Stepper(const Model& model) : evaluator_(model), n_(model.states()), nu_(model.inputs()) {
   for (const auto& input : model.system->spec().inputs) zero_order_.push_back(input.hold == Hold::zero_order);
+  const auto& states = model.system->spec().states;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (std::isfinite(states[i].lower) || std::isfinite(states[i].upper))
+      ranges_.push_back({static_cast<int>(i), states[i].lower, states[i].upper});
+  }
   const auto size = static_cast<std::size_t>(n_) * kRowStride;
   L_.assign(size, 0.0);
   X_.assign(size, 0.0);
@@ -30,7 +37,57 @@ Stepper::Stepper(const Model& model) : evaluator_(model), n_(model.states()), nu
   sum_.assign(size, 0.0);
 }
 
-void Stepper::prepare(const double* x, const double* u, double t) { fastest_rate_ = evaluator_.fastest_rate(x, u, t); }
+void Stepper::prepare(const double* x, const double* u, double t) {
+  fastest_rate_ = evaluator_.fastest_rate(x, u, t);
+  failure_.clear();
+}
+
+bool Stepper::finite(const double* x) const {
+  return std::all_of(x, x + n_, [](double value) { return std::isfinite(value); });
+}
+
+/// A state at its bound no longer depends on where it came from.
+void Stepper::keep_in_range(double* x, double* D, int width) const {
+  for (const Range& range : ranges_) {
+    if (x[range.state] >= range.lower && x[range.state] <= range.upper) continue;
+    if (!std::isfinite(x[range.state])) continue;
+    x[range.state] = x[range.state] < range.lower ? range.lower : range.upper;
+    if (D != nullptr) std::fill_n(D + row_at(range.state), width, 0.0);
+  }
+}
+
+/// Goes through the step again, stage by stage, to where the rates leave the finite numbers.
+void Stepper::note_failure(const double* x, const Interval& interval) {
+  const int parts = substeps(interval.t1 - interval.t0);
+  const double h = (interval.t1 - interval.t0) / parts;
+  std::array<double, kMaxStates> at{}, stage{}, sum{}, dx{};
+  std::array<double, kMaxInputs> u{};
+  std::copy_n(x, n_, at.begin());
+  for (int part = 0; part < parts; ++part) {
+    sum = at;
+    for (std::size_t s = 0; s < 4; ++s) {
+      stage = at;
+      for (std::size_t i = 0; s > 0 && i < static_cast<std::size_t>(n_); ++i) stage[i] += h * stage_at[s] * dx[i];
+      const double fraction = (part + stage_at[s]) / parts;
+      inputs_at(interval, fraction, u.data());
+      const double t = interval.t0 + fraction * (interval.t1 - interval.t0);
+      evaluator_.rates(stage.data(), u.data(), t, dx.data());
+      if (!finite(stage.data()) || !finite(dx.data())) {
+        failure_ = "at t = " + format_value(t) + " s: ";
+        const std::string why = evaluator_.explain(stage.data(), u.data(), t);
+        const auto& states = evaluator_.model().state_specs;
+        for (std::size_t i = 0; why.empty() && i < states.size(); ++i)
+          failure_ +=
+              (i == 0 ? "" : ", ") + states[i].name + " = " + format_value(stage[i]) + (states[i].unit == "-" ? "" : " " + states[i].unit);
+        failure_ += why;
+        return;
+      }
+      for (std::size_t i = 0; i < static_cast<std::size_t>(n_); ++i) sum[i] += h * stage_weight[s] * dx[i];
+    }
+    at = sum;
+    keep_in_range(at.data(), nullptr, 0);
+  }
+}
 
 int Stepper::substeps(double h) const {
   constexpr double largest_product = 0.5;  // rate × step: above, explicit Runge–Kutta loses accuracy, then stability (DESIGN 4)
@@ -51,8 +108,9 @@ void Stepper::inputs_at(const Interval& interval, double fraction, double* u) co
 bool Stepper::step(double* x, const Interval& interval) {
   const int parts = substeps(interval.t1 - interval.t0);
   const double h = (interval.t1 - interval.t0) / parts;
-  std::array<double, kMaxStates> stage, sum, dx{};
+  std::array<double, kMaxStates> stage, sum, dx{}, start;
   std::array<double, kMaxInputs> u{};
+  std::copy_n(x, n_, start.begin());
   for (int part = 0; part < parts; ++part) {
     std::copy_n(x, n_, sum.begin());
     std::copy_n(x, n_, stage.begin());
@@ -66,8 +124,11 @@ bool Stepper::step(double* x, const Interval& interval) {
       for (int i = 0; i < n_; ++i) sum[static_cast<std::size_t>(i)] += h * stage_weight[s] * dx[static_cast<std::size_t>(i)];
     }
     std::copy_n(sum.begin(), n_, x);
+    if (!ranges_.empty()) keep_in_range(x, nullptr, 0);
   }
-  return std::all_of(x, x + n_, [](double value) { return std::isfinite(value); });
+  if (finite(x)) return true;
+  note_failure(start.data(), interval);
+  return false;
 }
 
 /// One stage on rows of ∂/∂(x0, slots), L = [A | B], B as entries if sparse:  K = A X + [0 | B];  sum += h w K;  next = D + h a K (rows of
@@ -148,6 +209,8 @@ void Stepper::substep_linear(double* x, const Interval& interval, double from, d
 
 bool Stepper::step_linear(double* x, const Interval& interval, Slots& slots, double* D) {
   slots.clear();
+  std::array<double, kMaxStates> start;
+  std::copy_n(x, n_, start.begin());
   for (int i = 0; i < n_; ++i) {
     double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
     for (int j = 0; j < n_; ++j) row[j] = i == j ? 1.0 : 0.0;
@@ -167,8 +230,11 @@ bool Stepper::step_linear(double* x, const Interval& interval, Slots& slots, dou
     } else {
       substep_linear<0>(x, interval, from, to, slots, D);
     }
+    if (!ranges_.empty()) keep_in_range(x, D, n_ + slots.count());
   }
-  return std::all_of(x, x + n_, [](double value) { return std::isfinite(value); });
+  if (finite(x)) return true;
+  note_failure(start.data(), interval);
+  return false;
 }
 
 }  // namespace misfit

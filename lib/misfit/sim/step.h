@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "misfit/data/signals.h"
@@ -29,6 +30,10 @@ class Stepper {
   void prepare(const double* x, const double* u, double t);
   [[nodiscard]] double fastest_rate() const { return fastest_rate_; }
 
+  /// Where the last step that returned false left the finite numbers, in words: time, states, formula and parameters where the system can
+  /// say.
+  [[nodiscard]] const std::string& failure() const { return failure_; }
+
   /// Advances x in place. False if a state is no longer finite (x is then unspecified).
   [[nodiscard]] bool step(double* x, const Interval& interval);
   /// The same with derivatives: D has states() rows of kRowStride, [Φ | Γ(slots)]. `slots` is cleared first.
@@ -43,7 +48,17 @@ class Stepper {
   void advance_rows(double h, std::size_t stage, int width, bool sparse, const double* X, double* next, double* D);
 
   Evaluator evaluator_;
+  struct Range {
+    int state;
+    double lower, upper;
+  };
+  void keep_in_range(double* x, double* D, int width) const;
+  void note_failure(const double* x, const Interval& interval);
+  [[nodiscard]] bool finite(const double* x) const;
+
   int n_, nu_;
+  std::vector<Range> ranges_;  ///< states that cannot leave them
+  std::string failure_;
   double fastest_rate_ = 0.0;
   std::vector<bool> zero_order_;
   std::vector<double> L_, X_, Y_, sum_;  // rows of kRowStride

@@ -1,0 +1,60 @@
+#include "misfit/formula/measure.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "misfit/core/error.h"
+
+namespace misfit::formula {
+namespace {
+
+void multiply(Measure& into, const Measure& by, double power) {
+  for (std::size_t i = 0; i < into.unit.dimension.size(); ++i) into.unit.dimension[i] += power * by.unit.dimension[i];
+  for (const auto& [symbol, own] : by.symbols) {
+    bool known = false;
+    for (auto& [have, sum] : into.symbols) {
+      if (have != symbol) continue;
+      sum += power * own;
+      known = true;
+    }
+    if (!known) into.symbols.emplace_back(symbol, power * own);
+  }
+}
+
+}  // namespace
+
+std::string Measure::text() const {
+  if (truth) return "a condition";
+  std::string above, below;
+  for (const auto& [symbol, power] : symbols) {
+    const double size = std::round(1e6 * std::abs(power)) / 1e6;
+    if (size == 0.0) continue;
+    std::string& side = power > 0.0 ? above : below;
+    if (power < 0.0) side += '/';
+    if (power > 0.0 && !side.empty()) side += ' ';
+    side += symbol;
+    if (size != 1.0) side += fmt::format("^{}", size);
+  }
+  if (above.empty() && below.empty()) return "-";
+  return (above.empty() ? "1" : above) + below;
+}
+
+Measure measure_of(const std::string& unit) {
+  Measure out;
+  out.unit = parse_unit(unit);
+  if (std::abs(out.unit.to_si - 1.0) > 1e-12) {
+    throw InputError("[" + unit + "] is not an SI unit: formulas are computed in SI, declare it so (data and values may have any unit)");
+  }
+  for (const auto& [symbol, power] : unit_symbols(unit)) multiply(out, {Unit{}, {{symbol, 1.0}}, false, false}, power);
+  return out;
+}
+
+Measure product(const Measure& a, double p, const Measure& b, double q) {
+  Measure out;
+  multiply(out, a, p);
+  multiply(out, b, q);
+  return out;
+}
+
+}  // namespace misfit::formula

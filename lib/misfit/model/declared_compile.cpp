@@ -1,0 +1,281 @@
+// From a declaration to programs: what names stand for, units, derivatives, and what the rest of misfit wants to know of a system.
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "misfit/core/units.h"
+#include "misfit/model/declared_system.h"
+#include "misfit/model/limits.h"
+
+namespace misfit::declared {
+namespace {
+
+using formula::Meaning;
+using formula::Op;
+
+class Compiler {
+ public:
+  explicit Compiler(Declaration declaration) : d_(std::move(declaration)), out_(std::make_shared<Compiled>()) {}
+
+  std::shared_ptr<const Compiled> run() {
+    check_sizes();
+    number_leaves();
+    build_quantities();
+    build_equations();
+    build_outputs();
+    check_parameters();
+    describe_quantities();
+    make_tapes(*out_, all_quantity_nodes_, output_nodes_, d_.where);
+    out_->spec = std::move(d_.spec);
+    return out_;
+  }
+
+ private:
+  formula::Graph& g() { return out_->graph; }
+  SystemSpec& spec() { return d_.spec; }
+
+  void check_sizes() {
+    const auto limit = [&](std::size_t have, int most, const char* what) {
+      if (have > static_cast<std::size_t>(most))
+        throw InputError(d_.where, std::to_string(have) + " " + what + "; at most " + std::to_string(most) + " are possible");
+    };
+    limit(spec().states.size(), kMaxStates, "states");
+    limit(spec().inputs.size(), kMaxInputs, "inputs");
+    limit(spec().outputs.size(), kMaxOutputs, "outputs");
+    limit(spec().constants.size(), kMaxConstants, "parameters");
+    limit(spec().dynamic_ports.size() + spec().states.size(), kMaxPorts, "ports and states");
+    limit(spec().inputs.size() + spec().quantities.size(), kMaxPorts, "inputs and quantities");
+  }
+
+  void number_leaves() {
+    Leaves& n = out_->leaves;
+    n.nx = static_cast<int>(spec().states.size());
+    n.nu = static_cast<int>(spec().inputs.size());
+    n.nk = static_cast<int>(spec().constants.size());
+    n.np = n.nu + static_cast<int>(spec().quantities.size());
+    own_ports_ = static_cast<int>(spec().dynamic_ports.size());
+    n.nf = own_ports_ + n.nx;
+    for (const auto& state : spec().states)
+      spec().dynamic_ports.push_back({"d" + state.name + "/dt", rate_unit(state.unit), "added to the rate of " + state.name, state.name});
+    for (int i = 0; i < n.nx; ++i) state_nodes_.push_back(state_node(i));
+    for (int i = 0; i < n.nu; ++i) input_nodes_.push_back(g().add(g().leaf(n.u(i)), g().leaf(n.P(i))));
+    quantity_nodes_.assign(spec().quantities.size(), unbuilt);
+    note_names(spec().states);
+    note_names(spec().inputs);
+    note_names(spec().constants);
+    note_names(spec().quantities);
+    for (int i = 0; i < own_ports_; ++i) names_.push_back(spec().dynamic_ports[static_cast<std::size_t>(i)].name);
+    names_.emplace_back("t");
+    names_.emplace_back("pi");
+  }
+  template <class List>
+  void note_names(const List& list) {
+    for (const auto& item : list) names_.push_back(item.name);
+  }
+
+  /// Formulas never see a state outside its range, not even inside a step.
+  int state_node(int i) {
+    const StateSpec& state = spec().states[static_cast<std::size_t>(i)];
+    int node = g().leaf(out_->leaves.x(i));
+    if (std::isfinite(state.lower)) node = g().make(Op::max, node, g().constant(state.lower));
+    if (std::isfinite(state.upper)) node = g().make(Op::min, node, g().constant(state.upper));
+    return node;
+  }
+
+  template <class List>
+  static int index_of(const List& list, const std::string& name) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (list[i].name == name) return static_cast<int>(i);
+    }
+    return -1;
+  }
+
+  std::optional<Meaning> find(const std::string& name, bool in_equation) {
+    const auto at = [](const auto& list, int i) -> const auto& { return list[static_cast<std::size_t>(i)]; };
+    if (name == "t") return Meaning{g().leaf(out_->leaves.t()), formula::measure_of("s")};
+    if (const int i = index_of(spec().states, name); i >= 0)
+      return Meaning{at(state_nodes_, i), formula::measure_of(at(spec().states, i).unit)};
+    if (const int i = index_of(spec().inputs, name); i >= 0)
+      return Meaning{at(input_nodes_, i), formula::measure_of(at(spec().inputs, i).unit)};
+    if (const int i = index_of(spec().constants, name); i >= 0)
+      return Meaning{g().leaf(out_->leaves.k(i)), formula::measure_of(at(spec().constants, i).unit)};
+    if (const int i = index_of(spec().quantities, name); i >= 0)
+      return Meaning{quantity_node(i), formula::measure_of(at(spec().quantities, i).unit)};
+    const int port = index_of(spec().dynamic_ports, name);
+    if (port < 0 || port >= own_ports_) return std::nullopt;
+    if (!in_equation) throw InputError("'" + name + "' is a port: it can stand in equations only");
+    return Meaning{g().leaf(out_->leaves.F(port)), formula::measure_of(at(spec().dynamic_ports, port).unit)};
+  }
+
+  int build(const Formula& f, bool in_equation) {
+    const formula::Names names{[this, in_equation, &f](const std::string& name) {
+                                 try {
+                                   return find(name, in_equation);
+                                 } catch (const InputError& error) {
+                                   const auto at = f.syntax.source.text.find(name);
+                                   if (std::string(error.what()).find(" is a port") == std::string::npos) throw;
+                                   f.syntax.source.fail(static_cast<int>(at), static_cast<int>(at + name.size()), error.what());
+                                 }
+                               },
+                               names_};
+    const int origin = next_origin_;
+    next_origin_ += static_cast<int>(f.syntax.nodes.size());
+    out_->texts.push_back(f.syntax);
+    out_->first_origin.push_back(origin);
+    const Meaning made = formula::build(f.syntax, names, g(), origin);
+    formula::check_unit(f.syntax, made, f.measure, f.syntax.source.of);
+    return made.node;
+  }
+
+  /// Built when first asked for, so that quantities may stand in any order.
+  int quantity_node(int i) {
+    int& node = quantity_nodes_[static_cast<std::size_t>(i)];
+    if (node == in_work)
+      throw InputError(d_.quantities[static_cast<std::size_t>(i)].syntax.source.where,
+                       "quantity " + spec().quantities[static_cast<std::size_t>(i)].name + " depends on itself");
+    if (node == unbuilt) {
+      node = in_work;
+      const int own = build(d_.quantities[static_cast<std::size_t>(i)], false);
+      quantity_nodes_[static_cast<std::size_t>(i)] = g().add(own, g().leaf(out_->leaves.P(out_->leaves.nu + i)));
+    }
+    return quantity_nodes_[static_cast<std::size_t>(i)];
+  }
+  void build_quantities() {
+    for (std::size_t i = 0; i < quantity_nodes_.size(); ++i) static_cast<void>(quantity_node(static_cast<int>(i)));
+  }
+
+  void build_equations() {
+    const Leaves& n = out_->leaves;
+    auto& states = spec().states;
+    for (std::size_t j = 0; j < states.size(); ++j) {
+      const int node = build(d_.equations[j], true);
+      const auto same = std::find(state_nodes_.begin(), state_nodes_.end(), node);
+      kinematic_.push_back(same != state_nodes_.end() && static_cast<std::size_t>(same - state_nodes_.begin()) != j);
+      if (kinematic_.back()) {
+        StateSpec& rate = states[static_cast<std::size_t>(same - state_nodes_.begin())];
+        if (rate.rate_of < 0) rate.rate_of = static_cast<int>(j);
+      }
+      equation_nodes_.push_back(node);
+      out_->rate_nodes.push_back(g().add(node, g().leaf(n.F(own_ports_ + static_cast<int>(j)))));
+      note_inputs(node);
+    }
+    for (std::size_t j = 0; j < states.size(); ++j) {
+      if (!kinematic_[j]) spec().force_ports.push_back("d" + states[j].name + "/dt");
+    }
+  }
+
+  void note_inputs(int node) {
+    for (const auto& name : inputs_of(node)) {
+      auto& list = spec().equation_inputs;
+      if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+    }
+  }
+  std::vector<std::string> inputs_of(int node) {
+    const Leaves& n = out_->leaves;
+    std::vector<std::string> names;
+    for (int leaf : g().leaves_of(node)) {
+      if (leaf >= n.u(0) && leaf < n.t()) names.push_back(spec().inputs[static_cast<std::size_t>(leaf - n.u(0))].name);
+    }
+    return names;
+  }
+
+  void build_outputs() {
+    const Leaves& n = out_->leaves;
+    for (std::size_t o = 0; o < d_.outputs.size(); ++o) {
+      int node = build(d_.outputs[o], false);
+      for (int i = 0; i < n.np; ++i) node = g().substitute(node, n.P(i), g().constant(0.0));
+      const auto same = std::find(state_nodes_.begin(), state_nodes_.end(), node);
+      if (same != state_nodes_.end()) spec().outputs[o].observes = static_cast<int>(same - state_nodes_.begin());
+      output_nodes_.push_back(node);
+      note_inputs(node);
+      note_readable(static_cast<int>(o), node);
+    }
+  }
+
+  /// An output that is a straight line of one state, as theta + offset: the state can be read from it.
+  void note_readable(int output, int node) {
+    const Leaves& n = out_->leaves;
+    if (spec().outputs[static_cast<std::size_t>(output)].observes >= 0) return;
+    int state = -1;
+    for (int leaf : g().leaves_of(node)) {
+      if (leaf >= n.k(0) && leaf < n.P(0)) continue;
+      if (state >= 0 || leaf >= n.nx) return;
+      state = leaf;
+    }
+    if (state < 0 || uses(g().derivatives(node, {g().leaf(state)}).front(), state)) return;
+    out_->readable.emplace_back(output, state);
+    spec().readable_states.push_back(state);
+  }
+
+  bool uses(int node, int leaf) {
+    const auto all = g().leaves_of(node);
+    return std::find(all.begin(), all.end(), leaf) != all.end();
+  }
+
+  void check_parameters() {
+    for (int k = 0; k < out_->leaves.nk; ++k) {
+      ConstantSpec& constant = spec().constants[static_cast<std::size_t>(k)];
+      const int leaf = out_->leaves.k(k);
+      const auto used_by = [&](const std::vector<int>& nodes) {
+        return std::any_of(nodes.begin(), nodes.end(), [&](int node) { return uses(node, leaf); });
+      };
+      const bool moves = used_by(equation_nodes_) || used_by(quantity_nodes_);
+      if (!moves && !used_by(output_nodes_))
+        throw InputError(d_.where, "nothing depends on parameter '" + constant.name + "': use it in a formula, or take it out");
+      constant.of_sensor = !moves;
+      constant.strength = moves;
+      for (int node : equation_nodes_) {
+        const std::vector<int> slope = g().derivatives(node, {g().leaf(leaf)});
+        constant.strength = constant.strength && !uses(slope.front(), leaf);
+      }
+    }
+  }
+
+  void describe_quantities() {
+    const Leaves& n = out_->leaves;
+    std::vector<QuantitySpec> all;
+    for (int i = 0; i < n.nx; ++i) {
+      const StateSpec& state = spec().states[static_cast<std::size_t>(i)];
+      add_quantity({state.name, state.unit, "state", {}, true}, state_nodes_[static_cast<std::size_t>(i)], all);
+    }
+    for (int i = 0; i < n.nu; ++i) {
+      const InputSpec& input = spec().inputs[static_cast<std::size_t>(i)];
+      add_quantity({input.name + "_given", input.unit, "input as recorded", {input.name}, true, false}, g().leaf(n.u(i)), all);
+    }
+    spec().base_quantities = static_cast<int>(all.size());
+    for (int i = 0; i < n.nu; ++i) {
+      const InputSpec& input = spec().inputs[static_cast<std::size_t>(i)];
+      add_quantity({input.name, input.unit, "input", {input.name}, true}, input_nodes_[static_cast<std::size_t>(i)], all);
+      spec().quantity_ports.push_back({input.name, input.unit, "added to the input", input.name});
+    }
+    for (std::size_t i = 0; i < spec().quantities.size(); ++i) {
+      QuantitySpec q = spec().quantities[i];
+      q.inputs = inputs_of(quantity_nodes_[i]);
+      spec().quantity_ports.push_back({q.name, q.unit, "added to the quantity", q.name});
+      add_quantity(q, quantity_nodes_[i], all);
+    }
+    spec().quantities = std::move(all);
+    if (spec().quantities.size() + spec().outputs.size() > static_cast<std::size_t>(kMaxQuantities))
+      throw InputError(d_.where, "states, inputs, quantities and outputs are together too many");
+    set_roles(d_, own_ports_);
+  }
+  void add_quantity(QuantitySpec q, int node, std::vector<QuantitySpec>& all) {
+    all.push_back(std::move(q));
+    all_quantity_nodes_.push_back(node);
+  }
+
+  static constexpr int unbuilt = -1, in_work = -2;
+  Declaration d_;
+  std::shared_ptr<Compiled> out_;
+  int own_ports_ = 0, next_origin_ = 0;
+  std::vector<std::string> names_;
+  std::vector<int> state_nodes_, input_nodes_, quantity_nodes_, equation_nodes_, output_nodes_, all_quantity_nodes_;
+  std::vector<bool> kinematic_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Compiled> compile(Declaration declaration) { return Compiler(std::move(declaration)).run(); }
+
+}  // namespace misfit::declared

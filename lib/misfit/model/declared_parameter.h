@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "misfit/core/config.h"
+#include "misfit/formula/measure.h"
+
+namespace misfit::declared {
+
+/// A parameter as a declaration gives it: { unit, value, bounds, free, sigma, scale, doc }, numbers in SI.
+struct ParameterText {
+  std::string unit, doc;
+  formula::Measure measure;
+  std::optional<double> value, sigma, scale;
+  std::optional<bool> free;
+  double lower = -1e9, upper = 1e9;
+};
+
+/// InputError at its place for a missing or unknown unit, bounds that do not increase, a value outside them, a sigma or scale not above 0.
+[[nodiscard]] ParameterText read_parameter(const config::Section& section);
+
+/// The unit of an entry, which must be there and SI.
+[[nodiscard]] std::string read_unit(const config::Section& section);
+
+}  // namespace misfit::declared

@@ -1,0 +1,68 @@
+#include <algorithm>
+
+#include "misfit/model/declared_system.h"
+
+namespace misfit::declared {
+namespace {
+
+template <class List>
+int index_of(const List& list, const std::string& name) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+class Roles {
+ public:
+  explicit Roles(Declaration& declaration) : d_(declaration) {}
+
+  void run(int own_ports) {
+    SystemSpec& s = d_.spec;
+    std::vector<std::string> quantities, ports, outputs;
+    for (const auto& q : s.quantities) quantities.push_back(q.name);
+    for (const auto& p : s.dynamic_ports) ports.push_back(p.name);
+    for (const auto& o : s.outputs) outputs.push_back(o.name);
+    if (d_.roles && d_.roles->has("force_ports")) s.force_ports = *d_.roles->texts("force_ports");
+    for (const auto& port : s.force_ports) check_role("force_ports", port, ports);
+    s.roles["port"] = role("port", own_ports > 0 ? ports.front() : s.force_ports.empty() ? ports.front() : s.force_ports.front(), ports);
+    const auto& port =
+        *std::find_if(s.dynamic_ports.begin(), s.dynamic_ports.end(), [&](const PortSpec& p) { return p.name == s.roles["port"]; });
+    const auto moving = std::find_if(s.states.begin(), s.states.end(), [](const StateSpec& state) { return state.rate_of >= 0; });
+    const std::string by_default = !port.conjugate.empty()    ? port.conjugate
+                                   : moving != s.states.end() ? moving->name
+                                                              : s.states.front().name;
+    s.roles["rate"] = role("rate", by_default, quantities);
+    const int rate = index_of(s.states, s.roles["rate"]);
+    const int level = rate < 0 ? -1 : s.states[static_cast<std::size_t>(rate)].rate_of;
+    s.roles["level"] = role("level", level < 0 ? s.roles["rate"] : s.states[static_cast<std::size_t>(level)].name, quantities);
+    s.roles["output"] = role("output", outputs.front(), outputs);
+    for (auto& p : s.dynamic_ports) {
+      if (p.conjugate.empty()) p.conjugate = s.roles["rate"];
+      if (index_of(s.quantities, p.conjugate) < 0)
+        throw InputError(d_.where,
+                         "[ports] " + p.name + ": rate = '" + p.conjugate + "' is no quantity" + suggest(p.conjugate, quantities));
+    }
+    if (d_.roles) d_.roles->finish();
+  }
+
+ private:
+  std::string role(const char* name, const std::string& fallback, const std::vector<std::string>& valid) {
+    const std::string given = d_.roles ? d_.roles->text(name).value_or(fallback) : fallback;
+    check_role(name, given, valid);
+    return given;
+  }
+  void check_role(const char* name, const std::string& given, const std::vector<std::string>& valid) {
+    if (std::find(valid.begin(), valid.end(), given) == valid.end())
+      throw InputError(d_.roles ? d_.roles->where(name) : d_.where,
+                       std::string("[roles] ") + name + ": there is no '" + given + "'" + suggest(given, valid));
+  }
+
+  Declaration& d_;
+};
+
+}  // namespace
+
+void set_roles(Declaration& declaration, int own_ports) { Roles(declaration).run(own_ports); }
+
+}  // namespace misfit::declared

@@ -1,0 +1,34 @@
+#pragma once
+
+// Inside of declared systems: not for other files.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/core/config.h"
+#include "misfit/formula/build.h"
+#include "misfit/model/system.h"
+
+namespace misfit::declared {
+
+/// A formula that stands in a file, and what it is for.
+struct Formula {
+  formula::Syntax syntax;
+  formula::Measure measure;  ///< unit it must have
+  std::string unit;
+};
+
+/// A declared system as read: names, units and syntax are checked, formulas not yet built.
+struct Declaration {
+  SystemSpec spec;                  ///< states, inputs, ports, constants, outputs; quantities as declared, in order
+  std::vector<Formula> quantities;  ///< of spec.quantities
+  std::vector<Formula> equations;   ///< per state; a syntax without nodes: the state's rate is the state `rate_of` it
+  std::vector<Formula> outputs;
+  Source where;  ///< of the file
+  std::optional<config::Section> roles;
+};
+
+[[nodiscard]] Declaration read(const std::string& text, const std::string& file, const std::string& key);
+
+}  // namespace misfit::declared

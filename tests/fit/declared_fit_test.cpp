@@ -1,0 +1,198 @@
+// Systems given as text, fitted to motion that plain loops integrated.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "misfit/fit/output_error.h"
+#include "tests/model/declared_texts.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_models;
+using testing::HasSubstr;
+
+const std::string tanks_text = R"toml(
+[states]
+x1 = { unit = "V", min = 0.0, scale = 5.0, initial = "shared" }
+x2 = { unit = "V", min = 0.0, scale = 5.0, initial = "shared" }
+[inputs]
+u = { unit = "V", hold = "zero_order" }
+[parameters]
+k1 = { unit = "V^0.5/s", value = 0.04, bounds = [0.0, 1.0], free = true }
+k2 = { unit = "V^0.5/s", value = 0.04, bounds = [0.0, 1.0], free = true }
+k3 = { unit = "V^0.5/s", value = 0.04, bounds = [0.0, 1.0], free = true }
+k4 = { unit = "1/s", value = 0.03, bounds = [0.0, 1.0], free = true }
+[equations]
+x1 = "-k1*sqrt(x1) + k4*u"
+x2 = "k2*sqrt(x1) - k3*sqrt(x2)"
+[outputs]
+y = { unit = "V", formula = "x2", noise = 0.01 }
+)toml";
+
+struct TankTruth {
+  double k1 = 0.055, k2 = 0.05, k3 = 0.06, k4 = 0.045, spill = 0.0, level = 1e9, x1 = 4.0, x2 = 5.2;
+};
+
+/// Small Euler steps: another way than the program's.
+Signals tanks(const TankTruth& truth, unsigned seed, std::size_t samples = 500, double noise = 0.01) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0.5, 6.0);
+  Signals s;
+  s.name = "record " + std::to_string(seed);
+  s.measured = {{"y", "V", {}, 0.0}};
+  s.inputs = {{"u", "V", {}, 0.0}};
+  double x1 = truth.x1, x2 = truth.x2, u = 3.0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    if (i % 25 == 0) u = uniform(random);
+    s.t.push_back(4.0 * static_cast<double>(i));
+    s.inputs[0].values.push_back(u);
+    s.measured[0].values.push_back(x2 + noise * normal(random));
+    constexpr int parts = 4000;
+    for (int k = 0; k < parts; ++k) {
+      const double h = 4.0 / parts, over = std::max(x1 - truth.level, 0.0) * truth.spill;
+      const double d1 = -truth.k1 * std::sqrt(x1) + truth.k4 * u, d2 = truth.k2 * std::sqrt(x1) - truth.k3 * std::sqrt(x2) + over;
+      x1 = std::max(x1 + h * d1, 0.0);
+      x2 = std::max(x2 + h * d2, 0.0);
+    }
+  }
+  return s;
+}
+
+FittedModel fit(const Model& model, const std::vector<Signals>& experiments) {
+  OutputErrorStart options;
+  options.from_regression = false;
+  return output_error(equation_error(model, experiments), experiments, options);
+}
+
+void expect_recovered(const Fit& result, const std::string& name, double truth) {
+  const Estimate& e = result.parameters.at(name);
+  EXPECT_GT(e.sigma, 0.0) << name;
+  EXPECT_NEAR(e.value, truth, 4.0 * e.sigma + 1e-4 * std::abs(truth)) << name;
+}
+
+TEST(DeclaredTanks, OneRecordLeavesTheScaleOfTheHiddenLevelOpen) {
+  // x1 may be scaled by s if k1 and k2 are scaled by sqrt(s), 1/sqrt(s) and k4 by s: one direction of four parameters and x1(0).
+  const auto known = registry_with(tanks_text);
+  const FittedModel fitted = fit(assemble(request_of("text"), *known), {tanks({}, 1)});
+  EXPECT_EQ(fitted.fit.status, FitStatus::failed);
+  EXPECT_THAT(fitted.fit.message, HasSubstr("k1, k2 and k4"));
+}
+
+TEST(DeclaredTanks, AreRecoveredFromTwoRecordsThatBeginAlike) {
+  const auto known = registry_with(tanks_text);
+  ModelRequest request = request_of("text");
+  request.parameters["k2"].free = false;
+  request.parameters["k2"].value = 0.05;
+  const FittedModel fitted = fit(assemble(request, *known), {tanks({}, 1), tanks({}, 2, 300)});
+  ASSERT_EQ(fitted.fit.status, FitStatus::converged) << fitted.fit.message;
+  const TankTruth truth;
+  expect_recovered(fitted.fit, "k1", truth.k1);
+  expect_recovered(fitted.fit, "k3", truth.k3);
+  expect_recovered(fitted.fit, "k4", truth.k4);
+  EXPECT_NEAR((fitted.initial_states[0] - fitted.initial_states[1]).norm(), 0.0, 1e-6) << "shared";
+  EXPECT_NEAR(fitted.initial_states[0][1], truth.x2, 0.02);
+  EXPECT_NEAR(fitted.fit.rms.at("y").value, 0.01, 0.001);
+}
+
+TEST(DeclaredTanks, FixedInitialStatesStayWhereTheyAre) {
+  const auto known = registry_with(tanks_text);
+  ModelRequest request = request_of("text");
+  request.parameters["k2"].free = false;
+  request.parameters["k2"].value = 0.05;
+  request.initial["x1"] = {Initial::fixed, 4.0, {}};
+  request.initial["x2"] = {Initial::free, std::nullopt, {}};
+  const FittedModel fitted = fit(assemble(request, *known), {tanks({}, 3)});
+  ASSERT_EQ(fitted.fit.status, FitStatus::converged) << fitted.fit.message;
+  EXPECT_NEAR(fitted.initial_states[0][0], 4.0, 1e-6);
+  expect_recovered(fitted.fit, "k1", TankTruth{}.k1);
+}
+
+TEST(DeclaredEffect, WithAKinkAtAFreeLevelConverges) {
+  TankTruth truth;
+  truth.spill = 0.02;
+  truth.level = 12.0;
+  const auto known = registry_with(tanks_text);
+  auto with = std::make_shared<Registry>(Registry::over(*known));
+  with->add(declared_effect(
+      effect_in_one_line(
+          "spill",
+          R"toml({ port = "dx2/dt", formula = "c*max(x1 - level, 0)", parameters = { c = { unit = "1/s", value = 0.005, bounds = [0, 1] }, level = { unit = "V", value = 9.0, bounds = [0, 30] } } })toml"),
+      known->system("text").make({})->spec()));
+  ModelRequest request = request_of("text", {effect("spill")});
+  request.parameters["k2"].free = false;
+  request.parameters["k2"].value = 0.05;
+  const FittedModel fitted = fit(assemble(request, *with), {tanks(truth, 4, 800)});
+  ASSERT_EQ(fitted.fit.status, FitStatus::converged) << fitted.fit.message;
+  expect_recovered(fitted.fit, "c", truth.spill);
+  expect_recovered(fitted.fit, "level", truth.level);
+  EXPECT_NEAR(fitted.fit.rms.at("y").value, 0.01, 0.001);
+}
+
+/// A damped oscillation, y'' = −30 y − 0.4 y' + 10 u, in small steps.
+Signals oscillation(bool driven) {
+  Signals s;
+  s.name = "oscillation";
+  s.measured = {{"y", "V", {}, 0.0}};
+  s.inputs = {{"u", "V", {}, 0.0}};
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  double y = 1.0, v = 0.0;
+  for (int i = 0; i < 600; ++i) {
+    const double t = 0.02 * i, next = 0.02 * (i + 1);
+    const auto u = [&](double at) { return driven ? std::sin(3.0 * at) + std::sin(7.3 * at) : 0.0; };
+    s.t.push_back(t);
+    s.inputs[0].values.push_back(u(t));
+    s.measured[0].values.push_back(y + 0.002 * normal(random));
+    constexpr int parts = 200;
+    for (int k = 0; k < parts; ++k) {  // leapfrog, the input straight between samples
+      const double h = 0.02 / parts, share = (k + 0.5) / parts, input = u(t) + share * (u(next) - u(t));
+      y += 0.5 * h * v;
+      v = (v * (1.0 - 0.2 * h) + h * (10.0 * input - 30.0 * y)) / (1.0 + 0.2 * h);
+      y += 0.5 * h * v;
+    }
+  }
+  return s;
+}
+
+TEST(DeclaredDuffing, IsRecoveredFromAnIndependentIntegration) {
+  const auto known = registry_with(duffing_text);
+  ModelRequest request = request_of("text");
+  request.parameters["gain"].free = true;
+  request.parameters["stiffness"].value = 20.0;
+  const FittedModel start = equation_error(assemble(request, *known), {oscillation(true)});
+  EXPECT_EQ(start.fit.status, FitStatus::converged) << start.fit.message;
+  const std::vector<Signals> experiments{oscillation(true)};
+  const FittedModel fitted = output_error(start, experiments);
+  ASSERT_EQ(fitted.fit.status, FitStatus::converged) << fitted.fit.message;
+  expect_recovered(fitted.fit, "stiffness", 30.0);
+  expect_recovered(fitted.fit, "damping", 0.4);
+  expect_recovered(fitted.fit, "gain", 10.0);
+  expect_recovered(fitted.fit, "cubic", 0.0);
+}
+
+TEST(DeclaredModels, TwoParametersThatOccurOnlyAsAProductAreNamed) {
+  std::string text = duffing_text;
+  text.replace(text.find("gain*u"), 6, "gain*lever*u");
+  text.replace(text.find("gain = {"), 0, "lever = { unit = \"-\", value = 2.0, free = true }\n");
+  const auto known = registry_with(text);
+  ModelRequest request = request_of("text");
+  request.parameters["gain"].free = true;
+  const FittedModel fitted = fit(assemble(request, *known), {oscillation(true)});
+  EXPECT_EQ(fitted.fit.status, FitStatus::failed);
+  EXPECT_THAT(fitted.fit.message, HasSubstr("lever and gain apart: only their product acts"));
+}
+
+TEST(DeclaredModels, AParameterThatTheDataDoNotTouchIsNamed) {
+  const auto known = registry_with(duffing_text);
+  ModelRequest request = request_of("text");
+  request.parameters["gain"].free = true;
+  const FittedModel fitted = fit(assemble(request, *known), {oscillation(false)});
+  EXPECT_EQ(fitted.fit.status, FitStatus::failed);
+  EXPECT_THAT(fitted.fit.message, HasSubstr("nothing in these data depends on gain"));
+}
+
+}  // namespace
+}  // namespace misfit

@@ -1,0 +1,218 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "misfit/model/evaluator.h"
+#include "tests/model/declared_texts.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_models;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  if (at == std::string::npos) throw std::logic_error("no '" + what + "' in the text");
+  return text.replace(at, what.size(), by);
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    static_cast<void>(declared_system(text, "text.toml", "text"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(DeclaredDuffing, HasTheRatesAndDerivativesOfTheClosedForm) {
+  const auto known = registry_with(duffing_text);
+  const Model model = assemble(request_of("text"), *known);
+  Evaluator evaluator(model);
+  const double x[] = {0.3, -1.2}, u[] = {0.7};
+  double dx[2], D[2 * kRowStride];
+  evaluator.rates(x, u, 0.0, dx);
+  EXPECT_DOUBLE_EQ(dx[0], -1.2);
+  EXPECT_NEAR(dx[1], 10.0 * 0.7 + 0.4 * 1.2 - 30.0 * 0.3 - 50.0 * 0.027, 1e-14);
+  Slots slots;
+  evaluator.linearise_rates(x, u, 0.0, slots, dx, D);
+  EXPECT_EQ(D[0], 0.0);
+  EXPECT_EQ(D[1], 1.0);
+  EXPECT_NEAR(D[kRowStride], -30.0 - 150.0 * 0.09, 1e-13);
+  EXPECT_NEAR(D[kRowStride + 1], -0.4, 1e-15);
+  const double by_parameter[] = {-0.3, 1.2, -0.027};  // stiffness, damping, cubic
+  ASSERT_EQ(slots.count(), 3);
+  for (int s = 0; s < 3; ++s) EXPECT_NEAR(D[kRowStride + 2 + s], by_parameter[slots.column(s)], 1e-15) << slots.column(s);
+}
+
+TEST(DeclaredDuffing, SaysWhatMisfitWantsToKnow) {
+  const auto known = registry_with(duffing_text);
+  const SystemSpec spec = known->system("text").make({})->spec();
+  EXPECT_EQ(spec.states[1].rate_of, 0) << "y' = v, so v is the rate of y";
+  EXPECT_EQ(spec.outputs[0].observes, 0);
+  EXPECT_THAT(spec.force_ports, ElementsAre("dv/dt")) << "y' = v holds by definition";
+  EXPECT_EQ(spec.roles.at("rate"), "v");
+  EXPECT_EQ(spec.roles.at("level"), "y");
+  EXPECT_EQ(spec.roles.at("port"), "push");
+  EXPECT_EQ(spec.roles.at("output"), "y");
+  EXPECT_THAT(spec.equation_inputs, ElementsAre("u"));
+  std::vector<std::string> ports;
+  for (const auto& port : spec.dynamic_ports) ports.push_back(port.name + " [" + port.unit + "] " + port.conjugate);
+  EXPECT_THAT(ports, ElementsAre("push [V/s^2] v", "dy/dt [V/s] y", "dv/dt [V/s^2] v"));
+  EXPECT_TRUE(spec.constants[0].strength && spec.constants[0].free);
+  EXPECT_NEAR(spec.fastest_rate, std::sqrt(30.0 + 150.0 * 0.01), 1e-12);
+}
+
+TEST(DeclaredDuffing, TakesEffectsOnItsPortsQuantitiesAndInputs) {
+  const auto known = registry_with(duffing_text);
+  for (const std::string port : {"push", "dv/dt", "dy/dt", "u", "spring", "y"}) {
+    auto with = std::make_shared<Registry>(Registry::over(*known));
+    const std::string unit = port == "u" || port == "y" ? "V" : port == "dy/dt" ? "V/s" : "V/s^2";
+    with->add(declared_effect(effect_in_one_line("extra", "{ port = \"" + port + "\", formula = \"c\", parameters = { c = { unit = \"" +
+                                                              unit + "\", value = 0.25 } } }"),
+                              known->system("text").make({})->spec()));
+    const Model without = assemble(request_of("text"), *known), model = assemble(request_of("text", {effect("extra")}), *with);
+    Evaluator plain(without), more(model);
+    const double x[] = {0.3, -1.2}, u[] = {0.7};
+    double a[2], b[2], ya[2], yb[2];
+    plain.rates(x, u, 0.0, a);
+    more.rates(x, u, 0.0, b);
+    plain.predict(x, u, 0.0, ya);
+    more.predict(x, u, 0.0, yb);
+    EXPECT_NEAR(b[0] - a[0], port == "dy/dt" ? 0.25 : 0.0, 1e-14) << port;
+    const double by_port = port == "push" || port == "dv/dt" ? 0.25 : port == "u" ? 2.5 : port == "spring" ? -0.25 : 0.0;
+    EXPECT_NEAR(b[1] - a[1], by_port, 1e-14) << port;
+    EXPECT_NEAR(yb[0] - ya[0], port == "y" ? 0.25 : 0.0, 1e-14) << port;
+  }
+}
+
+TEST(DeclaredSystems, KeepStatesInTheirRange) {
+  const auto known = registry_with(R"toml(
+[states]
+x1 = { unit = "V", min = 0.0, max = 2.0 }
+[parameters]
+k1 = { unit = "V^0.5/s", value = 0.5, free = true }
+[equations]
+x1 = "-k1*sqrt(x1)"
+[outputs]
+y = { unit = "V", formula = "x1" }
+)toml");
+  const Model model = assemble(request_of("text"), *known);
+  Evaluator evaluator(model);
+  double dx[1], D[kRowStride], y[2];
+  const double below = -0.3, above = 2.5;
+  Slots slots;
+  evaluator.linearise_rates(&below, nullptr, 0.0, slots, dx, D);
+  EXPECT_EQ(dx[0], 0.0);
+  EXPECT_EQ(D[0], 0.0);
+  evaluator.predict(&below, nullptr, 0.0, y);
+  EXPECT_EQ(y[0], 0.0);
+  evaluator.rates(&above, nullptr, 0.0, dx);
+  EXPECT_DOUBLE_EQ(dx[0], -0.5 * std::sqrt(2.0));
+}
+
+TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
+  EXPECT_THAT(error_of(replaced(duffing_text, "damping*v", "dampng*v")),
+              AllOf(HasSubstr("text.toml:18:"), HasSubstr("equation v"), HasSubstr("did you mean 'damping'")));
+  EXPECT_THAT(error_of(replaced(duffing_text, "gain*u -", "gain*v -")),
+              AllOf(HasSubstr("text.toml:18:"), HasSubstr("measure different things")));
+  EXPECT_THAT(error_of(replaced(duffing_text, "y = \"v\"", "y = \"v*y\"")),
+              AllOf(HasSubstr("equation y"), HasSubstr("[V^2/s]"), HasSubstr("needs [V/s]")));
+  EXPECT_THAT(error_of(replaced(duffing_text, "[inputs]", "[input]")), HasSubstr("input"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "v = \"gain", "w = \"gain")), HasSubstr("no state 'w'"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "gain = {", "unused = { unit = \"-\", value = 1 }\ngain = {")),
+              HasSubstr("nothing depends on parameter 'unused'"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "unit = \"1/s\"", "unit = \"1/ms\"")), HasSubstr("is not an SI unit"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "unit = \"1/s\", ", "")), HasSubstr("the unit is missing"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "gain = {", "sin = {")), HasSubstr("is no function of formulas"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "gain = {", "u = {")), HasSubstr("'u' is taken"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "stiffness*y +", "spring +")), HasSubstr("depends on itself"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "stiffness*y +", "push +")), HasSubstr("in equations only"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "value = 0.4, bounds", "value = -1.0, bounds")), HasSubstr("is outside its bounds"));
+  EXPECT_THAT(error_of(duffing_text + "[roles]\nrate = \"w\"\n"), HasSubstr("[roles] rate: there is no 'w'"));
+  EXPECT_THAT(error_of("[states]\nx = { unit = \"V\" }\n"), HasSubstr("[equations] is missing"));
+  EXPECT_THAT(error_of("x = ["), HasSubstr("not valid TOML"));
+}
+
+TEST(DeclaredSystems, SayWhereAFormulaIsNotDefined) {
+  const auto known = registry_with(R"toml(
+[states]
+x1 = { unit = "V" }
+[parameters]
+k1 = { unit = "V^0.5/s", value = 0.05, free = true }
+[equations]
+x1 = "-k1*sqrt(x1)"
+[outputs]
+y = { unit = "V", formula = "x1" }
+)toml");
+  const Model model = assemble(request_of("text"), *known);
+  const double x = -0.2;
+  EXPECT_EQ(Evaluator(model).explain(&x, nullptr, 84.0),
+            "x1 is -0.2 V: sqrt(x1) is not finite there, in equation x1; with k1 = 0.05 V^0.5/s");
+}
+
+TEST(DeclaredSystems, InitialStatesAreFreeSharedOrFixedAndAStudyMayChangeThat) {
+  const std::string text = replaced(duffing_text, "scale = 0.1", "initial = \"shared\"");
+  const auto known = registry_with(replaced(text, "scale = 4.0", "initial = 2.5"));
+  ModelRequest request = request_of("text");
+  Model model = assemble(request, *known);
+  EXPECT_EQ(model.state_specs[0].initial, Initial::shared);
+  EXPECT_EQ(model.state_specs[1].initial, Initial::fixed);
+  EXPECT_EQ(model.state_specs[1].start, 2.5);
+  request.initial["v"].initial = Initial::free;
+  model = assemble(request, *known);
+  EXPECT_EQ(model.state_specs[1].initial, Initial::free);
+  request.initial["w"].initial = Initial::free;
+  EXPECT_THROW(static_cast<void>(assemble(request, *known)), InputError);
+}
+
+TEST(DeclaredEffects, TellStrengthsFromShapes) {
+  const auto known = registry_with(duffing_text);
+  const SystemSpec system = known->system("text").make({})->spec();
+  const auto kinds = [&](const std::string& line) {
+    std::string out;
+    const auto made = declared_effect(effect_in_one_line("extra", line), system);
+    for (const auto& c : made->spec().coefficients) out += std::string(c.name) + (c.kind == CoefficientKind::strength ? "+" : "") + " ";
+    return out;
+  };
+  EXPECT_EQ(
+      kinds(
+          R"toml({ port = "dv/dt", formula = "c*max(y - level, 0)", parameters = { c = { unit = "1/s^2" }, level = { unit = "V" } } })toml"),
+      "c+ level ");
+  EXPECT_EQ(
+      kinds(R"toml({ port = "dv/dt", formula = "a*y + b*y^3", parameters = { a = { unit = "1/s^2" }, b = { unit = "1/V^2/s^2" } } })toml"),
+      "a+ b+ ");
+  EXPECT_EQ(
+      kinds(R"toml({ port = "dv/dt", formula = "c*(y - level)", parameters = { c = { unit = "1/s^2" }, level = { unit = "V" } } })toml"),
+      "c+ level ");
+}
+
+TEST(DeclaredEffects, ErrorsAreWords) {
+  const auto known = registry_with(duffing_text);
+  const SystemSpec system = known->system("text").make({})->spec();
+  const auto error = [&](const std::string& line) -> std::string {
+    try {
+      static_cast<void>(declared_effect(effect_in_one_line("extra", line), system));
+    } catch (const InputError& caught) {
+      return caught.what();
+    }
+    return {};
+  };
+  EXPECT_THAT(error(R"toml({ port = "dw/dt", formula = "c", parameters = { c = { unit = "-" } } })toml"),
+              AllOf(HasSubstr("no port 'dw/dt'"), HasSubstr("dv/dt")));
+  EXPECT_THAT(
+      error(
+          R"toml({ port = "dv/dt", formula = "c*max(y - levl, 0)", parameters = { c = { unit = "1/s^2" }, level = { unit = "V" } } })toml"),
+      AllOf(HasSubstr("study.toml:2:"), HasSubstr("'levl'"), HasSubstr("did you mean 'level'")));
+  EXPECT_THAT(error(R"toml({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s" } } })toml"),
+              AllOf(HasSubstr("[V/s]"), HasSubstr("needs [V/s^2]")));
+  EXPECT_THAT(error(R"toml({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s^2" }, d = { unit = "V" } } })toml"),
+              HasSubstr("nothing depends on its parameter 'd'"));
+  EXPECT_THAT(error(R"toml({ port = "dv/dt", formula = "exp(c)*v*stiffness/damping", parameters = { c = { unit = "-" } } })toml"),
+              HasSubstr("switches it off"));
+}
+
+}  // namespace
+}  // namespace misfit
