@@ -4,7 +4,9 @@
 #include <misfit_models_registry.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -69,7 +71,8 @@ void try_system(const std::string& text) {
   own.add(declared_system(text, "fuzz.toml", "fuzz"));
   ModelRequest request;
   request.system = "fuzz";
-  for (const auto& constant : own.system("fuzz").make({})->spec().constants) {
+  const std::unique_ptr<System> system = own.system("fuzz").make({});
+  for (const auto& constant : system->spec().constants) {
     if (constant.required) request.constants[constant.name] = std::clamp(1.0, constant.lower, constant.upper);
   }
   run_once(assemble(request, own));
