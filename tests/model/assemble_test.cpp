@@ -212,5 +212,13 @@ TEST(Assemble, AnEffectCannotActOnPortsOfDifferentKinds) {
               AllOf(HasSubstr("study.toml:30"), HasSubstr("'speed_reading'"), HasSubstr("different kinds")));
 }
 
+TEST(Assemble, FreesNoConstantThatNobodyAskedFor) {
+  for (const auto& request : {parachute(true), parachute(false), spherical(), cart({})}) {
+    const Model model = assemble(request, registry());
+    for (std::size_t k = 0; k < model.system->spec().constants.size(); ++k)
+      EXPECT_FALSE(model.parameters[k].free) << request.system << ' ' << model.parameters[k].name;
+  }
+}
+
 }  // namespace
 }  // namespace misfit

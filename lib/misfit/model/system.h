@@ -53,12 +53,12 @@ struct ConstantSpec {
   std::string name, unit, doc;
   double lower = 0.0, upper = 0.0;  ///< inclusive
   bool required = true;
-  double value = 0.0;        ///< when not required
+  double value = 0.0;  ///< when not required
+  /// Acts on the outputs, and on quantities of the sensor, alone: where it is free, the rates keep their fast derivatives.
+  bool of_sensor = false;
   bool free = false;         ///< unless a study says otherwise
   double prior_sigma = 0.0;  ///< Gaussian about the value [unit]; 0: no prior
   bool strength = false;     ///< the rates are linear in it: a regression finds it
-  /// Acts on the outputs, and on quantities of the sensor, alone: where it is free, the rates keep their fast derivatives.
-  bool of_sensor = false;
 };
 
 struct OutputSpec {
