@@ -32,13 +32,11 @@ class Roles {
     const std::string by_default = !port.conjugate.empty()    ? port.conjugate
                                    : moving != s.states.end() ? moving->name
                                                               : s.states.front().name;
-    s.roles["rate"] = role("rate", by_default, quantities);
-    const int rate = index_of(s.states, s.roles["rate"]);
-    const int level = rate < 0 ? -1 : s.states[static_cast<std::size_t>(rate)].rate_of;
-    s.roles["level"] = role("level", level < 0 ? s.roles["rate"] : s.states[static_cast<std::size_t>(level)].name, quantities);
-    s.roles["output"] = role("output", outputs.front(), outputs);
+    set_motion(by_default, quantities);
+    s.roles["output"] = s.roles["reading"] = role("output", outputs.front(), outputs);
+    if (!s.inputs.empty()) s.roles["input"] = role("input", s.inputs.front().name, quantities);
     for (auto& p : s.dynamic_ports) {
-      if (p.conjugate.empty()) p.conjugate = s.roles["rate"];
+      if (p.conjugate.empty()) p.conjugate = by_default;
       if (index_of(s.quantities, p.conjugate) < 0)
         throw InputError(d_.where,
                          "[ports] " + p.name + ": rate = '" + p.conjugate + "' is no quantity" + suggest(p.conjugate, quantities));
@@ -47,6 +45,17 @@ class Roles {
   }
 
  private:
+  /// `rate` is a role only where something moves, or the file says so: friction on a level would find itself in every tank.
+  void set_motion(const std::string& by_default, const std::vector<std::string>& quantities) {
+    SystemSpec& s = d_.spec;
+    const std::string moving = role("rate", by_default, quantities);
+    const int rate = index_of(s.states, moving);
+    const int level = rate < 0 ? -1 : s.states[static_cast<std::size_t>(rate)].rate_of;
+    if (level >= 0 || (d_.roles && d_.roles->has("rate"))) s.roles["rate"] = moving;
+    s.roles["level"] = role("level", level < 0 ? moving : s.states[static_cast<std::size_t>(level)].name, quantities);
+    if (level >= 0) s.roles["displacement"] = s.roles["level"];
+  }
+
   std::string role(const char* name, const std::string& fallback, const std::vector<std::string>& valid) {
     const std::string given = d_.roles ? d_.roles->text(name).value_or(fallback) : fallback;
     check_role(name, given, valid);

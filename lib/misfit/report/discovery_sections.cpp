@@ -147,8 +147,8 @@ void show_discovery(const Discovery& d, Page& page, const Put& draw) {
     for (const auto& name : c.group) {
       if (name != effect_at(c.effect, c.roles)) group += (group.empty() ? "" : ", ") + name;
     }
-    rows.push_back({std::to_string(c.rank), effect_at(c.effect, c.roles), number(c.predicted_drop), number(c.actual_drop), number(c.held_out_gain),
-                    format_probability(c.p_value), group.empty() ? "–" : group, c.accepted ? "yes" : "no", c.why});
+    rows.push_back({std::to_string(c.rank), effect_at(c.effect, c.roles), number(c.predicted_drop), number(c.actual_drop),
+                    number(c.held_out_gain), format_probability(c.p_value), group.empty() ? "–" : group, c.accepted ? "yes" : "no", c.why});
   }
   page.table(rows);
   if (!d.tried.empty()) page.subsection("What was looked at");
