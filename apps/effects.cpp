@@ -67,14 +67,14 @@ nlohmann::ordered_json as_json(const EffectSpec& spec) {
 
 }  // namespace
 
-int effects_verb(const Options& options, const Registry& base) {
+int effects_verb(const Options& options, const Registry& registry) {
   std::optional<Study> study;
   if (!options.study.empty()) study = read_study(options.study);
-  const auto declared = study ? study_registry(*study, base) : nullptr;
-  const Registry& registry = study ? *declared : base;
+  const auto declared = study ? study_registry(*study, registry) : nullptr;
+  const Registry& known = study ? *declared : registry;
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const auto& key : chosen(study, registry)) {
-    const EffectSpec& spec = registry.effect(key).spec();
+  for (const auto& key : chosen(study, known)) {
+    const EffectSpec& spec = known.effect(key).spec();
     if (options.json) {
       all.push_back(as_json(spec));
       continue;

@@ -25,7 +25,7 @@ const char* word_of(ColumnUse use) {
 
 /// Where the study goes: --out, else a folder called like the data in the present one.
 fs::path folder_for(const Options& options, const fs::path& data) {
-  const fs::path folder = options.out.empty() ? fs::path(data.stem()) : fs::path(options.out);
+  fs::path folder = options.out.empty() ? fs::path(data.stem()) : fs::path(options.out);
   for (const char* file : {"study.toml", "model.toml"}) {
     if (fs::exists(folder / file) && !options.force)
       throw InputError((folder / file).string() + " is there already: --force overwrites it, --out DIR writes elsewhere");

@@ -100,7 +100,7 @@ const Rung* parent_of(const Ladder& ladder, const Rung& rung) {
 }
 
 std::string drop_text(const Rung& rung) {
-  const std::string note = rung.note.empty() ? "" : wrap_text(as_sentence(rung.note), width, "  ") + "\n";
+  std::string note = rung.note.empty() ? "" : wrap_text(as_sentence(rung.note), width, "  ") + "\n";
   if (!rung.actual_drop) return note;
   std::string out =
       fmt::format("  drop: {} predicted, {:.1f} actual", rung.predicted_drop ? number(rung.predicted_drop) : "none", *rung.actual_drop);

@@ -97,11 +97,12 @@ void note_gaps(const Signals& signals, SimulatedMotion& out) {
   }
   constexpr double worth_a_word = 0.01;
   const double share = static_cast<double>(missing) / static_cast<double>(std::max<std::size_t>(all, 1));
-  if (share > worth_a_word)
+  if (share > worth_a_word) {
     out.notes.push_back(
         fmt::format("{:.1f} % of the readings of {} are missing, and the simulated motions miss the same times; if what is "
                     "missing is the deepest excursions, the measured distribution is narrower for that",
                     100.0 * share, signals.name));
+  }
 }
 
 struct Experiment {

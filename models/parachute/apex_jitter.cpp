@@ -41,10 +41,11 @@ struct ApexJitter {
   static void add(const Reads<T, K>& in, T* P, T* drift) {
     const T omega = two_pi * in.c[1];
     for (int axis = 0; axis < 2; ++axis) {
-      const T &e = in.z[2 * axis], &v = in.z[2 * axis + 1];
+      const std::ptrdiff_t first = 2 * static_cast<std::ptrdiff_t>(axis);
+      const T &e = in.z[first], &v = in.z[first + 1];
       P[axis] = in.c[0] * e;
-      drift[2 * axis] = v;
-      drift[2 * axis + 1] = -omega * (omega * e + 2.0 * in.c[2] * v);
+      drift[first] = v;
+      drift[first + 1] = -omega * (omega * e + 2.0 * in.c[2] * v);
     }
   }
 

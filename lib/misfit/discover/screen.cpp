@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -27,7 +28,7 @@ double novelty(const ScoreTest& score, const Eigen::MatrixXd& a, const Eigen::Ma
   Eigen::Index known = 0;
   for (Eigen::Index i = 0; i < pa.cols(); ++i) {
     const double na = pa.col(i).squaredNorm(), nb = pb.col(i).squaredNorm();
-    if (!(na > 0.0 && nb > 0.0)) continue;
+    if (!(na > 0.0) || !(nb > 0.0)) continue;
     const double product = pa.col(i).dot(pb.col(i));
     shared += product * product / (na * nb);
     ++known;
@@ -81,6 +82,31 @@ void look_closer(const FilterEstimate& estimate, const ScoreTest& score, Screene
   }
 }
 
+/// |Σ λ_k exp(i ω t_k)|²: the rotation goes on from sample to sample, with its cosine only where the step changes.
+double line_power(const Eigen::VectorXd& lambda, const std::vector<double>& t, double omega) {
+  constexpr std::size_t anew = 512;  // from time to time: the rotation gathers rounding
+  std::complex<double> sum, at, turn;
+  double last = -1.0;
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    const double h = k == 0 ? 0.0 : t[k] - t[k - 1];
+    if (h != last) turn = std::polar(1.0, omega * h);
+    last = h;
+    at = k % anew == 0 ? std::polar(1.0, omega * t[k]) : at * turn;
+    sum += lambda[static_cast<Eigen::Index>(k)] * at;
+  }
+  return std::norm(sum);
+}
+
+/// Each line over its background, the running median over 1/20 of the band: lines stand out of it.
+void add_over_background(const std::vector<double>& line, std::vector<double>& power) {
+  const std::size_t count = line.size(), reach = std::max<std::size_t>(40, count / 40);
+  for (std::size_t f = 0; f < count; ++f) {
+    const auto from = static_cast<std::ptrdiff_t>(f > reach ? f - reach : 0);
+    const auto to = static_cast<std::ptrdiff_t>(std::min(count, f + reach));
+    power[f] += line[f] / std::max(median({line.begin() + from, line.begin() + to}), 1e-300);
+  }
+}
+
 /// Frequencies whose line in the score of the force steps stands out most, as cells; their count among all scanned.
 std::vector<double> frequency_peaks(const Specimen& specimen, const ForceColumns& path, double& scanned) {
   const std::vector<double>& t = path.times();
@@ -88,51 +114,32 @@ std::vector<double> frequency_peaks(const Specimen& specimen, const ForceColumns
   const double step = 1.0 / (4.0 * length);
   const double nyquist = 0.45 * static_cast<double>(t.size()) / length;
   const auto count = static_cast<std::size_t>(std::max(0.0, (std::min(specimen.frequency_to, nyquist) - specimen.frequency_from) / step));
-  std::vector<double> power(count, 0.0);
+  const auto frequency = [&](std::size_t f) { return specimen.frequency_from + static_cast<double>(f) * step; };
+  std::vector<double> power(count, 0.0), line(count);
   for (int port : specimen.ports) {
     const Eigen::VectorXd lambda = path.score_of_steps(port);
-    std::vector<double> line(count);
-    for (std::size_t f = 0; f < count; ++f) {
-      const double omega = 2.0 * std::numbers::pi * (specimen.frequency_from + static_cast<double>(f) * step);
-      double re = 0.0, im = 0.0, x = 0.0, y = 0.0, c = 1.0, s = 0.0, last_h = -1.0;
-      for (std::size_t k = 0; k < t.size(); ++k) {
-        if (k == 0 || k % 512 == 0) {  // anew from time to time: the rotation gathers rounding
-          x = std::cos(omega * t[k]);
-          y = std::sin(omega * t[k]);
-        } else {
-          const double h = t[k] - t[k - 1];
-          if (h != last_h) {
-            c = std::cos(omega * h);
-            s = std::sin(omega * h);
-            last_h = h;
-          }
-          const double next = c * x - s * y;
-          y = s * x + c * y;
-          x = next;
-        }
-        re += lambda[static_cast<Eigen::Index>(k)] * x;
-        im += lambda[static_cast<Eigen::Index>(k)] * y;
-      }
-      line[f] = re * re + im * im;
-    }
-    // The background is the running median over 1/20 of the band: lines stand out of it.
-    const std::size_t reach = std::max<std::size_t>(40, count / 40);
-    for (std::size_t f = 0; f < count; ++f) {
-      const std::size_t from = f > reach ? f - reach : 0, to = std::min(count, f + reach);
-      power[f] +=
-          line[f] /
-          std::max(median({line.begin() + static_cast<std::ptrdiff_t>(from), line.begin() + static_cast<std::ptrdiff_t>(to)}), 1e-300);
-    }
+    for (std::size_t f = 0; f < count; ++f) line[f] = line_power(lambda, t, 2.0 * std::numbers::pi * frequency(f));
+    add_over_background(line, power);
   }
   scanned = static_cast<double>(count) / 2.0;  // two steps of a half width each are one independent line
   std::vector<std::size_t> order(count);
   for (std::size_t f = 0; f < count; ++f) order[f] = f;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return power[a] > power[b]; });
+  constexpr std::size_t most = 8;
   std::vector<double> out;
-  for (std::size_t f : order) {
-    constexpr std::size_t most = 8;
-    if (out.size() >= most) break;
-    out.push_back(specimen.frequency_from + static_cast<double>(f) * step);
+  for (std::size_t i = 0; i < std::min(count, most); ++i) out.push_back(frequency(order[i]));
+  return out;
+}
+
+/// The cells of a specimen; one with a frequency has each of its other cells at every peak.
+std::vector<std::vector<double>> cells_of(const Specimen& specimen, const ForceColumns& path, double& frequencies) {
+  if (specimen.frequency < 0) return specimen.cells;
+  std::vector<std::vector<double>> out;
+  for (double f : frequency_peaks(specimen, path, frequencies)) {
+    for (auto cell : specimen.cells) {
+      cell.push_back(f);
+      out.push_back(std::move(cell));
+    }
   }
   return out;
 }
@@ -156,16 +163,7 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
   };
   std::vector<Job> jobs;
   for (std::size_t s = 0; s < specimens.size(); ++s) {
-    cells[s] = specimens[s].cells;
-    if (specimens[s].frequency >= 0) {
-      cells[s].clear();
-      for (double f : frequency_peaks(specimens[s], path, frequencies[s])) {
-        for (auto cell : specimens[s].cells) {
-          cell.push_back(f);
-          cells[s].push_back(cell);
-        }
-      }
-    }
+    cells[s] = cells_of(specimens[s], path, frequencies[s]);
     for (std::size_t c = 0; c < cells[s].size(); ++c) jobs.push_back({s, c});
   }
   std::vector<std::vector<CellResult>> results(specimens.size());

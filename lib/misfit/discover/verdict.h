@@ -13,7 +13,7 @@ struct Unexplained {
 };
 
 /// The verdict in one sentence, and what would separate a group.
-void write_verdict(Discovery& discovery, const std::optional<Unexplained>& unexplained, double p_accept);
+void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept);
 
 /// "its strength friction ends at the bound 40 N m: not believable" for the first of these parameters that lies within a thousandth of its
 /// scale of a bound other than 0; nullopt if none does. A strength at 0 is an effect that is off, and its drop says so.
@@ -21,6 +21,6 @@ void write_verdict(Discovery& discovery, const std::optional<Unexplained>& unexp
 
 /// Remarks on the camera: what the sweep asks for and the model does not have (kept in Discovery::sweep_asks). A sensor effect is then not
 /// accepted: its drop is the sweep's prior, which a calibration has to follow up, not the flight.
-void add_camera_remarks(const Calibration* calibration, Discovery& discovery);
+void add_camera_remarks(const Calibration* calibration, Discovery& out);
 
 }  // namespace misfit
