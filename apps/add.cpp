@@ -3,6 +3,7 @@
 #include "apps/ladder.h"
 #include "apps/print.h"
 #include "apps/verbs.h"
+#include "misfit/core/error.h"
 
 namespace misfit {
 namespace {
@@ -11,7 +12,15 @@ namespace {
 /// is one. nullopt for a change of system, which no discovery ranks.
 std::optional<Candidate> candidate_of(Session& session, const std::string& effect) {
   if (effect.starts_with("system:")) return std::nullopt;
-  static_cast<void>(study_with_effect(session, effect, std::nullopt, session.folder.path()));  // refuses what cannot be added, before work
+  static_cast<void>(session.registry.effect(effect));  // InputError with the nearest name
+  try {
+    static_cast<void>(study_with_effect(session, effect, std::nullopt, session.folder.path()));  // refuses what cannot be added
+  } catch (const InputError&) {
+    // Not where it would go by default, or it is there already: discovery may know another place.
+    auto elsewhere = predict_effect(session, effect);
+    if (!elsewhere || elsewhere->roles.empty()) throw;
+    return elsewhere;
+  }
   return predict_effect(session, effect);
 }
 

@@ -121,10 +121,7 @@ class FilterPass {
     const double z = signals_.measured[channel].values[k] - y_[channel];
     const double innovation = z - a_.dot(kalman_.x) - kalman_.j[twice(o)];
     if (!(S > 0.0) || !std::isfinite(innovation)) return false;
-    if (wishes_.set_aside != nullptr && innovation * innovation > kOutlierGate * kOutlierGate * S) {
-      wishes_.set_aside->push_back(at);
-      return true;
-    }
+    if (wishes_.set_aside != nullptr && is_wild(at, channel, innovation * innovation > kOutlierGate * kOutlierGate * S)) return true;
     trace_.z[at] = z;
     trace_.e[at] = innovation;
     trace_.S[at] = S;
@@ -134,6 +131,26 @@ class FilterPass {
     Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * static_cast<std::size_t>(ny_), twice(ny_)) = kalman_.gain_jitter;
     if (wishes_.jacobian != nullptr) differentiate_reading(at, o, use);
     return true;
+  }
+
+  /// Keeps the list of readings set aside: those beyond the gate, unless more than kLongestWildRun of the channel follow each other.
+  bool is_wild(std::size_t at, std::size_t channel, bool beyond) {
+    int& run = wild_run_[channel];
+    if (!beyond) run = 0;
+    if (!beyond || run < 0) return false;
+    if (++run <= kLongestWildRun) {
+      wishes_.set_aside->push_back(at);
+      return true;
+    }
+    auto& aside = *wishes_.set_aside;
+    const auto width = static_cast<std::size_t>(ny_);
+    for (std::size_t kept = kLongestWildRun, i = aside.size(); kept > 0 && i-- > 0;) {
+      if (aside[i] % width != channel) continue;
+      aside.erase(aside.begin() + static_cast<std::ptrdiff_t>(i));
+      --kept;
+    }
+    run = -1;  // lost: all are taken in until one is within the gate
+    return false;
   }
 
   void count(Use use, double log_density) {
@@ -215,6 +232,7 @@ class FilterPass {
   Slots slots_;
   std::array<double, kMaxStates> x_{}, speed_{};
   std::array<double, kMaxOutputs + 1> y_{};
+  std::array<int, kMaxOutputs> wild_run_{};   // readings beyond the gate in a row; -1: too many
   std::array<double, kMaxOutputs> motion_{};  // of each output over time: a reading taken later sees it
   RowMatrix s_model_, s_jitter_, s_work_;     // ∂(state)/∂θ with the gains held
   Eigen::RowVectorXd s_row_;

@@ -63,6 +63,7 @@ struct FilterJacobian {
 };
 
 inline constexpr double kOutlierGate = 5.0;  ///< sigmas: beyond, a reading is set aside as an outlier (5.7e-7 of good ones)
+inline constexpr int kLongestWildRun = 3;    ///< more in a row are not wild: the model has lost the motion, which is what we look for
 
 struct PassWishes;  // filter_pass.h
 
@@ -77,6 +78,7 @@ class FilterRunner {
   bool run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, FilterJacobian* jacobian = nullptr, bool keep_P = false);
   /// Passes over readings more than kOutlierGate sigmas from their prediction as it comes to them, so that a wild one does not spoil the
   /// predictions by which its neighbours are judged; while nothing is taken in, the prediction's sigma grows and with it the gate.
+  /// Runs longer than kLongestWildRun are taken in: there the model fails, not the sensor.
   /// `set_aside`: sample · ny + channel of each.
   bool run_gated(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, std::vector<std::size_t>& set_aside);
 
