@@ -97,7 +97,8 @@ std::vector<double> distribution(const std::vector<double>& values) {
 std::vector<double> amplitude(const std::vector<double>& values, std::size_t window) {
   std::vector<double> halves;
   for (std::size_t from = 0; from + window <= values.size(); from += window) {
-    double low = INFINITY, high = -INFINITY;
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    double low = infinite, high = -infinite;
     std::size_t known = 0;
     for (std::size_t i = from; i < from + window; ++i) {
       if (!std::isfinite(values[i])) continue;
@@ -235,7 +236,7 @@ MotionSeries compare_motion(const std::string& experiment, const MotionPath& mea
 
 double overall_p_value(const MotionDistances& distances) {
   if (distances.empty()) return 1.0;
-  std::vector<double> largest(distances.front().size(), -INFINITY);
+  std::vector<double> largest(distances.front().size(), -std::numeric_limits<double>::infinity());
   for (const auto& group : distances) {
     std::vector<double> logs;
     for (double d : group) logs.push_back(std::log(std::max(d, 1e-12)));
