@@ -56,7 +56,7 @@ RunFolder::RunFolder(std::filesystem::path dir, std::string command, unsigned lo
     : dir_(std::move(dir)),
       command_(std::move(command)),
       seed_(seed),
-      study_(study.empty() ? study : std::filesystem::absolute(study).lexically_normal()) {
+      study_(study.empty() ? std::move(study) : std::filesystem::absolute(study).lexically_normal()) {
   make_writable_folder(dir_);
   stages_ = read_stages(file("run.json"), study_before_);
 }

@@ -20,7 +20,7 @@ void read_marker(const Section& section, std::string_view key, const Study& stud
 }
 
 std::optional<std::vector<double>> pixels(const Section& section, std::string_view key, std::size_t count, const char* form) {
-  const auto values = section.numbers(key, "px");
+  auto values = section.numbers(key, "px");
   if (values && values->size() != count) section.fail(key, std::string(form) + " is expected, in pixels of the frame");
   return values;
 }

@@ -158,13 +158,15 @@ void conclude(Diagnosis& out) {
     out.sentences.push_back("time explains nothing of it: the map over time has p " + format_probability(time->p_corrected));
   for (const auto& report : out.whiteness) {
     const double count = 3.0 * static_cast<double>(out.whiteness.size());
-    if (sidak(report.peak_p, count) < significant)
+    if (sidak(report.peak_p, count) < significant) {
       out.sentences.push_back("the innovations of " + report.channel + " hold a line at " + format_value(report.peak_frequency) + " Hz (" +
                               format_value(report.peak_power) + " times the power of white noise)");
-    if (sidak(std::min(report.ljung_box_p, report.periodogram_p), count) < significant)
+    }
+    if (sidak(std::min(report.ljung_box_p, report.periodogram_p), count) < significant) {
       out.sentences.push_back("the innovations of " + report.channel + " are not white: Ljung-Box p " +
                               format_probability(report.ljung_box_p) + ", cumulative periodogram p " +
                               format_probability(report.periodogram_p));
+    }
   }
 }
 

@@ -88,11 +88,49 @@ Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& C) const {
   return C - J_ * information_.solve(J_.transpose() * C);
 }
 
+namespace {
+
+/// Columns that the free parameters do not describe already; `independent`: the least share of one that they leave.
+std::vector<Eigen::Index> known_columns(const Eigen::MatrixXd& V, const Eigen::VectorXd& own, double& independent) {
+  constexpr double rounding = 1e-8;
+  std::vector<Eigen::Index> known;
+  independent = 1.0;
+  for (Eigen::Index i = 0; i < own.size(); ++i) {
+    if (!(own[i] > 0.0) || !std::isfinite(V(i, i))) continue;
+    const double share = V(i, i) / own[i];
+    independent = std::min(independent, share);
+    if (share > rounding) known.push_back(i);
+  }
+  if (known.empty()) independent = 0.0;
+  return known;
+}
+
+/// sᵀ V⁻¹ s with amplitudes V⁻¹ s over the known columns, in the directions of the correlation matrix that are more than rounding.
+void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::vector<Eigen::Index>& known, ScoreResult& out) {
+  const Eigen::MatrixXd A = V(known, known);
+  const Eigen::VectorXd scale = A.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * A * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  const Eigen::VectorXd turned = eigen.eigenvectors().transpose() * (scale.asDiagonal() * Eigen::VectorXd(s(known)));
+  Eigen::VectorXd amplitude = Eigen::VectorXd::Zero(A.rows()), variance = Eigen::VectorXd::Zero(A.rows());
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    constexpr double known_direction = 1e-6;  // of the correlation matrix: below, columns are multiples of each other
+    const double value = eigen.eigenvalues()[i];
+    if (value < known_direction) continue;
+    ++out.dof;
+    out.chi2 += turned[i] * turned[i] / value;
+    amplitude += eigen.eigenvectors().col(i) * (turned[i] / value);
+    variance += eigen.eigenvectors().col(i).cwiseAbs2() / value;
+  }
+  out.amplitude(known) = scale.cwiseProduct(amplitude);
+  out.sigma(known) = scale.cwiseProduct(variance.cwiseSqrt());
+}
+
+}  // namespace
+
 ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors) const {
-  const Eigen::Index m = C.cols();
   ScoreResult out;
-  out.amplitude = Eigen::VectorXd::Zero(m);
-  out.sigma = Eigen::VectorXd::Zero(m);
+  out.amplitude = out.sigma = Eigen::VectorXd::Zero(C.cols());
   Eigen::MatrixXd V = C.transpose() * C;
   Eigen::VectorXd s = -C.transpose() * r_;
   const Eigen::VectorXd own = V.diagonal();
@@ -106,43 +144,8 @@ ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors
     V.diagonal() += priors->precision;
     s += priors->precision.cwiseProduct(priors->mean);
   }
-  std::vector<Eigen::Index> known;
-  out.independent = 1.0;
-  for (Eigen::Index i = 0; i < m; ++i) {
-    if (!(own[i] > 0.0) || !std::isfinite(V(i, i))) continue;
-    const double share = V(i, i) / own[i];
-    out.independent = std::min(out.independent, share);
-    if (share > 1e-8) known.push_back(i);
-  }
-  if (known.empty()) {
-    out.independent = 0.0;
-    return out;
-  }
-  const auto k = static_cast<Eigen::Index>(known.size());
-  Eigen::MatrixXd A(k, k);
-  Eigen::VectorXd b(k);
-  for (Eigen::Index i = 0; i < k; ++i) {
-    b[i] = s[known[static_cast<std::size_t>(i)]];
-    for (Eigen::Index j = 0; j < k; ++j) A(i, j) = V(known[static_cast<std::size_t>(i)], known[static_cast<std::size_t>(j)]);
-  }
-  const Eigen::VectorXd scale = A.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd correlation = scale.asDiagonal() * A * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  const Eigen::VectorXd turned = eigen.eigenvectors().transpose() * (scale.asDiagonal() * b);
-  Eigen::VectorXd amplitude = Eigen::VectorXd::Zero(k), variance = Eigen::VectorXd::Zero(k);
-  for (Eigen::Index i = 0; i < k; ++i) {
-    constexpr double known_direction = 1e-6;  // of the correlation matrix: below, columns are multiples of each other
-    const double value = eigen.eigenvalues()[i];
-    if (value < known_direction) continue;
-    ++out.dof;
-    out.chi2 += turned[i] * turned[i] / value;
-    amplitude += eigen.eigenvectors().col(i) * (turned[i] / value);
-    variance += eigen.eigenvectors().col(i).cwiseAbs2() / value;
-  }
-  for (Eigen::Index i = 0; i < k; ++i) {
-    out.amplitude[known[static_cast<std::size_t>(i)]] = scale[i] * amplitude[i];
-    out.sigma[known[static_cast<std::size_t>(i)]] = scale[i] * std::sqrt(variance[i]);
-  }
+  const std::vector<Eigen::Index> known = known_columns(V, own, out.independent);
+  if (!known.empty()) solve_score(V, s, known, out);
   return out;
 }
 
@@ -153,7 +156,7 @@ ForceColumns::ForceColumns(const FilterEstimate& estimate) : estimate_(estimate)
   ports_ = static_cast<int>(model.system->spec().dynamic_ports.size());
   const auto nq = static_cast<Eigen::Index>(model.system->spec().quantities.size());
   const int n = stepper.states();
-  const auto N = static_cast<std::size_t>(n), PORTS = static_cast<std::size_t>(ports_);
+  const auto N = static_cast<std::size_t>(n), NF = static_cast<std::size_t>(ports_);
   std::size_t all = 0;
   for (const auto& trace : estimate.traces) all += trace.samples;
   quantities_ = ahead_ = RowMatrix::Zero(static_cast<Eigen::Index>(all), nq);
@@ -166,7 +169,7 @@ ForceColumns::ForceColumns(const FilterEstimate& estimate) : estimate_(estimate)
     const FilterTrace& trace = estimate.traces[e];
     const FilterData& data = estimate.data[e];
     const Signals& signals = *data.signals;
-    G_.emplace_back(trace.samples * N * PORTS, 0.0);
+    G_.emplace_back(trace.samples * N * NF, 0.0);
     times_.insert(times_.end(), signals.t.begin(), signals.t.end());
     stepper.prepare(data.start.data(), data.inputs.at(data.first), signals.t[data.first]);
     for (std::size_t k = data.first; k < trace.samples; ++k) {
@@ -179,7 +182,7 @@ ForceColumns::ForceColumns(const FilterEstimate& estimate) : estimate_(estimate)
       values.quantities(x.data(), data.inputs.at(k + 1), signals.t[k + 1], ahead_.row(static_cast<Eigen::Index>(offset + k)).data());
       for (std::size_t i = 0; i < N; ++i) {
         for (int c = 0; c < slots.count(); ++c)
-          G_.back()[(k * N + i) * PORTS + static_cast<std::size_t>(slots.column(c))] = D[i * kRowStride + N + static_cast<std::size_t>(c)];
+          G_.back()[(k * N + i) * NF + static_cast<std::size_t>(slots.column(c))] = D[i * kRowStride + N + static_cast<std::size_t>(c)];
       }
     }
     offset += trace.samples;
@@ -196,7 +199,7 @@ Eigen::MatrixXd ForceColumns::columns(int port, const Eigen::MatrixXd& f, const 
   for (std::size_t e = 0; e < estimate_.traces.size(); ++e) {
     const FilterTrace& trace = estimate_.traces[e];
     const FilterData& data = estimate_.data[e];
-    const auto N = static_cast<std::size_t>(trace.n), NY = static_cast<std::size_t>(trace.ny), PORTS = static_cast<std::size_t>(ports_);
+    const auto N = static_cast<std::size_t>(trace.n), NY = static_cast<std::size_t>(trace.ny), NF = static_cast<std::size_t>(ports_);
     const Eigen::Index n = trace.n, ny = trace.ny;
     RowMatrix s = RowMatrix::Zero(n, m), jitter = RowMatrix::Zero(2 * ny, m), work(n, m);
     Eigen::RowVectorXd v(m), mean(m);
@@ -222,7 +225,7 @@ Eigen::MatrixXd ForceColumns::columns(int port, const Eigen::MatrixXd& f, const 
       mean = 0.5 * (f.row(sample) + ahead.row(sample));
       work.noalias() = Eigen::Map<const RowMatrix>(trace.Phi.data() + k * N * N, n, n) * s;
       for (Eigen::Index i = 0; i < n; ++i) {
-        const double gain = G_[e][(k * N + static_cast<std::size_t>(i)) * PORTS + static_cast<std::size_t>(port)];
+        const double gain = G_[e][(k * N + static_cast<std::size_t>(i)) * NF + static_cast<std::size_t>(port)];
         if (gain != 0.0) work.row(i) += gain * mean;
       }
       s.swap(work);
@@ -244,12 +247,12 @@ Eigen::VectorXd ForceColumns::score_of_steps(int port) const {
   for (std::size_t e = 0; e < estimate_.traces.size(); ++e) {
     const FilterTrace& trace = estimate_.traces[e];
     const FilterData& data = estimate_.data[e];
-    const auto N = static_cast<std::size_t>(trace.n), PORTS = static_cast<std::size_t>(ports_);
+    const auto N = static_cast<std::size_t>(trace.n), NF = static_cast<std::size_t>(ports_);
     const RowMatrix adjoint = adjoint_of(trace, data, estimate_.noise);
     for (std::size_t k = data.first; k + 1 < trace.samples; ++k) {
       double sum = 0.0;
       for (std::size_t i = 0; i < N; ++i)
-        sum += G_[e][(k * N + i) * PORTS + static_cast<std::size_t>(port)] *
+        sum += G_[e][(k * N + i) * NF + static_cast<std::size_t>(port)] *
                adjoint(static_cast<Eigen::Index>(k + 1), static_cast<Eigen::Index>(i));
       out[static_cast<Eigen::Index>(offset + k)] = sum;
     }

@@ -233,10 +233,11 @@ class Search {
   void list_unknown() {
     for (auto& e : entries_) {
       const std::string p = "family-wise p " + format_probability(e.candidate.p_value);
-      if (e.candidate.why.empty())
+      if (e.candidate.why.empty()) {
         e.candidate.why = e.candidate.p_value < options_.p_accept
                               ? p + ", but less than half of the best's predicted drop: screened again once that is in"
                               : "not significant: " + p;
+      }
       out_.candidates.push_back(e.candidate);
     }
     std::stable_sort(unknown_.begin(), unknown_.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.log_p < b.log_p; });
