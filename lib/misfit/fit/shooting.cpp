@@ -176,33 +176,51 @@ void Shooting::add_priors(LeastSquares& problem, int theta_block, const std::vec
   }
 }
 
+namespace {
+
+int add_parameters(LeastSquares& problem, const Model& model, const std::vector<int>& free) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  std::vector<double> theta, lower, upper;
+  bool bounded = false;
+  for (int index : free) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(index)];
+    theta.push_back(p.value);
+    // Bounds of curve coefficients would bind combinations that mean nothing: roughness holds them.
+    lower.push_back(p.curve >= 0 ? -infinite : p.lower);
+    upper.push_back(p.curve >= 0 ? infinite : p.upper);
+    bounded = bounded || p.curve < 0;
+  }
+  return bounded ? problem.add_block(theta, lower, upper) : problem.add_block(theta);
+}
+
+/// In which states of a system are kept.
+struct StateBounds {
+  std::vector<double> least, most;
+  bool any = false;
+
+  explicit StateBounds(const Model& model)
+      : least(static_cast<std::size_t>(model.states()), -std::numeric_limits<double>::infinity()),
+        most(least.size(), std::numeric_limits<double>::infinity()) {
+    for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
+      least[j] = model.state_specs[j].lower;
+      most[j] = model.state_specs[j].upper;
+      any = any || std::isfinite(least[j]) || std::isfinite(most[j]);
+    }
+  }
+};
+
+}  // namespace
+
 LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vector<Penalty>& penalties) {
   failure_.clear();
   LeastSquares problem;
-  std::vector<double> theta, lower, upper;
-  bool bounded = false;
-  for (int index : free_) {
-    const Parameter& p = model_.parameters[static_cast<std::size_t>(index)];
-    theta.push_back(p.value);
-    // Bounds of curve coefficients would bind combinations that mean nothing: roughness holds them.
-    lower.push_back(p.curve >= 0 ? -std::numeric_limits<double>::infinity() : p.lower);
-    upper.push_back(p.curve >= 0 ? std::numeric_limits<double>::infinity() : p.upper);
-    bounded = bounded || p.curve < 0;
-  }
-  const int theta_block = bounded ? problem.add_block(theta, lower, upper) : problem.add_block(theta);
+  const int theta_block = add_parameters(problem, model_, free_);
   std::vector<Piece> pieces = cut(pass.length);
-  const auto n = static_cast<std::size_t>(model_.states());
-  std::vector<double> least(n, -std::numeric_limits<double>::infinity()), most(n, std::numeric_limits<double>::infinity());
-  bool bounded_states = false;
-  for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
-    least[j] = model_.state_specs[j].lower;
-    most[j] = model_.state_specs[j].upper;
-    bounded_states = bounded_states || std::isfinite(least[j]) || std::isfinite(most[j]);
-  }
+  const StateBounds bounds(model_);
   for (auto& piece : pieces) {
     const auto start = history_[piece.experiment].row(static_cast<Eigen::Index>(piece.first));
-    piece.block =
-        bounded_states ? problem.add_block({start.begin(), start.end()}, least, most) : problem.add_block({start.begin(), start.end()});
+    piece.block = bounds.any ? problem.add_block({start.begin(), start.end()}, bounds.least, bounds.most)
+                             : problem.add_block({start.begin(), start.end()});
   }
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     Piece& piece = pieces[k];

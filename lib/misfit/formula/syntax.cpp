@@ -242,8 +242,8 @@ void Text::fail(int begin, int end, const std::string& message) const {
   Source place = where;
   if (place.column > 0 && text.find('\n') == std::string::npos) place.column += begin;
   constexpr std::size_t longest = 60;
-  const auto shortened = [](std::string part) { return part.size() > longest ? part.substr(0, longest - 3) + "..." : part; };
-  std::string part = shortened(text.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(std::max(end - begin, 0))));
+  const auto shortened = [](const std::string& part) { return part.size() > longest ? part.substr(0, longest - 3) + "..." : part; };
+  const std::string part = shortened(text.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(std::max(end - begin, 0))));
   throw InputError(place, of + (part.empty() ? "" : ", '" + part + "'") + ": " + message);
 }
 

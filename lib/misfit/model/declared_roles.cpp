@@ -57,7 +57,7 @@ class Roles {
   }
 
   std::string role(const char* name, const std::string& fallback, const std::vector<std::string>& valid) {
-    const std::string given = d_.roles ? d_.roles->text(name).value_or(fallback) : fallback;
+    std::string given = d_.roles ? d_.roles->text(name).value_or(fallback) : fallback;
     check_role(name, given, valid);
     return given;
   }

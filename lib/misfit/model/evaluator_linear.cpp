@@ -30,6 +30,7 @@ void Evaluator::chain_quantity(double weight, int quantity, int slots, double* r
 
 /// Adds an effect's outputs to targets[port] with derivative rows rows[port·kRowStride + …], and sets its own states' drifts and rows. Rows
 /// are kept zero beyond the slots in use: a slot that is met for the first time needs no clearing.
+// NOLINTNEXTLINE(readability-function-size): the general path; its parts share five arrays of fixed size on the stack
 void Evaluator::add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts,
                            double* drift_rows) {
   std::array<double, kMaxWidth> values;

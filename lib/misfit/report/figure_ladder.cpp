@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "misfit/report/figure_units.h"
@@ -153,7 +154,8 @@ void add_trim(const Rung& rung, std::vector<Panel>& panels) {
 
 /// From 0 for what is an amount; with some room for all.
 void set_range(Panel& panel) {
-  double low = panel.y_label == "trim" || panel.y_unit.starts_with("%") ? INFINITY : 0.0, high = -INFINITY;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  double low = panel.y_label == "trim" || panel.y_unit.starts_with("%") ? infinite : 0.0, high = -infinite;
   for (const Series& s : panel.series) {
     for (const auto* values : {&s.y, &s.lo, &s.hi}) {
       if (s.style == Style::boxes && values != &s.y) continue;  // these run along x

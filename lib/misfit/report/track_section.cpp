@@ -32,12 +32,13 @@ void track_section(const ReportInput& input, Page& page, const Draw& draw) {
       for (const std::string& warning : experiment.video->warnings) page.paragraph(warning, "bad");
       page.list(sentences(*experiment.video));
     }
-    if (!experiment.contact_sheet.empty())
+    if (!experiment.contact_sheet.empty()) {
       page.html("<figure><img style=\"width:100%\" alt=\"contact sheet of the track\" src=\"data:image/png;base64," +
                 base64(experiment.contact_sheet) +
                 "\"><figcaption>Frames over the whole video and where the marker was first lost: the track drawn on the picture (circle: "
                 "found; line: the way "
                 "before), and the marker magnified.</figcaption></figure>\n");
+    }
     draw(track_figure(experiment.name, *experiment.track));
   }
 }

@@ -57,7 +57,7 @@ Loss judge(const Location& found, const Appearance& look, double contrast) {
   if (!found.inside) return Loss::outside;
   const double ratio = found.levels[1] / contrast;
   const bool ring = look.marker.kind == MarkerKind::ring;
-  if (!(ratio > 1.0 / contrast_jump && ratio < contrast_jump)) return Loss::other_look;
+  if (!(ratio > 1.0 / contrast_jump) || !(ratio < contrast_jump)) return Loss::other_look;
   if (ring && !hole_like(found.levels)) return Loss::other_look;
   if (ring) {
     const double learnt = look.marker.levels[2] / look.marker.levels[1], now = found.levels[2] / found.levels[1];
