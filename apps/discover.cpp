@@ -30,10 +30,6 @@ int climb(Climb& ladder, const Registry& registry, bool json) {
     if (!json) std::cout << discovery_text(discovery) << '\n' << std::flush;
     const std::optional<Candidate> next = next_step(discovery, registry);
     if (!next) break;
-    if (!discovery.sweep_asks.empty()) {
-      ladder.original().say("the ladder ends here: " + next->effect + " is not added before the camera is calibrated as its sweep asks");
-      break;
-    }
     const Rung& rung = ladder.add(next->effect, next);
     if (!json) std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.top_fit()) << '\n' << std::flush;
   }

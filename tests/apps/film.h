@@ -131,7 +131,8 @@ inline void paint_ring(Image& frame, int first_row, int step, const PixelPoint& 
          column <= std::min(frame.width - 1, static_cast<int>(at.column + reach) + 1); ++column) {
       double sum = 0.0;
       for (int k = 0; k < 64; ++k) {
-        const double x = column + (k % 8 + 0.5) / 8.0 - 0.5 - at.column, y = row + (k / 8 + 0.5) / 8.0 - 0.5 - at.row;
+        const int i = k % 8, j = k / 8;
+        const double x = column + (i + 0.5) / 8.0 - 0.5 - at.column, y = row + (j + 0.5) / 8.0 - 0.5 - at.row;
         const double rho = std::hypot(x, y);
         sum += rho < inner ? 35.0 : rho < outer ? 238.0 : rho < reach ? 140.0 : frame(column, row);
       }

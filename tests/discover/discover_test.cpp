@@ -106,6 +106,19 @@ TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
   EXPECT_THAT(d.sweep_asks, testing::ElementsAre("camera_roll"));
 }
 
+TEST(Verdict, PhysicsSeenThroughACameraThatItsSweepDoubtsIsNotAccepted) {
+  const Calibration calibration = asking_for_roll();
+  Discovery d;
+  d.candidates.resize(1);
+  d.candidates[0].effect = "strut_wake";
+  d.candidates[0].family = "physics";
+  d.candidates[0].accepted = true;
+  add_camera_remarks(&calibration, d);
+  EXPECT_FALSE(d.candidates[0].accepted);
+  EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for strut_wake"));
+}
+
 TEST(Screen, AStrengthThatCannotBeNegativeIsNot) {
   const Flight flight(fly(15.0, 33, {effect("viscous_friction")}, {{"viscosity", -12.0}}));
   const std::vector<Specimen> list = specimens(flight.estimate, flight.request, registry(), nullptr);

@@ -8,17 +8,14 @@
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/diagnose/features.h"
+#include "misfit/discover/accept.h"
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/likeness.h"
-#include "misfit/discover/refit.h"
-#include "misfit/discover/screen.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
-
-constexpr double tie = 6.0;  // refitted drops nearer than this do not tell two effects apart (DESIGN 6)
 
 class Search {
  public:
@@ -38,8 +35,9 @@ class Search {
     families_ = static_cast<double>(screened_.size() + unknown_.size());
     rank();
     refit_best();
-    find_groups();
-    accept();
+    const Searched searched{estimate_, registry_, experiments_, options_};
+    find_groups(entries_, searched);
+    left_ = accept_best(entries_, searched);
     list_unknown();
     describe_search();
     return std::move(out_);
@@ -75,13 +73,6 @@ class Search {
     };
   }
 
-  struct Entry {
-    const Screened* screened = nullptr;
-    Candidate candidate;
-    std::optional<Refit> refit;
-    double log_p = 0.0;  ///< of the refit where there is one
-  };
-
   void rank() {
     for (const auto& s : screened_) {
       Entry entry;
@@ -92,8 +83,6 @@ class Search {
     }
     sort_entries();
   }
-
-  static std::string named(const Candidate& c) { return effect_at(c.effect, c.roles); }
 
   void sort_entries() {
     std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
@@ -144,90 +133,6 @@ class Search {
       const PortSpec& named = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
       c.force[named.name] = {e.refit->estimate.noise.force, 0.0, named.unit};
     }
-  }
-
-  /// The best and every other whose refitted drop is near: inseparable if neither has a significant score once the other is in.
-  void find_groups() {
-    if (entries_.empty() || !entries_.front().refit) return;
-    Entry& best = entries_.front();
-    std::vector<Entry*> members = {&best};
-    for (std::size_t k = 1; k < entries_.size(); ++k) {
-      Entry& other = entries_[k];
-      if (!other.refit || std::abs(other.refit->drop - best.refit->drop) > tie) continue;
-      if (adds_to(*best.refit, other) || adds_to(*other.refit, best)) continue;
-      members.push_back(&other);
-    }
-    if (members.size() < 2) return;
-    std::vector<std::string> group;
-    for (const Entry* e : members) group.push_back(named(e->candidate));
-    for (Entry* e : members) e->candidate.group = group;
-  }
-
-  /// Has `other` a significant score in the model that holds the refitted effect?
-  bool adds_to(const Refit& in, const Entry& other) const {
-    const std::vector<Specimen> list = specimens(in.estimate, in.request, registry_, options_.calibration);
-    const auto specimen = std::find_if(list.begin(), list.end(), [&](const Specimen& s) {
-      return s.effect == other.candidate.effect && s.roles == other.candidate.roles;
-    });
-    if (specimen == list.end()) return false;
-    const Eigen::MatrixXd columns = specimen_columns(in.estimate, *specimen, other.screened->cell);
-    if (columns.size() == 0) return false;
-    const ScoreResult result = ScoreTest(in.estimate).test(columns, specimen->has_priors ? &specimen->priors : nullptr);
-    return result.dof > 0 && chi_square_tail(result.chi2, result.dof) < options_.p_accept;
-  }
-
-  void accept() {
-    if (entries_.empty() || !entries_.front().refit) return;
-    if (!(entries_.front().candidate.p_value < options_.p_accept)) {
-      entries_.front().candidate.why = "not significant: family-wise p " + format_probability(entries_.front().candidate.p_value);
-      return;
-    }
-    if (!first_that_holds_out()) {
-      left_ = left_after(entries_.front());
-      return;
-    }
-    Entry& best = entries_.front();
-    Candidate& c = best.candidate;
-    left_ = left_after(best);
-    if (left_) {
-      c.why = "most of the departure remains: after it an unknown " + left_->port + "(" + left_->quantity + ") still has p " +
-              format_probability(left_->p_value);
-      return;
-    }
-    c.accepted = true;
-    c.why = "family-wise p " + format_probability(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
-    for (std::size_t k = 1; k < entries_.size(); ++k) {
-      Candidate& other = entries_[k].candidate;
-      if (!other.why.empty() || !entries_[k].refit) continue;
-      other.why = !other.group.empty() ? "these data cannot tell it from " + named(c)
-                                       : "explains less than " + named(c) + "; screened again once that is in";
-    }
-  }
-
-  /// Brings to the front the best, or of its group the first, that makes the held-out readings more likely with strengths away from their
-  /// bounds; false: none does.
-  bool first_that_holds_out() {
-    const std::vector<std::string> group = entries_.front().candidate.group;
-    for (auto e = entries_.begin(); e != entries_.end(); ++e) {
-      Candidate& c = e->candidate;
-      const bool in_group = std::find(group.begin(), group.end(), named(c)) != group.end();
-      if (!e->refit || (e != entries_.begin() && !in_group)) continue;
-      if (const auto bound = ends_at_bound(e->refit->estimate.model, e->screened->specimen->strengths)) {
-        c.why = *bound;
-        continue;
-      }
-      c.held_out_gain = held_out_gain(estimate_, e->refit->estimate, experiments_, options_.threads);
-      if (*c.held_out_gain > 0.0) {
-        std::rotate(entries_.begin(), e, e + 1);
-        return true;
-      }
-      c.why = "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
-    }
-    return false;
-  }
-
-  std::optional<UnknownCurve> left_after(const Entry& e) const {
-    return what_is_left(e.refit->estimate, *e.screened->specimen, e.refit->drop, options_);
   }
 
   void list_unknown() {

@@ -111,16 +111,18 @@ void add_camera_remarks(const Calibration* calibration, Discovery& out) {
     if (wanted.size() > 1 && std::find(wanted.begin(), wanted.end(), c.effect) != wanted.end()) c.group = wanted;
   }
   const std::string disagreement = "the calibration sweep asks for " + joined(wanted) + ", which the camera of this study does not have";
-  const bool physics = !out.candidates.empty() && out.candidates.front().accepted && out.candidates.front().family != "sensor";
-  if (physics) {
-    out.sentences.push_back("sweep and flight disagree: " + disagreement + "; calibrate with them offered, then ask again");
-  } else {
-    for (auto& c : out.candidates) {
-      if (!c.accepted) continue;
-      c.accepted = false;
-      c.why = "the calibration sweep asks for " + joined(wanted) + ": calibrate with them offered, then ask again (" + c.why + ")";
-    }
+  std::string flight;
+  for (auto& c : out.candidates) {
+    if (!c.accepted) continue;
+    if (c.family != "sensor") flight = effect_at(c.effect, c.roles);
+    c.accepted = false;
+    c.why = "the calibration sweep asks for " + joined(wanted) + ": calibrate with them offered, then ask again (" + c.why + ")";
+  }
+  if (flight.empty()) {
     out.verdict = "The camera, not the physics: " + disagreement + ". Calibrate with them offered, then ask again.";
+  } else {
+    out.verdict = "Sweep and flight disagree: " + disagreement + ", and the flight asks for " + flight +
+                  ". Calibrate with them offered, then ask again: a camera that is wrong can look like physics.";
   }
 }
 

@@ -19,8 +19,9 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// scale of a bound other than 0; nullopt if none does. A strength at 0 is an effect that is off, and its drop says so.
 [[nodiscard]] std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths);
 
-/// Remarks on the camera: what the sweep asks for and the model does not have (kept in Discovery::sweep_asks). A sensor effect is then not
-/// accepted: its drop is the sweep's prior, which a calibration has to follow up, not the flight.
+/// Remarks on the camera: what the sweep asks for and the model does not have (kept in Discovery::sweep_asks). Nothing is accepted then:
+/// the drop of a sensor effect is the sweep's prior, which a calibration has to follow up, not the flight; and physics seen through a wrong
+/// camera may be the camera's.
 void add_camera_remarks(const Calibration* calibration, Discovery& out);
 
 }  // namespace misfit

@@ -33,15 +33,39 @@ Grid shrink(const Image& image, int first_column, int first_row, int width, int 
     for (int k = 0; k < pitch.y; ++k) {
       const std::uint8_t* line = image.pixels.data() + image.at(first_column, first_row + j * pitch.y + k);
       if (pitch.x == 1) {
-        for (int i = 0; i < width; ++i) out[i] += line[i];
+        for (int i = 0; i < width; ++i) out[i] += static_cast<float>(line[i]);
       } else {
         for (int i = 0; i < width; ++i)
-          for (int m = 0; m < pitch.x; ++m) out[i] += line[i * pitch.x + m];
+          for (int m = 0; m < pitch.x; ++m) out[i] += static_cast<float>(line[i * pitch.x + m]);
       }
     }
     for (int i = 0; i < width; ++i) out[i] *= scale;
   }
   return grid;
+}
+
+/// The marker's brightness over a block of pixels whose middle is at grid point (i, j) from its own middle point.
+double shown(const Marker& marker, int row_step, const Pitch& pitch, int i, int j) {
+  double sum = 0.0;
+  for (int k = 0; k < pitch.y; ++k) {
+    for (int m = 0; m < pitch.x; ++m) {
+      const double x = i * pitch.x + m - 0.5 * (pitch.x - 1), y = row_step * (j * pitch.y + k - 0.5 * (pitch.y - 1));
+      const ShapeValue s = shape_at(marker, x, y);
+      sum += marker.levels[1] * s.value[0] + (marker.shapes() > 1 ? marker.levels[2] * s.value[1] : 0.0);
+    }
+  }
+  return sum;
+}
+
+/// Without mean and of unit length.
+void normalise(std::vector<float>& values) {
+  double mean = 0.0, square = 0.0;
+  for (float v : values) mean += v;
+  mean /= static_cast<double>(values.size());
+  for (float& v : values) v -= static_cast<float>(mean);
+  for (float v : values) square += static_cast<double>(v) * v;
+  const auto scale = static_cast<float>(square > 0.0 ? 1.0 / std::sqrt(square) : 0.0);
+  for (float& v : values) v *= scale;
 }
 
 /// The marker as the grid would show it, centred on its middle point, without mean and of unit length.
@@ -51,25 +75,9 @@ Grid kernel_of(const Marker& marker, int row_step, const Pitch& pitch) {
   const int half_y = std::max(2, static_cast<int>(std::lround(margin * marker.reach_y() / (pitch.y * row_step))));
   Grid kernel{2 * half_x + 1, 2 * half_y + 1, {}};
   for (int j = -half_y; j <= half_y; ++j) {
-    for (int i = -half_x; i <= half_x; ++i) {
-      double sum = 0.0;
-      for (int k = 0; k < pitch.y; ++k) {
-        for (int m = 0; m < pitch.x; ++m) {
-          const double x = i * pitch.x + m - 0.5 * (pitch.x - 1), y = row_step * (j * pitch.y + k - 0.5 * (pitch.y - 1));
-          const ShapeValue s = shape_at(marker, x, y);
-          sum += marker.levels[1] * s.value[0] + (marker.shapes() > 1 ? marker.levels[2] * s.value[1] : 0.0);
-        }
-      }
-      kernel.values.push_back(static_cast<float>(sum));
-    }
+    for (int i = -half_x; i <= half_x; ++i) kernel.values.push_back(static_cast<float>(shown(marker, row_step, pitch, i, j)));
   }
-  double mean = 0.0, square = 0.0;
-  for (float v : kernel.values) mean += v;
-  mean /= static_cast<double>(kernel.values.size());
-  for (float& v : kernel.values) v -= static_cast<float>(mean);
-  for (float v : kernel.values) square += static_cast<double>(v) * v;
-  const auto scale = static_cast<float>(square > 0.0 ? 1.0 / std::sqrt(square) : 0.0);
-  for (float& v : kernel.values) v *= scale;
+  normalise(kernel.values);
   return kernel;
 }
 
@@ -108,7 +116,7 @@ Grid correlate(const Grid& grid, const Grid& kernel) {
   if (out.width < 1 || out.height < 1) return {};
   out.values.assign(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height), 0.0F);
   const BoxSums sums(grid);
-  const double n = static_cast<double>(kernel.values.size());
+  const auto n = static_cast<double>(kernel.values.size());
   for (int j = 0; j < out.height; ++j) {
     float* to = out.row(j);
     for (int l = 0; l < kernel.height; ++l) {
@@ -162,8 +170,9 @@ std::vector<Match> search(const Field& field, const Marker& marker, const Region
   for (int j = 0; j < map.height; ++j) {
     for (int i = 0; i < map.width; ++i) {
       if (map.row(j)[i] < least || !is_peak(map, i, j)) continue;
-      const double column = c0 + (i + kernel.width / 2) * pitch.x + 0.5 * (pitch.x - 1);
-      const double row = field.row_of(r0 + (j + kernel.height / 2) * pitch.y + 0.5 * (pitch.y - 1));
+      const int middle_i = i + kernel.width / 2, middle_j = j + kernel.height / 2;  // its sides are odd
+      const double column = c0 + middle_i * pitch.x + 0.5 * (pitch.x - 1);
+      const double row = field.row_of(r0 + middle_j * pitch.y + 0.5 * (pitch.y - 1));
       if (contains(wanted, {column, row})) found.push_back({{column, row}, map.row(j)[i]});
     }
   }

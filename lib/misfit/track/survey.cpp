@@ -111,7 +111,9 @@ void Survey::learn() {
 
 bool Survey::similar(const Location& a, const Location& b) const {
   const double contrast = a.levels[1] / b.levels[1];
-  if (!(contrast > 0.6 && contrast < 1.0 / 0.6)) return false;
+  constexpr double least = 0.6;
+  const bool alike = contrast > least && contrast < 1.0 / least;
+  if (!alike) return false;
   return options_.marker.kind == MarkerKind::picture || std::abs(a.outer - b.outer) < std::max(0.8, 0.15 * b.outer);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 class OpencvStream : public Stream {
  public:
-  explicit OpencvStream(cv::VideoCapture capture) : capture_(std::move(capture)) {
+  explicit OpencvStream(cv::VideoCapture&& capture) : capture_(std::move(capture)) {
     width = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
     height = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
     rate = capture_.get(cv::CAP_PROP_FPS);
@@ -45,7 +45,7 @@ class OpencvStream : public Stream {
 
 class OpencvSink : public Sink {
  public:
-  OpencvSink(cv::VideoWriter writer, int width, int height) : writer_(std::move(writer)), width_(width), height_(height) {}
+  OpencvSink(cv::VideoWriter&& writer, int width, int height) : writer_(std::move(writer)), width_(width), height_(height) {}
   void write(const std::uint8_t* bgr) override {
     writer_.write(
         cv::Mat(height_, width_, CV_8UC3, const_cast<std::uint8_t*>(bgr)));  // NOLINT: cv::Mat knows no const data; it is only read

@@ -1,0 +1,169 @@
+#include "misfit/fit/filter_climb.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/text.h"
+#include "misfit/fit/filter_exact.h"
+#include "misfit/fit/filter_start.h"
+
+namespace misfit {
+
+FilterClimb::FilterClimb(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
+                         const FilterOptions& options)
+    : threads_(options.threads) {
+  out.model = start;
+  out.penalties = std::move(penalties);
+  if (!options.choose_roughness) {
+    for (auto& penalty : out.penalties) penalty.chosen = false;
+  }
+  out.forced = with_random_force(start);
+  for (const auto& experiment : experiments) out.data.push_back(filter_data(out.forced, experiment));
+  if (options.use) {
+    for (std::size_t e = 0; e < out.data.size(); ++e) out.data[e].use = (*options.use)[e];
+  }
+  free = start.free_parameters();
+  theta = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t c = 0; c < free.size(); ++c)
+    theta[static_cast<Eigen::Index>(c)] = start.parameters[static_cast<std::size_t>(free[c])].value;
+  out.around = options.around ? *options.around : usual_noise(out.forced, out.data);
+  out.noise = options.noise ? *options.noise : out.around;
+  set_time();
+}
+
+void FilterClimb::set_time() {
+  out.forced.model.parameters[static_cast<std::size_t>(out.forced.time_parameter)].value = out.noise.force_time;
+}
+
+std::vector<double> FilterClimb::values() const {
+  std::vector<double> all = out.forced.model.values();
+  for (std::size_t c = 0; c < free.size(); ++c) all[static_cast<std::size_t>(free[c])] = theta[static_cast<Eigen::Index>(c)];
+  return all;
+}
+
+bool FilterClimb::linearise() {
+  out.traces.resize(out.data.size());
+  out.jacobians.resize(out.data.size());
+  FilterRunner runner(out.forced, true);
+  runner.set_parameters(values());
+  double loglik = 0.0;
+  for (std::size_t e = 0; e < out.data.size(); ++e) {
+    if (!runner.run(out.data[e], out.noise, out.traces[e], &out.jacobians[e])) {
+      failed_experiment_ = e;
+      return false;
+    }
+    loglik += out.traces[e].loglik;
+  }
+  ++out.linearisations;
+  out.loglik = loglik;
+  objective = loglik + log_prior_at(out.model, out.penalties, theta);
+  return true;
+}
+
+double FilterClimb::objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const {
+  return ExactObjective(out, free).at(there, noise);
+}
+
+Linearised FilterClimb::normal_equations() const {
+  Linearised sums;
+  const Eigen::Index n = theta.size();
+  sums.N = Eigen::MatrixXd::Zero(n, n);
+  sums.g = Eigen::VectorXd::Zero(n);
+  sums.theta = theta;
+  for (const auto& jacobian : out.jacobians) {
+    sums.N.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.J.transpose());
+    sums.g += jacobian.J.transpose() * jacobian.r;
+    sums.rss += jacobian.r.squaredNorm();
+    sums.count += static_cast<double>(jacobian.r.size());
+  }
+  sums.N = Eigen::MatrixXd(sums.N.selfadjointView<Eigen::Lower>());
+  set_priors(out.model, sums);
+  return sums;
+}
+
+Eigen::VectorXd FilterClimb::inside_bounds(Eigen::VectorXd there) const {
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = out.model.parameters[static_cast<std::size_t>(free[c])];
+    auto& value = there[static_cast<Eigen::Index>(c)];
+    value = std::clamp(value, p.lower, p.upper);
+  }
+  return there;
+}
+
+void FilterClimb::physical_step() {
+  if (free.empty()) return;
+  const Smoothed smoothed = smooth(normal_equations(), out.penalties, 1.0);
+  if (!smoothed.ok) return;
+  out.edf = smoothed.edf;
+  out.covariance = smoothed.covariance;
+  objective = out.loglik + log_prior_at(out.model, out.penalties, theta);  // the roughness may have changed
+  const Eigen::VectorXd step = inside_bounds(smoothed.theta) - theta;
+  for (double share = 1.0; share > 0.05; share *= 0.4) {
+    const Eigen::VectorXd there = theta + share * step;
+    const double value = objective_at(there, out.noise);
+    if (!(value > objective - 1e-6)) continue;
+    const Eigen::VectorXd before = theta;
+    theta = there;
+    if (linearise()) return;
+    theta = before;
+  }
+  linearise();
+}
+
+bool FilterClimb::take_noise(const NoiseFit& fit) {
+  const FilterNoise before = out.noise;
+  const double then = objective;
+  out.noise = fit.noise;
+  out.noise_fit = fit;
+  set_time();
+  if (linearise() && objective > then - 1.0) return true;
+  out.noise = before;
+  set_time();
+  linearise();
+  return false;
+}
+
+void FilterClimb::iterate(int most, double tolerance) {
+  out.converged = false;
+  for (int k = 0; k < most; ++k) {
+    const double before = objective;
+    const bool choosing = std::any_of(out.penalties.begin(), out.penalties.end(), [](const Penalty& p) { return p.chosen; });
+    const double edf = out.edf;
+    physical_step();
+    take_noise(fit_noise(runs(), out.noise, out.around, threads_, k < 3 ? 3 : kRefinements));
+    const bool settled = !choosing || std::abs(out.edf - edf) < 0.05;
+    if (k > 0 && settled && std::abs(objective - before) < tolerance) {
+      out.converged = true;
+      return;
+    }
+  }
+}
+
+bool FilterClimb::joint_step(const Eigen::VectorXd& step) {
+  const Eigen::Index n = theta.size();
+  for (double share = 1.0; share > 0.1; share *= 0.5) {
+    const NoiseVector bounds = pack(out.noise, out.model.system->spec(), out.around);
+    std::vector<double> logs = out.noise_fit.logs;
+    for (std::size_t i = 0; i < logs.size(); ++i)
+      logs[i] = std::clamp(logs[i] + share * step[n + static_cast<Eigen::Index>(i)], bounds.lower[i], bounds.upper[i]);
+    const FilterNoise noise = unpack(logs);
+    const Eigen::VectorXd there = inside_bounds(theta + share * step.head(n));
+    if (!(objective_at(there, noise) > objective)) continue;
+    theta = there;
+    out.noise = noise;
+    out.noise_fit.logs = logs;
+    set_time();
+    return linearise();
+  }
+  return false;
+}
+
+std::string FilterClimb::failure() const {
+  const FilterTrace& trace = out.traces[failed_experiment_];
+  const Signals& signals = *out.data[failed_experiment_].signals;
+  return "the model cannot be run: a state is no longer a number at t = " + format_value(signals.t[trace.failed_at]) +
+         " s of experiment '" + signals.name + "'";
+}
+
+}  // namespace misfit

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "misfit/fit/filter_estimate.h"
+
+namespace misfit {
+
+/// Where an estimation stands: parameters, noise, the runs and derivatives there; and the steps that raise its objective. Held in `out`,
+/// which is always that of a run that succeeded unless a member says false.
+class FilterClimb {
+ public:
+  FilterClimb(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments, const FilterOptions& options);
+
+  /// Full run with derivatives at `theta`. False: the model cannot be run there, failure() says where it ended.
+  bool linearise();
+  /// One Gauss–Newton step of the physical parameters with new roughness; shortened until the exact objective rises.
+  void physical_step();
+  /// Alternates the blocks, physical parameters and noise, until neither gains `tolerance`.
+  void iterate(int most, double tolerance);
+  /// False if the model cannot be run with it: all is as before.
+  bool take_noise(const NoiseFit& fit);
+  /// A step over parameters and log noise together, shortened until the exact objective rises; false: no length of it does.
+  bool joint_step(const Eigen::VectorXd& step);
+
+  [[nodiscard]] std::vector<double> values() const;  ///< of all parameters of the forced model
+  [[nodiscard]] LinearisedRuns runs() const { return {&out.forced, &out.data, &out.traces}; }
+  [[nodiscard]] Linearised normal_equations() const;
+  [[nodiscard]] std::string failure() const;
+
+  FilterEstimate out;
+  Eigen::VectorXd theta;   ///< the free parameters, in the order of `free`
+  std::vector<int> free;   ///< Model::free_parameters() of the start
+  double objective = 0.0;  ///< at `theta` and `out.noise`
+
+ private:
+  void set_time();
+  [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
+  [[nodiscard]] Eigen::VectorXd inside_bounds(Eigen::VectorXd there) const;
+
+  int threads_;
+  std::size_t failed_experiment_ = 0;
+};
+
+}  // namespace misfit
