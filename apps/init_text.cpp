@@ -116,7 +116,6 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
     model.inputs.push_back(c->name);
     model.input_units.push_back(si_unit(c->unit));
     const bool steps = c->held > 0.2;
-    model.holds.emplace_back("zero_order");
     model.hold_reasons.emplace_back(
         steps ? "" : "; what a computer puts out stands until the next sample, \"first_order\" if it was measured between");
     data.inputs.push_back(longest->values(c->name, model.input_units.back()));
@@ -132,7 +131,7 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
       if (r->rate_of != c->name) continue;
       output.rate = r->name;
       output.rate_unit = rate_unit(output.unit);
-      output.rate_noise = noise_of(longest->values(r->name, output.rate_unit), 0.0);
+      output.rate_noise = noise_of(longest->values(r->name, output.rate_unit), convert(r->resolution, r->unit, output.rate_unit));
     }
     model.outputs.push_back(std::move(output));
   }
@@ -153,7 +152,7 @@ std::string model_text(const GuessedModel& model, const RecordingSurvey& survey)
   }
   if (!model.inputs.empty()) text += "\n[inputs]\n";
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    text += fmt::format("{} = {{ unit = \"{}\", hold = \"{}\" }}   # {}{}\n", model.inputs[i], model.input_units[i], model.holds[i],
+    text += fmt::format("{} = {{ unit = \"{}\", hold = \"zero_order\" }}   # {}{}\n", model.inputs[i], model.input_units[i],
                         column_called(survey, model.inputs[i]).why, model.hold_reasons[i]);
   }
   text += "\n[parameters]\n";

@@ -18,7 +18,6 @@ struct GuessedOutput {
 
 struct GuessedModel {
   std::vector<std::string> inputs, input_units;  ///< SI
-  std::vector<std::string> holds;                ///< "zero_order" or "first_order"
   std::vector<std::string> hold_reasons;
   std::vector<GuessedOutput> outputs;
 };
@@ -26,7 +25,7 @@ struct GuessedModel {
 /// The unit of a column in SI: "deg/s" → "rad/s", "kPa" → "Pa", "cm" → "m".
 [[nodiscard]] std::string si_unit(const std::string& unit);
 
-/// Reads a linear model off the survey's first (longest) part.
+/// Reads a linear model off the survey's longest part.
 [[nodiscard]] GuessedModel guess_model(const RecordingSurvey& survey);
 
 /// model.toml: the guessed system, declared as text, with comments.

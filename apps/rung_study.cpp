@@ -36,14 +36,15 @@ std::string free_name(const std::vector<EffectRequest>& effects, const std::stri
   return name;
 }
 
-/// Starting values of the shapes that discovery scanned: from a wrong sector or frequency no refit finds the right one.
-std::map<std::string, double> scanned_start(const Effect& effect, const std::string& name, const Candidate& from) {
+/// Where to start: shapes where discovery's scan found most (from a wrong sector or frequency no refit finds the right one), and if it
+/// refitted the effect, all its numbers at that maximum (another start may end in a lower one).
+std::map<std::string, double> start_found(const Effect& effect, const Candidate& from) {
   std::map<std::string, double> start;
   for (const auto& c : effect.spec().coefficients) {
-    if (c.scan.count == 0 || c.kind != CoefficientKind::shape) continue;
-    for (const std::string& key : {std::string(c.name), name + "." + c.name}) {
-      const auto found = from.parameters.find(key);
-      if (found != from.parameters.end()) start[key] = found->second.value;
+    const bool scanned_shape = c.scan.count != 0 && c.kind == CoefficientKind::shape;
+    if (c.borrowed || (!scanned_shape && !from.actual_drop)) continue;
+    for (const auto& [name, estimate] : from.parameters) {
+      if (name == c.name || name.ends_with(std::string(".") + c.name)) start[c.name] = estimate.value;
     }
   }
   return start;
@@ -81,7 +82,7 @@ std::string study_with_effect(const Session& session, const std::string& effect,
   } catch (const InputError& error) {
     throw InputError("effect '" + effect + "' does not suit this model: " + error.what());
   }
-  const auto start = from ? scanned_start(found, name, *from) : std::map<std::string, double>{};
+  const auto start = from ? start_found(found, *from) : std::map<std::string, double>{};
   return with_effect(text_for_folder(session.study, folder), effect_line(name, effect, roles, start));
 }
 

@@ -12,7 +12,7 @@ struct Delay {
   static constexpr const char* symbols =
       "delayed_gain [port/input]: the gain by which the model lets the input act, tau delay [s], u the input [any], z, z_rate filtered "
       "input and its rate";
-  static constexpr const char* valid = "signals slower than 2/tau (phase to 1 %); after a jump it rings for about tau";
+  static constexpr const char* valid = "signals slower than 1.7/tau (phase to 1 %); after a jump it rings for about tau";
   static constexpr const char* size = "tau = 0.1 s at 1 rad/s: 10 % of the input, 90 deg after it";
   static constexpr const char* source = "Golub and Van Loan, Matrix Computations, 11.3: Pade (2, 2) of exp(-tau s)";
   static constexpr const char* excludes = "delays longer than the fastest part of the input, delays that change";

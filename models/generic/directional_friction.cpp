@@ -4,13 +4,6 @@ namespace {
 
 using namespace misfit;
 
-constexpr CoefficientSpec lent_width() {
-  CoefficientSpec spec = borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction");
-  spec.value = 0.1;
-  spec.lower = 1e-6;
-  return spec;
-}
-
 /// Friction that differs between the two directions: half the difference of the two Coulomb levels. It needs coulomb_friction in the model,
 /// which keeps the mean and whose width it shares.
 struct DirectionalFriction {
@@ -28,7 +21,7 @@ struct DirectionalFriction {
   static constexpr Role ports[] = {{"port", "*"}};
   static constexpr CoefficientSpec coefficients[] = {
       {"asymmetry", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "friction forward less the mean of both directions"},
-      lent_width()};
+      borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction", 0.1, 1e-6)};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {

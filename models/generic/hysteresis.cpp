@@ -16,7 +16,9 @@ struct Hysteresis {
       "hysteresis limit of the force [port], yield [displacement], loop share that makes the loop [-], z [-], rate [any] of the "
       "displacement [any] (of "
       "which only the size is used)";
-  static constexpr const char* valid = "loops that do not depend on the rate; 0 < loop <= 1";
+  static constexpr const char* valid =
+      "loops that do not depend on the rate; 0.5 <= loop <= 1 (Erlicher and Point, Comptes Rendus Mecanique 332 (2004): elsewhere a cycle "
+      "could give work)";
   static constexpr const char* size = "presliding of a bearing: its friction over some 0.1 deg";
   static constexpr const char* source =
       "Wen, Journal of the Engineering Mechanics Division ASCE 102 (1976), with n = 2 and A = 1; Ismail, Ikhouane, Rodellar (2009)";
@@ -27,7 +29,7 @@ struct Hysteresis {
       {"hysteresis", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "limit of the force"},
       scanned({"yield", CoefficientKind::shape, 0.1, "{displacement}", 1e-9, 1e6, 0.1, "motion over which the force comes to its limit"},
               {0.06, 0.5, 4, "|displacement|"}),
-      held({"loop", CoefficientKind::shape, 0.5, "-", 0.0, 1.0, 0.1, "0.5: turning back starts with the slope of the first loading"}),
+      held({"loop", CoefficientKind::shape, 0.5, "-", 0.5, 1.0, 0.1, "0.5: turning back starts with the slope of the first loading"}),
       held(scanned({"hysteresis_width", CoefficientKind::shape, 0.05, "{rate}", 1e-9, 1e6, 0.05,
                     "rounding of the rate about 0: a fiftieth of the largest rate"},
                    {0.02, 0.02, 1, "|rate|"}))};
@@ -41,9 +43,10 @@ struct Hysteresis {
     drift[0] = (rate - loop * smooth_abs(rate, in.c[3]) * bend * z - (1.0 - loop) * rate * z * z) / in.c[1];
   }
 
-  /// Of the elastic part, sqrt(force/(yield inertia)), and of z at the largest rate, of which the width is taken to be a fiftieth.
+  /// Of the elastic part, sqrt(force/(yield inertia)), and of z at the largest rate, of which the width is taken to be a fiftieth:
+  /// |dz'/dz| at |z| = 1 is 2 |rate|/yield for every loop.
   static double fastest_rate(const Reads<double, double>& in) {
-    constexpr double rates_per_width = 50.0;
+    constexpr double rates_per_width = 2.0 * 50.0;
     const double inertia = in.q[2] > 0.0 ? in.q[2] : 1.0;
     return std::max(std::sqrt(std::abs(in.c[0]) / (in.c[1] * inertia)), rates_per_width * in.c[3] / in.c[1]);
   }

@@ -16,7 +16,7 @@ struct PeriodicForcing {
   static constexpr CoefficientSpec coefficients[] = {
       {"cosine", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "amplitude in phase with cos(2 pi f t)"},
       {"sine", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "amplitude in phase with sin(2 pi f t)"},
-      {"frequency", CoefficientKind::shape, 1.0, "Hz", 1e-4, 1e3, 0.1, "frequency of the forcing"}};
+      scanned({"frequency", CoefficientKind::shape, 1.0, "Hz", 1e-6, 1e3, 0.1, "frequency of the forcing"}, {1e-6, 1e3, -1})};
 
   static constexpr double two_pi = 6.28318530717958647692;
 

@@ -11,7 +11,7 @@ struct SensorDelay {
       "y = h + late_share (h(t - tau) - h), h(t - tau) = h - tau z_rate; z' = z_rate, z_rate' = 12/tau^2 (h - z) - 6/tau z_rate";
   static constexpr const char* symbols =
       "h predicted reading, z, z_rate filtered reading and its rate, late_share of the reading [-] (1: all of it), tau = sensor_delay [s]";
-  static constexpr const char* valid = "readings slower than 2/tau (phase to 1 %)";
+  static constexpr const char* valid = "readings slower than 1.7/tau (phase to 1 %)";
   static constexpr const char* size = "20 ms at 1 rad/s: 2 % of the amplitude, 90 deg after it";
   static constexpr const char* source = "Golub and Van Loan, Matrix Computations, 11.3: Pade (2, 2) of exp(-tau s)";
   static constexpr const char* excludes = "a clock that is off for all channels (time_offset), delays that change";

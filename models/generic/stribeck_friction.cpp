@@ -5,13 +5,6 @@ namespace {
 
 using namespace misfit;
 
-constexpr CoefficientSpec lent_width() {
-  CoefficientSpec spec = borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction");
-  spec.value = 0.1;
-  spec.lower = 1e-6;
-  return spec;
-}
-
 /// Friction that is higher at the start of the motion: the excess over the sliding friction, which rises with it over its width and has
 /// faded at some times that. It needs coulomb_friction in the model, whose width it shares: by itself it would be taken for friction with a
 /// width of its own.
@@ -29,11 +22,12 @@ struct StribeckFriction {
   static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}, {"rate_lateral", "*", true, false, "rate"}};
   static constexpr Role ports[] = {{"port", "*"}, {"port_lateral", "*", true, false, "port"}};
   static constexpr CoefficientSpec coefficients[] = {
-      {"breakaway", CoefficientKind::strength, 0.0, "{port}", 0.0, 1e6, 1.0, "excess of the friction at the start of the motion"},
+      {"breakaway", CoefficientKind::strength, 0.0, "{port}", 0.0, 1e6, 1.0,
+       "size of the excess; its peak is 0.30, 0.61, 0.82 of it at a ratio of 2, 5, 14"},
       scanned({"stribeck_ratio", CoefficientKind::shape, 5.0, "-", 1.01, 1e3, 1.0,
-               "rate at which the excess has fallen to a quarter, over the width"},
+               "rate at which the excess has fallen to a quarter of `breakaway`, over the width"},
               {2.0, 14.0, 4}),
-      lent_width()};
+      borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction", 0.1, 1e-6)};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {

@@ -99,7 +99,7 @@ TEST(Assemble, AParameterOutsideItsBoundsIsRefused) {
   ParameterRequest p;
   p.value = 5000.0;
   EXPECT_THAT(message_of(with_parameter("frequency", p)),
-              AllOf(HasSubstr("study.toml:50"), HasSubstr("frequency = 5000 Hz"), HasSubstr("0.0001 Hz to 1000 Hz")));
+              AllOf(HasSubstr("study.toml:50"), HasSubstr("frequency = 5000 Hz"), HasSubstr("1e-06 Hz to 1000 Hz")));
 }
 
 TEST(Assemble, AStartOutsideTheStudysOwnBoundsIsRefused) {

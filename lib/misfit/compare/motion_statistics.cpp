@@ -122,7 +122,7 @@ std::vector<MotionGroup> empty_groups(const MotionPath& path, const MotionScales
   out.push_back({"amplitude", path.unit, {{"mean", nan}, {"10 % quantile", 0.1}, {"90 % quantile", 0.9}}});
   out.push_back({"autocorrelation", "-", {}});
   for (std::size_t lag : scales.lags) out.back().numbers.push_back({"lag", scales.step * static_cast<double>(lag)});
-  out.push_back({"spectrum", "dB", {}});
+  out.push_back({"spectrum", "dB", {}});  // of the two-sided density in unit²/Hz
   for (double f : scales.frequencies) out.back().numbers.push_back({"power", f});
   return out;
 }

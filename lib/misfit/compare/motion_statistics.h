@@ -29,11 +29,12 @@ struct MotionScales {
 /// `step` in seconds. A path that never crosses 0 within a sixth of the record is taken to have that as a quarter of its period.
 [[nodiscard]] MotionScales scales_of(const MotionPath& measured, double step);
 
-/// Numbers of one path, group by group in a fixed order; the names and places come from statistic_names().
+/// Numbers of one path, group by group in a fixed order; their names and places come from compare_motion().
 ///   distribution: mean, standard deviation, quantiles (linear between order statistics)
 ///   amplitude: half the range within consecutive windows of one period, mean and 10 % and 90 % quantiles over windows at least half full
 ///   autocorrelation: Σ x_i x_{i+k}/pairs over Σ x_i²/n, mean removed, pairs with both samples
-///   spectrum: 10 log10 of h (r_0 + 2 Σ w_k r_k cos 2πfkh), r the autocovariance, w Parzen's window over three periods [BT]
+///   spectrum: two-sided density in dB re 1 unit²/Hz, 10 log10 of h (r_0 + 2 Σ w_k r_k cos 2πfkh), r the autocovariance, w Parzen's window
+///   over three periods [BT]
 /// Not finite where there are too few samples.
 using MotionNumbers = std::vector<std::vector<double>>;
 [[nodiscard]] MotionNumbers motion_numbers(const MotionPath& path, const MotionScales& scales);

@@ -104,4 +104,10 @@ std::string format_probability(double p) {
   return p < smallest ? "below 1e-300" : fmt::format("{:.2g}", p);
 }
 
+std::string join_words(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) out += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  return out;
+}
+
 }  // namespace misfit

@@ -19,4 +19,7 @@ namespace misfit {
 /// Breaks at blanks to at most `width` code points.
 [[nodiscard]] std::string wrap_text(const std::string& text, std::size_t width = 100, const std::string& indent = "");
 
+/// "a", "a and b", "a, b and c".
+[[nodiscard]] std::string join_words(const std::vector<std::string>& words);
+
 }  // namespace misfit

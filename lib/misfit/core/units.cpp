@@ -246,4 +246,19 @@ std::string rate_unit(std::string_view unit) {
   return out;
 }
 
+std::string unit_text(const std::vector<std::pair<std::string, double>>& factors) {
+  std::string above, below;
+  for (const auto& [symbol, power] : factors) {
+    const double size = std::round(1e6 * std::abs(power)) / 1e6;
+    if (size == 0.0) continue;
+    std::string& side = power > 0.0 ? above : below;
+    if (power < 0.0) side += '/';
+    if (power > 0.0 && !side.empty()) side += ' ';
+    side += symbol;
+    if (size != 1.0) side += fmt::format("^{}", size);
+  }
+  if (above.empty() && below.empty()) return "-";
+  return (above.empty() ? "1" : above) + below;
+}
+
 }  // namespace misfit

@@ -28,6 +28,9 @@ struct Unit {
 /// The factors of a unit as written, with their powers: "V^0.5/s" → (V, 0.5), (s, −1). "-" and "1" are left out. Throws as parse_unit().
 [[nodiscard]] std::vector<std::pair<std::string, double>> unit_symbols(std::string_view text);
 
+/// The unit of such factors as text, those with negative powers behind '/': "V^0.5/s"; "-" where none is left. Powers are rounded to 1e-6.
+[[nodiscard]] std::string unit_text(const std::vector<std::pair<std::string, double>>& factors);
+
 /// A number with its unit, as written by a user: "24 in" → 0.6096 with dimension m. A bare number has an empty unit.
 struct Quantity {
   double value = 0.0;  ///< in SI if `unit` was given, as written otherwise

@@ -20,7 +20,8 @@ struct MotionGroup {
   std::string name;  ///< "distribution", "amplitude", "autocorrelation", "spectrum"
   std::string unit;  ///< of the numbers, SI
   std::vector<MotionNumber> numbers;
-  double p_value = 1.0;  ///< share of motions (the measured one among them) that lie as far from all others: a rank, exact by exchange
+  double p_value = 1.0;  ///< share of motions (the measured one among them) that lie as far from all others: a rank; exact by exchange but
+                         ///< for scales and parameters, which come from the measured motion
 };
 
 /// One channel or quantity of one experiment.

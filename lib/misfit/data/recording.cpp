@@ -235,6 +235,9 @@ class Surveyor {
         out_.columns[i].use = ColumnUse::rate;
         out_.columns[i].rate_of = out_.columns[j].name;
         out_.columns[i].why = "the rate of change of " + out_.columns[j].name;
+        if (out_.columns[i].unit != "-") continue;
+        out_.columns[i].unit = rate_unit(out_.columns[j].unit);
+        out_.remarks.push_back("column '" + out_.columns[i].header + "' names no unit: taken as " + out_.columns[i].unit);
       }
     }
   }

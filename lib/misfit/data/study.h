@@ -55,7 +55,6 @@ struct ExperimentStudy {
   Source where;
 };
 
-/// One line of [effects].
 /// An effect that the study itself declares: `port` and a formula.
 struct FormulaStudy {
   std::string formula, port;
@@ -64,6 +63,7 @@ struct FormulaStudy {
   std::optional<config::Section> parameters;  ///< NAME = { unit, value, bounds, … }: its coefficients
 };
 
+/// One line of [effects].
 struct EffectStudy {
   std::string name;                             ///< key in the study: "bearing"
   std::string kind;                             ///< effect's key: "coulomb_friction"; default = name

@@ -15,36 +15,61 @@ constexpr double tie = 6.0;  // refitted drops nearer than this do not tell two 
 
 std::string named(const Candidate& c) { return effect_at(c.effect, c.roles); }
 
-/// The score of another effect, at its best cell, in the model that holds the refitted one; no value: it has none there.
-std::optional<ScoreResult> score_after(const Refit& in, const Entry& other, const Searched& searched) {
-  const std::vector<Specimen> list = specimens(in.estimate, in.request, searched.registry, searched.options.calibration);
-  const auto specimen = std::find_if(list.begin(), list.end(), [&](const Specimen& s) {
-    return s.effect == other.candidate.effect && s.roles == other.candidate.roles;
-  });
-  if (specimen == list.end()) return std::nullopt;
-  const Eigen::MatrixXd columns = specimen_columns(in.estimate, *specimen, other.screened->cell);
-  if (columns.size() == 0) return std::nullopt;
-  const ScoreResult result = ScoreTest(in.estimate).test(columns, specimen->has_priors ? &specimen->priors : nullptr);
-  return result.dof > 0 ? std::optional(result) : std::nullopt;
-}
+/// Scores of other effects in the model that holds a refitted one.
+class After {
+ public:
+  After(const Refit& in, const Searched& searched)
+      : in_(in), list_(specimens(in.estimate, in.request, searched.registry, searched.options.calibration)), score_(in.estimate) {}
+
+  /// At the effect's best cell of the first search; no value: it has none here.
+  [[nodiscard]] std::optional<Screened> score(const Entry& other) const {
+    Screened out;
+    const auto specimen = std::find_if(list_.begin(), list_.end(), [&](const Specimen& s) {
+      return s.effect == other.candidate.effect && s.roles == other.candidate.roles;
+    });
+    if (specimen == list_.end()) return std::nullopt;
+    out.specimen = &*specimen;
+    out.cell = other.screened->cell;
+    out.cells_effective = other.screened->cells_effective;
+    CellScore cell = score_cell(in_.estimate, score_, *specimen, out.cell);
+    if (cell.columns.size() == 0 || cell.result.dof == 0) return std::nullopt;
+    out.result = std::move(cell.result);
+    out.columns = std::move(cell.columns);
+    out.log_p = log_score_tail(*specimen, out.result.chi2) + std::log(out.cells_effective);
+    return out;
+  }
+
+ private:
+  const Refit& in_;
+  std::vector<Specimen> list_;
+  ScoreTest score_;
+};
 
 /// Has `other` a significant score in the model that holds the refitted effect?
-bool adds_to(const Refit& in, const Entry& other, const Searched& searched) {
-  const auto result = score_after(in, other, searched);
-  return result && chi_square_tail(result->chi2, result->dof) < searched.options.p_accept;
+bool adds_to(const After& in, const Entry& other, double p_accept) {
+  const auto found = in.score(other);
+  return found && chi_square_tail(found->result.chi2, found->result.dof) < p_accept;
 }
 
-/// Another known effect whose score in the model that holds `in` is less likely by chance than that of the unknown curve: what remains is
-/// not unknown, and is screened again once `in` is in.
-const Entry* known_for(const UnknownCurve& left, const Entry& in, const std::vector<Entry>& entries, const Searched& searched) {
+/// Another known effect with which nothing remains after `in`, be it silent before: the one with the least likely score in the model that
+/// holds `in`, if a refit with both leaves no dependence worth a good part of their drops.
+const Entry* known_for(const Entry& in, const std::vector<Entry>& entries, const Searched& searched) {
+  const After after(*in.refit, searched);
+  const Entry* next = nullptr;
+  std::optional<Screened> best;
   for (const Entry& other : entries) {
-    if (&other == &in || !other.screened->runs || other.candidate.described || other.candidate.p_value > searched.options.p_accept) continue;
-    const auto result = score_after(*in.refit, other, searched);
-    if (!result) continue;
-    const double log_p = log_chi_square_tail(result->chi2, result->dof) + std::log(other.screened->cells_effective);
-    if (log_p < left.log_p) return &other;
+    if (&other == &in || !other.screened->runs || other.candidate.described || other.candidate.family == "sensor") continue;
+    auto found = after.score(other);
+    if (!found || (best && found->log_p >= best->log_p)) continue;
+    best = std::move(found);
+    next = &other;
   }
-  return nullptr;
+  if (!best || sidak(std::min(1.0, std::exp(best->log_p)), static_cast<double>(entries.size())) > searched.options.p_accept) return nullptr;
+  const Refit both = refit(in.refit->estimate, searched.experiments, *best, searched.registry, searched.options.threads);
+  if (!both.ok || !(both.drop > 0.0)) return nullptr;
+  Specimen reads = *best->specimen;
+  reads.quantities.insert(reads.quantities.end(), in.screened->specimen->quantities.begin(), in.screened->specimen->quantities.end());
+  return what_is_left(both.estimate, reads, in.refit->drop + both.drop, searched.options) ? nullptr : next;
 }
 
 /// Why it cannot be accepted by itself; empty: it can, and holds out.
@@ -62,8 +87,9 @@ void tell_others(std::vector<Entry>& entries) {
   for (std::size_t k = 1; k < entries.size(); ++k) {
     Candidate& other = entries[k].candidate;
     if (!other.why.empty() || !entries[k].refit) continue;
-    other.why = !other.group.empty() ? "these data cannot tell it from " + named(best)
-                                     : "explains less than " + named(best) + "; screened again once that is in";
+    const bool alike = std::find(other.group.begin(), other.group.end(), named(best)) != other.group.end();
+    other.why =
+        alike ? "these data cannot tell it from " + named(best) : "explains less than " + named(best) + "; screened again once that is in";
   }
 }
 
@@ -73,10 +99,12 @@ void find_groups(std::vector<Entry>& entries, const Searched& searched) {
   if (entries.empty() || !entries.front().refit) return;
   Entry& best = entries.front();
   std::vector<Entry*> members = {&best};
+  const After after_best(*best.refit, searched);
+  const double p_accept = searched.options.p_accept;
   for (std::size_t k = 1; k < entries.size(); ++k) {
     Entry& other = entries[k];
     if (!other.refit || std::abs(other.refit->drop - best.refit->drop) > tie) continue;
-    if (adds_to(*best.refit, other, searched) || adds_to(*other.refit, best, searched)) continue;
+    if (adds_to(after_best, other, p_accept) || adds_to(After(*other.refit, searched), best, p_accept)) continue;
     members.push_back(&other);
   }
   if (members.size() < 2) return;
@@ -96,10 +124,10 @@ std::optional<UnknownCurve> accept_best(std::vector<Entry>& entries, const Searc
   if (entries.empty()) return std::nullopt;
   Entry& best = entries.front();
   if (!best.refit || !(best.candidate.p_value < searched.options.p_accept)) return std::nullopt;
-  const auto left = what_is_left(best.refit->estimate, *best.screened->specimen, best.refit->drop, searched.options);
+  auto left = what_is_left(best.refit->estimate, *best.screened->specimen, best.refit->drop, searched.options);
   if (!holds_out) return left;
   Candidate& c = best.candidate;
-  const Entry* next = left ? known_for(*left, best, entries, searched) : nullptr;
+  const Entry* next = left ? known_for(best, entries, searched) : nullptr;
   if (left && next == nullptr) {
     c.why = "most of the departure remains: after it an unknown " + left->port + "(" + left->quantity + ") still has p " +
             format_probability(left->p_value);

@@ -28,7 +28,7 @@ struct Searched {
 void find_groups(std::vector<Entry>& entries, const Searched& searched);
 
 /// Accepts at most one: the first that is significant, makes the held-out readings more likely with strengths away from their bounds, and
-/// after which no dependence on a quantity that it reads remains, unless another known effect explains that remainder. It comes to the
+/// after which no dependence on a quantity that it reads remains, or none once a second known effect is in as well. It comes to the
 /// front; the others get their words. Returned: what remains, unexplained, where that is why nothing was accepted.
 [[nodiscard]] std::optional<UnknownCurve> accept_best(std::vector<Entry>& entries, const Searched& searched);
 

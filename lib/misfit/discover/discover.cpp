@@ -126,7 +126,7 @@ class Search {
       return;
     }
     c.actual_drop = e.refit->drop;
-    e.log_p = log_chi_square_tail(e.refit->drop, c.dof) + std::log(e.screened->cells_effective);
+    e.log_p = log_score_tail(*e.screened->specimen, e.refit->drop) + std::log(e.screened->cells_effective);
     c.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families_);
     c.parameters = e.refit->parameters;
     for (int port : e.refit->estimate.forced.force_ports) {
@@ -163,7 +163,7 @@ class Search {
     for (const auto& curve : unknown_) curves += " " + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
     const std::optional<Unexplained> open = unexplained();
-    write_verdict(out_, open, options_.p_accept);
+    write_verdict(out_, open, options_.p_accept, options_.calibration != nullptr);
     add_likenesses(screened_, score_, out_);
     add_camera_remarks(options_.calibration, out_);
   }

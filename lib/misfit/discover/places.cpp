@@ -14,10 +14,6 @@ bool has_role(const std::vector<Role>& roles, std::string_view name) {
   return std::any_of(roles.begin(), roles.end(), [&](const Role& r) { return name == r.name; });
 }
 
-bool is_generic(const EffectSpec& effect) {
-  return std::any_of(effect.ports.begin(), effect.ports.end(), [](const Role& r) { return r.unit[0] == '*' || r.unit[0] == '{'; });
-}
-
 const StateSpec* state_called(const SystemSpec& system, const std::string& name) {
   const auto found = std::find_if(system.states.begin(), system.states.end(), [&](const StateSpec& s) { return s.name == name; });
   return found == system.states.end() ? nullptr : &*found;
@@ -91,6 +87,10 @@ std::optional<Visited::Range> range_of(std::vector<double> values) {
 }
 
 }  // namespace
+
+bool is_generic(const EffectSpec& effect) {
+  return std::any_of(effect.ports.begin(), effect.ports.end(), [](const Role& r) { return r.unit[0] == '*' || r.unit[0] == '{'; });
+}
 
 std::vector<Roles> places_of(const EffectSpec& effect, const SystemSpec& system) {
   std::vector<Roles> out = {{}};

@@ -12,6 +12,9 @@ namespace misfit {
 /// Bindings of roles, as a study would write them.
 using Roles = std::map<std::string, std::string>;
 
+/// One of its ports takes any unit.
+[[nodiscard]] bool is_generic(const EffectSpec& effect);
+
 /// Where in a system an effect could act: first its default roles ({}), then, for a generic effect, every place that the system itself
 /// suggests. A dynamic port of the random force whose conjugate is a state gives `port` with that state: as `rate`, and what it is the rate
 /// of as `displacement` and `level`; or, where it is the rate of nothing, as `level`. `to_port` is each other such port. `input` is each

@@ -10,15 +10,26 @@
 #include "misfit/math/statistics.h"
 
 namespace misfit {
-namespace {
 
-/// A strength that cannot be negative and would have to be: nothing there.
-ScoreResult one_sided(const Specimen& specimen, ScoreResult result) {
-  if (specimen.strengths.size() != 1 || !specimen.one_sided.front() || !(result.amplitude[0] < 0.0)) return result;
-  result.chi2 = 0.0;
-  result.amplitude.setZero();
-  return result;
+double log_score_tail(const Specimen& specimen, double chi2) {
+  if (!(chi2 > 0.0)) return 0.0;
+  const bool one_side = specimen.strengths.size() == 1 && specimen.one_sided.front();
+  return log_chi_square_tail(chi2, static_cast<double>(specimen.strengths.size())) + (one_side ? std::log(0.5) : 0.0);
 }
+
+CellScore score_cell(const FilterEstimate& estimate, const ScoreTest& score, const Specimen& specimen, const std::vector<double>& at) {
+  CellScore cell;
+  cell.columns = specimen_columns(estimate, specimen, at);
+  if (cell.columns.size() == 0) return cell;
+  cell.result = score.test(cell.columns, specimen.has_priors ? &specimen.priors : nullptr);
+  if (specimen.strengths.size() == 1 && specimen.one_sided.front() && cell.result.amplitude[0] < 0.0) {
+    cell.result.chi2 = 0.0;
+    cell.result.amplitude.setZero();
+  }
+  return cell;
+}
+
+namespace {
 
 /// 1 − mean squared correlation of two cells' columns, free parameters projected out: how much a new cell adds.
 double novelty(const ScoreTest& score, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -36,43 +47,32 @@ double novelty(const ScoreTest& score, const Eigen::MatrixXd& a, const Eigen::Ma
   return known > 0 ? std::max(1.0 - shared / static_cast<double>(known), 0.0) : 1.0;
 }
 
-struct CellResult {
-  ScoreResult result;
-  Eigen::MatrixXd columns;
-};
-
-CellResult test_cell(const FilterEstimate& estimate, const ScoreTest& score, const Specimen& specimen, const std::vector<double>& at) {
-  CellResult cell;
-  cell.columns = specimen_columns(estimate, specimen, at);
-  if (cell.columns.size() > 0)
-    cell.result = one_sided(specimen, score.test(cell.columns, specimen.has_priors ? &specimen.priors : nullptr));
-  return cell;
-}
-
-/// Distance between neighbouring cells along one scanned shape.
-double spacing(const Specimen& specimen, std::size_t shape) {
-  double least = std::numeric_limits<double>::infinity();
+/// The nearest scanned value on one side of `from`; `from` if there is none.
+double neighbour(const Specimen& specimen, std::size_t shape, double from, double side) {
+  double best = from;
   for (const auto& cell : specimen.cells) {
-    const double away = std::abs(cell[shape] - specimen.cells.front()[shape]);
-    if (away > 0.0) least = std::min(least, away);
+    const bool beyond = side * (cell[shape] - from) > 0.0;
+    if (beyond && (best == from || std::abs(cell[shape] - from) < std::abs(best - from))) best = cell[shape];
   }
-  return std::isfinite(least) ? least : 0.0;
+  return best;
 }
 
 /// Looks between the best cell and its neighbours, twice as finely each time: a shape between two cells would otherwise seem weaker than
 /// it is.
 void look_closer(const FilterEstimate& estimate, const ScoreTest& score, Screened& best) {
   const Specimen& specimen = *best.specimen;
+  const std::vector<double> grid = best.cell;
   constexpr double fractions[] = {0.5, 0.25};
   for (const double fraction : fractions) {
     for (std::size_t i = 0; i < specimen.shapes.size(); ++i) {
       const Parameter& p = specimen.model.parameters[static_cast<std::size_t>(specimen.shapes[i])];
       const std::vector<double> middle = best.cell;
-      for (const double side : {-1.0, 1.0}) {
+      const double between[] = {neighbour(specimen, i, grid[i], -1.0), neighbour(specimen, i, grid[i], 1.0)};
+      for (const double to : between) {
         std::vector<double> at = middle;
-        at[i] = std::clamp(at[i] + side * fraction * spacing(specimen, i), p.lower, p.upper);
+        at[i] = std::clamp(at[i] + fraction * (to - grid[i]), p.lower, p.upper);
         if (at[i] == middle[i]) continue;
-        CellResult cell = test_cell(estimate, score, specimen, at);
+        CellScore cell = score_cell(estimate, score, specimen, at);
         if (cell.columns.size() == 0 || !(cell.result.chi2 > best.result.chi2)) continue;
         best.result = cell.result;
         best.columns = std::move(cell.columns);
@@ -107,14 +107,33 @@ void add_over_background(const std::vector<double>& line, std::vector<double>& p
   }
 }
 
+/// The longest time that runs forward: the times of several experiments stand one behind the other.
+struct Stretch {
+  double length = 0.0;  ///< [s]
+  std::size_t samples = 0;
+};
+
+Stretch longest_stretch(const std::vector<double>& t) {
+  Stretch out;
+  for (std::size_t from = 0, to = 0; from < t.size(); from = to) {
+    for (to = from + 1; to < t.size() && t[to] > t[to - 1];) ++to;
+    if (t[to - 1] - t[from] > out.length) out = {t[to - 1] - t[from], to - from};
+  }
+  return out;
+}
+
 /// Frequencies whose line in the score of the force steps stands out most, as cells; their count among all scanned.
 std::vector<double> frequency_peaks(const Specimen& specimen, const ForceColumns& path, double& scanned) {
   const std::vector<double>& t = path.times();
-  const double length = t.back() - t.front();
-  const double step = 1.0 / (4.0 * length);
-  const double nyquist = 0.45 * static_cast<double>(t.size()) / length;
-  const auto count = static_cast<std::size_t>(std::max(0.0, (std::min(specimen.frequency_to, nyquist) - specimen.frequency_from) / step));
-  const auto frequency = [&](std::size_t f) { return specimen.frequency_from + static_cast<double>(f) * step; };
+  const Stretch longest = longest_stretch(t);
+  if (!(longest.length > 0.0)) return {};
+  const double step = 1.0 / (4.0 * longest.length);
+  const double first = std::max(specimen.frequency_from, 2.0 * step);  // half a period in the record is no line but a drift
+  const double last = std::min(specimen.frequency_to, 0.45 * static_cast<double>(longest.samples) / longest.length);
+  constexpr double most_turns = 4e9;  // some 10 s of work: in very long records only the lower frequencies are scanned
+  const double affordable = most_turns / static_cast<double>(t.size() * std::max<std::size_t>(specimen.ports.size(), 1));
+  const auto count = static_cast<std::size_t>(std::clamp((last - first) / step, 0.0, affordable));
+  const auto frequency = [&](std::size_t f) { return first + static_cast<double>(f) * step; };
   std::vector<double> power(count, 0.0), line(count);
   for (int port : specimen.ports) {
     const Eigen::VectorXd lambda = path.score_of_steps(port);
@@ -166,13 +185,13 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
     cells[s] = cells_of(specimens[s], path, frequencies[s]);
     for (std::size_t c = 0; c < cells[s].size(); ++c) jobs.push_back({s, c});
   }
-  std::vector<std::vector<CellResult>> results(specimens.size());
+  std::vector<std::vector<CellScore>> results(specimens.size());
   for (std::size_t s = 0; s < specimens.size(); ++s) results[s].resize(cells[s].size());
   run_jobs(
       jobs.size(), threads,
       [&](std::size_t j) {
         const Specimen& specimen = specimens[jobs[j].specimen];
-        results[jobs[j].specimen][jobs[j].cell] = test_cell(estimate, score, specimen, cells[jobs[j].specimen][jobs[j].cell]);
+        results[jobs[j].specimen][jobs[j].cell] = score_cell(estimate, score, specimen, cells[jobs[j].specimen][jobs[j].cell]);
       },
       progress);
   run_jobs(specimens.size(), threads, [&](std::size_t s) {
@@ -181,7 +200,7 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
     best.runs = false;
     best.cells = cells[s].size();
     for (std::size_t c = 0; c < cells[s].size(); ++c) {
-      CellResult& cell = results[s][c];
+      CellScore& cell = results[s][c];
       if (cell.columns.size() == 0) continue;
       if (!best.runs || cell.result.chi2 > best.result.chi2) {
         best.result = cell.result;
@@ -197,8 +216,7 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
     if (!specimens[s].shapes.empty() &&
         sidak(chi_square_tail(best.result.chi2, best.result.dof), best.cells_effective) < worth_a_closer_look)
       look_closer(estimate, score, best);
-    const double sides = specimens[s].strengths.size() == 1 && specimens[s].one_sided.front() ? 0.5 : 1.0;
-    best.log_p = log_chi_square_tail(best.result.chi2, best.result.dof) + std::log(sides);
+    best.log_p = log_score_tail(specimens[s], best.result.chi2);
     best.p_value = sidak(std::exp(best.log_p), best.cells_effective);
     best.log_p += std::log(best.cells_effective);
   });

@@ -6,6 +6,15 @@
 
 namespace misfit {
 
+/// Score of a specimen's strengths at a cell. One strength that cannot be negative and would have to be: nothing there, chi² 0. Columns are
+/// empty where the model cannot be run so.
+struct CellScore {
+  ScoreResult result;
+  Eigen::MatrixXd columns;
+};
+[[nodiscard]] CellScore score_cell(const FilterEstimate& estimate, const ScoreTest& score, const Specimen& specimen,
+                                   const std::vector<double>& at);
+
 /// What the score test says of a specimen, at its best cell.
 struct Screened {
   const Specimen* specimen = nullptr;
@@ -26,6 +35,10 @@ struct Screened {
 
 /// Hats per quantity of the unknown curves.
 inline constexpr int hats_of_unknown_curves = 8;
+
+/// log p-value of a specimen's chi² by chance, in a score as in a refit: of a single strength that cannot be negative only one side counts;
+/// 1 where there is nothing.
+[[nodiscard]] double log_score_tail(const Specimen& specimen, double chi2);
 
 /// Unknown curves: hat functions of every quantity on every dynamic port.
 struct UnknownCurve {

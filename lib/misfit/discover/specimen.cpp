@@ -208,9 +208,7 @@ std::optional<Specimen> specimen_at(const FilterEstimate& estimate, const ModelR
   } catch (const InputError&) {
     return std::nullopt;
   }
-  const auto any_unit = [](const Role& r) { return r.unit[0] == '*' || r.unit[0] == '{'; };
-  const bool generic = std::any_of(effect.spec().ports.begin(), effect.spec().ports.end(), any_unit);
-  out.family = out.model.effects.back().kind == PortKind::sensor ? "sensor" : generic ? "generic" : "physics";
+  out.family = out.model.effects.back().kind == PortKind::sensor ? "sensor" : is_generic(effect.spec()) ? "generic" : "physics";
   for (auto& p : out.model.parameters) p.free = false;
   for (std::size_t i = 0; i < estimate.model.parameters.size(); ++i)  // the effect's own follow behind
     out.model.parameters[i].value = estimate.model.parameters[i].value;

@@ -9,12 +9,6 @@
 namespace misfit {
 namespace {
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (std::size_t i = 0; i < words.size(); ++i) out += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
-  return out;
-}
-
 std::string numbers(const Candidate& c) {
   std::string out;
   for (const auto& [name, estimate] : c.parameters) {
@@ -31,18 +25,24 @@ bool is_sensor(const Discovery& discovery, const std::string& effect) {
                      [&](const Candidate& c) { return effect_at(c.effect, c.roles) == effect && c.family == "sensor"; });
 }
 
-void separate(const Candidate& best, Discovery& discovery) {
+void separate(const Candidate& best, bool camera, Discovery& discovery) {
   if (best.group.empty()) return;
-  std::string sentence = "these data cannot tell " + joined(best.group) + " apart";
-  const bool camera = std::any_of(best.group.begin(), best.group.end(), [&](const std::string& e) { return is_sensor(discovery, e); });
-  sentence += camera ? ": a calibration sweep that measures roll, image centre and scale with both image coordinates would"
-                     : ": a recording at another dynamic pressure or another release would";
+  const bool sensor = std::any_of(best.group.begin(), best.group.end(), [&](const std::string& e) { return is_sensor(discovery, e); });
+  std::string sentence = "these data cannot tell " + join_words(best.group) + " apart: ";
+  if (camera && sensor) {
+    sentence += "a calibration sweep that measures roll, image centre and scale with both image coordinates would";
+  } else if (camera) {
+    sentence += "a recording at another dynamic pressure or another release would";
+  } else {
+    sentence += sensor ? "a calibration of the sensor, or a recording of another motion, would"
+                       : "a recording of another motion (another start, another input) would";
+  }
   discovery.sentences.push_back(sentence);
 }
 
 }  // namespace
 
-void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept) {
+void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept, bool camera) {
   if (out.candidates.empty()) {
     out.verdict = "No effect of the library suits this system: nothing could be tried.";
     return;
@@ -52,7 +52,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     out.verdict = "Missing: " + effect_at(best.effect, best.roles) + " (drop " +
                   format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise p " + format_probability(best.p_value) +
                   "): " + numbers(best) + ".";
-    separate(best, out);
+    separate(best, camera, out);
     return;
   }
   if (unexplained) {
@@ -110,13 +110,14 @@ void add_camera_remarks(const Calibration* calibration, Discovery& out) {
   for (auto& c : out.candidates) {
     if (wanted.size() > 1 && std::find(wanted.begin(), wanted.end(), c.effect) != wanted.end()) c.group = wanted;
   }
-  const std::string disagreement = "the calibration sweep asks for " + joined(wanted) + ", which the camera of this study does not have";
+  const std::string disagreement =
+      "the calibration sweep asks for " + join_words(wanted) + ", which the camera of this study does not have";
   std::string flight;
   for (auto& c : out.candidates) {
     if (!c.accepted) continue;
     if (c.family != "sensor") flight = effect_at(c.effect, c.roles);
     c.accepted = false;
-    c.why = "the calibration sweep asks for " + joined(wanted) + ": calibrate with them offered, then ask again (" + c.why + ")";
+    c.why = "the calibration sweep asks for " + join_words(wanted) + ": calibrate with them offered, then ask again (" + c.why + ")";
   }
   if (flight.empty()) {
     out.verdict = "The camera, not the physics: " + disagreement + ". Calibrate with them offered, then ask again.";

@@ -7,8 +7,27 @@
 #include "misfit/core/text.h"
 #include "misfit/fit/filter_exact.h"
 #include "misfit/fit/filter_start.h"
+#include "misfit/math/bounded.h"
 
 namespace misfit {
+namespace {
+
+struct Box {
+  Eigen::VectorXd lower, upper;
+};
+
+Box bounds_of(const Model& model, const std::vector<int>& free) {
+  const auto n = static_cast<Eigen::Index>(free.size());
+  Box box{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  for (Eigen::Index c = 0; c < n; ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])];
+    box.lower[c] = p.lower;
+    box.upper[c] = p.upper;
+  }
+  return box;
+}
+
+}  // namespace
 
 FilterClimb::FilterClimb(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
                          const FilterOptions& options)
@@ -82,15 +101,6 @@ Linearised FilterClimb::normal_equations() const {
   return sums;
 }
 
-Eigen::VectorXd FilterClimb::inside_bounds(Eigen::VectorXd there) const {
-  for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = out.model.parameters[static_cast<std::size_t>(free[c])];
-    auto& value = there[static_cast<Eigen::Index>(c)];
-    value = std::clamp(value, p.lower, p.upper);
-  }
-  return there;
-}
-
 void FilterClimb::physical_step() {
   if (free.empty()) return;
   const Smoothed smoothed = smooth(normal_equations(), out.penalties, 1.0);
@@ -98,7 +108,8 @@ void FilterClimb::physical_step() {
   out.edf = smoothed.edf;
   out.covariance = smoothed.covariance;
   objective = out.loglik + log_prior_at(out.model, out.penalties, theta);  // the roughness may have changed
-  const Eigen::VectorXd step = inside_bounds(smoothed.theta) - theta;
+  const auto [lower, upper] = bounds_of(out.model, free);
+  const Eigen::VectorXd step = maximum_inside(smoothed.theta, smoothed.covariance, lower, upper).at - theta;
   for (double share = 1.0; share > 0.05; share *= 0.4) {
     const Eigen::VectorXd there = theta + share * step;
     const double value = objective_at(there, out.noise);
@@ -140,18 +151,27 @@ void FilterClimb::iterate(int most, double tolerance) {
   }
 }
 
-bool FilterClimb::joint_step(const Eigen::VectorXd& step) {
+bool FilterClimb::joint_step(const Eigen::VectorXd& gradient, double enough) {
   const Eigen::Index n = theta.size();
+  const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
+  const auto [lower, upper] = bounds_of(out.model, free);
+  const auto joined = [](const Eigen::VectorXd& a, const std::vector<double>& b) {
+    Eigen::VectorXd both(a.size() + static_cast<Eigen::Index>(b.size()));
+    both << a, Eigen::Map<const Eigen::VectorXd>(b.data(), static_cast<Eigen::Index>(b.size()));
+    return both;
+  };
+  const Eigen::VectorXd here = joined(theta, out.noise_fit.logs), newton = out.joint_covariance * gradient;
+  const BoundedMaximum there = maximum_inside(here + newton, out.joint_covariance, joined(lower, noise.lower), joined(upper, noise.upper));
+  const Eigen::VectorXd step = there.at - here;
+  out.left = 0.5 * gradient.dot(newton) - there.below;
+  if (out.left < enough) return false;
   for (double share = 1.0; share > 0.1; share *= 0.5) {
-    const NoiseVector bounds = pack(out.noise, out.model.system->spec(), out.around);
-    std::vector<double> logs = out.noise_fit.logs;
-    for (std::size_t i = 0; i < logs.size(); ++i)
-      logs[i] = std::clamp(logs[i] + share * step[n + static_cast<Eigen::Index>(i)], bounds.lower[i], bounds.upper[i]);
-    const FilterNoise noise = unpack(logs);
-    const Eigen::VectorXd there = inside_bounds(theta + share * step.head(n));
-    if (!(objective_at(there, noise) > objective)) continue;
-    theta = there;
-    out.noise = noise;
+    const Eigen::VectorXd at = here + share * step;
+    const std::vector<double> logs(at.data() + n, at.data() + at.size());
+    const FilterNoise with = unpack(logs);
+    if (!(objective_at(at.head(n), with) > objective)) continue;
+    theta = at.head(n);
+    out.noise = with;
     out.noise_fit.logs = logs;
     set_time();
     return linearise();

@@ -18,8 +18,10 @@ class FilterClimb {
   void iterate(int most, double tolerance);
   /// False if the model cannot be run with it: all is as before.
   bool take_noise(const NoiseFit& fit);
-  /// A step over parameters and log noise together, shortened until the exact objective rises; false: no length of it does.
-  bool joint_step(const Eigen::VectorXd& step);
+  /// A Newton step over parameters and log noise together, inside their bounds, with `gradient` that of the exact objective and
+  /// `out.joint_covariance` the inverse of its curvature; shortened until the objective rises. `out.left` is what it promises. False: that
+  /// is less than `enough`, or no length of it rises.
+  bool joint_step(const Eigen::VectorXd& gradient, double enough);
 
   [[nodiscard]] std::vector<double> values() const;  ///< of all parameters of the forced model
   [[nodiscard]] LinearisedRuns runs() const { return {&out.forced, &out.data, &out.traces}; }
@@ -34,7 +36,6 @@ class FilterClimb {
  private:
   void set_time();
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
-  [[nodiscard]] Eigen::VectorXd inside_bounds(Eigen::VectorXd there) const;
 
   int threads_;
   std::size_t failed_experiment_ = 0;

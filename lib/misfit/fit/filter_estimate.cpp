@@ -116,11 +116,10 @@ class Estimation {
         continue;
       }
       if (!invert_scaled(joint_precision(out_, exact), out_.joint_covariance)) return;
-      const Eigen::VectorXd step = out_.joint_covariance * exact.gradient;
-      out_.left = 0.5 * exact.gradient.dot(step);
       constexpr double enough = 0.02, nearly = 0.5;
-      const double before = at_.objective, promised = out_.left;
-      if (out_.left < enough || !at_.joint_step(step)) return;
+      const double before = at_.objective;
+      if (!at_.joint_step(exact.gradient, enough)) return;
+      const double promised = out_.left;
       // A short step that gains what was promised ends at the maximum; a longer one is looked at again.
       if (promised < nearly) {
         out_.left = std::abs(promised - (at_.objective - before));

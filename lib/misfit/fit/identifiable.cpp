@@ -1,9 +1,10 @@
 #include "misfit/fit/identifiable.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "misfit/core/text.h"
 
 namespace misfit {
 namespace {
@@ -32,15 +33,9 @@ Eigen::MatrixXd reduced(const Linearised& problem, const std::vector<Column>& co
   return N - C * all.bottomRightCorner(states, states).completeOrthogonalDecomposition().solve(C.transpose());
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string out;
-  for (std::size_t i = 0; i < names.size(); ++i) out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return out;
-}
-
 /// "a and b: only their product acts", from the relative changes that leave everything as it is.
 std::string in_words(const std::vector<std::string>& names, const std::vector<double>& relative) {
-  std::string out = "these data do not tell " + joined(names) + " apart: ";
+  std::string out = "these data do not tell " + join_words(names) + " apart: ";
   constexpr double alike = 0.02;
   const bool pair = names.size() == 2 && std::isfinite(relative[0]) && std::isfinite(relative[1]) && relative[0] != 0.0;
   const double ratio = pair ? relative[1] / relative[0] : 0.0;
@@ -68,7 +63,7 @@ std::string undetermined(const Model& model, const Linearised& problem) {
     if (acts) columns.push_back({&p, at});
     if (!acts) idle.push_back(p.name);
   }
-  if (!idle.empty()) return "nothing in these data depends on " + joined(idle) + "; fix it, or take it out of the model";
+  if (!idle.empty()) return "nothing in these data depends on " + join_words(idle) + "; fix it, or take it out of the model";
   if (columns.size() < 2) return {};
   const Eigen::MatrixXd N = reduced(problem, columns, static_cast<Eigen::Index>(free.size()));
   Eigen::VectorXd size(N.rows());

@@ -42,7 +42,7 @@ class FreeRuns {
 
   void compare(const double* x, std::size_t k, std::size_t length) {
     std::array<double, kMaxOutputs + 1> y{};
-    stepper_.evaluator().predict(x, data_.inputs.at(k), signals_.t[k], y.data());
+    if (!predict_at(stepper_, signals_, data_.inputs, k, x, y.data())) return;
     for (std::size_t o = 0; o < errors_.squares.size(); ++o) {
       if (data_.use[k * errors_.squares.size() + o] != counted_) continue;
       errors_.squares[o][length] += std::pow(signals_.measured[o].values[k] - y[o], 2);

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <optional>
 
-#include "misfit/core/text.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -146,16 +145,15 @@ LinearGuess guess_linear(const GuessData& data) {
     out.stiffness = omega * omega;
     out.damping = std::max(2.0 * zeta * omega, 1e-3 * omega);
     set_static(*r, spread, out);
-    out.why = fmt::format("it swings: about {} Hz, {} % of critical damping",
-                          format_value(std::round(1e3 * omega / (2e3 * std::numbers::pi) * 1e3) / 1e3),
-                          format_value(std::round(1e3 * std::max(zeta, 0.0)) / 10.0));
+    out.why = fmt::format("it swings: about {:.3g} Hz, {:.3g} % of critical damping", omega / (2.0 * std::numbers::pi),
+                          100.0 * std::max(zeta, 0.0));
     return out;
   }
   const double modulus = std::abs(slow);
   if (!(slow.real() > 0.0) || !(modulus < 0.9999)) return out;
   out.tau = -h / std::log(modulus);
   set_static(*r, spread, out);
-  out.why = fmt::format("it does not swing: a time constant of about {} s", format_value(std::round(1e3 * out.tau) / 1e3));
+  out.why = fmt::format("it does not swing: a time constant of about {:.3g} s", out.tau);
   return out;
 }
 

@@ -273,7 +273,8 @@ std::vector<RowMatrix> Shooting::predict_segments() {
     out.emplace_back(history_[e].rows(), model_.outputs());
     for (Eigen::Index i = 0; i < history_[e].rows(); ++i) {
       const auto sample = static_cast<std::size_t>(i);
-      stepper_->evaluator().predict(history_[e].row(i).data(), inputs_[e].at(sample), experiments_[e].t[sample], y.data());
+      const bool known = predict_at(*stepper_, experiments_[e], inputs_[e], sample, history_[e].row(i).data(), y.data());
+      if (!known) std::fill(y.begin(), y.end(), std::nan(""));
       for (Eigen::Index o = 0; o < out[e].cols(); ++o) out[e](i, o) = y[static_cast<std::size_t>(o)];
     }
   }

@@ -1,6 +1,5 @@
 #include "misfit/formula/build.h"
 
-#include <cmath>
 #include <map>
 #include <numbers>
 
@@ -60,6 +59,9 @@ class Builder {
 
   Meaning name() const {
     if (at_->text == "pi") return {g_.constant(std::numbers::pi), {}};
+    if (names_.refusal) {
+      if (const std::string why = names_.refusal(at_->text); !why.empty()) fail(why);
+    }
     if (auto meaning = names_.find(at_->text)) return *meaning;
     fail("there is no '" + at_->text + "' here" + suggest(at_->text, names_.all));
   }

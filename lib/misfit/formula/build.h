@@ -19,10 +19,11 @@ struct Meaning {
   Measure measure;
 };
 
-/// Names that formulas may use. A lookup may itself throw, where a name is known but must not be used here.
+/// Names that formulas may use.
 struct Names {
   std::function<std::optional<Meaning>(const std::string& name)> find;
-  std::vector<std::string> all;  ///< for suggestions
+  std::vector<std::string> all;                                      ///< for suggestions
+  std::function<std::string(const std::string& name)> refusal = {};  ///< why a known name must not be used here; empty: it may
 };
 
 /// Translates a formula. InputError with place, both units and the part, where a name is unknown or units do not match:

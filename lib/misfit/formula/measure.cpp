@@ -26,18 +26,7 @@ void multiply(Measure& into, const Measure& by, double power) {
 
 std::string Measure::text() const {
   if (truth) return "a condition";
-  std::string above, below;
-  for (const auto& [symbol, power] : symbols) {
-    const double size = std::round(1e6 * std::abs(power)) / 1e6;
-    if (size == 0.0) continue;
-    std::string& side = power > 0.0 ? above : below;
-    if (power < 0.0) side += '/';
-    if (power > 0.0 && !side.empty()) side += ' ';
-    side += symbol;
-    if (size != 1.0) side += fmt::format("^{}", size);
-  }
-  if (above.empty() && below.empty()) return "-";
-  return (above.empty() ? "1" : above) + below;
+  return unit_text(symbols);
 }
 
 Measure measure_of(const std::string& unit) {

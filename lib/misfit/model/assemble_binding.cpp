@@ -138,6 +138,10 @@ Parameter Assembler::as_parameter(const std::string& name, const CoefficientSpec
   p.scale = spec.scale;
   p.free = !spec.fixed;
   p.kind = spec.kind;
+  if (spec.own_sigma > 0.0) {
+    p.prior_sigma = spec.own_sigma;
+    p.prior_mean = spec.value;
+  }
   return p;
 }
 

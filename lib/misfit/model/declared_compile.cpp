@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "misfit/core/units.h"
 #include "misfit/model/declared_system.h"
@@ -83,15 +82,13 @@ class Compiler {
     return node;
   }
 
-  template <class List>
-  static int index_of(const List& list, const std::string& name) {
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      if (list[i].name == name) return static_cast<int>(i);
-    }
-    return -1;
+  /// Of those ports that the file declares; −1: none of them.
+  int own_port(const std::string& name) {
+    const int port = index_of(spec().dynamic_ports, name);
+    return port < own_ports_ ? port : -1;
   }
 
-  std::optional<Meaning> find(const std::string& name, bool in_equation) {
+  std::optional<Meaning> find(const std::string& name) {
     const auto at = [](const auto& list, int i) -> const auto& { return list[static_cast<std::size_t>(i)]; };
     if (name == "t") return Meaning{g().leaf(out_->leaves.t()), formula::measure_of("s")};
     if (const int i = index_of(spec().states, name); i >= 0)
@@ -102,23 +99,17 @@ class Compiler {
       return Meaning{g().leaf(out_->leaves.k(i)), formula::measure_of(at(spec().constants, i).unit)};
     if (const int i = index_of(spec().quantities, name); i >= 0)
       return Meaning{quantity_node(i), formula::measure_of(at(spec().quantities, i).unit)};
-    const int port = index_of(spec().dynamic_ports, name);
-    if (port < 0 || port >= own_ports_) return std::nullopt;
-    if (!in_equation) throw InputError("'" + name + "' is a port: it can stand in equations only");
+    const int port = own_port(name);
+    if (port < 0) return std::nullopt;
     return Meaning{g().leaf(out_->leaves.F(port)), formula::measure_of(at(spec().dynamic_ports, port).unit)};
   }
 
   int build(const Formula& f, bool in_equation) {
-    const formula::Names names{[this, in_equation, &f](const std::string& name) {
-                                 try {
-                                   return find(name, in_equation);
-                                 } catch (const InputError& error) {
-                                   const auto at = f.syntax.source.text.find(name);
-                                   if (std::string(error.what()).find(" is a port") == std::string::npos) throw;
-                                   f.syntax.source.fail(static_cast<int>(at), static_cast<int>(at + name.size()), error.what());
-                                 }
-                               },
-                               names_};
+    const formula::Names names{[this](const std::string& name) { return find(name); }, names_,
+                               [this, in_equation](const std::string& name) {
+                                 const bool port = !in_equation && own_port(name) >= 0;
+                                 return port ? "'" + name + "' is a port: it can stand in equations only" : std::string();
+                               }};
     const int origin = next_origin_;
     next_origin_ += static_cast<int>(f.syntax.nodes.size());
     out_->texts.push_back(f.syntax);

@@ -120,7 +120,7 @@ class Maker {
       c.upper = text.upper;
       c.scale = text.scale.value_or(c.value != 0.0 ? std::abs(c.value) : 1.0);
       c.fixed = !text.free.value_or(true);
-      c.prior_sigma = text.sigma.value_or(0.0);
+      c.own_sigma = text.sigma.value_or(0.0);
       c.doc = keep(text.doc.empty() ? "declared in the study" : text.doc);
       measures_.push_back(text.measure);
       s.finish();

@@ -5,14 +5,6 @@
 namespace misfit::declared {
 namespace {
 
-template <class List>
-int index_of(const List& list, const std::string& name) {
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (list[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
-
 class Roles {
  public:
   explicit Roles(Declaration& declaration) : d_(declaration) {}

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "misfit/core/units.h"
@@ -135,7 +134,7 @@ class Reader {
   Formula formula_of(const Section& s, const char* key, const std::string& of, const std::string& unit_text) const {
     const auto text = s.text(key);
     if (!text) s.fail(key, "a formula in quotes is expected");
-    return {formula::parse({*text, of, s.where_text(key)}), formula::measure_of(unit_text), unit_text};
+    return {formula::parse({*text, of, s.where_text(key)}), formula::measure_of(unit_text)};
   }
 
   void read_quantity(const Section& s, const std::string& name) {
@@ -193,8 +192,8 @@ class Reader {
       }
       const auto rate = std::find_if(states.begin(), states.end(), [&](const StateSpec& s) { return s.rate_of == static_cast<int>(j); });
       if (rate == states.end()) section->fail(states[j].name, "the equation of state '" + states[j].name + "' is missing");
-      out_.equations.push_back({formula::parse({rate->name, "equation " + states[j].name, out_.where}),
-                                formula::measure_of(rate_unit(states[j].unit)), rate_unit(states[j].unit)});
+      out_.equations.push_back(
+          {formula::parse({rate->name, "equation " + states[j].name, out_.where}), formula::measure_of(rate_unit(states[j].unit))});
     }
     section->finish();
   }
@@ -205,9 +204,8 @@ class Reader {
     output.unit = read_unit(s);
     output.noise = number(s, "noise", output.unit, 0.0);
     const std::string of = "output " + name;
-    out_.outputs.push_back(s.has("formula")
-                               ? formula_of(s, "formula", of, output.unit)
-                               : Formula{formula::parse({name, of, s.where()}), formula::measure_of(output.unit), output.unit});
+    out_.outputs.push_back(s.has("formula") ? formula_of(s, "formula", of, output.unit)
+                                            : Formula{formula::parse({name, of, s.where()}), formula::measure_of(output.unit)});
     out_.spec.outputs.push_back(output);
   }
 

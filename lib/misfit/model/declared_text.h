@@ -16,14 +16,13 @@ namespace misfit::declared {
 struct Formula {
   formula::Syntax syntax;
   formula::Measure measure;  ///< unit it must have
-  std::string unit;
 };
 
 /// A declared system as read: names, units and syntax are checked, formulas not yet built.
 struct Declaration {
   SystemSpec spec;                  ///< states, inputs, ports, constants, outputs; quantities as declared, in order
   std::vector<Formula> quantities;  ///< of spec.quantities
-  std::vector<Formula> equations;   ///< per state; a syntax without nodes: the state's rate is the state `rate_of` it
+  std::vector<Formula> equations;   ///< per state
   std::vector<Formula> outputs;
   Source where;  ///< of the file
   std::optional<config::Section> roles;

@@ -63,25 +63,29 @@ struct CoefficientSpec {
   bool fixed = false;            ///< not fitted unless the study frees it: a smoothing width, an origin of time
   ScanSpec scan{};
   const char* calibrated_as = "";  ///< camera parameter whose calibration sigma is the prior of this strength, if there is a calibration
-  double prior_sigma = 0.0;        ///< Gaussian about 0 where there is no calibration [unit]; 0: no prior
+  double prior_sigma = 0.0;        ///< as a candidate: Gaussian about 0 where there is no calibration [unit]; 0: no prior
+  double own_sigma = 0.0;          ///< in every fit: Gaussian about the value [unit]; 0: no prior
   /// The coefficient of this name of another effect of the model, number or curve, with that one's parameters: for effects that change what
   /// another adds (a wake that weakens the static moment). InputError where no effect of the model has it. Declared as a shape; of the rest
   /// of this specification only name, unit and doc count.
   bool borrowed = false;
 };
 
-constexpr CoefficientSpec borrowed_coefficient(const char* name, const char* unit, const char* doc) {
+/// `value` and `lower`: of the worked examples and laws, where no other effect lends it.
+constexpr CoefficientSpec borrowed_coefficient(const char* name, const char* unit, const char* doc, double value = 0.0,
+                                               double lower = -1e6) {
   constexpr double huge = 1e6;
-  CoefficientSpec spec{name, CoefficientKind::shape, 0.0, unit, -huge, huge, 1.0, doc};
+  CoefficientSpec spec{name, CoefficientKind::shape, value, unit, lower, huge, 1.0, doc};
   spec.borrowed = true;
   return spec;
 }
 
-/// The same coefficient, looked for over `scan`; held unless a study frees it.
+/// The same coefficient, looked for over `scan`.
 constexpr CoefficientSpec scanned(CoefficientSpec spec, const ScanSpec& scan) {
   spec.scan = scan;
   return spec;
 }
+/// The same coefficient, held unless a study frees it.
 constexpr CoefficientSpec held(CoefficientSpec spec) {
   spec.fixed = true;
   return spec;

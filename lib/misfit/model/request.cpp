@@ -72,7 +72,9 @@ ParameterRequest read_parameter(const ParameterStudy& study, const std::string& 
 /// `start` of an effect's line: values where [parameters] gives none.
 void read_starts(const Study& study, const std::map<std::string, std::string>& units, ModelRequest& request) {
   for (const auto& effect : study.effects) {
-    for (const auto& [name, number] : effect.start) {
+    for (const auto& [own, number] : effect.start) {
+      const std::string prefixed = effect.name + "." + own;  // its name where another effect or the system has one like it
+      const std::string& name = units.contains(prefixed) ? prefixed : own;
       const auto unit = units.find(name);
       if (unit != units.end() && !number.unit.empty() && !parse_unit(number.unit).same_dimension(parse_unit(unit->second)))
         throw InputError(number.where, name + " needs [" + unit->second + "], not [" + number.unit + "]");

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "misfit/data/motion.h"
 #include "misfit/report/figure.h"
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "misfit/report/figure_units.h"
@@ -11,14 +9,16 @@
 namespace misfit::report {
 namespace {
 
+/// More than one and a half of the usual steps since the sample before.
+bool after_gap(const std::vector<double>& t, std::size_t k, double step) { return k > 0 && t[k] - t[k - 1] > 1.5 * step; }
+
 /// A value with the place of the row before it broken, so that no line is drawn across a gap.
-Series curve(const Column& column, const std::vector<double>& t, const std::vector<Gap>& gaps, std::size_t colour, const Interval& part) {
+Series curve(const Column& column, const std::vector<double>& t, double step, std::size_t colour, const Interval& part) {
   Series s{as_key(column.name), "", Style::line, palette(colour), {}, {}, {}, {}, 1.2};
   const std::vector<double> values = shown(column.values, column.unit.empty() ? "-" : column.unit);
   for (std::size_t k = 0; k < t.size(); ++k) {
     if (t[k] < part.from || t[k] > part.to) continue;
-    const bool after_gap = std::any_of(gaps.begin(), gaps.end(), [&](const Gap& g) { return g.to == t[k]; });
-    if (after_gap && !s.x.empty()) {
+    if (!s.x.empty() && after_gap(t, k, step)) {
       s.x.push_back(t[k]);
       s.y.push_back(std::numeric_limits<double>::quiet_NaN());
     }
@@ -54,13 +54,13 @@ Figure recording_figure(const RecordingSurvey& survey, std::size_t part, const s
     const Column& column = table.columns[i];
     const std::string unit = column.unit.empty() ? "-" : display_unit(column.unit);
     Panel panel{column.name + " (" + use_of(survey, column.name) + ")", unit, {}, std::nullopt, 0.0, 170.0, false};
-    panel.series.push_back(curve(column, t, survey.gaps, i - 1, all));
+    panel.series.push_back(curve(column, t, survey.step, i - 1, all));
     figure.panels.push_back(std::move(panel));
   }
-  for (const Gap& gap : survey.gaps) {
+  for (std::size_t k = 1; k < t.size(); ++k) {
     constexpr std::size_t most = 5;
-    if (gap.from < all.from || gap.to > all.to || figure.notes.size() >= most) continue;
-    figure.notes.push_back(fmt::format("no samples from {:g} s to {:g} s", gap.from, gap.to));
+    if (!after_gap(t, k, survey.step) || t[k - 1] < all.from || t[k] > all.to || figure.notes.size() >= most) continue;
+    figure.notes.push_back(fmt::format("no samples from {:g} s to {:g} s", t[k - 1], t[k]));
   }
   return figure;
 }

@@ -82,19 +82,6 @@ Interval interval_between(const Signals& signals, const InputTable& inputs, std:
   return {signals.t[i], signals.t[i + 1], inputs.at(i), inputs.at(i + 1)};
 }
 
-/// Predicted outputs at sample i, at the shifted time where an effect shifts it: the state is carried there by the step map itself.
-bool predict(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x, double* y) {
-  Evaluator& evaluator = stepper.evaluator();
-  evaluator.predict(x, inputs.at(i), signals.t[i], y);
-  const double shift = evaluator.shifts_time() ? y[evaluator.outputs()] : 0.0;
-  if (shift == 0.0) return true;
-  std::array<double, kMaxStates> moved;
-  std::copy_n(x, stepper.states(), moved.begin());
-  if (!stepper.step(moved.data(), {signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)})) return false;
-  evaluator.predict(moved.data(), inputs.at(i), signals.t[i], y);
-  return true;
-}
-
 double* output_row(std::size_t i, int o, int outputs, Segment& out) {
   return out.y_rows.row(static_cast<Eigen::Index>((i - out.first) * static_cast<std::size_t>(outputs)) + o).data();
 }
@@ -146,6 +133,18 @@ bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& 
 
 }  // namespace
 
+bool predict_at(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x, double* y) {
+  Evaluator& evaluator = stepper.evaluator();
+  evaluator.predict(x, inputs.at(i), signals.t[i], y);
+  const double shift = evaluator.shifts_time() ? y[evaluator.outputs()] : 0.0;
+  if (shift == 0.0) return true;
+  std::array<double, kMaxStates> moved;
+  std::copy_n(x, stepper.states(), moved.begin());
+  if (!stepper.step(moved.data(), {signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)})) return false;
+  evaluator.predict(moved.data(), inputs.at(i), signals.t[i], y);
+  return true;
+}
+
 InputTable input_table(const Signals& signals, int inputs) {
   InputTable table;
   table.inputs = inputs;
@@ -184,7 +183,7 @@ void run_in_batches(Stepper& stepper, const Signals& signals, const InputTable& 
   for (std::size_t i = first; i < last; ++i) {
     out.failed_at = i;
     const bool predicted = sensitivities ? predict_linear(stepper, signals, inputs, i, x.data(), S, w, out)
-                                         : predict(stepper, signals, inputs, i, x.data(), w.y.data());
+                                         : predict_at(stepper, signals, inputs, i, x.data(), w.y.data());
     if (!predicted) return;
     std::copy_n(w.y.data(), ny, out.y.row(static_cast<Eigen::Index>(i - out.first)).data());
     if (i + 1 == out.last) {

@@ -20,6 +20,11 @@ struct InputTable {
 };
 [[nodiscard]] InputTable input_table(const Signals& signals, int inputs);
 
+/// Predicted outputs y (outputs + 1 places) at sample i, at the shifted time where an effect shifts it: the state is carried there by the
+/// step map itself. False if it cannot be carried there.
+[[nodiscard]] bool predict_at(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x,
+                              double* y);
+
 /// What a run over samples first … last − 1 predicts. Sample `last` (if it exists) is where the next segment starts.
 struct Segment {
   std::size_t first = 0, last = 0;

@@ -14,12 +14,12 @@ namespace misfit::video_module {
 inline constexpr int interface_version = 1;
 
 /// An open video. Frames come in order, in 8-bit grey.
-class Stream {
+class VideoStream {
  public:
-  Stream() = default;
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-  virtual ~Stream() = default;
+  VideoStream() = default;
+  VideoStream(const VideoStream&) = delete;
+  VideoStream& operator=(const VideoStream&) = delete;
+  virtual ~VideoStream() = default;
 
   int width = 0, height = 0;
   double rate = 0.0;       ///< frames per second, as the container declares
@@ -56,7 +56,7 @@ class Backend {
   Backend(const Backend&) = delete;
   Backend& operator=(const Backend&) = delete;
   virtual ~Backend() = default;
-  virtual std::unique_ptr<Stream> open(const std::string& path, std::string& why) = 0;
+  virtual std::unique_ptr<VideoStream> open(const std::string& path, std::string& why) = 0;
   virtual std::unique_ptr<Sink> create(const std::string& path, int width, int height, double rate, std::string& why) = 0;
   /// An image file in grey; empty with `why`.
   virtual std::vector<std::uint8_t> read_image(const std::string& path, int& width, int& height, std::string& why) = 0;

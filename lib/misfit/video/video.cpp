@@ -29,7 +29,7 @@ void check_file(const std::filesystem::path& path) {
 }  // namespace
 
 struct Video::State {
-  std::unique_ptr<video_module::Stream> stream;
+  std::unique_ptr<video_module::VideoStream> stream;
   VideoFacts facts;
   std::deque<Frame> queue;
   std::mutex mutex;
@@ -104,7 +104,7 @@ Video::Video(const std::filesystem::path& path) : state_(std::make_unique<State>
   std::string why;
   state_->stream = video_backend().open(path.string(), why);
   if (!state_->stream) throw RunError(path.string() + ": not a video: " + why);
-  const video_module::Stream& stream = *state_->stream;
+  const video_module::VideoStream& stream = *state_->stream;
   VideoFacts& facts = state_->facts;
   facts.file = path.filename().string();
   facts.width = stream.width;

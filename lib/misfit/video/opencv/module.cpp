@@ -13,9 +13,9 @@
 namespace misfit::video_module {
 namespace {
 
-class OpencvStream : public Stream {
+class OpencvStream : public VideoStream {
  public:
-  explicit OpencvStream(cv::VideoCapture&& capture) : capture_(std::move(capture)) {
+  explicit OpencvStream(const cv::VideoCapture& capture) : capture_(capture) {
     width = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
     height = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
     rate = capture_.get(cv::CAP_PROP_FPS);
@@ -45,7 +45,7 @@ class OpencvStream : public Stream {
 
 class OpencvSink : public Sink {
  public:
-  OpencvSink(cv::VideoWriter&& writer, int width, int height) : writer_(std::move(writer)), width_(width), height_(height) {}
+  OpencvSink(const cv::VideoWriter& writer, int width, int height) : writer_(writer), width_(width), height_(height) {}
   void write(const std::uint8_t* bgr) override {
     writer_.write(
         cv::Mat(height_, width_, CV_8UC3, const_cast<std::uint8_t*>(bgr)));  // NOLINT: cv::Mat knows no const data; it is only read
@@ -88,10 +88,10 @@ class OpencvBackend : public Backend {
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // quiet: what is wrong with a file is said by misfit
   }
-  std::unique_ptr<Stream> open(const std::string& path, std::string& why) override {
+  std::unique_ptr<VideoStream> open(const std::string& path, std::string& why) override {
     try {
       cv::VideoCapture capture(path, cv::CAP_FFMPEG);
-      if (capture.isOpened()) return std::make_unique<OpencvStream>(std::move(capture));
+      if (capture.isOpened()) return std::make_unique<OpencvStream>(capture);
       why = "no video that FFmpeg can decode is in it";
     } catch (const cv::Exception& error) {
       why = error.err;
@@ -104,7 +104,7 @@ class OpencvBackend : public Backend {
                                                : cv::VideoWriter::fourcc('m', 'p', '4', 'v');
     try {
       cv::VideoWriter writer(path, cv::CAP_FFMPEG, codec, rate, {width, height});
-      if (writer.isOpened()) return std::make_unique<OpencvSink>(std::move(writer), width, height);
+      if (writer.isOpened()) return std::make_unique<OpencvSink>(writer, width, height);
       why =
           "FFmpeg cannot write such a file: .avi (Motion JPEG), .mp4 (MPEG-4) and .mkv (FFV1, without loss) are possible, in a folder that "
           "can be written";
