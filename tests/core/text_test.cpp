@@ -62,5 +62,12 @@ TEST(WrapText, LeavesALongWordWhole) { EXPECT_EQ(wrap_text("a verylongword b", 6
 
 TEST(WrapText, KeepsParagraphs) { EXPECT_EQ(wrap_text("one\n\ntwo three", 5), "one\n\ntwo\nthree"); }
 
+TEST(JoinWords, CommasAndAnAnd) {
+  EXPECT_EQ(join_words({}), "");
+  EXPECT_EQ(join_words({"a"}), "a");
+  EXPECT_EQ(join_words({"a", "b"}), "a and b");
+  EXPECT_EQ(join_words({"a", "b", "c"}), "a, b and c");
+}
+
 }  // namespace
 }  // namespace misfit

@@ -103,5 +103,12 @@ TEST(DisplayUnit, ShowsAnglesInDegrees) {
   EXPECT_EQ(display_unit("N m"), "N m");
 }
 
+TEST(UnitText, WritesFactorsAsTheyAreRead) {
+  EXPECT_EQ(unit_text({}), "-");
+  EXPECT_EQ(unit_text({{"V", 0.5}, {"s", -1.0}}), "V^0.5/s");
+  EXPECT_EQ(unit_text({{"s", -2.0}}), "1/s^2");
+  EXPECT_EQ(unit_text({{"m", 1.0 / 3.0 + 1.0 / 3.0 + 1.0 / 3.0}, {"kg", 1e-9}}), "m") << "powers gather rounding";
+}
+
 }  // namespace
 }  // namespace misfit

@@ -170,5 +170,16 @@ TEST(Specimens, ARolledCameraIsHardlySeenInTheMotion) {
   }
 }
 
+/// χ² with one degree of freedom above 2.706: 0.1000; of one side half of it.
+TEST(LogScoreTail, OneSidedStrengthsHaveHalfTheChance) {
+  Specimen s;
+  s.strengths = {0};
+  s.one_sided = {false};
+  EXPECT_NEAR(std::exp(log_score_tail(s, 2.70554)), 0.1, 1e-6);
+  s.one_sided = {true};
+  EXPECT_NEAR(std::exp(log_score_tail(s, 2.70554)), 0.05, 1e-6);
+  EXPECT_EQ(log_score_tail(s, 0.0), 0.0) << "nothing there: p 1, not a half";
+}
+
 }  // namespace
 }  // namespace misfit

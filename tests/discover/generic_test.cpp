@@ -121,5 +121,11 @@ TEST(DiscoverGeneric, ASecondOfAKindIsLookedForAtItsOwnPlace) {
   EXPECT_THAT(where, testing::ElementsAre("x2"));
 }
 
+/// A line at 1.3 Hz is found where it is, and not only at the frequency that a study would start from.
+TEST(DiscoverGeneric, NamesAHiddenPeriodicForcingWithItsFrequency) {
+  expect_first(in_cart("periodic_forcing", {{"cosine", 1.0}, {"sine", 0.5}, {"frequency", 1.3}}), "periodic_forcing", "frequency", 1.3,
+               0.01);
+}
+
 }  // namespace
 }  // namespace misfit

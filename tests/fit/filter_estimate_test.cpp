@@ -88,5 +88,32 @@ TEST(LogPrior, IsThatOfTheEstimate) {
   EXPECT_NEAR(log_prior(estimate.model, estimate.penalties), estimate.objective - estimate.loglik, 1e-6);
 }
 
+/// A viscosity that cannot be negative beside a damping curve that can stand in for it: nothing is known of the one alone, and nothing else
+/// changes for it.
+TEST(EstimateFilter, WhatCanStandInForAnotherChangesNothingElse) {
+  const std::vector<Signals> flights = {fly(15.0, 8)};
+  ModelRequest request = request_for(flights);
+  const FilterEstimate without = fitted(request, flights);
+  request.effects.push_back(effect("viscous_friction"));
+  const FilterEstimate beside = fitted(request, flights);
+  EXPECT_TRUE(beside.converged) << beside.message;
+  EXPECT_TRUE(beside.rough.empty()) << "two dampings that can stand in for each other are no roughness";
+  EXPECT_NEAR(beside.objective, without.objective, 0.5);
+  EXPECT_LT(without.left, 0.5);
+  EXPECT_LT(beside.left, 0.5);
+}
+
+/// Flown with a bearing that pushes, fitted with a friction that cannot: it ends at 0, and everything else where it is without it.
+TEST(EstimateFilter, WhatEndsAtItsBoundDoesNotDragTheOthersOff) {
+  const std::vector<Signals> flights = {fly(15.0, 8, {effect("coulomb_friction")}, {{"friction", -8.0}})};
+  ModelRequest request = request_for(flights);
+  const FilterEstimate without = fitted(request, flights);
+  request.effects.push_back(effect("coulomb_friction"));
+  const FilterEstimate bounded = fitted(request, flights);
+  EXPECT_TRUE(bounded.converged) << bounded.message;
+  EXPECT_EQ(bounded.model.parameters[static_cast<std::size_t>(bounded.model.find_parameter("friction"))].value, 0.0);
+  EXPECT_NEAR(bounded.objective, without.objective, 0.5);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -129,7 +129,7 @@ TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
   EXPECT_THAT(error_of(replaced(duffing_text, "gain = {", "sin = {")), HasSubstr("is no function of formulas"));
   EXPECT_THAT(error_of(replaced(duffing_text, "gain = {", "u = {")), HasSubstr("'u' is taken"));
   EXPECT_THAT(error_of(replaced(duffing_text, "stiffness*y +", "spring +")), HasSubstr("depends on itself"));
-  EXPECT_THAT(error_of(replaced(duffing_text, "stiffness*y +", "push +")), HasSubstr("in equations only"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "stiffness*y +", "push +")), AllOf(HasSubstr("in equations only"), HasSubstr("quantity")));
   EXPECT_THAT(error_of(replaced(duffing_text, "value = 0.4, bounds", "value = -1.0, bounds")), HasSubstr("is outside its bounds"));
   EXPECT_THAT(error_of(duffing_text + "[roles]\nrate = \"w\"\n"), HasSubstr("[roles] rate: there is no 'w'"));
   EXPECT_THAT(error_of("[states]\nx = { unit = \"V\" }\n"), HasSubstr("[equations] is missing"));
@@ -212,6 +212,15 @@ TEST(DeclaredEffects, ErrorsAreWords) {
               HasSubstr("nothing depends on its parameter 'd'"));
   EXPECT_THAT(error(R"toml({ port = "dv/dt", formula = "exp(c)*v*stiffness/damping", parameters = { c = { unit = "-" } } })toml"),
               HasSubstr("switches it off"));
+}
+
+TEST(DeclaredEffects, ASigmaIsAPriorAboutTheValueInEveryFit) {
+  const auto known = registry_with(duffing_text);
+  const auto made = declared_effect(
+      effect_in_one_line(
+          "extra", R"toml({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s^2", value = 2.0, sigma = 0.25 } } })toml"),
+      known->system("text").make({})->spec());
+  EXPECT_EQ(made->spec().coefficients.front().own_sigma, 0.25);
 }
 
 }  // namespace

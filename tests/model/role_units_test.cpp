@@ -42,5 +42,10 @@ TEST(RoleUnits, TheResultMeasuresWhatTheProductMeasures) {
 
 TEST(RoleUnits, AnOpenBraceIsRefused) { EXPECT_THROW(static_cast<void>(bind_unit("{port", roles)), InputError); }
 
+TEST(RoleUnits, ARoleMayHaveABrokenPower) {
+  EXPECT_EQ(bind_unit("{root}/s", {{"root", "V^(1/2)"}}), "V^0.5/s");
+  EXPECT_EQ(bind_unit("1/{root}", {{"root", "V^-0.5"}}), "V^0.5");
+}
+
 }  // namespace
 }  // namespace misfit

@@ -45,5 +45,17 @@ TEST(RecordingFigure, AZoomHoldsItsPartAlone) {
   EXPECT_TRUE(figure.notes.empty());
 }
 
+/// The gaps of the survey are those of all parts together.
+TEST(RecordingFigure, GapsOfAnotherPartAreNotDrawn) {
+  RecordingSurvey survey = two_columns();
+  Table whole;
+  whole.add("t", "s", {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0});
+  whole.add("u", "V", {0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 0.0});
+  survey.parts.insert(survey.parts.begin(), whole);
+  const Figure figure = recording_figure(survey, 0, "swing", std::nullopt);
+  EXPECT_TRUE(figure.notes.empty());
+  EXPECT_EQ(figure.panels[0].series.front().x.size(), 7U);
+}
+
 }  // namespace
 }  // namespace misfit::report

@@ -255,5 +255,30 @@ TEST(SubSteps, AreWhatKeepsTheFriction) {
   EXPECT_GT(std::abs(f.viscous), 3.0);
 }
 
+/// What a run reads at its samples is what predict_at() reads at their states, the shift of the clock included.
+TEST(PredictAt, SeesTheShiftOfTheClock) {
+  Model model = assemble(with_values(parachute(false, {effect("time_offset")}), {{"clock_offset", 0.02}}), registry());
+  set_parachute_curves(model);
+  const Signals signals = recording(model, 20);
+  const InputTable inputs = input_table(signals, model.inputs());
+  const std::vector<double> x0 = {0.3, 0.1};
+  Stepper stepper(model);
+  Segment run;
+  run_segment(stepper, signals, inputs, 0, 20, x0.data(), false, run);
+  const RowMatrix states = run_states(stepper, signals, inputs, 0, 20, x0.data());
+  std::array<double, kMaxOutputs + 1> y{}, unshifted{};
+  double moved = 0.0;
+  for (Eigen::Index i = 0; i < states.rows(); ++i) {
+    const auto sample = static_cast<std::size_t>(i);
+    ASSERT_TRUE(predict_at(stepper, signals, inputs, sample, states.row(i).data(), y.data()));
+    stepper.evaluator().predict(states.row(i).data(), inputs.at(sample), signals.t[sample], unshifted.data());
+    for (Eigen::Index o = 0; o < run.y.cols(); ++o) {
+      EXPECT_EQ(y[static_cast<std::size_t>(o)], run.y(i, o));
+      moved = std::max(moved, std::abs(y[static_cast<std::size_t>(o)] - unshifted[static_cast<std::size_t>(o)]));
+    }
+  }
+  EXPECT_GT(moved, 1e-3);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -1,5 +1,6 @@
 #include "misfit/fit/filter_exact.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,21 +46,33 @@ struct OneDerivative {
   std::vector<std::vector<std::size_t>> rough;
 };
 
+/// Principal axes of a covariance after scaling to unit sigmas: `along` has one sigma of each as a column, `back` is its inverse.
+struct Axes {
+  Eigen::MatrixXd along, back;
+
+  explicit Axes(const Eigen::MatrixXd& covariance) {
+    constexpr double least = 1e-300, smallest = 1e-14;
+    const Eigen::VectorXd sigma = covariance.diagonal().cwiseMax(least).cwiseSqrt();
+    const Eigen::MatrixXd scaled = sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
+    const Eigen::VectorXd root = solver.eigenvalues().cwiseMax(smallest).cwiseSqrt();
+    along = sigma.asDiagonal() * solver.eigenvectors() * root.asDiagonal();
+    back = root.cwiseInverse().asDiagonal() * solver.eigenvectors().transpose() * sigma.cwiseInverse().asDiagonal();
+  }
+};
+
 /// Central differences; each fills its column of the whitened derivatives.
 class Differences {
  public:
   Differences(const FilterEstimate& estimate, const Eigen::VectorXd& theta)
-      : estimate_(estimate), theta_(theta), objective_(estimate, estimate.model.free_parameters()) {}
+      : estimate_(estimate), theta_(theta), objective_(estimate, estimate.model.free_parameters()), axes_(estimate.covariance) {}
 
-  OneDerivative by_parameter(std::size_t i, const Eigen::Ref<Eigen::VectorXd>& column) const {
-    constexpr double share = 0.05;
-    const auto place = static_cast<Eigen::Index>(i);
-    const double h = share * std::sqrt(std::max(estimate_.covariance(place, place), 1e-300));
-    Eigen::VectorXd there = theta_;
-    there[place] += h;
+  OneDerivative along_axis(Eigen::Index i, const Eigen::Ref<Eigen::VectorXd>& column) const {
+    constexpr double h = 0.05;
+    Eigen::VectorXd there = theta_ + h * axes_.along.col(i);
     Runs above(estimate_.data.size()), below = above;
     const double plus = objective_.at(there, estimate_.noise, &above);
-    there[place] -= 2.0 * h;
+    there -= 2.0 * h * axes_.along.col(i);
     const double minus = objective_.at(there, estimate_.noise, &below);
     OneDerivative out = between(plus, minus, h, above, below, column);
     out.rough.resize(above.size());
@@ -67,6 +80,8 @@ class Differences {
     for (std::size_t e = 0; e < above.size(); ++e) find_rough(estimate_.data[e], estimate_.traces[e], above[e], below[e], out.rough[e]);
     return out;
   }
+
+  [[nodiscard]] const Axes& axes() const { return axes_; }
 
   OneDerivative by_noise(std::size_t i, const Eigen::Ref<Eigen::VectorXd>& column) const {
     constexpr double h = 1e-3;
@@ -93,6 +108,7 @@ class Differences {
   const FilterEstimate& estimate_;
   const Eigen::VectorXd& theta_;
   ExactObjective objective_;
+  Axes axes_;
 };
 
 Eigen::Index counted_readings(const FilterEstimate& estimate) {
@@ -141,17 +157,20 @@ ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::
   Eigen::MatrixXd columns(2 * counted_readings(estimate), static_cast<Eigen::Index>(parts.size()));
   run_jobs(parts.size(), threads, [&](std::size_t i) {
     auto column = columns.col(static_cast<Eigen::Index>(i));
-    parts[i] = i < n ? differences.by_parameter(i, column) : differences.by_noise(i - n, column);
+    parts[i] = i < n ? differences.along_axis(static_cast<Eigen::Index>(i), column) : differences.by_noise(i - n, column);
   });
-  ExactDerivatives out{Eigen::VectorXd::Zero(columns.cols()), Eigen::MatrixXd::Zero(columns.cols(), columns.cols()),
+  ExactDerivatives out{Eigen::VectorXd(columns.cols()), Eigen::MatrixXd::Zero(columns.cols(), columns.cols()),
                        std::vector<std::vector<std::size_t>>(estimate.data.size())};
-  out.information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
-  out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     out.gradient[static_cast<Eigen::Index>(i)] = parts[i].slope;
     for (std::size_t e = 0; e < parts[i].rough.size(); ++e)
       out.rough[e].insert(out.rough[e].end(), parts[i].rough[e].begin(), parts[i].rough[e].end());
   }
+  const Eigen::MatrixXd& back = differences.axes().back;
+  out.gradient.head(theta.size()) = back.transpose() * out.gradient.head(theta.size()).eval();
+  columns.leftCols(theta.size()) = columns.leftCols(theta.size()) * back;
+  out.information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
   for (auto& rough : out.rough) {
     std::sort(rough.begin(), rough.end());
     rough.erase(std::unique(rough.begin(), rough.end()), rough.end());
