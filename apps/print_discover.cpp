@@ -29,7 +29,8 @@ std::string number(const std::optional<double>& value, const char* format = "{:.
 /// With a capital letter and a full stop.
 std::string as_sentence(std::string text) {
   if (text.empty()) return text;
-  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  const bool key = text.substr(0, text.find(' ')).find('_') != std::string::npos;  // of an effect: written as a study writes it
+  if (!key) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   return text.ends_with('.') || text.ends_with('!') || text.ends_with('?') ? text : text + ".";
 }
 
