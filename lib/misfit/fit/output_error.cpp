@@ -23,6 +23,11 @@ bool any_chosen(const std::vector<Penalty>& penalties) {
   return std::any_of(penalties.begin(), penalties.end(), [](const Penalty& p) { return p.chosen; });
 }
 
+std::vector<Penalty> kept(std::vector<Penalty> penalties) {
+  for (auto& p : penalties) p.chosen = false;
+  return penalties;
+}
+
 class Estimator {
  public:
   Estimator(const FittedModel& start, const std::vector<Signals>& experiments, const OutputErrorStart& options)
@@ -30,7 +35,8 @@ class Estimator {
         options_(options),
         start_driven_(start.fit.driven),
         setting_(look_at(start.model, experiments, options)),
-        penalties_(curve_penalties(start.model)),  // not those of a regression, whose noise is another one
+        penalties_(options.keep_roughness ? kept(start.penalties)
+                                          : curve_penalties(start.model)),  // not those of a regression, whose noise is another one
         shooting_(start.model, experiments, setting_.sigma, setting_.state_scale, start_states(setting_)) {}
 
   FittedModel run() {
@@ -179,9 +185,8 @@ class Estimator {
     fit.message = summary.message;
     Linearised linearised;
     if (!shooting_.linearise(linearised)) return failed("");
-    std::vector<Penalty> kept = penalties_;
-    for (auto& p : kept) p.chosen = false;
-    const Smoothed smoothed = smooth(linearised, kept, 1.0);
+    std::vector<Penalty> penalties = kept(penalties_);
+    const Smoothed smoothed = smooth(linearised, penalties, 1.0);
     if (!smoothed.ok) return failed(not_determined(linearised));
     if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(which);
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
