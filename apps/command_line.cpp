@@ -1,11 +1,13 @@
 #include "apps/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <map>
 
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
+#include "misfit/core/ranks.h"
 #include "misfit/core/version.h"
 
 namespace misfit {
@@ -30,6 +32,8 @@ constexpr VerbEntry verbs[] = {
     {"discover", "which effect the model lacks, ranked; goes on from the last rung of the study's ladder", discover_verb, true},
     {"add", "add an effect (or system:KIND) to the last rung: a new study, fitted, and the error before and after", add_verb, true},
     {"compare", "methods side by side and against reference curves", compare_verb, true},
+    {"uncertainty", "what errors of the set-up do to the results: the study's [uncertainty] as a Monte-Carlo, on threads or under mpirun",
+     uncertainty_verb, true},
     {"report", "figures and one self-contained page", report_verb, true},
     {"simulate", "run the model: as [simulate] says, or as fitted", simulate_verb, true},
     {"init", "look at a file of columns and write a study to start from: data, linear model, figures", init_verb, true},
@@ -48,6 +52,8 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
   if (study_required) study->required();
   if (verb.get_name() == "add")
     verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
+  if (verb.get_name() == "uncertainty")
+    verb.add_option("--runs", options.runs, "overrides the study's number of runs")->type_name("N")->check(CLI::Range(1, 100'000'000));
   if (verb.get_name() == "discover") verb.add_flag("--auto", options.automatic, "add what is accepted and look again, until nothing is");
   verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
   verb.add_option("--method", options.methods, "only these methods")
@@ -71,6 +77,12 @@ std::vector<std::string> verb_names() {
   std::vector<std::string> names;
   for (const auto& verb : verbs) names.emplace_back(verb.name);
   return names;
+}
+
+/// Verbs that are one job would do it several times over, in one folder.
+void refuse_ranks(const std::string& verb) {
+  if (ranks_started() > 1 && verb != "uncertainty" && verb != "batch")
+    throw InputError("'" + verb + "' is not for several processes: under mpirun there are uncertainty and batch");
 }
 
 int dispatch(int argc, char** argv, const Registry& registry) {
@@ -102,14 +114,15 @@ int dispatch(int argc, char** argv, const Registry& registry) {
   const CLI::Option* seed = chosen->get_option_no_throw("--seed");
   options.has_seed = seed != nullptr && seed->count() > 0;
   watch_interrupts();
+  refuse_ranks(chosen->get_name());
   return calls.at(chosen)(options, registry);
 }
 
-}  // namespace
-
-int run_command_line(int argc, char** argv, const Registry& registry) {
+int status_of(int argc, char** argv, const Registry& registry) {
   try {
     return dispatch(argc, argv, registry);
+  } catch (const EndedElsewhere&) {
+    return 1;  // the rank where it failed says why
   } catch (const InputError& error) {
     std::cerr << "misfit: " << error.what() << '\n';
     return 2;
@@ -117,6 +130,19 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
     std::cerr << "misfit: " << error.what() << '\n';
     return 1;
   }
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, const Registry& registry) {
+  const int status = status_of(argc, argv, registry);
+  try {
+    end_ranks(status);
+  } catch (const std::exception& error) {
+    if (status == 0) std::cerr << "misfit: " << error.what() << '\n';
+    return std::max(status, 1);
+  }
+  return status;
 }
 
 }  // namespace misfit

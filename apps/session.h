@@ -21,11 +21,13 @@ struct Options {
   bool has_seed = false;
   unsigned long seed = 1;
   bool quiet = false, json = false;
-  std::string effect;       ///< of `add`
-  bool automatic = false;   ///< discover --auto
-  bool force = false;       ///< init: write over a study
-  std::string check_video;  ///< track: write the video with the track drawn to this file
-  std::string command;      ///< the command line as typed, for run.json
+  long runs = 0;                     ///< of `uncertainty`; 0: as the study says
+  std::vector<std::string> studies;  ///< of `batch`: lists, folders, studies
+  std::string effect;                ///< of `add`
+  bool automatic = false;            ///< discover --auto
+  bool force = false;                ///< init: write over a study
+  std::string check_video;           ///< track: write the video with the track drawn to this file
+  std::string command;               ///< the command line as typed, for run.json
 };
 
 struct FilterWork;

@@ -11,7 +11,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::map<std::string, std::string> inputs_of(const Session& session, const std::string& method) {
+std::vector<std::string> outputs_of(const fs::path& run_folder, const fs::path& dir) {
+  std::vector<std::string> out;
+  for (const auto& entry : fs::directory_iterator(dir)) out.push_back(entry.path().lexically_relative(run_folder).string());
+  out.emplace_back("resolved.toml");
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method) {
   std::vector<fs::path> files;
   if (session.study.system_file) files.push_back(*session.study.system_file);
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
@@ -27,16 +37,6 @@ std::map<std::string, std::string> inputs_of(const Session& session, const std::
   }
   return session.inputs(method + "\n" + session.study.text, files);
 }
-
-std::vector<std::string> outputs_of(const fs::path& run_folder, const fs::path& dir) {
-  std::vector<std::string> out;
-  for (const auto& entry : fs::directory_iterator(dir)) out.push_back(entry.path().lexically_relative(run_folder).string());
-  out.emplace_back("resolved.toml");
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-}  // namespace
 
 std::shared_ptr<const FilterWork> filter_work(Session& session) {
   if (!session.filter) {
@@ -59,7 +59,7 @@ std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& nam
     stop_if_interrupted();
     const std::string stage = "fit/" + names[k];
     const fs::path dir = session.folder.file(stage);
-    const auto inputs = inputs_of(session, names[k]);
+    const auto inputs = inputs_of_fit(session, names[k]);
     if (session.folder.up_to_date(stage, inputs)) {
       fits.push_back(read_fit(dir));
     } else {

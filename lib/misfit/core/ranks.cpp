@@ -69,6 +69,20 @@ Ranks& ranks() {
   return all;
 }
 
+void on_first_rank(const std::function<void()>& action) {
+  if (!ranks().first()) {
+    if (!ranks().agree(true)) throw EndedElsewhere();
+    return;
+  }
+  try {
+    action();
+  } catch (...) {
+    static_cast<void>(ranks().agree(false));
+    throw;
+  }
+  if (!ranks().agree(true)) throw EndedElsewhere();
+}
+
 void end_ranks(int status) {
   if (ranks_started() > 1) ranks().end(status);
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <exception>
+#include <functional>
+
 namespace misfit {
 
 /// The processes of one `mpirun -n k misfit …`: each runs the same command; they share its jobs and its run folder, which must lie on a
@@ -29,6 +32,16 @@ void end_ranks(int status);
 
 /// How many ranks mpirun has started, without starting MPI: 1 without mpirun.
 [[nodiscard]] int ranks_started();
+
+/// Thrown on the ranks that were waiting for one that failed: that one says why.
+class EndedElsewhere : public std::exception {
+ public:
+  [[nodiscard]] const char* what() const noexcept override { return "another rank failed"; }
+};
+
+/// What only one process may do, as writing into a run folder: the first rank does it while the others wait. They throw EndedElsewhere if
+/// it throws there.
+void on_first_rank(const std::function<void()>& action);
 
 namespace mpi_module {
 

@@ -44,33 +44,33 @@ VarianceShares ShareRegression::shares() const {
 
 VarianceShares ShareRegression::solve(Eigen::Index unknowns) const {
   VarianceShares out;
-  const double mean = g_[0] / count_, variance = squares_ / count_ - mean * mean;
-  // What rounding leaves of a number that did not change: no share can be told.
-  if (!(variance > 1e-20 * (origin_ * origin_ + squares_ / count_))) return out;
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(N_.topLeftCorner(unknowns, unknowns));
   const Eigen::VectorXd c = ldlt.solve(g_.head(unknowns));
   const Eigen::MatrixXd inverse = ldlt.solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
   const double left = std::max(squares_ - c.dot(g_.head(unknowns)), 0.0) / (count_ - static_cast<double>(unknowns));
+  // Own variances of the coefficients make their squares too large; together they may not make the whole negative.
+  const auto square = [&](Eigen::Index i) { return std::max(c[i] * c[i] - left * inverse(i, i), 0.0); };
+  double variance = left;
+  for (Eigen::Index i = 1; i < unknowns; ++i) variance += square(i);
+  constexpr double rounding = 1e-20;  // of the square: a number that did not change
+  if (!(variance > rounding * (origin_ * origin_ + squares_ / count_))) return out;
   out.quadratic = unknowns > 1 + factors_;
   out.share.assign(terms_, 0.0);
   out.sigma.assign(terms_, 0.0);
   out.effect.assign(terms_, 0.0);
   std::vector<int> members(terms_, 0);
   for (Eigen::Index i = 1; i < unknowns; ++i) {
-    const auto factor = static_cast<std::size_t>((i - 1) % factors_);
-    const std::size_t term = term_of_factor_[factor];
+    const std::size_t term = term_of_factor_[static_cast<std::size_t>((i - 1) % factors_)];
     const double own = left * inverse(i, i);
-    out.share[term] += (c[i] * c[i] - own) / variance;
+    out.share[term] += square(i) / variance;
     out.sigma[term] += (4.0 * c[i] * c[i] * own + 2.0 * own * own) / (variance * variance);
     if (i > factors_) continue;
     out.effect[term] = c[i];
     ++members[term];
   }
-  out.rest = 1.0;
+  out.rest = left / variance;
   for (std::size_t t = 0; t < terms_; ++t) {
-    out.share[t] = std::max(out.share[t], 0.0);
     out.sigma[t] = std::sqrt(out.sigma[t]);
-    out.rest -= out.share[t];
     if (members[t] > 1) out.effect[t] = std::numeric_limits<double>::quiet_NaN();
   }
   return out;

@@ -16,14 +16,14 @@ struct VarianceShares {
   std::vector<double> share;   ///< per term: between 0 and 1 but for noise; empty: too few runs to tell
   std::vector<double> sigma;   ///< of the share
   std::vector<double> effect;  ///< change of the number per one sigma of the term's parameter [unit of the number]; NaN for groups
-  double rest = 0.0;           ///< what acts together or beyond second order: 1 − Σ shares
+  double rest = 0.0;           ///< residual variance: what acts together or beyond the polynomials; shares and rest add up to 1
   bool quadratic = false;      ///< the regression had squares of the factors
 };
 
 /// Least squares of the number on polynomials of the factors, orthonormal under their distribution (Hermite for normal, Legendre for
 /// uniform ones): 1, P1(z_i) and, where there are at least ten runs per unknown, P2(z_i). The share of a term is Σ c² over the polynomials
-/// of its factors alone, over the variance of the number [Su]; c² is lessened by its own variance, by which it is too large on average.
-/// Factors of a group are those that its covariance was whitened with: their squares are in, their products are not.
+/// of its factors alone, over the sum of all c² and the residual variance [Su]; c² is lessened by its own variance, by which it is too
+/// large on average. Factors of a group are those that its covariance was whitened with: their squares are in, their products are not.
 /// Holds sums only: memory does not grow with the runs. Runs must be added in the same order to give the same bits.
 class ShareRegression {
  public:
