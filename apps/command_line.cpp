@@ -36,9 +36,25 @@ constexpr VerbEntry verbs[] = {
      uncertainty_verb, true},
     {"report", "figures and one self-contained page", report_verb, true},
     {"simulate", "run the model: as [simulate] says, or as fitted", simulate_verb, true},
+    {"batch", "fit many studies as one job, on threads or under mpirun: one table of how their results vary", batch_verb, true},
     {"init", "look at a file of columns and write a study to start from: data, linear model, figures", init_verb, true},
     {"effects", "the effects this program knows, or those of a study: formula, roles, ports, coefficients, source", effects_verb, false},
 };
+
+void add_method(CLI::App& verb, Options& options) {
+  verb.add_option("--method", options.methods, "only these methods")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
+}
+
+void add_running(CLI::App& verb, Options& options) {
+  verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
+  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N")->check(CLI::NonNegativeNumber);
+  verb.add_flag("--quiet", options.quiet, "no progress and no remarks on stderr");
+  verb.add_flag("--json", options.json, "print the result as JSON");
+}
 
 void add_options(CLI::App& verb, Options& options, bool study_required) {
   if (verb.get_name() == "init") {
@@ -46,6 +62,15 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
     verb.add_flag("--force", options.force, "write over a study that is there");
     verb.add_option("--out", options.out, "folder of the study (default: called like the data, in the present folder)")->type_name("DIR");
     verb.add_flag("--json", options.json, "print what was found as JSON");
+    return;
+  }
+  if (verb.get_name() == "batch") {
+    verb.add_option("studies", options.studies, "lists with one study per line, folders to search for study.toml, studies")
+        ->type_name("LIST|FOLDER…")
+        ->required();
+    verb.add_option("--out", options.out, "folder of the results (default: batch/ beside the list or in the folder)")->type_name("DIR");
+    add_method(verb, options);
+    add_running(verb, options);
     return;
   }
   auto* study = verb.add_option("study", options.study, "study.toml, or the folder that holds it")->type_name("STUDY");
@@ -56,15 +81,8 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
     verb.add_option("--runs", options.runs, "overrides the study's number of runs")->type_name("N")->check(CLI::Range(1, 100'000'000));
   if (verb.get_name() == "discover") verb.add_flag("--auto", options.automatic, "add what is accepted and look again, until nothing is");
   verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
-  verb.add_option("--method", options.methods, "only these methods")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
-  verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024));
-  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N")->check(CLI::NonNegativeNumber);
-  verb.add_flag("--quiet", options.quiet, "no progress and no remarks on stderr");
-  verb.add_flag("--json", options.json, "print the result as JSON");
+  add_method(verb, options);
+  add_running(verb, options);
 }
 
 std::string typed(int argc, char** argv) {

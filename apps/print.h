@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "misfit/data/attitude.h"
+#include "misfit/data/batch.h"
 #include "misfit/data/calibration.h"
 #include "misfit/data/candidates.h"
 #include "misfit/data/diagnosis.h"
@@ -19,6 +20,7 @@ namespace misfit {
 [[nodiscard]] std::string track_text(const std::string& experiment, const TrackFacts& facts);
 [[nodiscard]] std::string attitude_text(const std::string& experiment, const Attitude& attitude);
 [[nodiscard]] std::string fits_text(const std::vector<Fit>& fits);
+[[nodiscard]] std::string batch_text(const Batch& batch);
 [[nodiscard]] std::string uncertainty_text(const Uncertainty& uncertainty);
 [[nodiscard]] std::string diagnosis_text(const Diagnosis& diagnosis);
 [[nodiscard]] std::string discovery_text(const Discovery& discovery);

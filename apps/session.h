@@ -58,6 +58,11 @@ struct Session {
   void say(const std::string& line) const;
 };
 
+/// Of the running program: computed once.
+[[nodiscard]] const std::string& hash_of_program();
+/// Every file that a study names, itself first.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_study(const Study& study);
+
 /// True after Ctrl-C: stages finish what they are at, write, and stop. The second Ctrl-C ends the program at once.
 [[nodiscard]] const std::atomic<bool>& interrupted();
 void watch_interrupts();

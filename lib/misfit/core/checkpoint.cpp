@@ -11,7 +11,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "misfit/core/error.h"
+#include "misfit/core/files.h"
 
 namespace misfit {
 namespace {
@@ -91,13 +91,13 @@ CheckpointContent read_checkpoint(const fs::path& path, const std::string& diges
 
 CheckpointWriter::CheckpointWriter(fs::path path, const std::string& digest) : path_(std::move(path)), synced_(seconds_now()) {
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (file_ < 0) throw RunError(path_.string() + " cannot be written: " + reason(errno));
+  if (file_ < 0) throw WriteError(path_.string() + " cannot be written: " + reason(errno));
   try {
     if (::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       throw RunError("another misfit is at work in " + path_.parent_path().string());
     const CheckpointContent before = read_checkpoint(path_, digest);
     length_ = before.valid;
-    if (::ftruncate(file_, static_cast<off_t>(length_)) != 0) throw RunError(path_.string() + " cannot be written: " + reason(errno));
+    if (::ftruncate(file_, static_cast<off_t>(length_)) != 0) throw WriteError(path_.string() + " cannot be written: " + reason(errno));
     if (!before.ours) write_whole(head_of(digest));
   } catch (...) {
     ::close(file_);
@@ -115,8 +115,8 @@ void CheckpointWriter::write_whole(std::string_view bytes) {
     if (n <= 0) {
       const std::string why = reason(n == 0 ? ENOSPC : errno);
       static_cast<void>(::ftruncate(file_, static_cast<off_t>(length_)) == 0);  // if not, the checksum finds it
-      throw RunError(path_.string() + " cannot be written: " + why +
-                     "; what was finished before is in it, and the same command goes on from there");
+      throw WriteError(path_.string() + " cannot be written: " + why +
+                       "; what was finished before is in it, and the same command goes on from there");
     }
     done += static_cast<std::size_t>(n);
   }
@@ -135,7 +135,7 @@ void CheckpointWriter::append(std::uint64_t job, std::string_view bytes) {
 
 void CheckpointWriter::sync() {
   const std::lock_guard lock(mutex_);
-  if (::fdatasync(file_) != 0) throw RunError(path_.string() + " cannot be written: " + reason(errno));
+  if (::fdatasync(file_) != 0) throw WriteError(path_.string() + " cannot be written: " + reason(errno));
 }
 
 std::string read_checkpoint_entry(const fs::path& path, const CheckpointEntry& entry) {

@@ -37,7 +37,7 @@ class CheckpointWriter {
   CheckpointWriter(const CheckpointWriter&) = delete;
   CheckpointWriter& operator=(const CheckpointWriter&) = delete;
 
-  /// RunError naming file and system message (disk full); what was written of the record is taken back.
+  /// WriteError naming file and system message (disk full); what was written of the record is taken back.
   void append(std::uint64_t job, std::string_view bytes);
   /// Onto the disk itself; done every few seconds as well.
   void sync();
