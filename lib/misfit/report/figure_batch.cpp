@@ -22,8 +22,7 @@ std::vector<std::string> studies_of(const Batch& batch) {
 
 Panel panel_of(const Batch& batch, const BatchSummary& summary, const std::vector<std::string>& studies) {
   Panel panel;
-  panel.y_label = summary.name;
-  panel.y_unit = display_unit(summary.unit);
+  const std::string unit = display_unit(summary.unit);
   panel.height = 150.0;
   Series values{"value", "", Style::error_bars, palette(0), {}, {}, {}, {}};
   for (const BatchRow& row : batch.rows) {
@@ -38,8 +37,8 @@ Panel panel_of(const Batch& batch, const BatchSummary& summary, const std::vecto
   }
   const double mean = shown({summary.mean}, summary.unit).front(), sigma = shown({summary.mean_sigma}, summary.unit).front();
   const std::vector<double> ends{0.5, static_cast<double>(studies.size()) + 0.5};
-  const std::string legend = fmt::format("mean {}{}", format_value(mean, sigma),
-                                         summary.p_value ? ", p of being one value " + format_probability(*summary.p_value) : "");
+  const std::string p = summary.p_value ? ", p of being one value: " + format_probability(*summary.p_value) : "";
+  const std::string legend = fmt::format("{}: mean {}{}{}", summary.name, format_value(mean, sigma), unit == "-" ? "" : " " + unit, p);
   panel.series = {values, {"mean", legend, Style::dashed, grey, ends, {mean, mean}, {}, {}, 1.4}};
   return panel;
 }
