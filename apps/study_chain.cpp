@@ -124,7 +124,9 @@ Fit StudyChain::fit(const Model& model, const std::vector<Signals>& experiments)
   if (method_ == "output_error") {
     OutputErrorStart warm;
     warm.keep_roughness = true;
-    return output_error({{}, model, penalties_, {}}, experiments, warm).fit;
+    FittedModel start{{}, model, penalties_, {}};
+    start.fit.noise = nominal_.noise;
+    return output_error(start, experiments, warm).fit;
   }
   FilterOptions warm;
   warm.threads = 1;
