@@ -38,6 +38,12 @@ std::string reading_text(const PerturbStudy& wish, const std::string& unit) {
   return wish.reading == "uniform" ? "uniform within ± " + size : "normal, " + wish.reading + " = " + size;
 }
 
+void move_rig(RigGeometry& rig, const std::string& name, double error) {
+  for (const RigEntry& entry : rig_entries()) {
+    if (name == entry.name) rig.*entry.field += error;
+  }
+}
+
 /// Is it estimated, as a number or as a curve?
 bool is_free(const Model& model, const std::string& name) {
   if (model.find_curve(name) != nullptr) return true;
@@ -139,9 +145,7 @@ void SetUp::add_calibration(const Study& study) {
 }
 
 void SetUp::set(PerturbedSetUp& set_up, const std::string& name, double error) const {
-  for (const RigEntry& entry : rig_entries()) {
-    if (name == entry.name) set_up.rig.*entry.field += error;
-  }
+  move_rig(set_up.rig, name, error);
   if (name == "P_y") set_up.offset_y += error;
   if (name == "P_z") set_up.offset_z += error;
   if (const auto constant = set_up.constants.find(name); constant != set_up.constants.end()) constant->second += error;
@@ -152,22 +156,21 @@ void SetUp::set(PerturbedSetUp& set_up, const std::string& name, double error) c
   }
 }
 
+/// The camera that the sweep gives when the rig is as these errors make it.
+void SetUp::calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedSetUp& set_up) const {
+  RigGeometry rig = nominal_.rig;
+  for (std::size_t i = 0; i < names.size(); ++i) move_rig(rig, names[i], errors[i]);
+  set_up.calibration = calibrate(*sweep_, rig, calibrate_);
+  for (const char* name : camera_parameter_names) {
+    const auto constant = set_up.constants.find(name);
+    if (constant != set_up.constants.end()) constant->second = set_up.calibration->value(name);
+  }
+}
+
 PerturbedSetUp SetUp::at(const std::vector<double>& errors) const {
   PerturbedSetUp out = nominal_;
   const std::vector<std::string> names = perturbations_.names();
-  if (sweep_) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      for (const RigEntry& entry : rig_entries()) {
-        if (names[i] == entry.name) out.rig.*entry.field += errors[i];
-      }
-    }
-    out.calibration = calibrate(*sweep_, out.rig, calibrate_);
-    out.rig = nominal_.rig;
-    for (const char* name : camera_parameter_names) {
-      const auto constant = out.constants.find(name);
-      if (constant != out.constants.end()) constant->second = out.calibration->value(name);
-    }
-  }
+  if (sweep_) calibrate_again(names, errors, out);
   for (std::size_t i = 0; i < names.size(); ++i) set(out, names[i], errors[i]);
   return out;
 }

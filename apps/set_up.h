@@ -46,6 +46,7 @@ class SetUp {
   void add(const PerturbStudy& wish, const Model& model);
   void add_calibration(const Study& study);
   void note_held_camera(const Model& model);
+  void calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedSetUp& set_up) const;
   void set(PerturbedSetUp& set_up, const std::string& name, double error) const;
 
   PerturbedSetUp nominal_;
