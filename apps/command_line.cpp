@@ -136,13 +136,22 @@ int dispatch(int argc, char** argv, const Registry& registry) {
   return calls.at(chosen)(options, registry);
 }
 
+/// A wrong study is wrong on every rank: one says so.
+bool speaks() {
+  try {
+    return ranks_started() == 1 || ranks().first();
+  } catch (const std::exception&) {
+    return true;
+  }
+}
+
 int status_of(int argc, char** argv, const Registry& registry) {
   try {
     return dispatch(argc, argv, registry);
   } catch (const EndedElsewhere&) {
     return 1;  // the rank where it failed says why
   } catch (const InputError& error) {
-    std::cerr << "misfit: " << error.what() << '\n';
+    if (speaks()) std::cerr << "misfit: " << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {
     std::cerr << "misfit: " << error.what() << '\n';

@@ -74,7 +74,7 @@ std::optional<JobResults> run_stored_jobs(const StoredJobs& jobs, const std::fun
                                           const ProgressFn& progress, const std::atomic<bool>* stop) {
   make_writable_folder(jobs.folder);
   const std::vector<std::size_t> left = left_to_do(jobs);
-  const std::size_t rank = static_cast<std::size_t>(ranks().rank()), size = static_cast<std::size_t>(ranks().size());
+  const auto rank = static_cast<std::size_t>(ranks().rank()), size = static_cast<std::size_t>(ranks().size());
   const std::size_t own = jobs.count > rank ? (jobs.count - rank - 1) / size + 1 : 0, before = own - left.size();
   bool finished = true;
   if (!left.empty() || rank == 0) {
