@@ -1,11 +1,13 @@
 #include "apps/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <map>
 
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
+#include "misfit/core/ranks.h"
 #include "misfit/core/version.h"
 
 namespace misfit {
@@ -30,11 +32,29 @@ constexpr VerbEntry verbs[] = {
     {"discover", "which effect the model lacks, ranked; goes on from the last rung of the study's ladder", discover_verb, true},
     {"add", "add an effect (or system:KIND) to the last rung: a new study, fitted, and the error before and after", add_verb, true},
     {"compare", "methods side by side and against reference curves", compare_verb, true},
+    {"uncertainty", "what errors of the set-up do to the results: the study's [uncertainty] as a Monte-Carlo, on threads or under mpirun",
+     uncertainty_verb, true},
     {"report", "figures and one self-contained page", report_verb, true},
     {"simulate", "run the model: as [simulate] says, or as fitted", simulate_verb, true},
+    {"batch", "fit many studies as one job, on threads or under mpirun: one table of how their results vary", batch_verb, true},
     {"init", "look at a file of columns and write a study to start from: data, linear model, figures", init_verb, true},
     {"effects", "the effects this program knows, or those of a study: formula, roles, ports, coefficients, source", effects_verb, false},
 };
+
+void add_method(CLI::App& verb, Options& options) {
+  verb.add_option("--method", options.methods, "only these methods")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
+}
+
+void add_running(CLI::App& verb, Options& options) {
+  verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
+  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N")->check(CLI::NonNegativeNumber);
+  verb.add_flag("--quiet", options.quiet, "no progress and no remarks on stderr");
+  verb.add_flag("--json", options.json, "print the result as JSON");
+}
 
 void add_options(CLI::App& verb, Options& options, bool study_required) {
   if (verb.get_name() == "init") {
@@ -44,21 +64,25 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
     verb.add_flag("--json", options.json, "print what was found as JSON");
     return;
   }
+  if (verb.get_name() == "batch") {
+    verb.add_option("studies", options.studies, "lists with one study per line, folders to search for study.toml, studies")
+        ->type_name("LIST|FOLDER…")
+        ->required();
+    verb.add_option("--out", options.out, "folder of the results (default: batch/ beside the list or in the folder)")->type_name("DIR");
+    add_method(verb, options);
+    add_running(verb, options);
+    return;
+  }
   auto* study = verb.add_option("study", options.study, "study.toml, or the folder that holds it")->type_name("STUDY");
   if (study_required) study->required();
   if (verb.get_name() == "add")
     verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
+  if (verb.get_name() == "uncertainty")
+    verb.add_option("--runs", options.runs, "overrides the study's number of runs")->type_name("N")->check(CLI::Range(1, 100'000'000));
   if (verb.get_name() == "discover") verb.add_flag("--auto", options.automatic, "add what is accepted and look again, until nothing is");
   verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
-  verb.add_option("--method", options.methods, "only these methods")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
-  verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024));
-  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N")->check(CLI::NonNegativeNumber);
-  verb.add_flag("--quiet", options.quiet, "no progress and no remarks on stderr");
-  verb.add_flag("--json", options.json, "print the result as JSON");
+  add_method(verb, options);
+  add_running(verb, options);
 }
 
 std::string typed(int argc, char** argv) {
@@ -71,6 +95,12 @@ std::vector<std::string> verb_names() {
   std::vector<std::string> names;
   for (const auto& verb : verbs) names.emplace_back(verb.name);
   return names;
+}
+
+/// Verbs that are one job would do it several times over, in one folder.
+void refuse_ranks(const std::string& verb) {
+  if (ranks_started() > 1 && verb != "uncertainty" && verb != "batch")
+    throw InputError("'" + verb + "' is not for several processes: under mpirun there are uncertainty and batch");
 }
 
 int dispatch(int argc, char** argv, const Registry& registry) {
@@ -102,21 +132,44 @@ int dispatch(int argc, char** argv, const Registry& registry) {
   const CLI::Option* seed = chosen->get_option_no_throw("--seed");
   options.has_seed = seed != nullptr && seed->count() > 0;
   watch_interrupts();
+  refuse_ranks(chosen->get_name());
   return calls.at(chosen)(options, registry);
 }
 
-}  // namespace
+/// A wrong study is wrong on every rank: one says so.
+bool speaks() {
+  try {
+    return ranks_started() == 1 || ranks().first();
+  } catch (const std::exception&) {
+    return true;
+  }
+}
 
-int run_command_line(int argc, char** argv, const Registry& registry) {
+int status_of(int argc, char** argv, const Registry& registry) {
   try {
     return dispatch(argc, argv, registry);
+  } catch (const EndedElsewhere&) {
+    return 1;  // the rank where it failed says why
   } catch (const InputError& error) {
-    std::cerr << "misfit: " << error.what() << '\n';
+    if (speaks()) std::cerr << "misfit: " << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {
     std::cerr << "misfit: " << error.what() << '\n';
     return 1;
   }
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, const Registry& registry) {
+  const int status = status_of(argc, argv, registry);
+  try {
+    end_ranks(status);
+  } catch (const std::exception& error) {
+    if (status == 0) std::cerr << "misfit: " << error.what() << '\n';
+    return std::max(status, 1);
+  }
+  return status;
 }
 
 }  // namespace misfit

@@ -4,12 +4,14 @@
 #include <vector>
 
 #include "misfit/data/attitude.h"
+#include "misfit/data/batch.h"
 #include "misfit/data/calibration.h"
 #include "misfit/data/candidates.h"
 #include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
 #include "misfit/data/ladder.h"
 #include "misfit/data/track_facts.h"
+#include "misfit/data/uncertainty.h"
 
 namespace misfit {
 
@@ -18,6 +20,8 @@ namespace misfit {
 [[nodiscard]] std::string track_text(const std::string& experiment, const TrackFacts& facts);
 [[nodiscard]] std::string attitude_text(const std::string& experiment, const Attitude& attitude);
 [[nodiscard]] std::string fits_text(const std::vector<Fit>& fits);
+[[nodiscard]] std::string batch_text(const Batch& batch);
+[[nodiscard]] std::string uncertainty_text(const Uncertainty& uncertainty);
 [[nodiscard]] std::string diagnosis_text(const Diagnosis& diagnosis);
 [[nodiscard]] std::string discovery_text(const Discovery& discovery);
 /// Error before and after of a rung and its parent, per channel in its unit.

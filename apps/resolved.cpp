@@ -210,6 +210,20 @@ void add_model(const Session& session, const Prepared& prepared, std::string& te
   for (const auto& curve : prepared.model.curves) add_curve(session, curve, text);
 }
 
+void add_uncertainty(const Study& study, std::string& text) {
+  if (!study.uncertainty) return;
+  const UncertaintyStudy& u = *study.uncertainty;
+  text += fmt::format("\n[uncertainty]\nruns = {}\nrecalibrate = {}\n", u.runs, u.recalibrate);
+  if (u.calibrated_camera) text += "camera = \"calibration\"\n";
+  std::string perturb, readings;
+  for (const PerturbStudy& p : u.perturb) {
+    const char* comma = perturb.empty() ? "" : ", ";
+    perturb += fmt::format("{}{} = {}", comma, key_of(p.name), p.number.value);
+    readings += fmt::format("{}{} = {}", comma, key_of(p.name), quoted(p.reading));
+  }
+  text += "perturb = { " + perturb + " }  # in SI\nreadings = { " + readings + " }\n";
+}
+
 void add_rest(const Session& session, std::string& text) {
   const Study& study = session.study;
   if (!study.reference.empty()) text += "\n[reference]\n";
@@ -217,6 +231,7 @@ void add_rest(const Session& session, std::string& text) {
   if (study.bin_width > 0.0 || study.bin_step > 0.0) text += "\n[sliding_bin]\n";
   if (study.bin_width > 0.0) text += fmt::format("width = {}\n", study.bin_width);
   if (study.bin_step > 0.0) text += fmt::format("step = {}\n", study.bin_step);
+  add_uncertainty(study, text);
 }
 
 }  // namespace

@@ -56,13 +56,35 @@ std::multiset<std::pair<std::string, std::string>> by_file_name(const std::map<s
   return out;
 }
 
-std::string hash_of_program() {
-  std::error_code error;
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  return error ? "unknown" : hash_file(self);
+}  // namespace
+
+const std::string& hash_of_program() {
+  static const std::string hash = [] {
+    std::error_code error;
+    const fs::path self = fs::read_symlink("/proc/self/exe", error);
+    return error ? "unknown" : hash_file(self);
+  }();
+  return hash;
 }
 
-}  // namespace
+std::vector<fs::path> files_of_study(const Study& study) {
+  std::vector<fs::path> files{study.file};
+  const auto add = [&](const std::optional<fs::path>& file) {
+    if (file) files.push_back(*file);
+  };
+  add(study.system_file);
+  add(study.camera.sweep);
+  add(study.camera.sweep_images);
+  for (const ExperimentStudy& e : study.experiments) {
+    add(e.track);
+    add(e.video);
+    add(e.data);
+    if (e.validation == ExperimentStudy::Validation::file) add(e.validation_file);
+  }
+  for (const auto& [name, curve] : study.curves) add(curve.table);
+  for (const auto& [name, file] : study.reference) add(file);
+  return files;
+}
 
 Session::Session(const Options& o, const Registry& r)
     : options(o),

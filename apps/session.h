@@ -21,11 +21,13 @@ struct Options {
   bool has_seed = false;
   unsigned long seed = 1;
   bool quiet = false, json = false;
-  std::string effect;       ///< of `add`
-  bool automatic = false;   ///< discover --auto
-  bool force = false;       ///< init: write over a study
-  std::string check_video;  ///< track: write the video with the track drawn to this file
-  std::string command;      ///< the command line as typed, for run.json
+  long runs = 0;                     ///< of `uncertainty`; 0: as the study says
+  std::vector<std::string> studies;  ///< of `batch`: lists, folders, studies
+  std::string effect;                ///< of `add`
+  bool automatic = false;            ///< discover --auto
+  bool force = false;                ///< init: write over a study
+  std::string check_video;           ///< track: write the video with the track drawn to this file
+  std::string command;               ///< the command line as typed, for run.json
 };
 
 struct FilterWork;
@@ -55,6 +57,11 @@ struct Session {
   /// A line on stderr unless quiet.
   void say(const std::string& line) const;
 };
+
+/// Of the running program: computed once.
+[[nodiscard]] const std::string& hash_of_program();
+/// Every file that a study names, itself first.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_study(const Study& study);
 
 /// True after Ctrl-C: stages finish what they are at, write, and stop. The second Ctrl-C ends the program at once.
 [[nodiscard]] const std::atomic<bool>& interrupted();

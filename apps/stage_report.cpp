@@ -109,6 +109,8 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   input.ladder = known_ladder(session);
   std::vector<fs::path> files = files_of_report(session, fits);
   add_findings(session, input, files);
+  input.uncertainty = known_uncertainty(session);
+  if (input.uncertainty) files.push_back(session.folder.file("uncertainty.json"));
   const auto inputs = session.inputs(session.study.text + fmt::format("{}", fmt::join(input.notes, "\n")), files);
   if (session.folder.up_to_date("report", inputs)) return session.folder.file("report.html");
   const auto begin = std::chrono::steady_clock::now();

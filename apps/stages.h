@@ -15,6 +15,7 @@
 #include "misfit/data/reference.h"
 #include "misfit/data/signals.h"
 #include "misfit/data/track_facts.h"
+#include "misfit/data/uncertainty.h"
 #include "misfit/fit/equation_error.h"
 #include "misfit/fit/filter_estimate.h"
 
@@ -70,6 +71,8 @@ struct FilterWork {
 /// filter_error's estimate: the one of this run of the program, else estimated again (about two seconds, and the same answer). RunError
 /// with the fit's words if it declined.
 [[nodiscard]] std::shared_ptr<const FilterWork> filter_work(Session& session);
+/// What a fit by `method` depends on.
+[[nodiscard]] std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method);
 /// Everything the fits left on disk.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_fits(const Session& session, const std::vector<Fit>& fits);
 [[nodiscard]] std::vector<Reference> references(const Session& session);
@@ -79,6 +82,12 @@ struct FilterWork {
 [[nodiscard]] Comparison compare_stage(Session& session, const std::vector<Fit>& fits);
 /// figures/ and report.html; returns the page.
 std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fits);
+
+/// uncertainty.json, uncertainty.csv and their figures: the Monte-Carlo of [uncertainty]. On ranks other than the first the result is
+/// empty. InputError if the study has no such section.
+[[nodiscard]] Uncertainty uncertainty_stage(Session& session);
+/// What it left on disk, where it still belongs to the study and its data.
+[[nodiscard]] std::optional<Uncertainty> known_uncertainty(const Session& session);
 
 /// diagnosis.json and missing_force.csv; nullopt if filter_error declined (its fit says why). Runs that fit where it must.
 [[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);

@@ -16,6 +16,8 @@ int compare_verb(const Options& options, const Registry& registry);
 int report_verb(const Options& options, const Registry& registry);
 int diagnose_verb(const Options& options, const Registry& registry);
 int discover_verb(const Options& options, const Registry& registry);
+int uncertainty_verb(const Options& options, const Registry& registry);
+int batch_verb(const Options& options, const Registry& registry);
 int add_verb(const Options& options, const Registry& registry);
 int run_verb(const Options& options, const Registry& registry);
 int init_verb(const Options& options, const Registry& registry);

@@ -54,5 +54,6 @@ set(CPACK_PACKAGE_CONTACT "the misfit developers")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 misfit_debian_packages(CPACK_DEBIAN_PACKAGE_DEPENDS "# runtime$")
+misfit_debian_packages(CPACK_DEBIAN_PACKAGE_RECOMMENDS "-bin # recommended$")  # mpirun brings the library of misfit_mpi.so
 misfit_debian_packages(CPACK_DEBIAN_PACKAGE_SUGGESTS "-dev$")  # for programs that find_package(misfit)
 include(CPack)

@@ -66,6 +66,17 @@ TEST(Progress, OnATerminalShowsPartAndTimeLeftAndClearsTheLine) {
   EXPECT_EQ(terminal.shown(), "\r\033[Kfit  25 %  1 s left\r\033[K");
 }
 
+TEST(Progress, WhatAnEarlierRunHadDoneDoesNotShortenTheTimeLeft) {
+  const Terminal terminal;
+  if (!terminal.works()) GTEST_SKIP() << "no pseudo-terminal";
+  Progress progress("fit", false);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  progress.update(901, 1000);
+  const std::string text = terminal.shown();
+  EXPECT_EQ(count(text, "90 %"), 1U) << text;
+  EXPECT_EQ(count(text, "  1 s left"), 0U) << "one job in 20 ms, 99 to go: " << text;
+}
+
 TEST(Progress, OnATerminalWritesAtMostFiveTimesASecond) {
   const Terminal terminal;
   if (!terminal.works()) GTEST_SKIP() << "no pseudo-terminal";

@@ -273,6 +273,29 @@ TEST_F(StudyFolder, TheVideoSectionIsChecked) {
 TEST_F(StudyFolder, ThePerturbationsAreChecked) {
   expect_parts(error_with("[uncertainty]\nruns = 0\n"), {"study.toml:4", "uncertainty.runs", "from 1"});
   expect_parts(error_with("[uncertainty]\nperturb = { R = \"1 mx\" }\n"), {"study.toml:4", "uncertainty.perturb.R", "'mx'"});
+  expect_parts(error_with("[uncertainty]\nperturb = { R = \"0 m\" }\n"), {"study.toml:4", "uncertainty.perturb.R", "above 0"});
+  expect_parts(error_with("[uncertainty]\nperturb = { R = [1] }\n"), {"study.toml:4", "uncertainty.perturb.R", "a number is expected"});
+  expect_parts(error_with("[uncertainty]\nreadings = \"4 sigma\"\n"), {"study.toml:4", "'4 sigma'", "'3 sigma'"});
+  expect_parts(error_with("[uncertainty]\nperturb = { R = 1 }\nreadings = { S = \"sigma\" }\n"), {"study.toml:5", "'S' is not in perturb"});
+  expect_parts(error_with("[uncertainty]\ncamera = \"given\"\n"), {"study.toml:4", "'calibration'"});
+}
+
+TEST_F(StudyFolder, ThePerturbationsKeepTheirOrderUnitsAndReadings) {
+  const Study study = read_with("[uncertainty]\nperturb = { R = \"6 in\", K = 2, m_a = \"0.1 kg\" }\nreadings = { K = \"uniform\" }\n");
+  ASSERT_TRUE(study.uncertainty);
+  const UncertaintyStudy& u = *study.uncertainty;
+  EXPECT_EQ(u.runs, 1000);
+  EXPECT_FALSE(u.calibrated_camera);
+  ASSERT_EQ(u.perturb.size(), 3U);
+  EXPECT_EQ(u.perturb[0].name, "R");
+  EXPECT_NEAR(u.perturb[0].number.value, 0.1524, 1e-12);
+  EXPECT_EQ(u.perturb[0].reading, "3 sigma");
+  EXPECT_EQ(u.perturb[1].number.unit, "");
+  EXPECT_EQ(u.perturb[1].reading, "uniform");
+  EXPECT_EQ(u.perturb[2].name, "m_a");
+  EXPECT_EQ(read_with("[uncertainty]\nperturb = { R = 1 }\nreadings = \"sigma\"\n").uncertainty->perturb[0].reading, "sigma");
+  EXPECT_TRUE(read_with("[uncertainty]\ncamera = \"calibration\"\n").uncertainty->calibrated_camera);
+  EXPECT_FALSE(read_with("").uncertainty);
 }
 
 }  // namespace

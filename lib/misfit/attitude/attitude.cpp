@@ -83,13 +83,18 @@ Attitude from_readings(const Track& track, const AxisReadings& readings, const s
   return a;
 }
 
+Attitude without_sigmas(Attitude a) {
+  for (auto* column : {&a.sigma_theta, &a.sigma_psi, &a.sigma_alpha_T, &a.sigma_phi}) column->assign(a.t.size(), missing);
+  return a;
+}
+
 }  // namespace
 
 Attitude attitude(const Track& track, const Calibration& calibration, const RigGeometry& geometry, const AttitudeOptions& options) {
   check_geometry(geometry);
   const double lag = geometry.R_cp / geometry.V;
   const std::vector<bool> even = even_steps(track.t, options.even);
-  const AxisReadings readings = read_axes(track, calibration, geometry);
+  const AxisReadings readings = read_axes(track, calibration, geometry, options.sigmas);
   if (readings.lost + readings.unexplained == track.t.size()) {
     throw RunError("no sample of the track can be read as an angle: " + count_of(readings.lost, track.t.size(), "are lost, of the other ") +
                    std::to_string(readings.unexplained) +
@@ -97,6 +102,7 @@ Attitude attitude(const Track& track, const Calibration& calibration, const RigG
   }
   Attitude result = from_readings(track, readings, even, lag);
   note_losses(result, readings, even);
+  if (!options.sigmas) return without_sigmas(std::move(result));
   const std::vector<double> sigma = noise_per_sample(track, even, result.notes);
   result.notes.push_back(add_sigmas(result, {readings.samples, sigma, calibration.covariance}, lag));
   return result;

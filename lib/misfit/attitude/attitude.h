@@ -8,7 +8,8 @@
 namespace misfit {
 
 struct AttitudeOptions {
-  double even = 0.2;  ///< steps that differ from the record's median step by more than this fraction are gaps [-]
+  double even = 0.2;   ///< steps that differ from the record's median step by more than this fraction are gaps [-]
+  bool sigmas = true;  ///< false: values only, several times as fast; sigmas are missing
 };
 
 /// Attitude of the axis from the apex in the image, with the calibration's camera and model.

@@ -31,33 +31,64 @@ CameraParameters<ReadingJet> jet_camera(const CameraParameters<double>& camera) 
   return jets;
 }
 
-}  // namespace
+class Reader {
+ public:
+  Reader(const Calibration& calibration, const RigGeometry& geometry, bool derivatives)
+      : model_(calibration.model),
+        axis_{geometry.R, geometry.l_b, geometry.l_s},
+        plain_(calibration.camera),
+        camera_(jet_camera(calibration.camera)),
+        columns_(free_columns(calibration)),
+        derivatives_(derivatives) {}
 
-AxisReadings read_axes(const Track& track, const Calibration& calibration, const RigGeometry& geometry) {
-  const AxisGeometry axis{geometry.R, geometry.l_b, geometry.l_s};
-  const CameraParameters<ReadingJet> camera = jet_camera(calibration.camera);
-  const std::vector<Eigen::Index> columns = free_columns(calibration);
-  AxisReadings readings;
-  readings.samples.resize(track.t.size());
-  for (std::size_t i = 0; i < track.t.size(); ++i) {
-    if (!track.ok[i] || !std::isfinite(track.P_y[i]) || !std::isfinite(track.P_z[i])) {
-      ++readings.lost;
-      continue;
-    }
-    const auto read = read_axis(calibration.model, camera, axis, ReadingJet(track.P_y[i], 0), ReadingJet(track.P_z[i], 1));
-    if (!read) {
-      ++readings.unexplained;
-      continue;
-    }
-    AxisReading& sample = readings.samples[i];
+  /// False if no angle explains the pixel.
+  bool read(double P_y, double P_z, AxisReading& sample) const { return derivatives_ ? with(P_y, P_z, sample) : without(P_y, P_z, sample); }
+
+ private:
+  bool without(double P_y, double P_z, AxisReading& sample) const {
+    const auto read = read_axis(model_, plain_, axis_, P_y, P_z);
+    if (!read) return false;
+    sample.ok = true;
+    sample.theta = (*read)[0];
+    sample.psi = (*read)[1];
+    return true;
+  }
+
+  bool with(double P_y, double P_z, AxisReading& sample) const {
+    const auto read = read_axis(model_, camera_, axis_, ReadingJet(P_y, 0), ReadingJet(P_z, 1));
+    if (!read) return false;
     sample.ok = true;
     sample.theta = (*read)[0].a;
     sample.psi = (*read)[1].a;
-    sample.by_camera.resize(2, static_cast<Eigen::Index>(columns.size()));
+    sample.by_camera.resize(2, static_cast<Eigen::Index>(columns_.size()));
     for (Eigen::Index row = 0; row < 2; ++row) {
       const auto& derivatives = (*read)[static_cast<std::size_t>(row)].v;
       sample.by_pixel.row(row) = derivatives.head<2>().transpose();
-      for (std::size_t j = 0; j < columns.size(); ++j) sample.by_camera(row, static_cast<Eigen::Index>(j)) = derivatives[columns[j]];
+      for (std::size_t j = 0; j < columns_.size(); ++j) sample.by_camera(row, static_cast<Eigen::Index>(j)) = derivatives[columns_[j]];
+    }
+    return true;
+  }
+
+  CameraModel model_;
+  AxisGeometry axis_;
+  CameraParameters<double> plain_;
+  CameraParameters<ReadingJet> camera_;
+  std::vector<Eigen::Index> columns_;
+  bool derivatives_;
+};
+
+}  // namespace
+
+AxisReadings read_axes(const Track& track, const Calibration& calibration, const RigGeometry& geometry, bool derivatives) {
+  const Reader reader(calibration, geometry, derivatives);
+  AxisReadings readings;
+  readings.samples.resize(track.t.size());
+  for (std::size_t i = 0; i < track.t.size(); ++i) {
+    const bool there = track.ok[i] && std::isfinite(track.P_y[i]) && std::isfinite(track.P_z[i]);
+    if (!there) {
+      ++readings.lost;
+    } else if (!reader.read(track.P_y[i], track.P_z[i], readings.samples[i])) {
+      ++readings.unexplained;
     }
   }
   return readings;

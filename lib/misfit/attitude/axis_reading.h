@@ -18,12 +18,13 @@ struct AxisReading {
   Eigen::Matrix<double, 2, Eigen::Dynamic> by_camera;  ///< ∂(theta, psi)/∂(Calibration::names) [rad/SI]
 };
 
-/// All samples; `unexplained` counts those present in the track that no angle explains.
+/// All samples, with derivatives where asked; `unexplained` counts those present in the track that no angle explains.
 struct AxisReadings {
   std::vector<AxisReading> samples;
   std::size_t lost = 0, unexplained = 0;
 };
-[[nodiscard]] AxisReadings read_axes(const Track& track, const Calibration& calibration, const RigGeometry& geometry);
+[[nodiscard]] AxisReadings read_axes(const Track& track, const Calibration& calibration, const RigGeometry& geometry,
+                                     bool derivatives = true);
 
 /// White noise of one coordinate [px] from sixth differences of P_y and P_z over runs of seven samples without gap: their MAD over
 /// sqrt(924). Smooth motion does not enter (a line at 0.15 of the sampling rate is weakened 50 times against white noise); an offset that

@@ -11,8 +11,6 @@
 #include <system_error>
 #include <vector>
 
-#include "misfit/core/error.h"
-
 namespace misfit {
 namespace {
 
@@ -102,13 +100,13 @@ std::string read_file(const fs::path& path) {
 
 void write_atomically(const fs::path& path, std::string_view content) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw RunError(path.string() + ": cannot be written: it is a folder");
+  if (fs::is_directory(path, ignored)) throw WriteError(path.string() + ": cannot be written: it is a folder");
   const fs::path temporary = temporary_name(path);
   int error = write_new_file(temporary, content);
   if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
   if (error == 0) return;
   fs::remove(temporary, ignored);
-  throw RunError(path.string() + ": cannot be written: " + system_message(error));
+  throw WriteError(path.string() + ": cannot be written: " + system_message(error));
 }
 
 void make_writable_folder(const fs::path& dir) {

@@ -29,12 +29,14 @@ Progress::~Progress() {
 
 void Progress::update(std::size_t done, std::size_t total) {
   if (!visible_ || total == 0) return;
+  if (!before_) before_ = done > 0 ? done - 1 : 0;
   const auto now = Clock::now();
   if (now - last_ < between_lines && done < total) return;
   last_ = now;
   const double part = static_cast<double>(done) / static_cast<double>(total);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const std::string left = done == 0 ? "" : "  " + time_left(elapsed * (1.0 - part) / part);
+  const auto now_done = static_cast<double>(done - *before_), to_do = static_cast<double>(total - done);
+  const std::string left = done == *before_ ? "" : "  " + time_left(elapsed * to_do / now_done);
   fmt::print(stderr, "{}{}  {:.0f} %{}", clear_line, what_, std::floor(100.0 * part), left);
   std::fflush(stderr);
 }

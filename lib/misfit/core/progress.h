@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 namespace misfit {
@@ -14,11 +15,13 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  /// The time left is told by what was done since the first call: what an earlier run had done took no time in this one.
   void update(std::size_t done, std::size_t total);
 
  private:
   std::string what_;
   bool visible_;
+  std::optional<std::size_t> before_;  ///< done before the first call
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point last_;
 };

@@ -93,7 +93,7 @@ Study read_study(const fs::path& path) {
   study_parts::read_initial(root, study);
   study_parts::read_curves(root, study);
   study_parts::read_reference(root, study);
-  study_parts::read_uncertainty(root);
+  study_parts::read_uncertainty(root, study);
   read_sliding_bin(root, study);
   study_parts::read_simulate(root, study);
   root.finish();

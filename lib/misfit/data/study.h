@@ -102,6 +102,22 @@ struct SimulateStudy {
   std::map<std::string, config::Number> noise;    ///< output → sigma of white noise added, as written
 };
 
+/// One entry of [uncertainty] perturb.
+struct PerturbStudy {
+  std::string name;                 ///< what is perturbed: of the geometry, the camera, the model, or P_y, P_z
+  config::Number number;            ///< how far, as written (unit checked by whoever knows it); positive
+  std::string reading = "3 sigma";  ///< of the number: "3 sigma", "2 sigma", "sigma" of a normal distribution; "uniform": its bounds
+};
+
+/// [uncertainty]: the Monte-Carlo over the set-up.
+struct UncertaintyStudy {
+  long runs = 1000;
+  std::vector<PerturbStudy> perturb;  ///< in file order
+  bool calibrated_camera = false;     ///< camera = "calibration": its free parameters too, with their joint covariance
+  bool recalibrate = false;           ///< the camera is calibrated again in every run, from the sweep with the perturbed geometry
+  Source where, where_camera;
+};
+
 /// A study as written. Everything that can be checked without the model has been checked.
 struct Study {
   std::filesystem::path file, folder;
@@ -124,6 +140,7 @@ struct Study {
   std::map<std::string, CurveStudy> curves;
   std::map<std::string, std::filesystem::path> reference;  ///< curve → file
   std::optional<SimulateStudy> simulate;
+  std::optional<UncertaintyStudy> uncertainty;
   double bin_width = 0.0;  ///< [sliding_bin] width [rad]; 0 = default 1.5 deg
   double bin_step = 0.0;   ///< [sliding_bin] step [rad]; 0 = default 0.1 deg
   std::string text;        ///< the file's content, for hashing and resolved.toml

@@ -74,17 +74,6 @@ bool is_auto(const Section& section, std::string_view key) {
   return true;
 }
 
-void read_runs(const Section& uncertainty) {
-  (void)uncertainty.integer("runs", 1, 100'000'000);
-  if (uncertainty.is_table("readings")) {
-    (void)uncertainty.table("readings");
-  } else if (uncertainty.is_array("readings")) {
-    (void)uncertainty.texts("readings");
-  } else {
-    (void)uncertainty.text("readings");
-  }
-}
-
 }  // namespace
 
 void read_camera(const Section& root, Study& study) {
@@ -244,20 +233,6 @@ void read_simulate(const Section& root, Study& study) {
   }
   section->finish();
   study.simulate = simulate;
-}
-
-void read_uncertainty(const Section& root) {
-  const auto uncertainty = root.table("uncertainty");
-  if (!uncertainty) return;
-  read_runs(*uncertainty);
-  if (const auto perturb = uncertainty->table("perturb")) {
-    for (const std::string& name : perturb->keys()) {
-      if (perturb->is_text(name)) (void)number_as_written(*perturb, name);
-      if (!perturb->is_text(name)) (void)perturb->number(name, "");
-    }
-    perturb->finish();
-  }
-  uncertainty->finish();
 }
 
 }  // namespace misfit::study_parts

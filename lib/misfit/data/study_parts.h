@@ -27,6 +27,6 @@ void read_parameters(const config::Section& root, Study& study);
 void read_curves(const config::Section& root, Study& study);
 void read_reference(const config::Section& root, Study& study);
 void read_simulate(const config::Section& root, Study& study);
-void read_uncertainty(const config::Section& root);
+void read_uncertainty(const config::Section& root, Study& study);
 
 }  // namespace misfit::study_parts

@@ -23,14 +23,31 @@ bool any_chosen(const std::vector<Penalty>& penalties) {
   return std::any_of(penalties.begin(), penalties.end(), [](const Penalty& p) { return p.chosen; });
 }
 
+std::vector<Penalty> kept(std::vector<Penalty> penalties) {
+  for (auto& p : penalties) p.chosen = false;
+  return penalties;
+}
+
+/// The noise of an earlier fit instead of a first guess.
+Setting with_noise(const FittedModel& start, Setting setting) {
+  const auto& outputs = start.model.system->spec().outputs;
+  for (std::size_t o = 0; o < setting.sigma.size(); ++o) {
+    const auto known = start.fit.noise.find(outputs[o].name);
+    if (known != start.fit.noise.end() && known->second.value > 0.0) setting.sigma[o] = known->second.value;
+  }
+  return setting;
+}
+
 class Estimator {
  public:
   Estimator(const FittedModel& start, const std::vector<Signals>& experiments, const OutputErrorStart& options)
       : experiments_(experiments),
         options_(options),
         start_driven_(start.fit.driven),
-        setting_(look_at(start.model, experiments, options)),
-        penalties_(curve_penalties(start.model)),  // not those of a regression, whose noise is another one
+        setting_(options.keep_roughness ? with_noise(start, look_at(start.model, experiments, options))
+                                        : look_at(start.model, experiments, options)),
+        penalties_(options.keep_roughness ? kept(start.penalties)
+                                          : curve_penalties(start.model)),  // not those of a regression, whose noise is another one
         shooting_(start.model, experiments, setting_.sigma, setting_.state_scale, start_states(setting_)) {}
 
   FittedModel run() {
@@ -135,7 +152,7 @@ class Estimator {
     constexpr int most_rounds = 8;
     double before = 0.0;
     for (int round = 0; round < most_rounds; ++round) {
-      if (round > 0 && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
+      if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
       if (!solve({0, 10.0, 1e8, 60, 1e-7})) return failed(last_.message);
       const Smoothed smoothed = smooth_present(shooting_, penalties_, linearised);
       if (!smoothed.ok) return failed(shooting_.failure().empty() ? not_determined(linearised) : "");
@@ -179,9 +196,8 @@ class Estimator {
     fit.message = summary.message;
     Linearised linearised;
     if (!shooting_.linearise(linearised)) return failed("");
-    std::vector<Penalty> kept = penalties_;
-    for (auto& p : kept) p.chosen = false;
-    const Smoothed smoothed = smooth(linearised, kept, 1.0);
+    std::vector<Penalty> penalties = kept(penalties_);
+    const Smoothed smoothed = smooth(linearised, penalties, 1.0);
     if (!smoothed.ok) return failed(not_determined(linearised));
     if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(which);
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());

@@ -15,6 +15,7 @@ struct OutputErrorStart {
   bool from_regression =
       true;                ///< the parameters are an equation-error fit; false: they are just some values, begin with very short segments
   double frequency = 0.0;  ///< fastest motion [rad/s]; 0: from the data
+  bool keep_roughness = false;  ///< the start's penalties hold and its noise is begun with: for refits of nearly the same data
 };
 
 /// The whole trajectory of a deterministic model against the measured channels, by multiple shooting in Ceres (DESIGN 5): first segments at

@@ -114,7 +114,7 @@ Pass run(const BinForm& form, const Signals& signals, const SlidingBinOptions& o
   const BinLayout layout{options.width, options.step, options.minimum_samples};
   pass.usable = regression.equations().size();
   pass.bins = regression.slide(layout, {});
-  if (pass.bins.bins.empty()) return pass;
+  if (pass.bins.bins.empty() || options.curves_only) return pass;
   const std::vector<double> residuals = regression.residuals(pass.bins.bins, options.width, signals.samples());
   const double frequency = motion_frequency(form.model, states);
   constexpr int beyond_stencil = 2 * kStencilReach + 1;
@@ -257,9 +257,6 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   if (!form) return declined(why);
   const Pass pass = run(*form, signals, options, options.stencils);
   if (pass.bins.bins.empty()) return declined(why_no_bins(*form, options, pass));
-  const Pass other =
-      run(*form, signals, options, options.stencils == Stencils::fourth_order ? Stencils::second_order_four_point : Stencils::fourth_order);
-
   const auto& spec = model.system->spec();
   Fit fit;
   fit.method = "sliding_bin";
@@ -267,11 +264,14 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   fit.curves = {curve(*form, pass.bins.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma),
                 curve(*form, pass.bins.bins, spec.damping_curve, &BinSolution::damping, &BinSolution::damping_sigma)};
   fit.trim = stable_zero(fit.curves.front());
+  fit.message = "linear regression solved in " + std::to_string(pass.bins.bins.size()) + " bins";
+  if (options.curves_only) return fit;
+  const Pass other =
+      run(*form, signals, options, options.stencils == Stencils::fourth_order ? Stencils::second_order_four_point : Stencils::fourth_order);
   fit.noise["equation_residual"] = {pass.residual_rms, 0.0, rate_unit(spec.states[static_cast<std::size_t>(form->rate)].unit)};
   fit.driven = pass.driven;
   tell_bins(*form, options, pass, other, fit);
   tell_damping(*form, pass, fit);
-  fit.message = "linear regression solved in " + std::to_string(pass.bins.bins.size()) + " bins";
   if (!form->taken_as_known.empty()) {
     std::string names;
     for (const auto& name : form->taken_as_known) names += (names.empty() ? "" : ", ") + name;

@@ -10,29 +10,23 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-struct RigEntry {
-  const char* name;
-  double RigGeometry::*field;
-};
-constexpr std::array<RigEntry, 9> rig_entries = {{{"R", &RigGeometry::R},
-                                                  {"R_cp", &RigGeometry::R_cp},
-                                                  {"V", &RigGeometry::V},
-                                                  {"l_b", &RigGeometry::l_b},
-                                                  {"l_s", &RigGeometry::l_s},
-                                                  {"l_p", &RigGeometry::l_p},
-                                                  {"R1", &RigGeometry::R1},
-                                                  {"R2", &RigGeometry::R2},
-                                                  {"R3", &RigGeometry::R3}}};
-
-std::string rig_unit(const std::string& name) { return name == "V" ? "m/s" : "m"; }
+constexpr std::array<RigEntry, 9> entries = {{{"R", "m", &RigGeometry::R},
+                                              {"R_cp", "m", &RigGeometry::R_cp},
+                                              {"V", "m/s", &RigGeometry::V},
+                                              {"l_b", "m", &RigGeometry::l_b},
+                                              {"l_s", "m", &RigGeometry::l_s},
+                                              {"l_p", "m", &RigGeometry::l_p},
+                                              {"R1", "m", &RigGeometry::R1},
+                                              {"R2", "m", &RigGeometry::R2},
+                                              {"R3", "m", &RigGeometry::R3}}};
 
 void read_rig(const config::Section& geometry, RigGeometry& rig) {
-  for (const auto& entry : rig_entries) {
-    const auto number = geometry.number(entry.name, rig_unit(entry.name), true);
+  for (const auto& entry : entries) {
+    const auto number = geometry.number(entry.name, entry.unit, true);
     if (!number) continue;
     if (!(number->value > 0.0))
       throw InputError(number->where,
-                       std::string(entry.name) + " must be positive, it is " + std::to_string(number->value) + " " + rig_unit(entry.name));
+                       std::string(entry.name) + " must be positive, it is " + std::to_string(number->value) + " " + entry.unit);
     rig.*entry.field = number->value;
   }
 }
@@ -123,6 +117,8 @@ void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& reque
 
 }  // namespace
 
+std::span<const RigEntry> rig_entries() { return entries; }
+
 StudyModel read_model(const Study& study, const Registry& registry) {
   StudyModel out;
   ModelRequest& request = out.request;
@@ -180,7 +176,7 @@ std::optional<ModelRequest> regression_form(const ModelRequest& request, const R
 
 void require_rig(const Study& study, const RigGeometry& rig, bool for_sweep) {
   std::vector<std::string> missing;
-  for (const auto& entry : rig_entries) {
+  for (const auto& entry : entries) {
     const std::string name = entry.name;
     const bool of_sweep = name == "l_p" || name == "R1" || name == "R2" || name == "R3";
     if ((for_sweep || !of_sweep) && !(rig.*entry.field > 0.0)) missing.push_back(name);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "misfit/data/geometry.h"
 #include "misfit/data/study.h"
@@ -13,6 +14,14 @@ struct StudyModel {
   ModelRequest request;
   RigGeometry rig;  ///< entries that the study does not give are 0; require_rig() says which are missing
 };
+
+/// A length or speed of the rig by its name in [geometry].
+struct RigEntry {
+  const char* name;
+  const char* unit;
+  double RigGeometry::*field;
+};
+[[nodiscard]] std::span<const RigEntry> rig_entries();
 
 /// Names, units and bounds of [system], [geometry], [effects], [parameters] and [curves] against the registry. Knots in degrees become
 /// radians where the quantity is an angle. InputError with file, line and nearest name.

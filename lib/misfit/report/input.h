@@ -16,6 +16,7 @@
 #include "misfit/data/reference.h"
 #include "misfit/data/track.h"
 #include "misfit/data/track_facts.h"
+#include "misfit/data/uncertainty.h"
 
 namespace misfit::report {
 
@@ -55,6 +56,7 @@ struct ReportInput {
   std::optional<Diagnosis> diagnosis;  ///< of the study's own model, as the next
   std::optional<Discovery> discovery;
   std::optional<RungInput> rung;  ///< the same of a rung of the ladder: the last that was looked at
+  std::optional<Uncertainty> uncertainty;
   std::vector<Reference> references;
   std::vector<std::string> notes;  ///< further findings or limits, in sentences
   RunFacts run;

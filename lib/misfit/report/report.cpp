@@ -14,6 +14,7 @@ std::filesystem::path write_report(const std::filesystem::path& dir, const Repor
   diagnosis_section(input, page, draw);
   discovery_section(input, page, draw);
   curves_section(input, page, draw);
+  uncertainty_section(input, page, draw);
   prediction_section(input, page, draw);
   simulated_section(input, page, draw);
   track_section(input, page, draw);

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "apps/batch_list.h"
+#include "apps/print.h"
+#include "apps/stages.h"
+#include "apps/verbs.h"
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/core/job_queue.h"
+#include "misfit/core/progress.h"
+#include "misfit/core/ranks.h"
+#include "misfit/report/figure_batch.h"
+#include "misfit/uncertainty/scatter.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+void take(const std::string& before, const std::map<std::string, Estimate>& from, BatchRow& row) {
+  for (const auto& [name, e] : from) {
+    if (name.find('[') == std::string::npos) row.values[before + name] = e;
+  }
+}
+
+BatchRow row_of(const BatchRow& study, const Fit& fit) {
+  BatchRow row = study;
+  row.method = fit.method;
+  row.status = to_string(fit.status);
+  row.message = fit.message;
+  if (fit.status == FitStatus::declined || fit.status == FitStatus::failed) return row;
+  if (fit.trim) row.values["trim"] = *fit.trim;
+  take("", fit.parameters, row);
+  take("noise of ", fit.noise, row);
+  take("force on ", fit.force, row);
+  row.rms = fit.rms;
+  return row;
+}
+
+/// A batch of studies: each is one job with a run folder of its own below the batch's.
+class BatchJob {
+ public:
+  BatchJob(const Options& options, const Registry& registry)
+      : options_(options),
+        registry_(registry),
+        entries_(batch_entries(options.studies)),
+        folder_(options.out.empty() ? batch_folder(options.studies) : fs::path(options.out)) {}
+
+  [[nodiscard]] const fs::path& folder() const { return folder_; }
+  [[nodiscard]] std::size_t size() const { return entries_.size(); }
+
+  /// The rows of one study as text. What is wrong with the study is in them; what is wrong with the machine is thrown.
+  [[nodiscard]] std::string run(std::size_t k) const {
+    BatchRow study;
+    study.study = entries_[k].name;
+    study.path = entries_[k].file.string();
+    study.folder = (fs::path("studies") / study.study).string();
+    std::vector<BatchRow> rows;
+    try {
+      Session session(options_of(k), registry_);
+      for (const Fit& fit : fit_stage(session)) rows.push_back(row_of(study, fit));
+    } catch (const WriteError&) {
+      throw;
+    } catch (const std::exception& error) {
+      if (interrupted()) throw;
+      study.status = to_string(FitStatus::failed);
+      study.message = error.what();
+      rows = {study};
+    }
+    return batch_rows_text(rows);
+  }
+
+  /// Of all studies with all that they name, as far as it can be read.
+  [[nodiscard]] std::string digest() const {
+    std::string text = hash_of_program() + fmt::format(" {} {}", options_.has_seed ? options_.seed : 0, fmt::join(options_.methods, " "));
+    for (const BatchEntry& entry : entries_) {
+      text += "\n" + entry.file.string();
+      try {
+        for (const fs::path& file : files_of_study(read_study(entry.file))) text += " " + hash_file(file);
+      } catch (const std::exception& error) {
+        text += std::string(" ") + error.what();
+      }
+    }
+    return hash_text(text);
+  }
+
+ private:
+  [[nodiscard]] Options options_of(std::size_t k) const {
+    Options out = options_;
+    out.study = entries_[k].file.string();
+    out.out = (folder_ / "studies" / entries_[k].name).string();
+    out.threads = 1;
+    out.quiet = true;
+    return out;
+  }
+
+  Options options_;
+  const Registry& registry_;
+  std::vector<BatchEntry> entries_;
+  fs::path folder_;
+};
+
+Batch merged(const JobResults& results) {
+  Batch batch;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    for (BatchRow& row : batch_rows_from(results.result(k))) batch.rows.push_back(std::move(row));
+  }
+  batch.summary = summarise(batch.rows);
+  return batch;
+}
+
+int status_of(const Batch& batch) {
+  const bool any = std::any_of(batch.rows.begin(), batch.rows.end(),
+                               [](const BatchRow& row) { return row.status == "converged" || row.status == "not_converged"; });
+  return any ? 0 : 1;
+}
+
+}  // namespace
+
+int batch_verb(const Options& options, const Registry& registry) {
+  const BatchJob job(options, registry);
+  on_first_rank([&] { make_writable_folder(job.folder()); });
+  Progress progress(fmt::format("batch of {} studies", job.size()), options.quiet || !ranks().first());
+  const StoredJobs jobs{job.folder() / "checkpoints", job.digest(), job.size(), options.threads};
+  const auto results = run_stored_jobs(
+      jobs, [&](std::size_t k) { return job.run(k); }, [&](std::size_t done, std::size_t total) { progress.update(done, total); },
+      &interrupted());
+  stop_if_interrupted();
+  if (!results) throw EndedElsewhere();
+  if (!ranks().first()) return 0;
+  const Batch batch = merged(*results);
+  write_batch(job.folder(), batch);
+  static_cast<void>(report::write_batch_figures(job.folder() / "figures", batch));
+  if (options.json) {
+    print_file(job.folder() / "batch.json");
+  } else {
+    std::cout << batch_text(batch) << "results: " << job.folder().string() << '\n';
+  }
+  return status_of(batch);
+}
+
+}  // namespace misfit

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/data/fit.h"
+#include "misfit/data/uncertainty.h"
+#include "misfit/uncertainty/monte_carlo.h"
+
+namespace misfit {
+
+/// The numbers of a fit that are followed over the runs: trim, slope of the static curve there, other curves there, parameters that are no
+/// curve's coefficients; then the curves at the places of the nominal fit (between the first and the last that samples stand behind).
+class FollowedNumbers {
+ public:
+  /// `nominal`: the study's fit, with its sigmas; `run`: what one run gives of it.
+  FollowedNumbers(const Fit& nominal, const Fit& run, std::string static_curve);
+
+  [[nodiscard]] std::vector<double> of(const Fit& fit) const;
+  /// The first so many are single numbers.
+  [[nodiscard]] std::size_t single() const { return numbers_.size(); }
+  /// Numbers and curves with what the runs gave.
+  void fill(const MonteCarloResult& result, const std::vector<std::string>& terms, Uncertainty& out) const;
+
+ private:
+  [[nodiscard]] std::vector<double> single_of(const Fit& fit) const;
+  std::string static_curve_;
+  std::vector<SpreadNumber> numbers_;
+  std::vector<SpreadCurve> curves_;
+};
+
+}  // namespace misfit

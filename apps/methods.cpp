@@ -1,0 +1,145 @@
+#include "apps/methods.h"
+
+#include <algorithm>
+
+#include "misfit/fit/curves.h"
+#include "misfit/fit/filter_error.h"
+#include "misfit/fit/output_error.h"
+
+namespace misfit {
+namespace {
+
+/// What an uncertain inertia does to every C_m (DESIGN 5).
+void add_scale(const Prepared& form, Fit& fit) {
+  const Signals& signals = form.experiments.front();
+  const ReconstructedStates states = reconstruct_states(form.model, signals);
+  const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+  if (known == static_cast<std::ptrdiff_t>(states.ok.size())) return;
+  const InputTable inputs = input_table(signals, form.model.inputs());
+  const auto sample = static_cast<std::size_t>(known);
+  const auto scales = scale_uncertainties(form.model, states.x.row(known).data(), inputs.at(sample), signals.t[sample]);
+  fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
+}
+
+void damping_to_zero(Model& model) {
+  const Curve* damping = model.find_curve(model.system->spec().damping_curve);
+  if (damping == nullptr) return;
+  for (int i = 0; i < damping->spline.size(); ++i) model.parameters[static_cast<std::size_t>(damping->first + i)].value = 0.0;
+}
+
+void add_notes(const Prepared& prepared, Fit& fit) {
+  for (const auto& experiment : prepared.experiments) {
+    for (const auto& note : experiment.notes) fit.facts["data: " + experiment.name + ": " + note] = note;
+  }
+}
+
+}  // namespace
+
+Fit Methods::run(const std::string& method) {
+  if (method == "sliding_bin") return run_sliding_bin();
+  if (method == "equation_error") return regression().fit;
+  if (method == "output_error") return run_output_error().fit;
+  session_.filter = run_filter_error();
+  return session_.filter->fit;
+}
+
+std::shared_ptr<const FilterWork> Methods::run_filter_error() {
+  auto work = std::make_shared<FilterWork>();
+  work->prepared = prepared();
+  FilterOptions options;
+  options.threads = session_.options.threads;
+  FilterError result = filter_error(started().first, work->prepared.experiments, options);
+  work->fit = std::move(result.fit);
+  work->estimate = std::move(result.estimate);
+  add_notes(work->prepared, work->fit);
+  if (work->prepared.model.free_parameters().empty())
+    work->fit.warnings.emplace_back("every parameter is fixed: only the noise and the random force were estimated");
+  return work;
+}
+
+const Prepared& Methods::prepared() {
+  if (!prepared_) prepared_ = prepare(session_);
+  return *prepared_;
+}
+
+const FittedModel& Methods::regression() {
+  if (!regression_) {
+    regression_ = equation_error(prepared().model, prepared().experiments);
+    add_notes(prepared(), regression_->fit);
+  }
+  return *regression_;
+}
+
+Fit Methods::run_sliding_bin() {
+  std::vector<std::string> left_out;
+  const auto form = prepare_regression(session_, left_out);
+  if (!form) return no_regression_form(session_);
+  Fit fit = sliding_bin(form->model, form->experiments.front(), bin_options(session_));
+  if (form->experiments.size() > 1)
+    fit.warnings.push_back("only the first experiment, '" + form->experiments.front().name + "', is used by this method");
+  for (const auto& name : left_out) fit.warnings.push_back("effect '" + name + "' is not in the equation of this method");
+  add_scale(*form, fit);
+  add_notes(*form, fit);
+  return fit;
+}
+
+/// The regression with every shape (a clock angle, a frequency) where the study puts it: linear, so that no start is lost in a valley of
+/// another shape. Its parameters are then as free as the study says.
+FittedModel Methods::with_shapes_kept() {
+  const Model& asked = prepared().model;
+  Model kept = asked;
+  bool any = false;
+  for (auto& p : kept.parameters) {
+    const bool shape = p.free && p.curve < 0 && p.kind == CoefficientKind::shape;
+    if (shape) p.free = false;
+    any = any || shape;
+  }
+  if (!any) return regression();
+  FittedModel start = equation_error(kept, prepared().experiments);
+  for (std::size_t i = 0; i < asked.parameters.size(); ++i) start.model.parameters[i].free = asked.parameters[i].free;
+  std::vector<Penalty> penalties = curve_penalties(start.model);
+  for (std::size_t k = 0; k < penalties.size(); ++k) penalties[k].lambda = start.penalties[k].lambda;
+  start.penalties = std::move(penalties);
+  return start;
+}
+
+/// Where the trajectory methods start, and whether the regression gave it.
+std::pair<FittedModel, bool> Methods::started() {
+  FittedModel start = with_shapes_kept();
+  const bool regressed = start.fit.status != FitStatus::declined && start.fit.status != FitStatus::failed;
+  // Of a regression on driven motion only the static curve means something (DESIGN 5).
+  if (regressed && start.fit.driven) damping_to_zero(start.model);
+  return {std::move(start), regressed};
+}
+
+FittedModel Methods::run_output_error() {
+  auto [start, regressed] = started();
+  if (!regressed && start.model.free_parameters().empty()) {
+    start.fit.method = "output_error";
+    return start;
+  }
+  OutputErrorStart options;
+  options.from_regression = regressed;
+  FittedModel out = output_error(start, prepared().experiments, options);
+  add_notes(prepared(), out.fit);
+  return out;
+}
+
+SlidingBinOptions bin_options(const Session& session) {
+  SlidingBinOptions options;
+  if (session.study.bin_width > 0.0) options.width = session.study.bin_width;
+  if (session.study.bin_step > 0.0) options.step = session.study.bin_step;
+  options.three_point_average = !averaged_by_attitude(session);
+  return options;
+}
+
+Fit no_regression_form(const Session& session) {
+  Fit fit;
+  fit.method = "sliding_bin";
+  fit.status = FitStatus::declined;
+  fit.message = "system '" + session.model.request.system +
+                "' has no form for it: sliding_bin needs one equation of motion with a static and a damping curve";
+  return fit;
+}
+
+}  // namespace misfit

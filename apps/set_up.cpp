@@ -1,0 +1,192 @@
+#include "apps/set_up.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/stages.h"
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+
+namespace misfit {
+namespace {
+
+bool is_camera(const std::string& name) {
+  return std::find(camera_parameter_names.begin(), camera_parameter_names.end(), name) != camera_parameter_names.end();
+}
+
+bool of_sweep(const std::string& name) { return name == "l_p" || name == "R1" || name == "R2" || name == "R3"; }
+
+bool any_track(const Study& study) { return std::any_of(study.experiments.begin(), study.experiments.end(), has_track); }
+
+/// Sigmas in one of the numbers of the study.
+double divisor_of(const std::string& reading) {
+  if (reading == "3 sigma") return 3.0;
+  if (reading == "2 sigma") return 2.0;
+  return reading == "uniform" ? std::sqrt(3.0) : 1.0;
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  const std::string shown = display_unit(unit);
+  return format_value(convert(value, unit, shown)) + (shown == "-" ? "" : " " + shown);
+}
+
+std::string reading_text(const PerturbStudy& wish, const std::string& unit) {
+  const std::string size = with_unit(wish.number.value, unit);
+  return wish.reading == "uniform" ? "uniform within ± " + size : "normal, " + wish.reading + " = " + size;
+}
+
+void move_rig(RigGeometry& rig, const std::string& name, double error) {
+  for (const RigEntry& entry : rig_entries()) {
+    if (name == entry.name) rig.*entry.field += error;
+  }
+}
+
+/// Is it estimated, as a number or as a curve?
+bool is_free(const Model& model, const std::string& name) {
+  if (model.find_curve(name) != nullptr) return true;
+  const int i = model.find_parameter(name);
+  return i >= 0 && model.parameters[static_cast<std::size_t>(i)].free;
+}
+
+}  // namespace
+
+SetUp::SetUp(Session& session, const Model& model) {
+  const UncertaintyStudy& wishes = *session.study.uncertainty;
+  list_known(session, model);
+  for (const PerturbStudy& wish : wishes.perturb) add(wish, model);
+  if (wishes.calibrated_camera) add_calibration(session.study);
+  if (perturbations_.names().empty())
+    throw InputError(wishes.where, "nothing is perturbed: perturb = { R = \"0.1524 m\", … } says what, and how far");
+  note_held_camera(model);
+  const bool from_image = nominal_.calibration.has_value();
+  if (wishes.recalibrate) {
+    if (!from_image || !session.study.camera.from_sweep())
+      throw InputError(wishes.where, "recalibrate needs a camera that is calibrated from a sweep");
+    sweep_ = read_sweep(sweep_stage(session));
+    calibrate_.model = nominal_.calibration->model;
+    calibrate_.offer.clear();
+    for (const CameraTest& test : nominal_.calibration->tests) {
+      if (test.taken_in) calibrate_.take_in.push_back(test.name);
+    }
+  }
+}
+
+/// Where the system predicts the image, the calibrated camera is estimated by the study's own fits.
+void SetUp::note_held_camera(const Model& model) {
+  for (const std::string& name : perturbations_.names()) {
+    if (!is_camera(name) || model.find_parameter(name) < 0) continue;
+    notes_.emplace_back(
+        "Camera parameters that are perturbed are held in every run, and in the nominal fit here, instead of being estimated with their "
+        "calibration as prior.");
+    return;
+  }
+}
+
+void SetUp::list_known(Session& session, const Model& model) {
+  nominal_.rig = session.model.rig;
+  for (const Parameter& p : model.parameters) {
+    if (p.curve < 0) known_[p.name] = {p.unit, p.value};
+    if (p.curve < 0) nominal_.constants[p.name] = p.value;
+  }
+  if (!any_track(session.study)) return;
+  nominal_.calibration = calibrate_stage(session);
+  for (const RigEntry& entry : rig_entries()) {
+    const bool used = !of_sweep(entry.name) || session.study.uncertainty->recalibrate;
+    if (used && nominal_.rig.*entry.field > 0.0) known_[entry.name] = {entry.unit, nominal_.rig.*entry.field};
+  }
+  known_["P_y"] = known_["P_z"] = {"px", 0.0};
+  if (!nominal_.calibration) return;
+  for (std::size_t i = 0; i < camera_parameter_names.size(); ++i)
+    known_[camera_parameter_names[i]] = {camera_parameter_units[i], nominal_.calibration->value(camera_parameter_names[i])};
+}
+
+void SetUp::add(const PerturbStudy& wish, const Model& model) {
+  const Source& where = wish.number.where;
+  if (of_sweep(wish.name) && !known_.contains(wish.name))
+    throw InputError(where, wish.name + " acts through the calibration alone: recalibrate = true calibrates again in every run");
+  if (is_free(model, wish.name))
+    throw InputError(where, "'" + wish.name +
+                                "' is estimated by this study: only what is held can be perturbed (hold it in [parameters], or "
+                                "leave it out here)");
+  const auto known = known_.find(wish.name);
+  if (known == known_.end()) {
+    std::vector<std::string> valid;
+    for (const auto& [name, entry] : known_) {
+      if (!is_free(model, name)) valid.push_back(name);
+    }
+    throw InputError(where, "nothing that is held in this study is called '" + wish.name + "'" + suggest(wish.name, valid));
+  }
+  const auto& [unit, value] = known->second;
+  if (!wish.number.unit.empty() && !parse_unit(wish.number.unit).same_dimension(parse_unit(unit)))
+    throw InputError(where, wish.name + " needs [" + unit + "], not [" + wish.number.unit + "]");
+  const double sigma = wish.number.value / divisor_of(wish.reading);
+  perturbations_.single.push_back({wish.name, unit, sigma, wish.reading == "uniform"});
+  described_.push_back({wish.name, unit, value, sigma, reading_text(wish, unit), ""});
+}
+
+void SetUp::add_calibration(const Study& study) {
+  const Source& where = study.uncertainty->where_camera;
+  if (!nominal_.calibration || nominal_.calibration->names.empty())
+    throw InputError(where, "camera = \"calibration\" needs a calibrated camera, or one given with sigmas, and a track");
+  const Calibration& calibration = *nominal_.calibration;
+  CorrelatedPerturbation group{"calibration", calibration.names, {}, calibration.covariance};
+  for (const std::string& name : calibration.names) {
+    const auto& single = perturbations_.single;
+    if (std::any_of(single.begin(), single.end(), [&](const Perturbation& p) { return p.name == name; }))
+      throw InputError(where, "'" + name + "' is in perturb as well: give it one of the two");
+    group.units.push_back(known_.at(name).unit);
+    described_.push_back({name, group.units.back(), calibration.value(name), calibration.sigma(name),
+                          "normal, with the covariance of the calibration", group.label});
+  }
+  perturbations_.groups.push_back(std::move(group));
+}
+
+void SetUp::set(PerturbedSetUp& set_up, const std::string& name, double error) const {
+  move_rig(set_up.rig, name, error);
+  if (name == "P_y") set_up.offset_y += error;
+  if (name == "P_z") set_up.offset_z += error;
+  if (const auto constant = set_up.constants.find(name); constant != set_up.constants.end()) constant->second += error;
+  if (!set_up.calibration || !is_camera(name)) return;
+  const auto entries = camera_entries(set_up.calibration->camera);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (name == camera_parameter_names[i]) *entries[i] += error;
+  }
+}
+
+/// The camera that the sweep gives when the rig is as these errors make it.
+void SetUp::calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedSetUp& set_up) const {
+  RigGeometry rig = nominal_.rig;
+  for (std::size_t i = 0; i < names.size(); ++i) move_rig(rig, names[i], errors[i]);
+  set_up.calibration = calibrate(*sweep_, rig, calibrate_);
+  for (const char* name : camera_parameter_names) {
+    const auto constant = set_up.constants.find(name);
+    if (constant != set_up.constants.end()) constant->second = set_up.calibration->value(name);
+  }
+}
+
+PerturbedSetUp SetUp::at(const std::vector<double>& errors) const {
+  PerturbedSetUp out = nominal_;
+  const std::vector<std::string> names = perturbations_.names();
+  if (sweep_) calibrate_again(names, errors, out);
+  for (std::size_t i = 0; i < names.size(); ++i) set(out, names[i], errors[i]);
+  return out;
+}
+
+void hold_perturbed_camera(Session& session) {
+  const UncertaintyStudy& wishes = *session.study.uncertainty;
+  const auto hold = [&](const std::string& name) {
+    auto& parameters = session.model.request.parameters;
+    if (is_camera(name) && !parameters.contains(name)) parameters[name].free = false;
+  };
+  const SystemType& type = session.registry.system(session.model.request.system, session.model.request.system_where);
+  const auto& constants = type.make(session.model.request.options)->spec().constants;
+  for (const ConstantSpec& constant : constants) {
+    const bool named = std::any_of(wishes.perturb.begin(), wishes.perturb.end(), [&](const auto& p) { return p.name == constant.name; });
+    if (named || wishes.calibrated_camera || wishes.recalibrate) hold(constant.name);
+  }
+}
+
+}  // namespace misfit

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "apps/stages.h"
+#include "apps/study_chain.h"
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/core/progress.h"
+#include "misfit/core/ranks.h"
+#include "misfit/report/figures_uncertainty.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+using Inputs = std::map<std::string, std::string>;
+
+constexpr const char* stage = "uncertainty";
+
+const UncertaintyStudy& wishes_of(const Session& session) {
+  if (!session.study.uncertainty)
+    throw InputError({session.study.file.string(), 0, 0},
+                     "the section [uncertainty] is missing: it says what is uncertain, as perturb = { R = \"0.1524 m\" }");
+  return *session.study.uncertainty;
+}
+
+std::size_t runs_of(const Session& session) {
+  return static_cast<std::size_t>(session.options.runs > 0 ? session.options.runs : session.study.uncertainty->runs);
+}
+
+/// All that a run depends on but its number.
+Inputs inputs_of_run(const Session& session) {
+  Inputs inputs = inputs_of_fit(session, stage);
+  inputs["methods"] = fmt::format("{}", fmt::join(session.methods(), " "));
+  inputs["seed"] = std::to_string(session.study.seed);
+  return inputs;
+}
+
+std::string digest_of(const Inputs& inputs) {
+  std::string text;
+  for (const auto& [name, hash] : inputs) text += name + " " + hash + "\n";
+  return hash_text(text);
+}
+
+Inputs inputs_of(const Session& session) {
+  Inputs inputs = inputs_of_run(session);
+  inputs["runs"] = std::to_string(runs_of(session));
+  return inputs;
+}
+
+std::optional<MonteCarloResult> sampled(const Session& session, const StudyChain& chain, const Sampler& sampler) {
+  Progress progress(fmt::format("{}, {} runs", chain.nominal().method, runs_of(session)), session.options.quiet);
+  MonteCarloOptions options;
+  options.jobs = {session.folder.file("uncertainty"), digest_of(inputs_of_run(session)), runs_of(session), session.options.threads};
+  options.shared = chain.numbers().single();
+  options.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+  options.stop = &interrupted();
+  return monte_carlo(
+      sampler, [&](const std::vector<double>& errors) { return chain.run(errors); }, options);
+}
+
+std::vector<std::string> notes_of(const Session& session, const StudyChain& chain, const Uncertainty& result) {
+  std::vector<std::string> notes = chain.set_up().notes();
+  notes.emplace_back("The bands are of the set-up alone: what the reading noise adds is the nominal fit's own sigma.");
+  if (result.failed > 0) notes.push_back(fmt::format("{} of {} runs gave no result and are left out.", result.failed, result.runs));
+  for (const SpreadNumber& n : result.numbers) {
+    if (n.count + result.failed < result.runs)
+      notes.push_back(fmt::format("{} is that of {} of {} runs; the others have none.", n.name, n.count, result.runs));
+  }
+  for (const SpreadCurve& c : result.curves) {
+    if (!c.informative) notes.push_back(fmt::format("{} is not informative: {}.", c.name, c.why));
+  }
+  const std::string& method = chain.nominal().method;
+  if (session.study.experiments.size() > 1 && method == "sliding_bin") notes.emplace_back("sliding_bin uses the first experiment only.");
+  return notes;
+}
+
+Uncertainty result_of(const Session& session, const StudyChain& chain, const Sampler& sampler, const MonteCarloResult& runs) {
+  Uncertainty out;
+  out.method = chain.nominal().method;
+  out.runs = runs.runs;
+  out.failed = runs.failed;
+  out.failures = runs.failures;
+  out.seed = session.study.seed;
+  out.perturbed = chain.set_up().described();
+  chain.numbers().fill(runs, sampler.term_names(), out);
+  out.notes = notes_of(session, chain, out);
+  return out;
+}
+
+void write(Session& session, const Uncertainty& result, double seconds) {
+  std::vector<std::string> outputs = write_uncertainty(session.folder.path(), result);
+  for (const std::string& file : report::write_uncertainty_figures(session.folder.file("figures"), result, references(session)))
+    outputs.push_back("figures/" + file);
+  session.folder.record({stage, session.options.command, inputs_of(session), outputs, seconds, "", ""});
+}
+
+}  // namespace
+
+Uncertainty uncertainty_stage(Session& session) {
+  static_cast<void>(wishes_of(session));
+  static_cast<void>(attitude_stage(session));
+  if (session.folder.up_to_date(stage, inputs_of(session))) return read_uncertainty(session.folder.path());
+  const auto begin = std::chrono::steady_clock::now();
+  const std::unique_ptr<StudyChain> chain = chain_of(session);
+  const Sampler sampler(chain->set_up().perturbations(), session.study.seed);
+  const auto runs = sampled(session, *chain, sampler);
+  if (!runs) {
+    stop_if_interrupted();
+    throw EndedElsewhere();  // Ctrl-C reached another rank only
+  }
+  if (!ranks().first()) return {};
+  Uncertainty result = result_of(session, *chain, sampler, *runs);
+  write(session, result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  return read_uncertainty(session.folder.path());
+}
+
+std::optional<Uncertainty> known_uncertainty(const Session& session) {
+  const auto record = session.folder.stages().find(stage);
+  if (!session.study.uncertainty || record == session.folder.stages().end()) return std::nullopt;
+  Inputs now = inputs_of(session);
+  // However many runs it was, and by whatever method was asked for.
+  const auto& before = record->second.inputs;
+  for (const char* key : {"runs", "methods", "seed"}) {
+    if (before.contains(key)) now[key] = before.at(key);
+  }
+  if (!session.folder.up_to_date(stage, now)) return std::nullopt;
+  return read_uncertainty(session.folder.path());
+}
+
+}  // namespace misfit

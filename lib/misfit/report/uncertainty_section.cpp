@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "misfit/report/figures_uncertainty.h"
+#include "misfit/report/rows.h"
+#include "misfit/report/sections.h"
+
+namespace misfit::report {
+namespace {
+
+using Cells = std::vector<std::vector<std::string>>;
+
+std::string shown(double value, double sigma, const std::string& unit) {
+  const Row row("", value, sigma, unit);
+  return row.shown_number() + (row.shown_unit() == "-" ? "" : " " + row.shown_unit());
+}
+
+Cells perturbed_rows(const Uncertainty& u) {
+  Cells rows{{"perturbed", "nominal ± sigma", "how it was read"}};
+  for (const PerturbedParameter& p : u.perturbed) rows.push_back({p.name, shown(p.value, p.sigma, p.unit), p.reading});
+  return rows;
+}
+
+Cells number_rows(const Uncertainty& u) {
+  Cells rows{{"result", "nominal, noise alone", "over the runs, set-up alone", "runs"}};
+  for (const SpreadNumber& n : u.numbers)
+    rows.push_back({n.name, shown(n.nominal, n.nominal_sigma, n.unit), shown(n.mean, n.sigma, n.unit), std::to_string(n.count)});
+  return rows;
+}
+
+Cells share_rows(const Uncertainty& u) {
+  Cells rows{{"share of the variance"}};
+  for (const SpreadNumber& n : u.numbers) {
+    if (n.shares.empty()) continue;
+    rows.front().push_back(n.name);
+    for (std::size_t i = 0; i < n.shares.size(); ++i) {
+      if (rows.size() < i + 2) rows.push_back({n.shares[i].name});
+      rows[i + 1].push_back(fmt::format("{:.1f} ± {:.1f} %", 100.0 * n.shares[i].share, 100.0 * n.shares[i].sigma));
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+void uncertainty_section(const ReportInput& input, Page& page, const Draw& draw) {
+  if (!input.uncertainty) return;
+  const Uncertainty& u = *input.uncertainty;
+  page.section("Uncertainty of the set-up");
+  page.paragraph(fmt::format(
+      "The data reduction ({}) repeated {} times with errors drawn for what the set-up is uncertain in; {} runs gave no result.", u.method,
+      u.runs, u.failed));
+  page.table(perturbed_rows(u));
+  for (const Figure& figure : uncertainty_figures(u, input.references)) draw(figure);
+  page.table(number_rows(u));
+  page.table(share_rows(u));
+  page.list(u.notes);
+}
+
+}  // namespace misfit::report

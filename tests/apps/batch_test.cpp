@@ -1,0 +1,101 @@
+// Many studies as one job.
+
+#include <algorithm>
+
+#include "tests/apps/program.h"
+
+namespace {
+
+using namespace program;
+
+/// Three short cuts of the validation motion, the second with a column that is not there.
+class ThreeTests : public testing::Test {
+ protected:
+  ThreeTests() {
+    const fs::path from = fs::path(MISFIT_SOURCE_DIR) / "configs" / "validation";
+    std::istringstream lines(content(from / "alpha_history.csv"));
+    std::vector<std::string> rows;
+    for (std::string line; std::getline(lines, line);) rows.push_back(line);
+    std::string study = content(from / "study.toml");
+    study = study.substr(0, study.find("[reference]"));
+    study = std::regex_replace(study, std::regex("methods = .*"), "methods = [\"sliding_bin\"]");
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string name = "test" + std::to_string(k + 1);
+      fs::create_directories(folder_.path() / name);
+      std::string text = k == 1 ? "t[s],alfa_T[deg],x\n" : rows.front() + "\n";
+      for (std::size_t i = 0; i < 900; ++i) text += rows[1 + 900 * k + i] + "\n";
+      folder_.write(name + "/alpha_history.csv", text);
+      folder_.write(name + "/study.toml", study);
+    }
+  }
+  [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+  TemporaryFolder folder_;
+};
+
+TEST_F(ThreeTests, AFolderIsSearchedAndOneThatFailsIsARow) {
+  const Outcome outcome = program::run({"batch", folder_.path().string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  expect_parts(outcome.out, {"test1", "test2", "failed", "test3", "over the studies", "trim", "deg", "'alfa_T[deg]'"});
+  const json batch = json::parse(content(path("batch/batch.json")));
+  ASSERT_EQ(batch.at("studies").size(), 3U);
+  EXPECT_EQ(batch.at("studies")[1].at("status"), "failed");
+  EXPECT_NEAR(batch.at("studies")[0].at("values").at("trim").at("value").get<double>(), 12.0 * 0.0174533, 0.01);
+  const auto& summary = batch.at("summary");
+  const auto trim = std::find_if(summary.begin(), summary.end(), [](const json& s) { return s.at("name") == "trim"; });
+  ASSERT_NE(trim, summary.end());
+  EXPECT_EQ(trim->at("studies"), 2);
+  EXPECT_NEAR(trim->at("mean").get<double>(), 12.0, 0.3);
+  EXPECT_TRUE(first_line(path("batch/batch.csv")).starts_with("study,method,status,"));
+  expect_parts(content(path("batch/batch.csv")), {"trim[deg],trim_sigma[deg]", "\"", "test3,sliding_bin,converged"});
+  EXPECT_TRUE(fs::exists(path("batch/figures/batch_sliding_bin.svg")));
+  EXPECT_TRUE(fs::exists(path("batch/studies/test1/fit/sliding_bin/curves.csv")));
+}
+
+TEST_F(ThreeTests, AListIsReadInItsOrderAndTheSameAgain) {
+  folder_.write("list.txt", "# two of them, and one that is not there\ntest3\ntest1/study.toml  # the first\n\ntest3\ntest9/study.toml\n");
+  const Outcome first = program::run({"batch", path("list.txt").string(), "--threads", "2", "--out", path("a").string()});
+  ASSERT_EQ(first.status, 0) << first.err;
+  const json batch = json::parse(content(path("a/batch.json")));
+  ASSERT_EQ(batch.at("studies").size(), 3U) << "each once";
+  EXPECT_EQ(batch.at("studies")[0].at("study"), "test3");
+  EXPECT_EQ(batch.at("studies")[2].at("study"), "test9");
+  expect_parts(batch.at("studies")[2].at("message").get<std::string>(), {"no such file"});
+  ASSERT_EQ(program::run({"batch", path("list.txt").string(), "--threads", "1", "--out", path("b").string()}).status, 0);
+  EXPECT_EQ(content(path("a/batch.csv")), content(path("b/batch.csv")));
+  const auto when = fs::last_write_time(path("a/studies/test1/fit/sliding_bin/fit.json"));
+  const Outcome again = program::run({"batch", path("list.txt").string(), "--out", path("a").string()});
+  EXPECT_EQ(again.out, first.out);
+  EXPECT_EQ(fs::last_write_time(path("a/studies/test1/fit/sliding_bin/fit.json")), when);
+}
+
+TEST_F(ThreeTests, AMendedStudyIsDoneAgain) {
+  ASSERT_EQ(program::run({"batch", folder_.path().string()}).status, 0);
+  fs::copy_file(path("test1/alpha_history.csv"), path("test2/alpha_history.csv"), fs::copy_options::overwrite_existing);
+  const Outcome outcome = program::run({"batch", folder_.path().string(), "--json"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(json::parse(outcome.out).at("studies")[1].at("status"), "converged");
+}
+
+TEST_F(ThreeTests, WhatIsNoListIsRefused) {
+  const auto refused = [&](const std::string& argument, std::initializer_list<const char*> told) {
+    const Outcome outcome = program::run({"batch", argument});
+    EXPECT_EQ(outcome.status, 2) << argument;
+    EXPECT_EQ(outcome.out, "");
+    expect_parts(outcome.err, told);
+  };
+  refused(path("lst.txt").string(), {"no such file"});
+  refused(path("test1/alpha_history.csv").string(), {"alpha_history.csv:1", "neither", "t[s]"});
+  fs::create_directory(path("empty"));
+  refused(path("empty").string(), {"no study.toml"});
+  folder_.write("empty.txt", "# nothing\n\n");
+  refused(path("empty.txt").string(), {"names no study"});
+  EXPECT_EQ(program::run({"batch"}).status, 2);
+}
+
+TEST_F(ThreeTests, NothingButFailuresIsStatusOne) {
+  const Outcome outcome = program::run({"batch", path("test2").string()});
+  EXPECT_EQ(outcome.status, 1) << outcome.out;
+  expect_parts(outcome.out, {"failed"});
+}
+
+}  // namespace
