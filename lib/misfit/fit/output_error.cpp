@@ -215,8 +215,13 @@ class Estimator {
       visited.conservativeResize(old + more.rows(), visited.cols());
       visited.bottomRows(more.rows()) = more;
     }
-    describe(out.model, smoothed.covariance.topLeftCorner(columns, columns), visited, fit);
-    predictions_of(shooting_, runs, experiments_, smoothed.covariance, fit);
+    const ColouredCovariance coloured =
+        coloured_covariance(residual_rows(shooting_, runs, experiments_), smoothed.covariance, static_cast<Eigen::Index>(outputs.size()));
+    describe_both(out.model, smoothed.covariance.topLeftCorner(columns, columns), coloured.covariance.topLeftCorner(columns, columns),
+                  visited, fit);
+    fit.facts["covariance"] = in_words(coloured);
+    out.plain_covariance = smoothed.covariance.topLeftCorner(columns, columns);
+    predictions_of(shooting_, runs, experiments_, coloured.covariance, fit);
     errors_of(experiments_, fit);
     for (std::size_t e = 0; e < experiments_.size(); ++e) out.initial_states.push_back(shooting_.initial_state(e));
     fit.facts["effective_parameters"] = format_value(smoothed.edf);
