@@ -44,10 +44,11 @@ class Sandwich {
   ColouredCovariance run() {
     LagProducts deficit(static_cast<std::size_t>(2 * out_.lags + 1), Eigen::MatrixXd::Zero(channels_, channels_));
     const std::vector<Densities> by_plain = leverage(plain_);
-    constexpr int rounds = 2;
+    constexpr int rounds = 6;
     for (int round = 0;; ++round) {
       const Densities density = spectral_density(correlations(deficit), size_);
-      out_.covariance = plain_ + plain_ * excess(density) * plain_;
+      out_.excess = excess(density);
+      out_.covariance = plain_ + plain_ * out_.excess * plain_;
       if (round == rounds) break;
       deficit = taken(density, by_plain, leverage(out_.covariance));
     }

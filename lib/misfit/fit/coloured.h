@@ -21,6 +21,7 @@ struct ResidualRows {
 
 struct ColouredCovariance {
   Eigen::MatrixXd covariance;  ///< of all unknowns
+  Eigen::MatrixXd excess;      ///< what memory adds to N: Σ = H⁻¹ + H⁻¹ excess H⁻¹
   int lags = 0;                ///< residuals this many samples apart count as they are, twice as many not at all
   double largest_correlation = 0.0;
   int largest_lag = 0;  ///< of the largest correlation in size at lag ≥ 1

@@ -181,9 +181,11 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
   }
   const ColouredCovariance coloured =
       coloured_covariance(regression.rows, smoothed.covariance, static_cast<Eigen::Index>(regressor.rows().size()));
-  describe_both(out.model, smoothed.covariance, coloured.covariance, visited, out.fit);
+  set_priors(out.model, regression.sums);
+  out.plain_covariance = with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2);
+  describe_both(out.model, out.plain_covariance, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess),
+                visited, out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
-  out.plain_covariance = smoothed.covariance;
   const ReconstructedStates& states = regressor.states(0);
   const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
   const InputTable inputs = input_table(experiments.front(), out.model.inputs());

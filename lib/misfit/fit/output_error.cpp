@@ -217,11 +217,11 @@ class Estimator {
     }
     const ColouredCovariance coloured =
         coloured_covariance(residual_rows(shooting_, runs, experiments_), smoothed.covariance, static_cast<Eigen::Index>(outputs.size()));
-    describe_both(out.model, smoothed.covariance.topLeftCorner(columns, columns), coloured.covariance.topLeftCorner(columns, columns),
-                  visited, fit);
+    const Eigen::MatrixXd covariance = with_uncertain_roughness(linearised, penalties_, 1.0, coloured.excess);
+    out.plain_covariance = with_uncertain_roughness(linearised, penalties_, 1.0).topLeftCorner(columns, columns);
+    describe_both(out.model, out.plain_covariance, covariance.topLeftCorner(columns, columns), visited, fit);
     fit.facts["covariance"] = in_words(coloured);
-    out.plain_covariance = smoothed.covariance.topLeftCorner(columns, columns);
-    predictions_of(shooting_, runs, experiments_, coloured.covariance, fit);
+    predictions_of(shooting_, runs, experiments_, covariance, fit);
     errors_of(experiments_, fit);
     for (std::size_t e = 0; e < experiments_.size(); ++e) out.initial_states.push_back(shooting_.initial_state(e));
     fit.facts["effective_parameters"] = format_value(smoothed.edf);

@@ -35,21 +35,24 @@ int memory_of(const LagProducts& products, const LagProducts& pairs, int least) 
   constexpr int in_a_row = 20;
   const auto lags = static_cast<int>(products.size()) - 1;
   const Eigen::Index channels = products.front().rows();
-  const auto within = [&](int lag) {
+  const auto correlation = [&](std::size_t k, Eigen::Index a, Eigen::Index b) {
+    const double size = std::sqrt(products.front()(a, a) * products.front()(b, b) / (pairs.front()(a, a) * pairs.front()(b, b)));
+    return pairs[k](a, b) > 0.0 && size > 0.0 ? products[k](a, b) / pairs[k](a, b) / size : 0.0;
+  };
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Ones(channels, channels);  // Σ ρ_aa ρ_bb over the lags so far
+  int last = 0;
+  for (int lag = 1; lag <= lags && lag - last <= in_a_row; ++lag) {
     const auto k = static_cast<std::size_t>(lag);
     for (Eigen::Index a = 0; a < channels; ++a) {
       for (Eigen::Index b = 0; b < channels; ++b) {
         const double n = pairs.front()(a, a), here = pairs[k](a, b);
-        const double size = std::sqrt(products.front()(a, a) * products.front()(b, b) / (n * pairs.front()(b, b)));
-        if (!(here > 0.0) || !(size > 0.0) || !(n > 1.0)) continue;
-        if (std::abs(products[k](a, b)) / here > size * 2.0 * std::sqrt(std::log10(n) / here)) return false;
+        if (!(here > 1.0)) continue;
+        constexpr double stands_out = 1.75;
+        const double chance = std::sqrt(std::max(spread(a, b), 1.0) / here);
+        if (std::abs(correlation(k, a, b)) > stands_out * std::sqrt(std::log10(n)) * chance) last = lag;
+        spread(a, b) += 2.0 * correlation(k, a, a) * correlation(k, b, b);
       }
     }
-    return true;
-  };
-  int last = 0;
-  for (int lag = 1; lag <= lags && lag - last <= in_a_row; ++lag) {
-    if (!within(lag)) last = lag;
   }
   return std::min(std::max(last, least), std::max(lags / 2, 0));
 }

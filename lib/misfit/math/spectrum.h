@@ -21,8 +21,10 @@ namespace misfit {
 /// Products of several channels with each other by lag: `at(k)(a, b)` = Σ_i x_a,i x_b,i+k for k = 0 … lags. Negative lags are transposes.
 using LagProducts = std::vector<Eigen::MatrixXd>;
 
-/// Lag up to which channels remember: the smallest m ≥ `least` after which |ρ| stays below 2 sqrt(log10(n)/n) for 20 lags in a row, for
-/// every pair of channels [P1]; at most half of the lags given. `products`: of residuals, `pairs`: how many pairs are behind each of them.
+/// Lag up to which channels remember: the smallest m ≥ `least` after which for 20 lags in a row |ρ| stays below 1.75 sqrt(log10 n) standard
+/// deviations of what chance gives, for every pair of channels [P1]; by chance: sqrt(Σ ρ_aa ρ_bb/n) over the lags before (Bartlett), since
+/// the correlogram of a series with memory has memory itself. At most half of the lags given. `products`: of residuals, `pairs`: how many
+/// pairs are behind each of them.
 [[nodiscard]] int memory_of(const LagProducts& products, const LagProducts& pairs, int least);
 
 /// Flat-top lag window of [P1]: 1 up to m, straight down to 0 at 2 m.
