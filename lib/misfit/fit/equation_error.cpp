@@ -8,6 +8,7 @@
 #include "misfit/core/units.h"
 #include "misfit/fit/coloured.h"
 #include "misfit/fit/curves.h"
+#include "misfit/fit/identifiable.h"
 #include "misfit/fit/whiteness.h"
 
 namespace misfit {
@@ -191,6 +192,8 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
   const InputTable inputs = input_table(experiments.front(), out.model.inputs());
   const auto sample = static_cast<std::size_t>(known);
   out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
+  if (const std::string which = undetermined_beside_priors(out.model, regression.sums); !which.empty()) out.fit.warnings.push_back(which);
+  tell_weak_directions(out.model, out.fit.covariance, out.fit);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "misfit/core/units.h"
 #include "misfit/data/ladder.h"
 #include "misfit/fit/curves.h"
+#include "misfit/fit/identifiable.h"
 #include "misfit/fit/whiteness.h"
 #include "misfit/math/statistics.h"
 
@@ -256,6 +257,7 @@ Fit filter_fit(const FilterEstimate& estimate) {
   const std::vector<std::string> scales =
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
+  tell_weak_directions(estimate.model, fit.covariance, fit);
   fit.linearisations = estimate.linearisations;
   return fit;
 }

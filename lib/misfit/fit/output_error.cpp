@@ -229,6 +229,7 @@ class Estimator {
     const std::vector<std::string> scales =
         scale_uncertainties(out.model, out.initial_states.front().data(), inputs.at(0), experiments_.front().t.front());
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
+    tell_weak_directions(out.model, covariance.topLeftCorner(columns, columns), fit);
     judge(out.model, setting_, fit);
     fit.linearisations = shooting_.linearisations();
     return out;
