@@ -54,11 +54,11 @@ RowMatrix waves(Eigen::Index n) {
 }
 
 Eigen::MatrixXd exact(const RowMatrix& J, const Eigen::MatrixXd& plain, double phi, const Eigen::MatrixXd& P) {
-  Eigen::MatrixXd R(J.rows(), J.rows());
-  for (Eigen::Index i = 0; i < J.rows(); ++i) {
-    for (Eigen::Index j = 0; j < J.rows(); ++j) R(i, j) = std::pow(phi, std::abs(static_cast<double>(i - j)));
-  }
-  return plain * (J.transpose() * R * J + P) * plain;
+  // R J by two recursions: forwards and backwards.
+  RowMatrix ahead = J, behind = J;
+  for (Eigen::Index i = 1; i < J.rows(); ++i) behind.row(i) += phi * behind.row(i - 1);
+  for (Eigen::Index i = J.rows() - 2; i >= 0; --i) ahead.row(i) += phi * ahead.row(i + 1);
+  return plain * (J.transpose() * (ahead + behind - J) + P) * plain;
 }
 
 /// Mean over seeds of sigma² of each unknown against what it truly is.
