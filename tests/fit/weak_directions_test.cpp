@@ -94,7 +94,7 @@ TEST(WeakDirections, MassBesideAFreeStaticCurveIsNamedByTheFit) {
   Parameter& mass = start.model.parameters[static_cast<std::size_t>(start.model.find_parameter("m_a"))];
   mass.free = true;
   mass.prior_mean = mass.value;
-  mass.prior_sigma = 0.1;
+  mass.prior_sigma = 0.03;
   const Fit fit = output_error(start, experiments).fit;
   ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
   EXPECT_THAT(fit.warnings, testing::Contains(testing::AllOf(HasSubstr("m_a"), HasSubstr("the scale of C_m"))));
