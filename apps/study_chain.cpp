@@ -124,6 +124,7 @@ Fit StudyChain::fit(const Model& model, const std::vector<Signals>& experiments)
   if (method_ == "output_error") {
     OutputErrorStart warm;
     warm.keep_roughness = true;
+    warm.coloured = false;
     FittedModel start{{}, model, penalties_, {}};
     start.fit.noise = nominal_.noise;
     return output_error(start, experiments, warm).fit;

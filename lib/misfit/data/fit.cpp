@@ -16,9 +16,32 @@ namespace {
 constexpr std::array<const char*, 4> status_names = {"converged", "not_converged", "declined", "failed"};
 constexpr double degree = std::numbers::pi / 180.0;
 
-Json trim_to_json(const std::optional<Estimate>& trim) {
-  if (!trim) return nullptr;
-  return {{"value", number_or_null(trim->value / degree)}, {"sigma", sigma_or_null(trim->sigma / degree)}};
+const char* const trim_key = "trim";  // in Fit::plain_sigmas
+
+Json trim_to_json(const Fit& fit) {
+  if (!fit.trim) return nullptr;
+  Json out{{"value", number_or_null(fit.trim->value / degree)}, {"sigma", sigma_or_null(fit.trim->sigma / degree)}};
+  if (const auto plain = fit.plain_sigmas.find(trim_key); plain != fit.plain_sigmas.end())
+    out["plain_sigma"] = sigma_or_null(plain->second / degree);
+  return out;
+}
+
+Json parameters_to_json(const Fit& fit) {
+  Json out = estimates_to_json(fit.parameters);
+  for (const auto& [name, sigma] : fit.plain_sigmas) {
+    if (out.contains(name)) out[name]["plain_sigma"] = sigma_or_null(sigma);
+  }
+  return out;
+}
+
+std::map<std::string, double> plain_sigmas_from(const Json& root) {
+  std::map<std::string, double> out;
+  for (const auto& [name, object] : root.at("parameters").items()) {
+    if (object.contains("plain_sigma")) out[name] = number_or_nan(object, "plain_sigma");
+  }
+  const Json& trim = root.at("trim_deg");
+  if (trim.is_object() && trim.contains("plain_sigma")) out[trim_key] = number_or_nan(trim, "plain_sigma") * degree;
+  return out;
 }
 
 std::optional<Estimate> trim_from_json(const Json& object) {
@@ -107,12 +130,12 @@ Json fit_to_json(const Fit& fit) {
           {"message", fit.message},
           {"warnings", fit.warnings},
           {"driven", fit.driven},
-          {"parameters", estimates_to_json(fit.parameters)},
+          {"parameters", parameters_to_json(fit)},
           {"noise", estimates_to_json(fit.noise)},
           {"force", estimates_to_json(fit.force)},
           {"loglik", number_or_null(fit.loglik)},
           {"validation_loglik", number_or_null(fit.validation_loglik)},
-          {"trim_deg", trim_to_json(fit.trim)},
+          {"trim_deg", trim_to_json(fit)},
           {"rms", estimates_to_json(fit.rms)},
           {"validation_rms", estimates_to_json(fit.validation_rms)},
           {"seconds", number_or_null(fit.seconds)},
@@ -148,6 +171,7 @@ Fit fit_from_json(const Json& root) {
   fit.loglik = optional_number(root.at("loglik"));
   fit.validation_loglik = optional_number(root.at("validation_loglik"));
   fit.trim = trim_from_json(root.at("trim_deg"));
+  fit.plain_sigmas = plain_sigmas_from(root);
   fit.rms = estimates_from_json(root.at("rms"));
   fit.validation_rms = estimates_from_json(root.at("validation_rms"));
   fit.seconds = number_or_nan(root, "seconds");

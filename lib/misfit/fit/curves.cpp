@@ -162,6 +162,13 @@ void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMa
   }
 }
 
+void describe_both(const Model& model, const Eigen::MatrixXd& plain, const Eigen::MatrixXd& coloured, const RowMatrix& visited, Fit& fit) {
+  describe(model, plain, visited, fit);
+  for (const auto& name : fit.names) fit.plain_sigmas[name] = fit.parameters.at(name).sigma;
+  if (fit.trim) fit.plain_sigmas["trim"] = fit.trim->sigma;
+  describe(model, coloured, visited, fit);
+}
+
 namespace {
 
 /// Change of the rates by the static curve, its coefficients taken from 0 to 1, with constant `k` moved by `shift`: the largest row.

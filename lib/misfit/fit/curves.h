@@ -26,6 +26,9 @@ void choose_all_knots(ModelRequest& request, const Registry& registry, const std
 /// gives the counts.
 void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited, Fit& fit);
 
+/// The same with `coloured`, which allows for residuals with memory, and beside it the sigmas of parameters and trim by `plain`.
+void describe_both(const Model& model, const Eigen::MatrixXd& plain, const Eigen::MatrixXd& coloured, const RowMatrix& visited, Fit& fit);
+
 /// What fixed constants of known uncertainty do to the scale of the static curve, in words: "C_m scales with … : m_a = 0.294 ± 0.033 kg
 /// alone makes it uncertain by 6.6 %". From the change of the gain of the curve in the equation of motion by one sigma of each constant, at
 /// the state `x`. Empty if nothing is uncertain.

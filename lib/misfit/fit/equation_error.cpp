@@ -6,7 +6,9 @@
 
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/fit/coloured.h"
 #include "misfit/fit/curves.h"
+#include "misfit/fit/identifiable.h"
 #include "misfit/fit/whiteness.h"
 
 namespace misfit {
@@ -36,6 +38,7 @@ std::string hidden_states(const Model& model, const std::vector<bool>& shown) {
 struct Regression {
   Linearised sums;
   std::vector<std::vector<double>> residuals;  ///< per experiment and row, NaN where not used
+  std::vector<ResidualRows> rows;              ///< per experiment, if asked for; a row's channel is its place among the dynamic states
 };
 
 class Regressor {
@@ -50,7 +53,7 @@ class Regressor {
   const std::vector<int>& rows() const { return rows_; }
   const ReconstructedStates& states(std::size_t e) const { return states_[e]; }
 
-  Regression linearise(const Model& at) const {
+  Regression linearise(const Model& at, bool keep_rows = false) const {
     Regression out;
     Evaluator evaluator(at);
     const std::vector<int> free = at.free_parameters();
@@ -59,18 +62,29 @@ class Regressor {
     out.sums.g = Eigen::VectorXd::Zero(columns);
     out.sums.theta = Eigen::VectorXd::Zero(columns);
     for (int c = 0; c < columns; ++c) out.sums.theta[c] = at.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
-    for (std::size_t e = 0; e < experiments_.size(); ++e) add(e, evaluator, out);
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      if (keep_rows) out.rows.push_back(empty_rows(e, columns));
+      add(e, evaluator, out);
+    }
     return out;
   }
 
  private:
+  ResidualRows empty_rows(std::size_t e, int columns) const {
+    const auto rows = static_cast<Eigen::Index>(experiments_[e].samples() * rows_.size());
+    ResidualRows out{RowMatrix::Zero(rows, columns), Eigen::VectorXd::Constant(rows, std::nan("")), {}};
+    for (Eigen::Index c = 0; c < columns; ++c) out.place.push_back(c);
+    return out;
+  }
+
   void add(std::size_t e, Evaluator& evaluator, Regression& out) const {
     const Signals& signals = experiments_[e];
     const ReconstructedStates& states = states_[e];
     const int n = evaluator.states();
     std::vector<double> D(static_cast<std::size_t>(n) * kRowStride), dx(static_cast<std::size_t>(n));
     Slots slots;
-    for (int row : rows_) {
+    for (std::size_t channel = 0; channel < rows_.size(); ++channel) {
+      const int row = rows_[channel];
       std::vector<double> residuals(signals.samples(), std::nan(""));
       for (std::size_t i = signals.exclude; i < signals.samples(); ++i) {
         if (!states.ok[i] || signals.held_out(i)) continue;
@@ -81,6 +95,7 @@ class Regressor {
         if (!std::isfinite(r)) continue;
         residuals[i] = r;
         const double* d = D.data() + static_cast<std::ptrdiff_t>(row) * kRowStride + n;
+        if (out.rows.size() > e) keep(d, slots, r, static_cast<Eigen::Index>(i * rows_.size() + channel), out.rows[e]);
         for (int a = 0; a < slots.count(); ++a) {
           out.sums.g[slots.column(a)] += d[a] * r;
           for (int b = 0; b < slots.count(); ++b) out.sums.N(slots.column(a), slots.column(b)) += d[a] * d[b];
@@ -90,6 +105,11 @@ class Regressor {
       }
       out.residuals.push_back(std::move(residuals));
     }
+  }
+
+  static void keep(const double* d, const Slots& slots, double r, Eigen::Index at, ResidualRows& rows) {
+    rows.r[at] = r;
+    for (int a = 0; a < slots.count(); ++a) rows.J(at, slots.column(a)) = d[a];
   }
 
   const std::vector<Signals>& experiments_;
@@ -147,20 +167,33 @@ void test_residuals(const Regressor& regressor, const std::vector<Signals>& expe
                                std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
 }
 
-void describe_all(const Regressor& regressor, const std::vector<Signals>& experiments, const Eigen::MatrixXd& covariance,
-                  FittedModel& out) {
+void describe_all(const Regressor& regressor, const std::vector<Signals>& experiments, const Smoothed& smoothed, FittedModel& out) {
   RowMatrix visited = visited_quantities(out.model, experiments.front(), regressor.states(0));
   for (std::size_t e = 1; e < experiments.size(); ++e) {
     const RowMatrix more = visited_quantities(out.model, experiments[e], regressor.states(e));
     visited.conservativeResize(visited.rows() + more.rows(), visited.cols());
     visited.bottomRows(more.rows()) = more;
   }
-  describe(out.model, covariance, visited, out.fit);
+  Regression regression = regressor.linearise(out.model, true);
+  const double weight = 1.0 / std::sqrt(smoothed.sigma2);
+  for (ResidualRows& rows : regression.rows) {
+    rows.J *= weight;
+    rows.r *= weight;
+  }
+  const ColouredCovariance coloured =
+      coloured_covariance(regression.rows, smoothed.covariance, static_cast<Eigen::Index>(regressor.rows().size()));
+  set_priors(out.model, regression.sums);
+  out.plain_covariance = with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2);
+  describe_both(out.model, out.plain_covariance, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess),
+                visited, out.fit);
+  out.fit.facts["covariance"] = in_words(coloured);
   const ReconstructedStates& states = regressor.states(0);
   const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
   const InputTable inputs = input_table(experiments.front(), out.model.inputs());
   const auto sample = static_cast<std::size_t>(known);
   out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
+  if (const std::string which = undetermined_beside_priors(out.model, regression.sums); !which.empty()) out.fit.warnings.push_back(which);
+  tell_weak_directions(out.model, out.fit.covariance, out.fit);
 }
 
 }  // namespace
@@ -184,7 +217,7 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
   Smoothed smoothed;
   if (!solve(regressor, out, smoothed)) return out;
   test_residuals(regressor, experiments, smoothed.sigma2, out);
-  describe_all(regressor, experiments, smoothed.covariance, out);
+  describe_all(regressor, experiments, smoothed, out);
   if (out.fit.driven) {
     out.fit.warnings.push_back(
         "the motion is driven (" + out.fit.facts["whiteness"] +

@@ -19,11 +19,12 @@ struct FittedModel {
   Model model;
   std::vector<Penalty> penalties;               ///< with the roughness weights that were chosen
   std::vector<Eigen::VectorXd> initial_states;  ///< per experiment, at its first sample; empty where the method has none
+  Eigen::MatrixXd plain_covariance{};           ///< of the free parameters, had the residuals been white; empty where not told apart
 };
 
 /// Regression of state derivatives read from the measurement on the model's right-hand side, linear in strengths and curve coefficients;
 /// curves have their own roughness chosen by marginal likelihood [KM; P with B-splines instead of bins]. Noise in the measured states
-/// biases it towards small damping, and the residuals of neighbouring samples share stencils: its sigmas are too narrow by up to two. On
+/// biases it towards small damping. The residuals of neighbouring samples share stencils: its sigmas allow for that (coloured.h). On
 /// driven motion its damping is not informative: Σ α'' α' telescopes (DESIGN 4.1). It gives starts. Declines (status, message) where the
 /// system's states cannot be read from the channels.
 [[nodiscard]] FittedModel equation_error(const Model& model, const std::vector<Signals>& experiments);

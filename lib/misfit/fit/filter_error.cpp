@@ -11,6 +11,8 @@
 #include "misfit/core/units.h"
 #include "misfit/data/ladder.h"
 #include "misfit/fit/curves.h"
+#include "misfit/fit/identifiable.h"
+#include "misfit/fit/whiteness.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -173,6 +175,55 @@ void describe_gaps(const FilterEstimate& estimate, Fit& fit) {
   }
 }
 
+/// Covariance of the free parameters with what is not known of the roughness. The estimate is a maximum: there the data's slope is minus
+/// that of priors and roughness.
+Eigen::MatrixXd covariance_of(const FilterEstimate& estimate) {
+  const bool joint = estimate.joint_covariance.size() > 0;
+  const Eigen::MatrixXd& whole = joint ? estimate.joint_covariance : estimate.covariance;
+  const Eigen::Index columns = estimate.covariance.rows(), all = whole.rows();
+  Linearised problem;
+  set_priors(estimate.model, problem);
+  problem.prior_precision.conservativeResizeLike(Eigen::VectorXd::Zero(all));
+  problem.prior_mean.conservativeResizeLike(Eigen::VectorXd::Zero(all));
+  problem.theta = Eigen::VectorXd::Zero(all);
+  const std::vector<int> free = estimate.model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c)
+    problem.theta[static_cast<Eigen::Index>(c)] = estimate.model.parameters[static_cast<std::size_t>(free[c])].value;
+  if (!invert_scaled(whole, problem.N)) return estimate.covariance;
+  problem.g = -problem.prior_precision.cwiseProduct(problem.theta - problem.prior_mean);
+  problem.N.diagonal() -= problem.prior_precision;
+  for (const auto& p : estimate.penalties) {
+    const auto size = p.omega.rows();
+    problem.N.block(p.first, p.first, size, size) -= p.lambda * p.omega;
+    problem.g.segment(p.first, size) -= p.lambda * (p.omega * problem.theta.segment(p.first, size));
+  }
+  const Eigen::MatrixXd out = with_uncertain_roughness(problem, estimate.penalties, 1.0);
+  return out.size() > 0 ? Eigen::MatrixXd(out.topLeftCorner(columns, columns)) : estimate.covariance;
+}
+
+/// Innovations under a right model are white; says where they are not.
+void test_innovations(const FilterEstimate& estimate, Fit& fit) {
+  const auto& outputs = estimate.model.system->spec().outputs;
+  constexpr int last_lag = 20;
+  constexpr double improbable = 1e-4, worth_saying = 0.05;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    for (std::size_t e = 0; e < estimate.data.size(); ++e) {
+      const FilterTrace& trace = estimate.traces[e];
+      std::vector<double> innovations(trace.samples, std::nan(""));
+      for (std::size_t k = 0; k < trace.samples; ++k) {
+        const std::size_t at = k * static_cast<std::size_t>(trace.ny) + o;
+        if (estimate.data[e].use[at] == Use::counted && trace.S[at] > 0.0) innovations[k] = trace.e[at] / std::sqrt(trace.S[at]);
+      }
+      const WhitenessTest test = whiteness(innovations, 1, last_lag);
+      if (!(test.p_value < improbable) || std::abs(test.largest) < worth_saying) continue;
+      fit.warnings.push_back("the innovations of " + outputs[o].name + " in '" + estimate.data[e].signals->name +
+                             "' are not white (Ljung-Box p = " + format_probability(test.p_value) + ", largest autocorrelation " +
+                             format_value(std::round(1000.0 * test.largest) / 1000.0) + " at lag " + std::to_string(test.largest_lag) +
+                             "): model or noise lack something, and sigmas, which take them as white, may be too small");
+    }
+  }
+}
+
 }  // namespace
 
 Fit filter_fit(const FilterEstimate& estimate) {
@@ -184,10 +235,11 @@ Fit filter_fit(const FilterEstimate& estimate) {
   std::size_t validated = 0;
   for (const auto& trace : estimate.traces) validated += trace.validated;
   if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
-  if (estimate.covariance.size() > 0) describe(estimate.model, estimate.covariance, visited_by_filter(estimate), fit);
+  if (estimate.covariance.size() > 0) describe(estimate.model, covariance_of(estimate), visited_by_filter(estimate), fit);
   add_noise(estimate, fit);
   add_predictions(estimate, fit);
   describe_gaps(estimate, fit);
+  test_innovations(estimate, fit);
   fit.facts["effective_parameters"] = format_value(estimate.edf);
   fit.facts["left_by_exact_derivatives"] = "one more Newton step on the exact likelihood would raise it by " + format_value(estimate.left);
   if (estimate.left > 0.5)
@@ -205,6 +257,7 @@ Fit filter_fit(const FilterEstimate& estimate) {
   const std::vector<std::string> scales =
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
+  tell_weak_directions(estimate.model, fit.covariance, fit);
   fit.linearisations = estimate.linearisations;
   return fit;
 }

@@ -84,4 +84,12 @@ std::string undetermined(const Model& model, const Linearised& problem) {
   return in_words(names, relative);
 }
 
+std::string undetermined_beside_priors(const Model& model, Linearised problem) {
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    if (!model.parameters[static_cast<std::size_t>(free[c])].prior_sigma) problem.prior_precision[static_cast<Eigen::Index>(c)] = 0.0;
+  }
+  return undetermined(model, problem);
+}
+
 }  // namespace misfit

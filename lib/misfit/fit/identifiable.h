@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "misfit/data/fit.h"
 #include "misfit/fit/roughness.h"
 #include "misfit/model/model.h"
 
@@ -12,5 +13,15 @@ namespace misfit {
 /// included, curves held by their roughness left out; further columns of N, initial states, are projected out) with eigenvalues below 1e-10
 /// of the largest. Empty if every parameter is determined.
 [[nodiscard]] std::string undetermined(const Model& model, const Linearised& problem);
+
+/// The same where `problem` carries the very wide priors of set_priors(): only those that the model states count.
+[[nodiscard]] std::string undetermined_beside_priors(const Model& model, Linearised problem);
+
+/// What these data tell only weakly, in words, into warnings: parameters, and curves as a whole (their scale), that make up for each other
+/// — smallest eigenvalues below 0.02 of their correlation matrix (a pair: |correlation| above 0.98) where one of them is known to no better
+/// than 5 % — with how well their ratio or product is known and how well they themselves are; and shapes known to no better than 100 %. A
+/// curve's scale: its coefficients all times 1 + s, estimated with the least variance. Into facts, as "prior_only": parameters of which the
+/// data say nothing beyond their prior (sigma above 0.95 of the prior's). `covariance`: of the free parameters.
+void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
 
 }  // namespace misfit

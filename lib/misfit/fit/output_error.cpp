@@ -48,9 +48,19 @@ class Estimator {
                                         : look_at(start.model, experiments, options)),
         penalties_(options.keep_roughness ? kept(start.penalties)
                                           : curve_penalties(start.model)),  // not those of a regression, whose noise is another one
-        shooting_(start.model, experiments, setting_.sigma, setting_.state_scale, start_states(setting_)) {}
+        shooting_(start.model, experiments, setting_.sigma, setting_.state_scale, start_states(setting_)),
+        initial_states_(start.initial_states) {}
 
   FittedModel run() {
+    if (initial_states_.size() == experiments_.size()) {
+      const Shooting::State before = shooting_.state();
+      shooting_.begin_at(initial_states_);
+      const FittedModel out = whole_trajectory({});
+      if (out.fit.status == FitStatus::converged) return out;
+      shooting_.restore(before);
+      shooting_.set_sigma(setting_.sigma);
+      shooting_.forget_failure();
+    }
     ShootingPass pass;
     for (const auto& next : short_passes(setting_, options_.from_regression)) {
       pass = next;
@@ -215,8 +225,8 @@ class Estimator {
       visited.conservativeResize(old + more.rows(), visited.cols());
       visited.bottomRows(more.rows()) = more;
     }
-    describe(out.model, smoothed.covariance.topLeftCorner(columns, columns), visited, fit);
-    predictions_of(shooting_, runs, experiments_, smoothed.covariance, fit);
+    const Eigen::MatrixXd covariance = allowing_for_memory(linearised, smoothed.covariance, runs, visited, out);
+    predictions_of(shooting_, runs, experiments_, covariance, fit);
     errors_of(experiments_, fit);
     for (std::size_t e = 0; e < experiments_.size(); ++e) out.initial_states.push_back(shooting_.initial_state(e));
     fit.facts["effective_parameters"] = format_value(smoothed.edf);
@@ -224,9 +234,26 @@ class Estimator {
     const std::vector<std::string> scales =
         scale_uncertainties(out.model, out.initial_states.front().data(), inputs.at(0), experiments_.front().t.front());
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
+    tell_weak_directions(out.model, covariance.topLeftCorner(columns, columns), fit);
     judge(out.model, setting_, fit);
     fit.linearisations = shooting_.linearisations();
     return out;
+  }
+
+  /// Of all unknowns; tells parameters, curves and trim with it, and what the plain one would give.
+  Eigen::MatrixXd allowing_for_memory(const Linearised& linearised, const Eigen::MatrixXd& plain, const std::vector<Segment>& runs,
+                                      const RowMatrix& visited, FittedModel& out) const {
+    const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
+    if (!options_.coloured) {
+      describe(out.model, plain.topLeftCorner(columns, columns), visited, out.fit);
+      return plain;
+    }
+    const ColouredCovariance coloured = coloured_covariance(residual_rows(shooting_, runs, experiments_), plain, out.model.outputs());
+    Eigen::MatrixXd covariance = with_uncertain_roughness(linearised, penalties_, 1.0, coloured.excess);
+    out.plain_covariance = with_uncertain_roughness(linearised, penalties_, 1.0).topLeftCorner(columns, columns);
+    describe_both(out.model, out.plain_covariance, covariance.topLeftCorner(columns, columns), visited, out.fit);
+    out.fit.facts["covariance"] = in_words(coloured);
+    return covariance;
   }
 
   const std::vector<Signals>& experiments_;
@@ -235,6 +262,7 @@ class Estimator {
   Setting setting_;
   std::vector<Penalty> penalties_;
   Shooting shooting_;
+  std::vector<Eigen::VectorXd> initial_states_;  ///< where the start is a fit
   LeastSquares::Summary last_;
 };
 

@@ -42,6 +42,31 @@ std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<S
   return sigma;
 }
 
+std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vector<Segment>& runs,
+                                        const std::vector<Signals>& experiments) {
+  std::vector<ResidualRows> out;
+  const auto ny = static_cast<std::size_t>(shooting.model().outputs());
+  for (std::size_t e = 0; e < runs.size(); ++e) {
+    ResidualRows rows{runs[e].y_rows, Eigen::VectorXd(runs[e].y_rows.rows()), {}};
+    for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
+      for (std::size_t o = 0; o < ny; ++o) {
+        const auto at = static_cast<Eigen::Index>(i * ny + o);
+        const bool used = shooting.counts(e, i, o);
+        const double weight = used ? 1.0 / shooting.sigma()[o] : 0.0;
+        rows.J.row(at) *= weight;
+        rows.r[at] =
+            used ? weight * (runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i])
+                 : std::nan("");
+      }
+    }
+    const Eigen::Index n = shooting.model().states(), columns = rows.J.cols() - n;
+    for (Eigen::Index c = 0; c < columns; ++c) rows.place.push_back(c);
+    for (Eigen::Index j = 0; j < n; ++j) rows.place.push_back(columns + n * static_cast<Eigen::Index>(e) + j);
+    out.push_back(std::move(rows));
+  }
+  return out;
+}
+
 void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
                     const Eigen::MatrixXd& covariance, Fit& fit) {
   const auto& outputs = shooting.model().system->spec().outputs;
@@ -128,8 +153,10 @@ void judge(const Model& model, const Setting& setting, Fit& fit) {
   constexpr double follows = 0.5;  // of the motion's own size: a model that leaves less explains most of it
   if (!fit.driven || rms < follows * size) {
     if (test.p_value < 1e-3) {
-      fit.warnings.push_back("residuals are not white (" + fit.facts["whiteness"] + "; " + fit.facts["explained"] +
-                             "): something is missing from the model, and intervals are too narrow");
+      fit.warnings.push_back(
+          "residuals are not white (" + fit.facts["whiteness"] + "; " + fit.facts["explained"] +
+          "): something is missing from the model, or the readings' own noise has memory. Sigmas allow for that memory as noise (" +
+          "plain_sigma: without it), not for a force that the model lacks");
     }
     return;
   }

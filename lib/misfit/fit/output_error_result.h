@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "misfit/fit/coloured.h"
 #include "misfit/fit/output_error_setting.h"
 
 // What output error makes of a finished run: not for use outside.
@@ -10,6 +11,10 @@ namespace misfit::output_error_parts {
 /// Per-channel residuals of the estimation part → standard deviations with the effective number of parameters taken off.
 [[nodiscard]] std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs,
                                                  const std::vector<Signals>& experiments, double edf);
+
+/// Residuals and their derivatives by (parameters, initial states of each experiment) in units of sigma, from runs with derivatives.
+[[nodiscard]] std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vector<Segment>& runs,
+                                                      const std::vector<Signals>& experiments);
 
 /// Channels of every experiment with sigma from noise and `covariance` of (parameters, initial states of each experiment).
 void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,

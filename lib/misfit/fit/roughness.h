@@ -2,6 +2,8 @@
 
 // References
 //   [W]  G. Wahba, J. R. Statist. Soc. B 40 (1978): a roughness penalty is a Gaussian prior with C'' white noise.
+//   [G]  A. Gelman, Bayesian Analysis 1 (2006): a uniform prior of a standard deviation.
+//   [KS] R. E. Kass, D. Steffey, J. Am. Statist. Assoc. 84 (1989): what estimated hyperparameters add to a covariance.
 //   [FS] S. N. Wood, M. Fasiolo, Biometrics 73 (2017): generalised Fellner–Schall update of smoothing parameters by marginal likelihood.
 
 #include <Eigen/Core>
@@ -60,6 +62,15 @@ void set_priors(const Model& model, Linearised& sums);
 /// Maximises the marginal likelihood over the λ marked `chosen` and σ² for the linearised problem [FS], updating `penalties`. With
 /// `sigma2_given` > 0 the variance is kept.
 [[nodiscard]] Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, double sigma2_given = 0.0);
+
+/// Covariance of the unknowns when the λ marked `chosen` are not known but only as well as the data show them [KS]:
+///   Σ_λ w(λ) [C(λ) + C(λ) E C(λ) + (θ(λ) − θ)(θ(λ) − θ)ᵀ],
+/// C(λ), θ(λ): covariance and maximum at that λ, θ: the problem's own, taken as its maximum, E: what residuals with memory add to N (empty:
+/// nothing). w: marginal likelihood of the linearised problem under a uniform prior of 1/sqrt(λ), the size of C'' [G], so that a curve that
+/// is a straight line to all that the data show keeps the band of the bends they cannot exclude. One λ at a time, in steps of sqrt(10), the
+/// others held; what each adds is summed. Without chosen λ: C + C E C.
+[[nodiscard]] Eigen::MatrixXd with_uncertain_roughness(const Linearised& problem, const std::vector<Penalty>& penalties, double sigma2,
+                                                       const Eigen::MatrixXd& excess = {});
 
 /// L with LᵀL = λ Ω: residual rows L c for a solver.
 [[nodiscard]] Eigen::MatrixXd penalty_rows(const Penalty& penalty);

@@ -51,6 +51,10 @@ class Shooting {
   };
   [[nodiscard]] State state() const { return {model_.parameters, history_}; }
   void restore(const State& state);
+  /// Initial state of each experiment, for a pass of one trajectory.
+  void begin_at(const std::vector<Eigen::VectorXd>& initial_states) {
+    for (std::size_t e = 0; e < history_.size(); ++e) history_[e].row(0) = initial_states[e];
+  }
   /// What the segments of the last solve predict, each from its own fitted state: samples × outputs per experiment.
   [[nodiscard]] std::vector<RowMatrix> predict_segments();
 

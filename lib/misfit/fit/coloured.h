@@ -1,0 +1,50 @@
+#pragma once
+
+// References
+//   [MK] E. A. Morelli, V. Klein, J. Guidance 20 (1997) 74–80; NASA TP (1995): accuracy of parameters estimated with coloured residuals.
+//   [P]  D. N. Politis, J. Nonparametric Statist. 15 (2003), Econometric Theory 27 (2011): flat-top windows, made positive.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "misfit/sim/trajectory.h"
+
+namespace misfit {
+
+/// Residuals of one experiment in units of their sigma, and their derivatives.
+struct ResidualRows {
+  RowMatrix J;        ///< (samples · channels) × columns, row = sample · channels + channel; 0 where a residual does not count
+  Eigen::VectorXd r;  ///< predicted − measured; NaN where it does not count (missing, held out, excluded)
+  std::vector<Eigen::Index> place;  ///< of each column of J among all unknowns
+};
+
+struct ColouredCovariance {
+  Eigen::MatrixXd covariance;  ///< of all unknowns
+  Eigen::MatrixXd excess;      ///< what memory adds to N: Σ = H⁻¹ + H⁻¹ excess H⁻¹
+  int lags = 0;                ///< residuals this many samples apart count as they are, twice as many not at all
+  double largest_correlation = 0.0;
+  int largest_lag = 0;  ///< of the largest correlation in size at lag ≥ 1
+};
+
+/// Covariance of a least-squares estimate whose residuals are not white [MK]:
+///   Σ = H⁻¹ [Σ_ij S_iᵀ ℛ(i − j) S_j + P] H⁻¹,  H = N + P,  N = Σ S_iᵀ S_i,
+/// with S the derivatives and ℛ the residuals' correlation over lags and channels, both in units of the channels' sigma. P, priors and
+/// roughness, is a Gaussian prior whose share is known exactly, so that white residuals (ℛ = 1 at lag 0) give the plain H⁻¹. Initial states
+/// and whatever else was estimated are columns like the others.
+///
+/// ℛ is estimated from the residuals, all experiments together: products by lag over pairs that both count, divided by their number; what
+/// the fit has taken out of the residuals, E[v vᵀ − r rᵀ] = Πℛ + ℛΠᵀ − S Σ Sᵀ with Π = S H⁻¹ Sᵀ, is put back (two rounds; of a pair at lag
+/// k with gaps the share that counts). Lags: those at which some correlation stands out of the noise, at least n^(1/3), under a flat-top
+/// window; negative eigenvalues of the spectral density are set to zero, so that Σ is positive semi-definite [P]. By Fourier transforms, in
+/// pieces of at most 14336 samples between which correlation is neglected: O(n log n · columns + n · columns²).
+///
+/// `plain`: H⁻¹. Assumes stationary residuals and even sampling: lags are counted in samples. Cannot mend what random forcing does to a
+/// deterministic model.
+[[nodiscard]] ColouredCovariance coloured_covariance(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain,
+                                                     Eigen::Index channels);
+
+/// What was done, for a reader: "allows for residuals that remember 24 samples (largest correlation -0.61 at lag 3)".
+[[nodiscard]] std::string in_words(const ColouredCovariance& covariance);
+
+}  // namespace misfit

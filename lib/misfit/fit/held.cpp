@@ -1,0 +1,96 @@
+#include "misfit/fit/held.h"
+
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/fit/filter_error.h"
+
+namespace misfit {
+namespace {
+
+bool usable(const Fit& fit) { return fit.status == FitStatus::converged; }
+
+/// The curves' roughness as chosen, so that any method keeps it.
+Model with_roughness(Model model, const std::vector<Penalty>& penalties) {
+  for (const auto& p : penalties) model.curves[static_cast<std::size_t>(p.curve)].roughness = p.lambda;
+  return model;
+}
+
+FilterOptions filter_options(const FittedMethod& from) {
+  FilterOptions options;
+  options.threads = 1;
+  options.noise = from.noise;
+  options.around = from.around;
+  options.choose_roughness = false;
+  options.verify = false;
+  return options;
+}
+
+}  // namespace
+
+std::optional<Fit> fit_again(const FittedMethod& from, const std::vector<Signals>& experiments) {
+  const Model model = with_roughness(from.fitted.model, from.fitted.penalties);
+  if (from.method == "equation_error") {
+    FittedModel out = equation_error(model, experiments);
+    return usable(out.fit) ? std::optional(std::move(out.fit)) : std::nullopt;
+  }
+  FittedModel start = from.fitted;
+  start.model = model;
+  if (from.method == "output_error") {
+    OutputErrorStart options;
+    options.coloured = false;
+    FittedModel out = output_error(start, experiments, options);
+    return usable(out.fit) ? std::optional(std::move(out.fit)) : std::nullopt;
+  }
+  FilterError out = filter_error(start, experiments, filter_options(from));
+  return usable(out.fit) ? std::optional(std::move(out.fit)) : std::nullopt;
+}
+
+HeldFit::HeldFit(FittedMethod from, const std::vector<Signals>& experiments, const std::string& parameter)
+    : at_(std::move(from)), experiments_(&experiments) {
+  if (at_.method != "output_error" && at_.method != "filter_error")
+    throw InputError("profile: " + at_.method + " has no likelihood of the motion; output_error and filter_error have");
+  std::vector<std::string> names;
+  int found = -1;
+  for (const int index : at_.fitted.model.free_parameters()) {
+    const Parameter& p = at_.fitted.model.parameters[static_cast<std::size_t>(index)];
+    if (p.curve < 0) names.push_back(p.name);
+    if (p.name == parameter) found = index;
+  }
+  if (found < 0) throw InputError("profile: '" + parameter + "' is no free parameter of the model" + suggest(parameter, names));
+  parameter_ = static_cast<std::size_t>(found);
+  Parameter& p = at_.fitted.model.parameters[parameter_];
+  if (p.curve >= 0)
+    throw InputError("profile: '" + parameter + "' is a coefficient of a curve, which means nothing alone; a profile is of a parameter");
+  prior_sigma_ = p.prior_sigma;
+  prior_mean_ = p.prior_mean;
+  at_.fitted.model = with_roughness(at_.fitted.model, at_.fitted.penalties);
+  at_.fitted.model.parameters[parameter_].free = false;
+}
+
+std::optional<double> HeldFit::operator()(double value) {
+  at_.fitted.model.parameters[parameter_].value = value;
+  const std::vector<Penalty> penalties = curve_penalties(at_.fitted.model);  // columns without the parameter
+  const double prior = prior_sigma_ ? -0.5 * std::pow((value - prior_mean_) / *prior_sigma_, 2) : 0.0;
+  if (at_.method == "output_error") {
+    OutputErrorStart options;
+    options.coloured = false;
+    FittedModel out = output_error(at_.fitted, *experiments_, options);
+    if (!usable(out.fit) || !out.fit.loglik) return std::nullopt;
+    at_.fitted.model.parameters = out.model.parameters;
+    at_.fitted.initial_states = out.initial_states;
+    return *out.fit.loglik + log_prior(out.model, penalties) + prior;
+  }
+  FilterOptions options = filter_options(at_);
+  options.use = at_.use;
+  try {
+    const FilterEstimate out = estimate_filter(at_.fitted.model, penalties, *experiments_, options);
+    at_.fitted.model.parameters = out.model.parameters;
+    at_.noise = out.noise;
+    return out.objective + prior;
+  } catch (const RunError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace misfit

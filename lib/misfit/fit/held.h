@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/fit/filter_estimate.h"
+#include "misfit/fit/output_error.h"
+
+namespace misfit {
+
+/// A fit as others start from it: of replicas of its data, or of the same data with a parameter held. Roughness stays as it was chosen.
+struct FittedMethod {
+  std::string method;                                ///< "equation_error", "output_error", "filter_error"
+  FittedModel fitted;                                ///< penalties with the weights that were chosen
+  std::optional<FilterNoise> noise, around;          ///< of filter_error
+  std::optional<std::vector<std::vector<Use>>> use;  ///< of filter_error: which readings count
+};
+
+/// The method again from where the fit ended, on other data of the same model (knots are the model's). The roughness is held, sigmas are
+/// those of white residuals. nullopt where it does not converge. Several threads may call it at once.
+[[nodiscard]] std::optional<Fit> fit_again(const FittedMethod& from, const std::vector<Signals>& experiments);
+
+/// Penalised log-likelihood at its maximum over everything but one parameter: what a profile is made of. Starts from where the last call
+/// ended.
+class HeldFit {
+ public:
+  /// Keeps a reference to the experiments. InputError: a method without likelihood, a name that is no free parameter of the model.
+  HeldFit(FittedMethod from, const std::vector<Signals>& experiments, const std::string& parameter);
+  /// nullopt where the model cannot be run or the fit fails with the parameter at `value`.
+  [[nodiscard]] std::optional<double> operator()(double value);
+
+ private:
+  FittedMethod at_;
+  const std::vector<Signals>* experiments_;
+  std::size_t parameter_ = 0;
+  double prior_mean_ = 0.0;
+  std::optional<double> prior_sigma_;
+};
+
+}  // namespace misfit

@@ -1,0 +1,126 @@
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/text.h"
+#include "misfit/fit/identifiable.h"
+
+namespace misfit {
+namespace {
+
+/// A parameter or a curve's scale: its change is `weights` · changes of the free parameters, its value `value`.
+struct Direction {
+  std::string name;
+  double value = 0.0;
+  Eigen::VectorXd weights;
+};
+
+std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& covariance) {
+  std::vector<Direction> out;
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const auto at = static_cast<Eigen::Index>(c);
+    if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
+    out.push_back({p.name, p.value, Eigen::VectorXd::Unit(covariance.rows(), at)});
+  }
+  for (std::size_t k = 0; k < model.curves.size(); ++k) {
+    const Curve& curve = model.curves[k];
+    const auto column = std::find(free.begin(), free.end(), curve.first);
+    if (column == free.end()) continue;
+    const auto first = static_cast<Eigen::Index>(column - free.begin()), size = static_cast<Eigen::Index>(curve.spline.size());
+    Eigen::VectorXd c(size);
+    for (Eigen::Index i = 0; i < size; ++i) c[i] = model.parameters[static_cast<std::size_t>(curve.first + i)].value;
+    Eigen::MatrixXd inverse;
+    if (!invert_scaled(covariance.block(first, first, size, size), inverse)) continue;
+    const Eigen::VectorXd towards = inverse * c;
+    if (!(towards.dot(c) > 0.0)) continue;
+    Direction scale{"the scale of " + curve.name, 1.0, Eigen::VectorXd::Zero(covariance.rows())};
+    scale.weights.segment(first, size) = towards / towards.dot(c);
+    out.push_back(std::move(scale));
+  }
+  return out;
+}
+
+std::string percent(double share) {
+  const double value = 100.0 * share;
+  return format_value(value < 10.0 ? std::round(10.0 * value) / 10.0 : std::round(value)) + " %";
+}
+
+/// Two directions in words; relative sigmas a, b and their correlation.
+std::string pair_in_words(const std::string& first, const std::string& second, double a, double b, double correlation) {
+  constexpr double alike = 1.25;
+  const bool even = a < alike * b && b < alike * a;
+  const double together = std::sqrt(std::max(a * a + b * b - 2.0 * std::abs(correlation) * a * b, 0.0));
+  if (even) {
+    const std::string kind = correlation > 0.0 ? "ratio" : "product";
+    return first + " and " + second + " act nearly only as their " + kind + ": it is known to " + percent(together) +
+           ", they themselves only to " + percent(a) + " and " + percent(b);
+  }
+  return first + " and " + second + " make up for each other (correlation " + format_value(std::round(1000.0 * correlation) / 1000.0) +
+         "): separately they are known only to " + percent(a) + " and " + percent(b);
+}
+
+std::string group_in_words(const std::vector<std::string>& names) {
+  std::string joined;
+  for (std::size_t i = 0; i < names.size(); ++i) joined += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return joined + " make up for each other: these data know a combination of them much better than each";
+}
+
+void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& covariance, Fit& fit) {
+  const auto n = static_cast<Eigen::Index>(all.size());
+  if (n < 2) return;
+  Eigen::MatrixXd weights(n, covariance.rows());
+  for (Eigen::Index i = 0; i < n; ++i) weights.row(i) = all[static_cast<std::size_t>(i)].weights;
+  const Eigen::MatrixXd joint = weights * covariance * weights.transpose();
+  const Eigen::VectorXd sigma = joint.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * joint * sigma.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
+  if (solver.info() != Eigen::Success) return;
+  constexpr double collinear = 0.02, takes_part = 0.25, worth_saying = 0.05;
+  for (Eigen::Index k = 0; k < n && solver.eigenvalues()[k] < collinear; ++k) {
+    const Eigen::VectorXd v = solver.eigenvectors().col(k);
+    std::vector<std::string> names;
+    std::vector<double> relative;
+    std::vector<Eigen::Index> places;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (std::abs(v[i]) < takes_part * v.cwiseAbs().maxCoeff()) continue;
+      const Direction& d = all[static_cast<std::size_t>(i)];
+      names.push_back(d.name);
+      relative.push_back(sigma[i] / std::max(std::abs(d.value), 1e-300));
+      places.push_back(i);
+    }
+    if (names.size() < 2 || *std::max_element(relative.begin(), relative.end()) < worth_saying) continue;
+    if (names.size() > 2) {
+      fit.warnings.push_back(group_in_words(names));
+      continue;
+    }
+    const double sign = all[static_cast<std::size_t>(places[0])].value * all[static_cast<std::size_t>(places[1])].value < 0.0 ? -1.0 : 1.0;
+    fit.warnings.push_back(pair_in_words(names[0], names[1], relative[0], relative[1], sign * correlation(places[0], places[1])));
+  }
+}
+
+}  // namespace
+
+void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
+  if (covariance.rows() == 0 || !covariance.allFinite()) return;
+  tell_collinear(directions_of(model, covariance), covariance, fit);
+  const std::vector<int> free = model.free_parameters();
+  std::string prior_only;
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const auto at = static_cast<Eigen::Index>(c);
+    if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
+    const double sigma = std::sqrt(covariance(at, at));
+    constexpr double nothing_new = 0.95;
+    if (p.prior_sigma && sigma > nothing_new * *p.prior_sigma) {
+      prior_only += (prior_only.empty() ? "" : ", ") + p.name;
+    } else if (p.kind == CoefficientKind::shape && sigma > std::abs(p.value)) {
+      fit.warnings.push_back(p.name + " is hardly determined by these data: " + format_value(p.value, sigma) + " +- " +
+                             format_value(sigma) + " " + p.unit);
+    }
+  }
+  if (!prior_only.empty()) fit.facts["prior_only"] = "these data say nothing of " + prior_only + " beyond the prior";
+}
+
+}  // namespace misfit

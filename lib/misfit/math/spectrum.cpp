@@ -1,0 +1,92 @@
+#include "misfit/math/spectrum.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/FFT>
+
+namespace misfit {
+
+Eigen::VectorXcd fourier(const Eigen::Ref<const Eigen::VectorXd>& series, Eigen::Index size) {
+  Eigen::VectorXd padded = Eigen::VectorXd::Zero(size);
+  padded.head(series.size()) = series;
+  Eigen::FFT<double> transform;
+  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  Eigen::VectorXcd out(size / 2 + 1);
+  transform.fwd(out.data(), padded.data(), size);
+  return out;
+}
+
+Eigen::VectorXd inverse_fourier(const Eigen::VectorXcd& half, Eigen::Index size) {
+  Eigen::FFT<double> transform;
+  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  Eigen::VectorXd out(size);
+  transform.inv(out.data(), half.data(), size);
+  return out;
+}
+
+Eigen::Index power_of_two(Eigen::Index least) {
+  Eigen::Index size = 2;
+  while (size < least) size *= 2;
+  return size;
+}
+
+int memory_of(const LagProducts& products, const LagProducts& pairs, int least) {
+  constexpr int in_a_row = 20;
+  const auto lags = static_cast<int>(products.size()) - 1;
+  const Eigen::Index channels = products.front().rows();
+  const auto correlation = [&](std::size_t k, Eigen::Index a, Eigen::Index b) {
+    const double size = std::sqrt(products.front()(a, a) * products.front()(b, b) / (pairs.front()(a, a) * pairs.front()(b, b)));
+    return pairs[k](a, b) > 0.0 && size > 0.0 ? products[k](a, b) / pairs[k](a, b) / size : 0.0;
+  };
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Ones(channels, channels);  // Σ ρ_aa ρ_bb over the lags so far
+  int last = 0;
+  for (int lag = 1; lag <= lags && lag - last <= in_a_row; ++lag) {
+    const auto k = static_cast<std::size_t>(lag);
+    for (Eigen::Index a = 0; a < channels; ++a) {
+      for (Eigen::Index b = 0; b < channels; ++b) {
+        const double n = pairs.front()(a, a), here = pairs[k](a, b);
+        if (!(here > 1.0)) continue;
+        constexpr double stands_out = 1.75;
+        const double chance = std::sqrt(std::max(spread(a, b), 1.0) / here);
+        if (std::abs(correlation(k, a, b)) > stands_out * std::sqrt(std::log10(n)) * chance) last = lag;
+        spread(a, b) += 2.0 * correlation(k, a, a) * correlation(k, b, b);
+      }
+    }
+  }
+  return std::min(std::max(last, least), std::max(lags / 2, 0));
+}
+
+double flat_top(int lag, int m) {
+  if (lag <= m) return 1.0;
+  return std::max(0.0, 2.0 - static_cast<double>(lag) / static_cast<double>(m));
+}
+
+std::vector<Eigen::MatrixXcd> spectral_density(const LagProducts& covariances, Eigen::Index size) {
+  const Eigen::Index channels = covariances.front().rows(), half = size / 2 + 1;
+  std::vector<Eigen::MatrixXcd> out(static_cast<std::size_t>(half), Eigen::MatrixXcd(channels, channels));
+  for (Eigen::Index a = 0; a < channels; ++a) {
+    for (Eigen::Index b = 0; b < channels; ++b) {
+      Eigen::VectorXd circular = Eigen::VectorXd::Zero(size);
+      circular[0] = covariances.front()(a, b);
+      for (std::size_t k = 1; k < covariances.size(); ++k) {
+        circular[static_cast<Eigen::Index>(k)] = covariances[k](a, b);
+        circular[size - static_cast<Eigen::Index>(k)] = covariances[k](b, a);
+      }
+      const Eigen::VectorXcd line = fourier(circular, size);
+      for (Eigen::Index f = 0; f < half; ++f) out[static_cast<std::size_t>(f)](a, b) = line[f];
+    }
+  }
+  for (Eigen::MatrixXcd& density : out) {
+    if (channels == 1) {
+      density(0, 0) = std::max(density(0, 0).real(), 0.0);
+      continue;
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> eigen(density);
+    if (eigen.eigenvalues()[0] >= 0.0) continue;
+    density = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().adjoint();
+  }
+  return out;
+}
+
+}  // namespace misfit

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "misfit/core/text.h"
+#include "misfit/report/figure_units.h"
+#include "misfit/report/figures_intervals.h"
+
+namespace misfit::report {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double two_sided = 1.959964;  // of 95 %
+constexpr double limit_95 = 3.841459;   // chi², 1 degree of freedom
+
+/// `values` in the unit drawn, NaN outside the visited range.
+std::vector<double> visited(const std::vector<double>& values, const BootstrapCurve& curve) {
+  std::vector<double> out = shown(values, curve.unit);
+  const auto seen = [](double count) { return count > 0.0; };
+  const auto first = std::find_if(curve.count.begin(), curve.count.end(), seen) - curve.count.begin();
+  const auto behind = curve.count.rend() - std::find_if(curve.count.rbegin(), curve.count.rend(), seen);
+  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(out.size()); ++i) {
+    if (i < first || i >= behind) out[static_cast<std::size_t>(i)] = nan;
+  }
+  return out;
+}
+
+void add_bootstrap(const Bootstrap& bootstrap, const BootstrapCurve& curve, const std::string& colour, Figure& figure) {
+  Panel& panel = figure.panels.front();
+  const std::string key = as_key(bootstrap.method);
+  const std::vector<double> x = shown(curve.x, curve.of_unit);
+  std::vector<double> below, above;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    below.push_back(curve.value[i] - two_sided * curve.fit_sigma[i]);
+    above.push_back(curve.value[i] + two_sided * curve.fit_sigma[i]);
+  }
+  panel.series.push_back({key + "_band",
+                          bootstrap.method + ", 95 % of the runs",
+                          Style::band,
+                          colour,
+                          x,
+                          {},
+                          visited(curve.lower, curve),
+                          visited(curve.upper, curve)});
+  panel.series.push_back(
+      {key + "_mean", bootstrap.method + ", mean of the runs", Style::line, colour, x, visited(curve.mean, curve), {}, {}});
+  panel.series.push_back({key + "_below", bootstrap.method + ", fit ± 1.96 sigma", Style::dotted, black, x, visited(below, curve), {}, {}});
+  panel.series.push_back({key + "_above", "", Style::dotted, black, x, visited(above, curve), {}, {}});
+  figure.notes.push_back(fmt::format("{}: {} runs of {}, blocks of {} samples{}.", bootstrap.method, bootstrap.runs, bootstrap.how,
+                                     bootstrap.block, bootstrap.failed > 0 ? fmt::format("; {} gave no fit", bootstrap.failed) : ""));
+}
+
+}  // namespace
+
+Figure bootstrap_figure(const std::string& curve, const std::vector<Bootstrap>& bootstraps) {
+  Figure figure;
+  figure.name = "bootstrap_" + as_key(curve);
+  figure.title = "Block bootstrap: " + curve;
+  figure.caption = "The curve over replicas of the data that keep the memory of the residuals; dotted: what the fit itself says.";
+  figure.panels.emplace_back();
+  std::size_t colour = 0;
+  for (const auto& bootstrap : bootstraps) {
+    for (const auto& c : bootstrap.curves) {
+      if (c.name != curve) continue;
+      figure.x_label = c.of;
+      figure.x_unit = display_unit(c.of_unit);
+      figure.panels.front().y_label = c.name;
+      figure.panels.front().y_unit = display_unit(c.unit);
+      add_bootstrap(bootstrap, c, palette(colour++), figure);
+    }
+  }
+  figure.panels.front().zero_line = true;
+  return figure;
+}
+
+Figure profile_figure(const LikelihoodProfile& p) {
+  Figure figure;
+  figure.name = "profile_" + as_key(p.method) + "_" + as_key(p.parameter);
+  figure.title = "Profile likelihood: " + p.parameter + ", " + p.method;
+  figure.caption = "How far the likelihood drops when the parameter is held and everything else is estimated again.";
+  figure.x_label = p.parameter;
+  figure.x_unit = display_unit(p.unit);
+  Panel panel;
+  panel.y_label = p.scale == 1.0 ? "drop" : "drop/scale";
+  panel.y_unit = "-";
+  const std::vector<double> x = shown(p.value, p.unit);
+  std::vector<double> drop;
+  for (double d : p.drop) drop.push_back(d / p.scale);
+  const auto [least, most] = std::minmax_element(p.value.begin(), p.value.end());
+  std::vector<double> fine, parabola;
+  constexpr int points = 100;
+  for (int i = 0; i <= points && !p.value.empty() && p.sigma > 0.0; ++i) {
+    fine.push_back(*least + (*most - *least) * i / points);
+    parabola.push_back(std::pow((fine.back() - p.best) / p.sigma, 2));
+  }
+  panel.series.push_back({"profile", "everything else estimated again", Style::line, palette(0), x, drop, {}, {}});
+  panel.series.push_back({"points", "", Style::markers, palette(0), x, drop, {}, {}});
+  panel.series.push_back({"parabola", "sigma of the fit", Style::dotted, black, shown(fine, p.unit), parabola, {}, {}});
+  const std::vector<double> ends = shown({p.lower, p.best, p.upper}, p.unit);
+  panel.series.push_back({"interval",
+                          fmt::format("95 %: {} to {} {}", p.lower_found ? format_value(ends[0]) : "?",
+                                      p.upper_found ? format_value(ends[2]) : "?", figure.x_unit),
+                          Style::x_bars,
+                          palette(1),
+                          {ends[1]},
+                          {limit_95},
+                          {ends[0]},
+                          {ends[2]}});
+  panel.series.push_back({"limit", "", Style::dashed, grey, x, std::vector<double>(x.size(), limit_95), {}, {}});
+  figure.panels.push_back(std::move(panel));
+  figure.notes = p.words;
+  return figure;
+}
+
+std::vector<std::string> write_interval_figures(const std::filesystem::path& dir, const std::vector<Bootstrap>& bootstraps,
+                                                const std::vector<LikelihoodProfile>& profiles) {
+  std::vector<Figure> figures;
+  std::set<std::string> curves;
+  for (const auto& b : bootstraps) {
+    for (const auto& c : b.curves) curves.insert(c.name);
+  }
+  for (const auto& curve : curves) figures.push_back(bootstrap_figure(curve, bootstraps));
+  for (const auto& p : profiles) figures.push_back(profile_figure(p));
+  std::vector<std::string> out;
+  for (const auto& figure : figures) out.push_back(write_figure(dir, figure).filename().string());
+  return out;
+}
+
+}  // namespace misfit::report

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/data/intervals.h"
+#include "misfit/report/figure.h"
+
+namespace misfit::report {
+
+/// One curve over the runs of the bootstraps of several methods: the band that holds 95 % of the runs, their mean, and, dotted, value
+/// ± 1.96 sigma of the fit. Only where the fit's curve is visited.
+[[nodiscard]] Figure bootstrap_figure(const std::string& curve, const std::vector<Bootstrap>& bootstraps);
+
+/// Drop of the likelihood against the value held, over its scale, with the drop of 3.84 that ends the 95 % interval, the interval, and,
+/// dotted, the parabola of the fit's sigma. Angles in degrees.
+[[nodiscard]] Figure profile_figure(const LikelihoodProfile& profile);
+
+/// All of them into `dir`; returns the names of the SVG files.
+std::vector<std::string> write_interval_figures(const std::filesystem::path& dir, const std::vector<Bootstrap>& bootstraps,
+                                                const std::vector<LikelihoodProfile>& profiles);
+
+}  // namespace misfit::report

@@ -1,0 +1,159 @@
+#include "misfit/uncertainty/profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+
+namespace misfit {
+namespace {
+
+constexpr double limit_95 = 3.841458821;  // chi², 1 degree of freedom
+
+struct Side {
+  std::vector<double> value, drop;  ///< outwards
+  double end = 0.0;
+  bool found = false;
+  std::string why;  ///< where not found
+};
+
+double scale_of(const ProfileRequest& r) { return r.plain_sigma > 0.0 ? std::pow(r.sigma / r.plain_sigma, 2) : 1.0; }
+
+class Search {
+ public:
+  Search(const ProfileRequest& request, double direction)
+      : request_(request), direction_(direction), limit_(limit_95 * scale_of(request)), held_(request.from_best()) {}
+
+  Side run() {
+    constexpr int most_steps = 20;
+    double inside = request_.best, inside_root = 0.0;
+    double step = 0.5 * request_.sigma;
+    for (int k = 0; k < most_steps; ++k) {
+      const double next = kept_inside(inside + direction_ * step);
+      if (next == inside) return ended(inside, "the bound of " + request_.parameter + " comes first");
+      const std::optional<double> root = root_at(next);
+      if (!root) return ended(inside, "at " + format_value(next) + " the model cannot be estimated");
+      if (*root * *root >= limit_) {
+        refine(inside, inside_root, next, *root);
+        return side_;
+      }
+      // Flat so far: longer steps.
+      constexpr int usual_steps = 6;
+      constexpr double longer = 1.5;
+      if (k >= usual_steps) step *= longer;
+      inside = next;
+      inside_root = *root;
+    }
+    return ended(inside, "the likelihood stays flat");
+  }
+
+ private:
+  double kept_inside(double value) const { return std::clamp(value, request_.lower, request_.upper); }
+
+  Side ended(double at, const std::string& why) {
+    side_.end = at;
+    side_.why = why;
+    return side_;
+  }
+
+  /// sqrt of the drop; below 0 where the likelihood is higher than at the estimate.
+  std::optional<double> root_at(double value) {
+    const std::optional<double> objective = held_(value);
+    if (!objective || !std::isfinite(*objective)) return std::nullopt;
+    const double drop = 2.0 * (request_.objective - *objective);
+    side_.value.push_back(value);
+    side_.drop.push_back(drop);
+    return std::copysign(std::sqrt(std::abs(drop)), drop);
+  }
+
+  /// The crossing between two values, by three steps of regula falsi on sqrt(drop).
+  void refine(double inside, double inside_root, double outside, double outside_root) {
+    const double wanted = std::sqrt(limit_);
+    constexpr int most = 3;
+    constexpr double near = 2e-3;
+    for (int k = 0; k < most; ++k) {
+      const double share = (wanted - inside_root) / (outside_root - inside_root);
+      const double middle = inside + share * (outside - inside);
+      const std::optional<double> root = root_at(middle);
+      if (!root) break;
+      (*root >= wanted ? outside : inside) = middle;
+      (*root >= wanted ? outside_root : inside_root) = *root;
+      if (std::abs(*root / wanted - 1.0) < near) break;
+    }
+    side_.end = inside + (wanted - inside_root) / (outside_root - inside_root) * (outside - inside);
+    side_.found = true;
+  }
+
+  const ProfileRequest& request_;
+  double direction_, limit_;
+  HeldMaximum held_;
+  Side side_;
+};
+
+std::string shown(double value, const std::string& unit) {
+  const std::string display = display_unit(unit);
+  const std::string number = format_value(convert(value, unit, display));
+  return display == "-" ? number : number + " " + display;
+}
+
+void add_words(LikelihoodProfile& p, const Side& below, const Side& above) {
+  if (!below.found) p.words.push_back("no lower end: " + below.why + ", the search ended at " + shown(p.lower, p.unit));
+  if (!above.found) p.words.push_back("no upper end: " + above.why + ", the search ended at " + shown(p.upper, p.unit));
+  const double least = p.drop.empty() ? 0.0 : *std::min_element(p.drop.begin(), p.drop.end());
+  constexpr double worth_saying = 0.2;
+  if (least < -worth_saying)
+    p.words.push_back("the likelihood is higher beside the estimate than at it (drop " + format_value(least) +
+                      "): the fit had not reached its maximum");
+  if (std::abs(p.scale - 1.0) > worth_saying)
+    p.words.push_back("the residuals have memory: drops count " + format_value(1.0 / p.scale) + " times");
+  if (!below.found || !above.found) return;
+  const double left = p.best - p.lower, right = p.upper - p.best;
+  if (std::abs(left - right) > worth_saying * 0.5 * (left + right))
+    p.words.push_back("lopsided: -" + shown(left, p.unit) + ", +" + shown(right, p.unit) + "; a sigma does not describe it");
+}
+
+LikelihoodProfile joined(const ProfileRequest& r, const Side& below, const Side& above) {
+  LikelihoodProfile out;
+  out.method = r.method;
+  out.parameter = r.parameter;
+  out.unit = r.unit;
+  out.best = r.best;
+  out.sigma = r.sigma;
+  out.plain_sigma = r.plain_sigma;
+  out.scale = scale_of(r);
+  std::vector<std::pair<double, double>> points{{r.best, 0.0}};
+  for (const Side* side : {&below, &above}) {
+    for (std::size_t i = 0; i < side->value.size(); ++i) points.emplace_back(side->value[i], side->drop[i]);
+  }
+  std::sort(points.begin(), points.end());
+  for (const auto& [value, drop] : points) {
+    out.value.push_back(value);
+    out.drop.push_back(drop);
+  }
+  out.lower = below.end;
+  out.upper = above.end;
+  out.lower_found = below.found;
+  out.upper_found = above.found;
+  add_words(out, below, above);
+  return out;
+}
+
+}  // namespace
+
+std::vector<LikelihoodProfile> profile_likelihood(const std::vector<ProfileRequest>& requests, int threads, const ProgressFn& progress,
+                                                  const std::atomic<bool>* stop) {
+  for (const auto& r : requests) {
+    if (!(r.sigma > 0.0) || !std::isfinite(r.sigma))
+      throw InputError("profile of " + r.parameter + ": its sigma is " + format_value(r.sigma) + "; only a free parameter has a profile");
+  }
+  std::vector<Side> sides(2 * requests.size());
+  const auto job = [&](std::size_t k) { sides[k] = Search(requests[k / 2], k % 2 == 0 ? -1.0 : 1.0).run(); };
+  if (!run_jobs(sides.size(), threads, job, progress, stop)) throw RunError("profile: stopped before all sides were done");
+  std::vector<LikelihoodProfile> out;
+  for (std::size_t i = 0; i < requests.size(); ++i) out.push_back(joined(requests[i], sides[2 * i], sides[2 * i + 1]));
+  return out;
+}
+
+}  // namespace misfit

@@ -1,0 +1,156 @@
+#include "misfit/uncertainty/resample.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/math/spectrum.h"
+
+namespace misfit {
+namespace {
+
+bool counts(const Signals& s, std::size_t i) {
+  if (i < s.exclude || s.held_out(i)) return false;
+  return std::all_of(s.measured.begin(), s.measured.end(), [&](const Signal& channel) { return std::isfinite(channel.values[i]); });
+}
+
+const ChannelPrediction& prediction_of(const Fit& fit, const Signals& experiment, const Signal& channel) {
+  for (const auto& p : fit.predictions) {
+    if (p.experiment == experiment.name && p.channel == channel.name && p.t.size() == experiment.samples()) return p;
+  }
+  throw RunError("bootstrap: the fit of " + fit.method + " does not predict " + channel.name + " of experiment '" + experiment.name + "'");
+}
+
+/// Lag up to which series in a pool remember; `pool`: sample → value per channel.
+int memory_in(const std::vector<std::vector<double>>& pool) {
+  const auto n = static_cast<std::ptrdiff_t>(pool.size());
+  const auto channels = static_cast<Eigen::Index>(pool.front().size());
+  constexpr std::ptrdiff_t most = 400;
+  const std::ptrdiff_t lags = std::min<std::ptrdiff_t>(most, n / 3);
+  LagProducts products(static_cast<std::size_t>(lags + 1), Eigen::MatrixXd::Zero(channels, channels)), pairs = products;
+  for (std::ptrdiff_t k = 0; k <= lags; ++k) {
+    auto& sums = products[static_cast<std::size_t>(k)];
+    for (std::ptrdiff_t i = 0; i + k < n; ++i) {
+      for (Eigen::Index a = 0; a < channels; ++a) {
+        for (Eigen::Index b = 0; b < channels; ++b)
+          sums(a, b) += pool[static_cast<std::size_t>(i)][static_cast<std::size_t>(a)] *
+                        pool[static_cast<std::size_t>(i + k)][static_cast<std::size_t>(b)];
+      }
+    }
+    pairs[static_cast<std::size_t>(k)].setConstant(static_cast<double>(n - k));
+  }
+  return memory_of(products, pairs, 1);
+}
+
+}  // namespace
+
+Resampler::Resampler(Resampled what, const Fit& fit, const std::vector<Signals>& experiments, int block)
+    : what_(what), experiments_(experiments) {
+  if (block < 0) throw InputError("bootstrap: a block of " + std::to_string(block) + " samples; it must be at least 1, or 0 to be chosen");
+  for (const auto& e : experiments) {
+    for (std::size_t i = 0; i < e.samples(); ++i) counted_ += counts(e, i) ? 1 : 0;
+  }
+  constexpr std::size_t fewest = 16;
+  if (counted_ < fewest)
+    throw RunError("bootstrap: only " + std::to_string(counted_) + " samples count; at least " + std::to_string(fewest) + " are needed");
+  if (what_ == Resampled::residuals || !fit.predictions.empty()) collect_residuals(fit);
+  block_ = block;
+  if (block_ == 0) {
+    const int memory = pool_.empty() ? static_cast<int>(std::cbrt(static_cast<double>(counted_))) : memory_in(pool_);
+    constexpr int memories = 5, more_for_rows = 50;
+    block_ = std::max(memories * memory, static_cast<int>(std::ceil(std::cbrt(static_cast<double>(counted_)))));
+    if (what_ == Resampled::rows) block_ += more_for_rows;
+  }
+  block_ = std::clamp(block_, 1, std::max(1, static_cast<int>(counted_ / 8)));
+  if (what_ == Resampled::rows) collect_rows();
+}
+
+void Resampler::collect_residuals(const Fit& fit) {
+  const std::size_t channels = experiments_.front().measured.size();
+  std::vector<double> mean(channels, 0.0);
+  for (const auto& e : experiments_) {
+    std::vector<const ChannelPrediction*> from;
+    for (const auto& channel : e.measured) from.push_back(&prediction_of(fit, e, channel));
+    auto& predicted = predicted_.emplace_back();
+    for (const auto* p : from) predicted.push_back(p->predicted);
+    for (std::size_t i = 0; i < e.samples(); ++i) {
+      if (!counts(e, i)) continue;
+      auto& here = pool_.emplace_back();
+      for (std::size_t o = 0; o < channels; ++o) here.push_back(e.measured[o].values[i] - from[o]->predicted[i]);
+      for (std::size_t o = 0; o < channels; ++o) mean[o] += here[o] / static_cast<double>(counted_);
+    }
+  }
+  for (std::size_t o = 0; o < channels; ++o) {
+    const auto noise = fit.noise.find(experiments_.front().measured[o].name), rms = fit.rms.find(experiments_.front().measured[o].name);
+    const bool known = noise != fit.noise.end() && rms != fit.rms.end() && rms->second.value > 0.0;
+    constexpr double most = 1.5;
+    const double factor = known ? std::clamp(noise->second.value / rms->second.value, 1.0, most) : 1.0;
+    for (auto& residual : pool_) residual[o] = factor * (residual[o] - mean[o]);
+  }
+}
+
+void Resampler::collect_rows() {
+  const auto length = static_cast<std::size_t>(block_);
+  for (std::size_t e = 0; e < experiments_.size(); ++e) {
+    const Signals& s = experiments_[e];
+    for (std::size_t i = s.exclude; i + length <= s.samples(); ++i) {
+      if (!s.held_out(i) && !s.held_out(i + length - 1)) starts_.push_back({e, i});
+    }
+  }
+  if (starts_.empty()) throw RunError("bootstrap: no experiment has " + std::to_string(block_) + " samples in a row that are not held out");
+}
+
+std::vector<Signals> Resampler::draw(std::mt19937_64& random) const {
+  return what_ == Resampled::residuals ? draw_residuals(random) : draw_rows(random);
+}
+
+std::vector<Signals> Resampler::draw_residuals(std::mt19937_64& random) const {
+  std::vector<Signals> out = experiments_;
+  std::uniform_int_distribution<std::size_t> place(0, pool_.size() - 1);
+  int left = 0;
+  std::size_t at = 0;
+  for (std::size_t e = 0; e < out.size(); ++e) {
+    left = 0;  // blocks do not run on from one experiment into the next
+    for (std::size_t i = 0; i < out[e].samples(); ++i) {
+      if (left-- == 0) {
+        at = place(random);
+        left = block_ - 1;
+      }
+      for (std::size_t o = 0; o < out[e].measured.size(); ++o) {
+        double& value = out[e].measured[o].values[i];
+        if (std::isfinite(value) && !out[e].held_out(i)) value = predicted_[e][o][i] + pool_[at][o];
+      }
+      at = (at + 1) % pool_.size();
+    }
+  }
+  return out;
+}
+
+Signals Resampler::part(const Signals& whole, std::size_t first, std::size_t last) const {
+  const std::size_t from = first >= kReach ? first - kReach : 0, to = std::min(last + kReach, whole.samples());
+  const auto cut = [&](const std::vector<double>& values) {
+    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(from), values.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  Signals out;
+  out.name = whole.name;
+  out.t = cut(whole.t);
+  for (const auto& s : whole.measured) out.measured.push_back({s.name, s.unit, cut(s.values), s.sigma});
+  for (const auto& s : whole.inputs) out.inputs.push_back({s.name, s.unit, cut(s.values), s.sigma});
+  out.exclude = first - from;
+  if (last < to) out.validation_from = whole.t[last];
+  return out;
+}
+
+std::vector<Signals> Resampler::draw_rows(std::mt19937_64& random) const {
+  std::vector<Signals> out;
+  std::uniform_int_distribution<std::size_t> place(0, starts_.size() - 1);
+  const auto length = static_cast<std::size_t>(block_);
+  for (std::size_t filled = 0; filled < counted_; filled += length) {
+    const Start start = starts_[place(random)];
+    out.push_back(part(experiments_[start.experiment], start.sample, start.sample + length));
+    out.back().name += " block " + std::to_string(out.size());
+  }
+  return out;
+}
+
+}  // namespace misfit

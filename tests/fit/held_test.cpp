@@ -1,0 +1,97 @@
+#include "misfit/fit/held.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "misfit/core/error.h"
+#include "misfit/fit/curves.h"
+#include "misfit/fit/filter_error.h"
+#include "tests/fit/planar_model.h"
+
+namespace misfit {
+namespace {
+
+/// The validation motion with a line of its own added to the model: a parameter whose profile can be taken.
+struct Fitted {
+  std::vector<Signals> experiments;
+  FittedMethod method;
+  Fit fit;
+};
+
+Fitted fitted(bool coloured) {
+  Fitted out;
+  Signals signals = testing_planar::validation_signals("alpha_T_true");
+  constexpr std::size_t samples = 1200;
+  signals.t.resize(samples);
+  for (auto& s : signals.measured) s.values.resize(samples);
+  for (auto& s : signals.inputs) s.values.resize(samples);
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal(0.0, 0.1 * testing_planar::degree);
+  double memory = 0.0;
+  for (double& v : signals.measured.front().values) {
+    memory = 0.7 * memory + normal(random);
+    v += coloured ? memory : normal(random);
+  }
+  out.experiments = {signals};
+  ModelRequest request = testing_planar::eq_8({"static_moment", "pitch_damping", "periodic_forcing"});
+  request.curves.clear();
+  request.parameters["frequency"].value = 1.3;
+  request.parameters["frequency"].free = false;
+  choose_all_knots(request, testing_planar::registry(), out.experiments, 8);
+  const Model model = assemble(request, testing_planar::registry());
+  FittedModel fit = output_error(equation_error(model, out.experiments), out.experiments);
+  out.fit = fit.fit;
+  out.method = {"output_error", std::move(fit), {}, {}, {}};
+  return out;
+}
+
+TEST(HeldFit, OutputErrorDropsByTheSquareOfItsPlainSigmas) {
+  const Fitted f = fitted(false);
+  ASSERT_EQ(f.fit.status, FitStatus::converged) << f.fit.message;
+  HeldFit held(f.method, f.experiments, "cosine");
+  const double best = f.fit.parameters.at("cosine").value, sigma = f.fit.plain_sigmas.at("cosine");
+  const std::optional<double> at_best = held(best), beside = held(best + 2.0 * sigma);
+  ASSERT_TRUE(at_best && beside);
+  EXPECT_NEAR(2.0 * (*at_best - *beside), 4.0, 0.4);
+}
+
+TEST(HeldFit, RefitsOfTheSameDataStayWhereTheFitWas) {
+  const Fitted f = fitted(false);
+  const std::optional<Fit> again = fit_again(f.method, f.experiments);
+  ASSERT_TRUE(again);
+  EXPECT_NEAR(again->parameters.at("cosine").value, f.fit.parameters.at("cosine").value, 0.02 * f.fit.parameters.at("cosine").sigma);
+  EXPECT_LT(again->linearisations, f.fit.linearisations);
+}
+
+TEST(OutputErrorSigmas, AllowForColouredReadings) {
+  const Fitted f = fitted(true);
+  ASSERT_EQ(f.fit.status, FitStatus::converged) << f.fit.message;
+  // A first-order process of 0.7 at 60 Hz is flat up to a few Hz: (1 + 0.7)/(1 − 0.7) times the variance of white noise of its size.
+  const double ratio = f.fit.parameters.at("cosine").sigma / f.fit.plain_sigmas.at("cosine");
+  EXPECT_NEAR(ratio, std::sqrt(1.7 / 0.3), 0.5);
+  EXPECT_THAT(f.fit.facts.at("covariance"), testing::HasSubstr("memory"));
+  EXPECT_GT(f.fit.trim->sigma, 1.2 * f.fit.plain_sigmas.at("trim"));
+}
+
+TEST(OutputErrorSigmas, OfWhiteReadingsAreNearlyThePlainOnes) {
+  const Fitted f = fitted(false);
+  for (const auto& [name, plain] : f.fit.plain_sigmas) {
+    if (name == "trim" || !(plain > 0.0)) continue;
+    EXPECT_NEAR(f.fit.parameters.at(name).sigma / plain, 1.0, 0.25) << name;
+  }
+}
+
+TEST(HeldFit, WrongNamesAndMethodsAreSaid) {
+  const Fitted f = fitted(false);
+  EXPECT_THROW(HeldFit(f.method, f.experiments, "cosin"), InputError);
+  EXPECT_THROW(HeldFit(f.method, f.experiments, "C_m[2]"), InputError);
+  FittedMethod regression = f.method;
+  regression.method = "equation_error";
+  EXPECT_THROW(HeldFit(regression, f.experiments, "cosine"), InputError);
+}
+
+}  // namespace
+}  // namespace misfit

@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+
+#include "misfit/fit/roughness.h"
+#include "misfit/math/bspline.h"
+
+namespace misfit {
+namespace {
+
+/// Readings of a curve with unit noise at equal distances over its knots.
+struct Readings {
+  CubicSpline spline;
+  Eigen::MatrixXd A;
+};
+
+Readings readings() {
+  std::vector<double> knots;
+  for (int i = 0; i <= 14; ++i) knots.push_back(static_cast<double>(i));
+  Readings out{CubicSpline(knots), {}};
+  constexpr Eigen::Index n = 150;
+  out.A = Eigen::MatrixXd::Zero(n, out.spline.size());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const CurvePoint p = out.spline.at(14.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
+    for (int j = 0; j < 4; ++j) out.A(i, p.first + j) = p.w[static_cast<std::size_t>(j)];
+  }
+  return out;
+}
+
+Linearised problem_of(const Readings& r, const Eigen::VectorXd& y) {
+  Linearised out;
+  out.N = r.A.transpose() * r.A;
+  out.theta = Eigen::VectorXd::Zero(r.A.cols());
+  out.g = -r.A.transpose() * y;
+  out.rss = y.squaredNorm();
+  out.count = static_cast<double>(y.size());
+  out.prior_precision = Eigen::VectorXd::Constant(r.A.cols(), 1e-12);
+  out.prior_mean = Eigen::VectorXd::Zero(r.A.cols());
+  return out;
+}
+
+Penalty penalty_of(const Readings& r, double lambda, bool chosen) {
+  Penalty p;
+  p.omega = r.spline.roughness();
+  p.rank = r.spline.size() - 2;
+  p.lambda = lambda;
+  p.chosen = chosen;
+  return p;
+}
+
+/// Moves the problem to its maximum, where with_uncertain_roughness() wants it.
+Linearised at_maximum(const Linearised& problem, const Smoothed& smoothed) {
+  Linearised out = problem;
+  out.theta = smoothed.theta;
+  out.g = problem.g + problem.N * smoothed.theta;
+  return out;
+}
+
+TEST(UncertainRoughness, AGivenRoughnessLeavesTheCovarianceAsItIs) {
+  const Readings r = readings();
+  const Linearised problem = problem_of(r, Eigen::VectorXd::LinSpaced(r.A.rows(), -3.0, 3.0));
+  std::vector<Penalty> penalties{penalty_of(r, 10.0, false)};
+  const Smoothed smoothed = smooth(problem, penalties, 1.0);
+  const Eigen::MatrixXd E = 0.5 * problem.N;
+  const Eigen::MatrixXd found = with_uncertain_roughness(at_maximum(problem, smoothed), penalties, 1.0, E);
+  const Eigen::MatrixXd expected = smoothed.covariance + smoothed.covariance * E * smoothed.covariance;
+  EXPECT_LT((found - expected).norm(), 1e-9 * expected.norm());
+}
+
+/// Curves drawn from what the penalty says of them, the size of C'' uniform from nothing to what shows well: bands that take the chosen
+/// weight for known are too narrow, those that do not hold what they say.
+TEST(UncertainRoughness, BandsHoldWhatTheySay) {
+  const Readings r = readings();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(r.spline.roughness());
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> size(0.0, 0.2);
+  int inside = 0, inside_known = 0, all = 0;
+  constexpr int draws = 300;
+  for (int draw = 0; draw < draws; ++draw) {
+    const double tau = size(random);
+    Eigen::VectorXd c = Eigen::VectorXd::Zero(r.A.cols());
+    for (Eigen::Index i = 2; i < c.size(); ++i) c += eigen.eigenvectors().col(i) * normal(random) * tau / std::sqrt(eigen.eigenvalues()[i]);
+    Eigen::VectorXd y = r.A * c;
+    for (Eigen::Index i = 0; i < y.size(); ++i) y[i] += normal(random);
+    const Linearised problem = problem_of(r, y);
+    std::vector<Penalty> penalties{penalty_of(r, 1.0 / (tau * tau), true)};
+    const Smoothed smoothed = smooth(problem, penalties, 1.0);
+    ASSERT_TRUE(smoothed.ok);
+    const Eigen::MatrixXd covariance = with_uncertain_roughness(at_maximum(problem, smoothed), penalties, 1.0);
+    for (const Eigen::Index i : {20, 50, 75, 110, 140}) {
+      const Eigen::VectorXd row = r.A.row(i);
+      const double error = std::abs(row.dot(smoothed.theta - c));
+      inside += error < 1.96 * std::sqrt(row.dot(covariance * row)) ? 1 : 0;
+      inside_known += error < 1.96 * std::sqrt(row.dot(smoothed.covariance * row)) ? 1 : 0;
+      ++all;
+    }
+  }
+  const double share = 100.0 * inside / all, known = 100.0 * inside_known / all;
+  std::printf("95 %% bands hold %.1f %%, with the chosen weight taken for known %.1f %%\n", share, known);
+  EXPECT_GT(share, 93.0);
+  EXPECT_LT(share, 98.0);
+  EXPECT_LT(known, share - 1.0);
+}
+
+/// Where the data show a straight line the weight runs away and the plain band is that of a line.
+TEST(UncertainRoughness, AStraightLineKeepsTheBandOfTheBendsItMayHave) {
+  const Readings r = readings();
+  // Noise turned sign by sign: nothing in it bends.
+  Eigen::VectorXd y(r.A.rows());
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = i % 2 == 0 ? 1.0 : -1.0;
+  const Linearised problem = problem_of(r, y);
+  std::vector<Penalty> penalties{penalty_of(r, 1.0, true)};
+  const Smoothed smoothed = smooth(problem, penalties, 1.0);
+  ASSERT_LT(smoothed.edf, 2.2);
+  const Eigen::MatrixXd covariance = with_uncertain_roughness(at_maximum(problem, smoothed), penalties, 1.0);
+  const Eigen::VectorXd middle = r.A.row(75);
+  EXPECT_GT(middle.dot(covariance * middle), 1.2 * middle.dot(smoothed.covariance * middle));
+  EXPECT_LT(middle.dot(covariance * middle), 9.0 * middle.dot(smoothed.covariance * middle));
+}
+
+}  // namespace
+}  // namespace misfit

@@ -1,0 +1,105 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "misfit/fit/curves.h"
+#include "misfit/fit/identifiable.h"
+#include "misfit/fit/output_error.h"
+#include "tests/fit/planar_model.h"
+
+namespace misfit {
+namespace {
+
+using testing::HasSubstr;
+
+/// Static moment and damping with m_a free, all coefficients 0.02.
+Model with_free_mass(std::optional<double> prior = {}) {
+  ModelRequest request = testing_planar::eq_8();
+  request.parameters["m_a"].free = true;
+  request.parameters["m_a"].sigma = prior;
+  if (prior) request.parameters["m_a"].value = 0.294;
+  Model model = assemble(request, testing_planar::registry());
+  for (auto& p : model.parameters) {
+    if (p.curve >= 0) p.value = 0.02;
+  }
+  return model;
+}
+
+/// Every free parameter known to 3 % by itself.
+Eigen::MatrixXd separate(const Model& model) {
+  const std::vector<int> free = model.free_parameters();
+  Eigen::VectorXd variance(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t c = 0; c < free.size(); ++c)
+    variance[static_cast<Eigen::Index>(c)] = std::pow(0.03 * model.parameters[static_cast<std::size_t>(free[c])].value, 2);
+  return variance.asDiagonal();
+}
+
+/// A common relative change of m_a and C_m (times `sign`) of 30 %.
+Eigen::MatrixXd together(const Model& model, double sign) {
+  const std::vector<int> free = model.free_parameters();
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    if (p.name == "m_a") u[static_cast<Eigen::Index>(c)] = sign * 0.3 * p.value;
+    if (p.curve >= 0 && model.curves[static_cast<std::size_t>(p.curve)].name == "C_m") u[static_cast<Eigen::Index>(c)] = 0.3 * p.value;
+  }
+  return u * u.transpose();
+}
+
+TEST(WeakDirections, AreSilentWhereEverythingIsKnownByItself) {
+  const Model model = with_free_mass();
+  Fit fit;
+  tell_weak_directions(model, separate(model), fit);
+  EXPECT_TRUE(fit.warnings.empty());
+  EXPECT_TRUE(fit.facts.empty());
+}
+
+TEST(WeakDirections, AParameterAndACurveThatActAsARatioAreSaidToDoSo) {
+  const Model model = with_free_mass();
+  for (const double sign : {1.0, -1.0}) {
+    Fit fit;
+    tell_weak_directions(model, separate(model) + together(model, sign), fit);
+    ASSERT_EQ(fit.warnings.size(), 1U);
+    EXPECT_THAT(fit.warnings.front(),
+                HasSubstr(std::string("m_a and the scale of C_m act nearly only as their ") + (sign > 0.0 ? "ratio" : "product")));
+    EXPECT_THAT(fit.warnings.front(), HasSubstr("30 %"));
+  }
+}
+
+TEST(WeakDirections, CollinearButWellKnownIsNotWorthSaying) {
+  const Model model = with_free_mass();
+  Fit fit;
+  tell_weak_directions(model, 0.01 * (separate(model) + together(model, 1.0)), fit);
+  EXPECT_TRUE(fit.warnings.empty());
+}
+
+TEST(WeakDirections, AParameterThatOnlyItsPriorKnowsIsAFact) {
+  const Model model = with_free_mass(0.0089);
+  Fit fit;
+  tell_weak_directions(model, separate(model), fit);  // 3 % of 0.294 is 0.0088
+  EXPECT_THAT(fit.facts["prior_only"], HasSubstr("m_a"));
+}
+
+TEST(WeakDirections, MassBesideAFreeStaticCurveIsNamedByTheFit) {
+  const std::vector<Signals> experiments{testing_planar::validation_signals()};
+  ModelRequest request = testing_planar::eq_8();
+  request.curves.clear();
+  choose_all_knots(request, testing_planar::registry(), experiments, 8);
+  const Model model = assemble(request, testing_planar::registry());
+  FittedModel start = output_error(equation_error(model, experiments), experiments);
+  ASSERT_EQ(start.fit.status, FitStatus::converged) << start.fit.message;
+  const std::vector<std::string> before = start.fit.warnings;
+  EXPECT_THAT(before, testing::Not(testing::Contains(HasSubstr("act nearly only"))));
+  Parameter& mass = start.model.parameters[static_cast<std::size_t>(start.model.find_parameter("m_a"))];
+  mass.free = true;
+  mass.prior_mean = mass.value;
+  mass.prior_sigma = 0.03;
+  const Fit fit = output_error(start, experiments).fit;
+  ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+  EXPECT_THAT(fit.warnings, testing::Contains(testing::AllOf(HasSubstr("m_a"), HasSubstr("the scale of C_m"))));
+  EXPECT_THAT(fit.facts.at("prior_only"), HasSubstr("m_a"));
+}
+
+}  // namespace
+}  // namespace misfit

@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "misfit/core/files.h"
+#include "misfit/report/figures_intervals.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit::report {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+Bootstrap bootstrap() {
+  Bootstrap b{"output_error", "residuals in blocks on the predicted motion", 55, 200, 2, 1, {}, {}};
+  BootstrapCurve c{"C_m", "alpha_T", "rad", "-", {}, {}, {}, {}, {}, {}, {}, {}};
+  for (int i = 0; i <= 60; ++i) {
+    const double x = (9.0 + 0.1 * i) * degree, value = -0.36 * (x - 12.0 * degree),
+                 sigma = 2e-4 + 1e-3 * std::pow((x - 12.0 * degree) / 0.05, 2);
+    c.x.push_back(x);
+    c.value.push_back(value);
+    c.fit_sigma.push_back(sigma);
+    c.mean.push_back(value + 1e-4);
+    c.sigma.push_back(1.1 * sigma);
+    c.lower.push_back(value - 2.2 * sigma);
+    c.upper.push_back(value + 2.1 * sigma);
+    c.count.push_back(i < 3 || i > 57 ? 0.0 : 10.0);
+  }
+  b.curves.push_back(std::move(c));
+  return b;
+}
+
+LikelihoodProfile profile() {
+  LikelihoodProfile p;
+  p.method = "output_error";
+  p.parameter = "wake_phi";
+  p.unit = "rad";
+  p.best = -1.5;
+  p.sigma = 0.1;
+  p.plain_sigma = 0.05;
+  p.scale = 4.0;
+  for (int i = -5; i <= 6; ++i) {
+    const double z = 0.5 * i;
+    p.value.push_back(p.best + 0.1 * z);
+    p.drop.push_back(4.0 * z * z * (1.0 + 0.1 * z));
+  }
+  p.lower = -1.71;
+  p.upper = -1.32;
+  p.lower_found = p.upper_found = true;
+  p.words = {"the residuals have memory: drops count 0.25 times"};
+  return p;
+}
+
+TEST(IntervalFigures, ABootstrapIsDrawnWhereTheCurveIsVisited) {
+  const Figure figure = bootstrap_figure("C_m", {bootstrap()});
+  const Series& band = figure.panels.front().series.front();
+  EXPECT_EQ(band.style, Style::band);
+  EXPECT_TRUE(std::isnan(band.lo[1]));
+  EXPECT_TRUE(std::isfinite(band.lo[30]));
+  EXPECT_NEAR(band.x[30], 12.0, 1e-9);
+  EXPECT_NE(figure.notes.front().find("2 gave no fit"), std::string::npos);
+}
+
+TEST(IntervalFigures, AProfileIsDrawnOverItsScaleInDegrees) {
+  const Figure figure = profile_figure(profile());
+  const Series& line = figure.panels.front().series.front();
+  EXPECT_NEAR(line.x[5], -1.5 / degree, 1e-9);
+  EXPECT_NEAR(line.y[0], 6.25 * 0.75, 1e-9);
+  EXPECT_EQ(figure.x_unit, "deg");
+}
+
+TEST(IntervalFigures, AreWrittenWithTheirData) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> files = write_interval_figures(folder.path(), {bootstrap()}, {profile()});
+  ASSERT_EQ(files.size(), 2U);
+  for (const auto& file : files) EXPECT_NE(read_file(folder.path() / file).find("<svg"), std::string::npos) << file;
+}
+
+}  // namespace
+}  // namespace misfit::report

@@ -1,0 +1,102 @@
+#include "misfit/uncertainty/profile.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "misfit/core/error.h"
+
+namespace misfit {
+namespace {
+
+constexpr double two_sided = 1.959963985;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+ProfileRequest request(double best, double sigma, double plain_sigma, const std::function<std::optional<double>(double)>& objective) {
+  ProfileRequest r{"output_error", "k", "-", best, objective(best).value_or(0.0), sigma, plain_sigma, -infinite, infinite, {}};
+  r.from_best = [objective] { return HeldMaximum(objective); };
+  return r;
+}
+
+LikelihoodProfile profile(const ProfileRequest& r) { return profile_likelihood({r}, 1).front(); }
+
+TEST(Profile, OfAQuadraticLikelihoodIsTheWaldInterval) {
+  const auto quadratic = [](double v) { return std::optional(100.0 - 0.5 * std::pow((v - 3.0) / 0.2, 2)); };
+  const LikelihoodProfile p = profile(request(3.0, 0.2, 0.2, quadratic));
+  EXPECT_TRUE(p.lower_found && p.upper_found);
+  EXPECT_NEAR(p.lower, 3.0 - two_sided * 0.2, 1e-9);
+  EXPECT_NEAR(p.upper, 3.0 + two_sided * 0.2, 1e-9);
+  EXPECT_TRUE(p.words.empty());
+}
+
+TEST(Profile, AWrongSigmaOnlyChangesTheSteps) {
+  const auto quadratic = [](double v) { return std::optional(-0.5 * std::pow((v - 3.0) / 0.2, 2)); };
+  for (const double sigma : {0.02, 1.0}) {
+    const LikelihoodProfile p = profile(request(3.0, sigma, sigma, quadratic));
+    EXPECT_NEAR(p.upper, 3.0 + two_sided * 0.2, 1e-6) << sigma;
+  }
+}
+
+TEST(Profile, DropsOfColouredResidualsAreScaled) {
+  // Counted as if white the likelihood is twice as sharp as it should be.
+  const auto white = [](double v) { return std::optional(-0.5 * std::pow(v / 0.1, 2)); };
+  const LikelihoodProfile p = profile(request(0.0, 0.2, 0.1, white));
+  EXPECT_NEAR(p.scale, 4.0, 1e-12);
+  EXPECT_NEAR(p.upper, two_sided * 0.2, 1e-9);
+  ASSERT_EQ(p.words.size(), 1U);
+  EXPECT_THAT(p.words.front(), testing::HasSubstr("memory"));
+}
+
+TEST(Profile, OfALopsidedLikelihoodIsLopsided) {
+  // A Poisson mean with 9 counts: 2 (v − 9 − 9 log(v/9)) = 3.84 at 4.375 and 16.217 (by hand with a calculator's root finder).
+  const auto poisson = [](double v) { return v > 0.0 ? std::optional(9.0 * std::log(v) - v) : std::nullopt; };
+  const LikelihoodProfile p = profile(request(9.0, 3.0, 3.0, poisson));
+  const auto drop = [&](double v) { return 2.0 * (9.0 * std::log(9.0) - 9.0 - 9.0 * std::log(v) + v); };
+  EXPECT_NEAR(drop(p.lower), 3.8415, 0.01);
+  EXPECT_NEAR(drop(p.upper), 3.8415, 0.01);
+  EXPECT_GT(p.upper - 9.0, 1.3 * (9.0 - p.lower));
+  ASSERT_EQ(p.words.size(), 1U);
+  EXPECT_THAT(p.words.front(), testing::HasSubstr("lopsided"));
+}
+
+TEST(Profile, ABoundAFailureAndAFlatSideAreSaid) {
+  auto bounded = request(1.0, 1.0, 1.0, [](double v) { return std::optional(-0.5 * (v - 1.0) * (v - 1.0)); });
+  bounded.lower = 0.0;
+  const LikelihoodProfile at_bound = profile(bounded);
+  EXPECT_FALSE(at_bound.lower_found);
+  EXPECT_EQ(at_bound.lower, 0.0);
+  EXPECT_THAT(at_bound.words, testing::Contains(testing::HasSubstr("bound")));
+  const LikelihoodProfile failing =
+      profile(request(1.0, 1.0, 1.0, [](double v) { return v > 2.0 ? std::nullopt : std::optional(-0.5 * (v - 1.0) * (v - 1.0)); }));
+  EXPECT_FALSE(failing.upper_found);
+  EXPECT_THAT(failing.words, testing::Contains(testing::HasSubstr("cannot be estimated")));
+  const LikelihoodProfile flat = profile(request(0.0, 1.0, 1.0, [](double v) { return std::optional(v < 0.0 ? -0.5 * v * v : 0.0); }));
+  EXPECT_FALSE(flat.upper_found);
+  EXPECT_THAT(flat.words, testing::Contains(testing::HasSubstr("flat")));
+}
+
+TEST(Profile, AHigherLikelihoodBesideTheEstimateIsSaid) {
+  auto r = request(0.0, 1.0, 1.0, [](double v) { return std::optional(-0.5 * (v - 1.0) * (v - 1.0)); });
+  EXPECT_THAT(profile(r).words, testing::Contains(testing::HasSubstr("had not reached its maximum")));
+}
+
+TEST(Profile, TheAnswerDoesNotDependOnTheThreads) {
+  std::vector<ProfileRequest> requests;
+  for (int k = 1; k <= 5; ++k)
+    requests.push_back(
+        request(k, 0.1 * k, 0.1 * k, [k](double v) { return std::optional(-std::pow((v - k) / (0.1 * k), 2) - std::pow(v - k, 3)); }));
+  const auto one = profile_likelihood(requests, 1), two = profile_likelihood(requests, 2);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].value, two[i].value);
+    EXPECT_EQ(one[i].lower, two[i].lower);
+  }
+}
+
+TEST(Profile, AParameterWithoutSigmaHasNone) {
+  EXPECT_THROW(static_cast<void>(profile_likelihood({request(0.0, 0.0, 0.0, [](double) { return std::optional(0.0); })}, 1)), InputError);
+}
+
+}  // namespace
+}  // namespace misfit
