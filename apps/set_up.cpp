@@ -107,10 +107,11 @@ void SetUp::add(const PerturbStudy& wish, const Model& model) {
   const Source& where = wish.number.where;
   if (of_sweep(wish.name) && !known_.contains(wish.name))
     throw InputError(where, wish.name + " acts through the calibration alone: recalibrate = true calibrates again in every run");
-  if (is_free(model, wish.name))
+  if (is_free(model, wish.name)) {
     throw InputError(where, "'" + wish.name +
                                 "' is estimated by this study: only what is held can be perturbed (hold it in [parameters], or "
                                 "leave it out here)");
+  }
   const auto known = known_.find(wish.name);
   if (known == known_.end()) {
     std::vector<std::string> valid;

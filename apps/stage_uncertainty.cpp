@@ -13,7 +13,6 @@
 namespace misfit {
 namespace {
 
-namespace fs = std::filesystem;
 using Inputs = std::map<std::string, std::string>;
 
 constexpr const char* stage = "uncertainty";

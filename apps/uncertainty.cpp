@@ -7,15 +7,15 @@
 
 namespace misfit {
 
-int uncertainty_verb(const Options& asked, const Registry& registry) {
-  Options options = asked;
-  options.quiet = asked.quiet || !ranks().first();
+int uncertainty_verb(const Options& options, const Registry& registry) {
+  Options own = options;
+  own.quiet = options.quiet || !ranks().first();
   // What the runs start from is written by one rank only; the others find it done.
   on_first_rank([&] {
-    Session session(options, registry);
+    Session session(own, registry);
     static_cast<void>(attitude_stage(session));
   });
-  Session session(options, registry);
+  Session session(own, registry);
   const Uncertainty result = uncertainty_stage(session);
   if (!ranks().first()) return 0;
   if (options.json) {

@@ -277,7 +277,7 @@ TEST_F(StudyFolder, ThePerturbationsAreChecked) {
   expect_parts(error_with("[uncertainty]\nperturb = { R = [1] }\n"), {"study.toml:4", "uncertainty.perturb.R", "a number is expected"});
   expect_parts(error_with("[uncertainty]\nreadings = \"4 sigma\"\n"), {"study.toml:4", "'4 sigma'", "'3 sigma'"});
   expect_parts(error_with("[uncertainty]\nperturb = { R = 1 }\nreadings = { S = \"sigma\" }\n"), {"study.toml:5", "'S' is not in perturb"});
-  expect_parts(error_with("[uncertainty]\ncamera = \"given\"\n"), {"study.toml:4", "'calibration'"});
+  expect_parts(error_with("[uncertainty]\ncamera = \"given\"\n"), {"study.toml:4", "valid: calibration"});
 }
 
 TEST_F(StudyFolder, ThePerturbationsKeepTheirOrderUnitsAndReadings) {
