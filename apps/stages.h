@@ -11,6 +11,7 @@
 #include "misfit/data/comparison.h"
 #include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
+#include "misfit/data/intervals.h"
 #include "misfit/data/ladder.h"
 #include "misfit/data/reference.h"
 #include "misfit/data/signals.h"
@@ -88,6 +89,17 @@ std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fit
 [[nodiscard]] Uncertainty uncertainty_stage(Session& session);
 /// What it left on disk, where it still belongs to the study and its data.
 [[nodiscard]] std::optional<Uncertainty> known_uncertainty(const Session& session);
+
+/// Block bootstrap and profiles of every method asked for that can be fitted again.
+struct Resampling {
+  std::vector<Bootstrap> bootstraps;
+  std::vector<LikelihoodProfile> profiles;
+};
+/// Whether [uncertainty] has `bootstrap` or `profile`.
+[[nodiscard]] bool asks_for_resampling(const Study& study);
+/// bootstrap.json, bootstrap.csv, profile.json and their figures. RunError: a method that fails, none that can be resampled.
+[[nodiscard]] Resampling resampling_stage(Session& session);
+[[nodiscard]] std::string resampling_text(const Resampling& resampling);
 
 /// diagnosis.json and missing_force.csv; nullopt if filter_error declined (its fit says why). Runs that fit where it must.
 [[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);

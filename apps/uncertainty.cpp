@@ -16,12 +16,19 @@ int uncertainty_verb(const Options& options, const Registry& registry) {
     static_cast<void>(attitude_stage(session));
   });
   Session session(own, registry);
-  const Uncertainty result = uncertainty_stage(session);
+  // Bootstrap and profiles alone need no set-up that is uncertain.
+  const bool resampling = asks_for_resampling(session.study);
+  const bool set_up = !resampling || !session.study.uncertainty->perturb.empty();
+  Uncertainty result;
+  if (set_up) result = uncertainty_stage(session);
   if (!ranks().first()) return 0;
+  Resampling again;
+  if (resampling) again = resampling_stage(session);
   if (options.json) {
-    print_file(session.folder.file("uncertainty.json"));
+    print_file(session.folder.file(set_up ? "uncertainty.json" : again.bootstraps.empty() ? "profile.json" : "bootstrap.json"));
   } else {
-    std::cout << uncertainty_text(result);
+    if (set_up) std::cout << uncertainty_text(result);
+    std::cout << resampling_text(again);
   }
   return 0;
 }

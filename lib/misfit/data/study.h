@@ -109,11 +109,14 @@ struct PerturbStudy {
   std::string reading = "3 sigma";  ///< of the number: "3 sigma", "2 sigma", "sigma" of a normal distribution; "uniform": its bounds
 };
 
-/// [uncertainty]: the Monte-Carlo over the set-up.
+/// [uncertainty]: the Monte-Carlo over the set-up, block bootstrap and profiles.
 struct UncertaintyStudy {
   long runs = 1000;
   std::vector<PerturbStudy> perturb;  ///< in file order
   bool calibrated_camera = false;     ///< camera = "calibration": its free parameters too, with their joint covariance
+  long bootstrap = 0;                 ///< runs of the block bootstrap of every method asked for; 0: none
+  long block = 0;                     ///< its blocks [samples]; 0: from the residuals
+  std::vector<std::string> profile;   ///< parameters whose profile likelihood is wanted
   bool recalibrate = false;           ///< the camera is calibrated again in every run, from the sweep with the perturbed geometry
   Source where, where_camera;
 };

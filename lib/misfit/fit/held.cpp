@@ -39,6 +39,7 @@ std::optional<Fit> fit_again(const FittedMethod& from, const std::vector<Signals
   if (from.method == "output_error") {
     OutputErrorStart options;
     options.coloured = false;
+    options.keep_roughness = true;
     FittedModel out = output_error(start, experiments, options);
     return usable(out.fit) ? std::optional(std::move(out.fit)) : std::nullopt;
   }
@@ -66,15 +67,17 @@ HeldFit::HeldFit(FittedMethod from, const std::vector<Signals>& experiments, con
   prior_mean_ = p.prior_mean;
   at_.fitted.model = with_roughness(at_.fitted.model, at_.fitted.penalties);
   at_.fitted.model.parameters[parameter_].free = false;
+  at_.fitted.penalties = curve_penalties(at_.fitted.model);  // columns without the parameter
 }
 
 std::optional<double> HeldFit::operator()(double value) {
   at_.fitted.model.parameters[parameter_].value = value;
-  const std::vector<Penalty> penalties = curve_penalties(at_.fitted.model);  // columns without the parameter
+  const std::vector<Penalty>& penalties = at_.fitted.penalties;
   const double prior = prior_sigma_ ? -0.5 * std::pow((value - prior_mean_) / *prior_sigma_, 2) : 0.0;
   if (at_.method == "output_error") {
     OutputErrorStart options;
     options.coloured = false;
+    options.keep_roughness = true;
     FittedModel out = output_error(at_.fitted, *experiments_, options);
     if (!usable(out.fit) || !out.fit.loglik) return std::nullopt;
     at_.fitted.model.parameters = out.model.parameters;
