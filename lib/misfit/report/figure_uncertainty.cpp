@@ -136,7 +136,7 @@ Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::
   panel.zero_line = true;
   const std::string colour = palette(0);
   panel.series.push_back({"band", "± 3 sigma", Style::band, colour, b.x, {}, kept(b.low, b.reached), kept(b.high, b.reached)});
-  if (std::find(b.rest.begin(), b.rest.end(), true) != b.rest.end())
+  if (std::find(b.rest.begin(), b.rest.end(), true) != b.rest.end()) {
     panel.series.push_back({"band_few",
                             "reached by fewer than half of the runs",
                             Style::pale_band,
@@ -145,6 +145,7 @@ Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::
                             {},
                             kept(b.low, b.rest),
                             kept(b.high, b.rest)});
+  }
   panel.series.push_back({"mean", "mean of the runs", Style::line, colour, b.x, b.mean, {}, {}});
   panel.series.push_back(
       {"nominal", curve.informative ? "nominal" : "nominal (not informative)", Style::dashed, black, b.x, b.nominal, {}, {}, 1.4});
