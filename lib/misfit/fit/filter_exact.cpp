@@ -51,6 +51,7 @@ struct Axes {
   Eigen::MatrixXd along, back;
 
   explicit Axes(const Eigen::MatrixXd& covariance) {
+    if (covariance.size() == 0) return;
     constexpr double least = 1e-300, smallest = 1e-14;
     const Eigen::VectorXd sigma = covariance.diagonal().cwiseMax(least).cwiseSqrt();
     const Eigen::MatrixXd scaled = sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
