@@ -42,6 +42,7 @@ void whitened(const std::vector<FilterData>& data, const std::vector<FilterTrace
 }
 
 struct OneDerivative {
+  bool finite = false;  ///< both runs beside succeeded
   double slope = 0.0;
   std::vector<std::vector<std::size_t>> rough;
 };
@@ -68,17 +69,20 @@ class Differences {
   Differences(const FilterEstimate& estimate, const Eigen::VectorXd& theta)
       : estimate_(estimate), theta_(theta), objective_(estimate, estimate.model.free_parameters()), axes_(estimate.covariance) {}
 
+  /// A step at which a good part of all readings bends is too long, not the run rough: the axis of what can hardly be told apart is long,
+  /// and straight for a part of it only. Then a shorter one, a few times.
   OneDerivative along_axis(Eigen::Index i, const Eigen::Ref<Eigen::VectorXd>& column) const {
-    constexpr double h = 0.05;
-    Eigen::VectorXd there = theta_ + h * axes_.along.col(i);
-    Runs above(estimate_.data.size()), below = above;
-    const double plus = objective_.at(there, estimate_.noise, &above);
-    there -= 2.0 * h * axes_.along.col(i);
-    const double minus = objective_.at(there, estimate_.noise, &below);
-    OneDerivative out = between(plus, minus, h, above, below, column);
-    out.rough.resize(above.size());
-    if (!std::isfinite(plus) || !std::isfinite(minus)) return out;
-    for (std::size_t e = 0; e < above.size(); ++e) find_rough(estimate_.data[e], estimate_.traces[e], above[e], below[e], out.rough[e]);
+    constexpr double longest = 0.05, shorter = 0.2, good_part = 0.1;
+    constexpr int most = 5;
+    const double enough = good_part * static_cast<double>(column.size() / 2);
+    OneDerivative out;
+    double h = longest;
+    for (int k = 0; k < most; ++k, h *= shorter) {
+      out = with_step(h * axes_.along.col(i), h, column);
+      std::size_t rough = 0;
+      for (const auto& experiment : out.rough) rough += experiment.size();
+      if (out.finite && static_cast<double>(rough) <= enough) break;
+    }
     return out;
   }
 
@@ -98,12 +102,23 @@ class Differences {
  private:
   using Runs = std::vector<FilterTrace>;
 
+  OneDerivative with_step(const Eigen::VectorXd& step, double h, const Eigen::Ref<Eigen::VectorXd>& column) const {
+    Runs above(estimate_.data.size()), below = above;
+    const double plus = objective_.at(theta_ + step, estimate_.noise, &above);
+    const double minus = objective_.at(theta_ - step, estimate_.noise, &below);
+    OneDerivative out = between(plus, minus, h, above, below, column);
+    out.rough.resize(above.size());
+    if (!out.finite) return out;
+    for (std::size_t e = 0; e < above.size(); ++e) find_rough(estimate_.data[e], estimate_.traces[e], above[e], below[e], out.rough[e]);
+    return out;
+  }
+
   OneDerivative between(double plus, double minus, double h, const Runs& above, const Runs& below,
                         Eigen::Ref<Eigen::VectorXd> column) const {
     column.setZero();
     if (!std::isfinite(plus) || !std::isfinite(minus)) return {};
     whitened(estimate_.data, estimate_.traces, above, below, 1.0 / (2.0 * h), column);
-    return {(plus - minus) / (2.0 * h), {}};
+    return {true, (plus - minus) / (2.0 * h), {}};
   }
 
   const FilterEstimate& estimate_;
