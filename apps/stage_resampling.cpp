@@ -149,10 +149,11 @@ std::string resampling_text(const Resampling& r) {
   for (const auto& b : r.bootstraps) {
     out += fmt::format("\nblock bootstrap of {}: {} runs of {}, blocks of {} samples{}\n", b.method, b.runs, b.how, b.block,
                        b.failed > 0 ? fmt::format(", {} gave no fit", b.failed) : "");
-    for (const auto& n : b.numbers)
+    for (const auto& n : b.numbers) {
       out += fmt::format("  {:<24} {:>12.6g} {:<6} sigma {:<10.3g} (fit: {:<10.3g}) 95 %: {:.6g} to {:.6g}\n", n.name,
                          shown(n.value, n.unit), display_unit(n.unit), shown(n.sigma, n.unit), shown(n.fit_sigma, n.unit),
                          shown(n.lower, n.unit), shown(n.upper, n.unit));
+    }
   }
   for (const auto& p : r.profiles) {
     const auto end = [&](bool found, double value) { return found ? fmt::format("{:.6g}", shown(value, p.unit)) : std::string("?"); };
