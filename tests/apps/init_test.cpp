@@ -40,6 +40,32 @@ TEST(Init, WritesAStudyWithModelDataAndFigures) {
   for (const char* file : {"data_swing.svg", "data_swing.csv", "data_swing.gp"}) EXPECT_TRUE(fs::exists(out / "figures" / file)) << file;
 }
 
+TEST(Init, AMeasuredRateWithoutAUnitHasThatOfWhatItIsTheRateOf) {
+  const TemporaryFolder folder;
+  std::string text = "t[s],theta[rad],omega\n";
+  for (int k = 0; k < 400; ++k) {
+    const double t = 0.01 * k;
+    text += std::to_string(t) + "," + std::to_string(std::cos(3.0 * t)) + "," + std::to_string(-3.0 * std::sin(3.0 * t)) + "\n";
+  }
+  const fs::path data = folder.write("swing.csv", text), out = folder.path() / "study";
+  const Outcome outcome = run({"init", data.string(), "--out", out.string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("column 'omega' names no unit: taken as rad/s"));
+  EXPECT_EQ(first_line(out / "swing.csv"), "t[s],theta[rad],omega[rad/s]");
+}
+
+/// What init writes is a study that fits as it stands, and its model follows the swing better than a constant.
+TEST(Init, WritesAStudyThatFits) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.write("swing.csv", swing()), out = folder.path() / "study";
+  ASSERT_EQ(run({"init", data.string(), "--out", out.string()}).status, 0);
+  const Outcome fitted = run({"fit", (out / "study.toml").string()});
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  const json fit = json::parse(content(out / "out" / "fit" / "output_error" / "fit.json"));
+  EXPECT_NE(fit.at("status"), "failed");
+  EXPECT_LT(fit.at("rms").at("angle").at("value").get<double>(), 2.0) << "deg; the swing is some 10 deg";
+}
+
 TEST(Init, NeverWritesOverAStudyUnlessForced) {
   const TemporaryFolder folder;
   const fs::path data = folder.write("swing.csv", swing()), out = folder.path() / "study";
