@@ -260,8 +260,15 @@ bool has_mpi() {
          std::system("mpirun --version > /dev/null 2>&1") == 0;  // NOLINT(cert-env33-c): a test
 }
 
-TEST_F(SameBits, OnRanksOfMpi) {
-  if (!has_mpi()) GTEST_SKIP() << "misfit was built without MPI, or there is no mpirun";
+/// MPI is optional: a misfit built without it has nothing to be tested here.
+class SameBitsUnderMpi : public SameBits {
+ protected:
+  void SetUp() override {
+    if (!has_mpi()) GTEST_SKIP() << "misfit was built without MPI, or there is no mpirun";
+  }
+};
+
+TEST_F(SameBitsUnderMpi, OnRanks) {
   const Outcome alone = study_.uncertainty(options(out("alone")));
   ASSERT_EQ(alone.status, 0);
   Words words{"uncertainty", study_.path("study.toml").string()};
@@ -278,8 +285,7 @@ TEST_F(SameBits, OnRanksOfMpi) {
   }
 }
 
-TEST_F(SameBits, AWrongStudyIsRefusedByOneRankAndEndsAll) {
-  if (!has_mpi()) GTEST_SKIP() << "misfit was built without MPI, or there is no mpirun";
+TEST_F(SameBitsUnderMpi, AWrongStudyIsRefusedByOneRankAndEndsAll) {
   study_.change("m_a = \"0.1 kg\"", "m_b = \"0.1 kg\"");
   const Outcome outcome = on_ranks(2, {"uncertainty", study_.path("study.toml").string()});
   EXPECT_NE(outcome.status, 0);

@@ -22,16 +22,15 @@
 #include "misfit_models_registry.h"
 #include "tests/benchmark/coverage_flights.h"
 #include "tests/benchmark/coverage_table.h"
+#include "tests/benchmark/known_truth.h"
 
 namespace {
 
 using namespace misfit;
 using bench::CoverageRow;
 
-struct Options {
-  std::string method = "all", kind = "all", out = "coverage.csv", summary;
-  int from = 0, to = 10, threads = 1;
-  double seconds = 20.0;
+struct Options : bench::PartOptions {
+  std::string method = "all";
 };
 
 struct Job {
@@ -110,7 +109,7 @@ std::vector<CoverageRow> look(const Job& job, double seconds, const Registry& re
     if (fit.trim) add("trim", flight.trim, fit.trim->value, fit.trim->sigma, plain("trim"));
     for (std::size_t i = 0; i < flight.angles.size(); ++i) {
       const CurveValue value = at(fit.curves, "C_m", flight.angles[i]);
-      add("C_m at " + std::to_string(10 + 20 * i) + " %", bench::value_of_curve(flight.truth, "C_m", flight.angles[i]), value.value,
+      add("C_m at " + std::to_string(10 + 20 * i) + " %", bench::curve_value(flight.truth, "C_m", flight.angles[i]), value.value,
           value.sigma, at(answer.plain, "C_m", flight.angles[i]).sigma);
     }
   }
@@ -123,31 +122,6 @@ std::vector<CoverageRow> look(const Job& job, double seconds, const Registry& re
   }
   add("end", 0.0, fit.seconds, 0.0, 0.0);
   return rows;
-}
-
-bool parse(int argc, char** argv, Options& options) {
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string name = argv[i], value = argv[i + 1];
-    if (name == "--method") {
-      options.method = value;
-    } else if (name == "--kind") {
-      options.kind = value;
-    } else if (name == "--out") {
-      options.out = value;
-    } else if (name == "--summary") {
-      options.summary = value;
-    } else if (name == "--seconds") {
-      options.seconds = std::stod(value);
-    } else if (name == "--threads") {
-      options.threads = std::stoi(value);
-    } else if (name == "--flights" && value.find(':') != std::string::npos) {
-      options.from = std::stoi(value);
-      options.to = std::stoi(value.substr(value.find(':') + 1));
-    } else {
-      return false;
-    }
-  }
-  return argc % 2 == 1;
 }
 
 std::vector<Job> open_jobs(const Options& options) {
@@ -191,7 +165,10 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  if (!parse(argc, argv, options)) {
+  options.out = "coverage.csv";
+  options.seconds = 20.0;
+  options.threads = 1;
+  if (!bench::parse(argc, argv, "--flights", options, {{"--method", &options.method}})) {
     std::fprintf(stderr,
                  "usage: %s [--method M] [--kind K] [--flights A:B] [--seconds S] [--threads N] [--out FILE.csv] | --summary FILE.csv\n",
                  argv[0]);

@@ -10,41 +10,12 @@
 #include <stdexcept>
 
 #include "misfit/sim/random_run.h"
+#include "tests/benchmark/known_truth.h"
 
 namespace misfit::bench {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0, rate = 59.94;
-
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : random(seed) {}
-  double uniform(double from, double to) { return from + (to - from) * std::uniform_real_distribution<double>()(random); }
-  double angle() { return uniform(-std::numbers::pi, std::numbers::pi); }
-  double normal(double sigma) { return std::normal_distribution<double>(0.0, sigma)(random); }
-  std::mt19937_64 random;
-};
-
-void set(Model& model, const std::string& name, double value) {
-  const int index = model.find_parameter(name);
-  if (index < 0) throw std::logic_error("no parameter " + name);
-  model.parameters[static_cast<std::size_t>(index)].value = value;
-}
-
-void set_curve(Model& model, const std::string& name, const std::function<double(double)>& value) {
-  const Curve& curve = *model.find_curve(name);
-  constexpr int points = 1000;
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(points, curve.spline.size());
-  Eigen::VectorXd b(points);
-  for (int i = 0; i < points; ++i) {
-    const double x = curve.spline.lowest() + (curve.spline.highest() - curve.spline.lowest()) * (i + 0.5) / points;
-    const CurvePoint point = curve.spline.at(x);
-    for (std::size_t j = 0; j < 4; ++j) A(i, point.first + static_cast<int>(j)) = point.w[j];
-    b[i] = value(x);
-  }
-  const Eigen::VectorXd c = A.colPivHouseholderQr().solve(b);
-  for (Eigen::Index i = 0; i < c.size(); ++i) model.parameters[static_cast<std::size_t>(curve.first + i)].value = c[i];
-}
+constexpr double rate = 59.94;
 
 ModelRequest planar() {
   ModelRequest r;
@@ -108,7 +79,7 @@ void vary_static(CoverageFlight& flight, Dice& dice) {
   double low = trim - 2.5 * degree, high = trim + 2.5 * degree;  // the spline's own zero
   for (int i = 0; i < 60; ++i) {
     flight.trim = 0.5 * (low + high);
-    (value_of_curve(flight.truth, "C_m", flight.trim) > 0.0 ? low : high) = flight.trim;
+    (curve_value(flight.truth, "C_m", flight.trim) > 0.0 ? low : high) = flight.trim;
   }
 }
 
@@ -231,18 +202,8 @@ CoverageFlight in_gusts(double seconds, Dice& dice, const Registry& registry) {
 
 }  // namespace
 
-double value_of_curve(const Model& model, const std::string& name, double x) {
-  const Curve& curve = *model.find_curve(name);
-  const CurvePoint point = curve.spline.at(x);
-  double sum = 0.0;
-  for (std::size_t j = 0; j < 4; ++j) sum += point.w[j] * model.parameters[static_cast<std::size_t>(curve.first + point.first) + j].value;
-  return sum;
-}
-
 CoverageFlight draw_flight(const std::string& kind, int number, double seconds, const Registry& registry) {
-  std::uint64_t seed = 1469598103934665603ULL;  // FNV-1a of the kind, then the number
-  for (char c : kind) seed = (seed ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  Dice dice(seed + static_cast<std::uint64_t>(number) * 7919ULL);
+  Dice dice(kind, number);
   constexpr int most = 20;  // curves that throw the canopy over are drawn again
   for (int attempt = 0; attempt < most; ++attempt) {
     CoverageFlight flight = kind == "forced" ? in_gusts(seconds, dice, registry) : limit_cycle(kind, seconds, dice, registry);

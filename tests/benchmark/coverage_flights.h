@@ -29,7 +29,4 @@ struct CoverageFlight {
 /// differ from flight to flight; the same (kind, number, seconds) give the same flight.
 [[nodiscard]] CoverageFlight draw_flight(const std::string& kind, int number, double seconds, const Registry& registry);
 
-/// Value of a curve of a model.
-[[nodiscard]] double value_of_curve(const Model& model, const std::string& name, double x);
-
 }  // namespace misfit::bench

@@ -10,6 +10,7 @@
 #include "misfit/discover/refit.h"
 #include "misfit/fit/curves.h"
 #include "misfit/fit/filter_error.h"
+#include "tests/benchmark/known_truth.h"
 
 namespace misfit::bench {
 namespace {

@@ -16,41 +16,13 @@
 #include "misfit_hidden_effects_registry.h"
 #include "misfit_models_registry.h"
 #include "tests/benchmark/hidden_answer.h"
+#include "tests/benchmark/known_truth.h"
 
 namespace {
 
 using namespace misfit;
 
-struct Options {
-  std::string kind = "all", out = "hidden.csv", summary;
-  int from = 0, to = 10, threads = 0;
-  double seconds = 40.0;
-};
-
-bool parse(int argc, char** argv, Options& options) {
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string name = argv[i], value = argv[i + 1];
-    if (name == "--kind") {
-      options.kind = value;
-    } else if (name == "--out") {
-      options.out = value;
-    } else if (name == "--summary") {
-      options.summary = value;
-    } else if (name == "--seconds") {
-      options.seconds = std::stod(value);
-    } else if (name == "--threads") {
-      options.threads = std::stoi(value);
-    } else if (name == "--worlds" && value.find(':') != std::string::npos) {
-      options.from = std::stoi(value);
-      options.to = std::stoi(value.substr(value.find(':') + 1));
-    } else {
-      return false;
-    }
-  }
-  return argc % 2 == 1;
-}
-
-void run(const Options& options) {
+void run(const bench::PartOptions& options) {
   Registry known, truth;
   misfit_models_register(known);
   misfit_models_register(truth);
@@ -76,8 +48,10 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Options options;
-  if (!parse(argc, argv, options)) {
+  bench::PartOptions options;
+  options.out = "hidden.csv";
+  options.seconds = 40.0;
+  if (!bench::parse(argc, argv, "--worlds", options)) {
     std::fprintf(stderr, "usage: %s [--kind K] [--worlds A:B] [--seconds S] [--threads N] [--out FILE.csv] | --summary FILE.csv\n",
                  argv[0]);
     return 2;

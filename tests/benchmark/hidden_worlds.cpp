@@ -10,21 +10,10 @@
 #include <stdexcept>
 
 #include "misfit/sim/random_run.h"
+#include "tests/benchmark/known_truth.h"
 
 namespace misfit::bench {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
-
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : random(seed) {}
-  double uniform(double from, double to) { return from + (to - from) * std::uniform_real_distribution<double>()(random); }
-  double sign() { return uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0; }
-  double angle() { return uniform(-std::numbers::pi, std::numbers::pi); }
-  std::size_t pick(std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(random); }
-  std::mt19937_64 random;
-};
 
 /// One kind of hidden effect: its coefficients for a size (1: a drop of about 60 in 40 s) at random directions, phases and shapes.
 struct Recipe {
@@ -32,14 +21,17 @@ struct Recipe {
   std::function<std::map<std::string, double>(Dice&, double size)> values;
 };
 
-std::vector<Recipe> listed() {
+/// One coefficient of either sign.
+auto one(const std::string& name, double usual) {
+  return [=](Dice& dice, double size) { return std::map<std::string, double>{{name, dice.sign() * usual * size}}; };
+}
+
+/// From outside: the strut's wake, vortices, wind.
+std::vector<Recipe> flows() {
   const auto wake = [](const std::string& depth, const std::string& push, const std::string& phi, const std::string& width) {
     return [=](Dice& dice, double size) {
       return std::map<std::string, double>{{depth, 0.2 * size}, {push, 0.07 * size}, {phi, dice.angle()}, {width, dice.uniform(0.3, 0.5)}};
     };
-  };
-  const auto one = [](const std::string& name, double usual) {
-    return [=](Dice& dice, double size) { return std::map<std::string, double>{{name, dice.sign() * usual * size}}; };
   };
   return {{{"strut_wake", "strut_wake", {"phi"}, {}}, wake("wake_depth", "wake_push", "wake_phi", "wake_width")},
           {{"wake_with_cosine_edge", "strut_wake", {"phi"}, {}}, wake("edge_depth", "edge_push", "edge_phi", "edge_width")},
@@ -61,12 +53,15 @@ std::vector<Recipe> listed() {
                                                   {"drift_from", dice.uniform(1.0, 4.0)},
                                                   {"drift_rate", dice.uniform(-1.0, 1.0) * 6e-4}};
            }},
-          {{"flow_angularity", "flow_angularity", {}, {}},
-           [](Dice& dice, double size) {
+          {{"flow_angularity", "flow_angularity", {}, {}}, [](Dice& dice, double size) {
              const double a = dice.angle(), s = 1.15 * degree * size;
              return std::map<std::string, double>{{"flow_theta", s * std::cos(a)}, {"flow_psi", s * std::sin(a)}};
-           }},
-          {{"coulomb_friction", "coulomb_friction", {"pitch_rate", "lateral_rate"}, {}},
+           }}};
+}
+
+/// Of the parachute, its bearing and the camera.
+std::vector<Recipe> own_effects() {
+  return {{{"coulomb_friction", "coulomb_friction", {"pitch_rate", "lateral_rate"}, {}},
            [](Dice&, double size) {
              return std::map<std::string, double>{{"friction", 13.0 * size}};
            }},
@@ -85,10 +80,13 @@ std::vector<Recipe> listed() {
            }}};
 }
 
+std::vector<Recipe> listed() {
+  std::vector<Recipe> out = flows();
+  for (auto& recipe : own_effects()) out.push_back(std::move(recipe));
+  return out;
+}
+
 std::vector<Recipe> unlisted() {
-  const auto one = [](const std::string& name, double usual) {
-    return [=](Dice& dice, double size) { return std::map<std::string, double>{{name, dice.sign() * usual * size}}; };
-  };
   return {{{"three_lobes", "", {"phi"}, {}}, one("lobes", 9.0)},
           {{"fast_turning", "", {"lateral_rate", "phi_rate"}, {}}, one("turning", 15.0)},
           {{"turn_by_angle", "", {"alpha_T", "eta"}, {}}, one("twist", 9.0)}};
@@ -102,27 +100,6 @@ double between(double x) {
   const double place = std::clamp(x / (2.0 * degree), 0.0, 11.999);
   const auto i = static_cast<std::size_t>(place);
   return static_table[i] + (place - static_cast<double>(i)) * (static_table[i + 1] - static_table[i]);
-}
-
-void set_curve(Model& model, const std::string& name, const std::function<double(double)>& value) {
-  const Curve& curve = *model.find_curve(name);
-  constexpr int points = 400;
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(points, curve.spline.size());
-  Eigen::VectorXd b(points);
-  for (int i = 0; i < points; ++i) {
-    const double x = curve.spline.lowest() + (curve.spline.highest() - curve.spline.lowest()) * (i + 0.5) / points;
-    const CurvePoint point = curve.spline.at(x);
-    for (std::size_t j = 0; j < 4; ++j) A(i, point.first + static_cast<int>(j)) = point.w[j];
-    b[i] = value(x);
-  }
-  const Eigen::VectorXd c = A.colPivHouseholderQr().solve(b);
-  for (int i = 0; i < c.size(); ++i) model.parameters[static_cast<std::size_t>(curve.first + i)].value = c[i];
-}
-
-void set(Model& model, const std::string& name, double value) {
-  const int at = model.find_parameter(name);
-  if (at < 0) throw std::logic_error("no parameter " + name);
-  model.parameters[static_cast<std::size_t>(at)].value = value;
 }
 
 ModelRequest base_request() {
@@ -208,21 +185,11 @@ Signals fly(const Model& model, double seconds, Dice& dice) {
 
 }  // namespace
 
-double curve_value(const Model& model, const std::string& name, double x) {
-  const Curve& curve = *model.find_curve(name);
-  const CurvePoint point = curve.spline.at(x);
-  double sum = 0.0;
-  for (std::size_t j = 0; j < 4; ++j) sum += point.w[j] * model.parameters[static_cast<std::size_t>(curve.first + point.first) + j].value;
-  return sum;
-}
-
 World draw_world(const std::string& kind, int number, double seconds, const Registry& truth) {
   World world;
   world.kind = kind;
   world.number = number;
-  std::uint64_t seed = 1469598103934665603ULL;  // FNV-1a of the kind, then the number
-  for (char c : kind) seed = (seed ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  Dice dice(seed + static_cast<std::uint64_t>(number) * 7919ULL);
+  Dice dice(kind, number);
   world.request = base_request();
   world.hidden = hide(kind, dice, world.strength);
   ModelRequest full = world.request;

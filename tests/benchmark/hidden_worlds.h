@@ -38,7 +38,4 @@ struct World {
 /// effects under hidden_effects/. The same (kind, number, seconds) give the same world.
 [[nodiscard]] World draw_world(const std::string& kind, int number, double seconds, const Registry& truth);
 
-/// Value of a curve of a model.
-[[nodiscard]] double curve_value(const Model& model, const std::string& name, double x);
-
 }  // namespace misfit::bench

@@ -55,9 +55,16 @@ std::size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
-TEST(Progress, OnATerminalShowsPartAndTimeLeftAndClearsTheLine) {
+/// Where the machine gives no pseudo-terminal there is nothing to look at.
+class ProgressOnATerminal : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!terminal.works()) GTEST_SKIP() << "no pseudo-terminal";
+  }
   const Terminal terminal;
-  if (!terminal.works()) GTEST_SKIP() << "no pseudo-terminal";
+};
+
+TEST_F(ProgressOnATerminal, ShowsPartAndTimeLeftAndClearsTheLine) {
   {
     Progress progress("fit", false);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -66,9 +73,7 @@ TEST(Progress, OnATerminalShowsPartAndTimeLeftAndClearsTheLine) {
   EXPECT_EQ(terminal.shown(), "\r\033[Kfit  25 %  1 s left\r\033[K");
 }
 
-TEST(Progress, WhatAnEarlierRunHadDoneDoesNotShortenTheTimeLeft) {
-  const Terminal terminal;
-  if (!terminal.works()) GTEST_SKIP() << "no pseudo-terminal";
+TEST_F(ProgressOnATerminal, WhatAnEarlierRunHadDoneDoesNotShortenTheTimeLeft) {
   Progress progress("fit", false);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   progress.update(901, 1000);
@@ -77,9 +82,7 @@ TEST(Progress, WhatAnEarlierRunHadDoneDoesNotShortenTheTimeLeft) {
   EXPECT_EQ(count(text, "  1 s left"), 0U) << "one job in 20 ms, 99 to go: " << text;
 }
 
-TEST(Progress, OnATerminalWritesAtMostFiveTimesASecond) {
-  const Terminal terminal;
-  if (!terminal.works()) GTEST_SKIP() << "no pseudo-terminal";
+TEST_F(ProgressOnATerminal, WritesAtMostFiveTimesASecond) {
   const auto start = std::chrono::steady_clock::now();
   Progress progress("fit", false);
   for (std::size_t i = 1; i < 1000; ++i) progress.update(i, 1000);
@@ -89,9 +92,7 @@ TEST(Progress, OnATerminalWritesAtMostFiveTimesASecond) {
   EXPECT_LE(static_cast<double>(lines), 1.0 + 5.0 * seconds);
 }
 
-TEST(Progress, QuietIsSilentOnATerminal) {
-  const Terminal terminal;
-  if (!terminal.works()) GTEST_SKIP() << "no pseudo-terminal";
+TEST_F(ProgressOnATerminal, QuietIsSilent) {
   { Progress("fit", true).update(1, 4); }
   EXPECT_EQ(terminal.shown(), "");
 }

@@ -12,7 +12,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/data/column_facts.h"
-#include "misfit/math/statistics.h"
+#include "misfit/data/recording_time.h"
 
 namespace misfit {
 namespace {
@@ -29,8 +29,7 @@ class Surveyor {
     for (const auto& column : table_.columns) out_.columns.push_back(look_at(column));
     make_names_unique();
     find_time();
-    cut();
-    find_gaps();
+    run_time();
     find_segments();
     find_inputs_and_outputs();
     find_rates();
@@ -136,55 +135,13 @@ class Surveyor {
     for (const double v : values(time_)) t_.push_back(factor * v);
   }
 
-  /// Stretches in which time runs forward; rows without a time of their own are left out.
-  void cut() {
-    std::size_t without = 0, repeated = 0;
-    for (std::size_t i = 0; i < t_.size(); ++i) {
-      if (!std::isfinite(t_[i])) {
-        ++without;
-        continue;
-      }
-      if (!pieces_.empty() && t_[i] == t_[pieces_.back().back()]) {
-        ++repeated;
-        continue;
-      }
-      if (pieces_.empty() || t_[i] < t_[pieces_.back().back()]) pieces_.emplace_back();
-      pieces_.back().push_back(i);
-    }
-    if (without > 0) out_.remarks.push_back(fmt::format("{} rows without a time are left out", without));
-    if (repeated > 0) out_.remarks.push_back(fmt::format("{} rows repeat the time of the row before and are left out", repeated));
-    if (pieces_.size() > 1) {
-      out_.remarks.push_back(fmt::format("time runs backward {} time{}: {} recordings in one file, an experiment each", pieces_.size() - 1,
-                                         pieces_.size() == 2 ? "" : "s", pieces_.size()));
-    }
-    constexpr std::size_t fewest = 10;
-    const auto longest = std::max_element(pieces_.begin(), pieces_.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    if (pieces_.empty() || longest->size() < fewest) fail(0, fmt::format("{} rows: too few to be a recording", t_.size()));
-    const std::size_t before = pieces_.size();
-    std::erase_if(pieces_, [](const auto& piece) { return piece.size() < fewest; });
-    if (pieces_.size() < before)
-      out_.remarks.push_back(fmt::format("{} of them with fewer than {} rows are left out", before - pieces_.size(), fewest));
-  }
-
-  void find_gaps() {
-    std::vector<double> steps;
-    for (const auto& piece : pieces_) {
-      for (std::size_t k = 1; k < piece.size(); ++k) steps.push_back(t_[piece[k]] - t_[piece[k - 1]]);
-    }
-    out_.step = median(steps);
-    out_.jitter = mad_sigma(steps);
-    constexpr double gap = 1.5;
-    for (const auto& piece : pieces_) {
-      for (std::size_t k = 1; k < piece.size(); ++k) {
-        if (t_[piece[k]] - t_[piece[k - 1]] > gap * out_.step) out_.gaps.push_back({t_[piece[k - 1]], t_[piece[k]]});
-      }
-    }
-    if (out_.gaps.empty()) return;
-    const auto longest =
-        std::max_element(out_.gaps.begin(), out_.gaps.end(), [](const Gap& a, const Gap& b) { return a.to - a.from < b.to - b.from; });
-    out_.remarks.push_back(fmt::format("{} gap{} in time, the longest from {} s to {} s: the model runs on over {}", out_.gaps.size(),
-                                       out_.gaps.size() == 1 ? "" : "s", format_value(longest->from), format_value(longest->to),
-                                       out_.gaps.size() == 1 ? "it" : "them"));
+  void run_time() {
+    RecordingTime time = recording_time(t_, table_.source);
+    pieces_ = std::move(time.pieces);
+    out_.step = time.step;
+    out_.jitter = time.jitter;
+    out_.gaps = std::move(time.gaps);
+    out_.remarks.insert(out_.remarks.end(), time.remarks.begin(), time.remarks.end());
   }
 
   void find_segments() {

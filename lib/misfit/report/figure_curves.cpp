@@ -7,6 +7,7 @@
 #include "misfit/core/text.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
+#include "misfit/report/reference_series.h"
 
 namespace misfit::report {
 namespace {
@@ -82,23 +83,6 @@ void add_trim(const std::string& name, const Estimate& trim, const std::string& 
   panel.series.push_back({"trim_" + as_key(name), legend, Style::x_bars, colour, {value}, {0.0}, {value - sigma}, {value + sigma}});
 }
 
-void add_reference(const Reference& reference, Panel& panel) {
-  Series s{as_key(reference.name),
-           reference.name + " (reference)",
-           Style::error_bars,
-           black,
-           shown(reference.x, reference.of_unit),
-           shown(reference.value, reference.unit),
-           {},
-           {}};
-  const std::vector<double> sigma = shown(reference.sigma, reference.unit);
-  for (std::size_t i = 0; i < s.x.size(); ++i) {
-    s.lo.push_back(s.y[i] - sigma[i]);
-    s.hi.push_back(s.y[i] + sigma[i]);
-  }
-  panel.series.push_back(std::move(s));
-}
-
 /// Range of y from what the data carry: visited values with their bands (no wider than the values' own span on either side), the
 /// references. Bands outside the visited range widen without limit and would flatten everything else.
 std::optional<std::array<double, 2>> curve_range(const Panel& panel) {
@@ -156,7 +140,7 @@ Figure curve_figure(const std::string& curve, const std::string& of, const std::
     if (reference.curve != curve || reference.of != of) continue;
     figure.x_unit = display_unit(reference.of_unit);
     figure.panels.front().y_unit = display_unit(reference.unit);
-    add_reference(reference, figure.panels.front());
+    figure.panels.front().series.push_back(reference_series(reference, reference.name + " (reference)"));
   }
   figure.panels.front().y_range = curve_range(figure.panels.front());
   if (curve != static_curve) return figure;

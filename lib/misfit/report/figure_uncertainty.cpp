@@ -7,6 +7,7 @@
 #include "misfit/core/text.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures_uncertainty.h"
+#include "misfit/report/reference_series.h"
 
 namespace misfit::report {
 namespace {
@@ -41,23 +42,6 @@ Band band_of(const SpreadCurve& c, const Uncertainty& u) {
   return b;
 }
 
-void add_reference(const Reference& reference, Panel& panel) {
-  Series s{as_key(reference.name),
-           reference.name + " (reference), ± 1 sigma",
-           Style::error_bars,
-           black,
-           shown(reference.x, reference.of_unit),
-           shown(reference.value, reference.unit),
-           {},
-           {}};
-  const std::vector<double> sigma = shown(reference.sigma, reference.unit);
-  for (std::size_t i = 0; i < s.x.size(); ++i) {
-    s.lo.push_back(s.y[i] - sigma[i]);
-    s.hi.push_back(s.y[i] + sigma[i]);
-  }
-  panel.series.push_back(std::move(s));
-}
-
 void add_trim(const SpreadNumber& trim, Panel& panel) {
   const double mean = shown({trim.mean}, trim.unit).front(), reach = 3.0 * shown({trim.sigma}, trim.unit).front();
   if (!std::isfinite(mean) || !std::isfinite(reach)) return;
@@ -80,8 +64,6 @@ std::optional<std::array<double, 2>> range_of(const Band& b) {
   return std::array<double, 2>{lo - margin, hi + margin};
 }
 
-std::string key_of(const std::string& name) { return as_key(name); }
-
 void add_share(const VarianceShare& share, double place, Series& series) {
   constexpr double half = 0.32, percent = 100.0;
   series.x.push_back(percent * std::clamp(share.share, 0.0, 1.0));
@@ -92,7 +74,7 @@ void add_share(const VarianceShare& share, double place, Series& series) {
 
 Panel shares_panel(const SpreadNumber& number, std::size_t colour) {
   Panel panel;
-  Series bars{key_of(number.name), "", Style::bars, palette(colour), {}, {}, {}, {}};
+  Series bars{as_key(number.name), "", Style::bars, palette(colour), {}, {}, {}, {}};
   auto place = static_cast<double>(number.shares.size()) + 1.0;
   for (const VarianceShare& share : number.shares) {
     panel.y_marks.push_back({place, share.name});
@@ -151,7 +133,9 @@ Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::
       {"nominal", curve.informative ? "nominal" : "nominal (not informative)", Style::dashed, black, b.x, b.nominal, {}, {}, 1.4});
   const SpreadNumber* trim = u.find("trim");
   for (const Reference& reference : references) {
-    if (reference.curve == curve.name && reference.of == curve.of && reference.unit == curve.unit) add_reference(reference, panel);
+    if (reference.curve == curve.name && reference.of == curve.of && reference.unit == curve.unit) {
+      panel.series.push_back(reference_series(reference, reference.name + " (reference), ± 1 sigma"));
+    }
   }
   if (trim != nullptr && curve.name == static_curve && curve.of_unit == trim->unit) add_trim(*trim, panel);
   panel.y_range = range_of(b);

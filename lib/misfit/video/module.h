@@ -4,8 +4,7 @@
 
 namespace misfit {
 
-/// The video module, loaded at the first call: misfit_video_opencv.so, looked for where the program's run path and LD_LIBRARY_PATH say,
-/// beside the program, one folder above it, and in ../lib*/misfit. RunError naming the places if it is not there or of another version.
+/// The video module, misfit_video_opencv.so, loaded at the first call (core/module.h says from where, and what is thrown).
 [[nodiscard]] video_module::Backend& video_backend();
 
 }  // namespace misfit

@@ -1,0 +1,78 @@
+#include "misfit/data/recording_time.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+/// Rows in which time runs forward.
+void cut(const std::vector<double>& t, RecordingTime& out) {
+  std::size_t without = 0, repeated = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (!std::isfinite(t[i])) {
+      ++without;
+      continue;
+    }
+    if (!out.pieces.empty() && t[i] == t[out.pieces.back().back()]) {
+      ++repeated;
+      continue;
+    }
+    if (out.pieces.empty() || t[i] < t[out.pieces.back().back()]) out.pieces.emplace_back();
+    out.pieces.back().push_back(i);
+  }
+  if (without > 0) out.remarks.push_back(fmt::format("{} rows without a time are left out", without));
+  if (repeated > 0) out.remarks.push_back(fmt::format("{} rows repeat the time of the row before and are left out", repeated));
+  if (out.pieces.size() > 1) {
+    out.remarks.push_back(fmt::format("time runs backward {} time{}: {} recordings in one file, an experiment each", out.pieces.size() - 1,
+                                      out.pieces.size() == 2 ? "" : "s", out.pieces.size()));
+  }
+}
+
+void leave_out_short_ones(std::size_t rows, const std::string& source, RecordingTime& out) {
+  constexpr std::size_t fewest = 10;
+  const std::size_t before = out.pieces.size();
+  std::erase_if(out.pieces, [](const auto& piece) { return piece.size() < fewest; });
+  if (out.pieces.empty()) throw InputError({source, 0, 0}, fmt::format("{} rows: too few to be a recording", rows));
+  if (out.pieces.size() < before)
+    out.remarks.push_back(fmt::format("{} of them with fewer than {} rows are left out", before - out.pieces.size(), fewest));
+}
+
+void find_gaps(const std::vector<double>& t, RecordingTime& out) {
+  std::vector<double> steps;
+  for (const auto& piece : out.pieces) {
+    for (std::size_t k = 1; k < piece.size(); ++k) steps.push_back(t[piece[k]] - t[piece[k - 1]]);
+  }
+  out.step = median(steps);
+  out.jitter = mad_sigma(steps);
+  constexpr double gap = 1.5;
+  for (const auto& piece : out.pieces) {
+    for (std::size_t k = 1; k < piece.size(); ++k) {
+      if (t[piece[k]] - t[piece[k - 1]] > gap * out.step) out.gaps.push_back({t[piece[k - 1]], t[piece[k]]});
+    }
+  }
+  if (out.gaps.empty()) return;
+  const auto longest =
+      std::max_element(out.gaps.begin(), out.gaps.end(), [](const Gap& a, const Gap& b) { return a.to - a.from < b.to - b.from; });
+  out.remarks.push_back(fmt::format("{} gap{} in time, the longest from {} s to {} s: the model runs on over {}", out.gaps.size(),
+                                    out.gaps.size() == 1 ? "" : "s", format_value(longest->from), format_value(longest->to),
+                                    out.gaps.size() == 1 ? "it" : "them"));
+}
+
+}  // namespace
+
+RecordingTime recording_time(const std::vector<double>& t, const std::string& source) {
+  RecordingTime out;
+  cut(t, out);
+  leave_out_short_ones(t.size(), source, out);
+  find_gaps(t, out);
+  return out;
+}
+
+}  // namespace misfit

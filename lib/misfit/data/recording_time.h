@@ -1,0 +1,23 @@
+#pragma once
+
+// How time runs in a recording: not for other files than recording.cpp.
+
+#include <string>
+#include <vector>
+
+#include "misfit/data/recording.h"
+
+namespace misfit {
+
+/// Stretches of rows in which time runs forward, and how evenly.
+struct RecordingTime {
+  std::vector<std::vector<std::size_t>> pieces;  ///< rows; those without a time of their own are left out
+  double step = 0.0, jitter = 0.0;               ///< median interval and its robust scatter [s]
+  std::vector<Gap> gaps;                         ///< intervals of more than 1.5 usual steps, in all pieces
+  std::vector<std::string> remarks;              ///< what was left out, what is odd: one sentence each
+};
+
+/// Of times `t` [s], a value per row. InputError naming `source` if no ten rows run forward.
+[[nodiscard]] RecordingTime recording_time(const std::vector<double>& t, const std::string& source);
+
+}  // namespace misfit
