@@ -6,11 +6,11 @@ namespace misfit {
 
 /// What a program needs only sometimes, and loads only then.
 struct ModuleRequest {
-  std::string file;      ///< "misfit_mpi.so"
-  std::string symbol;    ///< of the exported Entry
-  int version = 0;       ///< that the Entry has to have
-  bool global = false;   ///< its symbols are for libraries that it loads itself
-  std::string complaint; ///< begins the RunError
+  std::string file;       ///< "misfit_mpi.so"
+  std::string symbol;     ///< of the exported Entry
+  int version = 0;        ///< that the Entry has to have
+  bool global = false;    ///< its symbols are for libraries that it loads itself
+  std::string complaint;  ///< begins the RunError
 };
 
 /// The `symbol` of a module, looked for where the program's run path and LD_LIBRARY_PATH say, beside the program, one folder above it, and
