@@ -2,8 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <iostream>
 #include <map>
+#include <thread>
 
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
@@ -136,12 +138,13 @@ int dispatch(int argc, char** argv, const Registry& registry) {
   return calls.at(chosen)(options, registry);
 }
 
-/// A wrong study is wrong on every rank: one says so.
-bool speaks() {
+/// A wrong study is wrong on every rank: the first says so and ends them all. Another that still lives after three seconds has found
+/// something that is wrong for it alone, and must say so itself.
+void let_the_first_speak() {
   try {
-    return ranks_started() == 1 || ranks().first();
-  } catch (const std::exception&) {
-    return true;
+    if (ranks_started() > 1 && !ranks().first()) std::this_thread::sleep_for(std::chrono::seconds(3));
+  } catch (const std::exception&) {  // without MPI each speaks for itself
+    return;
   }
 }
 
@@ -151,7 +154,8 @@ int status_of(int argc, char** argv, const Registry& registry) {
   } catch (const EndedElsewhere&) {
     return 1;  // the rank where it failed says why
   } catch (const InputError& error) {
-    if (speaks()) std::cerr << "misfit: " << error.what() << '\n';
+    let_the_first_speak();
+    std::cerr << "misfit: " << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {
     std::cerr << "misfit: " << error.what() << '\n';
