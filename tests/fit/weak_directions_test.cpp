@@ -81,6 +81,21 @@ TEST(WeakDirections, AParameterThatOnlyItsPriorKnowsIsAFact) {
   EXPECT_THAT(fit.facts["prior_only"], HasSubstr("m_a"));
 }
 
+TEST(WeakDirections, AParameterThatLeftItsPriorThoughTheDataTellLessOfItIsNoSuccess) {
+  Model model = with_free_mass(0.0089);
+  Parameter& mass = model.parameters[static_cast<std::size_t>(model.find_parameter("m_a"))];
+  mass.prior_mean = mass.value - 0.02;
+  Fit fit;
+  fit.status = FitStatus::converged;
+  tell_weak_directions(model, separate(model), fit);
+  EXPECT_EQ(fit.status, FitStatus::failed);
+  EXPECT_THAT(fit.message, testing::AllOf(HasSubstr("m_a has run to 0.294"), HasSubstr("kg"), HasSubstr("[geometry]")));
+  Fit well_told;  // the data know it to a tenth of what the prior does: they may move it
+  well_told.status = FitStatus::converged;
+  tell_weak_directions(model, 0.01 * separate(model), well_told);
+  EXPECT_EQ(well_told.status, FitStatus::converged);
+}
+
 TEST(WeakDirections, MassBesideAFreeStaticCurveIsNamedByTheFit) {
   const std::vector<Signals> experiments{testing_planar::validation_signals()};
   ModelRequest request = testing_planar::eq_8();

@@ -100,6 +100,24 @@ void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& co
   }
 }
 
+/// A parameter that has left its prior although these data tell less of it than the prior: no reading has sent it there.
+void refuse_runaways(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
+  constexpr double far = 2.0, tells_little = 0.5;  // of the prior's sigma
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const double sigma = std::sqrt(std::max(covariance(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(c)), 0.0));
+    if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
+    if (std::abs(p.value - p.prior_mean) < far * *p.prior_sigma || sigma < tells_little * *p.prior_sigma) continue;
+    fit.status = FitStatus::failed;
+    fit.message = p.name + " has run to " + format_value(p.value, sigma) + " " + p.unit + ", away from its prior " +
+                  format_value(p.prior_mean, *p.prior_sigma) + " +- " + format_value(*p.prior_sigma) + " " + p.unit +
+                  ", although these data tell less of it than the prior: what is free beside it (a curve's scale) makes up for it, and the "
+                  "roughness prefers the smaller curve. Do not free it: with its sigma beside its value ([geometry] " +
+                  p.name + " = { value, sigma }) it stays what it is and widens what depends on it";
+  }
+}
+
 }  // namespace
 
 void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
@@ -120,6 +138,7 @@ void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance,
                              format_value(sigma) + " " + p.unit);
     }
   }
+  refuse_runaways(model, covariance, fit);
   if (!prior_only.empty()) fit.facts["prior_only"] = "these data say nothing of " + prior_only + " beyond the prior";
 }
 
