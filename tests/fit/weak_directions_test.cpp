@@ -87,13 +87,48 @@ TEST(WeakDirections, AParameterThatLeftItsPriorThoughTheDataTellLessOfItIsNoSucc
   mass.prior_mean = mass.value - 0.02;
   Fit fit;
   fit.status = FitStatus::converged;
-  tell_weak_directions(model, separate(model), fit);
+  refuse_runaways(model, separate(model), fit);
   EXPECT_EQ(fit.status, FitStatus::failed);
   EXPECT_THAT(fit.message, testing::AllOf(HasSubstr("m_a has run to 0.294"), HasSubstr("kg"), HasSubstr("[geometry]")));
   Fit well_told;  // the data know it to a tenth of what the prior does: they may move it
   well_told.status = FitStatus::converged;
-  tell_weak_directions(model, 0.01 * separate(model), well_told);
+  refuse_runaways(model, 0.01 * separate(model), well_told);
   EXPECT_EQ(well_told.status, FitStatus::converged);
+}
+
+TEST(WeakDirections, AParameterAtItsBoundIsNamedWithItsBound) {
+  Model model = with_free_mass();
+  Parameter& mass = model.parameters[static_cast<std::size_t>(model.find_parameter("m_a"))];
+  mass.lower = mass.value;
+  Fit fit;
+  tell_weak_directions(model, separate(model), fit);
+  EXPECT_THAT(fit.warnings, testing::ElementsAre(HasSubstr("m_a ends at its bound, 0.294 kg")));
+}
+
+TEST(WeakDirections, AShapeOfEitherSignIsJudgedByItsTypicalSizeNotByItsNearnessToZero) {
+  Model model = with_free_mass();
+  const Eigen::MatrixXd covariance = separate(model);  // sigma 0.0088
+  Parameter& shape = model.parameters[static_cast<std::size_t>(model.find_parameter("m_a"))];
+  shape.kind = CoefficientKind::shape;
+  shape.value = 0.001;
+  shape.scale = 1.0;
+  Fit positive, either;
+  shape.lower = 0.0;
+  tell_weak_directions(model, covariance, positive);
+  EXPECT_THAT(positive.warnings, testing::ElementsAre(HasSubstr("m_a is hardly determined by these data: 0.0010 ± 0.0088 kg")));
+  shape.lower = -3.0;
+  tell_weak_directions(model, covariance, either);
+  EXPECT_TRUE(either.warnings.empty());
+}
+
+TEST(WeakDirections, AValueLostInItsSigmaIsKnownToSoMuchNotToAShareOfItself) {
+  Model model = with_free_mass();
+  const Eigen::MatrixXd covariance = separate(model) + together(model, 1.0);
+  model.parameters[static_cast<std::size_t>(model.find_parameter("m_a"))].value = 0.0;
+  Fit fit;
+  tell_weak_directions(model, covariance, fit);
+  ASSERT_FALSE(fit.warnings.empty());
+  EXPECT_THAT(fit.warnings.front(), testing::AllOf(HasSubstr("make up for each other"), HasSubstr("± 0.08864 kg")));
 }
 
 TEST(WeakDirections, MassBesideAFreeStaticCurveIsNamedByTheFit) {

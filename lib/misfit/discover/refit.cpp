@@ -118,7 +118,8 @@ Refit refit(const FilterEstimate& without, const std::vector<Signals>& experimen
     return out;
   }
   out.ok = true;
-  out.drop = 2.0 * (out.estimate.objective + out.estimate.left - without.objective - without.left - prior_of_off(*screened.specimen));
+  out.drop = 2.0 * (out.estimate.objective + out.estimate.left.value_or(0.0) - without.objective - without.left.value_or(0.0) -
+                    prior_of_off(*screened.specimen));
   const std::vector<int> free = out.estimate.model.free_parameters();
   const BoundEffect& bound = out.estimate.model.effects.back();
   for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {

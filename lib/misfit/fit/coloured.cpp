@@ -102,6 +102,7 @@ class Sandwich {
   LagProducts correlations(const LagProducts& deficit) {
     LagProducts out(deficit.size(), Eigen::MatrixXd::Zero(channels_, channels_));
     out_.largest_correlation = 0.0;
+    out_.squared_correlations = Eigen::VectorXd::Ones(channels_);
     for (std::size_t k = 0; k < out.size() && k < products_.size(); ++k) {
       const Eigen::MatrixXd sums = products_[k] + deficit[k];
       for (Eigen::Index a = 0; a < channels_; ++a) {
@@ -109,6 +110,7 @@ class Sandwich {
           constexpr double fewest = 0.5;  // pairs are counted by a transform: whole numbers but for rounding
           if (pairs_[k](a, b) > fewest) out[k](a, b) = flat_top(static_cast<int>(k), out_.lags) * sums(a, b) / pairs_[k](a, b);
         }
+        if (k > 0 && out[0](a, a) > 0.0) out_.squared_correlations[a] += 2.0 * std::pow(out[k](a, a) / out[0](a, a), 2);
         if (k == 0 || std::abs(out[k](a, a)) <= std::abs(out_.largest_correlation) * out[0](a, a)) continue;
         out_.largest_correlation = out[k](a, a) / out[0](a, a);
         out_.largest_lag = static_cast<int>(k);

@@ -25,6 +25,8 @@ struct ColouredCovariance {
   int lags = 0;                ///< residuals this many samples apart count as they are, twice as many not at all
   double largest_correlation = 0.0;
   int largest_lag = 0;  ///< of the largest correlation in size at lag ≥ 1
+  /// Per channel Σ ρ² over all lags: the variance of a residual variance is 2 σ⁴/n times this (Bartlett). 1 for white residuals.
+  Eigen::VectorXd squared_correlations;
 };
 
 /// Covariance of a least-squares estimate whose residuals are not white [MK]:
@@ -34,7 +36,7 @@ struct ColouredCovariance {
 /// and whatever else was estimated are columns like the others.
 ///
 /// ℛ is estimated from the residuals, all experiments together: products by lag over pairs that both count, divided by their number; what
-/// the fit has taken out of the residuals, E[v vᵀ − r rᵀ] = Πℛ + ℛΠᵀ − S Σ Sᵀ with Π = S H⁻¹ Sᵀ, is put back (two rounds; of a pair at lag
+/// the fit has taken out of the residuals, E[v vᵀ − r rᵀ] = Πℛ + ℛΠᵀ − S Σ Sᵀ with Π = S H⁻¹ Sᵀ, is put back (six rounds; of a pair at lag
 /// k with gaps the share that counts). Lags: those at which some correlation stands out of the noise, at least n^(1/3), under a flat-top
 /// window; negative eigenvalues of the spectral density are set to zero, so that Σ is positive semi-definite [P]. By Fourier transforms, in
 /// pieces of at most 14336 samples between which correlation is neglected: O(n log n · columns + n · columns²).
@@ -44,7 +46,8 @@ struct ColouredCovariance {
 [[nodiscard]] ColouredCovariance coloured_covariance(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain,
                                                      Eigen::Index channels);
 
-/// What was done, for a reader: "allows for residuals that remember 24 samples (largest correlation -0.61 at lag 3)".
+/// What was done, for a reader: "allows for residuals with memory (…): correlations up to lag 24 samples count, the largest
+/// is -0.61 at lag 3; …".
 [[nodiscard]] std::string in_words(const ColouredCovariance& covariance);
 
 }  // namespace misfit

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
@@ -10,6 +11,7 @@
 #include "misfit/fit/curves.h"
 #include "misfit/fit/identifiable.h"
 #include "misfit/fit/whiteness.h"
+#include "misfit/math/bounded.h"
 
 namespace misfit {
 namespace {
@@ -118,12 +120,26 @@ class Regressor {
   std::vector<int> rows_;
 };
 
+/// The regression's answer inside the parameters' bounds; curves are held by their roughness alone.
+Eigen::VectorXd inside_bounds(const Model& model, const std::vector<int>& free, const Smoothed& smoothed) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd lower(smoothed.theta.size()), upper = lower;
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    lower[static_cast<Eigen::Index>(c)] = p.curve >= 0 ? -infinite : p.lower;
+    upper[static_cast<Eigen::Index>(c)] = p.curve >= 0 ? infinite : p.upper;
+  }
+  return maximum_inside(smoothed.theta, smoothed.covariance, lower, upper).at;
+}
+
 /// Rounds of the regression: the first is exact for strengths and curves, the others are for shapes. False, with status and message, where
 /// there is no answer.
 bool solve(const Regressor& regressor, FittedModel& out, Smoothed& smoothed) {
   const std::vector<int> free = out.model.free_parameters();
-  constexpr int rounds = 4;
-  for (int round = 0; round < rounds; ++round) {
+  constexpr int rounds = 12;
+  constexpr double still = 1e-2;  // of a sigma
+  bool settled = false;
+  for (int round = 0; round < rounds && !settled; ++round) {
     Regression regression = regressor.linearise(out.model);
     ++out.fit.linearisations;
     set_priors(out.model, regression.sums);
@@ -136,17 +152,16 @@ bool solve(const Regressor& regressor, FittedModel& out, Smoothed& smoothed) {
     }
     smoothed = smooth(regression.sums, out.penalties);
     if (!smoothed.ok) break;
-    const double moved = (smoothed.theta - regression.sums.theta).cwiseAbs().maxCoeff();
-    for (std::size_t c = 0; c < free.size(); ++c) {
-      Parameter& p = out.model.parameters[static_cast<std::size_t>(free[c])];
-      const double value = smoothed.theta[static_cast<Eigen::Index>(c)];
-      p.value = p.curve >= 0 ? value : std::clamp(value, p.lower, p.upper);
-    }
-    if (round > 0 && moved < 1e-9 * (1.0 + smoothed.theta.cwiseAbs().maxCoeff())) break;
+    const Eigen::VectorXd there = inside_bounds(out.model, free, smoothed);
+    const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+    settled = round > 0 && (there - regression.sums.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < still;
+    for (std::size_t c = 0; c < free.size(); ++c)
+      out.model.parameters[static_cast<std::size_t>(free[c])].value = there[static_cast<Eigen::Index>(c)];
   }
-  out.fit.status = smoothed.ok ? FitStatus::converged : FitStatus::failed;
-  out.fit.message =
-      smoothed.ok ? "linear regression solved" : "the regression is singular: some coefficients are not determined by these data";
+  out.fit.status = !smoothed.ok ? FitStatus::failed : settled ? FitStatus::converged : FitStatus::not_converged;
+  out.fit.message = !smoothed.ok ? "the regression is singular: some coefficients are not determined by these data"
+                    : settled    ? "regression solved"
+                              : "the regression still moves after " + std::to_string(rounds) + " rounds: a shape has no place of its own";
   return smoothed.ok;
 }
 
@@ -194,6 +209,7 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
   out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
   if (const std::string which = undetermined_beside_priors(out.model, regression.sums); !which.empty()) out.fit.warnings.push_back(which);
   tell_weak_directions(out.model, out.fit.covariance, out.fit);
+  refuse_runaways(out.model, out.fit.covariance, out.fit);
 }
 
 }  // namespace

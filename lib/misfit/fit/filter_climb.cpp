@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "misfit/core/text.h"
 #include "misfit/fit/filter_exact.h"
@@ -101,25 +102,31 @@ Linearised FilterClimb::normal_equations() const {
   return sums;
 }
 
-void FilterClimb::physical_step() {
-  if (free.empty()) return;
+double FilterClimb::physical_step() {
+  constexpr double nothing = 0.0, unknown = std::numeric_limits<double>::infinity();
+  if (free.empty()) return nothing;
   const Smoothed smoothed = smooth(normal_equations(), out.penalties, 1.0);
-  if (!smoothed.ok) return;
+  if (!smoothed.ok) return unknown;
   out.edf = smoothed.edf;
   out.covariance = smoothed.covariance;
   objective = out.loglik + log_prior_at(out.model, out.penalties, theta);  // the roughness may have changed
   const auto [lower, upper] = bounds_of(out.model, free);
-  const Eigen::VectorXd step = maximum_inside(smoothed.theta, smoothed.covariance, lower, upper).at - theta;
+  const BoundedMaximum best = maximum_inside(smoothed.theta, smoothed.covariance, lower, upper);
+  const Eigen::VectorXd step = best.at - theta;
   for (double share = 1.0; share > 0.05; share *= 0.4) {
     const Eigen::VectorXd there = theta + share * step;
     const double value = objective_at(there, out.noise);
     if (!(value > objective - 1e-6)) continue;
     const Eigen::VectorXd before = theta;
     theta = there;
-    if (linearise()) return;
+    if (linearise()) return nothing;
     theta = before;
   }
   linearise();
+  Eigen::MatrixXd precision;
+  if (!invert_scaled(smoothed.covariance, precision)) return unknown;
+  const Eigen::VectorXd newton = smoothed.theta - theta;
+  return 0.5 * newton.dot(precision * newton) - best.below;
 }
 
 bool FilterClimb::take_noise(const NoiseFit& fit) {
@@ -141,11 +148,12 @@ void FilterClimb::iterate(int most, double tolerance) {
     const double before = objective;
     const bool choosing = std::any_of(out.penalties.begin(), out.penalties.end(), [](const Penalty& p) { return p.chosen; });
     const double edf = out.edf;
-    physical_step();
+    const double in_vain = physical_step();
     take_noise(fit_noise(runs(), out.noise, out.around, threads_, k < 3 ? 3 : kRefinements));
     const bool settled = !choosing || std::abs(out.edf - edf) < 0.05;
+    constexpr double as_a_sigma = 0.5;
     if (k > 0 && settled && std::abs(objective - before) < tolerance) {
-      out.converged = true;
+      out.converged = in_vain < as_a_sigma;
       return;
     }
   }
@@ -163,8 +171,9 @@ bool FilterClimb::joint_step(const Eigen::VectorXd& gradient, double enough) {
   const Eigen::VectorXd here = joined(theta, out.noise_fit.logs), newton = out.joint_covariance * gradient;
   const BoundedMaximum there = maximum_inside(here + newton, out.joint_covariance, joined(lower, noise.lower), joined(upper, noise.upper));
   const Eigen::VectorXd step = there.at - here;
-  out.left = 0.5 * gradient.dot(newton) - there.below;
-  if (out.left < enough) return false;
+  const double promised = 0.5 * gradient.dot(newton) - there.below;
+  out.left = promised;
+  if (promised < enough) return false;
   for (double share = 1.0; share > 0.1; share *= 0.5) {
     const Eigen::VectorXd at = here + share * step;
     const std::vector<double> logs(at.data() + n, at.data() + at.size());

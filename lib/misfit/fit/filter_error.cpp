@@ -241,9 +241,8 @@ Fit filter_fit(const FilterEstimate& estimate) {
   describe_gaps(estimate, fit);
   test_innovations(estimate, fit);
   fit.facts["effective_parameters"] = format_value(estimate.edf);
-  fit.facts["left_by_exact_derivatives"] = "one more Newton step on the exact likelihood would raise it by " + format_value(estimate.left);
-  if (estimate.left > 0.5)
-    fit.warnings.push_back("the exact derivatives of the likelihood say that it could still rise by " + format_value(estimate.left));
+  fit.facts["left_by_exact_derivatives"] =
+      estimate.left ? "one more Newton step on the exact likelihood would raise it by " + format_value(*estimate.left) : "not verified";
   if (!estimate.rough.empty()) {
     const auto [first_at, last_at] = std::minmax_element(estimate.rough.begin(), estimate.rough.end());
     fit.warnings.push_back(
@@ -258,6 +257,7 @@ Fit filter_fit(const FilterEstimate& estimate) {
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
   tell_weak_directions(estimate.model, fit.covariance, fit);
+  refuse_runaways(estimate.model, fit.covariance, fit);
   fit.linearisations = estimate.linearisations;
   return fit;
 }

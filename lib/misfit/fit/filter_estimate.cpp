@@ -110,16 +110,22 @@ class Estimation {
     constexpr int most = 6;
     for (int k = 0; k < most; ++k) {
       const ExactDerivatives exact = exact_derivatives(out_, at_.theta, options_.threads);
+      out_.left.reset();
+      if (!exact.failure.empty()) {
+        unverified_ = exact.failure;
+        return;
+      }
       if (!options_.use && uncount(exact.rough)) {
         at_.linearise();
         at_.iterate(15, tolerance());
         continue;
       }
+      unverified_ = "the information matrix cannot be inverted";
       if (!invert_scaled(joint_precision(out_, exact), out_.joint_covariance)) return;
       constexpr double enough = 0.02, nearly = 0.5;
       const double before = at_.objective;
       if (!at_.joint_step(exact.gradient, enough)) return;
-      const double promised = out_.left;
+      const double promised = *out_.left;
       // A short step that gains what was promised ends at the maximum; a longer one is looked at again.
       if (promised < nearly) {
         out_.left = std::abs(promised - (at_.objective - before));
@@ -158,13 +164,21 @@ class Estimation {
     }
     for (const auto& trace : out_.traces) out_.validation_loglik += trace.validation_loglik;
     constexpr double near = 0.5, far = 2.0;  // as much as a sigma, two sigmas of one parameter
-    if (options_.verify) out_.converged = out_.left < near || (out_.converged && out_.left < far);
-    out_.message = out_.converged    ? "the likelihood no longer rises"
-                   : out_.left > far ? "the exact derivatives of the likelihood say that it could still rise by " + format_value(out_.left)
-                                     : "iteration limit: the likelihood may still rise";
+    if (options_.verify) out_.converged = out_.left && (*out_.left < near || (out_.converged && *out_.left < far));
+    if (out_.left && *out_.left >= near) {
+      out_.message = "the exact derivatives of the likelihood say that it could still rise by " + format_value(*out_.left) +
+                     (out_.converged ? ", less than two sigmas of one parameter would" : "");
+    } else if (out_.converged) {
+      out_.message = "the likelihood no longer rises";
+    } else if (options_.verify && !out_.left) {
+      out_.message = "whether the likelihood still rises could not be verified: " + unverified_;
+    } else {
+      out_.message = "iteration limit: the likelihood may still rise";
+    }
   }
 
   FilterOptions options_;
+  std::string unverified_ = "readings at which the model cannot be followed kept coming";
   FilterClimb at_;
   FilterEstimate& out_ = at_.out;
 };

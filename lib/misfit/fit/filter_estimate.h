@@ -33,7 +33,7 @@ struct FilterEstimate {
   Eigen::MatrixXd joint_covariance;       ///< of parameters and log noise together, nothing held; empty where not verified
   double objective = 0.0;                 ///< log-likelihood − ½ Σ λ cᵀΩc − ½ Σ ((θ − mean)/prior sigma)²
   double loglik = 0.0, validation_loglik = 0.0;
-  double left = 0.0;  ///< what one more Newton step on the exact likelihood would still gain
+  std::optional<double> left;  ///< what one more Newton step on the exact likelihood would still gain; nullopt: not verified
   double edf = 0.0;
   bool converged = false;
   std::string message;

@@ -16,10 +16,9 @@ double log_density(const FilterTrace& trace, std::size_t i) {
   return trace.S[i] > 0.0 ? -0.5 * (std::log(trace.S[i]) + trace.e[i] * trace.e[i] / trace.S[i]) : 0.0;
 }
 
-/// Adds to `rough` the readings whose log density bends between the three runs.
-void find_rough(const FilterData& data, const FilterTrace& here, const FilterTrace& plus, const FilterTrace& minus,
+/// Adds to `rough` the readings whose log density bends by more than `bend` between the three runs.
+void find_rough(const FilterData& data, const FilterTrace& here, const FilterTrace& plus, const FilterTrace& minus, double bend,
                 std::vector<std::size_t>& rough) {
-  constexpr double bend = 0.05;
   for (std::size_t i = 0; i < data.use.size(); ++i) {
     if (data.use[i] != Use::counted) continue;
     if (!(std::abs(log_density(plus, i) + log_density(minus, i) - 2.0 * log_density(here, i)) <= bend)) rough.push_back(i);
@@ -42,7 +41,8 @@ void whitened(const std::vector<FilterData>& data, const std::vector<FilterTrace
 }
 
 struct OneDerivative {
-  bool finite = false;  ///< both runs beside succeeded
+  bool finite = false;  ///< a run beside succeeded
+  bool smooth = true;   ///< few readings are rough
   double slope = 0.0;
   std::vector<std::vector<std::size_t>> rough;
 };
@@ -67,12 +67,16 @@ struct Axes {
 class Differences {
  public:
   Differences(const FilterEstimate& estimate, const Eigen::VectorXd& theta)
-      : estimate_(estimate), theta_(theta), objective_(estimate, estimate.model.free_parameters()), axes_(estimate.covariance) {}
+      : estimate_(estimate),
+        theta_(theta),
+        objective_(estimate, estimate.model.free_parameters()),
+        here_(estimate.loglik + log_prior_at(estimate.model, estimate.penalties, theta)),
+        axes_(estimate.covariance) {}
 
   /// A step at which a good part of all readings bends is too long, not the run rough: the axis of what can hardly be told apart is long,
   /// and straight for a part of it only. Then a shorter one, a few times.
   OneDerivative along_axis(Eigen::Index i, const Eigen::Ref<Eigen::VectorXd>& column) const {
-    constexpr double longest = 0.05, shorter = 0.2, good_part = 0.1;
+    constexpr double shorter = 0.2, good_part = 0.1;
     constexpr int most = 5;
     const double enough = good_part * static_cast<double>(column.size() / 2);
     OneDerivative out;
@@ -81,7 +85,8 @@ class Differences {
       out = with_step(h * axes_.along.col(i), h, column);
       std::size_t rough = 0;
       for (const auto& experiment : out.rough) rough += experiment.size();
-      if (out.finite && static_cast<double>(rough) <= enough) break;
+      out.smooth = static_cast<double>(rough) <= enough;
+      if (out.finite && out.smooth) break;
     }
     return out;
   }
@@ -109,23 +114,41 @@ class Differences {
     OneDerivative out = between(plus, minus, h, above, below, column);
     out.rough.resize(above.size());
     if (!out.finite) return out;
-    for (std::size_t e = 0; e < above.size(); ++e) find_rough(estimate_.data[e], estimate_.traces[e], above[e], below[e], out.rough[e]);
+    if (!std::isfinite(plus) || !std::isfinite(minus)) return out;
+    constexpr double bend = 0.05;
+    for (std::size_t e = 0; e < above.size(); ++e)
+      find_rough(estimate_.data[e], estimate_.traces[e], above[e], below[e], bend * h / longest, out.rough[e]);
     return out;
   }
 
   OneDerivative between(double plus, double minus, double h, const Runs& above, const Runs& below,
                         Eigen::Ref<Eigen::VectorXd> column) const {
     column.setZero();
-    if (!std::isfinite(plus) || !std::isfinite(minus)) return {};
-    whitened(estimate_.data, estimate_.traces, above, below, 1.0 / (2.0 * h), column);
-    return {true, (plus - minus) / (2.0 * h), {}};
+    const bool up = std::isfinite(plus), down = std::isfinite(minus);
+    if (!up && !down) return {};
+    const double span = (up ? h : 0.0) + (down ? h : 0.0);
+    const Runs& here = estimate_.traces;
+    whitened(estimate_.data, here, up ? above : here, down ? below : here, 1.0 / span, column);
+    return {true, true, ((up ? plus : here_) - (down ? minus : here_)) / span, {}};
   }
+
+  static constexpr double longest = 0.05;
 
   const FilterEstimate& estimate_;
   const Eigen::VectorXd& theta_;
   ExactObjective objective_;
+  double here_;
   Axes axes_;
 };
+
+std::string failure_of(const std::vector<OneDerivative>& parts) {
+  const auto torn = std::count_if(parts.begin(), parts.end(), [](const OneDerivative& part) { return !part.finite; });
+  const auto rough = std::count_if(parts.begin(), parts.end(), [](const OneDerivative& part) { return !part.smooth; });
+  const std::string of = " of " + std::to_string(parts.size()) + " directions";
+  if (torn > 0) return "in " + std::to_string(torn) + of + " the model cannot be run beside the estimate";
+  if (rough > 0) return "in " + std::to_string(rough) + of + " more than a tenth of the readings cannot be followed";
+  return {};
+}
 
 Eigen::Index counted_readings(const FilterEstimate& estimate) {
   std::ptrdiff_t sum = 0;
@@ -168,6 +191,7 @@ double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise
 
 ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads) {
   const auto n = static_cast<std::size_t>(theta.size());
+  if (n > 0 && estimate.covariance.size() == 0) return {{}, {}, {}, "the information matrix cannot be inverted"};
   const Differences differences(estimate, theta);
   std::vector<OneDerivative> parts(n + estimate.noise_fit.logs.size());
   Eigen::MatrixXd columns(2 * counted_readings(estimate), static_cast<Eigen::Index>(parts.size()));
@@ -176,7 +200,8 @@ ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::
     parts[i] = i < n ? differences.along_axis(static_cast<Eigen::Index>(i), column) : differences.by_noise(i - n, column);
   });
   ExactDerivatives out{Eigen::VectorXd(columns.cols()), Eigen::MatrixXd::Zero(columns.cols(), columns.cols()),
-                       std::vector<std::vector<std::size_t>>(estimate.data.size())};
+                       std::vector<std::vector<std::size_t>>(estimate.data.size()), failure_of(parts)};
+  if (!out.failure.empty()) return out;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     out.gradient[static_cast<Eigen::Index>(i)] = parts[i].slope;
     for (std::size_t e = 0; e < parts[i].rough.size(); ++e)

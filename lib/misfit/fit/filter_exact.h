@@ -3,6 +3,8 @@
 // References
 //   [DK] J. Durbin, S. J. Koopman, Time Series Analysis by State Space Methods (2012), 7.3: information of the innovations form.
 
+#include <string>
+
 #include "misfit/fit/filter_estimate.h"
 
 namespace misfit {
@@ -21,19 +23,21 @@ class ExactObjective {
   std::vector<int> free_;
 };
 
-/// First derivatives of the exact objective by central differences to either side: 1e-3 of a noise's logarithm; 0.05 sigma along each
-/// principal axis of the covariance that the held gains give. One parameter alone, moved by a share of its sigma, would be no small step
-/// where others can stand in for it: these do not go along.
+/// First derivatives of the exact objective by central differences (to one side where the model cannot be run on the other): 1e-3 of a
+/// noise's logarithm; 0.05 sigma along each principal axis of the covariance that the held gains give. One parameter alone, moved by a
+/// share of its sigma, would be no small step where others can stand in for it: these do not go along.
 struct ExactDerivatives {
-  Eigen::VectorXd gradient;  ///< by the free parameters, then by the logarithms of the noise; 0 where a run beside fails
+  Eigen::VectorXd gradient;  ///< by the free parameters, then by the logarithms of the noise
   /// Fisher information of the counted readings over the same unknowns, nothing held: with innovations e and their variances S,
   /// Σ ∂e ∂e/S + ½ Σ ∂S ∂S/S² [DK]. Unlike that of the Gauss–Newton steps it knows that gains and variances move with the parameters, and
   /// that curves and noise are estimated together.
   Eigen::MatrixXd information;
   /// Per experiment, readings (sample · ny + channel, sorted) whose log density bends by more than 0.05 under such a small change along
-  /// some axis, 20 times what all readings together should: there the filter's linearisation breaks, its run is as good as random, and the
+  /// some axis, 20 times what all readings together should (under a change shortened to a share of it: by more than that share of 0.05, as
+  /// at a kink; what is smooth bends by the square of it): there the filter's linearisation breaks, its run is as good as random, and the
   /// likelihood has kinks that no maximum can be found on.
   std::vector<std::vector<std::size_t>> rough;
+  std::string failure;  ///< why they do not hold: the model cannot be run beside the estimate, or a good part of all readings is rough
 };
 [[nodiscard]] ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads);
 

@@ -54,10 +54,12 @@ class Estimator {
   FittedModel run() {
     if (initial_states_.size() == experiments_.size()) {
       const Shooting::State before = shooting_.state();
+      const std::vector<Penalty> penalties = penalties_;
       shooting_.begin_at(initial_states_);
       const FittedModel out = whole_trajectory({});
       if (out.fit.status == FitStatus::converged) return out;
       shooting_.restore(before);
+      penalties_ = penalties;
       shooting_.set_sigma(setting_.sigma);
       shooting_.forget_failure();
     }
@@ -161,6 +163,7 @@ class Estimator {
     Linearised linearised;
     constexpr int most_rounds = 8;
     double before = 0.0;
+    settled_ = false;
     for (int round = 0; round < most_rounds; ++round) {
       if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
       if (!solve({0, 10.0, 1e8, 60, 1e-7})) return failed(last_.message);
@@ -168,10 +171,11 @@ class Estimator {
       if (!smoothed.ok) return failed(shooting_.failure().empty() ? not_determined(linearised) : "");
       const std::vector<double> sigma = channel_sigmas(shooting_, shooting_.run(false), experiments_, smoothed.edf);
       const bool same_roughness = !any_chosen(penalties_) || std::abs(smoothed.edf - before) < 0.1;
-      const bool settled = same_roughness && std::abs(sigma.front() / shooting_.sigma().front() - 1.0) < 0.01;
+      settled_ = same_roughness && std::equal(sigma.begin(), sigma.end(), shooting_.sigma().begin(),
+                                              [](double now, double then) { return std::abs(now / then - 1.0) < 0.01; });
       before = smoothed.edf;
       shooting_.set_sigma(sigma);
-      if (settled) break;
+      if (settled_) break;
     }
     return finish(last_);
   }
@@ -202,8 +206,8 @@ class Estimator {
     FittedModel out{{}, shooting_.model(), penalties_, {}};
     Fit& fit = out.fit;
     fit.method = "output_error";
-    fit.status = summary.converged ? FitStatus::converged : FitStatus::not_converged;
-    fit.message = summary.message;
+    fit.status = summary.converged && settled_ ? FitStatus::converged : FitStatus::not_converged;
+    fit.message = summary.converged && !settled_ ? "noise and roughness still change from round to round" : summary.message;
     Linearised linearised;
     if (!shooting_.linearise(linearised)) return failed("");
     std::vector<Penalty> penalties = kept(penalties_);
@@ -236,6 +240,7 @@ class Estimator {
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
     tell_weak_directions(out.model, covariance.topLeftCorner(columns, columns), fit);
     judge(out.model, setting_, fit);
+    refuse_runaways(out.model, covariance.topLeftCorner(columns, columns), fit);
     fit.linearisations = shooting_.linearisations();
     return out;
   }
@@ -253,6 +258,9 @@ class Estimator {
     out.plain_covariance = with_uncertain_roughness(linearised, penalties_, 1.0).topLeftCorner(columns, columns);
     describe_both(out.model, out.plain_covariance, covariance.topLeftCorner(columns, columns), visited, out.fit);
     out.fit.facts["covariance"] = in_words(coloured);
+    const auto& outputs = out.model.system->spec().outputs;
+    for (std::size_t o = 0; o < outputs.size(); ++o)
+      out.fit.noise.at(outputs[o].name).sigma *= std::sqrt(coloured.squared_correlations[static_cast<Eigen::Index>(o)]);
     return covariance;
   }
 
@@ -264,6 +272,7 @@ class Estimator {
   Shooting shooting_;
   std::vector<Eigen::VectorXd> initial_states_;  ///< where the start is a fit
   LeastSquares::Summary last_;
+  bool settled_ = false;  ///< noise and roughness agree with the residuals they leave
 };
 
 }  // namespace

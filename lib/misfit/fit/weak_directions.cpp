@@ -1,8 +1,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "misfit/core/text.h"
+#include "misfit/core/units.h"
 #include "misfit/fit/identifiable.h"
 
 namespace misfit {
@@ -10,7 +12,7 @@ namespace {
 
 /// A parameter or a curve's scale: its change is `weights` · changes of the free parameters, its value `value`.
 struct Direction {
-  std::string name;
+  std::string name, unit;
   double value = 0.0;
   Eigen::VectorXd weights;
 };
@@ -22,7 +24,7 @@ std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& 
     const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
     const auto at = static_cast<Eigen::Index>(c);
     if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
-    out.push_back({p.name, p.value, Eigen::VectorXd::Unit(covariance.rows(), at)});
+    out.push_back({p.name, p.unit, p.value, Eigen::VectorXd::Unit(covariance.rows(), at)});
   }
   for (std::size_t k = 0; k < model.curves.size(); ++k) {
     const Curve& curve = model.curves[k];
@@ -35,7 +37,7 @@ std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& 
     if (!invert_scaled(covariance.block(first, first, size, size), inverse)) continue;
     const Eigen::VectorXd towards = inverse * c;
     if (!(towards.dot(c) > 0.0)) continue;
-    Direction scale{"the scale of " + curve.name, 1.0, Eigen::VectorXd::Zero(covariance.rows())};
+    Direction scale{"the scale of " + curve.name, "-", 1.0, Eigen::VectorXd::Zero(covariance.rows())};
     scale.weights.segment(first, size) = towards / towards.dot(c);
     out.push_back(std::move(scale));
   }
@@ -47,10 +49,24 @@ std::string percent(double share) {
   return format_value(value < 10.0 ? std::round(10.0 * value) / 10.0 : std::round(value)) + " %";
 }
 
-/// Two directions in words; relative sigmas a, b and their correlation.
-std::string pair_in_words(const std::string& first, const std::string& second, double a, double b, double correlation) {
+std::string in_display_unit(double value, double sigma, const std::string& unit) {
+  const std::string display = display_unit(unit);
+  const std::string number = format_value(convert(value, unit, display), sigma > 0.0 ? convert(sigma, unit, display) : 0.0);
+  return display == "-" ? number : number + " " + display;
+}
+
+/// How well it is known: as a share of its value, unless that is lost in it.
+std::string known_to(const Direction& d, double sigma) {
+  return sigma < std::abs(d.value) ? percent(sigma / std::abs(d.value)) : "± " + in_display_unit(sigma, 0.0, d.unit);
+}
+
+/// Two directions of sigmas a, b and their correlation, in words.
+std::string pair_in_words(const Direction& one, const Direction& other, double sigma_one, double sigma_other, double correlation) {
+  const std::string &first = one.name, &second = other.name;
   constexpr double alike = 1.25;
-  const bool even = a < alike * b && b < alike * a;
+  const bool known = sigma_one < std::abs(one.value) && sigma_other < std::abs(other.value);
+  const double a = known ? sigma_one / std::abs(one.value) : 1.0, b = known ? sigma_other / std::abs(other.value) : 1.0;
+  const bool even = known && a < alike * b && b < alike * a;
   const double together = std::sqrt(std::max(a * a + b * b - 2.0 * std::abs(correlation) * a * b, 0.0));
   if (even) {
     const std::string kind = correlation > 0.0 ? "ratio" : "product";
@@ -58,13 +74,11 @@ std::string pair_in_words(const std::string& first, const std::string& second, d
            ", they themselves only to " + percent(a) + " and " + percent(b);
   }
   return first + " and " + second + " make up for each other (correlation " + format_value(std::round(1000.0 * correlation) / 1000.0) +
-         "): separately they are known only to " + percent(a) + " and " + percent(b);
+         "): separately they are known only to " + known_to(one, sigma_one) + " and " + known_to(other, sigma_other);
 }
 
 std::string group_in_words(const std::vector<std::string>& names) {
-  std::string joined;
-  for (std::size_t i = 0; i < names.size(); ++i) joined += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return joined + " make up for each other: these data know a combination of them much better than each";
+  return join_words(names) + " make up for each other: these data know a combination of them much better than each";
 }
 
 void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& covariance, Fit& fit) {
@@ -95,27 +109,19 @@ void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& co
       fit.warnings.push_back(group_in_words(names));
       continue;
     }
-    const double sign = all[static_cast<std::size_t>(places[0])].value * all[static_cast<std::size_t>(places[1])].value < 0.0 ? -1.0 : 1.0;
-    fit.warnings.push_back(pair_in_words(names[0], names[1], relative[0], relative[1], sign * correlation(places[0], places[1])));
+    const Direction &one = all[static_cast<std::size_t>(places[0])], &other = all[static_cast<std::size_t>(places[1])];
+    const double sign = one.value * other.value < 0.0 ? -1.0 : 1.0;
+    fit.warnings.push_back(pair_in_words(one, other, sigma[places[0]], sigma[places[1]], sign * correlation(places[0], places[1])));
   }
 }
 
-/// A parameter that has left its prior although these data tell less of it than the prior: no reading has sent it there.
-void refuse_runaways(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
-  constexpr double far = 2.0, tells_little = 0.5;  // of the prior's sigma
-  const std::vector<int> free = model.free_parameters();
-  for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    const double sigma = std::sqrt(std::max(covariance(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(c)), 0.0));
-    if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
-    if (std::abs(p.value - p.prior_mean) < far * *p.prior_sigma || sigma < tells_little * *p.prior_sigma) continue;
-    fit.status = FitStatus::failed;
-    fit.message = p.name + " has run to " + format_value(p.value, sigma) + " " + p.unit + ", away from its prior " +
-                  format_value(p.prior_mean, *p.prior_sigma) + " +- " + format_value(*p.prior_sigma) + " " + p.unit +
-                  ", although these data tell less of it than the prior: what is free beside it (a curve's scale) makes up for it, and the "
-                  "roughness prefers the smaller curve. Do not free it: with its sigma beside its value ([geometry] " +
-                  p.name + " = { value, sigma }) it stays what it is and widens what depends on it";
+/// The bound at which a parameter ended, if it did.
+std::optional<double> bound_reached(const Parameter& p) {
+  constexpr double close = 1e-6;
+  for (const double bound : {p.lower, p.upper}) {
+    if (std::isfinite(bound) && std::abs(p.value - bound) <= close * p.scale) return bound;
   }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -133,13 +139,31 @@ void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance,
     constexpr double nothing_new = 0.95;
     if (p.prior_sigma && sigma > nothing_new * *p.prior_sigma) {
       prior_only += (prior_only.empty() ? "" : ", ") + p.name;
-    } else if (p.kind == CoefficientKind::shape && sigma > std::abs(p.value)) {
-      fit.warnings.push_back(p.name + " is hardly determined by these data: " + format_value(p.value, sigma) + " +- " +
-                             format_value(sigma) + " " + p.unit);
+    } else if (p.kind == CoefficientKind::shape && sigma > (p.lower >= 0.0 ? std::abs(p.value) : p.scale)) {
+      fit.warnings.push_back(p.name + " is hardly determined by these data: " + in_display_unit(p.value, sigma, p.unit));
     }
+    if (const std::optional<double> bound = bound_reached(p))
+      fit.warnings.push_back(p.name + " ends at its bound, " + in_display_unit(*bound, 0.0, p.unit) +
+                             ": the best value may lie beyond, and its sigma does not describe an interval there");
   }
-  refuse_runaways(model, covariance, fit);
   if (!prior_only.empty()) fit.facts["prior_only"] = "these data say nothing of " + prior_only + " beyond the prior";
+}
+
+void refuse_runaways(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
+  constexpr double far = 2.0, tells_little = 0.5;  // of the prior's sigma
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const double sigma = std::sqrt(std::max(covariance(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(c)), 0.0));
+    if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
+    if (std::abs(p.value - p.prior_mean) < far * *p.prior_sigma || sigma < tells_little * *p.prior_sigma) continue;
+    fit.status = FitStatus::failed;
+    fit.message = p.name + " has run to " + in_display_unit(p.value, sigma, p.unit) + ", away from its prior " +
+                  in_display_unit(p.prior_mean, *p.prior_sigma, p.unit) +
+                  ", although these data tell less of it than the prior: what is free beside it (a curve's scale) makes up for it, and the "
+                  "roughness prefers the smaller curve. Do not free it: with its sigma beside its value ([geometry] " +
+                  p.name + " = { value, sigma }) it stays what it is and widens what depends on it";
+  }
 }
 
 }  // namespace misfit

@@ -40,19 +40,26 @@ int memory_of(const LagProducts& products, const LagProducts& pairs, int least) 
     return pairs[k](a, b) > 0.0 && size > 0.0 ? products[k](a, b) / pairs[k](a, b) / size : 0.0;
   };
   Eigen::MatrixXd spread = Eigen::MatrixXd::Ones(channels, channels);  // Σ ρ_aa ρ_bb over the lags so far
-  int last = 0;
-  for (int lag = 1; lag <= lags && lag - last <= in_a_row; ++lag) {
+  int last = 0, quiet = 0, told = 0;
+  for (int lag = 1; lag <= lags && (quiet < in_a_row || told < least); ++lag) {
     const auto k = static_cast<std::size_t>(lag);
+    if (!(pairs[k].maxCoeff() > 1.0)) continue;
+    ++quiet;
+    ++told;
     for (Eigen::Index a = 0; a < channels; ++a) {
       for (Eigen::Index b = 0; b < channels; ++b) {
         const double n = pairs.front()(a, a), here = pairs[k](a, b);
         if (!(here > 1.0)) continue;
         constexpr double stands_out = 1.75;
         const double chance = std::sqrt(std::max(spread(a, b), 1.0) / here);
-        if (std::abs(correlation(k, a, b)) > stands_out * std::sqrt(std::log10(n)) * chance) last = lag;
+        if (std::abs(correlation(k, a, b)) > stands_out * std::sqrt(std::log10(n)) * chance) {
+          last = lag;
+          quiet = 0;
+        }
         spread(a, b) += 2.0 * correlation(k, a, a) * correlation(k, b, b);
       }
     }
+    if (told == least) last = std::max(last, lag);
   }
   return std::min(std::max(last, least), std::max(lags / 2, 0));
 }

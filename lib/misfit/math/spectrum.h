@@ -23,7 +23,8 @@ using LagProducts = std::vector<Eigen::MatrixXd>;
 
 /// Lag up to which channels remember: the smallest m ≥ `least` after which for 20 lags in a row |ρ| stays below 1.75 sqrt(log10 n) standard
 /// deviations of what chance gives, for every pair of channels [P1]; by chance: sqrt(Σ ρ_aa ρ_bb/n) over the lags before (Bartlett), since
-/// the correlogram of a series with memory has memory itself. At most half of the lags given. `products`: of residuals, `pairs`: how many
+/// the correlogram of a series with memory has memory itself. Lags without pairs (channels read at every k-th sample only) are passed over,
+/// `least` counts those that have some. At most half of the lags given. `products`: of residuals, `pairs`: how many
 /// pairs are behind each of them.
 [[nodiscard]] int memory_of(const LagProducts& products, const LagProducts& pairs, int least);
 
