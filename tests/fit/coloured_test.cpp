@@ -104,6 +104,25 @@ TEST(ColouredCovariance, IsTheAnalyticOneOfARegressionWithFirstOrderNoise) {
   }
 }
 
+/// The variance of a residual variance: Σ ρ² = (1 + φ²)/(1 − φ²) of first-order noise, and so it scatters over seeds.
+TEST(ColouredCovariance, SquaredCorrelationsAreThoseByWhichAVarianceScatters) {
+  constexpr Eigen::Index n = 1200;
+  constexpr double phi = 0.7;
+  constexpr int seeds = 60;
+  const RowMatrix J = waves(n);
+  double told = 0.0, mean = 0.0, squares = 0.0;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    std::mt19937_64 random(seed);
+    const Regression regression = solved(J, first_order(random, n, phi), Eigen::MatrixXd::Zero(4, 4));
+    told += coloured_covariance({regression.rows}, regression.plain, 1).squared_correlations[0] / seeds;
+    const double variance = regression.rows.r.squaredNorm() / (n - 4);
+    mean += variance / seeds;
+    squares += variance * variance / seeds;
+  }
+  EXPECT_NEAR(told, (1.0 + phi * phi) / (1.0 - phi * phi), 0.5);
+  EXPECT_NEAR((squares - mean * mean) / (2.0 / n), told, 1.2) << "a variance of 60 draws is known to 18 %";
+}
+
 TEST(ColouredCovariance, APriorsShareIsKnownExactly) {
   Eigen::MatrixXd P = Eigen::MatrixXd::Zero(4, 4);
   P.diagonal() << 1200.0, 400.0, 0.0, 4000.0;

@@ -194,5 +194,37 @@ TEST(DeclaredModels, AParameterThatTheDataDoNotTouchIsNamed) {
   EXPECT_THAT(fitted.fit.message, HasSubstr("nothing in these data depends on gain"));
 }
 
+/// A parameter that a bound holds: the others are what they are with it fixed there, not what they were beyond it.
+TEST(EquationError, AtABoundTheOthersTakeTheirConditionalValues) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  Signals s;
+  s.name = "record";
+  s.measured = {{"y", "V", {}, 0.0}};
+  s.inputs = {{"u", "V", {}, 0.0}};
+  double x = 1.0, u = 0.0;
+  for (int i = 0; i < 600; ++i) {
+    if (i % 40 == 0) u = 2.0 + normal(random);
+    s.t.push_back(0.05 * i);
+    s.measured[0].values.push_back(x + 1e-4 * normal(random));
+    s.inputs[0].values.push_back(u);
+    x = u + (x - u) * std::exp(-0.05);  // x' = -1 x + 1 u
+  }
+  const auto text = [](const std::string& a) {
+    return "[states]\nx = { unit = \"V\" }\n[inputs]\nu = { unit = \"V\", hold = \"zero_order\" }\n[parameters]\na = { unit = \"1/s\", " +
+           a +
+           " }\nb = { unit = \"1/s\", value = 0.1, bounds = [-5.0, 5.0], free = true }\n[equations]\nx = \"-a*x + b*u\"\n"
+           "[outputs]\ny = { unit = \"V\", formula = \"x\", noise = 0.001 }\n";
+  };
+  const auto bounded = registry_with(text("value = 0.2, bounds = [0.0, 0.5], free = true")), fixed = registry_with(text("value = 0.5"));
+  const Fit at_bound = equation_error(assemble(request_of("text"), *bounded), {s}).fit;
+  const Fit held = equation_error(assemble(request_of("text"), *fixed), {s}).fit;
+  ASSERT_EQ(at_bound.status, FitStatus::converged) << at_bound.message;
+  EXPECT_EQ(at_bound.parameters.at("a").value, 0.5);
+  EXPECT_NEAR(at_bound.parameters.at("b").value, held.parameters.at("b").value, 1e-3);
+  EXPECT_LT(held.parameters.at("b").value, 0.8) << "1 beyond the bound";
+  EXPECT_THAT(at_bound.warnings, testing::Contains(HasSubstr("a ends at its bound, 0.5")));
+}
+
 }  // namespace
 }  // namespace misfit

@@ -7,6 +7,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/fit/filter_error.h"
+#include "misfit/fit/filter_exact.h"
 #include "tests/fit/flight.h"
 
 namespace misfit {
@@ -80,6 +81,20 @@ TEST(EstimateFilter, AsksForReadingsWhereThereAreNone) {
   const FilterError answer = filter_error(start, {flight});
   EXPECT_EQ(answer.fit.status, FitStatus::declined);
   EXPECT_THAT(answer.fit.message, testing::HasSubstr("no sample at which the states"));
+}
+
+TEST(EstimateFilter, DerivativesThatCannotBeTakenSaySoInsteadOfBeingZero) {
+  const std::vector<Signals> flights = {fly(8.0, 7)};
+  FilterEstimate estimate = fitted(request_for(flights), flights);
+  const std::vector<int> free = estimate.model.free_parameters();
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(free.size()));
+  for (Eigen::Index c = 0; c < theta.size(); ++c)
+    theta[c] = estimate.model.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
+  EXPECT_EQ(exact_derivatives(estimate, theta, 1).failure, "");
+  estimate.covariance *= 1e16;  // steps that throw the model out of the finite numbers, or off the readings, on either side
+  EXPECT_NE(exact_derivatives(estimate, theta, 1).failure, "");
+  estimate.covariance.resize(0, 0);
+  EXPECT_NE(exact_derivatives(estimate, theta, 1).failure, "");
 }
 
 TEST(LogPrior, IsThatOfTheEstimate) {
