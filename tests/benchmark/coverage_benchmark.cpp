@@ -38,7 +38,7 @@ struct Job {
   int number = 0;
 };
 
-/// Value, sigma and plain sigma of a curve between its grid points.
+/// Value and sigma of a curve between its grid points.
 struct CurveValue {
   double value = 0.0, sigma = 0.0;
 };
@@ -69,7 +69,7 @@ FittedModel start_of(const Model& asked, const std::vector<Signals>& experiments
 
 struct Answer {
   Fit fit;
-  std::vector<CurveEstimate> plain;
+  std::vector<CurveEstimate> plain;  ///< as if the residuals were white; empty where the method knows no other
 };
 
 Answer estimated(const std::string& method, const Model& asked, const std::vector<Signals>& experiments) {
@@ -84,8 +84,7 @@ Answer estimated(const std::string& method, const Model& asked, const std::vecto
   }
   FilterOptions options;
   options.threads = 1;
-  Fit fit = filter_error(start, experiments, options).fit;
-  return {fit, fit.curves};
+  return {filter_error(start, experiments, options).fit, {}};
 }
 
 std::vector<CoverageRow> look(const Job& job, double seconds, const Registry& registry) {
@@ -98,7 +97,8 @@ std::vector<CoverageRow> look(const Job& job, double seconds, const Registry& re
   const Fit& fit = answer.fit;
   std::vector<CoverageRow> rows;
   const auto add = [&](const std::string& quantity, double truth, double value, double sigma, double plain) {
-    rows.push_back({job.method, job.kind, job.number, to_string(fit.status), quantity, truth, value, sigma, plain > 0.0 ? plain : sigma});
+    rows.push_back(
+        {job.method, job.kind, job.number, to_string(fit.status), quantity, truth, value, sigma, plain > 0.0 ? plain : std::nan("")});
   };
   const auto plain = [&](const std::string& name) { return fit.plain_sigmas.contains(name) ? fit.plain_sigmas.at(name) : 0.0; };
   if (fit.status == FitStatus::converged || fit.status == FitStatus::not_converged) {

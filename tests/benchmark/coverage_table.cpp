@@ -28,19 +28,22 @@ CoverageRow parse(const std::string& line) {
 }
 
 struct Cell {
-  int flights = 0, inside = 0, inside_plain = 0;
+  int flights = 0, inside = 0, with_plain = 0, inside_plain = 0;
   double error = 0.0, squares = 0.0, scatter = 0.0, sigma = 0.0, plain = 0.0;
 
   void add(const CoverageRow& row) {
     const double e = row.value - row.truth;
     ++flights;
     inside += std::abs(e) <= two_sided * row.sigma ? 1 : 0;
-    inside_plain += std::abs(e) <= two_sided * row.plain_sigma ? 1 : 0;
     error += e / row.sigma;
     squares += std::pow(e / row.sigma, 2);
+    if (!std::isfinite(row.plain_sigma)) return;
+    ++with_plain;
+    inside_plain += std::abs(e) <= two_sided * row.plain_sigma ? 1 : 0;
     plain += row.plain_sigma / row.sigma;
   }
-  [[nodiscard]] double share(int count) const { return 100.0 * count / std::max(flights, 1); }
+  [[nodiscard]] double share() const { return 100.0 * inside / std::max(flights, 1); }
+  [[nodiscard]] double plain_share() const { return 100.0 * inside_plain / with_plain; }
 };
 
 }  // namespace
@@ -85,7 +88,7 @@ void print_coverage(const std::vector<CoverageRow>& rows) {
       cells[group][row.quantity].add(row);
     }
   }
-  double sum = 0.0, plain = 0.0, count = 0.0;
+  double sum = 0.0, count = 0.0, plain = 0.0, plain_count = 0.0;
   for (const auto& [group, quantities] : cells) {
     std::printf("\n%s:", group.c_str());
     int flights = 0;
@@ -98,14 +101,24 @@ void print_coverage(const std::vector<CoverageRow>& rows) {
     std::printf("%18s %8s %9s %8s %11s %12s %12s\n", "", "", "%", "%", "sigmas", "sigmas", "/ sigma");
     for (const auto& [quantity, cell] : quantities) {
       const double n = std::max(cell.flights, 1);
-      std::printf("%18s %8d %9.1f %8.1f %11.2f %12.2f %12.2f\n", quantity.c_str(), cell.flights, cell.share(cell.inside),
-                  cell.share(cell.inside_plain), cell.error / n, std::sqrt(cell.squares / n), cell.plain / n);
-      sum += cell.share(cell.inside);
-      plain += cell.share(cell.inside_plain);
+      std::printf("%18s %8d %9.1f", quantity.c_str(), cell.flights, cell.share());
+      if (cell.with_plain > 0) std::printf(" %8.1f", cell.plain_share());
+      if (cell.with_plain == 0) std::printf(" %8s", "-");
+      std::printf(" %11.2f %12.2f", cell.error / n, std::sqrt(cell.squares / n));
+      sum += cell.share();
       count += 1.0;
+      if (cell.with_plain > 0) {
+        std::printf(" %12.2f\n", cell.plain / cell.with_plain);
+        plain += cell.plain_share();
+        plain_count += 1.0;
+      } else {
+        std::printf(" %12s\n", "-");
+      }
     }
   }
-  std::printf("\nmean over %g cells: %.1f %%, plain %.1f %%\n", count, sum / std::max(count, 1.0), plain / std::max(count, 1.0));
+  std::printf("\nmean over %g cells: %.1f %%", count, sum / std::max(count, 1.0));
+  if (plain_count > 0.0) std::printf("; plain over %g cells: %.1f %%", plain_count, plain / plain_count);
+  std::printf("\nof the flights whose estimate was given: the others are counted by their status above\n");
 }
 
 }  // namespace misfit::bench
