@@ -44,6 +44,26 @@ Reference reference(double trim) {
   return r;
 }
 
+TEST(Compare, ParametersThatCannotBothBeRightAreSaidToBe) {
+  Fit one = fit("equation_error", 12.0, 0.001), other = fit("output_error", 12.0, 0.001);
+  one.parameters = {{"k", {0.9265, 0.0024, "1/s"}}, {"c", {1.0, 0.1, "-"}}, {"C_m[0]", {0.3, 0.001, "-"}}, {"own", {1.0, 0.1, "-"}}};
+  other.parameters = {{"k", {0.9999, 0.0003, "1/s"}}, {"c", {1.1, 0.1, "-"}}, {"C_m[0]", {0.4, 0.001, "-"}}};
+  const Comparison c = compare({one, other}, {});
+  ASSERT_EQ(c.parameters.size(), 2U);
+  EXPECT_EQ(c.parameters[0].parameter, "c");
+  EXPECT_EQ(c.parameters[0].sentence, "");
+  EXPECT_NEAR(c.parameters[1].sigmas, 0.0734 / std::hypot(0.0024, 0.0003), 1e-9);
+  expect_parts(c.parameters[1].sentence,
+               {"k of equation_error is 0.0734 ± 0.0024 1/s below that of output_error (30.3 sigma)", "regression"});
+  expect_parts(comparison_text(c), {"! k of equation_error is 0.0734", "0.9265 ± 0.0024"});
+  const TemporaryFolder folder;
+  write_comparison(folder.path() / "compare.json", c);
+  const Comparison again = read_comparison(folder.path() / "compare.json");
+  ASSERT_EQ(again.parameters.size(), 2U);
+  EXPECT_EQ(again.parameters[1].sentence, c.parameters[1].sentence);
+  EXPECT_EQ(again.methods[0].parameters.at("k").value, 0.9265);
+}
+
 TEST(Compare, SlopeOfALineAtTheTrimIsThatOfTheLine) {
   const Comparison c = compare({fit("output_error", 12.0, 0.001)}, {});
   ASSERT_EQ(c.methods.size(), 1U);

@@ -226,5 +226,37 @@ TEST(EquationError, AtABoundTheOthersTakeTheirConditionalValues) {
   EXPECT_THAT(at_bound.warnings, testing::Contains(HasSubstr("a ends at its bound, 0.5")));
 }
 
+/// An input that steps every 40 samples: the state's kinks are no place for a local polynomial.
+TEST(EquationError, TakesNoDerivativeAcrossAStepOfAHeldInput) {
+  const auto record = [](int every) {
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal;
+    Signals s;
+    s.name = "record";
+    s.measured = {{"y", "V", {}, 0.0}};
+    s.inputs = {{"u", "V", {}, 0.0}};
+    double x = 1.0, u = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+      if (i % every == 0) u = 2.0 + normal(random);
+      s.t.push_back(0.05 * i);
+      s.measured[0].values.push_back(x + 1e-4 * normal(random));
+      s.inputs[0].values.push_back(u);
+      x = u + (x - u) * std::exp(-0.05);  // x' = -1 x + 1 u
+    }
+    return s;
+  };
+  const auto known = registry_with(
+      "[states]\nx = { unit = \"V\" }\n[inputs]\nu = { unit = \"V\", hold = \"zero_order\" }\n[parameters]\n"
+      "a = { unit = \"1/s\", value = 0.1, bounds = [-5.0, 5.0], free = true }\nb = { unit = \"1/s\", value = 0.1, bounds = [-5.0, 5.0], "
+      "free = true }\n[equations]\nx = \"-a*x + b*u\"\n[outputs]\ny = { unit = \"V\", formula = \"x\", noise = 0.001 }\n");
+  const Model model = assemble(request_of("text"), *known);
+  const Fit apart = equation_error(model, {record(40)}).fit;
+  EXPECT_NEAR(apart.parameters.at("a").value, 1.0, 0.005);
+  EXPECT_NEAR(apart.parameters.at("b").value, 1.0, 0.005);
+  EXPECT_THAT(apart.warnings, testing::Not(testing::Contains(HasSubstr("steps at nearly every sample"))));
+  const Fit every = equation_error(model, {record(1)}).fit;
+  EXPECT_THAT(every.warnings, testing::Contains(HasSubstr("steps at nearly every sample")));
+}
+
 }  // namespace
 }  // namespace misfit

@@ -26,8 +26,11 @@ bool alike(const CurveEstimate& a, const Reference& b) {
 }
 
 MethodSummary summary(const Fit& fit) {
-  MethodSummary m{fit.method, fit.status,         fit.message, fit.driven,           fit.trim, {}, {},
-                  fit.rms,    fit.validation_rms, fit.loglik,  fit.validation_loglik};
+  MethodSummary m{fit.method,         fit.status, fit.message,           fit.driven, fit.trim, {}, {}, fit.rms,
+                  fit.validation_rms, fit.loglik, fit.validation_loglik, {}};
+  for (const auto& [name, estimate] : fit.parameters) {
+    if (usable(fit) && name.find('[') == std::string::npos) m.parameters[name] = estimate;
+  }
   for (const CurveEstimate& curve : fit.curves) {
     if (!usable(fit) || !fit.trim || !curve.informative || curve.of_unit != fit.trim->unit) continue;
     if (curve.name == static_curve) {
@@ -85,12 +88,13 @@ void compare_reference(const Fit& fit, const Reference& reference, Comparison& c
   }
 }
 
-std::string sentence(const TrimDifference& d) {
-  const double to_shown = convert(1.0, d.difference.unit, display_unit(d.difference.unit));
-  const std::string size = format_value(std::abs(d.difference.value) * to_shown, d.difference.sigma * to_shown);
-  const std::string where = d.difference.value < 0.0 ? "below" : "above";
-  const std::string sigmas = std::isfinite(d.sigmas) ? fmt::format(" ({:.1f} sigma)", d.sigmas) : " (no uncertainty known)";
-  return fmt::format("the trim of {} is {} {} {} that of {}{}", d.a, size, display_unit(d.difference.unit), where, d.b, sigmas);
+std::string sentence(const std::string& what, const Sides& sides, const Estimate& difference, double sigmas) {
+  const std::string unit = display_unit(difference.unit);
+  const double to_shown = convert(1.0, difference.unit, unit);
+  const std::string size = format_value(std::abs(difference.value) * to_shown, difference.sigma * to_shown);
+  const std::string where = difference.value < 0.0 ? "below" : "above";
+  const std::string told = std::isfinite(sigmas) ? fmt::format(" ({:.1f} sigma)", sigmas) : " (no uncertainty known)";
+  return fmt::format("{} of {} is {}{} {} that of {}{}", what, sides.a, size, unit == "-" ? "" : " " + unit, where, sides.b, told);
 }
 
 void add_trims(const Estimate& a, const Estimate& b, const Sides& sides, Comparison& c) {
@@ -98,9 +102,27 @@ void add_trims(const Estimate& a, const Estimate& b, const Sides& sides, Compari
   const double sigma = std::hypot(a.sigma, b.sigma);
   const double gap = a.value - b.value;
   const double sigmas = sigma > 0.0 ? std::abs(gap) / sigma : std::numeric_limits<double>::quiet_NaN();
-  TrimDifference d{sides.a, sides.b, sides.reference, {gap, sigma, a.unit}, sigmas, ""};
-  d.sentence = sentence(d);
-  c.trims.push_back(std::move(d));
+  const Estimate difference{gap, sigma, a.unit};
+  c.trims.push_back({sides.a, sides.b, sides.reference, difference, sigmas, sentence("the trim", sides, difference, sigmas)});
+}
+
+/// A regression takes the noise of its differentiated readings, and what a local polynomial smooths away, into its parameters: its sigmas
+/// know nothing of that.
+void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
+  for (const auto& [name, one] : a.parameters) {
+    const auto other = b.parameters.find(name);
+    if (name.find('[') != std::string::npos || other == b.parameters.end() || other->second.unit != one.unit) continue;
+    const Estimate difference{one.value - other->second.value, std::hypot(one.sigma, other->second.sigma), one.unit};
+    if (!(difference.sigma > 0.0)) continue;
+    ParameterDifference d{name, a.method, b.method, difference, std::abs(difference.value) / difference.sigma, ""};
+    constexpr double worth_saying = 3.0;
+    if (d.sigmas > worth_saying) {
+      d.sentence = sentence(name, {a.method, b.method}, difference, d.sigmas) + ": they cannot both be right";
+      if (a.method == "equation_error" || b.method == "equation_error")
+        d.sentence += "; a regression of differentiated readings is biased by what its stencils smooth, and knows nothing of it";
+    }
+    c.parameters.push_back(std::move(d));
+  }
 }
 
 }  // namespace
@@ -117,6 +139,7 @@ Comparison compare(const std::vector<Fit>& fits, const std::vector<Reference>& r
     for (std::size_t j = i + 1; j < fits.size(); ++j) {
       if (!usable(fits[j])) continue;
       compare_pair(fits[i], fits[j], c);
+      add_parameters(fits[i], fits[j], c);
       if (fits[i].trim && fits[j].trim) add_trims(*fits[i].trim, *fits[j].trim, {fits[i].method, fits[j].method}, c);
     }
     for (const Reference& reference : references) {

@@ -30,6 +30,7 @@ std::string methods_text(const Comparison& c) {
   for (const MethodSummary& m : c.methods) {
     rows.push_back({m.method, "status", to_string(m.status), ""});
     if (m.trim) add_row(rows, "", "trim", *m.trim);
+    for (const auto& [name, value] : m.parameters) add_row(rows, "", name, value);
     for (const auto& [curve, slope] : m.slopes) add_row(rows, "", "slope of " + curve + " at trim", slope);
     for (const auto& [curve, value] : m.at_trim) add_row(rows, "", curve + " at trim", value);
     for (const auto& [channel, rms] : m.rms) add_row(rows, "", "rms " + channel, rms);
@@ -95,6 +96,9 @@ std::string comparison_text(const Comparison& comparison) {
   std::string text = methods_text(comparison);
   if (!comparison.trims.empty()) text += "\n";
   for (const TrimDifference& d : comparison.trims) text += wrap_text(d.sentence, 100, "  ") + "\n";
+  for (const ParameterDifference& d : comparison.parameters) {
+    if (!d.sentence.empty()) text += "\n" + wrap_text("! " + d.sentence, 100, "  ") + "\n";
+  }
   if (!comparison.curves.empty()) text += "\n";
   text += curves_text(comparison);
   if (!comparison.not_compared.empty()) text += "\n";

@@ -38,7 +38,8 @@ Json to_json(const MethodSummary& m) {
           {"rms", estimates_to_json(m.rms)},
           {"validation_rms", estimates_to_json(m.validation_rms)},
           {"loglik", number_or_null(m.loglik)},
-          {"validation_loglik", number_or_null(m.validation_loglik)}};
+          {"validation_loglik", number_or_null(m.validation_loglik)},
+          {"parameters", estimates_to_json(m.parameters)}};
 }
 
 MethodSummary method_from(const std::string& name, const Json& object) {
@@ -57,6 +58,7 @@ MethodSummary method_from(const std::string& name, const Json& object) {
   const auto number = [&](const char* key) { return object.at(key).is_null() ? std::nullopt : std::optional<double>(object.at(key)); };
   m.loglik = number("loglik");
   m.validation_loglik = number("validation_loglik");
+  m.parameters = estimates_from_json(object.at("parameters"));
   return m;
 }
 
@@ -106,6 +108,15 @@ Json to_json(const TrimDifference& d) {
           {"sentence", d.sentence}};
 }
 
+Json to_json(const ParameterDifference& d) {
+  return {{"parameter", d.parameter},
+          {"a", d.a},
+          {"b", d.b},
+          {"difference", estimate_to_json(d.difference)},
+          {"sigmas", number_or_null(d.sigmas)},
+          {"sentence", d.sentence}};
+}
+
 Comparison comparison_from(const Json& root) {
   Comparison c;
   for (const auto& [name, object] : root.at("methods").items()) c.methods.push_back(method_from(name, object));
@@ -116,6 +127,9 @@ Comparison comparison_from(const Json& root) {
     c.trims.push_back({object.at("a"), object.at("b"), object.at("reference"), difference.value_or(Estimate{}),
                        number_or_nan(object, "sigmas"), object.at("sentence")});
   }
+  for (const Json& object : root.at("parameters"))
+    c.parameters.push_back({object.at("parameter"), object.at("a"), object.at("b"), estimate_from_json(object.at("difference")),
+                            number_or_nan(object, "sigmas"), object.at("sentence")});
   for (const auto& [name, object] : root.at("reference_trims_deg").items()) {
     if (const std::optional<Estimate> trim = degrees_from_json(object)) c.reference_trims[name] = *trim;
   }
@@ -127,16 +141,15 @@ Comparison comparison_from(const Json& root) {
 }  // namespace
 
 void write_comparison(const std::filesystem::path& path, const Comparison& comparison) {
-  Json root = {{"methods", Json::object()},
-               {"curves", Json::array()},
-               {"references", Json::array()},
-               {"trims", Json::array()},
-               {"reference_trims_deg", Json::object()},
-               {"not_compared", Json::array()},
-               {"simulated_motion", comparison.motion ? motion_to_json(*comparison.motion) : Json(nullptr)}};
+  Json root = {
+      {"methods", Json::object()},     {"curves", Json::array()},
+      {"references", Json::array()},   {"trims", Json::array()},
+      {"parameters", Json::array()},   {"reference_trims_deg", Json::object()},
+      {"not_compared", Json::array()}, {"simulated_motion", comparison.motion ? motion_to_json(*comparison.motion) : Json(nullptr)}};
   for (const MethodSummary& m : comparison.methods) root["methods"][m.method] = to_json(m);
   for (const CurveDifference& d : comparison.curves) root[d.reference ? "references" : "curves"].push_back(to_json(d));
   for (const TrimDifference& d : comparison.trims) root["trims"].push_back(to_json(d));
+  for (const ParameterDifference& d : comparison.parameters) root["parameters"].push_back(to_json(d));
   for (const auto& [name, trim] : comparison.reference_trims) root["reference_trims_deg"][name] = degrees_to_json(trim);
   for (const NotCompared& n : comparison.not_compared) root["not_compared"].push_back({{"what", n.what}, {"why", n.why}});
   write_atomically(path, root.dump(1) + "\n");

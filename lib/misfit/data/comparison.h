@@ -22,6 +22,7 @@ struct MethodSummary {
   std::map<std::string, Estimate> at_trim;  ///< other informative curves of the same quantity → value at the trim [curve's unit]
   std::map<std::string, Estimate> rms, validation_rms;
   std::optional<double> loglik, validation_loglik;
+  std::map<std::string, Estimate> parameters;  ///< scalars; curves are compared as curves
 };
 
 /// Two curves of the same name and quantity on the range that both visited, or a curve and the points of a reference.
@@ -46,6 +47,14 @@ struct TrimDifference {
   std::string sentence;  ///< "the trim of output_error is 1.9 ± 0.4 deg below static_test (4.6 sigma)"
 };
 
+/// A scalar parameter of a − that of b.
+struct ParameterDifference {
+  std::string parameter, a, b;  ///< a, b: methods
+  Estimate difference;          ///< sigma combined as of independent errors
+  double sigmas = 0.0;          ///< |difference| / sigma
+  std::string sentence;  ///< where that is above 3: "k of equation_error is 0.073 ± 0.002 1/s below that of output_error (30 sigma): …"
+};
+
 /// What was left out of a comparison.
 struct NotCompared {
   std::string what, why;
@@ -57,15 +66,16 @@ struct Comparison {
   std::vector<MethodSummary> methods;
   std::vector<CurveDifference> curves;
   std::vector<TrimDifference> trims;
+  std::vector<ParameterDifference> parameters;
   std::vector<NotCompared> not_compared;
   std::map<std::string, Estimate> reference_trims;  ///< name → trim [rad]
   std::optional<SimulatedMotion> motion;            ///< missing: no fitted model with its random force
 };
 
 /// compare.json:
-/// {"methods":{METHOD:{"status","message","driven","trim_deg","slopes","at_trim","rms","validation_rms","loglik","validation_loglik"}},
-/// "curves":[…],"references":[…],"trims":[…],"reference_trims_deg":{…},"not_compared":[…],"simulated_motion":{…}}; null for what is not
-/// known, angles of curves in degrees.
+/// {"methods":{METHOD:{"status","message","driven","trim_deg","slopes","at_trim","rms","validation_rms","loglik","validation_loglik",
+/// "parameters"}},"curves":[…],"references":[…],"trims":[…],"parameters":[…],"reference_trims_deg":{…},"not_compared":[…],"simulated_motion":{…}};
+/// null for what is not known, angles of curves in degrees.
 void write_comparison(const std::filesystem::path& path, const Comparison& comparison);
 
 /// The other way; InputError with the file's name if it is not of that form.

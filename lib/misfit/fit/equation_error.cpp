@@ -37,6 +37,30 @@ std::string hidden_states(const Model& model, const std::vector<bool>& shown) {
   return names;
 }
 
+/// Samples at which no derivative is taken across a step of an input that is held between its samples: a local polynomial smears the kink
+/// that the state has there. All, and `smeared`, where more than half would be left out: then the input steps at nearly every sample.
+struct Between {
+  std::vector<bool> steps;
+  bool smeared = false;
+};
+
+Between between_steps(const Model& model, const Signals& signals) {
+  const auto& inputs = model.system->spec().inputs;
+  const std::size_t n = signals.samples();
+  Between out{std::vector<bool>(n, true)};
+  for (std::size_t k = 0; k < inputs.size() && k < signals.inputs.size(); ++k) {
+    if (inputs[k].hold != Hold::zero_order) continue;
+    const std::vector<double>& u = signals.inputs[k].values;
+    for (std::size_t i = 1; i < n; ++i) {
+      if (u[i] == u[i - 1]) continue;
+      for (std::size_t at = i - 1; at <= std::min(i + 1, n - 1); ++at) out.steps[at] = false;
+    }
+  }
+  const auto left = static_cast<std::size_t>(std::count(out.steps.begin(), out.steps.end(), true));
+  if (2 * left >= n) return out;
+  return {std::vector<bool>(n, true), true};
+}
+
 struct Regression {
   Linearised sums;
   std::vector<std::vector<double>> residuals;  ///< per experiment and row, NaN where not used
@@ -49,11 +73,15 @@ class Regressor {
     for (const auto& experiment : experiments) {
       states_.push_back(reconstruct_states(model, experiment));
       inputs_.push_back(input_table(experiment, model.inputs()));
+      between_.push_back(between_steps(model, experiment));
     }
     rows_ = dynamic_states(model, states_.front().shown);
   }
   const std::vector<int>& rows() const { return rows_; }
   const ReconstructedStates& states(std::size_t e) const { return states_[e]; }
+  bool smeared() const {
+    return std::any_of(between_.begin(), between_.end(), [](const Between& b) { return b.smeared; });
+  }
 
   Regression linearise(const Model& at, bool keep_rows = false) const {
     Regression out;
@@ -89,7 +117,7 @@ class Regressor {
       const int row = rows_[channel];
       std::vector<double> residuals(signals.samples(), std::nan(""));
       for (std::size_t i = signals.exclude; i < signals.samples(); ++i) {
-        if (!states.ok[i] || signals.held_out(i)) continue;
+        if (!states.ok[i] || signals.held_out(i) || !between_[e].steps[i]) continue;
         slots.clear();
         evaluator.linearise_rates(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs_[e].at(i), signals.t[i], slots, dx.data(),
                                   D.data());
@@ -117,6 +145,7 @@ class Regressor {
   const std::vector<Signals>& experiments_;
   std::vector<ReconstructedStates> states_;
   std::vector<InputTable> inputs_;
+  std::vector<Between> between_;
   std::vector<int> rows_;
 };
 
@@ -207,6 +236,10 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
   const InputTable inputs = input_table(experiments.front(), out.model.inputs());
   const auto sample = static_cast<std::size_t>(known);
   out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
+  if (regressor.smeared())
+    out.fit.warnings.emplace_back(
+        "an input steps at nearly every sample: the derivatives of this method smear what it does, so that its parameters are biased "
+        "by more than their sigmas; methods that run the model are not");
   if (const std::string which = undetermined_beside_priors(out.model, regression.sums); !which.empty()) out.fit.warnings.push_back(which);
   tell_weak_directions(out.model, out.fit.covariance, out.fit);
   refuse_runaways(out.model, out.fit.covariance, out.fit);
