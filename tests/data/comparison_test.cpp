@@ -28,7 +28,8 @@ Comparison example() {
                 {},
                 {},
                 std::nullopt,
-                std::nullopt}};
+                std::nullopt,
+                {{"m_a", {0.3, 0.1, "kg"}}}}};
   c.curves = {{"C_m",
                "alpha_T",
                "rad",
