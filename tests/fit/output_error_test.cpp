@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "misfit/fit/curves.h"
@@ -207,6 +208,29 @@ TEST(OutputError, TwoExperimentsShareTheirParameters) {
   ASSERT_EQ(both.fit.predictions.size(), 2U);
   EXPECT_LT(both.fit.trim->sigma, one.fit.trim->sigma);
   EXPECT_NEAR(both.fit.trim->value / degree, 12.0, 3.0 * both.fit.trim->sigma / degree);
+}
+
+/// A canopy that swings through the axis: its curves are odd or even, so that both sides tell of the positive one.
+TEST(Knots, OfMotionThroughZeroAreThoseOfItsSize) {
+  std::vector<double> t, alpha;
+  for (int i = 0; i < 1200; ++i) {
+    t.push_back(i / 59.94);
+    alpha.push_back(0.25 * std::sin(4.0 * t.back()) + 1e-3 * std::sin(311.0 * t.back()));
+  }
+  const std::vector<Signals> swing{testing_planar::measured(t, alpha)};
+  ModelRequest request = testing_planar::eq_8();
+  request.curves.clear();
+  choose_all_knots(request, testing_planar::registry(), swing, 8);
+  const std::vector<double>& knots = request.curves.at("C_m").knots;
+  EXPECT_GT(knots.front(), 0.0);
+  EXPECT_NEAR(knots.back(), 0.25, 0.005);
+  const Fit fit = equation_error(assemble(request, testing_planar::registry()), swing).fit;
+  ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+  double counted = 0.0;
+  for (const auto& curve : fit.curves) {
+    if (curve.name == "C_m") counted = std::accumulate(curve.count.begin(), curve.count.end(), 0.0);
+  }
+  EXPECT_GT(counted, 1100.0) << "both halves of the swing count";
 }
 
 }  // namespace

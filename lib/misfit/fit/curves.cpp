@@ -39,12 +39,15 @@ std::vector<double> grid_over(double lowest, double highest, const std::string& 
   return x;
 }
 
-std::vector<double> counts_at(const std::vector<double>& x, const RowMatrix& visited, int quantity) {
+/// A curve of a parity is the same on both sides of 0: what is visited there counts on the positive one.
+double folded(double value, const Curve& curve) { return curve.spline.parity() == Parity::none ? value : std::abs(value); }
+
+std::vector<double> counts_at(const std::vector<double>& x, const RowMatrix& visited, const Curve& curve) {
   std::vector<double> count(x.size(), 0.0);
   if (x.size() < 2 || visited.rows() == 0) return count;
   const double step = x[1] - x[0];
   for (Eigen::Index i = 0; i < visited.rows(); ++i) {
-    const double cell = std::round((visited(i, quantity) - x.front()) / step);
+    const double cell = std::round((folded(visited(i, curve.quantity), curve) - x.front()) / step);
     if (cell >= 0.0 && cell < static_cast<double>(x.size())) count[static_cast<std::size_t>(cell)] += 1.0;
   }
   return count;
@@ -64,7 +67,7 @@ CurveEstimate evaluate(const Model& model, const std::vector<int>& column_of, co
   const Curve* lead = model.find_curve(c.terms.front().curve);
   out.of_unit = lead->of_unit;
   out.x = grid_over(lead->spline.lowest(), lead->spline.highest(), lead->of_unit);
-  out.count = counts_at(out.x, visited, lead->quantity);
+  out.count = counts_at(out.x, visited, *lead);
   for (double x : out.x) {
     Weights w{Eigen::VectorXd::Zero(covariance.rows()), 0.0};
     for (const auto& term : c.terms) add_term(model, column_of, *model.find_curve(term.curve), term.derivative, term.factor(x), x, w);
@@ -123,8 +126,8 @@ void choose_all_knots(ModelRequest& request, const Registry& registry, const std
   for (const auto& experiment : experiments) {
     const RowMatrix values = visited_quantities(model, experiment, reconstruct_states(model, experiment));
     for (const auto& [name, of] : open) {
-      const auto column = values.col(model.find_curve(name)->quantity);
-      visited[name].insert(visited[name].end(), column.begin(), column.end());
+      const Curve& curve = *model.find_curve(name);
+      for (const double value : values.col(curve.quantity)) visited[name].push_back(folded(value, curve));
     }
   }
   for (const auto& [name, of] : open) {
