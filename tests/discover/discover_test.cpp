@@ -119,6 +119,21 @@ TEST(Verdict, PhysicsSeenThroughACameraThatItsSweepDoubtsIsNotAccepted) {
   EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for strut_wake"));
 }
 
+TEST(Verdict, ALargerDropThatIsRefusedIsNamed) {
+  Discovery d;
+  d.candidates.resize(2);
+  d.candidates[0].effect = "strut_wake";
+  d.candidates[0].accepted = true;
+  d.candidates[0].actual_drop = 97.0;
+  d.candidates[1].effect = "upwash";
+  d.candidates[1].actual_drop = 100.0;
+  d.candidates[1].why = "the held-out likelihood does not rise (-0.4)";
+  write_verdict(d, std::nullopt, 0.01, false);
+  EXPECT_THAT(d.verdict, testing::StartsWith("Missing: strut_wake"));
+  EXPECT_THAT(d.sentences,
+              testing::Contains("upwash has a larger drop (100) but is not accepted: the held-out likelihood does not rise (-0.4)"));
+}
+
 TEST(Screen, AStrengthThatCannotBeNegativeIsNot) {
   const Flight flight(fly(15.0, 33, {effect("viscous_friction")}, {{"viscosity", -12.0}}));
   const std::vector<Specimen> list = specimens(flight.estimate, flight.request, registry(), nullptr);

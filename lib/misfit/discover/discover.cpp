@@ -35,9 +35,7 @@ class Search {
     families_ = static_cast<double>(screened_.size() + unknown_.size());
     rank();
     refit_best();
-    const Searched searched{estimate_, registry_, experiments_, options_};
-    find_groups(entries_, searched);
-    left_ = accept_best(entries_, searched);
+    left_ = accept_best(entries_, {estimate_, registry_, experiments_, options_, families_});
     list_unknown();
     describe_search();
     return std::move(out_);

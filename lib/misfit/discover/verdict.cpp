@@ -40,6 +40,15 @@ void separate(const Candidate& best, bool camera, Discovery& discovery) {
   discovery.sentences.push_back(sentence);
 }
 
+/// Whoever reads the drops asks why the largest is not the one accepted.
+void name_larger_drops(const Candidate& best, Discovery& discovery) {
+  for (const Candidate& other : discovery.candidates) {
+    if (!other.actual_drop || !best.actual_drop || !(*other.actual_drop > *best.actual_drop)) continue;
+    discovery.sentences.push_back(effect_at(other.effect, other.roles) + " has a larger drop (" + format_value(*other.actual_drop) +
+                                  ") but is not accepted: " + other.why);
+  }
+}
+
 }  // namespace
 
 void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept, bool camera) {
@@ -53,6 +62,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
                   format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise p " + format_probability(best.p_value) +
                   "): " + numbers(best) + ".";
     separate(best, camera, out);
+    name_larger_drops(best, out);
     return;
   }
   if (unexplained) {
