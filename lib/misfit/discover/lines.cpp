@@ -78,7 +78,8 @@ std::complex<double> direct_sum(const Series& lambda, const std::vector<double>&
 
 LineGrid line_grid(const SampleTimes& times, double from, double to, std::size_t series) {
   LineGrid grid;
-  const auto longest = std::max_element(times.begin(), times.end(), [](const auto& a, const auto& b) { return length_of(a) < length_of(b); });
+  const auto longest =
+      std::max_element(times.begin(), times.end(), [](const auto& a, const auto& b) { return length_of(a) < length_of(b); });
   if (longest == times.end() || !(length_of(*longest) > 0.0)) return grid;
   grid.step = 1.0 / (4.0 * length_of(*longest));
   grid.first = std::max(from, 2.0 * grid.step);  // half a period in the record is no line but a drift
