@@ -10,6 +10,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/fit/filter_error.h"
+#include "misfit/fit/k_step.h"
 
 namespace misfit {
 namespace {
@@ -27,6 +28,10 @@ std::shared_ptr<const FilterWork> fitted(Session& session) {
   return filter_work(session);
 }
 
+void also(std::string& note, const std::string& words) {
+  if (!words.empty()) note += (note.empty() ? "" : "; ") + words;
+}
+
 /// What the fit says of the model, without what made it.
 Rung rung_of(const Session& session, const FilterWork& work) {
   Rung rung;
@@ -37,7 +42,9 @@ Rung rung_of(const Session& session, const FilterWork& work) {
   rung.force = work.fit.force;
   rung.rms = work.fit.rms;
   rung.validation_rms = work.fit.validation_rms;
-  rung.k_step = k_step_errors(*work.estimate);
+  KStepErrors free_runs = k_step_errors(*work.estimate);
+  rung.k_step = std::move(free_runs.rms);
+  rung.note = std::move(free_runs.words);
   rung.trim = work.fit.trim;
   return rung;
 }
@@ -224,12 +231,12 @@ const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>
   rung.study = relative_study(above);
   rung.added = effect;
   if (system) {
-    rung.note = "a change of system has no drop: its channels and states are others; compare k-step errors and the force";
-    for (const auto& left : left_out) rung.note += "; effect '" + left + "' is left out: it does not suit " + name;
+    also(rung.note, "a change of system has no drop: its channels and states are others; compare k-step errors and the force");
+    for (const auto& left : left_out) also(rung.note, "effect '" + left + "' is left out: it does not suit " + name);
   } else {
     rung.parameters = new_parameters(*work, *below_work);
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
-    if (!rung.predicted_drop) rung.note = not_predicted(registry_.effect(effect), from);
+    if (!rung.predicted_drop) also(rung.note, not_predicted(registry_.effect(effect), from));
     if (same_channels(work->estimate->model, below_work->estimate->model)) {
       const Gain gain = gain_of(*work, *below_work, options_.threads);
       rung.actual_drop = gain.drop;

@@ -17,7 +17,7 @@ struct Lag {
   static constexpr Role ports[] = {{"port", "*"}};
   static constexpr CoefficientSpec coefficients[] = {
       {"lag_stiffness", CoefficientKind::strength, 0.0, "{port}/{level}", -1e6, 1e6, 1.0, "force per level that z lags behind"},
-      {"tau", CoefficientKind::shape, 0.1, "s", 1e-4, 1e4, 0.1, "time constant"}};
+      scanned({"tau", CoefficientKind::shape, 0.1, "s", 1e-4, 1e4, 0.1, "time constant"}, {1.0, 20.0, 4, "step"})};
   static constexpr OwnStateSpec states[] = {{"z", "{level}", 0.0}};
 
   template <class T, class K>

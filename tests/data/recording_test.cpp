@@ -90,6 +90,19 @@ TEST(Recording, AMeasuredRateIsKnownByItsValues) {
   EXPECT_EQ(column(s, "omega").rate_of, "theta");
 }
 
+/// Of an unknown unit one thing is said: what its numbers are taken as.
+TEST(Recording, AnUnknownUnitIsSaidOnceWithWhatItIsTakenAs) {
+  const RecordingSurvey s = survey(rows("t[ticks],theta[rad],omega[foo],level[blob]", 300, [](int k) {
+    const double t = 0.01 * k;
+    return fmt::format("{},{},{},{}", t, std::sin(3.0 * t), 3.0 * std::cos(3.0 * t), std::cos(7.0 * t));
+  }));
+  EXPECT_EQ(column(s, "omega").unit, "rad/s");
+  EXPECT_THAT(s.remarks,
+              testing::UnorderedElementsAre("column 't[ticks]': the unit 'ticks' is not known: taken as seconds",
+                                            "column 'omega[foo]': the unit 'foo' is not known: taken as rad/s",
+                                            "column 'level[blob]': the unit 'blob' is not known, its numbers are taken as they are"));
+}
+
 TEST(Recording, GapsRepeatedTimesMissingValuesAndConstantsAreSaid) {
   const RecordingSurvey s = survey(rows("t_s,y,c,segment", 100, [](int k) {
     const double t = k == 31 ? 3.0 : k >= 60 ? 0.1 * k + 5.0 : 0.1 * k;

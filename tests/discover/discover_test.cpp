@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "misfit/discover/candidate.h"
 #include "misfit/discover/screen.h"
 #include "misfit/discover/verdict.h"
 #include "tests/fit/flight.h"
@@ -99,7 +100,7 @@ TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
   d.candidates[0].effect = "camera_roll";
   d.candidates[0].family = "sensor";
   d.candidates[0].accepted = true;
-  add_camera_remarks(&calibration, d);
+  add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
   EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("calibrate with them offered"));
   EXPECT_THAT(d.verdict, testing::StartsWith("The camera, not the physics"));
@@ -113,10 +114,59 @@ TEST(Verdict, PhysicsSeenThroughACameraThatItsSweepDoubtsIsNotAccepted) {
   d.candidates[0].effect = "strut_wake";
   d.candidates[0].family = "physics";
   d.candidates[0].accepted = true;
-  add_camera_remarks(&calibration, d);
+  add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
   EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for strut_wake"));
+}
+
+TEST(Verdict, AForceThatNothingExplainsIsNotTheCamerasAlone) {
+  const Calibration calibration = asking_for_roll();
+  Discovery d;
+  d.candidates.resize(1);
+  d.candidates[0].effect = "camera_roll";
+  d.candidates[0].family = "sensor";
+  d.candidates[0].accepted = true;
+  d.unexplained_port = "moment";
+  d.unexplained_quantity = "alpha_T";
+  add_camera_remarks(&calibration, 0.01, d);
+  EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for a force on moment that depends on alpha_T"));
+  EXPECT_FALSE(d.candidates[0].accepted);
+}
+
+TEST(Verdict, SignificantPhysicsThatWasRefusedIsNotTheCamerasAlone) {
+  const Calibration calibration = asking_for_roll();
+  Discovery d;
+  d.candidates.resize(2);
+  d.candidates[0].effect = "strut_wake";
+  d.candidates[0].family = "physics";
+  d.candidates[0].p_value = 0.02;
+  d.candidates[1].effect = "unknown:moment(phi)";
+  d.candidates[1].family = "unknown";
+  d.candidates[1].p_value = 0.005;
+  Discovery weaker = d;
+  weaker.candidates[1].p_value = 0.05;
+  add_camera_remarks(&calibration, 0.01, d);
+  EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for unknown:moment(phi) (family-wise p 0.005)"));
+  add_camera_remarks(&calibration, 0.01, weaker);
+  EXPECT_THAT(weaker.verdict, testing::StartsWith("The camera, not the physics"));
+}
+
+TEST(Verdict, ALargerDropThatIsRefusedIsNamed) {
+  Discovery d;
+  d.candidates.resize(2);
+  d.candidates[0].effect = "strut_wake";
+  d.candidates[0].accepted = true;
+  d.candidates[0].actual_drop = 97.0;
+  d.candidates[1].effect = "upwash";
+  d.candidates[1].actual_drop = 100.0;
+  d.candidates[1].why = "the held-out likelihood does not rise (-0.4)";
+  write_verdict(d, std::nullopt, 0.01, false);
+  EXPECT_THAT(d.verdict, testing::StartsWith("Missing: strut_wake"));
+  EXPECT_THAT(d.sentences,
+              testing::Contains("upwash has a larger drop (100) but is not accepted: the held-out likelihood does not rise (-0.4)"));
 }
 
 TEST(Screen, AStrengthThatCannotBeNegativeIsNot) {
@@ -158,6 +208,20 @@ TEST(Specimens, LeaveOutWhatDoesNotSuit) {
   EXPECT_THAT(names, testing::IsSupersetOf({"strut_wake", "vortex_shedding", "coulomb_friction", "camera_roll"}));
   for (const char* other : {"static_moment", "gravity", "gust", "apex_jitter", "coning", "periodic_forcing", "lag"})
     EXPECT_THAT(names, testing::Not(testing::Contains(other))) << "in the model, driven by noise, of another system, or specialised";
+}
+
+TEST(Screen, SaysWhichFrequenciesItLookedAt) {
+  Specimen specimen;
+  specimen.effect = "vortex_shedding";
+  specimen.family = "physics";
+  Screened s;
+  s.specimen = &specimen;
+  s.cells = 8;
+  s.cells_effective = 500.0;
+  s.frequencies = {0.2, 0.01, 1001, 10.2};
+  EXPECT_EQ(what_was_tried(s), "vortex_shedding (physics): 8 cells, 500 effective, 0.2 to 10.2 Hz");
+  s.frequencies.wanted = 22.5;
+  EXPECT_THAT(what_was_tried(s), testing::HasSubstr("0.2 to 10.2 Hz, not up to 22.5 Hz: the samples are not evenly spaced"));
 }
 
 /// The model turns with a rolled camera: held gains would call the roll known nine times better than it is.

@@ -2,51 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "misfit/discover/discover.h"
 #include "misfit/discover/specimen.h"
-#include "misfit/sim/step.h"
-#include "tests/model/requests.h"
+#include "tests/discover/record.h"
 
 namespace misfit {
 namespace {
 
-using namespace testing_models;
-using Values = std::map<std::string, double>;
-
-/// What the system does with `hidden` in it: an input held at random for 20 samples, small random pushes, all states read with white noise.
-Signals record(const ModelRequest& request, const Values& values, double step, double input, const std::vector<double>& noise,
-               unsigned seed) {
-  Model truth = assemble(request, registry());
-  for (const auto& [name, value] : values) set(truth, name, value);
-  const SystemSpec& spec = truth.system->spec();
-  Signals s;
-  s.name = "record";
-  for (const auto& i : spec.inputs) s.inputs.push_back({i.name, i.unit, {}});
-  for (const auto& o : spec.outputs) s.measured.push_back({o.name, o.unit, {}});
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  constexpr std::size_t samples = 2500, held = 20;
-  double u = 0.0;
-  for (std::size_t k = 0; k < samples; ++k) {
-    if (k % held == 0) u = std::abs(input) * (input < 0.0 ? std::abs(normal(random)) : normal(random));
-    s.t.push_back(step * static_cast<double>(k));
-    s.inputs[0].values.push_back(u);
-  }
-  Stepper stepper(truth);
-  std::vector<double> x(static_cast<std::size_t>(truth.states()), 0.0);
-  stepper.prepare(x.data(), &s.inputs[0].values[0], 0.0);
-  for (std::size_t k = 0; k < samples; ++k) {
-    for (std::size_t i = 0; i < s.measured.size(); ++i) s.measured[i].values.push_back(x[i] + noise[i] * normal(random));
-    if (k + 1 == samples) break;
-    EXPECT_TRUE(stepper.step(x.data(), {s.t[k], s.t[k + 1], &s.inputs[0].values[k], &s.inputs[0].values[k + 1]}));
-    for (std::size_t i = 0; i < noise.size(); ++i) {
-      if (spec.states[i].rate_of >= 0 || spec.key == "test_tanks") x[i] += 0.3 * noise[i] * normal(random);
-    }
-  }
-  return s;
-}
+using namespace testing_records;
 
 Discovery discovered(ModelRequest model, const std::vector<std::string>& free, const Signals& recorded) {
   for (const auto& name : free) model.parameters[name].free = true;
@@ -57,11 +20,8 @@ Discovery discovered(ModelRequest model, const std::vector<std::string>& free, c
 }
 
 Discovery in_cart(const std::string& hidden, const Values& values) {
-  ModelRequest truth = cart({effect("viscous_friction")}), model = truth;
-  if (!hidden.empty()) truth.effects.push_back(effect(hidden));
-  Values all = values;
-  all["viscosity"] = 1.5;
-  return discovered(model, {"stiffness"}, record(truth, all, 0.05, 15.0, {2e-3, 1e-2}, 41));
+  const std::vector<EffectRequest> more = hidden.empty() ? std::vector<EffectRequest>{} : std::vector<EffectRequest>{effect(hidden)};
+  return discovered(cart({effect("viscous_friction")}), {"stiffness"}, record_of_cart(more, values));
 }
 
 Discovery in_tanks(const std::vector<EffectRequest>& hidden, const Values& values) {

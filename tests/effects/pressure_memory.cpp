@@ -16,7 +16,7 @@ struct PressureMemory {
   static constexpr Role ports[] = {{"dynamic_pressure", "Pa"}};
   static constexpr CoefficientSpec coefficients[] = {
       {"blockage", CoefficientKind::strength, 0.0, "Pa", -1e4, 1e4, 100.0, "pressure lost at z = 1"},
-      {"blockage_tau", CoefficientKind::shape, 0.5, "s", 1e-3, 100.0, 0.5, "time constant"}};
+      scanned({"blockage_tau", CoefficientKind::shape, 0.5, "s", 1e-3, 100.0, 0.5, "time constant"}, {0.1, 2.5, 4})};
   static constexpr OwnStateSpec states[] = {{"z", "-", 0.0}};
 
   template <class T, class K>

@@ -147,6 +147,24 @@ TEST_P(EffectLaws, ScansNameWhatTheyAreSharesOfAndLieInsideBounds) {
   }
 }
 
+/// A refit moves what is free: where the screen has not looked at other values of a shape its p-value is too small, and it may look at the
+/// wrong end. What has no strength, or is driven by noise, is no candidate.
+TEST_P(EffectLaws, EveryShapeOfACandidateIsScannedHeldOrBorrowed) {
+  bool candidate = false;
+  for (const auto& c : spec_.coefficients) candidate = candidate || (c.kind == CoefficientKind::strength && !c.borrowed);
+  for (const auto& example : examples_) {
+    std::vector<double> intensity(spec_.states.size() + 1, 0.0);
+    const Inputs in(example);
+    effect_.diffusion(in.reads(), intensity.data());
+    for (double value : intensity) candidate = candidate && !(value > 0.0);
+  }
+  if (!candidate) return;
+  for (const auto& c : spec_.coefficients) {
+    EXPECT_TRUE(c.kind == CoefficientKind::strength || c.borrowed || c.fixed || c.scan.count != 0)
+        << GetParam() << ": '" << c.name << "' is free in a refit but neither scanned nor held";
+  }
+}
+
 TEST_P(EffectLaws, DefaultsLieInsideBoundsAndStrengthsMayBeZero) {
   for (const auto& c : spec_.coefficients) {
     EXPECT_LT(c.lower, c.upper) << c.name;

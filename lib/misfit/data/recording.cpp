@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "misfit/core/error.h"
 #include "misfit/core/loose_csv.h"
@@ -33,6 +34,7 @@ class Surveyor {
     find_segments();
     find_inputs_and_outputs();
     find_rates();
+    name_unknown_units();
     fill_parts();
     return std::move(out_);
   }
@@ -56,9 +58,7 @@ class Surveyor {
     s.header = column.header;
     s.name = header.name;
     s.unit = header.unit.empty() ? "-" : header.unit;
-    if (!header.not_understood.empty())
-      out_.remarks.push_back(
-          fmt::format("column '{}': the unit '{}' is not known, its numbers are taken as they are", s.header, header.not_understood));
+    not_understood_.push_back(header.not_understood);
     const std::vector<double> known = finite(column.values);
     s.missing = column.values.size() - known.size() - column.text;
     if (column.text > 0) {
@@ -128,7 +128,7 @@ class Surveyor {
     c.resolution = 0.0;
     if (c.unit == "-") {
       c.unit = std::string("s");
-      out_.remarks.push_back(fmt::format("column '{}' names no unit: taken as seconds", c.header));
+      out_.remarks.push_back(unit_found(time_, "taken as seconds"));
     }
     c.why = "runs forward" + (c.unit == "s" ? std::string() : ", in " + c.unit);
     const double factor = convert(1.0, c.unit, "s");
@@ -194,8 +194,23 @@ class Surveyor {
         out_.columns[i].why = "the rate of change of " + out_.columns[j].name;
         if (out_.columns[i].unit != "-") continue;
         out_.columns[i].unit = rate_unit(out_.columns[j].unit);
-        out_.remarks.push_back("column '" + out_.columns[i].header + "' names no unit: taken as " + out_.columns[i].unit);
+        out_.remarks.push_back(unit_found(i, "taken as " + out_.columns[i].unit));
       }
+    }
+  }
+
+  /// What is said of a column whose header gives no unit, or none that is known, where the numbers tell it.
+  std::string unit_found(std::size_t i, const std::string& found) {
+    const std::string unknown = std::exchange(not_understood_[i], "");
+    const std::string column = "column '" + out_.columns[i].header + "'";
+    return unknown.empty() ? column + " names no unit: " + found : column + ": the unit '" + unknown + "' is not known: " + found;
+  }
+
+  void name_unknown_units() {
+    for (std::size_t i = 0; i < not_understood_.size(); ++i) {
+      if (not_understood_[i].empty()) continue;
+      out_.remarks.push_back(fmt::format("column '{}': the unit '{}' is not known, its numbers are taken as they are",
+                                         out_.columns[i].header, not_understood_[i]));
     }
   }
 
@@ -237,6 +252,7 @@ class Surveyor {
     }
   }
 
+  std::vector<std::string> not_understood_;  ///< unit in the header, per column; empty: known, or none, or found out
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   LooseTable table_;
   RecordingSurvey out_;

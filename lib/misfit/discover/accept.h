@@ -21,15 +21,16 @@ struct Searched {
   const Registry& registry;
   const std::vector<Signals>& experiments;
   const DiscoverOptions& options;
+  double families = 1.0;  ///< that a p-value is corrected for
 };
 
-/// Groups the best with every other whose refitted drop is near (6, DESIGN 6): inseparable if neither has a significant score once the
-/// other is in.
-void find_groups(std::vector<Entry>& entries, const Searched& searched);
-
-/// Accepts at most one: the first that is significant, makes the held-out readings more likely with strengths away from their bounds, and
-/// after which no dependence on a quantity that it reads remains, or none once a second known effect is in as well. It comes to the
-/// front; the others get their words. Returned: what remains, unexplained, where that is why nothing was accepted.
+/// Accepts at most one of those that hold out: significant, with strengths away from their bounds, at a maximum that was reached, and the
+/// held-out readings more likely. Of these the first, in the order of the list, after which no unknown curve remains of a quantity that it
+/// or a likeness before it reads (what_is_left): an effect that leaves one is a likeness of what is missing, be its drop the largest. If
+/// all leave something, the first with which a second known effect leaves nothing, as long as each is still needed beside the other and no
+/// strength of the two ends at a bound. It comes to the front and is grouped with every other whose refitted drop is near (6, DESIGN 6):
+/// inseparable if both can be in the model and neither has a significant score once the other is in. Where nothing is accepted the group is
+/// that of the front. All that were refitted get their words. Returned: what remains, unexplained, where that is why nothing was accepted.
 [[nodiscard]] std::optional<UnknownCurve> accept_best(std::vector<Entry>& entries, const Searched& searched);
 
 }  // namespace misfit

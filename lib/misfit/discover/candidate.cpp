@@ -1,6 +1,7 @@
 #include "misfit/discover/candidate.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "misfit/core/text.h"
 #include "misfit/math/statistics.h"
@@ -35,6 +36,18 @@ Candidate named_candidate(const Screened& s, double families) {
   }
   if (c.described) c.why = "already described by the model: the free parameters imitate it to better than 99 %";
   return c;
+}
+
+std::string what_was_tried(const Screened& s) {
+  std::string out = effect_at(s.specimen->effect, s.specimen->roles) + " (" + s.specimen->family + "): " + std::to_string(s.cells) +
+                    (s.cells == 1 ? " cell" : " cells") + ", " + format_value(std::round(s.cells_effective)) + " effective";
+  const LineGrid& scanned = s.frequencies;
+  if (scanned.count == 0) return out;
+  const double last = scanned.at(scanned.count - 1);
+  out += ", " + format_value(scanned.first) + " to " + format_value(last) + " Hz";
+  if (last + 2.0 * scanned.step < scanned.wanted)
+    out += ", not up to " + format_value(scanned.wanted) + " Hz: the samples are not evenly spaced, and these are too many";
+  return out;
 }
 
 Candidate unknown_candidate(const UnknownCurve& curve, double families, double p_accept) {

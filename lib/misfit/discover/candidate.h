@@ -8,6 +8,9 @@ namespace misfit {
 /// its best cell (without sigma), where a refit would start.
 [[nodiscard]] Candidate named_candidate(const Screened& screened, double families);
 
+/// "vortex_shedding (physics): 8 cells, 700 effective, 0.2 to 12 Hz", and above which frequency it was not looked for where that is so.
+[[nodiscard]] std::string what_was_tried(const Screened& screened);
+
 /// The same of an unknown curve.
 [[nodiscard]] Candidate unknown_candidate(const UnknownCurve& curve, double families, double p_accept);
 

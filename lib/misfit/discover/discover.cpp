@@ -35,9 +35,7 @@ class Search {
     families_ = static_cast<double>(screened_.size() + unknown_.size());
     rank();
     refit_best();
-    const Searched searched{estimate_, registry_, experiments_, options_};
-    find_groups(entries_, searched);
-    left_ = accept_best(entries_, searched);
+    left_ = accept_best(entries_, {estimate_, registry_, experiments_, options_, families_});
     list_unknown();
     describe_search();
     return std::move(out_);
@@ -155,17 +153,14 @@ class Search {
       const PortSpec& named = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
       out_.force[named.name] = {estimate_.noise.force, 0.0, named.unit};
     }
-    for (const auto& s : screened_) {
-      out_.tried.push_back(effect_at(s.specimen->effect, s.specimen->roles) + " (" + s.specimen->family + "): " + std::to_string(s.cells) +
-                           (s.cells == 1 ? " cell" : " cells") + ", " + format_value(std::round(s.cells_effective)) + " effective");
-    }
+    for (const auto& s : screened_) out_.tried.push_back(what_was_tried(s));
     std::string curves = "unknown curves:";
     for (const auto& curve : unknown_) curves += " " + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
     const std::optional<Unexplained> open = unexplained();
     write_verdict(out_, open, options_.p_accept, options_.calibration != nullptr);
     add_likenesses(screened_, score_, out_);
-    add_camera_remarks(options_.calibration, out_);
+    add_camera_remarks(options_.calibration, options_.p_accept, out_);
   }
 
   /// What depends on a quantity in a way that no named effect has.

@@ -57,6 +57,10 @@ double prior_of_off(const Specimen& specimen) {
   return sum;
 }
 
+/// What exact derivatives say the objective lacks of its maximum: to be added where the search ended at one. Far from it a Newton step
+/// promises whatever the curvature there says.
+double still_to_gain(const FilterEstimate& estimate) { return estimate.converged ? estimate.left.value_or(0.0) : 0.0; }
+
 FilterOptions like(const FilterEstimate& estimate, int threads) {
   FilterOptions options;
   options.threads = threads;
@@ -118,7 +122,7 @@ Refit refit(const FilterEstimate& without, const std::vector<Signals>& experimen
     return out;
   }
   out.ok = true;
-  out.drop = 2.0 * (out.estimate.objective + out.estimate.left.value_or(0.0) - without.objective - without.left.value_or(0.0) -
+  out.drop = 2.0 * (out.estimate.objective + still_to_gain(out.estimate) - without.objective - still_to_gain(without) -
                     prior_of_off(*screened.specimen));
   const std::vector<int> free = out.estimate.model.free_parameters();
   const BoundEffect& bound = out.estimate.model.effects.back();

@@ -6,9 +6,9 @@ namespace misfit {
 
 /// The model with one effect more, at its own maximum over everything, on the same readings and with the same roughness weights.
 struct Refit {
-  bool ok = false;
+  bool ok = false;    ///< it could be run; whether a maximum was reached is estimate.converged
   std::string why;    ///< of failing
-  double drop = 0.0;  ///< 2 [objective(with) − objective(without)], priors on both sides, what exact derivatives leave included
+  double drop = 0.0;  ///< 2 [objective(with) − objective(without)], priors on both sides; with what exact derivatives leave where converged
   FilterEstimate estimate;
   ModelRequest request;
   std::map<std::string, Estimate> parameters;  ///< of the effect

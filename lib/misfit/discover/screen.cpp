@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
-#include <numbers>
+#include <numeric>
 
 #include "misfit/core/work_queue.h"
 #include "misfit/math/statistics.h"
@@ -82,79 +81,38 @@ void look_closer(const FilterEstimate& estimate, const ScoreTest& score, Screene
   }
 }
 
-/// |Σ λ_k exp(i ω t_k)|²: the rotation goes on from sample to sample, with its cosine only where the step changes.
-double line_power(const Eigen::VectorXd& lambda, const std::vector<double>& t, double omega) {
-  constexpr std::size_t anew = 512;  // from time to time: the rotation gathers rounding
-  std::complex<double> sum, at, turn;
-  double last = -1.0;
-  for (std::size_t k = 0; k < t.size(); ++k) {
-    const double h = k == 0 ? 0.0 : t[k] - t[k - 1];
-    if (h != last) turn = std::polar(1.0, omega * h);
-    last = h;
-    at = k % anew == 0 ? std::polar(1.0, omega * t[k]) : at * turn;
-    sum += lambda[static_cast<Eigen::Index>(k)] * at;
-  }
-  return std::norm(sum);
-}
-
-/// Each line over its background, the running median over 1/20 of the band: lines stand out of it.
-void add_over_background(const std::vector<double>& line, std::vector<double>& power) {
-  const std::size_t count = line.size(), reach = std::max<std::size_t>(40, count / 40);
-  for (std::size_t f = 0; f < count; ++f) {
-    const auto from = static_cast<std::ptrdiff_t>(f > reach ? f - reach : 0);
-    const auto to = static_cast<std::ptrdiff_t>(std::min(count, f + reach));
-    power[f] += line[f] / std::max(median({line.begin() + from, line.begin() + to}), 1e-300);
-  }
-}
-
-/// The longest time that runs forward: the times of several experiments stand one behind the other.
-struct Stretch {
-  double length = 0.0;  ///< [s]
-  std::size_t samples = 0;
-};
-
-Stretch longest_stretch(const std::vector<double>& t) {
-  Stretch out;
-  for (std::size_t from = 0, to = 0; from < t.size(); from = to) {
-    for (to = from + 1; to < t.size() && t[to] > t[to - 1];) ++to;
-    if (t[to - 1] - t[from] > out.length) out = {t[to - 1] - t[from], to - from};
-  }
-  return out;
-}
-
-/// Frequencies whose line in the score of the force steps stands out most, as cells; their count among all scanned.
-std::vector<double> frequency_peaks(const Specimen& specimen, const ForceColumns& path, double& scanned) {
-  const std::vector<double>& t = path.times();
-  const Stretch longest = longest_stretch(t);
-  if (!(longest.length > 0.0)) return {};
-  const double step = 1.0 / (4.0 * longest.length);
-  const double first = std::max(specimen.frequency_from, 2.0 * step);  // half a period in the record is no line but a drift
-  const double last = std::min(specimen.frequency_to, 0.45 * static_cast<double>(longest.samples) / longest.length);
-  constexpr double most_turns = 4e9;  // some 10 s of work: in very long records only the lower frequencies are scanned
-  const double affordable = most_turns / static_cast<double>(t.size() * std::max<std::size_t>(specimen.ports.size(), 1));
-  const auto count = static_cast<std::size_t>(std::clamp((last - first) / step, 0.0, affordable));
-  const auto frequency = [&](std::size_t f) { return first + static_cast<double>(f) * step; };
-  std::vector<double> power(count, 0.0), line(count);
-  for (int port : specimen.ports) {
-    const Eigen::VectorXd lambda = path.score_of_steps(port);
-    for (std::size_t f = 0; f < count; ++f) line[f] = line_power(lambda, t, 2.0 * std::numbers::pi * frequency(f));
-    add_over_background(line, power);
-  }
-  scanned = static_cast<double>(count) / 2.0;  // two steps of a half width each are one independent line
-  std::vector<std::size_t> order(count);
-  for (std::size_t f = 0; f < count; ++f) order[f] = f;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return power[a] > power[b]; });
+/// The strongest of the lines, as frequencies.
+std::vector<double> peaks(const LineGrid& grid, const std::vector<double>& power) {
   constexpr std::size_t most = 8;
+  std::vector<std::size_t> order(grid.count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto first = static_cast<std::ptrdiff_t>(std::min(grid.count, most));
+  std::partial_sort(order.begin(), order.begin() + first, order.end(),
+                    [&](std::size_t a, std::size_t b) { return power[a] != power[b] ? power[a] > power[b] : a < b; });
   std::vector<double> out;
-  for (std::size_t i = 0; i < std::min(count, most); ++i) out.push_back(frequency(order[i]));
+  for (std::ptrdiff_t i = 0; i < first; ++i) out.push_back(grid.at(order[static_cast<std::size_t>(i)]));
   return out;
+}
+
+/// Frequencies whose line in the score of the force steps stands out most.
+std::vector<double> frequency_peaks(const FilterEstimate& estimate, const Specimen& specimen, const ForceColumns& path, LineGrid& grid) {
+  SampleTimes times;
+  for (std::size_t e = 0, from = 0; e < estimate.traces.size(); from += estimate.traces[e++].samples) {
+    const auto first = path.times().begin() + static_cast<std::ptrdiff_t>(from);
+    times.emplace_back(first, first + static_cast<std::ptrdiff_t>(estimate.traces[e].samples));
+  }
+  grid = line_grid(times, specimen.frequency_from, specimen.frequency_to, specimen.ports.size());
+  std::vector<double> power(grid.count, 0.0);
+  for (int port : specimen.ports) add_over_background(line_power(path.score_of_steps(port), times, grid), power);
+  return peaks(grid, power);
 }
 
 /// The cells of a specimen; one with a frequency has each of its other cells at every peak.
-std::vector<std::vector<double>> cells_of(const Specimen& specimen, const ForceColumns& path, double& frequencies) {
+std::vector<std::vector<double>> cells_of(const FilterEstimate& estimate, const Specimen& specimen, const ForceColumns& path,
+                                          LineGrid& frequencies) {
   if (specimen.frequency < 0) return specimen.cells;
   std::vector<std::vector<double>> out;
-  for (double f : frequency_peaks(specimen, path, frequencies)) {
+  for (double f : frequency_peaks(estimate, specimen, path, frequencies)) {
     for (auto cell : specimen.cells) {
       cell.push_back(f);
       out.push_back(std::move(cell));
@@ -176,13 +134,13 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
                              const std::vector<Specimen>& specimens, int threads, const ProgressFn& progress) {
   std::vector<Screened> out(specimens.size());
   std::vector<std::vector<std::vector<double>>> cells(specimens.size());
-  std::vector<double> frequencies(specimens.size(), 1.0);
+  std::vector<LineGrid> frequencies(specimens.size());
   struct Job {
     std::size_t specimen, cell;
   };
   std::vector<Job> jobs;
   for (std::size_t s = 0; s < specimens.size(); ++s) {
-    cells[s] = cells_of(specimens[s], path, frequencies[s]);
+    cells[s] = cells_of(estimate, specimens[s], path, frequencies[s]);
     for (std::size_t c = 0; c < cells[s].size(); ++c) jobs.push_back({s, c});
   }
   std::vector<std::vector<CellScore>> results(specimens.size());
@@ -210,7 +168,10 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
       best.runs = true;
       if (c > 0 && specimens[s].frequency < 0) best.cells_effective += novelty(score, results[s][c - 1].columns, cell.columns);
     }
-    if (specimens[s].frequency >= 0) best.cells_effective = std::max(frequencies[s], 1.0);
+    if (specimens[s].frequency >= 0) {
+      best.frequencies = frequencies[s];
+      best.cells_effective = std::max(static_cast<double>(frequencies[s].count / 2), 1.0);  // two steps of a half width each are one line
+    }
     if (!best.runs || best.result.dof == 0) return;
     constexpr double worth_a_closer_look = 0.1;
     if (!specimens[s].shapes.empty() &&

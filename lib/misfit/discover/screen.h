@@ -2,6 +2,7 @@
 
 #include "misfit/core/work_queue.h"
 #include "misfit/diagnose/features.h"
+#include "misfit/discover/lines.h"
 #include "misfit/discover/specimen.h"
 
 namespace misfit {
@@ -26,10 +27,11 @@ struct Screened {
   double log_p = 0.0;            ///< natural logarithm of the p-value of the best cell: ranks what is below 1e-300
   bool runs = true;              ///< false: the model cannot be run with it
   std::size_t cells = 0;
+  LineGrid frequencies;  ///< that were scanned; none where it has no frequency
 };
 
-/// Score tests of all cells of all specimens. Frequencies are scanned in steps of 1/(4T) by their line in the score of the force steps, and
-/// the strongest are then tested exactly. Independent of the number of threads.
+/// Score tests of all cells of all specimens. Frequencies are scanned in steps of 1/(4T) by their line in the score of the force steps
+/// (line_grid), and the strongest are then tested exactly. Independent of the number of threads.
 [[nodiscard]] std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
                                            const std::vector<Specimen>& specimens, int threads, const ProgressFn& progress = {});
 

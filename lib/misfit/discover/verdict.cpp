@@ -40,6 +40,30 @@ void separate(const Candidate& best, bool camera, Discovery& discovery) {
   discovery.sentences.push_back(sentence);
 }
 
+/// Whoever reads the drops asks why the largest is not the one accepted.
+void name_larger_drops(const Candidate& best, Discovery& discovery) {
+  for (const Candidate& other : discovery.candidates) {
+    if (!other.actual_drop || !best.actual_drop || !(*other.actual_drop > *best.actual_drop)) continue;
+    discovery.sentences.push_back(effect_at(other.effect, other.roles) + " has a larger drop (" + format_value(*other.actual_drop) +
+                                  ") but is not accepted: " + other.why);
+  }
+}
+
+/// What the flight asks for besides the camera's: accepted, of unknown form, or significant without being either; empty: nothing.
+std::string asked_by_flight(const Discovery& discovery, double p_accept) {
+  const auto physical = [](const Candidate& c) { return c.family != "sensor"; };
+  for (const Candidate& c : discovery.candidates) {
+    if (c.accepted && physical(c)) return effect_at(c.effect, c.roles);
+  }
+  if (!discovery.unexplained_port.empty())
+    return "a force on " + discovery.unexplained_port + " that depends on " + discovery.unexplained_quantity;
+  const Candidate* best = nullptr;
+  for (const Candidate& c : discovery.candidates) {
+    if (physical(c) && c.p_value < p_accept && (best == nullptr || c.p_value < best->p_value)) best = &c;
+  }
+  return best == nullptr ? "" : effect_at(best->effect, best->roles) + " (family-wise p " + format_probability(best->p_value) + ")";
+}
+
 }  // namespace
 
 void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept, bool camera) {
@@ -53,6 +77,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
                   format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise p " + format_probability(best.p_value) +
                   "): " + numbers(best) + ".";
     separate(best, camera, out);
+    name_larger_drops(best, out);
     return;
   }
   if (unexplained) {
@@ -98,7 +123,7 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
   return std::nullopt;
 }
 
-void add_camera_remarks(const Calibration* calibration, Discovery& out) {
+void add_camera_remarks(const Calibration* calibration, double p_accept, Discovery& out) {
   if (calibration == nullptr) return;
   std::vector<std::string> wanted;
   for (const auto& test : calibration->tests) {
@@ -112,10 +137,9 @@ void add_camera_remarks(const Calibration* calibration, Discovery& out) {
   }
   const std::string disagreement =
       "the calibration sweep asks for " + join_words(wanted) + ", which the camera of this study does not have";
-  std::string flight;
+  const std::string flight = asked_by_flight(out, p_accept);
   for (auto& c : out.candidates) {
     if (!c.accepted) continue;
-    if (c.family != "sensor") flight = effect_at(c.effect, c.roles);
     c.accepted = false;
     c.why = "the calibration sweep asks for " + join_words(wanted) + ": calibrate with them offered, then ask again (" + c.why + ")";
   }

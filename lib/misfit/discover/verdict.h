@@ -21,7 +21,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 
 /// Remarks on the camera: what the sweep asks for and the model does not have (kept in Discovery::sweep_asks). Nothing is accepted then:
 /// the drop of a sensor effect is the sweep's prior, which a calibration has to follow up, not the flight; and physics seen through a wrong
-/// camera may be the camera's.
-void add_camera_remarks(const Calibration* calibration, Discovery& out);
+/// camera may be the camera's. Where the flight asks for physics too, be it refused, of unknown form or not yet refitted (p below
+/// `p_accept`), sweep and flight disagree.
+void add_camera_remarks(const Calibration* calibration, double p_accept, Discovery& out);
 
 }  // namespace misfit

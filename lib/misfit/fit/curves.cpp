@@ -203,10 +203,11 @@ std::vector<std::string> scale_uncertainties(const Model& model, const double* x
     const double nominal = gain_of(model, *curve, k, 0.0, x, u, t);
     const double moved = gain_of(model, *curve, k, *p.prior_sigma, x, u, t);
     constexpr double worth_saying = 1e-3;
-    if (!(nominal > 0.0) || std::abs(moved / nominal - 1.0) < worth_saying) continue;
+    const double share = std::abs(nominal / moved - 1.0);  // for the same motion the curve goes with the reciprocal
+    if (!(nominal > 0.0) || !(moved > 0.0) || share < worth_saying) continue;
     out.push_back(curve->name + " is only known as well as its scale: " + p.name + " = " + format_value(p.value, *p.prior_sigma) + " " +
-                  p.unit + " alone makes every " + curve->name + " uncertain by " +
-                  format_value(std::round(1000.0 * std::abs(moved / nominal - 1.0)) / 10.0) + " %, which is not in its band");
+                  p.unit + " alone makes every " + curve->name + " uncertain by " + format_value(std::round(1000.0 * share) / 10.0) +
+                  " %, which is not in its band");
   }
   return out;
 }

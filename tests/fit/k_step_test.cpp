@@ -1,0 +1,64 @@
+#include "misfit/fit/k_step.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "misfit/data/ladder.h"
+#include "tests/fit/cart_filter.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_cart;
+
+/// What k_step_errors reads of an estimate; a cubic spring sends what starts far out to infinity.
+FilterEstimate estimate_of(const Cart& cart) {
+  FilterEstimate estimate;
+  estimate.model = estimate.forced.model = cart.model.model;
+  estimate.data = {cart.data};
+  estimate.traces = {cart.run()};
+  return estimate;
+}
+
+void send_off(FilterEstimate& estimate, std::size_t runs) {
+  FilterTrace& trace = estimate.traces[0];
+  for (std::size_t run = 0; run < runs; ++run) trace.predicted[3 * run * static_cast<std::size_t>(trace.n)] = 1e150;
+}
+
+TEST(KStep, FreeRunsThatAllEndSayNothing) {
+  const Cart cart(303, 5, {effect("cubic_stiffness")});
+  const KStepErrors errors = k_step_errors(estimate_of(cart));
+  EXPECT_EQ(errors.words, "");
+  EXPECT_THAT(errors.diverged, testing::Each(0U));
+  EXPECT_EQ(errors.runs.front(), 101U);
+  EXPECT_EQ(errors.runs.back(), 91U) << "from every third sample that has 32 more behind it";
+  for (const auto& [channel, rms] : errors.rms) {
+    ASSERT_EQ(rms.size(), std::size(kLadderSteps));
+    for (const double value : rms) EXPECT_TRUE(value > 0.0) << channel;
+  }
+}
+
+TEST(KStep, AFewThatDivergeAreCountedAndLeftOut) {
+  const Cart cart(303, 5, {effect("cubic_stiffness")});
+  FilterEstimate estimate = estimate_of(cart);
+  estimate.forced.model.parameters[static_cast<std::size_t>(estimate.forced.model.find_parameter("cubic_stiffness"))].value = 1.0;
+  const KStepErrors before = k_step_errors(estimate);
+  send_off(estimate, 2);
+  const KStepErrors errors = k_step_errors(estimate);
+  EXPECT_THAT(errors.diverged, testing::Each(2U));
+  EXPECT_THAT(errors.words, testing::StartsWith("2 of 101 free runs diverge within 1 step: they are not in its error; 2 of "));
+  EXPECT_NEAR(errors.rms.at("speed_reading")[5], before.rms.at("speed_reading")[5], 0.05 * before.rms.at("speed_reading")[5]);
+}
+
+TEST(KStep, WhereManyDivergeNoErrorIsGiven) {
+  const Cart cart(303, 5, {effect("cubic_stiffness")});
+  FilterEstimate estimate = estimate_of(cart);
+  estimate.forced.model.parameters[static_cast<std::size_t>(estimate.forced.model.find_parameter("cubic_stiffness"))].value = 1.0;
+  send_off(estimate, 10);
+  const KStepErrors errors = k_step_errors(estimate);
+  EXPECT_THAT(errors.words, testing::HasSubstr("10 of 91 free runs diverge within 32 steps: no error is given there"));
+  for (const auto& [channel, rms] : errors.rms) EXPECT_TRUE(std::isnan(rms.back())) << channel;
+}
+
+}  // namespace
+}  // namespace misfit
