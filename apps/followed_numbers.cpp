@@ -51,7 +51,7 @@ SpreadCurve followed(const CurveEstimate& curve) {
   const auto seen = [](double count) { return count > 0.0; };
   const auto first = std::find_if(curve.count.begin(), curve.count.end(), seen) - curve.count.begin();
   const auto behind = curve.count.rend() - std::find_if(curve.count.rbegin(), curve.count.rend(), seen);
-  SpreadCurve out{curve.name, curve.of, curve.of_unit, curve.unit, {}, {}, {}, {}, {}, curve.informative, curve.why};
+  SpreadCurve out{curve.name, curve.of, curve.of_unit, curve.unit, {}, {}, {}, {}, {}, curve.informative, curve.why, curve.trimmed};
   for (auto i = first; i < behind; ++i) {
     out.x.push_back(curve.x[static_cast<std::size_t>(i)]);
     out.nominal.push_back(curve.value[static_cast<std::size_t>(i)]);

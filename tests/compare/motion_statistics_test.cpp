@@ -126,5 +126,46 @@ TEST(CompareMotion, PValuesOfTheSameKindAreSpreadEvenly) {
   }
 }
 
+/// Two experiments, each run simulating both: one p-value over all groups of both. `departs`: how much larger the second one's motion is.
+SimulatedMotion two_experiments(unsigned seed, double departs, std::size_t runs, std::size_t samples) {
+  SimulatedMotion out;
+  out.runs = runs;
+  MotionDistances distances;
+  for (const unsigned experiment : {0U, 1U}) {
+    const MotionPath measured = random_motion(seed + experiment, experiment == 0 ? 1.0 : departs, samples);
+    const MotionScales scales = scales_of(measured, step);
+    std::vector<MotionNumbers> simulated;
+    for (unsigned run = 0; run < runs; ++run)
+      simulated.push_back(motion_numbers(random_motion(seed + 10 + 2 * run + experiment, 1.0, samples), scales));
+    out.series.push_back(
+        compare_motion(experiment == 0 ? "calm" : "wild", measured, scales, motion_numbers(measured, scales), simulated, distances));
+  }
+  EXPECT_EQ(distances.size(), 8U) << "four groups of each experiment";
+  out.p_value = overall_p_value(distances);
+  conclude_motion(out);
+  return out;
+}
+
+TEST(CompareMotion, OneOfTwoExperimentsThatDepartsIsNamed) {
+  const SimulatedMotion motion = two_experiments(500, 1.6, 99, 1500);
+  EXPECT_DOUBLE_EQ(motion.p_value, 0.01) << "the calm one does not dilute it";
+  EXPECT_THAT(motion.sentences, testing::Contains(testing::StartsWith("the distribution of x (wild): p 0.01")));
+  EXPECT_THAT(motion.sentences, testing::Not(testing::Contains(testing::HasSubstr("(calm)"))));
+}
+
+TEST(CompareMotion, TwoExperimentsOfTheSameKindHaveOneVerdict) {
+  const SimulatedMotion motion = two_experiments(900, 1.0, 99, 1500);
+  EXPECT_GT(motion.p_value, 0.01);
+  EXPECT_THAT(motion.sentences.front(), testing::StartsWith("the fitted model makes motion like the measured one"));
+}
+
+/// As for one experiment: of 150 trials 15 are expected at or below 0.1; the smaller of two p-values by themselves would give some 28.
+TEST(CompareMotion, TheJointRankOfTwoExperimentsIsSpreadEvenly) {
+  int small = 0;
+  for (unsigned trial = 0; trial < 150; ++trial) small += two_experiments(100000 + 100 * trial, 1.0, 19, 400).p_value <= 0.1 ? 1 : 0;
+  EXPECT_LE(small, 27);
+  EXPECT_GE(small, 4);
+}
+
 }  // namespace
 }  // namespace misfit

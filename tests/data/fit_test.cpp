@@ -38,6 +38,7 @@ Fit example() {
   fit.rms = {{"alpha_T", {0.01, 0.0, "rad"}}};
   fit.curves = {curve("C_m"), curve("C_m_alphadot")};
   fit.curves[1].informative = false;
+  fit.curves[0].trimmed = true;
   fit.curves[1].why = "the sum telescopes";
   fit.predictions = {{"flight", "alpha_T", "rad", {0.0, 0.5}, {0.2, nan}, {0.21, 0.22}, {0.01, 0.01}, {false, true}}};
   fit.facts = {{"telescoped_sum", "0.01 ± 0.02"}};
@@ -130,6 +131,8 @@ TEST(Fit, ReadsBackWhatWasWritten) {
   EXPECT_EQ(back.parameters.at("C_m[0]").sigma, 0.0);
   ASSERT_EQ(back.curves.size(), 2U);
   EXPECT_FALSE(back.curves[1].informative);
+  EXPECT_TRUE(back.curves[0].trimmed);
+  EXPECT_FALSE(back.curves[1].trimmed);
   EXPECT_EQ(back.curves[1].why, "the sum telescopes");
   EXPECT_NEAR(back.curves[0].x[1], 10.0 * degree, 1e-12);
   EXPECT_TRUE(std::isnan(back.curves[0].sigma[0]));

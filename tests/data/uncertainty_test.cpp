@@ -34,7 +34,8 @@ Uncertainty example() {
   trim.shares = {{"R", 0.9, 0.01, -0.4 * degree}, {"calibration", 0.05, 0.01, nan}};
   trim.rest = 0.05;
   u.numbers = {trim};
-  u.curves = {{"C_m", "alpha_T", "rad", "-", {degree, 2.0 * degree}, {0.1, 0.2}, {0.11, nan}, {0.01, nan}, {8.0, 0.0}, false, "driven"}};
+  u.curves = {
+      {"C_m", "alpha_T", "rad", "-", {degree, 2.0 * degree}, {0.1, 0.2}, {0.11, nan}, {0.01, nan}, {8.0, 0.0}, false, "driven", true}};
   u.notes = {"a note"};
   return u;
 }
@@ -57,6 +58,7 @@ TEST(UncertaintyFile, IsReadAsItWasWritten) {
   EXPECT_EQ(after.curves[0].x, before.curves[0].x);
   EXPECT_FALSE(after.curves[0].informative);
   EXPECT_EQ(after.curves[0].why, "driven");
+  EXPECT_TRUE(after.curves[0].trimmed);
   EXPECT_EQ(after.find("slope of C_m"), nullptr);
 }
 

@@ -27,7 +27,8 @@ Fit fit() {
                {9.0, 0.1, 0.1, 0.1},
                {0.0, 5.0, 5.0, 5.0},
                true,
-               ""}};
+               "",
+               true}};
   return f;
 }
 
@@ -52,6 +53,21 @@ ChannelPrediction channel(std::size_t samples) {
     c.held_out.push_back(false);
   }
   return c;
+}
+
+/// The library knows no parachute: which curve's zero is the trim is in the data, and the first quantity needs no place in the name.
+TEST(Figures, TheTrimStandsOnWhicheverCurveHasIt) {
+  Fit ship = fit();
+  ship.curves[0].name = "righting_lever";
+  ship.curves[0].of = "heel";
+  ship.curves.push_back(ship.curves[0]);
+  ship.curves[1].of = "pitch";
+  ship.curves[1].trimmed = false;
+  const Figure lever = curve_figure("righting_lever", "heel", {ship}, {}), pitch = curve_figure("righting_lever", "pitch", {ship}, {});
+  EXPECT_EQ(lever.name, "curve_righting_lever");
+  EXPECT_NE(find(lever, "trim_output_error"), nullptr);
+  EXPECT_EQ(pitch.name, "curve_righting_lever_of_pitch");
+  EXPECT_EQ(find(pitch, "trim_output_error"), nullptr);
 }
 
 TEST(Figures, CurvesAreSolidWhereVisitedDashedElsewhereAndTheTrimStandsOnTheZeroLine) {

@@ -37,7 +37,8 @@ Uncertainty example() {
                {0.01, 0.02, 5.0},
                {10.0, 10.0, 2.0},
                true,
-               ""}};
+               "",
+               true}};
   return u;
 }
 
@@ -60,6 +61,21 @@ TEST(SpreadFigure, ShowsTheBandTheNominalFitAndTheTrim) {
   // The place that only two of ten runs reach is pale, and does not set the scale.
   EXPECT_TRUE(std::isfinite(series(figure, "band_few").lo[2]));
   EXPECT_LT((*figure.panels.front().y_range)[1], 1.0);
+}
+
+TEST(SpreadFigure, TheTrimStandsOnWhicheverCurveHasIt) {
+  Uncertainty u = example();
+  u.curves[0].name = "righting_lever";
+  u.curves[0].of = "heel";
+  u.numbers[1].name = "slope of righting_lever";
+  u.curves.push_back(u.curves[0]);
+  u.curves[1].of = "pitch";
+  u.curves[1].trimmed = false;
+  EXPECT_EQ(spread_figure(u.curves[0], u, {}).name, "uncertainty_righting_lever");
+  EXPECT_NEAR(series(spread_figure(u.curves[0], u, {}), "trim").lo[0], 1.7, 1e-9);
+  EXPECT_EQ(spread_figure(u.curves[1], u, {}).name, "uncertainty_righting_lever_pitch");
+  EXPECT_THROW((void)series(spread_figure(u.curves[1], u, {}), "trim"), std::runtime_error);
+  EXPECT_EQ(shares_figure(u).panels.size(), 2U) << "the trim and the slope of its curve";
 }
 
 TEST(SharesFigure, HasTheTrimAndTheSlopeSideBySide) {

@@ -82,6 +82,7 @@ Json curves_to_json(const std::vector<CurveEstimate>& curves) {
                         {"of_unit", curve.of_unit},
                         {"unit", curve.unit},
                         {"informative", curve.informative},
+                        {"trimmed", curve.trimmed},
                         {"why", curve.why},
                         {"file", file.name}});
     }
@@ -98,6 +99,7 @@ std::vector<CurveEstimate> curves_from(const Json& array) {
     curve.of_unit = object.at("of_unit");
     curve.unit = object.at("unit");
     curve.informative = object.at("informative");
+    curve.trimmed = object.value("trimmed", false);
     curve.why = object.at("why");
     curves.push_back(std::move(curve));
   }

@@ -28,6 +28,7 @@ struct CurveEstimate {
   std::vector<double> count;  ///< samples (bin or grid cell) behind the value; 0: outside the visited range
   bool informative = true;    ///< false: the method cannot give this curve from these data; `why` says why
   std::string why;
+  bool trimmed = false;  ///< its stable zero is the fit's trim
 };
 
 enum class FitStatus { converged, not_converged, declined, failed };

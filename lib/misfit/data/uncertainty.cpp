@@ -64,6 +64,7 @@ SpreadNumber number_from_json(const std::string& name, const Json& object) {
 Json curve_to_json(const SpreadCurve& c) {
   Json out{{"name", c.name}, {"of", c.of},        {"of_unit", c.of_unit}, {"unit", c.unit}, {"informative", c.informative},
            {"why", c.why},   {"x", Json::array()}};
+  out["trimmed"] = c.trimmed;
   out["x"] = numbers_to_json(c.x);
   out["nominal"] = numbers_to_json(c.nominal);
   out["mean"] = numbers_to_json(c.mean);
@@ -74,8 +75,9 @@ Json curve_to_json(const SpreadCurve& c) {
 
 SpreadCurve curve_from_json(const Json& object) {
   const auto numbers = [&](const char* key) { return numbers_from_json(object.at(key)); };
-  return {object.at("name"), object.at("of"),  object.at("of_unit"), object.at("unit"),        numbers("x"),    numbers("nominal"),
-          numbers("mean"),   numbers("sigma"), numbers("runs"),      object.at("informative"), object.at("why")};
+  return {object.at("name"), object.at("of"),          object.at("of_unit"), object.at("unit"),
+          numbers("x"),      numbers("nominal"),       numbers("mean"),      numbers("sigma"),
+          numbers("runs"),   object.at("informative"), object.at("why"),     object.value("trimmed", false)};
 }
 
 Json perturbed_to_json(const PerturbedParameter& p) {

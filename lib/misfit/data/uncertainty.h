@@ -40,6 +40,7 @@ struct SpreadCurve {
   std::vector<double> count;                    ///< runs that reach this x
   bool informative = true;                      ///< as the nominal fit says; `why` says why not
   std::string why;
+  bool trimmed = false;  ///< its zero is the trim
 };
 
 /// The Monte-Carlo over the set-up.

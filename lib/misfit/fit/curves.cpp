@@ -160,8 +160,9 @@ void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMa
     if (possible)
       fit.curves.push_back(evaluate(model, column_of, covariance, visited, {derived.name, derived.of, derived.unit, derived.terms}));
   }
-  for (const auto& curve : fit.curves) {
-    if (curve.name == model.system->spec().static_curve) fit.trim = stable_zero(curve);
+  for (auto& curve : fit.curves) {
+    curve.trimmed = curve.name == model.system->spec().static_curve;
+    if (curve.trimmed) fit.trim = stable_zero(curve);
   }
 }
 

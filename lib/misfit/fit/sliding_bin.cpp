@@ -263,6 +263,7 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   fit.status = FitStatus::converged;
   fit.curves = {curve(*form, pass.bins.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma),
                 curve(*form, pass.bins.bins, spec.damping_curve, &BinSolution::damping, &BinSolution::damping_sigma)};
+  fit.curves.front().trimmed = true;
   fit.trim = stable_zero(fit.curves.front());
   fit.message = "linear regression solved in " + std::to_string(pass.bins.bins.size()) + " bins";
   if (options.curves_only) return fit;

@@ -12,7 +12,6 @@
 namespace misfit::report {
 namespace {
 
-constexpr const char* static_curve = "C_m";  // its zero is the trim
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Drawn {
@@ -113,12 +112,25 @@ std::optional<std::array<double, 2>> curve_range(const Panel& panel) {
 
 bool usable(const Fit& fit) { return fit.status == FitStatus::converged || fit.status == FitStatus::not_converged; }
 
+/// The quantity of the first curve of this name: a further one has its own in the name of its figure.
+std::string first_quantity(const std::string& curve, const std::vector<Fit>& fits, const std::vector<Reference>& references) {
+  for (const Fit& fit : fits) {
+    for (const CurveEstimate& c : fit.curves) {
+      if (c.name == curve) return c.of;
+    }
+  }
+  for (const Reference& reference : references) {
+    if (reference.curve == curve) return reference.of;
+  }
+  return "";
+}
+
 }  // namespace
 
 Figure curve_figure(const std::string& curve, const std::string& of, const std::vector<Fit>& fits,
                     const std::vector<Reference>& references) {
   Figure figure;
-  figure.name = "curve_" + as_key(curve) + (of == "alpha_T" ? "" : "_of_" + as_key(of));
+  figure.name = "curve_" + as_key(curve) + (of == first_quantity(curve, fits, references) ? "" : "_of_" + as_key(of));
   figure.title = curve + " against " + of;
   figure.caption = curve + " as each method finds it, with bands of one standard deviation. Dashed: angles that the motion did not visit.";
   figure.x_label = of;
@@ -143,12 +155,14 @@ Figure curve_figure(const std::string& curve, const std::string& of, const std::
     figure.panels.front().series.push_back(reference_series(reference, reference.name + " (reference)"));
   }
   figure.panels.front().y_range = curve_range(figure.panels.front());
-  if (curve != static_curve) return figure;
   for (std::size_t k = 0; k < fits.size(); ++k) {
-    if (usable(fits[k]) && fits[k].trim) add_trim(fits[k].method, *fits[k].trim, palette(k), figure.panels.front());
+    const bool trimmed = std::any_of(fits[k].curves.begin(), fits[k].curves.end(),
+                                     [&](const CurveEstimate& c) { return c.trimmed && c.name == curve && c.of == of; });
+    if (trimmed && usable(fits[k]) && fits[k].trim) add_trim(fits[k].method, *fits[k].trim, palette(k), figure.panels.front());
   }
   for (const Reference& reference : references) {
-    if (reference.curve == curve && reference.trim) add_trim(reference.name, *reference.trim, black, figure.panels.front());
+    if (reference.curve == curve && reference.of == of && reference.trim)
+      add_trim(reference.name, *reference.trim, black, figure.panels.front());
   }
   return figure;
 }

@@ -13,7 +13,6 @@ namespace misfit::report {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* static_curve = "C_m";  // its zero is the trim
 
 /// `values` where `keep` holds, or beside such a place, so that two lines meet.
 std::vector<double> kept(const std::vector<double>& values, const std::vector<bool>& keep) {
@@ -95,7 +94,9 @@ std::vector<const SpreadNumber*> shared_numbers(const Uncertainty& u) {
     if (n != nullptr && !n->shares.empty() && out.size() < 2 && std::find(out.begin(), out.end(), n) == out.end()) out.push_back(n);
   };
   take(u.find("trim"));
-  take(u.find(std::string("slope of ") + static_curve));
+  for (const SpreadCurve& curve : u.curves) {
+    if (curve.trimmed) take(u.find("slope of " + curve.name));
+  }
   for (const SpreadNumber& n : u.numbers) take(&n);
   return out;
 }
@@ -105,7 +106,9 @@ std::vector<const SpreadNumber*> shared_numbers(const Uncertainty& u) {
 Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::vector<Reference>& references) {
   const Band b = band_of(curve, u);
   Figure figure;
-  figure.name = "uncertainty_" + as_key(curve.name) + (curve.of == "alpha_T" ? "" : "_" + as_key(curve.of));
+  const auto first = std::find_if(u.curves.begin(), u.curves.end(), [&](const SpreadCurve& c) { return c.name == curve.name; });
+  const bool another = first != u.curves.end() && first->of != curve.of;  // of the same name, drawn already
+  figure.name = "uncertainty_" + as_key(curve.name) + (another ? "_" + as_key(curve.of) : "");
   figure.title = fmt::format("{} over {} perturbed set-ups, {}", curve.name, u.runs - u.failed, u.method);
   figure.caption =
       "Mean over the runs with its band of three standard deviations, and the fit of the study as it is. The band is what errors of the "
@@ -137,7 +140,7 @@ Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::
       panel.series.push_back(reference_series(reference, reference.name + " (reference), ± 1 sigma"));
     }
   }
-  if (trim != nullptr && curve.name == static_curve && curve.of_unit == trim->unit) add_trim(*trim, panel);
+  if (trim != nullptr && curve.trimmed && curve.of_unit == trim->unit) add_trim(*trim, panel);
   panel.y_range = range_of(b);
   if (!b.x.empty()) figure.x_range = {b.x.front(), b.x.back()};
   figure.panels = {panel};
