@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "apps/stages.h"
 #include "apps/study_chain.h"
@@ -36,12 +37,6 @@ Inputs inputs_of_run(const Session& session) {
   return inputs;
 }
 
-std::string digest_of(const Inputs& inputs) {
-  std::string text;
-  for (const auto& [name, hash] : inputs) text += name + " " + hash + "\n";
-  return hash_text(text);
-}
-
 Inputs inputs_of(const Session& session) {
   Inputs inputs = inputs_of_run(session);
   inputs["runs"] = std::to_string(runs_of(session));
@@ -59,9 +54,22 @@ std::optional<MonteCarloResult> sampled(const Session& session, const StudyChain
       sampler, [&](const std::vector<double>& errors) { return chain.run(errors); }, options);
 }
 
-std::vector<std::string> notes_of(const Session& session, const StudyChain& chain, const Uncertainty& result) {
+/// Fits that stopped short of their maximum stay in, and are named.
+void add_unfinished(const StudyChain& chain, const MonteCarloResult& runs, std::vector<std::string>& notes) {
+  const Fit& nominal = chain.nominal();
+  if (nominal.status != FitStatus::converged) notes.push_back("The nominal fit has not converged (" + nominal.message + ").");
+  const Moments& last = runs.numbers.back();
+  const long unfinished = std::lround(last.mean * static_cast<double>(last.count));
+  if (unfinished > 0)
+    notes.push_back(
+        fmt::format("{} of {} runs had not converged; they are in mean and sigma with where they stopped.", unfinished, runs.runs));
+}
+
+std::vector<std::string> notes_of(const Session& session, const StudyChain& chain, const MonteCarloResult& runs,
+                                  const Uncertainty& result) {
   std::vector<std::string> notes = chain.set_up().notes();
   notes.emplace_back("The bands are of the set-up alone: what the reading noise adds is the nominal fit's own sigma.");
+  add_unfinished(chain, runs, notes);
   if (result.failed > 0) notes.push_back(fmt::format("{} of {} runs gave no result and are left out.", result.failed, result.runs));
   for (const SpreadNumber& n : result.numbers) {
     if (n.count + result.failed < result.runs)
@@ -84,7 +92,7 @@ Uncertainty result_of(const Session& session, const StudyChain& chain, const Sam
   out.seed = session.study.seed;
   out.perturbed = chain.set_up().described();
   chain.numbers().fill(runs, sampler.term_names(), out);
-  out.notes = notes_of(session, chain, out);
+  out.notes = notes_of(session, chain, runs, out);
   return out;
 }
 
@@ -96,6 +104,12 @@ void write(Session& session, const Uncertainty& result, double seconds) {
 }
 
 }  // namespace
+
+std::string digest_of(const Inputs& inputs) {
+  std::string text;
+  for (const auto& [name, hash] : inputs) text += name + " " + hash + "\n";
+  return hash_text(text);
+}
 
 Uncertainty uncertainty_stage(Session& session) {
   static_cast<void>(wishes_of(session));

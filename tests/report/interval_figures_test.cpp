@@ -13,7 +13,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 
 Bootstrap bootstrap() {
-  Bootstrap b{"output_error", "residuals in blocks on the predicted motion", 55, 200, 2, 1, {}, {}};
+  Bootstrap b{"output_error", "residuals in blocks on the predicted motion", 55, 200, 2, 1, {{"failed: no state", 2}}, {}, {}, {}};
   BootstrapCurve c{"C_m", "alpha_T", "rad", "-", {}, {}, {}, {}, {}, {}, {}, {}};
   for (int i = 0; i <= 60; ++i) {
     const double x = (9.0 + 0.1 * i) * degree, value = -0.36 * (x - 12.0 * degree),
@@ -72,9 +72,12 @@ TEST(IntervalFigures, AProfileIsDrawnOverItsScaleInDegrees) {
 
 TEST(IntervalFigures, AreWrittenWithTheirData) {
   const TemporaryFolder folder;
-  const std::vector<std::string> files = write_interval_figures(folder.path(), {bootstrap()}, {profile()});
-  ASSERT_EQ(files.size(), 2U);
-  for (const auto& file : files) EXPECT_NE(read_file(folder.path() / file).find("<svg"), std::string::npos) << file;
+  const std::vector<std::string> files = write_interval_figures(folder.path(), {{bootstrap()}, {profile()}, {}});
+  ASSERT_EQ(files.size(), 6U);
+  for (const auto& file : files) {
+    const char* what = file.ends_with(".svg") ? "<svg" : file.ends_with(".gp") ? "plot" : "[deg]";
+    EXPECT_NE(read_file(folder.path() / file).find(what), std::string::npos) << file;
+  }
 }
 
 }  // namespace

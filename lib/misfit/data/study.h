@@ -118,7 +118,7 @@ struct UncertaintyStudy {
   long block = 0;                     ///< its blocks [samples]; 0: from the residuals
   std::vector<std::string> profile;   ///< parameters whose profile likelihood is wanted
   bool recalibrate = false;           ///< the camera is calibrated again in every run, from the sweep with the perturbed geometry
-  Source where, where_camera;
+  Source where, where_camera, where_profile;
 };
 
 /// A study as written. Everything that can be checked without the model has been checked.

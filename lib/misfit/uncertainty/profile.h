@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-#include "misfit/core/work_queue.h"
+#include "misfit/core/job_queue.h"
 #include "misfit/data/intervals.h"
 
 namespace misfit {
@@ -35,5 +35,11 @@ struct ProfileRequest {
 /// not depend on `threads`. InputError: a sigma that is not positive.
 [[nodiscard]] std::vector<LikelihoodProfile> profile_likelihood(const std::vector<ProfileRequest>& requests, int threads,
                                                                 const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
+
+/// The same over threads and ranks, each side on disk when it ends (run_stored_jobs(); `jobs.count` is told by the requests). nullopt if it
+/// was stopped; on ranks other than the first the result is empty.
+[[nodiscard]] std::optional<std::vector<LikelihoodProfile>> stored_profiles(const std::vector<ProfileRequest>& requests,
+                                                                            const StoredJobs& jobs, const ProgressFn& progress = {},
+                                                                            const std::atomic<bool>* stop = nullptr);
 
 }  // namespace misfit
