@@ -47,11 +47,10 @@ struct ExperimentStudy {
   std::string name;
   std::optional<std::filesystem::path> track, video, data;  ///< exactly one
   ColumnMap columns;
-  enum class Validation { none, last_fraction, interval, file } validation = Validation::none;
+  enum class Validation { none, last_fraction, interval } validation = Validation::none;
   double fraction = 0.0;        ///< last_fraction: 0.25 for "last 25 %"
   double from = 0.0, to = 0.0;  ///< interval [s]
-  std::filesystem::path validation_file;
-  long exclude = 0;  ///< initial samples
+  long exclude = 0;             ///< initial samples
   Source where;
 };
 
