@@ -24,9 +24,10 @@ std::string bootstrap_text(const Bootstrap& b) {
 
 std::string profile_text(const LikelihoodProfile& p) {
   const auto end = [&](bool found, double value) { return found ? fmt::format("{:.6g}", shown(value, p.unit)) : std::string("?"); };
-  std::string out = fmt::format("\nprofile of {}, {}: {:.6g} {}, 95 %: {} to {} (fit ± 1.96 sigma: {:.6g} to {:.6g})\n", p.parameter,
-                                p.method, shown(p.best, p.unit), display_unit(p.unit), end(p.lower_found, p.lower),
-                                end(p.upper_found, p.upper), shown(p.best - 1.96 * p.sigma, p.unit), shown(p.best + 1.96 * p.sigma, p.unit));
+  std::string out =
+      fmt::format("\nprofile of {}, {}: {:.6g} {}, 95 %: {} to {} (fit ± 1.96 sigma: {:.6g} to {:.6g})\n", p.parameter, p.method,
+                  shown(p.best, p.unit), display_unit(p.unit), end(p.lower_found, p.lower), end(p.upper_found, p.upper),
+                  shown(p.best - 1.96 * p.sigma, p.unit), shown(p.best + 1.96 * p.sigma, p.unit));
   for (const auto& words : p.words) out += "  " + words + "\n";
   return out;
 }

@@ -14,7 +14,8 @@ using Words = std::vector<std::string>;
 class ForcedMotion : public ShortValidation {
  public:
   explicit ForcedMotion(const std::string& wishes) : ShortValidation(700) {
-    change("pitch_damping = \\{\\}", "pitch_damping = {}\nperiodic_forcing = {}\n\n[parameters]\nfrequency = { free = false, value = \"1.3 Hz\" }");
+    change("pitch_damping = \\{\\}",
+           "pitch_damping = {}\nperiodic_forcing = {}\n\n[parameters]\nfrequency = { free = false, value = \"1.3 Hz\" }");
     change("perturb = .*", wishes);
   }
   void methods(const std::string& list) const { change("methods = .*", "methods = " + list); }
@@ -25,8 +26,9 @@ TEST(Resampling, OfEveryMethodThatCanBeFittedAgain) {
   const ForcedMotion study("bootstrap = 20\nblock = 40\nprofile = [\"cosine\", \"sine\"]");
   const Outcome outcome = study.uncertainty({});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  expect_parts(outcome.out, {"sliding_bin is not resampled", "block bootstrap of equation_error: 20 runs", "blocks of 40 samples",
-                             "block bootstrap of output_error: 20 runs", "profile of cosine, output_error", "profile of sine, output_error"});
+  expect_parts(outcome.out,
+               {"sliding_bin is not resampled", "block bootstrap of equation_error: 20 runs", "blocks of 40 samples",
+                "block bootstrap of output_error: 20 runs", "profile of cosine, output_error", "profile of sine, output_error"});
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(study.bootstrap(k).at("failed"), 0);
     EXPECT_EQ(study.bootstrap(k).at("block_samples"), 40);
@@ -54,8 +56,8 @@ TEST(Resampling, OfEveryMethodThatCanBeFittedAgain) {
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "done once";
 
   ASSERT_EQ(study.run("report").status, 0);
-  expect_parts(content(study.out("report.html")),
-               {"Intervals by resampling and by profiles", "Block bootstrap: C_m", "Profile likelihood: cosine", "sliding_bin is not resampled"});
+  expect_parts(content(study.out("report.html")), {"Intervals by resampling and by profiles", "Block bootstrap: C_m",
+                                                   "Profile likelihood: cosine", "sliding_bin is not resampled"});
   EXPECT_EQ(study.uncertainty({}).out, outcome.out);
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "the report has drawn the figures again";
 }

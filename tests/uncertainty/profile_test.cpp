@@ -100,6 +100,17 @@ TEST(Profile, ALikelihoodThatRisesBeyondTheLimitHasItsCrossingBehindTheMaximum) 
   }
 }
 
+/// Refits from beside the estimate that end in another maximum: the place of the jump says nothing of the parameter.
+TEST(Profile, AJumpIsNoCrossing) {
+  const auto jumping = [](double v) { return std::optional(-0.5 * v * v - (v > 0.3 ? 4.0 : 0.0)); };
+  const LikelihoodProfile p = profile(request(0.0, 1.0, 1.0, jumping));
+  EXPECT_TRUE(p.lower_found);
+  EXPECT_FALSE(p.upper_found);
+  EXPECT_GE(p.upper, 0.0);
+  EXPECT_LE(p.upper, 0.3);
+  EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("the likelihood jumps")));
+}
+
 TEST(Profile, ALikelihoodThatOnlyRisesHasNoEnd) {
   const LikelihoodProfile p = profile(request(0.0, 1.0, 1.0, [](double v) { return std::optional(4.0 * v); }));
   EXPECT_TRUE(p.lower_found);

@@ -25,8 +25,8 @@ void bootstraps(const Resampling& r, Page& page) {
   std::vector<std::string> words;
   for (const Bootstrap& b : r.bootstraps) {
     for (const BootstrapNumber& n : b.numbers) {
-      rows.push_back({b.method, n.name, shown(n.value, n.fit_sigma, n.unit), shown(n.mean, n.sigma, n.unit), shown(n.lower, 0.1 * n.sigma, n.unit),
-                      shown(n.upper, 0.1 * n.sigma, n.unit), std::to_string(n.runs)});
+      rows.push_back({b.method, n.name, shown(n.value, n.fit_sigma, n.unit), shown(n.mean, n.sigma, n.unit),
+                      shown(n.lower, 0.1 * n.sigma, n.unit), shown(n.upper, 0.1 * n.sigma, n.unit), std::to_string(n.runs)});
     }
     words.push_back(fmt::format("{}: {} runs of {}, blocks of {} samples; {} gave no fit.", b.method, b.runs, b.how, b.block, b.failed));
     for (const auto& [reason, runs] : b.failures) words.push_back(fmt::format("{}: {} runs: {}", b.method, runs, reason));
@@ -53,7 +53,8 @@ void resampling_section(const ReportInput& input, Page& page, const Draw& draw) 
   const Resampling& r = *input.resampling;
   page.section("Intervals by resampling and by profiles");
   page.paragraph(
-      "Beside the sigmas of the fits: how the result scatters over replicas of the data that keep the memory of the residuals, and where the "
+      "Beside the sigmas of the fits: how the result scatters over replicas of the data that keep the memory of the residuals, and where "
+      "the "
       "likelihood itself has dropped by as much as a 95 % interval allows.");
   for (const Figure& figure : interval_figures(r)) draw(figure);
   bootstraps(r, page);

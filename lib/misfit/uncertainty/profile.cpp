@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "misfit/core/error.h"
 #include "misfit/core/ranks.h"
@@ -12,6 +13,7 @@ namespace misfit {
 namespace {
 
 constexpr double limit_95 = 3.841458821;  // chi², 1 degree of freedom
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 struct Side {
   std::vector<double> value, drop;  ///< outwards
@@ -73,18 +75,22 @@ class Search {
   void refine(double inside, double inside_root, double outside, double outside_root) {
     const double wanted = std::sqrt(limit_);
     constexpr int most = 8;
-    constexpr double near = 2e-3;
-    for (int k = 0; k < most; ++k) {
+    constexpr double near = 2e-3, far = 0.05;
+    double off = infinite;
+    for (int k = 0; k < most && off > near; ++k) {
       const double share = (wanted - inside_root) / (outside_root - inside_root);
       const double middle = inside + share * (outside - inside);
       const std::optional<double> root = root_at(middle);
       if (!root) break;
       (*root >= wanted ? outside : inside) = middle;
       (*root >= wanted ? outside_root : inside_root) = *root;
-      if (std::abs(*root / wanted - 1.0) < near) break;
+      off = std::abs(*root / wanted - 1.0);
     }
     side_.end = inside + (wanted - inside_root) / (outside_root - inside_root) * (outside - inside);
-    side_.found = true;
+    side_.found = off < far;
+    if (!side_.found)
+      static_cast<void>(ended(inside, "between " + format_value(inside) + " and " + format_value(outside) +
+                                          " the likelihood jumps, or cannot be had: refits end in different maxima"));
   }
 
   const ProfileRequest& request_;
