@@ -94,8 +94,6 @@ class Work {
       throw;
     } catch (const RunError& error) {
       note(method, error.what());
-    } catch (const InputError& error) {  // a parameter that is free in the study and not in this method
-      note(method, error.what());
     }
     return false;
   }
@@ -154,6 +152,8 @@ class Work {
 
   ProfileRequest request_for(const Started& s, const std::string& parameter) {
     const std::vector<Signals>& experiments = methods_.prepared().experiments;
+    const auto found = std::find(s.fit.names.begin(), s.fit.names.end(), parameter);
+    if (found == s.fit.names.end()) throw RunError("profile of " + parameter + ": it is not free in this fit");
     HeldFit at_best(s.from, experiments, parameter);
     const Estimate& e = s.fit.parameters.at(parameter);
     const Parameter& p = s.from.fitted.model.parameters[static_cast<std::size_t>(s.from.fitted.model.find_parameter(parameter))];

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 
 #include "apps/stages.h"
 #include "apps/study_chain.h"
@@ -54,22 +53,11 @@ std::optional<MonteCarloResult> sampled(const Session& session, const StudyChain
       sampler, [&](const std::vector<double>& errors) { return chain.run(errors); }, options);
 }
 
-/// Fits that stopped short of their maximum stay in, and are named.
-void add_unfinished(const StudyChain& chain, const MonteCarloResult& runs, std::vector<std::string>& notes) {
-  const Fit& nominal = chain.nominal();
-  if (nominal.status != FitStatus::converged) notes.push_back("The nominal fit has not converged (" + nominal.message + ").");
-  const Moments& last = runs.numbers.back();
-  const long unfinished = std::lround(last.mean * static_cast<double>(last.count));
-  if (unfinished > 0)
-    notes.push_back(
-        fmt::format("{} of {} runs had not converged; they are in mean and sigma with where they stopped.", unfinished, runs.runs));
-}
-
 std::vector<std::string> notes_of(const Session& session, const StudyChain& chain, const MonteCarloResult& runs,
                                   const Uncertainty& result) {
   std::vector<std::string> notes = chain.set_up().notes();
   notes.emplace_back("The bands are of the set-up alone: what the reading noise adds is the nominal fit's own sigma.");
-  add_unfinished(chain, runs, notes);
+  for (const std::string& note : unfinished_notes(chain.nominal(), runs)) notes.push_back(note);
   if (result.failed > 0) notes.push_back(fmt::format("{} of {} runs gave no result and are left out.", result.failed, result.runs));
   for (const SpreadNumber& n : result.numbers) {
     if (n.count + result.failed < result.runs)

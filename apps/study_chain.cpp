@@ -143,9 +143,7 @@ ChainResult StudyChain::run(const std::vector<double>& errors) const {
     const Model model = perturbed(set_up);
     const Fit result = fit(model, signals(set_up, model));
     if (!usable(result)) return {{}, to_string(result.status) + ": " + result.message};
-    std::vector<double> numbers = numbers_->of(result);
-    numbers.push_back(result.status == FitStatus::converged ? 0.0 : 1.0);
-    return {std::move(numbers), ""};
+    return {numbers_->of(result), ""};
   } catch (const InputError& error) {  // a set-up that cannot be, as a camera in front of the apex
     return {{}, error.what()};
   } catch (const RunError& error) {

@@ -25,8 +25,7 @@ class StudyChain {
   [[nodiscard]] const SetUp& set_up() const { return *set_up_; }
   [[nodiscard]] const Fit& nominal() const { return nominal_; }
   [[nodiscard]] const FollowedNumbers& numbers() const { return *numbers_; }
-  /// One run; thread-safe. What cannot be computed is a failure with its reason, not an exception. Behind the numbers that are followed: 1
-  /// if the fit had not converged, else 0.
+  /// One run; thread-safe. What cannot be computed is a failure with its reason, not an exception.
   [[nodiscard]] ChainResult run(const std::vector<double>& errors) const;
 
  private:

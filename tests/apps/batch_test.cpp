@@ -1,5 +1,7 @@
 // Many studies as one job.
 
+#include <sys/resource.h>
+
 #include <algorithm>
 
 #include "tests/apps/program.h"
@@ -115,6 +117,24 @@ TEST_F(ThreeTests, EveryFileOfAStudyMakesItAnotherBatch) {
   EXPECT_NE(reference, before);
   folder_.write("test1/cut.png", "two");
   EXPECT_NE(digest(), reference);
+}
+
+/// One file may be open at a time, and the checkpoint is: the studies are not to blame, and are done when there is room again.
+TEST_F(ThreeTests, WhatTheMachineRefusesIsNoRow) {
+  const std::vector<std::string> words{"batch", folder_.path().string(), "--threads", "1"};
+  const Outcome first = program::run(words, [] {
+    const int next = ::dup(STDIN_FILENO);
+    ::close(next);
+    const rlimit limit{static_cast<rlim_t>(next) + 1, static_cast<rlim_t>(next) + 1};
+    if (next < 0 || ::setrlimit(RLIMIT_NOFILE, &limit) != 0) ::_exit(77);
+  });
+  EXPECT_EQ(first.status, 1) << first.out;
+  expect_parts(first.err, {"Too many open files"});
+  EXPECT_TRUE(fs::exists(path("batch/checkpoints/checkpoint_0.bin"))) << "it was in the jobs that it ended";
+  ASSERT_EQ(program::run(words).status, 0);
+  const json batch = json::parse(content(path("batch/batch.json")));
+  EXPECT_EQ(batch.at("studies")[0].at("status"), "converged");
+  EXPECT_EQ(batch.at("studies")[2].at("status"), "converged");
 }
 
 TEST_F(ThreeTests, WhatIsNoListIsRefused) {
