@@ -51,6 +51,16 @@ Started started(Methods& methods, const std::string& method) {
   return out;
 }
 
+/// What the parameter is instead of free; `free`: the names that could have been meant.
+std::string why_no_profile(const Model& model, const std::string& name, const std::vector<std::string>& free) {
+  const int known = model.find_parameter(name);
+  if (known >= 0 && model.parameters[static_cast<std::size_t>(known)].curve >= 0)
+    return "is a coefficient of a curve, which means nothing alone; a profile is of a parameter";
+  if (free.empty()) return "is not free: the model has no free parameter that is not a curve's coefficient";
+  return (known >= 0 ? "is held in this study, and only a free parameter has a profile" : "is no free parameter of the model") +
+         suggest(name, free);
+}
+
 bool has_likelihood(const std::string& method) { return method == "output_error" || method == "filter_error"; }
 
 Inputs inputs_of(const Session& session) {
@@ -221,13 +231,7 @@ void check_profile_names(Session& session) {
   }
   for (const std::string& name : wishes.profile) {
     if (std::find(free.begin(), free.end(), name) != free.end()) continue;
-    const int known = model.find_parameter(name);
-    const bool coefficient = known >= 0 && model.parameters[static_cast<std::size_t>(known)].curve >= 0;
-    const std::string why = free.empty()  ? "the model has no free parameter that is not a curve's coefficient"
-                            : coefficient ? "is a coefficient of a curve, which means nothing alone; a profile is of a parameter"
-                            : known >= 0  ? "is held in this study, and only a free parameter has a profile" + suggest(name, free)
-                                          : "is no free parameter of the model" + suggest(name, free);
-    throw InputError(wishes.where_profile, "profile: '" + name + "' " + (free.empty() ? "cannot be taken: " + why : why));
+    throw InputError(wishes.where_profile, "profile: '" + name + "' " + why_no_profile(model, name, free));
   }
 }
 
