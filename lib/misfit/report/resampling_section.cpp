@@ -15,8 +15,16 @@ std::string shown(double value, double sigma, const std::string& unit) {
   return row.shown_number() + (row.shown_unit() == "-" ? "" : " " + row.shown_unit());
 }
 
+/// The end of an interval, to a tenth of the sigma; it has no sigma of its own.
+std::string end_at(double value, double sigma, const std::string& unit) {
+  constexpr double fine = 0.1;
+  const Row row("", value, fine * sigma, unit);
+  const std::string number = row.shown_number();
+  return number.substr(0, number.find(" ±")) + (row.shown_unit() == "-" ? "" : " " + row.shown_unit());
+}
+
 std::string end_of(bool found, double value, double sigma, const std::string& unit) {
-  return found ? shown(value, 0.01 * sigma, unit) : "not reached";
+  return found ? end_at(value, sigma, unit) : "not reached";
 }
 
 void bootstraps(const Resampling& r, Page& page) {
@@ -26,7 +34,7 @@ void bootstraps(const Resampling& r, Page& page) {
   for (const Bootstrap& b : r.bootstraps) {
     for (const BootstrapNumber& n : b.numbers) {
       rows.push_back({b.method, n.name, shown(n.value, n.fit_sigma, n.unit), shown(n.mean, n.sigma, n.unit),
-                      shown(n.lower, 0.1 * n.sigma, n.unit), shown(n.upper, 0.1 * n.sigma, n.unit), std::to_string(n.runs)});
+                      end_at(n.lower, n.sigma, n.unit), end_at(n.upper, n.sigma, n.unit), std::to_string(n.runs)});
     }
     words.push_back(fmt::format("{}: {} runs of {}, blocks of {} samples; {} gave no fit.", b.method, b.runs, b.how, b.block, b.failed));
     for (const auto& [reason, runs] : b.failures) words.push_back(fmt::format("{}: {} runs: {}", b.method, runs, reason));
