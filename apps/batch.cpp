@@ -40,6 +40,31 @@ BatchRow row_of(const BatchRow& study, const Fit& fit) {
   return row;
 }
 
+BatchRow failed(BatchRow study, const std::exception& error) {
+  study.status = to_string(FitStatus::failed);
+  study.message = error.what();
+  return study;
+}
+
+/// As files_of_study() where the study can be read; else its words.
+std::string hashes_of(const fs::path& study) {
+  std::vector<fs::path> files;
+  try {
+    files = files_of_study(read_study(study));
+  } catch (const InputError& error) {
+    return std::string(" ") + error.what();
+  }
+  std::string text;
+  for (const fs::path& file : files) {
+    try {
+      text += " " + hash_file(file);
+    } catch (const InputError& error) {
+      text += std::string(" ") + error.what();
+    }
+  }
+  return text;
+}
+
 /// A batch of studies: each is one job with a run folder of its own below the batch's.
 class BatchJob {
  public:
@@ -52,7 +77,8 @@ class BatchJob {
   [[nodiscard]] const fs::path& folder() const { return folder_; }
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
-  /// The rows of one study as text. What is wrong with the study is in them; what is wrong with the machine is thrown.
+  /// The rows of one study as text. What is wrong with the study is in them; what is wrong with the machine (no space, no memory) is
+  /// thrown, so that the same command does this study again.
   [[nodiscard]] std::string run(std::size_t k) const {
     BatchRow study;
     study.study = entries_[k].name;
@@ -62,13 +88,13 @@ class BatchJob {
     try {
       Session session(options_of(k), registry_);
       for (const Fit& fit : fit_stage(session)) rows.push_back(row_of(study, fit));
-    } catch (const WriteError&) {
+    } catch (const MachineError&) {
       throw;
-    } catch (const std::exception& error) {
+    } catch (const InputError& error) {
+      rows = {failed(study, error)};
+    } catch (const RunError& error) {
       if (interrupted()) throw;
-      study.status = to_string(FitStatus::failed);
-      study.message = error.what();
-      rows = {study};
+      rows = {failed(study, error)};
     }
     return batch_rows_text(rows);
   }
@@ -76,14 +102,7 @@ class BatchJob {
   /// Of all studies with all that they name, as far as it can be read.
   [[nodiscard]] std::string digest() const {
     std::string text = hash_of_program() + fmt::format(" {} {}", options_.has_seed ? options_.seed : 0, fmt::join(options_.methods, " "));
-    for (const BatchEntry& entry : entries_) {
-      text += "\n" + entry.file.string();
-      try {
-        for (const fs::path& file : files_of_study(read_study(entry.file))) text += " " + hash_file(file);
-      } catch (const std::exception& error) {
-        text += std::string(" ") + error.what();
-      }
-    }
+    for (const BatchEntry& entry : entries_) text += "\n" + entry.file.string() + hashes_of(entry.file);
     return hash_text(text);
   }
 

@@ -1,6 +1,7 @@
 #include "apps/batch_list.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -70,9 +71,40 @@ void add_argument(const std::string& argument, std::vector<fs::path>& found) {
   }
 }
 
-std::string short_name(const fs::path& file) {
-  const std::string folder = fs::absolute(file).parent_path().filename().string();
-  return file.filename() == usual_name ? folder : folder + "_" + file.stem().string();
+/// The folder's name, and the file's where that is not study.toml, behind those of `above` folders further up; of a path that has not so
+/// many the hash.
+std::string name_of(const fs::path& file, int above) {
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  fs::path folder = whole.parent_path();
+  std::string name = folder.filename().string();
+  if (file.filename() != usual_name) name += "_" + file.stem().string();
+  for (int k = 0; k < above; ++k) {
+    folder = folder.parent_path();
+    if (folder.filename().empty()) return name + "_" + hash_text(whole.string());
+    name.insert(0, folder.filename().string() + "_");
+  }
+  return name;
+}
+
+/// Studies of the same name take in the folders above, one by one, until they differ: names depend on which studies there are, not on their
+/// order.
+void give_names(std::vector<BatchEntry>& entries) {
+  std::vector<int> above(entries.size(), 0);
+  constexpr int deepest = 200;
+  bool clash = true;
+  for (int round = 0; clash && round < deepest; ++round) {
+    std::map<std::string, std::vector<std::size_t>> same;
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      entries[k].name = name_of(entries[k].file, above[k]);
+      same[entries[k].name].push_back(k);
+    }
+    clash = false;
+    for (const auto& [name, studies] : same) {
+      if (studies.size() == 1) continue;
+      clash = true;
+      for (const std::size_t k : studies) ++above[k];
+    }
+  }
 }
 
 }  // namespace
@@ -82,16 +114,13 @@ std::vector<BatchEntry> batch_entries(const std::vector<std::string>& arguments)
   for (const std::string& argument : arguments) add_argument(argument, found);
   std::vector<BatchEntry> entries;
   std::set<fs::path> seen;
-  std::set<std::string> names;
   for (const fs::path& file : found) {
     std::error_code none;
     const fs::path whole = fs::weakly_canonical(file, none);
     if (!seen.insert(none ? file : whole).second) continue;
-    const std::string base = short_name(file);
-    std::string name = base;
-    for (int k = 2; !names.insert(name).second; ++k) name = base + "_" + std::to_string(k);
-    entries.push_back({name, file});
+    entries.push_back({"", file});
   }
+  give_names(entries);
   return entries;
 }
 

@@ -8,7 +8,7 @@ namespace misfit {
 
 /// One study of a batch.
 struct BatchEntry {
-  std::string name;            ///< short, unique: its folder's name, and the file's where that is not study.toml
+  std::string name;            ///< short, unique: its folder's name (behind those above it where several have it)
   std::filesystem::path file;  ///< of its study.toml
 };
 

@@ -98,6 +98,7 @@ std::vector<double> FollowedNumbers::of(const Fit& fit) const {
     const std::vector<double> values = values_at(find_curve(fit, curve.name), curve.x);
     out.insert(out.end(), values.begin(), values.end());
   }
+  out.push_back(fit.status == FitStatus::converged ? 0.0 : 1.0);
   return out;
 }
 
@@ -122,6 +123,17 @@ void FollowedNumbers::fill(const MonteCarloResult& result, const std::vector<std
       curve.count.push_back(static_cast<double>(result.numbers[at].count));
     }
   }
+}
+
+std::vector<std::string> unfinished_notes(const Fit& nominal, const MonteCarloResult& runs) {
+  std::vector<std::string> notes;
+  if (nominal.status != FitStatus::converged) notes.push_back("The nominal fit has not converged (" + nominal.message + ").");
+  const Moments& last = runs.numbers.back();
+  const long unfinished = std::lround(last.mean * static_cast<double>(last.count));
+  if (unfinished > 0)
+    notes.push_back(std::to_string(unfinished) + " of " + std::to_string(runs.runs) +
+                    " runs had not converged; they are in mean and sigma with where they stopped.");
+  return notes;
 }
 
 }  // namespace misfit

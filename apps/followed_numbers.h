@@ -16,6 +16,7 @@ class FollowedNumbers {
   /// `nominal`: the study's fit, with its sigmas; `run`: what one run gives of it.
   FollowedNumbers(const Fit& nominal, const Fit& run, std::string static_curve);
 
+  /// Behind them stands 1 if the fit had not converged, else 0.
   [[nodiscard]] std::vector<double> of(const Fit& fit) const;
   /// The first so many are single numbers.
   [[nodiscard]] std::size_t single() const { return numbers_.size(); }
@@ -28,5 +29,9 @@ class FollowedNumbers {
   std::vector<SpreadNumber> numbers_;
   std::vector<SpreadCurve> curves_;
 };
+
+/// Fits that stopped short of their maximum stay in, and are named here: the nominal one, and how many runs (of numbers as of() gives
+/// them).
+[[nodiscard]] std::vector<std::string> unfinished_notes(const Fit& nominal, const MonteCarloResult& runs);
 
 }  // namespace misfit

@@ -9,6 +9,7 @@
 #include "misfit/data/candidates.h"
 #include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
+#include "misfit/data/intervals.h"
 #include "misfit/data/ladder.h"
 #include "misfit/data/track_facts.h"
 #include "misfit/data/uncertainty.h"
@@ -22,6 +23,7 @@ namespace misfit {
 [[nodiscard]] std::string fits_text(const std::vector<Fit>& fits);
 [[nodiscard]] std::string batch_text(const Batch& batch);
 [[nodiscard]] std::string uncertainty_text(const Uncertainty& uncertainty);
+[[nodiscard]] std::string resampling_text(const Resampling& resampling);
 [[nodiscard]] std::string diagnosis_text(const Diagnosis& diagnosis);
 [[nodiscard]] std::string discovery_text(const Discovery& discovery);
 /// Error before and after of a rung and its parent, per channel in its unit.

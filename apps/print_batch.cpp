@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,20 @@ std::string summary_table(const Batch& batch) {
   return "\n" + align_columns(rows);
 }
 
+/// What the means leave out.
+std::string left_out_text(const Batch& batch) {
+  std::map<std::string, std::vector<std::string>> studies;
+  for (const BatchRow& row : batch.rows) {
+    if (row.status == "not_converged") studies[row.method].push_back(row.study);
+  }
+  std::string out;
+  for (const auto& [method, names] : studies) {
+    const std::string who = fmt::format("{} has not converged in {}: left out of mean, scatter and p", method, fmt::join(names, ", "));
+    out += wrap_text("! " + who, 110, "  ") + "\n";
+  }
+  return out;
+}
+
 /// Each study that gave nothing, with its words; the same words once.
 std::string failures_text(const Batch& batch) {
   std::map<std::string, std::vector<std::string>> studies;
@@ -78,6 +93,8 @@ std::string failures_text(const Batch& batch) {
 
 }  // namespace
 
-std::string batch_text(const Batch& batch) { return studies_table(batch) + summary_table(batch) + failures_text(batch); }
+std::string batch_text(const Batch& batch) {
+  return studies_table(batch) + summary_table(batch) + left_out_text(batch) + failures_text(batch);
+}
 
 }  // namespace misfit

@@ -221,6 +221,9 @@ void add_uncertainty(const Study& study, std::string& text) {
     perturb += fmt::format("{}{} = {}", comma, key_of(p.name), p.number.value);
     readings += fmt::format("{}{} = {}", comma, key_of(p.name), quoted(p.reading));
   }
+  if (u.bootstrap > 0) text += fmt::format("bootstrap = {}\n", u.bootstrap);
+  if (u.block > 0) text += fmt::format("block = {}\n", u.block);
+  if (!u.profile.empty()) text += "profile = " + list_of(u.profile) + "\n";
   text += "perturb = { " + perturb + " }  # in SI\nreadings = { " + readings + " }\n";
 }
 

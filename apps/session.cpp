@@ -6,6 +6,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/data/sweep.h"
 #include "misfit/model/declared.h"
 
 namespace misfit {
@@ -67,6 +68,19 @@ const std::string& hash_of_program() {
   return hash;
 }
 
+namespace {
+
+/// The pictures that the table of a sweep names. A table that cannot be read is told of by the stage that needs it.
+void add_sweep_pictures(const Study& study, std::vector<fs::path>& files) {
+  if (!study.camera.sweep_images) return;
+  try {
+    for (const SweepPicture& picture : read_sweep_pictures(*study.camera.sweep_images)) files.push_back(picture.file);
+  } catch (const InputError&) {
+  }
+}
+
+}  // namespace
+
 std::vector<fs::path> files_of_study(const Study& study) {
   std::vector<fs::path> files{study.file};
   const auto add = [&](const std::optional<fs::path>& file) {
@@ -75,11 +89,13 @@ std::vector<fs::path> files_of_study(const Study& study) {
   add(study.system_file);
   add(study.camera.sweep);
   add(study.camera.sweep_images);
+  add(study.camera.sweep_marker.picture);
+  add(study.video.marker.picture);
+  add_sweep_pictures(study, files);
   for (const ExperimentStudy& e : study.experiments) {
     add(e.track);
     add(e.video);
     add(e.data);
-    if (e.validation == ExperimentStudy::Validation::file) add(e.validation_file);
   }
   for (const auto& [name, curve] : study.curves) add(curve.table);
   for (const auto& [name, file] : study.reference) add(file);

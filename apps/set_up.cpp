@@ -57,7 +57,7 @@ SetUp::SetUp(Session& session, const Model& model) {
   const UncertaintyStudy& wishes = *session.study.uncertainty;
   list_known(session, model);
   for (const PerturbStudy& wish : wishes.perturb) add(wish, model);
-  if (wishes.calibrated_camera) add_calibration(session.study);
+  if (wishes.calibrated_camera) add_calibration(session);
   if (perturbations_.names().empty())
     throw InputError(wishes.where, "nothing is perturbed: perturb = { R = \"0.1524 m\", … } says what, and how far");
   note_held_camera(model);
@@ -128,8 +128,8 @@ void SetUp::add(const PerturbStudy& wish, const Model& model) {
   described_.push_back({wish.name, unit, value, sigma, reading_text(wish, unit), ""});
 }
 
-void SetUp::add_calibration(const Study& study) {
-  const Source& where = study.uncertainty->where_camera;
+void SetUp::add_calibration(const Session& session) {
+  const Source& where = session.study.uncertainty->where_camera;
   if (!nominal_.calibration || nominal_.calibration->names.empty())
     throw InputError(where, "camera = \"calibration\" needs a calibrated camera, or one given with sigmas, and a track");
   const Calibration& calibration = *nominal_.calibration;
@@ -142,6 +142,7 @@ void SetUp::add_calibration(const Study& study) {
     described_.push_back({name, group.units.back(), calibration.value(name), calibration.sigma(name),
                           "normal, with the covariance of the calibration", group.label});
   }
+  group.source = session.folder.file("camera.json").string() + ", covariance";
   perturbations_.groups.push_back(std::move(group));
 }
 

@@ -44,7 +44,7 @@ class SetUp {
   };
   void list_known(Session& session, const Model& model);
   void add(const PerturbStudy& wish, const Model& model);
-  void add_calibration(const Study& study);
+  void add_calibration(const Session& session);
   void note_held_camera(const Model& model);
   void calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedSetUp& set_up) const;
   void set(PerturbedSetUp& set_up, const std::string& name, double error) const;

@@ -111,6 +111,10 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   add_findings(session, input, files);
   input.uncertainty = known_uncertainty(session);
   if (input.uncertainty) files.push_back(session.folder.file("uncertainty.json"));
+  input.resampling = known_resampling(session);
+  for (const char* file : {"resampling.json", "bootstrap.json", "profile.json"}) {
+    if (input.resampling && fs::exists(session.folder.file(file))) files.push_back(session.folder.file(file));
+  }
   const auto inputs = session.inputs(session.study.text + fmt::format("{}", fmt::join(input.notes, "\n")), files);
   if (session.folder.up_to_date("report", inputs)) return session.folder.file("report.html");
   const auto begin = std::chrono::steady_clock::now();

@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "apps/methods.h"
-#include "apps/print.h"
 #include "apps/stages.h"
 #include "misfit/core/error.h"
+#include "misfit/core/files.h"
 #include "misfit/core/progress.h"
-#include "misfit/core/text.h"
-#include "misfit/core/units.h"
+#include "misfit/core/ranks.h"
 #include "misfit/fit/filter_error.h"
 #include "misfit/fit/held.h"
 #include "misfit/report/figures_intervals.h"
@@ -21,15 +21,14 @@
 namespace misfit {
 namespace {
 
-constexpr const char* stage = "resampling";
+using Inputs = std::map<std::string, std::string>;
 
-bool usable(const Fit& fit) { return fit.status == FitStatus::converged || fit.status == FitStatus::not_converged; }
+constexpr const char* stage = "resampling";
 
 /// A method's fit as replicas and profiles start from it.
 struct Started {
   FittedMethod from;
   Fit fit;
-  double objective = 0.0;  ///< penalised log-likelihood, where the method has one
 };
 
 Started started(Methods& methods, const std::string& method) {
@@ -52,53 +51,163 @@ Started started(Methods& methods, const std::string& method) {
   return out;
 }
 
-Bootstrap bootstrapped(const Session& session, const Started& s, const std::vector<Signals>& experiments) {
+/// What the parameter is instead of free; `free`: the names that could have been meant.
+std::string why_no_profile(const Model& model, const std::string& name, const std::vector<std::string>& free) {
+  const int known = model.find_parameter(name);
+  if (known >= 0 && model.parameters[static_cast<std::size_t>(known)].curve >= 0)
+    return "is a coefficient of a curve, which means nothing alone; a profile is of a parameter";
+  if (free.empty()) return "is not free: the model has no free parameter that is not a curve's coefficient";
+  return (known >= 0 ? "is held in this study, and only a free parameter has a profile" : "is no free parameter of the model") +
+         suggest(name, free);
+}
+
+bool has_likelihood(const std::string& method) { return method == "output_error" || method == "filter_error"; }
+
+Inputs inputs_of(const Session& session) {
   const UncertaintyStudy& wishes = *session.study.uncertainty;
-  BootstrapOptions options;
-  options.runs = static_cast<std::size_t>(wishes.bootstrap);
-  options.seed = static_cast<unsigned long long>(session.study.seed);
-  options.block = static_cast<int>(wishes.block);
-  const Resampled what = s.from.method == "output_error" ? Resampled::residuals : Resampled::rows;
-  const BlockBootstrap bootstrap(
-      s.fit, experiments, what, [&](const std::vector<Signals>& replica) { return fit_again(s.from, replica); }, options);
-  Progress progress(fmt::format("bootstrap of {}, {} runs", s.from.method, wishes.bootstrap), session.options.quiet);
-  Bootstrap out = block_bootstrap(
-      bootstrap, session.options.threads, [&](std::size_t done, std::size_t total) { progress.update(done, total); }, &interrupted());
-  return out;
-}
-
-ProfileRequest request_for(const Started& s, const std::vector<Signals>& experiments, const std::string& parameter) {
-  HeldFit at_best(s.from, experiments, parameter);  // says what is wrong with the name
-  const Estimate& e = s.fit.parameters.at(parameter);
-  const Parameter& p = s.from.fitted.model.parameters[static_cast<std::size_t>(s.from.fitted.model.find_parameter(parameter))];
-  const std::optional<double> objective = at_best(e.value);
-  if (!objective) throw RunError("profile of " + parameter + ": " + s.from.method + " cannot be fitted again where it ended");
-  const auto plain = s.fit.plain_sigmas.find(parameter);
-  ProfileRequest r{s.from.method, parameter, e.unit, e.value, *objective, e.sigma, plain == s.fit.plain_sigmas.end() ? 0.0 : plain->second,
-                   p.lower,       p.upper,   {}};
-  r.from_best = [&s, &experiments, parameter] {
-    auto held = std::make_shared<HeldFit>(s.from, experiments, parameter);
-    return HeldMaximum([held](double value) { return (*held)(value); });
-  };
-  return r;
-}
-
-std::vector<LikelihoodProfile> profiled(const Session& session, const Started& s, const std::vector<Signals>& experiments) {
-  std::vector<ProfileRequest> requests;
-  for (const auto& parameter : session.study.uncertainty->profile) requests.push_back(request_for(s, experiments, parameter));
-  Progress progress("profiles of " + s.from.method, session.options.quiet);
-  return profile_likelihood(
-      requests, session.options.threads, [&](std::size_t done, std::size_t total) { progress.update(done, total); }, &interrupted());
-}
-
-std::map<std::string, std::string> inputs_of(const Session& session) {
-  const UncertaintyStudy& wishes = *session.study.uncertainty;
-  std::map<std::string, std::string> inputs = inputs_of_fit(session, stage);
+  Inputs inputs = inputs_of_fit(session, stage);
   inputs["methods"] = fmt::format("{}", fmt::join(session.methods(), " "));
   inputs["seed"] = std::to_string(session.study.seed);
   inputs["bootstrap"] = fmt::format("{} runs, block {}", wishes.bootstrap, wishes.block);
   inputs["profile"] = fmt::format("{}", fmt::join(wishes.profile, " "));
   return inputs;
+}
+
+/// One method after the other. The first rank alone summarises; whatever happens there, all ranks come to the same stored jobs, or the
+/// program ends.
+class Work {
+ public:
+  explicit Work(Session& session) : session_(session), wishes_(*session.study.uncertainty), methods_(session) {}
+
+  Resampling run() {
+    for (const std::string& method : session_.methods()) {
+      if (method == "sliding_bin") {
+        note(method, "its bins are no model that could be fitted to other data, or held");
+        continue;
+      }
+      resample(method);
+    }
+    if (ranks().first() && out_.bootstraps.empty() && out_.profiles.empty())
+      throw RunError(fmt::format("no method asked for could be resampled: {}", fmt::join(out_.notes, "; ")));
+    return std::move(out_);
+  }
+
+ private:
+  void note(const std::string& method, const std::string& why) { out_.notes.push_back(method + " is not resampled: " + why); }
+
+  /// What is wrong with this method alone is a note; what is wrong with the machine is thrown.
+  bool attempt(const std::string& method, const std::function<void()>& action) {
+    try {
+      action();
+      return true;
+    } catch (const MachineError&) {
+      throw;
+    } catch (const RunError& error) {
+      note(method, error.what());
+    }
+    return false;
+  }
+
+  void resample(const std::string& method) {
+    Started s;
+    const bool fitted = attempt(method, [&] {
+      s = started(methods_, method);
+      const bool usable = s.fit.status == FitStatus::converged || s.fit.status == FitStatus::not_converged;
+      if (!usable) throw RunError(to_string(s.fit.status) + ": " + s.fit.message);
+    });
+    if (!fitted) return;
+    if (s.fit.status == FitStatus::not_converged)
+      out_.notes.push_back(method + " has not converged (" + s.fit.message + "): what is resampled starts from there");
+    if (wishes_.bootstrap > 0) add_bootstrap(s);
+    if (!wishes_.profile.empty() && has_likelihood(method)) add_profiles(s);
+  }
+
+  [[nodiscard]] StoredJobs jobs(const std::string& what, const std::string& method) const {
+    Inputs inputs = inputs_of(session_);
+    inputs["methods"] = method;  // the others do not matter to it
+    return {session_.folder.file(what + "_" + method), digest_of(inputs), 0, session_.options.threads};
+  }
+
+  template <class Result>
+  static Result finished(std::optional<Result> result) {
+    if (result) return std::move(*result);
+    stop_if_interrupted();
+    throw EndedElsewhere();  // Ctrl-C reached another rank only
+  }
+
+  void add_bootstrap(const Started& s) {
+    BootstrapOptions options;
+    options.runs = static_cast<std::size_t>(wishes_.bootstrap);
+    options.seed = static_cast<unsigned long long>(session_.study.seed);
+    options.block = {static_cast<int>(wishes_.block), s.from.fitted.equation_residuals};
+    const Resampled what = s.from.method == "output_error" ? Resampled::residuals : Resampled::rows;
+    const FitReplica refit = [&](const std::vector<Signals>& replica) { return fit_again(s.from, replica); };
+    std::optional<BlockBootstrap> bootstrap;
+    if (!attempt(s.from.method, [&] { bootstrap.emplace(s.fit, methods_.prepared().experiments, what, refit, options); })) return;
+    Progress progress(fmt::format("bootstrap of {}, {} runs", s.from.method, wishes_.bootstrap), session_.options.quiet);
+    const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    const auto results = finished(stored_runs(*bootstrap, jobs("bootstrap", s.from.method), told, &interrupted()));
+    if (ranks().first()) attempt(s.from.method, [&] { out_.bootstraps.push_back(bootstrap->summary(results)); });
+  }
+
+  void add_profiles(const Started& s) {
+    std::vector<ProfileRequest> requests;
+    for (const std::string& parameter : wishes_.profile) attempt(s.from.method, [&] { requests.push_back(request_for(s, parameter)); });
+    if (requests.empty()) return;
+    Progress progress("profiles of " + s.from.method, session_.options.quiet);
+    const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    for (auto& profile : finished(stored_profiles(requests, jobs("profile", s.from.method), told, &interrupted())))
+      out_.profiles.push_back(std::move(profile));
+  }
+
+  ProfileRequest request_for(const Started& s, const std::string& parameter) {
+    const std::vector<Signals>& experiments = methods_.prepared().experiments;
+    const auto found = std::find(s.fit.names.begin(), s.fit.names.end(), parameter);
+    if (found == s.fit.names.end()) throw RunError("profile of " + parameter + ": it is not free in this fit");
+    HeldFit at_best(s.from, experiments, parameter);
+    const Estimate& e = s.fit.parameters.at(parameter);
+    const Parameter& p = s.from.fitted.model.parameters[static_cast<std::size_t>(s.from.fitted.model.find_parameter(parameter))];
+    const std::optional<double> objective = at_best(e.value);
+    if (!objective) throw RunError("profile of " + parameter + ": it cannot be fitted again where it ended");
+    if (!(e.sigma > 0.0)) throw RunError("profile of " + parameter + ": the fit gives it no sigma, so there is no step to take");
+    const auto plain = s.fit.plain_sigmas.find(parameter);
+    ProfileRequest r{
+        s.from.method, parameter, e.unit, e.value, *objective, e.sigma, plain == s.fit.plain_sigmas.end() ? 0.0 : plain->second,
+        p.lower,       p.upper,   {}};
+    r.from_best = [&s, &experiments, parameter] {
+      auto held = std::make_shared<HeldFit>(s.from, experiments, parameter);
+      return HeldMaximum([held](double value) { return (*held)(value); });
+    };
+    return r;
+  }
+
+  Session& session_;
+  const UncertaintyStudy& wishes_;
+  Methods methods_;
+  Resampling out_;
+};
+
+void write(Session& session, const Resampling& r, double seconds) {
+  const std::filesystem::path dir = session.folder.path();
+  std::vector<std::string> outputs{"resampling.json"};
+  write_resampling_notes(dir, r.notes);
+  if (session.study.uncertainty->bootstrap > 0) {
+    write_bootstrap(dir, r.bootstraps);
+    outputs.insert(outputs.end(), {"bootstrap.json", "bootstrap.csv"});
+  }
+  if (!session.study.uncertainty->profile.empty()) {
+    write_profiles(dir, r.profiles);
+    outputs.emplace_back("profile.json");
+  }
+  for (const auto& file : report::write_interval_figures(session.folder.file("figures"), r)) outputs.push_back("figures/" + file);
+  session.folder.record({stage, session.options.command, inputs_of(session), outputs, seconds, "", ""});
+}
+
+Resampling read(const Session& session) {
+  const std::filesystem::path dir = session.folder.path();
+  const UncertaintyStudy& wishes = *session.study.uncertainty;
+  return {wishes.bootstrap > 0 ? read_bootstrap(dir) : std::vector<Bootstrap>{},
+          wishes.profile.empty() ? std::vector<LikelihoodProfile>{} : read_profiles(dir), read_resampling_notes(dir)};
 }
 
 }  // namespace
@@ -107,62 +216,45 @@ bool asks_for_resampling(const Study& study) {
   return study.uncertainty && (study.uncertainty->bootstrap > 0 || !study.uncertainty->profile.empty());
 }
 
-Resampling resampling_stage(Session& session) {
+void check_profile_names(Session& session) {
   const UncertaintyStudy& wishes = *session.study.uncertainty;
-  const std::filesystem::path dir = session.folder.path();
-  if (session.folder.up_to_date(stage, inputs_of(session)))
-    return {wishes.bootstrap > 0 ? read_bootstrap(dir) : std::vector<Bootstrap>{},
-            wishes.profile.empty() ? std::vector<LikelihoodProfile>{} : read_profiles(dir)};
+  if (wishes.profile.empty()) return;
+  const std::vector<std::string> asked = session.methods();
+  if (std::none_of(asked.begin(), asked.end(), has_likelihood))
+    throw InputError(wishes.where_profile, fmt::format("profile: {} has no likelihood of the motion; output_error and filter_error have",
+                                                       fmt::join(asked, ", ")));
+  const Model model = prepare(session).model;
+  std::vector<std::string> free;
+  for (const int i : model.free_parameters()) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(i)];
+    if (p.curve < 0) free.push_back(p.name);
+  }
+  for (const std::string& name : wishes.profile) {
+    if (std::find(free.begin(), free.end(), name) != free.end()) continue;
+    throw InputError(wishes.where_profile, "profile: '" + name + "' " + why_no_profile(model, name, free));
+  }
+}
+
+Resampling resampling_stage(Session& session) {
+  if (session.folder.up_to_date(stage, inputs_of(session))) return ranks().first() ? read(session) : Resampling{};
   const auto begin = std::chrono::steady_clock::now();
-  Resampling out;
-  Methods methods(session);
-  for (const auto& method : session.methods()) {
-    if (method == "sliding_bin") continue;  // its bins are no model that could be run or held
-    const Started s = started(methods, method);
-    if (!usable(s.fit)) throw RunError(method + " " + to_string(s.fit.status) + ": " + s.fit.message);
-    const std::vector<Signals>& experiments = methods.prepared().experiments;
-    if (wishes.bootstrap > 0) out.bootstraps.push_back(bootstrapped(session, s, experiments));
-    if (wishes.profile.empty() || method == "equation_error") continue;  // a regression has no likelihood of the motion
-    for (auto& profile : profiled(session, s, experiments)) out.profiles.push_back(std::move(profile));
-  }
-  if (out.bootstraps.empty() && out.profiles.empty())
-    throw RunError("none of the methods asked for can be resampled: equation_error, output_error and filter_error can");
-  std::vector<std::string> outputs;
-  if (wishes.bootstrap > 0) {
-    write_bootstrap(dir, out.bootstraps);
-    outputs = {"bootstrap.json", "bootstrap.csv"};
-  }
-  if (!wishes.profile.empty()) {
-    write_profiles(dir, out.profiles);
-    outputs.emplace_back("profile.json");
-  }
-  for (const auto& file : report::write_interval_figures(session.folder.file("figures"), out.bootstraps, out.profiles))
-    outputs.push_back("figures/" + file);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  session.folder.record({stage, session.options.command, inputs_of(session), outputs, seconds, "", ""});
+  const Resampling out = Work(session).run();
+  if (!ranks().first()) return {};
+  write(session, out, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   return out;
 }
 
-std::string resampling_text(const Resampling& r) {
-  std::string out;
-  const auto shown = [](double value, const std::string& unit) { return convert(value, unit, display_unit(unit)); };
-  for (const auto& b : r.bootstraps) {
-    out += fmt::format("\nblock bootstrap of {}: {} runs of {}, blocks of {} samples{}\n", b.method, b.runs, b.how, b.block,
-                       b.failed > 0 ? fmt::format(", {} gave no fit", b.failed) : "");
-    for (const auto& n : b.numbers) {
-      out += fmt::format("  {:<24} {:>12.6g} {:<6} sigma {:<10.3g} (fit: {:<10.3g}) 95 %: {:.6g} to {:.6g}\n", n.name,
-                         shown(n.value, n.unit), display_unit(n.unit), shown(n.sigma, n.unit), shown(n.fit_sigma, n.unit),
-                         shown(n.lower, n.unit), shown(n.upper, n.unit));
-    }
+std::optional<Resampling> known_resampling(const Session& session) {
+  const auto record = session.folder.stages().find(stage);
+  if (!asks_for_resampling(session.study) || record == session.folder.stages().end()) return std::nullopt;
+  Inputs now = inputs_of(session);
+  // By whatever methods were asked for.
+  const auto& before = record->second.inputs;
+  for (const char* key : {"methods", "seed"}) {
+    if (before.contains(key)) now[key] = before.at(key);
   }
-  for (const auto& p : r.profiles) {
-    const auto end = [&](bool found, double value) { return found ? fmt::format("{:.6g}", shown(value, p.unit)) : std::string("?"); };
-    out += fmt::format("\nprofile of {}, {}: {:.6g} {}, 95 %: {} to {} (fit ± 1.96 sigma: {:.6g} to {:.6g})\n", p.parameter, p.method,
-                       shown(p.best, p.unit), display_unit(p.unit), end(p.lower_found, p.lower), end(p.upper_found, p.upper),
-                       shown(p.best - 1.96 * p.sigma, p.unit), shown(p.best + 1.96 * p.sigma, p.unit));
-    for (const auto& words : p.words) out += "  " + words + "\n";
-  }
-  return out;
+  if (!session.folder.up_to_date(stage, now)) return std::nullopt;
+  return read(session);
 }
 
 }  // namespace misfit

@@ -36,12 +36,6 @@ Inputs inputs_of_run(const Session& session) {
   return inputs;
 }
 
-std::string digest_of(const Inputs& inputs) {
-  std::string text;
-  for (const auto& [name, hash] : inputs) text += name + " " + hash + "\n";
-  return hash_text(text);
-}
-
 Inputs inputs_of(const Session& session) {
   Inputs inputs = inputs_of_run(session);
   inputs["runs"] = std::to_string(runs_of(session));
@@ -59,9 +53,11 @@ std::optional<MonteCarloResult> sampled(const Session& session, const StudyChain
       sampler, [&](const std::vector<double>& errors) { return chain.run(errors); }, options);
 }
 
-std::vector<std::string> notes_of(const Session& session, const StudyChain& chain, const Uncertainty& result) {
+std::vector<std::string> notes_of(const Session& session, const StudyChain& chain, const MonteCarloResult& runs,
+                                  const Uncertainty& result) {
   std::vector<std::string> notes = chain.set_up().notes();
   notes.emplace_back("The bands are of the set-up alone: what the reading noise adds is the nominal fit's own sigma.");
+  for (const std::string& note : unfinished_notes(chain.nominal(), runs)) notes.push_back(note);
   if (result.failed > 0) notes.push_back(fmt::format("{} of {} runs gave no result and are left out.", result.failed, result.runs));
   for (const SpreadNumber& n : result.numbers) {
     if (n.count + result.failed < result.runs)
@@ -84,7 +80,7 @@ Uncertainty result_of(const Session& session, const StudyChain& chain, const Sam
   out.seed = session.study.seed;
   out.perturbed = chain.set_up().described();
   chain.numbers().fill(runs, sampler.term_names(), out);
-  out.notes = notes_of(session, chain, out);
+  out.notes = notes_of(session, chain, runs, out);
   return out;
 }
 
@@ -96,6 +92,12 @@ void write(Session& session, const Uncertainty& result, double seconds) {
 }
 
 }  // namespace
+
+std::string digest_of(const Inputs& inputs) {
+  std::string text;
+  for (const auto& [name, hash] : inputs) text += name + " " + hash + "\n";
+  return hash_text(text);
+}
 
 Uncertainty uncertainty_stage(Session& session) {
   static_cast<void>(wishes_of(session));

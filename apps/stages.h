@@ -87,19 +87,21 @@ std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fit
 /// uncertainty.json, uncertainty.csv and their figures: the Monte-Carlo of [uncertainty]. On ranks other than the first the result is
 /// empty. InputError if the study has no such section.
 [[nodiscard]] Uncertainty uncertainty_stage(Session& session);
+/// One word for all these.
+[[nodiscard]] std::string digest_of(const std::map<std::string, std::string>& inputs);
 /// What it left on disk, where it still belongs to the study and its data.
 [[nodiscard]] std::optional<Uncertainty> known_uncertainty(const Session& session);
 
-/// Block bootstrap and profiles of every method asked for that can be fitted again.
-struct Resampling {
-  std::vector<Bootstrap> bootstraps;
-  std::vector<LikelihoodProfile> profiles;
-};
 /// Whether [uncertainty] has `bootstrap` or `profile`.
 [[nodiscard]] bool asks_for_resampling(const Study& study);
-/// bootstrap.json, bootstrap.csv, profile.json and their figures. RunError: a method that fails, none that can be resampled.
+/// InputError at its line if a name in `profile` is none of which a profile can be taken: to be called before anything is computed.
+void check_profile_names(Session& session);
+/// bootstrap.json, bootstrap.csv, profile.json, resampling.json and their figures: block bootstrap and profiles of every method asked for
+/// that can be fitted again. A method that declines or fails is a note. On ranks other than the first the result is empty. RunError: none
+/// could be resampled.
 [[nodiscard]] Resampling resampling_stage(Session& session);
-[[nodiscard]] std::string resampling_text(const Resampling& resampling);
+/// What it left on disk, where it still belongs to the study and its data.
+[[nodiscard]] std::optional<Resampling> known_resampling(const Session& session);
 
 /// diagnosis.json and missing_force.csv; nullopt if filter_error declined (its fit says why). Runs that fit where it must.
 [[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);

@@ -14,6 +14,7 @@ int uncertainty_verb(const Options& options, const Registry& registry) {
   on_first_rank([&] {
     Session session(own, registry);
     static_cast<void>(attitude_stage(session));
+    if (asks_for_resampling(session.study)) check_profile_names(session);
   });
   Session session(own, registry);
   // Bootstrap and profiles alone need no set-up that is uncertain.
@@ -21,9 +22,9 @@ int uncertainty_verb(const Options& options, const Registry& registry) {
   const bool set_up = !resampling || !session.study.uncertainty->perturb.empty();
   Uncertainty result;
   if (set_up) result = uncertainty_stage(session);
-  if (!ranks().first()) return 0;
   Resampling again;
   if (resampling) again = resampling_stage(session);
+  if (!ranks().first()) return 0;
   if (options.json) {
     print_file(session.folder.file(set_up ? "uncertainty.json" : again.bootstraps.empty() ? "profile.json" : "bootstrap.json"));
   } else {

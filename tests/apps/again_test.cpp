@@ -146,10 +146,11 @@ TEST(ResolvedStudy, KeepsPriorsFreeConstantsFixedCurvesAndColumns) {
   study.change("m_a = \"0.294 kg\"", "m_a = { value = \"0.294 kg\", sigma = \"0.033 kg\" }");
   study.change("exclude.*|columns = (.*)", "columns = $1\nexclude = 7\nvalidation = \"last 25 %\"");
   study.append("[parameters]\nm_a = { free = true }\n[sliding_bin]\nwidth = \"2 deg\"\n");
+  study.change("perturb = .*", "bootstrap = 7\nblock = 30\nprofile = [\"m_a\"]");
   ASSERT_EQ(study.run("fit").status, 0);
   const std::string text = content(study.out("resolved.toml"));
   expect_parts(text, {"m_a = { value = 0.294, sigma = 0.033 }", "free = true", "exclude = 7", "alpha_T = \"alpha_T\"", "validation = [",
-                      "width = 0.0349"});
+                      "width = 0.0349", "\nbootstrap = 7\n", "\nblock = 30\n", "\nprofile = [\"m_a\"]\n"});
   const Outcome again = program::run({"fit", study.out("resolved.toml").string()});
   ASSERT_EQ(again.status, 0) << again.err << text;
   const json a = study.fit("output_error"), b = study.result("out/fit/output_error/fit.json");

@@ -1,5 +1,7 @@
 // Many studies as one job.
 
+#include <sys/resource.h>
+
 #include <algorithm>
 
 #include "tests/apps/program.h"
@@ -74,6 +76,65 @@ TEST_F(ThreeTests, AMendedStudyIsDoneAgain) {
   const Outcome outcome = program::run({"batch", folder_.path().string(), "--json"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(json::parse(outcome.out).at("studies")[1].at("status"), "converged");
+}
+
+/// The names that a batch of these folders gives, in its order.
+std::vector<std::string> names_of_batch(const fs::path& folder, std::initializer_list<const char*> studies) {
+  std::string list;
+  for (const char* study : studies) list += std::string(study) + "\n";
+  std::ofstream(folder / "list.txt") << list;
+  const fs::path out = folder / "named";
+  EXPECT_EQ(program::run({"batch", (folder / "list.txt").string(), "--out", out.string()}).status, 0);
+  std::vector<std::string> names;
+  const json batch = json::parse(content(out / "batch.json"));
+  for (const json& row : batch.at("studies")) names.push_back(row.at("study"));
+  return names;
+}
+
+TEST_F(ThreeTests, StudiesOfOneNameTakeTheirFoldersInWhateverOrder) {
+  for (const std::string day : {"may", "june", "july"}) {
+    fs::create_directory(path(day));
+    fs::copy(path("test1"), path(day + "/run"));
+  }
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names_of_batch(folder_.path(), {"may/run", "june/run", "test1"}), (Names{"may_run", "june_run", "test1"}));
+  EXPECT_EQ(names_of_batch(folder_.path(), {"july/run", "june/run", "may/run"}), (Names{"july_run", "june_run", "may_run"}));
+}
+
+/// The digest stands in the head of the checkpoint: another one is another batch.
+TEST_F(ThreeTests, EveryFileOfAStudyMakesItAnotherBatch) {
+  folder_.write("test1/b.csv", "alpha_T[deg],C_m_alphadot[-]\n1,2\n");
+  folder_.write("test1/cut.png", "one");
+  std::ofstream(path("test1/study.toml"), std::ios::app) << "\n[reference]\nC_m_alphadot = \"b.csv\"\n\n[video]\nmarker = \"cut.png\"\n";
+  const auto digest = [&] {
+    EXPECT_EQ(program::run({"batch", path("test1").string(), "--out", path("digest").string()}).status, 0);
+    return first_line(path("digest/checkpoints/checkpoint_0.bin"));
+  };
+  const std::string before = digest();
+  EXPECT_EQ(digest(), before);
+  folder_.write("test1/b.csv", "alpha_T[deg],C_m_alphadot[-]\n1,3\n");
+  const std::string reference = digest();
+  EXPECT_NE(reference, before);
+  folder_.write("test1/cut.png", "two");
+  EXPECT_NE(digest(), reference);
+}
+
+/// One file may be open at a time, and the checkpoint is: the studies are not to blame, and are done when there is room again.
+TEST_F(ThreeTests, WhatTheMachineRefusesIsNoRow) {
+  const std::vector<std::string> words{"batch", folder_.path().string(), "--threads", "1"};
+  const Outcome first = program::run(words, [] {
+    const int next = ::dup(STDIN_FILENO);
+    ::close(next);
+    const rlimit limit{static_cast<rlim_t>(next) + 1, static_cast<rlim_t>(next) + 1};
+    if (next < 0 || ::setrlimit(RLIMIT_NOFILE, &limit) != 0) ::_exit(77);
+  });
+  EXPECT_EQ(first.status, 1) << first.out;
+  expect_parts(first.err, {"Too many open files"});
+  EXPECT_TRUE(fs::exists(path("batch/checkpoints/checkpoint_0.bin"))) << "it was in the jobs that it ended";
+  ASSERT_EQ(program::run(words).status, 0);
+  const json batch = json::parse(content(path("batch/batch.json")));
+  EXPECT_EQ(batch.at("studies")[0].at("status"), "converged");
+  EXPECT_EQ(batch.at("studies")[2].at("status"), "converged");
 }
 
 TEST_F(ThreeTests, WhatIsNoListIsRefused) {

@@ -106,6 +106,31 @@ TEST(WriteAtomically, AgainstTheFileSizeLimitKeepsTheOldFileAndSaysSo) {
   EXPECT_EQ(status, ok);
 }
 
+/// Not a word of the request is wrong when no more files may be opened: what is thrown must not be taken for a result.
+TEST(WhatTheMachineRefuses, IsToldFromAWrongRequest) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("x", "content");
+  const int status = in_child([&] {
+    const int next = ::dup(0);
+    const rlimit limit{static_cast<rlim_t>(next), static_cast<rlim_t>(next)};
+    ::close(next);
+    if (::setrlimit(RLIMIT_NOFILE, &limit) != 0) return wrong;
+    int told = 0;
+    try {
+      (void)read_file(file);
+    } catch (const MachineError& error) {
+      told += std::string(error.what()).find("x: cannot be read: Too many open files") != std::string::npos ? 1 : 0;
+    }
+    try {
+      make_writable_folder(folder.path());
+    } catch (const WriteError& error) {
+      told += std::string(error.what()).find("cannot be written to: Too many open files") != std::string::npos ? 1 : 0;
+    }
+    return told == 2 ? ok : wrong;
+  });
+  EXPECT_EQ(status, ok);
+}
+
 TEST(MakeWritableFolder, MakesParentsAndLeavesItEmpty) {
   const TemporaryFolder folder;
   const fs::path deep = folder.path() / "a" / "b";

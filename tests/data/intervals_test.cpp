@@ -13,7 +13,7 @@ namespace {
 
 TEST(Intervals, BootstrapsAreReadAsTheyWereWritten) {
   const TemporaryFolder folder;
-  Bootstrap b{"output_error", "residuals in blocks", 40, 200, 1, 7, {}, {}};
+  Bootstrap b{"output_error", "residuals in blocks", 40, 200, 1, 7, {{"failed: no state", 1}}, {"blocks are cut"}, {}, {}};
   b.numbers = {{"trim", "rad", 0.21, 0.001, 0.2101, 0.0012, 0.208, 0.2125, 199}};
   b.curves = {{"C_m",
                "alpha_T",
@@ -31,6 +31,10 @@ TEST(Intervals, BootstrapsAreReadAsTheyWereWritten) {
   const Bootstrap back = read_bootstrap(folder.path()).front();
   EXPECT_EQ(back.block, 40);
   EXPECT_EQ(back.failed, 1U);
+  EXPECT_EQ(back.failures, b.failures);
+  EXPECT_EQ(back.notes, b.notes);
+  write_resampling_notes(folder.path(), {"sliding_bin is not resampled"});
+  EXPECT_EQ(read_resampling_notes(folder.path()), std::vector<std::string>{"sliding_bin is not resampled"});
   EXPECT_EQ(back.numbers.front().upper, 0.2125);
   EXPECT_EQ(back.numbers.front().fit_sigma, 0.001);
   EXPECT_EQ(back.curves.front().sigma, b.curves.front().sigma);

@@ -227,18 +227,17 @@ TEST_F(StudyFolder, AnExperimentHasOneSourceAndAnOwnName) {
   EXPECT_EQ(read_with("[[experiment]]\nvideo = \"flight.mkv\"\n").experiments[0].video->filename(), "flight.mkv");
 }
 
-TEST_F(StudyFolder, ValidationHasThreeForms) {
+TEST_F(StudyFolder, ValidationHasTwoForms) {
   const std::string head = "[[experiment]]\ntrack = \"track.csv\"\nvalidation = ";
   EXPECT_EQ(read_with("[[experiment]]\ntrack = \"track.csv\"\n").experiments[0].validation, ExperimentStudy::Validation::none);
   EXPECT_DOUBLE_EQ(read_with(head + "\"last 12.5%\"").experiments[0].fraction, 0.125);
-  EXPECT_EQ(read_with(head + "\"other.csv\"").experiments[0].validation_file.filename(), "other.csv");
+  expect_parts(error_with(head + "\"other.csv\""), {"study.toml:5", "experiment[0].validation", "'other.csv'", "\"last 25 %\""});
   for (const char* wrong : {"\"first 25 %\"", "\"last 25\"", "\"last -5 %\"", "25", "true"}) {
-    expect_parts(error_with(head + wrong), {"study.toml:5", "\"last 25 %\", [t0, t1] in seconds"});
+    expect_parts(error_with(head + wrong), {"study.toml:5", "\"last 25 %\" or [t0, t1] in seconds"});
   }
   for (const char* wrong : {"\"last 0 %\"", "\"last 100 %\""}) expect_parts(error_with(head + wrong), {"study.toml:5", "above 0 %"});
   for (const char* wrong : {"[1]", "[2, 1]", "[1, 1]", "[1, 2, 3]"}) expect_parts(error_with(head + wrong), {"study.toml:5", "two times"});
   expect_parts(error_with(head + "[1, \"2 m\"]"), {"study.toml:5", "'m'", "'s'"});
-  expect_parts(error_with(head + "\"othr.csv\""), {"study.toml:5", "'other.csv'"});
 }
 
 TEST_F(StudyFolder, AnEffectIsATableOfTexts) {

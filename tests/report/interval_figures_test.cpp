@@ -5,6 +5,7 @@
 
 #include "misfit/core/files.h"
 #include "misfit/report/figures_intervals.h"
+#include "misfit/report/report.h"
 #include "tests/core/temporary_folder.h"
 
 namespace misfit::report {
@@ -13,7 +14,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 
 Bootstrap bootstrap() {
-  Bootstrap b{"output_error", "residuals in blocks on the predicted motion", 55, 200, 2, 1, {}, {}};
+  Bootstrap b{"output_error", "residuals in blocks on the predicted motion", 55, 200, 2, 1, {{"failed: no state", 2}}, {}, {}, {}};
   BootstrapCurve c{"C_m", "alpha_T", "rad", "-", {}, {}, {}, {}, {}, {}, {}, {}};
   for (int i = 0; i <= 60; ++i) {
     const double x = (9.0 + 0.1 * i) * degree, value = -0.36 * (x - 12.0 * degree),
@@ -72,9 +73,27 @@ TEST(IntervalFigures, AProfileIsDrawnOverItsScaleInDegrees) {
 
 TEST(IntervalFigures, AreWrittenWithTheirData) {
   const TemporaryFolder folder;
-  const std::vector<std::string> files = write_interval_figures(folder.path(), {bootstrap()}, {profile()});
-  ASSERT_EQ(files.size(), 2U);
-  for (const auto& file : files) EXPECT_NE(read_file(folder.path() / file).find("<svg"), std::string::npos) << file;
+  const std::vector<std::string> files = write_interval_figures(folder.path(), {{bootstrap()}, {profile()}, {}});
+  ASSERT_EQ(files.size(), 6U);
+  for (const auto& file : files) {
+    const char* what = file.ends_with(".svg") ? "<svg" : file.ends_with(".gp") ? "plot" : "[deg]";
+    EXPECT_NE(read_file(folder.path() / file).find(what), std::string::npos) << file;
+  }
+}
+
+TEST(IntervalsInTheReport, EndsOfIntervalsHaveNoSigmaAndWhatFailedIsNamed) {
+  const TemporaryFolder folder;
+  ReportInput input;
+  input.resampling.emplace(Resampling{{bootstrap()}, {profile()}, {"sliding_bin is not resampled"}});
+  Resampling& r = *input.resampling;
+  r.bootstraps[0].numbers = {{"trim", "rad", 12.0 * degree, 0.1 * degree, 12.01 * degree, 0.2 * degree, 11.6 * degree, 12.4 * degree, 198}};
+  r.bootstraps[0].notes = {"blocks are cut"};
+  r.profiles[0].upper_found = false;
+  const std::string page = read_file(write_report(folder.path(), input));
+  expect_parts(page,
+               {"Intervals by resampling", "12.00 ± 0.10 deg", "12.01 ± 0.20 deg", ">11.60", ">12.40", "not reached", "blocks are cut",
+                "2 runs: failed: no state", "sliding_bin is not resampled", "Block bootstrap: C_m", "Profile likelihood: wake_phi"});
+  EXPECT_EQ(page.find("11.60 ±"), std::string::npos);
 }
 
 }  // namespace

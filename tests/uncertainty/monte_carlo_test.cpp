@@ -92,9 +92,9 @@ TEST_F(MonteCarlo, TheirSampledCovarianceIsTheOneGiven) {
 
 TEST(Sampler, ACovarianceThatIsNoneIsRefused) {
   expect_parts(message_of<InputError>([] {
-                 Sampler({{}, {{"calibration", {"a", "b"}, {"-", "-"}, covariance(1.0, 1.0, 1.5)}}}, 1);
+                 Sampler({{}, {{"calibration", {"a", "b"}, {"-", "-"}, covariance(1.0, 1.0, 1.5), "out/camera.json, covariance"}}}, 1);
                }),
-               {"calibration", "not positive semi-definite"});
+               {"out/camera.json, covariance: ", "calibration", "not positive semi-definite"});
 }
 
 TEST(Sampler, AFullyCorrelatedPairMovesAsOne) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "misfit/core/error.h"
+#include "tests/core/temporary_folder.h"
 
 namespace misfit {
 namespace {
@@ -82,6 +83,44 @@ TEST(Profile, AHigherLikelihoodBesideTheEstimateIsSaid) {
   EXPECT_THAT(profile(r).words, testing::Contains(testing::HasSubstr("had not reached its maximum")));
 }
 
+/// A rise by 9 on the way up is no crossing: the interval is of values as likely as the estimate, and holds it.
+TEST(Profile, ALikelihoodThatRisesBeyondTheLimitHasItsCrossingBehindTheMaximum) {
+  const auto away = [](double maximum) {
+    return request(0.0, 1.0, 1.0, [maximum](double v) { return std::optional(-0.5 * (v - maximum) * (v - maximum)); });
+  };
+  const double reach = std::sqrt(9.0 + two_sided * two_sided);
+  for (const double maximum : {3.0, -3.0}) {
+    const LikelihoodProfile p = profile(away(maximum));
+    EXPECT_TRUE(p.lower_found && p.upper_found);
+    EXPECT_NEAR(p.lower, maximum - reach, 0.01);
+    EXPECT_NEAR(p.upper, maximum + reach, 0.01);
+    EXPECT_LE(p.lower, p.best);
+    EXPECT_GE(p.upper, p.best);
+    EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("had not reached its maximum")));
+  }
+}
+
+/// Refits from beside the estimate that end in another maximum: the place of the jump says nothing of the parameter.
+TEST(Profile, AJumpIsNoCrossing) {
+  const auto jumping = [](double v) { return std::optional(-0.5 * v * v - (v > 0.3 ? 4.0 : 0.0)); };
+  const LikelihoodProfile p = profile(request(0.0, 1.0, 1.0, jumping));
+  EXPECT_TRUE(p.lower_found);
+  EXPECT_FALSE(p.upper_found);
+  EXPECT_GE(p.upper, 0.0);
+  EXPECT_LE(p.upper, 0.3);
+  EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("the likelihood jumps")));
+}
+
+TEST(Profile, ALikelihoodThatOnlyRisesHasNoEnd) {
+  const LikelihoodProfile p = profile(request(0.0, 1.0, 1.0, [](double v) { return std::optional(4.0 * v); }));
+  EXPECT_TRUE(p.lower_found);
+  EXPECT_LT(p.lower, 0.0);
+  EXPECT_FALSE(p.upper_found);
+  EXPECT_GT(p.upper, 0.0);
+  EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("no upper end")));
+  EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("had not reached its maximum")));
+}
+
 TEST(Profile, TheAnswerDoesNotDependOnTheThreads) {
   std::vector<ProfileRequest> requests;
   for (int k = 1; k <= 5; ++k)
@@ -91,6 +130,35 @@ TEST(Profile, TheAnswerDoesNotDependOnTheThreads) {
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].value, two[i].value);
     EXPECT_EQ(one[i].lower, two[i].lower);
+  }
+}
+
+TEST(Profile, OnDiskEachSideIsKeptToTheBit) {
+  const auto poisson = [](double v) { return v > 0.0 ? std::optional(9.0 * std::log(v) - v) : std::nullopt; };
+  std::atomic<int> calls{0};
+  std::vector<ProfileRequest> requests{request(9.0, 3.0, 3.0, poisson), request(9.0, 3.0, 3.0, poisson)};
+  requests[1].upper = 12.0;
+  for (auto& r : requests) {
+    r.from_best = [&calls, poisson] {
+      ++calls;
+      return HeldMaximum(poisson);
+    };
+  }
+  const TemporaryFolder folder;
+  const StoredJobs jobs{folder.path() / "jobs", "digest", 0, 2};
+  const auto first = stored_profiles(requests, jobs), second = stored_profiles(requests, jobs);
+  EXPECT_EQ(calls, 4) << "one per side, the second time none";
+  const auto in_memory = profile_likelihood(requests, 1);
+  ASSERT_TRUE(first && second);
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const auto& stored : {first->at(i), second->at(i)}) {
+      EXPECT_EQ(stored.value, in_memory[i].value);
+      EXPECT_EQ(stored.drop, in_memory[i].drop);
+      EXPECT_EQ(stored.lower, in_memory[i].lower);
+      EXPECT_EQ(stored.upper, in_memory[i].upper);
+      EXPECT_EQ(stored.upper_found, in_memory[i].upper_found);
+      EXPECT_EQ(stored.words, in_memory[i].words);
+    }
   }
 }
 

@@ -11,6 +11,7 @@ BatchRow row(const std::string& study, const std::string& method, double value, 
   BatchRow out;
   out.study = study;
   out.method = method;
+  out.status = "converged";
   out.values["trim"] = {value, sigma, "rad"};
   return out;
 }
@@ -25,6 +26,15 @@ TEST(Scatter, MeanIsWeightedAndTheTestKnown) {
   EXPECT_NEAR(summary[0].scatter, std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(summary[0].own_sigma, std::sqrt(0.625), 1e-12);
   EXPECT_NEAR(summary[0].p_value.value(), 0.37109, 1e-4);
+}
+
+TEST(Scatter, WhatHasNotConvergedIsLeftOut) {
+  auto stuck = row("c", "m", 50.0, 0.01);
+  stuck.status = "not_converged";
+  const auto summary = summarise({row("a", "m", 1.0, 0.5), stuck, row("b", "m", 2.0, 1.0)});
+  ASSERT_EQ(summary.size(), 1U);
+  EXPECT_EQ(summary[0].count, 2U);
+  EXPECT_NEAR(summary[0].mean, 1.2, 1e-12);
 }
 
 TEST(Scatter, WithoutSigmasThereIsAPlainMeanAndNoTest) {

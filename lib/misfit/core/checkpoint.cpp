@@ -130,11 +130,15 @@ void CheckpointWriter::append(std::uint64_t job, std::string_view bytes) {
   write_whole(record);
   if (seconds_now() - synced_ < between_syncs) return;
   synced_ = seconds_now();
-  ::fdatasync(file_);
+  flush();
 }
 
 void CheckpointWriter::sync() {
   const std::lock_guard lock(mutex_);
+  flush();
+}
+
+void CheckpointWriter::flush() {
   if (::fdatasync(file_) != 0) throw WriteError(path_.string() + " cannot be written: " + reason(errno));
 }
 

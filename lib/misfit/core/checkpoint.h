@@ -39,11 +39,12 @@ class CheckpointWriter {
 
   /// WriteError naming file and system message (disk full); what was written of the record is taken back.
   void append(std::uint64_t job, std::string_view bytes);
-  /// Onto the disk itself; done every few seconds as well.
+  /// Onto the disk itself; append() does it every few seconds as well. WriteError.
   void sync();
 
  private:
   void write_whole(std::string_view bytes);
+  void flush();
 
   std::filesystem::path path_;
   int file_ = -1;

@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -17,6 +19,24 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string system_message(int code) { return std::generic_category().message(code); }
+
+/// Does this errno tell of the machine's state (disk, memory, limits) and not of what was asked for?
+bool of_machine(int code) {
+  constexpr std::array codes{EIO, ENOSPC, EDQUOT, EMFILE, ENFILE, ENOMEM, ENOBUFS, ESTALE, ETIMEDOUT};
+  return std::find(codes.begin(), codes.end(), code) != codes.end();
+}
+
+[[noreturn]] void refuse_reading(const fs::path& path, int code) {
+  const std::string message = path.string() + ": cannot be read: " + system_message(code);
+  if (of_machine(code)) throw MachineError(message);
+  throw InputError(message);
+}
+
+[[noreturn]] void refuse_folder(const fs::path& dir, const std::string& what, int code) {
+  const std::string message = dir.string() + ": the folder cannot be " + what + ": " + system_message(code);
+  if (of_machine(code)) throw WriteError(message);
+  throw InputError(message);
+}
 
 std::string no_such_file(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -83,7 +103,7 @@ fs::path temporary_name(const fs::path& path) {
 std::string read_file(const fs::path& path) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.number() < 0 && (errno == ENOENT || errno == ENOTDIR)) throw InputError(no_such_file(path));
-  if (file.number() < 0) throw InputError(path.string() + ": cannot be read: " + system_message(errno));
+  if (file.number() < 0) refuse_reading(path, errno);
   struct stat status {};
   if (::fstat(file.number(), &status) == 0 && S_ISDIR(status.st_mode)) throw InputError(path.string() + ": is a folder, a file is needed");
   std::string content;
@@ -92,7 +112,7 @@ std::string read_file(const fs::path& path) {
   for (;;) {
     const ssize_t n = ::read(file.number(), buffer.data(), buffer.size());
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw InputError(path.string() + ": cannot be read: " + system_message(errno));
+    if (n < 0) refuse_reading(path, errno);
     if (n == 0) return content;
     content.append(buffer.data(), static_cast<std::size_t>(n));
   }
@@ -112,12 +132,12 @@ void write_atomically(const fs::path& path, std::string_view content) {
 void make_writable_folder(const fs::path& dir) {
   std::error_code error;
   fs::create_directories(dir, error);
-  if (error) throw InputError(dir.string() + ": the folder cannot be made: " + error.message());
+  if (error) refuse_folder(dir, "made", error.value());
   if (!fs::is_directory(dir, error)) throw InputError(dir.string() + ": is a file, a folder is needed");
   const fs::path probe = temporary_name(dir / "probe");
   const int failure = write_new_file(probe, "");
   fs::remove(probe, error);
-  if (failure != 0) throw InputError(dir.string() + ": the folder cannot be written to: " + system_message(failure));
+  if (failure != 0) refuse_folder(dir, "written to", failure);
 }
 
 std::string hash_text(std::string_view content) {

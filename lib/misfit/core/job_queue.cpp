@@ -90,9 +90,4 @@ std::optional<JobResults> run_stored_jobs(const StoredJobs& jobs, const std::fun
   return stored_results(jobs);
 }
 
-void remove_stored_jobs(const fs::path& folder) {
-  std::error_code none;
-  for (const fs::path& file : checkpoints_in(folder)) fs::remove(file, none);
-}
-
 }  // namespace misfit

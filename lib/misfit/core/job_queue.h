@@ -19,7 +19,7 @@ struct StoredJobs {
   int threads = 0;               ///< of this process; 0: one per core, and one where there are several ranks
 };
 
-/// Results on disk, by number of the job. Holds 24 bytes per job; a result is read when it is asked for.
+/// Results on disk, by number of the job. Holds 16 bytes per job; a result is read when it is asked for.
 class JobResults {
  public:
   [[nodiscard]] std::size_t size() const { return places_.size(); }
@@ -46,8 +46,5 @@ class JobResults {
 /// first), RunError if the disk is full: what was done is kept. `progress` counts the jobs of this rank.
 [[nodiscard]] std::optional<JobResults> run_stored_jobs(const StoredJobs& jobs, const std::function<std::string(std::size_t k)>& job,
                                                         const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
-
-/// Removes the checkpoints, when what was made of them is safe.
-void remove_stored_jobs(const std::filesystem::path& folder);
 
 }  // namespace misfit

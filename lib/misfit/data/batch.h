@@ -22,7 +22,7 @@ struct BatchRow {
   std::map<std::string, Estimate> rms;
 };
 
-/// How one number varies over the studies that a method fitted.
+/// How one number varies over the studies in which a method has converged.
 struct BatchSummary {
   std::string method, name, unit;  ///< SI
   std::size_t count = 0;           ///< studies that have it

@@ -97,6 +97,8 @@ void write_bootstrap(const std::filesystem::path& dir, const std::vector<Bootstr
                      {"runs", b.runs},
                      {"failed", b.failed},
                      {"seed", b.seed},
+                     {"failures", b.failures},
+                     {"notes", b.notes},
                      {"numbers", numbers},
                      {"curves", curves}});
   }
@@ -116,6 +118,8 @@ std::vector<Bootstrap> read_bootstrap(const std::filesystem::path& dir) {
       b.runs = object.at("runs");
       b.failed = object.at("failed");
       b.seed = object.at("seed");
+      b.failures = object.at("failures").get<std::map<std::string, std::size_t>>();
+      b.notes = object.at("notes").get<std::vector<std::string>>();
       for (const Json& n : object.at("numbers")) b.numbers.push_back(number_from(n));
       for (const Json& c : object.at("curves")) b.curves.push_back(curve_from(c));
       out.push_back(std::move(b));
@@ -168,6 +172,15 @@ std::vector<LikelihoodProfile> read_profiles(const std::filesystem::path& dir) {
     }
     return out;
   });
+}
+
+void write_resampling_notes(const std::filesystem::path& dir, const std::vector<std::string>& notes) {
+  make_writable_folder(dir);
+  write_atomically(dir / "resampling.json", Json{{"notes", notes}}.dump(1) + "\n");
+}
+
+std::vector<std::string> read_resampling_notes(const std::filesystem::path& dir) {
+  return parsed_file(dir / "resampling.json", [](const Json& object) { return object.at("notes").get<std::vector<std::string>>(); });
 }
 
 }  // namespace misfit

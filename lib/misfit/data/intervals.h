@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct Bootstrap {
   int block = 0;       ///< samples
   std::size_t runs = 0, failed = 0;
   unsigned long long seed = 0;
+  std::map<std::string, std::size_t> failures;  ///< reason → runs that gave no fit for it
+  std::vector<std::string> notes;               ///< what a reader must know
   std::vector<BootstrapNumber> numbers;
   std::vector<BootstrapCurve> curves;
 };
@@ -43,10 +46,20 @@ struct LikelihoodProfile {
   std::vector<std::string> words;                     ///< what a reader must know
 };
 
+/// What [uncertainty] `bootstrap` and `profile` gave.
+struct Resampling {
+  std::vector<Bootstrap> bootstraps;
+  std::vector<LikelihoodProfile> profiles;
+  std::vector<std::string> notes;  ///< methods that could not be resampled, and why
+};
+
 /// `bootstrap.json`, `bootstrap.csv` (curves) and `profile.json` in `dir`; angles of trims and curves in degrees in the CSV, SI in JSON.
 void write_bootstrap(const std::filesystem::path& dir, const std::vector<Bootstrap>& bootstraps);
 [[nodiscard]] std::vector<Bootstrap> read_bootstrap(const std::filesystem::path& dir);
 void write_profiles(const std::filesystem::path& dir, const std::vector<LikelihoodProfile>& profiles);
 [[nodiscard]] std::vector<LikelihoodProfile> read_profiles(const std::filesystem::path& dir);
+/// `resampling.json`: the notes.
+void write_resampling_notes(const std::filesystem::path& dir, const std::vector<std::string>& notes);
+[[nodiscard]] std::vector<std::string> read_resampling_notes(const std::filesystem::path& dir);
 
 }  // namespace misfit

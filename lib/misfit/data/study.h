@@ -47,11 +47,10 @@ struct ExperimentStudy {
   std::string name;
   std::optional<std::filesystem::path> track, video, data;  ///< exactly one
   ColumnMap columns;
-  enum class Validation { none, last_fraction, interval, file } validation = Validation::none;
+  enum class Validation { none, last_fraction, interval } validation = Validation::none;
   double fraction = 0.0;        ///< last_fraction: 0.25 for "last 25 %"
   double from = 0.0, to = 0.0;  ///< interval [s]
-  std::filesystem::path validation_file;
-  long exclude = 0;  ///< initial samples
+  long exclude = 0;             ///< initial samples
   Source where;
 };
 
@@ -118,7 +117,7 @@ struct UncertaintyStudy {
   long block = 0;                     ///< its blocks [samples]; 0: from the residuals
   std::vector<std::string> profile;   ///< parameters whose profile likelihood is wanted
   bool recalibrate = false;           ///< the camera is calibrated again in every run, from the sweep with the perturbed geometry
-  Source where, where_camera;
+  Source where, where_camera, where_profile;
 };
 
 /// A study as written. Everything that can be checked without the model has been checked.

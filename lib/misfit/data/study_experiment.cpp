@@ -9,7 +9,7 @@ namespace {
 
 using config::Section;
 
-constexpr const char* validation_forms = "\"last 25 %\", [t0, t1] in seconds, or a file ending in .csv is expected";
+constexpr const char* validation_forms = "\"last 25 %\" or [t0, t1] in seconds is expected";
 
 void read_source(const Section& section, const Study& study, ExperimentStudy& experiment) {
   experiment.track = existing_file(section, "track", study.folder);
@@ -35,7 +35,7 @@ void read_interval(const Section& section, ExperimentStudy& experiment) {
   experiment.to = (*ends)[1];
 }
 
-void read_validation(const Section& section, const Study& study, ExperimentStudy& experiment) {
+void read_validation(const Section& section, ExperimentStudy& experiment) {
   if (section.is_array("validation")) return read_interval(section, experiment);
   if (section.has("validation") && !section.is_text("validation")) section.fail("validation", validation_forms);
   const auto given = section.text("validation");
@@ -48,8 +48,9 @@ void read_validation(const Section& section, const Study& study, ExperimentStudy
     if (experiment.fraction <= 0.0 || experiment.fraction >= 1.0)
       section.fail("validation", "the part held out must be above 0 % and below 100 %");
   } else if (text.ends_with(".csv")) {
-    experiment.validation = ExperimentStudy::Validation::file;
-    experiment.validation_file = *existing_file(section, "validation", study.folder);
+    section.fail("validation", "'" + text +
+                                   "': a recording of its own cannot be held out yet, and would be ignored; hold out a part of this one: "
+                                   "\"last 25 %\" or [t0, t1] in seconds");
   } else {
     section.fail("validation", "'" + text + "': " + validation_forms);
   }
@@ -77,7 +78,7 @@ void read_experiments(const Section& root, Study& study) {
     experiment.where = section.where();
     read_source(section, study, experiment);
     read_columns(section, experiment);
-    read_validation(section, study, experiment);
+    read_validation(section, experiment);
     experiment.exclude = section.integer("exclude", 0, 1'000'000'000).value_or(0);
     read_name(section, study, experiment);
     section.finish();

@@ -52,6 +52,7 @@ void read_uncertainty(const Section& root, Study& study) {
   UncertaintyStudy out;
   out.where = section->where();
   out.where_camera = section->where("camera");
+  out.where_profile = section->where("profile");
   out.runs = section->integer("runs", 1, most_runs).value_or(out.runs);
   if (const auto perturb = section->table("perturb")) {
     for (const std::string& name : perturb->keys()) out.perturb.push_back(read_one(*perturb, name));

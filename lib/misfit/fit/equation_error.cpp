@@ -209,6 +209,8 @@ void test_residuals(const Regressor& regressor, const std::vector<Signals>& expe
   out.fit.facts["whiteness"] = "equation residuals at lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) +
                                " samples: largest autocorrelation " + format_value(test.largest) + " at lag " +
                                std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
+  const auto rows = static_cast<std::ptrdiff_t>(regressor.rows().size());
+  for (auto r = regression.residuals.begin(); r != regression.residuals.end(); r += rows) out.equation_residuals.emplace_back(r, r + rows);
 }
 
 void describe_all(const Regressor& regressor, const std::vector<Signals>& experiments, const Smoothed& smoothed, FittedModel& out) {

@@ -8,8 +8,6 @@
 namespace misfit {
 namespace {
 
-bool usable(const Fit& fit) { return fit.status == FitStatus::converged; }
-
 /// The curves' roughness as chosen, so that any method keeps it.
 Model with_roughness(Model model, const std::vector<Penalty>& penalties) {
   for (const auto& p : penalties) model.curves[static_cast<std::size_t>(p.curve)].roughness = p.lambda;
@@ -26,25 +24,29 @@ FilterOptions filter_options(const FittedMethod& from) {
   return options;
 }
 
-}  // namespace
-
-std::optional<Fit> fit_again(const FittedMethod& from, const std::vector<Signals>& experiments) {
+Fit refitted(const FittedMethod& from, const std::vector<Signals>& experiments) {
   const Model model = with_roughness(from.fitted.model, from.fitted.penalties);
-  if (from.method == "equation_error") {
-    FittedModel out = equation_error(model, experiments);
-    return usable(out.fit) ? std::optional(std::move(out.fit)) : std::nullopt;
-  }
+  if (from.method == "equation_error") return equation_error(model, experiments).fit;
   FittedModel start = from.fitted;
   start.model = model;
-  if (from.method == "output_error") {
-    OutputErrorStart options;
-    options.coloured = false;
-    options.keep_roughness = true;
-    FittedModel out = output_error(start, experiments, options);
-    return usable(out.fit) ? std::optional(std::move(out.fit)) : std::nullopt;
+  if (from.method == "filter_error") return filter_error(start, experiments, filter_options(from)).fit;
+  OutputErrorStart options;
+  options.coloured = false;
+  options.keep_roughness = true;
+  return output_error(start, experiments, options).fit;
+}
+
+}  // namespace
+
+Fit fit_again(const FittedMethod& from, const std::vector<Signals>& experiments) {
+  try {
+    return refitted(from, experiments);
+  } catch (const RunError& error) {
+    Fit fit;
+    fit.method = from.method;
+    fit.message = error.what();
+    return fit;
   }
-  FilterError out = filter_error(start, experiments, filter_options(from));
-  return usable(out.fit) ? std::optional(std::move(out.fit)) : std::nullopt;
 }
 
 HeldFit::HeldFit(FittedMethod from, const std::vector<Signals>& experiments, const std::string& parameter)
@@ -72,28 +74,34 @@ HeldFit::HeldFit(FittedMethod from, const std::vector<Signals>& experiments, con
 
 std::optional<double> HeldFit::operator()(double value) {
   at_.fitted.model.parameters[parameter_].value = value;
-  const std::vector<Penalty>& penalties = at_.fitted.penalties;
   const double prior = prior_sigma_ ? -0.5 * std::pow((value - prior_mean_) / *prior_sigma_, 2) : 0.0;
-  if (at_.method == "output_error") {
-    OutputErrorStart options;
-    options.coloured = false;
-    options.keep_roughness = true;
-    FittedModel out = output_error(at_.fitted, *experiments_, options);
-    if (!usable(out.fit) || !out.fit.loglik) return std::nullopt;
-    at_.fitted.model.parameters = out.model.parameters;
-    at_.fitted.initial_states = out.initial_states;
-    return *out.fit.loglik + log_prior(out.model, penalties) + prior;
-  }
-  FilterOptions options = filter_options(at_);
-  options.use = at_.use;
   try {
-    const FilterEstimate out = estimate_filter(at_.fitted.model, penalties, *experiments_, options);
-    at_.fitted.model.parameters = out.model.parameters;
-    at_.noise = out.noise;
-    return out.objective + prior;
+    const std::optional<double> rest = at_.method == "output_error" ? by_output_error() : by_filter_error();
+    return rest ? std::optional(*rest + prior) : std::nullopt;
   } catch (const RunError&) {
     return std::nullopt;
   }
+}
+
+std::optional<double> HeldFit::by_output_error() {
+  OutputErrorStart options;
+  options.coloured = false;
+  options.keep_roughness = true;
+  FittedModel out = output_error(at_.fitted, *experiments_, options);
+  if (out.fit.status != FitStatus::converged || !out.fit.loglik) return std::nullopt;
+  at_.fitted.model.parameters = out.model.parameters;
+  at_.fitted.initial_states = out.initial_states;
+  return *out.fit.loglik + log_prior(out.model, at_.fitted.penalties);
+}
+
+std::optional<double> HeldFit::by_filter_error() {
+  FilterOptions options = filter_options(at_);
+  options.use = at_.use;
+  const FilterEstimate out = estimate_filter(at_.fitted.model, at_.fitted.penalties, *experiments_, options);
+  if (!out.converged) return std::nullopt;
+  at_.fitted.model.parameters = out.model.parameters;
+  at_.noise = out.noise;
+  return out.objective;
 }
 
 }  // namespace misfit

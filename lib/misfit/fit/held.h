@@ -18,8 +18,9 @@ struct FittedMethod {
 };
 
 /// The method again from where the fit ended, on other data of the same model (knots are the model's). The roughness is held, sigmas are
-/// those of white residuals. nullopt where it does not converge. Several threads may call it at once.
-[[nodiscard]] std::optional<Fit> fit_again(const FittedMethod& from, const std::vector<Signals>& experiments);
+/// those of white residuals. A fit that has not converged says so, as does one that could not be made (failed). Several threads may call it
+/// at once.
+[[nodiscard]] Fit fit_again(const FittedMethod& from, const std::vector<Signals>& experiments);
 
 /// Penalised log-likelihood at its maximum over everything but one parameter: what a profile is made of. Starts from where the last call
 /// ended.
@@ -27,10 +28,13 @@ class HeldFit {
  public:
   /// Keeps a reference to the experiments. InputError: a method without likelihood, a name that is no free parameter of the model.
   HeldFit(FittedMethod from, const std::vector<Signals>& experiments, const std::string& parameter);
-  /// nullopt where the model cannot be run or the fit fails with the parameter at `value`.
+  /// nullopt where the model cannot be run, or the fit does not converge, with the parameter at `value`.
   [[nodiscard]] std::optional<double> operator()(double value);
 
  private:
+  [[nodiscard]] std::optional<double> by_output_error();
+  [[nodiscard]] std::optional<double> by_filter_error();
+
   FittedMethod at_;
   const std::vector<Signals>* experiments_;
   std::size_t parameter_ = 0;

@@ -115,18 +115,24 @@ Figure profile_figure(const LikelihoodProfile& p) {
   return figure;
 }
 
-std::vector<std::string> write_interval_figures(const std::filesystem::path& dir, const std::vector<Bootstrap>& bootstraps,
-                                                const std::vector<LikelihoodProfile>& profiles) {
+std::vector<Figure> interval_figures(const Resampling& resampling) {
   std::vector<Figure> figures;
   std::set<std::string> curves;
-  for (const auto& b : bootstraps) {
+  for (const auto& b : resampling.bootstraps) {
     for (const auto& c : b.curves) curves.insert(c.name);
   }
-  for (const auto& curve : curves) figures.push_back(bootstrap_figure(curve, bootstraps));
-  for (const auto& p : profiles) figures.push_back(profile_figure(p));
-  std::vector<std::string> out;
-  for (const auto& figure : figures) out.push_back(write_figure(dir, figure).filename().string());
-  return out;
+  for (const auto& curve : curves) figures.push_back(bootstrap_figure(curve, resampling.bootstraps));
+  for (const auto& p : resampling.profiles) figures.push_back(profile_figure(p));
+  return figures;
+}
+
+std::vector<std::string> write_interval_figures(const std::filesystem::path& dir, const Resampling& resampling) {
+  std::vector<std::string> names;
+  for (const Figure& figure : interval_figures(resampling)) {
+    write_figure(dir, figure);
+    for (const char* extension : {".csv", ".gp", ".svg"}) names.push_back(figure.name + extension);
+  }
+  return names;
 }
 
 }  // namespace misfit::report

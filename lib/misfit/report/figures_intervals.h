@@ -16,8 +16,10 @@ namespace misfit::report {
 /// dotted, the parabola of the fit's sigma. Angles in degrees.
 [[nodiscard]] Figure profile_figure(const LikelihoodProfile& profile);
 
-/// All of them into `dir`; returns the names of the SVG files.
-std::vector<std::string> write_interval_figures(const std::filesystem::path& dir, const std::vector<Bootstrap>& bootstraps,
-                                                const std::vector<LikelihoodProfile>& profiles);
+/// All of them: a figure per curve, then one per profile.
+[[nodiscard]] std::vector<Figure> interval_figures(const Resampling& resampling);
+
+/// Draws them into `dir`; returns the names of all files, CSV and gnuplot script beside each SVG.
+std::vector<std::string> write_interval_figures(const std::filesystem::path& dir, const Resampling& resampling);
 
 }  // namespace misfit::report

@@ -12,6 +12,7 @@
 #include "misfit/data/comparison.h"
 #include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
+#include "misfit/data/intervals.h"
 #include "misfit/data/ladder.h"
 #include "misfit/data/reference.h"
 #include "misfit/data/track.h"
@@ -57,6 +58,7 @@ struct ReportInput {
   std::optional<Discovery> discovery;
   std::optional<RungInput> rung;  ///< the same of a rung of the ladder: the last that was looked at
   std::optional<Uncertainty> uncertainty;
+  std::optional<Resampling> resampling;
   std::vector<Reference> references;
   std::vector<std::string> notes;  ///< further findings or limits, in sentences
   RunFacts run;

@@ -15,6 +15,7 @@ std::filesystem::path write_report(const std::filesystem::path& dir, const Repor
   discovery_section(input, page, draw);
   curves_section(input, page, draw);
   uncertainty_section(input, page, draw);
+  resampling_section(input, page, draw);
   prediction_section(input, page, draw);
   simulated_section(input, page, draw);
   track_section(input, page, draw);

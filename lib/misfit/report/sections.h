@@ -29,6 +29,7 @@ void curves_section(const ReportInput& input, Page& page, const Draw& draw);
 void track_section(const ReportInput& input, Page& page, const Draw& draw);
 void measured_section(const ReportInput& input, Page& page, const Draw& draw);
 void uncertainty_section(const ReportInput& input, Page& page, const Draw& draw);
+void resampling_section(const ReportInput& input, Page& page, const Draw& draw);
 void prediction_section(const ReportInput& input, Page& page, const Draw& draw);
 void simulated_section(const ReportInput& input, Page& page, const Draw& draw);
 void parameters_section(const ReportInput& input, Page& page);

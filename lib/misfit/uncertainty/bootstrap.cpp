@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "misfit/core/error.h"
+#include "misfit/core/ranks.h"
 
 namespace misfit {
 namespace {
@@ -35,10 +36,10 @@ double percentile(const std::vector<double>& sorted, double p) {
   return sorted[low] + (place - static_cast<double>(low)) * (sorted[high] - sorted[low]);
 }
 
-Spread spread_of(const std::vector<std::vector<double>>& results, std::size_t number) {
+Spread spread_of(const std::vector<ChainResult>& results, std::size_t number) {
   std::vector<double> values;
   for (const auto& result : results) {
-    if (std::isfinite(result[number])) values.push_back(result[number]);
+    if (!result.numbers.empty() && std::isfinite(result.numbers[number])) values.push_back(result.numbers[number]);
   }
   Spread out;
   out.runs = values.size();
@@ -58,7 +59,7 @@ Spread spread_of(const std::vector<std::vector<double>>& results, std::size_t nu
 
 }  // namespace
 
-BlockBootstrap::BlockBootstrap(const Fit& fit, const std::vector<Signals>& experiments, Resampled what, Refit refit,
+BlockBootstrap::BlockBootstrap(const Fit& fit, const std::vector<Signals>& experiments, Resampled what, FitReplica refit,
                                const BootstrapOptions& options)
     : fit_(fit), options_(options), what_(what), refit_(std::move(refit)), resampler_(what, fit, experiments, options.block) {
   if (options.runs < 2) throw InputError("bootstrap: " + std::to_string(options.runs) + " runs; at least 2 are needed for a scatter");
@@ -84,23 +85,35 @@ std::vector<double> BlockBootstrap::numbers_of(const Fit& fit) const {
   return out;
 }
 
-std::vector<double> BlockBootstrap::run(std::size_t k) const {
+ChainResult BlockBootstrap::run(std::size_t k) const {
   std::seed_seq seeds{static_cast<std::uint32_t>(options_.seed), static_cast<std::uint32_t>(options_.seed >> 32U),
                       static_cast<std::uint32_t>(k)};
   std::mt19937_64 random(seeds);
-  const std::optional<Fit> fit = refit_(resampler_.draw(random));
-  return fit ? numbers_of(*fit) : std::vector<double>(size_, nan);
+  try {
+    const Fit fit = refit_(resampler_.draw(random));
+    if (fit.status != FitStatus::converged) return {{}, to_string(fit.status) + ": " + fit.message};
+    return {numbers_of(fit), ""};
+  } catch (const RunError& error) {
+    return {{}, error.what()};
+  }
 }
 
-Bootstrap BlockBootstrap::summary(const std::vector<std::vector<double>>& results) const {
+Bootstrap BlockBootstrap::summary(const std::vector<ChainResult>& results) const {
   Bootstrap out;
   out.method = fit_.method;
   out.block = resampler_.block();
   out.how = what_ == Resampled::residuals ? "residuals in blocks on the predicted motion" : "blocks of the measured samples";
   out.runs = results.size();
   out.seed = options_.seed;
-  for (const auto& result : results)
-    out.failed += std::all_of(result.begin(), result.end(), [](double v) { return std::isnan(v); }) ? 1 : 0;
+  if (!resampler_.note().empty()) out.notes.push_back(resampler_.note());
+  for (const auto& result : results) {
+    if (!result.numbers.empty()) continue;
+    ++out.failed;
+    count_failure(result.failure, out.failures);
+  }
+  if (2 * out.failed > out.runs)
+    throw RunError("bootstrap of " + out.method + ": " + std::to_string(out.failed) + " of " + std::to_string(out.runs) +
+                   " runs gave no fit, most of them: " + most_frequent(out.failures) + "; these replicas say nothing of its scatter");
   std::size_t number = 0;
   const auto add = [&](const std::string& name, const Estimate& e) {
     const Spread s = spread_of(results, number++);
@@ -124,15 +137,24 @@ Bootstrap BlockBootstrap::summary(const std::vector<std::vector<double>>& result
 }
 
 Bootstrap block_bootstrap(const BlockBootstrap& bootstrap, int threads, const ProgressFn& progress, const std::atomic<bool>* stop) {
-  std::vector<std::vector<double>> results(bootstrap.runs());
+  std::vector<ChainResult> results(bootstrap.runs());
   if (!run_jobs(
           results.size(), threads, [&](std::size_t k) { results[k] = bootstrap.run(k); }, progress, stop))
     throw RunError("bootstrap: stopped before all runs were done");
-  Bootstrap out = bootstrap.summary(results);
-  if (2 * out.failed > out.runs)
-    throw RunError("bootstrap: " + std::to_string(out.failed) + " of " + std::to_string(out.runs) +
-                   " runs gave no fit: these replicas say nothing of its scatter");
-  return out;
+  return bootstrap.summary(results);
+}
+
+std::optional<std::vector<ChainResult>> stored_runs(const BlockBootstrap& bootstrap, const StoredJobs& jobs, const ProgressFn& progress,
+                                                    const std::atomic<bool>* stop) {
+  StoredJobs all = jobs;
+  all.count = bootstrap.runs();
+  const auto stored = run_stored_jobs(
+      all, [&](std::size_t k) { return pack(bootstrap.run(k)); }, progress, stop);
+  if (!stored) return std::nullopt;
+  std::vector<ChainResult> results;
+  if (!ranks().first()) return results;
+  for (std::size_t k = 0; k < stored->size(); ++k) results.push_back(unpack_result(stored->result(k)));
+  return results;
 }
 
 }  // namespace misfit

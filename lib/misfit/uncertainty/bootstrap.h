@@ -6,8 +6,9 @@
 #include <functional>
 #include <optional>
 
-#include "misfit/core/work_queue.h"
+#include "misfit/core/job_queue.h"
 #include "misfit/data/intervals.h"
+#include "misfit/uncertainty/chain_result.h"
 #include "misfit/uncertainty/resample.h"
 
 namespace misfit {
@@ -15,13 +16,12 @@ namespace misfit {
 struct BootstrapOptions {
   std::size_t runs = 200;
   unsigned long long seed = 1;
-  int threads = 0;  ///< 0: one per core; does not change the answer
-  int block = 0;    ///< samples; 0: from the residuals' memory
+  BlockLength block;
 };
 
-/// From experiments to a fit, knots, roughness and start as in the nominal fit; nullopt where it failed. Called from several threads at
-/// once.
-using Refit = std::function<std::optional<Fit>(const std::vector<Signals>&)>;
+/// From experiments to a fit, knots, roughness and start as in the nominal fit; one that has not converged is a run that failed, and so is
+/// a RunError. Called from several threads at once.
+using FitReplica = std::function<Fit(const std::vector<Signals>&)>;
 
 /// Block bootstrap of a fit: every run draws replicas of the experiments (Resampler) and fits them. A run depends on the seed and its own
 /// number alone. What it says: scatter by noise with its memory, through the whole nonlinear estimation; not: the bias by roughness, priors
@@ -29,14 +29,15 @@ using Refit = std::function<std::optional<Fit>(const std::vector<Signals>&)>;
 class BlockBootstrap {
  public:
   /// Keeps references to `fit` and `experiments`. InputError: fewer than 2 runs, and what Resampler throws.
-  BlockBootstrap(const Fit& fit, const std::vector<Signals>& experiments, Resampled what, Refit refit, const BootstrapOptions& options);
+  BlockBootstrap(const Fit& fit, const std::vector<Signals>& experiments, Resampled what, FitReplica refit,
+                 const BootstrapOptions& options);
 
   [[nodiscard]] std::size_t runs() const { return options_.runs; }
   /// Numbers of run k: scalar parameters in the order of the fit's names (curve coefficients left out), trim, curves on the fit's grids;
-  /// NaN where it has none, all NaN if it failed.
-  [[nodiscard]] std::vector<double> run(std::size_t k) const;
-  /// Means, standard deviations and percentiles [DH] over runs in their order.
-  [[nodiscard]] Bootstrap summary(const std::vector<std::vector<double>>& results) const;
+  /// NaN where it has none; none and the reason if it failed.
+  [[nodiscard]] ChainResult run(std::size_t k) const;
+  /// Means, standard deviations and percentiles [DH] over runs in their order. RunError if fewer than half of them gave a fit.
+  [[nodiscard]] Bootstrap summary(const std::vector<ChainResult>& results) const;
 
  private:
   [[nodiscard]] std::vector<double> numbers_of(const Fit& fit) const;
@@ -44,14 +45,19 @@ class BlockBootstrap {
   const Fit& fit_;
   BootstrapOptions options_;
   Resampled what_;
-  Refit refit_;
+  FitReplica refit_;
   Resampler resampler_;
   std::vector<std::string> names_;
   std::size_t size_ = 0;
 };
 
-/// All runs over threads. RunError if fewer than half of them gave a fit, or it was stopped.
+/// All runs over threads (0: one per core), which do not change the answer. RunError as summary(), or if it was stopped.
 [[nodiscard]] Bootstrap block_bootstrap(const BlockBootstrap& bootstrap, int threads, const ProgressFn& progress = {},
                                         const std::atomic<bool>* stop = nullptr);
+
+/// All runs over threads and ranks, each on disk at once (run_stored_jobs(); `jobs.count` is the number of runs), in their order; nullopt
+/// if it was stopped; on ranks other than the first none.
+[[nodiscard]] std::optional<std::vector<ChainResult>> stored_runs(const BlockBootstrap& bootstrap, const StoredJobs& jobs,
+                                                                  const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace misfit

@@ -10,14 +10,6 @@
 namespace misfit {
 namespace {
 
-constexpr char succeeded = '+', failed = '-';
-constexpr std::size_t most_reasons = 20;
-constexpr const char* other_reasons = "other reasons";
-
-std::string pack(const ChainResult& result) {
-  return result.numbers.empty() ? failed + result.failure : succeeded + pack_numbers(result.numbers);
-}
-
 /// Running mean and sum of squares about it (Welford).
 class RunningMoments {
  public:
@@ -43,11 +35,13 @@ class Summary {
 
   void add(std::size_t run, std::string_view bytes) {
     ++result_.runs;
-    if (bytes.empty() || bytes.front() != succeeded) {
-      add_failure(std::string(bytes.substr(std::min<std::size_t>(1, bytes.size()))));
+    const ChainResult one = unpack_result(bytes);
+    const std::vector<double>& numbers = one.numbers;
+    if (numbers.empty()) {
+      ++result_.failed;
+      count_failure(one.failure, result_.failures);
       return;
     }
-    const std::vector<double> numbers = unpack_numbers(bytes.substr(1));
     if (moments_.empty()) {
       moments_.resize(numbers.size());
       regressions_.assign(std::min(shared_, numbers.size()), ShareRegression(sampler_));
@@ -68,12 +62,6 @@ class Summary {
   }
 
  private:
-  void add_failure(const std::string& reason) {
-    ++result_.failed;
-    const bool room = result_.failures.size() < most_reasons || result_.failures.contains(reason);
-    ++result_.failures[room ? reason : other_reasons];
-  }
-
   const Sampler& sampler_;
   std::size_t shared_;
   MonteCarloResult result_;
@@ -92,9 +80,8 @@ std::optional<MonteCarloResult> monte_carlo(const Sampler& sampler, const Chain&
   for (std::size_t run = 0; run < results->size(); ++run) summary.add(run, results->result(run));
   MonteCarloResult out = summary.result();
   if (out.failed < out.runs) return out;
-  const auto most =
-      std::max_element(out.failures.begin(), out.failures.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  throw RunError("all " + std::to_string(out.runs) + " runs failed, " + std::to_string(most->second) + " of them: " + most->first);
+  const std::string& most = most_frequent(out.failures);
+  throw RunError("all " + std::to_string(out.runs) + " runs failed, " + std::to_string(out.failures.at(most)) + " of them: " + most);
 }
 
 }  // namespace misfit

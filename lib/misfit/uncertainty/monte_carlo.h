@@ -7,16 +7,11 @@
 #include <vector>
 
 #include "misfit/core/job_queue.h"
+#include "misfit/uncertainty/chain_result.h"
 #include "misfit/uncertainty/perturbation.h"
 #include "misfit/uncertainty/variance_shares.h"
 
 namespace misfit {
-
-/// What one run of the chain gives.
-struct ChainResult {
-  std::vector<double> numbers;  ///< always the same ones in the same order, NaN where this run has none; empty: the run failed …
-  std::string failure;          ///< … for this reason
-};
 
 /// From errors of the set-up (order of Perturbations::names()) to numbers. Called from several threads at once; depends on nothing but the
 /// errors.

@@ -21,6 +21,7 @@ struct CorrelatedPerturbation {
   std::vector<std::string> names;  ///< order of `covariance`
   std::vector<std::string> units;  ///< SI
   Eigen::MatrixXd covariance;      ///< names × names, positive semi-definite
+  std::string source = {};         ///< where the covariance stands: file and key
 };
 
 struct Perturbations {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "misfit/core/error.h"
+#include "misfit/core/ranks.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 
@@ -11,6 +13,7 @@ namespace misfit {
 namespace {
 
 constexpr double limit_95 = 3.841458821;  // chi², 1 degree of freedom
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 struct Side {
   std::vector<double> value, drop;  ///< outwards
@@ -35,7 +38,7 @@ class Search {
       if (next == inside) return ended(inside, "the bound of " + request_.parameter + " comes first");
       const std::optional<double> root = root_at(next);
       if (!root) return ended(inside, "at " + format_value(next) + " the model cannot be estimated");
-      if (*root * *root >= limit_) {
+      if (*root >= std::sqrt(limit_)) {  // a rise of the likelihood, below 0, is no crossing however large
         refine(inside, inside_root, next, *root);
         return side_;
       }
@@ -68,22 +71,26 @@ class Search {
     return std::copysign(std::sqrt(std::abs(drop)), drop);
   }
 
-  /// The crossing between two values, by three steps of regula falsi on sqrt(drop).
+  /// The crossing between two values, by regula falsi on sqrt(drop): a step or two, more only where the likelihood had risen before.
   void refine(double inside, double inside_root, double outside, double outside_root) {
     const double wanted = std::sqrt(limit_);
-    constexpr int most = 3;
-    constexpr double near = 2e-3;
-    for (int k = 0; k < most; ++k) {
+    constexpr int most = 8;
+    constexpr double near = 2e-3, far = 0.05;
+    double off = infinite;
+    for (int k = 0; k < most && off > near; ++k) {
       const double share = (wanted - inside_root) / (outside_root - inside_root);
       const double middle = inside + share * (outside - inside);
       const std::optional<double> root = root_at(middle);
       if (!root) break;
       (*root >= wanted ? outside : inside) = middle;
       (*root >= wanted ? outside_root : inside_root) = *root;
-      if (std::abs(*root / wanted - 1.0) < near) break;
+      off = std::abs(*root / wanted - 1.0);
     }
     side_.end = inside + (wanted - inside_root) / (outside_root - inside_root) * (outside - inside);
-    side_.found = true;
+    side_.found = off < far;
+    if (!side_.found)
+      static_cast<void>(ended(inside, "between " + format_value(inside) + " and " + format_value(outside) +
+                                          " the likelihood jumps, or cannot be had: refits end in different maxima"));
   }
 
   const ProfileRequest& request_;
@@ -140,20 +147,61 @@ LikelihoodProfile joined(const ProfileRequest& r, const Side& below, const Side&
   return out;
 }
 
-}  // namespace
+std::vector<LikelihoodProfile> joined(const std::vector<ProfileRequest>& requests, const std::vector<Side>& sides) {
+  std::vector<LikelihoodProfile> out;
+  for (std::size_t i = 0; i < requests.size(); ++i) out.push_back(joined(requests[i], sides[2 * i], sides[2 * i + 1]));
+  return out;
+}
 
-std::vector<LikelihoodProfile> profile_likelihood(const std::vector<ProfileRequest>& requests, int threads, const ProgressFn& progress,
-                                                  const std::atomic<bool>* stop) {
+/// Job k: below the estimate of request k/2, or above it.
+Side side_of(const std::vector<ProfileRequest>& requests, std::size_t k) { return Search(requests[k / 2], k % 2 == 0 ? -1.0 : 1.0).run(); }
+
+/// `why`, a line's end, and numbers to the last bit.
+std::string pack(const Side& side) {
+  std::vector<double> numbers{side.found ? 1.0 : 0.0, side.end};
+  numbers.insert(numbers.end(), side.value.begin(), side.value.end());
+  numbers.insert(numbers.end(), side.drop.begin(), side.drop.end());
+  return side.why + "\n" + pack_numbers(numbers);
+}
+
+Side unpack_side(const std::string& bytes) {
+  const std::size_t line = bytes.find('\n');
+  const std::vector<double> numbers = unpack_numbers(std::string_view(bytes).substr(line == std::string::npos ? 0 : line + 1));
+  if (line == std::string::npos || numbers.size() < 2) throw RunError("a stored side of a profile cannot be understood");
+  const auto first = numbers.begin() + 2, middle = first + (numbers.end() - first) / 2;
+  return {{first, middle}, {middle, numbers.end()}, numbers[1], numbers[0] > 0.0, bytes.substr(0, line)};
+}
+
+void check(const std::vector<ProfileRequest>& requests) {
   for (const auto& r : requests) {
     if (!(r.sigma > 0.0) || !std::isfinite(r.sigma))
       throw InputError("profile of " + r.parameter + ": its sigma is " + format_value(r.sigma) + "; only a free parameter has a profile");
   }
+}
+
+}  // namespace
+
+std::vector<LikelihoodProfile> profile_likelihood(const std::vector<ProfileRequest>& requests, int threads, const ProgressFn& progress,
+                                                  const std::atomic<bool>* stop) {
+  check(requests);
   std::vector<Side> sides(2 * requests.size());
-  const auto job = [&](std::size_t k) { sides[k] = Search(requests[k / 2], k % 2 == 0 ? -1.0 : 1.0).run(); };
+  const auto job = [&](std::size_t k) { sides[k] = side_of(requests, k); };
   if (!run_jobs(sides.size(), threads, job, progress, stop)) throw RunError("profile: stopped before all sides were done");
-  std::vector<LikelihoodProfile> out;
-  for (std::size_t i = 0; i < requests.size(); ++i) out.push_back(joined(requests[i], sides[2 * i], sides[2 * i + 1]));
-  return out;
+  return joined(requests, sides);
+}
+
+std::optional<std::vector<LikelihoodProfile>> stored_profiles(const std::vector<ProfileRequest>& requests, const StoredJobs& jobs,
+                                                              const ProgressFn& progress, const std::atomic<bool>* stop) {
+  check(requests);
+  StoredJobs all = jobs;
+  all.count = 2 * requests.size();
+  const auto stored = run_stored_jobs(
+      all, [&](std::size_t k) { return pack(side_of(requests, k)); }, progress, stop);
+  if (!stored) return std::nullopt;
+  if (!ranks().first()) return std::vector<LikelihoodProfile>{};
+  std::vector<Side> sides;
+  for (std::size_t k = 0; k < stored->size(); ++k) sides.push_back(unpack_side(stored->result(k)));
+  return joined(requests, sides);
 }
 
 }  // namespace misfit

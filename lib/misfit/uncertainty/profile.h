@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-#include "misfit/core/work_queue.h"
+#include "misfit/core/job_queue.h"
 #include "misfit/data/intervals.h"
 
 namespace misfit {
@@ -30,10 +30,16 @@ struct ProfileRequest {
 /// Steps the parameter away on both sides, half a sigma at a time, everything else estimated anew, until the drop 2 [log L(best) −
 /// log L(value)] passes 3.84 × scale; that value is then found on sqrt(drop), a straight line where the likelihood is a normal one [BW].
 /// `scale` = (sigma/plain_sigma)²: the drop of coloured residuals counted as if they were white is too large (or too small) by it [CB].
-/// Ends without a crossing at a bound, after 20 steps, or where a search fails; `words` say so. Also said: a likelihood that is higher
-/// beside the estimate than at it, and an interval that is lopsided by more than a fifth. One job per parameter and side; the answer does
-/// not depend on `threads`. InputError: a sigma that is not positive.
+/// Ends without a crossing at a bound, after 20 steps, where a search fails, or where the likelihood jumps over the limit; `words` say so.
+/// Also said: a likelihood that is higher beside the estimate than at it, and an interval that is lopsided by more than a fifth. One job
+/// per parameter and side; the answer does not depend on `threads`. InputError: a sigma that is not positive.
 [[nodiscard]] std::vector<LikelihoodProfile> profile_likelihood(const std::vector<ProfileRequest>& requests, int threads,
                                                                 const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
+
+/// The same over threads and ranks, each side on disk when it ends (run_stored_jobs(); `jobs.count` is told by the requests). nullopt if it
+/// was stopped; on ranks other than the first the result is empty.
+[[nodiscard]] std::optional<std::vector<LikelihoodProfile>> stored_profiles(const std::vector<ProfileRequest>& requests,
+                                                                            const StoredJobs& jobs, const ProgressFn& progress = {},
+                                                                            const std::atomic<bool>* stop = nullptr);
 
 }  // namespace misfit

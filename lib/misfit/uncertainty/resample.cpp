@@ -9,6 +9,8 @@
 namespace misfit {
 namespace {
 
+constexpr std::size_t fewest = 16;  // samples that can tell of a memory, or be drawn from
+
 bool counts(const Signals& s, std::size_t i) {
   if (i < s.exclude || s.held_out(i)) return false;
   return std::all_of(s.measured.begin(), s.measured.end(), [&](const Signal& channel) { return std::isfinite(channel.values[i]); });
@@ -44,25 +46,48 @@ int memory_in(const std::vector<std::vector<double>>& pool) {
 
 }  // namespace
 
-Resampler::Resampler(Resampled what, const Fit& fit, const std::vector<Signals>& experiments, int block)
+Resampler::Resampler(Resampled what, const Fit& fit, const std::vector<Signals>& experiments, const BlockLength& length)
     : what_(what), experiments_(experiments) {
-  if (block < 0) throw InputError("bootstrap: a block of " + std::to_string(block) + " samples; it must be at least 1, or 0 to be chosen");
+  if (length.samples < 0)
+    throw InputError("bootstrap: a block of " + std::to_string(length.samples) + " samples; it must be at least 1, or 0 to be chosen");
   for (const auto& e : experiments) {
     for (std::size_t i = 0; i < e.samples(); ++i) counted_ += counts(e, i) ? 1 : 0;
   }
-  constexpr std::size_t fewest = 16;
   if (counted_ < fewest)
     throw RunError("bootstrap: only " + std::to_string(counted_) + " samples count; at least " + std::to_string(fewest) + " are needed");
-  if (what_ == Resampled::residuals || !fit.predictions.empty()) collect_residuals(fit);
-  block_ = block;
-  if (block_ == 0) {
-    const int memory = pool_.empty() ? static_cast<int>(std::cbrt(static_cast<double>(counted_))) : memory_in(pool_);
-    constexpr int memories = 5, more_for_rows = 50;
-    block_ = std::max(memories * memory, static_cast<int>(std::ceil(std::cbrt(static_cast<double>(counted_)))));
-    if (what_ == Resampled::rows) block_ += more_for_rows;
+  if (what_ == Resampled::residuals || !fit.predictions.empty()) {
+    collect_residuals(fit);
+  } else {
+    collect_equations(length.equations);
   }
-  block_ = std::clamp(block_, 1, std::max(1, static_cast<int>(counted_ / 8)));
+  choose_length(length);
   if (what_ == Resampled::rows) collect_rows();
+}
+
+void Resampler::choose_length(const BlockLength& length) {
+  const auto root = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(counted_))));
+  int wanted = length.samples;
+  if (wanted == 0) {
+    constexpr int memories = 5, more_for_rows = 50;
+    wanted = std::max(pool_.size() < fewest ? root : memories * memory_in(pool_), root);
+    if (what_ == Resampled::rows) wanted += more_for_rows;
+  }
+  block_ = std::min(wanted, std::max(1, static_cast<int>(counted_ / 8)));
+  if (block_ == wanted) return;
+  note_ = (length.samples > 0 ? "the study asks for blocks of " : "the memory of the residuals asks for blocks of ") +
+          std::to_string(wanted) + " samples; they are cut to " + std::to_string(block_) + ", an eighth of the " +
+          std::to_string(counted_) + " that count: with longer ones too few differ" +
+          (length.samples > 0 ? "" : ", and with these the scatter may come out too small");
+}
+
+void Resampler::collect_equations(const EquationResiduals& equations) {
+  for (const auto& rows : equations) {
+    for (std::size_t i = 0; !rows.empty() && i < rows.front().size(); ++i) {
+      std::vector<double> here;
+      for (const auto& row : rows) here.push_back(row[i]);
+      if (std::all_of(here.begin(), here.end(), [](double v) { return std::isfinite(v); })) pool_.push_back(std::move(here));
+    }
+  }
 }
 
 void Resampler::collect_residuals(const Fit& fit) {
@@ -93,11 +118,15 @@ void Resampler::collect_rows() {
   const auto length = static_cast<std::size_t>(block_);
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     const Signals& s = experiments_[e];
-    for (std::size_t i = s.exclude; i + length <= s.samples(); ++i) {
-      if (!s.held_out(i) && !s.held_out(i + length - 1)) starts_.push_back({e, i});
+    std::size_t free = 0, some = 0;  // up to sample i: in a row not held out; since the last that counts
+    for (std::size_t i = s.exclude; i < s.samples(); ++i) {
+      free = s.held_out(i) ? 0 : free + 1;
+      some = counts(s, i) ? 0 : some + 1;
+      if (free >= length && some < length) starts_.push_back({e, i + 1 - length});
     }
   }
-  if (starts_.empty()) throw RunError("bootstrap: no experiment has " + std::to_string(block_) + " samples in a row that are not held out");
+  if (starts_.empty())
+    throw RunError("bootstrap: no experiment has " + std::to_string(block_) + " samples in a row of which none is held out and any counts");
 }
 
 std::vector<Signals> Resampler::draw(std::mt19937_64& random) const {
@@ -129,6 +158,7 @@ std::vector<Signals> Resampler::draw_residuals(std::mt19937_64& random) const {
 Signals Resampler::part(const Signals& whole, std::size_t first, std::size_t last) const {
   const std::size_t from = first >= kReach ? first - kReach : 0, to = std::min(last + kReach, whole.samples());
   const auto cut = [&](const std::vector<double>& values) {
+    if (values.empty()) return values;  // an input that the model does not need
     return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(from), values.begin() + static_cast<std::ptrdiff_t>(to));
   };
   Signals out;
@@ -145,9 +175,14 @@ std::vector<Signals> Resampler::draw_rows(std::mt19937_64& random) const {
   std::vector<Signals> out;
   std::uniform_int_distribution<std::size_t> place(0, starts_.size() - 1);
   const auto length = static_cast<std::size_t>(block_);
-  for (std::size_t filled = 0; filled < counted_; filled += length) {
-    const Start start = starts_[place(random)];
-    out.push_back(part(experiments_[start.experiment], start.sample, start.sample + length));
+  for (std::size_t left = counted_; left > 0;) {
+    const std::size_t wanted = left >= 2 * length ? length : left > length ? (left + 1) / 2 : left;
+    const auto [experiment, first] = starts_[place(random)];
+    const Signals& whole = experiments_[experiment];
+    std::size_t last = first, taken = 0;
+    for (; last < first + length && taken < wanted; ++last) taken += counts(whole, last) ? 1 : 0;
+    left -= taken;
+    out.push_back(part(whole, first, last));
     out.back().name += " block " + std::to_string(out.size());
   }
   return out;

@@ -5,6 +5,7 @@
 //   [DH] A. C. Davison, D. V. Hinkley, Bootstrap Methods and their Application (1997), ch. 8.
 
 #include <random>
+#include <string>
 #include <vector>
 
 #include "misfit/data/fit.h"
@@ -18,29 +19,43 @@ enum class Resampled {
   rows        ///< blocks of the measured samples, each an experiment of its own: regressions, and the filter, which starts anew in each
 };
 
+/// Residuals of equations: experiment, equation, sample; NaN where not used.
+using EquationResiduals = std::vector<std::vector<std::vector<double>>>;
+
+/// How long the blocks are.
+struct BlockLength {
+  int samples = 0;              ///< 0: from the memory of the residuals
+  EquationResiduals equations;  ///< whose memory it is where the fit predicts no motion (equation_error)
+};
+
 /// Replicas of experiments that keep the residuals' memory, by blocks of consecutive samples [K].
 ///
 /// Residuals: of the counted samples (not excluded, not held out, every channel known), centred, brought up to the fit's noise sigma (a
 /// fit takes part of the noise), drawn in blocks over all channels at once, so that correlation between channels stays. Blocks wrap around
 /// the end [DH]. Samples that are missing stay missing; held-out ones stay as they are.
-/// Rows: as many blocks as fill the counted samples. A stencil reaches over a block's ends, so each brings `kReach` further samples at
-/// either end, which are not counted.
+/// Rows: blocks without a held-out sample, until they have as many counted samples as the experiments; the last ones are shortened for
+/// that (two share what one and a part would leave). A stencil reaches over a block's ends, so each brings up to `kReach` further samples
+/// at either end, which are not counted.
 ///
 /// Block length, unless given: five times the lag up to which the residuals' correlation stands out (memory_of()), at least n^(1/3); for
-/// rows 50 samples more; at most an eighth of the samples.
+/// rows 50 samples more. At most an eighth of the samples, given or not: note() says so.
 class Resampler {
  public:
   static constexpr std::size_t kReach = 4;
 
-  /// InputError: a block that is not positive. RunError: fewer than 16 counted samples; a fit without predictions or of other experiments
+  /// InputError: a length below 0. RunError: fewer than 16 counted samples; a fit without predictions or of other experiments
   /// where residuals are to be drawn.
-  Resampler(Resampled what, const Fit& fit, const std::vector<Signals>& experiments, int block = 0);
+  Resampler(Resampled what, const Fit& fit, const std::vector<Signals>& experiments, const BlockLength& length = {});
 
   [[nodiscard]] int block() const { return block_; }
+  /// What a reader must know of the length; empty: nothing.
+  [[nodiscard]] const std::string& note() const { return note_; }
   [[nodiscard]] std::vector<Signals> draw(std::mt19937_64& random) const;
 
  private:
+  void choose_length(const BlockLength& length);
   void collect_residuals(const Fit& fit);
+  void collect_equations(const EquationResiduals& equations);
   void collect_rows();
   [[nodiscard]] std::vector<Signals> draw_residuals(std::mt19937_64& random) const;
   [[nodiscard]] std::vector<Signals> draw_rows(std::mt19937_64& random) const;
@@ -49,8 +64,9 @@ class Resampler {
   Resampled what_;
   const std::vector<Signals>& experiments_;
   int block_ = 0;
+  std::string note_;
   std::vector<std::vector<std::vector<double>>> predicted_;  ///< experiment, channel, sample
-  std::vector<std::vector<double>> pool_;                    ///< counted sample over all experiments → residual per channel
+  std::vector<std::vector<double>> pool_;                    ///< used sample over all experiments → residual per channel or equation
   struct Start {
     std::size_t experiment, sample;
   };

@@ -57,6 +57,7 @@ BatchSummary summary_of(const Numbers& n) {
 std::vector<BatchSummary> summarise(const std::vector<BatchRow>& rows) {
   std::vector<Numbers> all;
   for (const BatchRow& row : rows) {
+    if (row.status != to_string(FitStatus::converged)) continue;  // where it stopped is no maximum, and its sigmas none of it
     for (const auto& [name, e] : row.values) add(row, name, e, all);
   }
   std::vector<BatchSummary> out;

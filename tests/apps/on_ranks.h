@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdlib>
+
+#include "tests/apps/program.h"
+
+namespace program {
+
+/// mpirun -n RANKS misfit …, its words to the folder's stdout and stderr.
+inline Outcome on_ranks(int ranks, const std::vector<std::string>& arguments) {
+  const TemporaryFolder captured;
+  std::string command =
+      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n " + std::to_string(ranks) + " " + MISFIT_PROGRAM;
+  for (const auto& argument : arguments) command += " '" + argument + "'";
+  command += " > '" + (captured.path() / "stdout").string() + "' 2> '" + (captured.path() / "stderr").string() + "'";
+  const int status = std::system(command.c_str());  // NOLINT(cert-env33-c): a test
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(captured.path() / "stdout"), content(captured.path() / "stderr")};
+}
+
+inline bool has_mpi() {
+  return fs::exists(fs::path(MISFIT_PROGRAM).parent_path() / "misfit_mpi.so") &&
+         std::system("mpirun --version > /dev/null 2>&1") == 0;  // NOLINT(cert-env33-c): a test
+}
+
+}  // namespace program
