@@ -52,7 +52,8 @@ TEST(ScreenCells, AShapeBetweenGeometricCellsIsLookedForBetweenThem) {
 /// A line too weak for one record is the same line in both: their scores add before the power is taken.
 TEST(ScreenCells, ALineIsLookedForInAllExperimentsAtOnce) {
   const std::map<std::string, double> line = {{"cosine", 0.02}, {"sine", 0.012}, {"frequency", 1.3}};
-  const Signals first = record_of_cart({effect("periodic_forcing")}, line, 51), second = record_of_cart({effect("periodic_forcing")}, line, 52);
+  const Signals first = record_of_cart({effect("periodic_forcing")}, line, 51),
+                second = record_of_cart({effect("periodic_forcing")}, line, 52);
   const Screening both({first, second}, "periodic_forcing"), one({first}, "periodic_forcing"), other({second}, "periodic_forcing");
   const double half_width = 1.0 / (4.0 * first.t.back());
   EXPECT_NEAR(both.found[0].frequencies.step, half_width, 1e-12) << "the length of one experiment, not of both";
