@@ -39,6 +39,16 @@ TEST(DiscoverAuto, AddsWhatIsAcceptedAndLooksAgain) {
   expect_parts(content(study.out("report.html")), {"What could be missing", "What could still be missing after rung"});
 }
 
+/// The planar model lacks a degree of freedom, which no effect describes: whatever follows some of it is not to be taken for it.
+TEST(Discover, APlanarModelOfAConingFlightLacksWhatNoEffectIs) {
+  const ShortFlight study("parachute_planar", 40.0);
+  const Outcome outcome = study.run("discover");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string verdict = study.result("discovery.json").at("verdict");
+  expect_parts(verdict, {"Something is missing that depends on", "a force on pitching_moment", "none of the effects I know"});
+  for (const auto& candidate : study.result("candidates.json")) EXPECT_FALSE(candidate.at("accepted")) << candidate.at("effect");
+}
+
 TEST(TwoStudiesInOneFolder, DoNotShareARunFolderInSilence) {
   const ShortFlight study("parachute_spherical", 4.0);
   study.write("second.toml", content(study.path("study.toml")));

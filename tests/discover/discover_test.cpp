@@ -210,6 +210,18 @@ TEST(Specimens, LeaveOutWhatDoesNotSuit) {
     EXPECT_THAT(names, testing::Not(testing::Contains(other))) << "in the model, driven by noise, of another system, or specialised";
 }
 
+TEST(Specimens, WhatRunsWithTheClockReadsTheTime) {
+  const Flight flight(fly(5.0, 35));
+  int seen = 0;
+  for (const auto& s : specimens(flight.estimate, flight.request, registry(), nullptr)) {
+    const bool reads = std::find(s.quantities.begin(), s.quantities.end(), kTime) != s.quantities.end();
+    if (s.effect != "dynamic_pressure_drift" && s.effect != "vortex_shedding" && s.effect != "strut_wake") continue;
+    ++seen;
+    EXPECT_EQ(reads, s.effect != "strut_wake") << s.effect;
+  }
+  EXPECT_EQ(seen, 3);
+}
+
 TEST(Screen, SaysWhichFrequenciesItLookedAt) {
   Specimen specimen;
   specimen.effect = "vortex_shedding";

@@ -14,7 +14,8 @@ TEST(ScaleUncertainties, TheCoefficientGoesWithTheInertia) {
   Model model = assemble(parachute(true), registry());
   model.parameters[static_cast<std::size_t>(model.find_parameter("m_a"))].prior_sigma = 0.033;
   const std::vector<double> x(static_cast<std::size_t>(model.states()), 0.2);
-  const std::vector<std::string> words = scale_uncertainties(model, x.data(), nullptr, 0.0);
+  const std::vector<double> u(static_cast<std::size_t>(model.inputs()), 0.0);
+  const std::vector<std::string> words = scale_uncertainties(model, x.data(), u.data(), 0.0);
   ASSERT_EQ(words.size(), 1U);
   EXPECT_THAT(words[0], testing::HasSubstr("m_a = 0.294 ± 0.033 kg alone makes every C_m uncertain by 6.6 %"));
 }

@@ -165,7 +165,9 @@ class Search {
 
   /// What depends on a quantity in a way that no named effect has.
   std::optional<Unexplained> unexplained() const {
-    if (left_) return Unexplained{left_->port, left_->quantity, left_->p_value};
+    // What a likeness leaves is told by its own quantities; a curve that explains more than the likeness does tells better.
+    const bool likeness_better = !unknown_.empty() && !entries_.empty() && entries_.front().log_p < unknown_.front().log_p;
+    if (left_ && (unknown_.empty() || likeness_better)) return Unexplained{left_->port, left_->quantity, left_->p_value};
     if (!out_.candidates.empty() && out_.candidates.front().accepted) return std::nullopt;
     if (unknown_.empty()) return std::nullopt;
     const UnknownCurve& best = unknown_.front();

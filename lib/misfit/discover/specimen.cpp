@@ -21,6 +21,23 @@ bool driven_by_noise(const Effect& effect) {
   return false;
 }
 
+/// Does any of its examples change with the time of the recording?
+bool reads_time(const Effect& effect) {
+  const std::size_t size = effect.spec().ports.size() + effect.spec().states.size();
+  for (const Example& example : effect.examples()) {
+    constexpr double later = 0.37;
+    std::vector<double> now(size, 0.0), then(size, 0.0);
+    const auto at = [&](double t, std::vector<double>& out) {
+      effect.evaluate({example.quantities.data(), example.coefficients.data(), example.states.data(), example.constants.data(), t},
+                      out.data());
+    };
+    at(example.t, now);
+    at(example.t + later, then);
+    if (now != then) return true;
+  }
+  return false;
+}
+
 bool in_model(const ModelRequest& request, const std::string& key) {
   return std::any_of(request.effects.begin(), request.effects.end(), [&](const EffectRequest& e) { return e.kind == key; });
 }
@@ -130,6 +147,7 @@ void fill(const Effect& effect, const Calibration* calibration, const Visited& v
   for (int q : bound.quantities) {
     if (q >= 0) out.quantities.push_back(q);
   }
+  if (reads_time(*bound.effect)) out.quantities.push_back(kTime);
 }
 
 std::vector<std::string> names_of_ports(const Model& model) {

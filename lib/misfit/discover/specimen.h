@@ -25,8 +25,11 @@ struct Specimen {
   bool has_priors = false;
   std::vector<int> ports;  ///< dynamic ports it writes
   std::vector<std::string> port_names;
-  std::vector<int> quantities;  ///< of the system that it reads
+  std::vector<int> quantities;  ///< of the system that it reads; kTime for the time of the recording
 };
+
+/// Stands for the time of the recording among indices of quantities, as in diagnose/features.h.
+inline constexpr int kTime = -1;
 
 /// Every effect of the registry that suits the model's system, is not in it, and has a strength; generic ones at each place that the system
 /// suggests (places.h). Left out: effects driven by noise (the
