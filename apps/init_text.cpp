@@ -189,7 +189,7 @@ std::string study_text(const std::string& name, const std::vector<std::string>& 
         "\n[[experiment]]\n"
         "name = \"{}\"\n"
         "data = \"{}.csv\"\n"
-        "validation = \"last 25 %\"     # held out: never seen by the fit; or [t0, t1]\n"
+        "validation = \"last 25 %\"     # held out: never seen by the fit; or [t0, t1], or another file\n"
         "# exclude = 5                # initial samples that do not count\n",
         part, part);
   }

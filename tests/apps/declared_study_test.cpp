@@ -43,6 +43,27 @@ TEST(CascadedTanks, AreFittedAgainWhenTheFileOfTheirSystemChanges) {
   EXPECT_NEAR(study.fit("output_error")["parameters"]["k4"]["value"].get<double>() / k4, std::pow(0.05 / 0.06, 2), 0.01);
 }
 
+/// A recording of its own, held out by its name: as an experiment all of which is held out; without shared states its own is read from it.
+TEST(CascadedTanks, AnotherFileIsHeldOutByItsName) {
+  const StudyCopy listed("cascaded_tanks"), named("cascaded_tanks");
+  const std::string text = content(named.path("study.toml"));
+  const auto test = text.find("[[experiment]]\nname = \"test\""), initial = text.find("[initial]");
+  ASSERT_LT(test, initial);
+  std::string one = text.substr(0, test) + text.substr(initial);
+  one.insert(one.find("exclude = 5\n") + 12, "validation = \"test.csv\"\n");
+  named.write("study.toml", one);
+  ASSERT_EQ(listed.run("fit").status, 0);
+  ASSERT_EQ(named.run("fit").status, 0);
+  EXPECT_EQ(named.fit("output_error")["parameters"], listed.fit("output_error")["parameters"]);
+  EXPECT_EQ(named.fit("output_error")["validation_rms"], listed.fit("output_error")["validation_rms"]);
+  named.write("study.toml", one.substr(0, one.find("[initial]")));
+  ASSERT_EQ(named.run("fit").status, 0);
+  const json own = named.fit("output_error");
+  EXPECT_EQ(own["status"], "converged");
+  EXPECT_GT(own["validation_rms"]["y"]["value"].get<double>(), 0.3);
+  EXPECT_LT(own["validation_rms"]["y"]["value"].get<double>(), 1.0);
+}
+
 TEST(CascadedTanks, WithFourFreeParametersAreToldThatThreeActTogether) {
   const StudyCopy study("cascaded_tanks");
   study.append("[parameters]\nk2 = { free = true }\n");

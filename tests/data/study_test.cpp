@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "tests/core/temporary_folder.h"
+#include "tests/data/study_folder.h"
 
 namespace misfit {
 namespace {
@@ -63,26 +63,6 @@ perturb = { R = "0.1524 m", K = "1.969 px/m", x = 0.1 }
 width = "1.5 deg"
 step = "0.1 deg"
 )";
-
-/// A study folder with every file that the studies below name.
-class StudyFolder : public ::testing::Test {
- protected:
-  StudyFolder() {
-    for (const char* name : {"track.csv", "other.csv", "static_sweep.csv", "static_test.csv", "flight.mkv", "model.toml", "template.png"})
-      folder_.write(name, "x\n");
-  }
-  Study read(const std::string& text) const { return read_study(folder_.write("study.toml", text)); }
-  /// A study that is right but for `text`.
-  Study read_with(const std::string& text) const { return read("[system]\nkind = \"parachute_planar\"\n" + text); }
-  std::string error_of(const std::string& text) const {
-    return message_of<InputError>([&] { (void)read(text); });
-  }
-  /// `text` begins on line 3.
-  std::string error_with(const std::string& text) const {
-    return message_of<InputError>([&] { (void)read_with(text); });
-  }
-  TemporaryFolder folder_;
-};
 
 TEST_F(StudyFolder, AWholeStudyGivesHeadAndSystem) {
   const Study study = read(whole);
@@ -215,29 +195,6 @@ TEST_F(StudyFolder, AFileThatIsMissingNamesLineAndNearest) {
   expect_parts(error_with("[[experiment]]\ndata = \"nowhere/x.csv\"\n"), {"study.toml:4:1", "no such file 'nowhere/x.csv'"});
   expect_parts(error_with("[[experiment]]\ndata = \".\"\n"), {"study.toml:4:1", "is no file"});
   expect_parts(error_with("[[experiment]]\ndata = \"\"\n"), {"study.toml:4:1", "no such file"});
-}
-
-TEST_F(StudyFolder, AnExperimentHasOneSourceAndAnOwnName) {
-  expect_parts(error_with("[[experiment]]\nname = \"a\"\n"), {"study.toml:3", "exactly one of track, video and data", "0 are given"});
-  expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\ndata = \"other.csv\"\n"), {"2 are given"});
-  expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\n[[experiment]]\ndata = \"track.csv\"\n"),
-               {"two experiments are called 'track'", "line 3"});
-  expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\nname = \"../a\"\n"), {"study.toml:5", "experiment[0].name"});
-  expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\nexclude = -1\n"), {"study.toml:5", "from 0"});
-  EXPECT_EQ(read_with("[[experiment]]\nvideo = \"flight.mkv\"\n").experiments[0].video->filename(), "flight.mkv");
-}
-
-TEST_F(StudyFolder, ValidationHasTwoForms) {
-  const std::string head = "[[experiment]]\ntrack = \"track.csv\"\nvalidation = ";
-  EXPECT_EQ(read_with("[[experiment]]\ntrack = \"track.csv\"\n").experiments[0].validation, ExperimentStudy::Validation::none);
-  EXPECT_DOUBLE_EQ(read_with(head + "\"last 12.5%\"").experiments[0].fraction, 0.125);
-  expect_parts(error_with(head + "\"other.csv\""), {"study.toml:5", "experiment[0].validation", "'other.csv'", "\"last 25 %\""});
-  for (const char* wrong : {"\"first 25 %\"", "\"last 25\"", "\"last -5 %\"", "25", "true"}) {
-    expect_parts(error_with(head + wrong), {"study.toml:5", "\"last 25 %\" or [t0, t1] in seconds"});
-  }
-  for (const char* wrong : {"\"last 0 %\"", "\"last 100 %\""}) expect_parts(error_with(head + wrong), {"study.toml:5", "above 0 %"});
-  for (const char* wrong : {"[1]", "[2, 1]", "[1, 1]", "[1, 2, 3]"}) expect_parts(error_with(head + wrong), {"study.toml:5", "two times"});
-  expect_parts(error_with(head + "[1, \"2 m\"]"), {"study.toml:5", "'m'", "'s'"});
 }
 
 TEST_F(StudyFolder, AnEffectIsATableOfTexts) {

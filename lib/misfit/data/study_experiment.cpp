@@ -9,7 +9,7 @@ namespace {
 
 using config::Section;
 
-constexpr const char* validation_forms = "\"last 25 %\" or [t0, t1] in seconds is expected";
+constexpr const char* validation_forms = "\"last 25 %\", [t0, t1] in seconds, or a file ending in .csv is expected";
 
 void read_source(const Section& section, const Study& study, ExperimentStudy& experiment) {
   experiment.track = existing_file(section, "track", study.folder);
@@ -35,6 +35,20 @@ void read_interval(const Section& section, ExperimentStudy& experiment) {
   experiment.to = (*ends)[1];
 }
 
+/// A recording of its own: read like the experiment's, all of it held out.
+ExperimentStudy wholly_held_out(const Section& section, const Study& study, const ExperimentStudy& experiment) {
+  ExperimentStudy other = experiment;
+  const std::filesystem::path file = *existing_file(section, "validation", study.folder);
+  (experiment.data ? other.data : other.track) = file;
+  other.video.reset();
+  constexpr double whole = 1e12;  // [s] of either sign: more than any recording lasts
+  other.validation = ExperimentStudy::Validation::interval;
+  other.from = -whole;
+  other.to = whole;
+  other.name = experiment.name + " validation";
+  return other;
+}
+
 void read_validation(const Section& section, ExperimentStudy& experiment) {
   if (section.is_array("validation")) return read_interval(section, experiment);
   if (section.has("validation") && !section.is_text("validation")) section.fail("validation", validation_forms);
@@ -47,12 +61,16 @@ void read_validation(const Section& section, ExperimentStudy& experiment) {
     experiment.fraction = std::stod(match[1]) / 100.0;
     if (experiment.fraction <= 0.0 || experiment.fraction >= 1.0)
       section.fail("validation", "the part held out must be above 0 % and below 100 %");
-  } else if (text.ends_with(".csv")) {
-    section.fail("validation", "'" + text +
-                                   "': a recording of its own cannot be held out yet, and would be ignored; hold out a part of this one: "
-                                   "\"last 25 %\" or [t0, t1] in seconds");
-  } else {
+  } else if (!text.ends_with(".csv")) {
     section.fail("validation", "'" + text + "': " + validation_forms);
+  }
+}
+
+void refuse_twice(const Section& section, const Study& study, const std::string& name) {
+  for (const ExperimentStudy& earlier : study.experiments) {
+    if (earlier.name != name) continue;
+    section.fail("name", "two experiments are called '" + name + "' (the other on line " + std::to_string(earlier.where.line) +
+                             "): give each a name of its own");
   }
 }
 
@@ -63,11 +81,11 @@ void read_name(const Section& section, const Study& study, ExperimentStudy& expe
   if (experiment.name.empty() || experiment.name.find_first_of("/\\") != std::string::npos || experiment.name.front() == '.') {
     section.fail("name", "a name without / and \\ that does not begin with a dot is expected");
   }
-  for (const ExperimentStudy& earlier : study.experiments) {
-    if (earlier.name != experiment.name) continue;
-    section.fail("name", "two experiments are called '" + experiment.name + "' (the other on line " + std::to_string(earlier.where.line) +
-                             "): give each a name of its own");
-  }
+  refuse_twice(section, study, experiment.name);
+}
+
+bool names_a_file(const Section& section) {
+  return section.has("validation") && section.is_text("validation") && section.text("validation")->ends_with(".csv");
 }
 
 }  // namespace
@@ -81,8 +99,13 @@ void read_experiments(const Section& root, Study& study) {
     read_validation(section, experiment);
     experiment.exclude = section.integer("exclude", 0, 1'000'000'000).value_or(0);
     read_name(section, study, experiment);
+    std::optional<ExperimentStudy> other;
+    if (names_a_file(section)) other = wholly_held_out(section, study, experiment);
     section.finish();
     study.experiments.push_back(std::move(experiment));
+    if (!other) continue;
+    refuse_twice(section, study, other->name);
+    study.experiments.push_back(std::move(*other));
   }
 }
 

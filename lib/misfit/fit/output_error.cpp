@@ -234,6 +234,10 @@ class Estimator {
     errors_of(experiments_, fit);
     for (std::size_t e = 0; e < experiments_.size(); ++e) out.initial_states.push_back(shooting_.initial_state(e));
     fit.facts["effective_parameters"] = format_value(smoothed.edf);
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      if (shooting_.held_out(e))
+        fit.facts["held out: " + experiments_[e].name] = "no reading of it counts: its initial state is read from its first samples";
+    }
     const InputTable inputs = input_table(experiments_.front(), out.model.inputs());
     const std::vector<std::string> scales =
         scale_uncertainties(out.model, out.initial_states.front().data(), inputs.at(0), experiments_.front().t.front());

@@ -28,6 +28,21 @@ Shooting::Shooting(Model model, const std::vector<Signals>& experiments, std::ve
       if (state.initial == Initial::fixed && history.rows() > 0) history(0, static_cast<Eigen::Index>(j)) = state.start;
     }
   }
+  for (std::size_t e = 0; e < experiments_.size(); ++e) {
+    read_start_.push_back(initial_state(e));
+    bool any = false;
+    for (std::size_t i = 0; i < experiments_[e].samples() && !any; ++i) {
+      for (std::size_t o = 0; o < static_cast<std::size_t>(model_.outputs()); ++o) any = any || counts(e, i, o);
+    }
+    held_out_.push_back(!any);
+  }
+}
+
+std::optional<double> Shooting::known_start(std::size_t experiment, std::size_t state) const {
+  const StateSpec& spec = model_.state_specs[state];
+  if (spec.initial == Initial::fixed) return spec.start;
+  if (spec.initial == Initial::shared || !held_out_[experiment]) return std::nullopt;
+  return read_start_[experiment][static_cast<Eigen::Index>(state)];
 }
 
 bool Shooting::counts(std::size_t experiment, std::size_t i, std::size_t o) const {
@@ -116,7 +131,7 @@ double Shooting::holding(std::size_t state) const {
   return weight * weight;
 }
 
-/// Initial states that are fixed or shared, by stiff residuals.
+/// Initial states that are known or shared, by stiff residuals.
 void Shooting::add_initial(LeastSquares& problem, const std::vector<Piece>& pieces) const {
   int first = -1;
   for (const Piece& piece : pieces) {
@@ -124,9 +139,10 @@ void Shooting::add_initial(LeastSquares& problem, const std::vector<Piece>& piec
     if (first < 0) first = piece.block;
     for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
       const StateSpec& state = model_.state_specs[j];
-      const bool fixed = state.initial == Initial::fixed, tied = state.initial == Initial::shared && piece.block != first;
-      if (!fixed && !tied) continue;
-      const double weight = std::sqrt(holding(j)), value = fixed ? state.start : 0.0;
+      const std::optional<double> known = known_start(piece.experiment, j);
+      const bool tied = state.initial == Initial::shared && piece.block != first;
+      if (!known && !tied) continue;
+      const double weight = std::sqrt(holding(j)), value = known.value_or(0.0);
       const auto n = static_cast<std::size_t>(model_.states());
       const auto row = [j, n](double* J, double slope) {
         if (J == nullptr) return;

@@ -65,6 +65,8 @@ class Shooting {
   [[nodiscard]] int linearisations() const { return linearisations_; }
   [[nodiscard]] const std::string& failure() const { return failure_; }  ///< where the last run left the finite numbers, in words
   void forget_failure() { failure_.clear(); }
+  /// Does no reading of it count? Then its initial state, unless shared, is the one read from its first samples (`start_states`).
+  [[nodiscard]] bool held_out(std::size_t experiment) const { return held_out_[experiment]; }
   /// Is output o of sample i a residual of the estimation?
   [[nodiscard]] bool counts(std::size_t experiment, std::size_t i, std::size_t o) const;
 
@@ -84,6 +86,8 @@ class Shooting {
   void add_initial(LeastSquares& problem, const std::vector<Piece>& pieces) const;
   /// Stiffness by which an initial state is held [1/unit²]: fixed to its value, or shared with the first experiment.
   [[nodiscard]] double holding(std::size_t state) const;
+  /// What an initial state is held to by itself.
+  [[nodiscard]] std::optional<double> known_start(std::size_t experiment, std::size_t state) const;
   void hold_initial(Linearised& out) const;
   void add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const;
   void remember(std::vector<Piece>& pieces, const LeastSquares& problem);
@@ -93,6 +97,8 @@ class Shooting {
   const std::vector<Signals>& experiments_;
   std::vector<double> sigma_, state_scale_;
   std::vector<RowMatrix> history_;
+  std::vector<Eigen::VectorXd> read_start_;  ///< per experiment, from its first samples
+  std::vector<bool> held_out_;
   std::vector<InputTable> inputs_;
   std::vector<int> free_;
   std::vector<double> values_;

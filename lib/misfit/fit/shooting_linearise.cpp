@@ -128,9 +128,9 @@ void Shooting::hold_initial(Linearised& out) const {
       const Eigen::Index own = columns + n * static_cast<Eigen::Index>(e) + static_cast<Eigen::Index>(j),
                          first = columns + static_cast<Eigen::Index>(j);
       const double weight = holding(j);
-      if (state.initial == Initial::fixed) {
+      if (const std::optional<double> known = known_start(e, j)) {
         out.N(own, own) += weight;
-        out.g[own] += weight * (out.theta[own] - state.start);
+        out.g[own] += weight * (out.theta[own] - *known);
       } else if (state.initial == Initial::shared && e > 0) {
         const double difference = out.theta[own] - out.theta[first];
         out.N(own, own) += weight;
