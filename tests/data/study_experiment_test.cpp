@@ -1,7 +1,6 @@
-#include "misfit/data/study.h"
-
 #include <gtest/gtest.h>
 
+#include "misfit/data/study.h"
 #include "tests/data/study_folder.h"
 
 namespace misfit {
