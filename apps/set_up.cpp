@@ -184,8 +184,8 @@ void hold_perturbed_camera(Session& session) {
     if (is_camera(name) && !parameters.contains(name)) parameters[name].free = false;
   };
   const SystemType& type = session.registry.system(session.model.request.system, session.model.request.system_where);
-  const auto& constants = type.make(session.model.request.options)->spec().constants;
-  for (const ConstantSpec& constant : constants) {
+  const auto system = type.make(session.model.request.options);
+  for (const ConstantSpec& constant : system->spec().constants) {
     const bool named = std::any_of(wishes.perturb.begin(), wishes.perturb.end(), [&](const auto& p) { return p.name == constant.name; });
     if (named || wishes.calibrated_camera || wishes.recalibrate) hold(constant.name);
   }

@@ -32,7 +32,8 @@ TEST(Resampling, OfEveryMethodThatCanBeFittedAgain) {
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(study.bootstrap(k).at("failed"), 0);
     EXPECT_EQ(study.bootstrap(k).at("block_samples"), 40);
-    for (const json& number : study.bootstrap(k).at("numbers")) {
+    const json bootstrap = study.bootstrap(k);
+    for (const json& number : bootstrap.at("numbers")) {
       if (number.at("name") != "trim") continue;
       EXPECT_NEAR(number.at("value").get<double>(), 12.0 * 0.0174533, 0.005);
       EXPECT_GT(number.at("sigma").get<double>(), 0.0);
