@@ -238,7 +238,7 @@ void check_profile_names(Session& session) {
 Resampling resampling_stage(Session& session) {
   if (session.folder.up_to_date(stage, inputs_of(session))) return ranks().first() ? read(session) : Resampling{};
   const auto begin = std::chrono::steady_clock::now();
-  const Resampling out = Work(session).run();
+  Resampling out = Work(session).run();
   if (!ranks().first()) return {};
   write(session, out, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   return out;

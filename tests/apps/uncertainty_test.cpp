@@ -23,7 +23,7 @@ class Flight : public ShortFlight {
   void perturb(const std::string& table, const std::string& more = "") const {
     change("perturb = .*", "perturb = " + table + (more.empty() ? "" : "\n" + more));
   }
-  [[nodiscard]] Outcome uncertainty(Words options = {}) const { return run("uncertainty", options); }
+  [[nodiscard]] Outcome uncertainty(const Words& options = {}) const { return run("uncertainty", options); }
   [[nodiscard]] json number(const std::string& name) const { return result("uncertainty.json").at("numbers").at(name); }
 };
 

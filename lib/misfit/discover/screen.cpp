@@ -135,21 +135,18 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
   std::vector<Screened> out(specimens.size());
   std::vector<std::vector<std::vector<double>>> cells(specimens.size());
   std::vector<LineGrid> frequencies(specimens.size());
-  struct Job {
-    std::size_t specimen, cell;
-  };
-  std::vector<Job> jobs;
+  std::vector<std::pair<std::size_t, std::size_t>> jobs;  // specimen, cell
   for (std::size_t s = 0; s < specimens.size(); ++s) {
     cells[s] = cells_of(estimate, specimens[s], path, frequencies[s]);
-    for (std::size_t c = 0; c < cells[s].size(); ++c) jobs.push_back({s, c});
+    for (std::size_t c = 0; c < cells[s].size(); ++c) jobs.emplace_back(s, c);
   }
-  std::vector<std::vector<CellScore>> results(specimens.size());
-  for (std::size_t s = 0; s < specimens.size(); ++s) results[s].resize(cells[s].size());
+  std::vector<std::vector<CellScore>> results;
+  for (const auto& own : cells) results.emplace_back(own.size());
   run_jobs(
       jobs.size(), threads,
       [&](std::size_t j) {
-        const Specimen& specimen = specimens[jobs[j].specimen];
-        results[jobs[j].specimen][jobs[j].cell] = score_cell(estimate, score, specimen, cells[jobs[j].specimen][jobs[j].cell]);
+        const auto [s, c] = jobs[j];
+        results[s][c] = score_cell(estimate, score, specimens[s], cells[s][c]);
       },
       progress);
   run_jobs(specimens.size(), threads, [&](std::size_t s) {
@@ -170,7 +167,7 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
     }
     if (specimens[s].frequency >= 0) {
       best.frequencies = frequencies[s];
-      best.cells_effective = std::max(static_cast<double>(frequencies[s].count / 2), 1.0);  // two steps of a half width each are one line
+      best.cells_effective = std::max(0.5 * static_cast<double>(frequencies[s].count), 1.0);  // two steps of a half width each are one line
     }
     if (!best.runs || best.result.dof == 0) return;
     constexpr double worth_a_closer_look = 0.1;

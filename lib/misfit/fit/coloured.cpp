@@ -135,10 +135,7 @@ class Sandwich {
           const Eigen::VectorXd even =
               s.real[a].cwiseProduct(real).rowwise().sum() + s.imaginary[a].cwiseProduct(imaginary).rowwise().sum();
           const Eigen::VectorXd odd = s.real[a].cwiseProduct(imaginary).rowwise().sum() - s.imaginary[a].cwiseProduct(real).rowwise().sum();
-          for (std::size_t f = 0; f < density.size(); ++f) {
-            const auto at = static_cast<Eigen::Index>(f);
-            density[f](static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) = {even[at], odd[at]};
-          }
+          set(density, static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b), even, odd);
         }
       }
       out.push_back(std::move(density));
@@ -176,6 +173,20 @@ class Sandwich {
     return out;
   }
 
+  static void set(Densities& density, Eigen::Index a, Eigen::Index b, const Eigen::VectorXd& real, const Eigen::VectorXd& imaginary) {
+    for (Eigen::Index f = 0; f < real.size(); ++f) density[static_cast<std::size_t>(f)](a, b) = {real[f], imaginary[f]};
+  }
+
+  /// Real and imaginary part of conj(density) less 1 on the diagonal, by their share of a sum over the whole spectrum.
+  void weigh(const Densities& density, Eigen::Index a, Eigen::Index b, Eigen::VectorXd& even, Eigen::VectorXd& odd) const {
+    for (Eigen::Index f = 0; f < even.size(); ++f) {
+      const double weight = (f == 0 || f == even.size() - 1 ? 1.0 : 2.0) / static_cast<double>(size_);
+      const std::complex<double> g = std::conj(density[static_cast<std::size_t>(f)](a, b));
+      even[f] = weight * (g.real() - (a == b ? 1.0 : 0.0));
+      odd[f] = weight * g.imag();
+    }
+  }
+
   /// Σ_ij S_iᵀ (ℛ(i − j) − 1 at equal i, j and channel) S_j over all unknowns.
   Eigen::MatrixXd excess(const Densities& density) const {
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(plain_.rows(), plain_.cols());
@@ -186,13 +197,7 @@ class Sandwich {
         Eigen::MatrixXd real = Eigen::MatrixXd::Zero(half, here.cols()), imaginary = real;
         for (std::size_t b = 0; b < s.real.size(); ++b) {
           Eigen::VectorXd even(half), odd(half);
-          for (Eigen::Index f = 0; f < half; ++f) {
-            const double weight = (f == 0 || f == half - 1 ? 1.0 : 2.0) / static_cast<double>(size_);
-            const std::complex<double> g =
-                std::conj(density[static_cast<std::size_t>(f)](static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)));
-            even[f] = weight * (g.real() - (a == b ? 1.0 : 0.0));
-            odd[f] = weight * g.imag();
-          }
+          weigh(density, static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b), even, odd);
           real += even.asDiagonal() * s.real[b];
           imaginary += even.asDiagonal() * s.imaginary[b];
           if (a == b) continue;

@@ -152,11 +152,12 @@ class Regressor {
 /// The regression's answer inside the parameters' bounds; curves are held by their roughness alone.
 Eigen::VectorXd inside_bounds(const Model& model, const std::vector<int>& free, const Smoothed& smoothed) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd lower(smoothed.theta.size()), upper = lower;
+  Eigen::VectorXd lower = Eigen::VectorXd::Constant(smoothed.theta.size(), -infinite), upper = -lower;
   for (std::size_t c = 0; c < free.size(); ++c) {
     const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    lower[static_cast<Eigen::Index>(c)] = p.curve >= 0 ? -infinite : p.lower;
-    upper[static_cast<Eigen::Index>(c)] = p.curve >= 0 ? infinite : p.upper;
+    if (p.curve >= 0) continue;
+    lower[static_cast<Eigen::Index>(c)] = p.lower;
+    upper[static_cast<Eigen::Index>(c)] = p.upper;
   }
   return maximum_inside(smoothed.theta, smoothed.covariance, lower, upper).at;
 }
@@ -238,10 +239,11 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
   const InputTable inputs = input_table(experiments.front(), out.model.inputs());
   const auto sample = static_cast<std::size_t>(known);
   out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
-  if (regressor.smeared())
+  if (regressor.smeared()) {
     out.fit.warnings.emplace_back(
         "an input steps at nearly every sample: the derivatives of this method smear what it does, so that its parameters are biased "
         "by more than their sigmas; methods that run the model are not");
+  }
   if (const std::string which = undetermined_beside_priors(out.model, regression.sums); !which.empty()) out.fit.warnings.push_back(which);
   tell_weak_directions(out.model, out.fit.covariance, out.fit);
   refuse_runaways(out.model, out.fit.covariance, out.fit);

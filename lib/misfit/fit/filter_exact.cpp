@@ -78,7 +78,7 @@ class Differences {
   OneDerivative along_axis(Eigen::Index i, const Eigen::Ref<Eigen::VectorXd>& column) const {
     constexpr double shorter = 0.2, good_part = 0.1;
     constexpr int most = 5;
-    const double enough = good_part * static_cast<double>(column.size() / 2);
+    const double enough = 0.5 * good_part * static_cast<double>(column.size());  // a column holds innovations and variances
     OneDerivative out;
     double h = longest;
     for (int k = 0; k < most; ++k, h *= shorter) {

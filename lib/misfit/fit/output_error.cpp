@@ -56,7 +56,7 @@ class Estimator {
       const Shooting::State before = shooting_.state();
       const std::vector<Penalty> penalties = penalties_;
       shooting_.begin_at(initial_states_);
-      const FittedModel out = whole_trajectory({});
+      FittedModel out = whole_trajectory({});
       if (out.fit.status == FitStatus::converged) return out;
       shooting_.restore(before);
       penalties_ = penalties;

@@ -31,33 +31,44 @@ Eigen::Index power_of_two(Eigen::Index least) {
   return size;
 }
 
-int memory_of(const LagProducts& products, const LagProducts& pairs, int least) {
-  constexpr int in_a_row = 20;
-  const auto lags = static_cast<int>(products.size()) - 1;
+namespace {
+
+/// Does any correlation at lag k stand out of chance? `spread`, Σ ρ_aa ρ_bb over the lags before, takes this lag in.
+bool stands_out(const LagProducts& products, const LagProducts& pairs, std::size_t k, Eigen::MatrixXd& spread) {
   const Eigen::Index channels = products.front().rows();
-  const auto correlation = [&](std::size_t k, Eigen::Index a, Eigen::Index b) {
+  const auto correlation = [&](Eigen::Index a, Eigen::Index b) {
     const double size = std::sqrt(products.front()(a, a) * products.front()(b, b) / (pairs.front()(a, a) * pairs.front()(b, b)));
     return pairs[k](a, b) > 0.0 && size > 0.0 ? products[k](a, b) / pairs[k](a, b) / size : 0.0;
   };
-  Eigen::MatrixXd spread = Eigen::MatrixXd::Ones(channels, channels);  // Σ ρ_aa ρ_bb over the lags so far
+  bool any = false;
+  for (Eigen::Index a = 0; a < channels; ++a) {
+    for (Eigen::Index b = 0; b < channels; ++b) {
+      const double n = pairs.front()(a, a), here = pairs[k](a, b);
+      if (!(here > 1.0)) continue;
+      constexpr double far = 1.75;
+      const double chance = std::sqrt(std::max(spread(a, b), 1.0) / here);
+      any = any || std::abs(correlation(a, b)) > far * std::sqrt(std::log10(n)) * chance;
+      spread(a, b) += 2.0 * correlation(a, a) * correlation(b, b);
+    }
+  }
+  return any;
+}
+
+}  // namespace
+
+int memory_of(const LagProducts& products, const LagProducts& pairs, int least) {
+  constexpr int in_a_row = 20;
+  const auto lags = static_cast<int>(products.size()) - 1;
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Ones(products.front().rows(), products.front().cols());
   int last = 0, quiet = 0, told = 0;
   for (int lag = 1; lag <= lags && (quiet < in_a_row || told < least); ++lag) {
     const auto k = static_cast<std::size_t>(lag);
     if (!(pairs[k].maxCoeff() > 1.0)) continue;
     ++quiet;
     ++told;
-    for (Eigen::Index a = 0; a < channels; ++a) {
-      for (Eigen::Index b = 0; b < channels; ++b) {
-        const double n = pairs.front()(a, a), here = pairs[k](a, b);
-        if (!(here > 1.0)) continue;
-        constexpr double stands_out = 1.75;
-        const double chance = std::sqrt(std::max(spread(a, b), 1.0) / here);
-        if (std::abs(correlation(k, a, b)) > stands_out * std::sqrt(std::log10(n)) * chance) {
-          last = lag;
-          quiet = 0;
-        }
-        spread(a, b) += 2.0 * correlation(k, a, a) * correlation(k, b, b);
-      }
+    if (stands_out(products, pairs, k, spread)) {
+      last = lag;
+      quiet = 0;
     }
     if (told == least) last = std::max(last, lag);
   }
