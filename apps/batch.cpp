@@ -12,6 +12,7 @@
 #include "misfit/core/job_queue.h"
 #include "misfit/core/progress.h"
 #include "misfit/core/ranks.h"
+#include "misfit/data/curve_coefficient.h"
 #include "misfit/report/figure_batch.h"
 #include "misfit/uncertainty/scatter.h"
 
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 
 void take(const std::string& before, const std::map<std::string, Estimate>& from, BatchRow& row) {
   for (const auto& [name, e] : from) {
-    if (name.find('[') == std::string::npos) row.values[before + name] = e;
+    if (!is_curve_coefficient(name)) row.values[before + name] = e;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "misfit/compare/curve_difference.h"
+#include "misfit/data/curve_coefficient.h"
 
 namespace misfit {
 namespace {
@@ -29,8 +30,6 @@ std::optional<Estimate> at_trim(const CurveEstimate& curve, const Fit& fit, cons
 std::string name_at_trim(const std::string& curve, const std::string& static_curve) {
   return curve == static_curve ? "slope of " + curve : curve + " at the trim";
 }
-
-bool is_coefficient(const std::string& parameter) { return parameter.find('[') != std::string::npos; }
 
 /// Linear between the neighbouring points of the curve; NaN outside them. Both in rising order.
 std::vector<double> values_at(const CurveEstimate* curve, const std::vector<double>& places) {
@@ -76,7 +75,7 @@ FollowedNumbers::FollowedNumbers(const Fit& nominal, const Fit& run, std::string
     curves_.push_back(followed(curve));
   }
   for (const auto& [name, estimate] : nominal.parameters) {
-    if (!is_coefficient(name) && run.parameters.contains(name)) add(name, estimate);
+    if (!is_curve_coefficient(name) && run.parameters.contains(name)) add(name, estimate);
   }
 }
 

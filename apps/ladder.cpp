@@ -9,6 +9,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/data/curve_coefficient.h"
 #include "misfit/fit/filter_error.h"
 #include "misfit/fit/k_step.h"
 
@@ -53,7 +54,7 @@ Rung rung_of(const Session& session, const FilterWork& work) {
 std::map<std::string, Estimate> new_parameters(const FilterWork& child, const FilterWork& parent) {
   std::map<std::string, Estimate> out;
   for (const auto& [name, estimate] : child.fit.parameters) {
-    if (!parent.fit.parameters.contains(name) && name.find('[') == std::string::npos) out[name] = estimate;
+    if (!parent.fit.parameters.contains(name) && !is_curve_coefficient(name)) out[name] = estimate;
   }
   return out;
 }

@@ -6,18 +6,16 @@
 #include <cmath>
 #include <iostream>
 
+#include "misfit/core/display.h"
 #include "misfit/core/files.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/curve_coefficient.h"
 
 namespace misfit {
 namespace {
 
-std::string shown(const Estimate& e) {
-  const std::string unit = display_unit(e.unit);
-  const double factor = unit == e.unit ? 1.0 : convert(1.0, e.unit, unit);
-  return format_value(e.value * factor, e.sigma * factor) + (unit == "-" || unit.empty() ? "" : " " + unit);
-}
+std::string shown(const Estimate& e) { return in_display_unit(e.value, e.unit, e.sigma); }
 
 std::string curve_text(const CurveEstimate& curve) {
   if (!curve.informative) return "not informative: " + curve.why;
@@ -47,7 +45,7 @@ std::string fit_text(const Fit& fit) {
   add_estimates("random force", fit.force, rows);
   add_estimates("noise", fit.noise, rows);
   for (const auto& [name, e] : fit.parameters) {
-    if (name.find('[') == std::string::npos) rows.push_back({name, shown(e)});
+    if (!is_curve_coefficient(name)) rows.push_back({name, shown(e)});
   }
   for (const auto& curve : fit.curves) rows.push_back({"curve " + curve.name, curve_text(curve)});
   if (rows.size() > 1) out += align_columns(rows);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/print.h"
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 
@@ -16,11 +17,7 @@ namespace {
 using Cells = std::vector<std::vector<std::string>>;
 constexpr std::size_t width = 110;
 
-std::string shown(const Estimate& e) {
-  const std::string unit = display_unit(e.unit);
-  const double factor = convert(1.0, e.unit, unit);
-  return format_value(e.value * factor, e.sigma * factor) + (unit == "-" || unit.empty() ? "" : " " + unit);
-}
+std::string shown(const Estimate& e) { return in_display_unit(e.value, e.unit, e.sigma); }
 
 std::string number(const std::optional<double>& value, const char* format = "{:.1f}") {
   return value && std::isfinite(*value) ? fmt::format(fmt::runtime(format), *value) : "–";

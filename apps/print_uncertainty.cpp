@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "apps/print.h"
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 
@@ -14,11 +15,6 @@ using Rows = std::vector<std::vector<std::string>>;
 
 std::string with_unit(const std::string& number, const std::string& unit) {
   return unit == "-" || unit.empty() ? number : number + " " + unit;
-}
-
-std::string shown(double value, double sigma, const std::string& unit) {
-  const std::string u = display_unit(unit);
-  return with_unit(format_value(convert(value, unit, u), convert(sigma, unit, u)), u);
 }
 
 /// Value and sigma to the same place.
@@ -35,7 +31,7 @@ std::string sigma_of(double sigma, const std::string& unit) {
 std::string perturbed_table(const Uncertainty& u) {
   Rows rows{{"perturbed", "nominal", "sigma", "read as"}};
   for (const PerturbedParameter& p : u.perturbed)
-    rows.push_back({p.name, shown(p.value, 0.0, p.unit), sigma_of(p.sigma, p.unit), p.reading});
+    rows.push_back({p.name, in_display_unit(p.value, p.unit), sigma_of(p.sigma, p.unit), p.reading});
   return align_columns(rows);
 }
 
@@ -45,8 +41,8 @@ std::string numbers_table(const Uncertainty& u) {
     const std::string band = std::isfinite(n.sigma)
                                  ? plain(n.mean - 3.0 * n.sigma, n.sigma, n.unit) + " … " + plain(n.mean + 3.0 * n.sigma, n.sigma, n.unit)
                                  : "–";
-    rows.push_back({n.name, shown(n.nominal, n.nominal_sigma, n.unit), plain(n.mean, n.sigma, n.unit), sigma_of(n.sigma, n.unit), band,
-                    std::to_string(n.count)});
+    rows.push_back({n.name, in_display_unit(n.nominal, n.unit, n.nominal_sigma), plain(n.mean, n.sigma, n.unit), sigma_of(n.sigma, n.unit),
+                    band, std::to_string(n.count)});
   }
   return align_columns(rows);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/stages.h"
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
@@ -28,13 +29,8 @@ double divisor_of(const std::string& reading) {
   return reading == "uniform" ? std::sqrt(3.0) : 1.0;
 }
 
-std::string with_unit(double value, const std::string& unit) {
-  const std::string shown = display_unit(unit);
-  return format_value(convert(value, unit, shown)) + (shown == "-" ? "" : " " + shown);
-}
-
 std::string reading_text(const PerturbStudy& wish, const std::string& unit) {
-  const std::string size = with_unit(wish.number.value, unit);
+  const std::string size = in_display_unit(wish.number.value, unit);
   return wish.reading == "uniform" ? "uniform within ± " + size : "normal, " + wish.reading + " = " + size;
 }
 

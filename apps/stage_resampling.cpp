@@ -51,18 +51,6 @@ Started started(Methods& methods, const std::string& method) {
   return out;
 }
 
-/// What the parameter is instead of free; `free`: the names that could have been meant.
-std::string why_no_profile(const Model& model, const std::string& name, const std::vector<std::string>& free) {
-  const int known = model.find_parameter(name);
-  if (known >= 0 && model.parameters[static_cast<std::size_t>(known)].curve >= 0)
-    return "is a coefficient of a curve, which means nothing alone; a profile is of a parameter";
-  if (free.empty()) return "is not free: the model has no free parameter that is not a curve's coefficient";
-  return (known >= 0 ? "is held in this study, and only a free parameter has a profile" : "is no free parameter of the model") +
-         suggest(name, free);
-}
-
-bool has_likelihood(const std::string& method) { return method == "output_error" || method == "filter_error"; }
-
 Inputs inputs_of(const Session& session) {
   const UncertaintyStudy& wishes = *session.study.uncertainty;
   Inputs inputs = inputs_of_fit(session, stage);
@@ -224,14 +212,9 @@ void check_profile_names(Session& session) {
     throw InputError(wishes.where_profile, fmt::format("profile: {} has no likelihood of the motion; output_error and filter_error have",
                                                        fmt::join(asked, ", ")));
   const Model model = prepare(session).model;
-  std::vector<std::string> free;
-  for (const int i : model.free_parameters()) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(i)];
-    if (p.curve < 0) free.push_back(p.name);
-  }
   for (const std::string& name : wishes.profile) {
-    if (std::find(free.begin(), free.end(), name) != free.end()) continue;
-    throw InputError(wishes.where_profile, "profile: '" + name + "' " + why_no_profile(model, name, free));
+    if (const std::string why = why_no_profile(model, name); !why.empty())
+      throw InputError(wishes.where_profile, "profile: '" + name + "' " + why);
   }
 }
 

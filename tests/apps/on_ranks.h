@@ -23,4 +23,13 @@ inline bool has_mpi() {
          std::system("mpirun --version > /dev/null 2>&1") == 0;  // NOLINT(cert-env33-c): a test
 }
 
+/// MPI is optional: a misfit built without it has nothing to be tested here.
+template <class Fixture>
+class UnderMpi : public Fixture {
+ protected:
+  void SetUp() override {
+    if (!has_mpi()) GTEST_SKIP() << "misfit was built without MPI, or there is no mpirun";
+  }
+};
+
 }  // namespace program

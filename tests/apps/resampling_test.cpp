@@ -135,8 +135,9 @@ TEST_F(ResamplingBits, AreThoseOfOneRunHoweverOftenItIsKilled) {
   expect_same("whole", "killed");
 }
 
-TEST_F(ResamplingBits, AreTheSameOnRanks) {
-  if (!has_mpi()) GTEST_SKIP() << "misfit was built without MPI, or there is no mpirun";
+using ResamplingBitsUnderMpi = UnderMpi<ResamplingBits>;
+
+TEST_F(ResamplingBitsUnderMpi, AreTheSameOnRanks) {
   const Outcome alone = program::run(words("alone"));
   ASSERT_EQ(alone.status, 0) << alone.err;
   for (const int ranks : {2, 3}) {

@@ -236,13 +236,7 @@ TEST_F(SameBits, AfterCtrlC) {
   expect_same("whole", "stopped");
 }
 
-/// MPI is optional: a misfit built without it has nothing to be tested here.
-class SameBitsUnderMpi : public SameBits {
- protected:
-  void SetUp() override {
-    if (!has_mpi()) GTEST_SKIP() << "misfit was built without MPI, or there is no mpirun";
-  }
-};
+using SameBitsUnderMpi = UnderMpi<SameBits>;
 
 TEST_F(SameBitsUnderMpi, OnRanks) {
   const Outcome alone = study_.uncertainty(options(out("alone")));

@@ -174,10 +174,15 @@ int main(int argc, char** argv) {
                  argv[0]);
     return 2;
   }
-  if (!options.summary.empty()) {
-    bench::print_coverage(bench::read_coverage(options.summary));
-  } else {
-    run(options);
+  try {
+    if (!options.summary.empty()) {
+      bench::print_coverage(bench::read_coverage(options.summary));
+    } else {
+      run(options);
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
   }
   return 0;
 }

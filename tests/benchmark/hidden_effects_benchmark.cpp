@@ -56,10 +56,15 @@ int main(int argc, char** argv) {
                  argv[0]);
     return 2;
   }
-  if (!options.summary.empty()) {
-    bench::print_summary(bench::read_rows(options.summary));
-  } else {
-    run(options);
+  try {
+    if (!options.summary.empty()) {
+      bench::print_summary(bench::read_rows(options.summary));
+    } else {
+      run(options);
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
   }
   return 0;
 }

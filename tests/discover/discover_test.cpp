@@ -93,13 +93,18 @@ Calibration asking_for_roll() {
   return calibration;
 }
 
-TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
-  const Calibration calibration = asking_for_roll();
+Discovery accepting(const std::string& effect, const std::string& family) {
   Discovery d;
   d.candidates.resize(1);
-  d.candidates[0].effect = "camera_roll";
-  d.candidates[0].family = "sensor";
+  d.candidates[0].effect = effect;
+  d.candidates[0].family = family;
   d.candidates[0].accepted = true;
+  return d;
+}
+
+TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
+  const Calibration calibration = asking_for_roll();
+  Discovery d = accepting("camera_roll", "sensor");
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
   EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("calibrate with them offered"));
@@ -109,11 +114,7 @@ TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
 
 TEST(Verdict, PhysicsSeenThroughACameraThatItsSweepDoubtsIsNotAccepted) {
   const Calibration calibration = asking_for_roll();
-  Discovery d;
-  d.candidates.resize(1);
-  d.candidates[0].effect = "strut_wake";
-  d.candidates[0].family = "physics";
-  d.candidates[0].accepted = true;
+  Discovery d = accepting("strut_wake", "physics");
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
@@ -122,11 +123,7 @@ TEST(Verdict, PhysicsSeenThroughACameraThatItsSweepDoubtsIsNotAccepted) {
 
 TEST(Verdict, AForceThatNothingExplainsIsNotTheCamerasAlone) {
   const Calibration calibration = asking_for_roll();
-  Discovery d;
-  d.candidates.resize(1);
-  d.candidates[0].effect = "camera_roll";
-  d.candidates[0].family = "sensor";
-  d.candidates[0].accepted = true;
+  Discovery d = accepting("camera_roll", "sensor");
   d.unexplained_port = "moment";
   d.unexplained_quantity = "alpha_T";
   add_camera_remarks(&calibration, 0.01, d);

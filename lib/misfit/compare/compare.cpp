@@ -6,8 +6,10 @@
 #include <limits>
 
 #include "misfit/compare/curve_difference.h"
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/curve_coefficient.h"
 
 namespace misfit {
 namespace {
@@ -29,7 +31,7 @@ MethodSummary summary(const Fit& fit) {
   MethodSummary m{fit.method,         fit.status, fit.message,           fit.driven, fit.trim, {}, {}, fit.rms,
                   fit.validation_rms, fit.loglik, fit.validation_loglik, {}};
   for (const auto& [name, estimate] : fit.parameters) {
-    if (usable(fit) && name.find('[') == std::string::npos) m.parameters[name] = estimate;
+    if (usable(fit) && !is_curve_coefficient(name)) m.parameters[name] = estimate;
   }
   for (const CurveEstimate& curve : fit.curves) {
     if (!usable(fit) || !fit.trim || !curve.informative || curve.of_unit != fit.trim->unit) continue;
@@ -89,12 +91,10 @@ void compare_reference(const Fit& fit, const Reference& reference, Comparison& c
 }
 
 std::string sentence(const std::string& what, const Sides& sides, const Estimate& difference, double sigmas) {
-  const std::string unit = display_unit(difference.unit);
-  const double to_shown = convert(1.0, difference.unit, unit);
-  const std::string size = format_value(std::abs(difference.value) * to_shown, difference.sigma * to_shown);
+  const std::string size = in_display_unit(std::abs(difference.value), difference.unit, difference.sigma);
   const std::string where = difference.value < 0.0 ? "below" : "above";
   const std::string told = std::isfinite(sigmas) ? fmt::format(" ({:.1f} sigma)", sigmas) : " (no uncertainty known)";
-  return fmt::format("{} of {} is {}{} {} that of {}{}", what, sides.a, size, unit == "-" ? "" : " " + unit, where, sides.b, told);
+  return fmt::format("{} of {} is {} {} that of {}{}", what, sides.a, size, where, sides.b, told);
 }
 
 void add_trims(const Estimate& a, const Estimate& b, const Sides& sides, Comparison& c) {
@@ -111,7 +111,7 @@ void add_trims(const Estimate& a, const Estimate& b, const Sides& sides, Compari
 void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
   for (const auto& [name, one] : a.parameters) {
     const auto other = b.parameters.find(name);
-    if (name.find('[') != std::string::npos || other == b.parameters.end() || other->second.unit != one.unit) continue;
+    if (is_curve_coefficient(name) || other == b.parameters.end() || other->second.unit != one.unit) continue;
     const Estimate difference{one.value - other->second.value, std::hypot(one.sigma, other->second.sigma), one.unit};
     if (!(difference.sigma > 0.0)) continue;
     ParameterDifference d{name, a.method, b.method, difference, std::abs(difference.value) / difference.sigma, ""};

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 
@@ -152,11 +153,6 @@ double rank_p_value(const std::vector<double>& distances) {
   return static_cast<double>(as_far) / static_cast<double>(distances.size());
 }
 
-std::string in_unit(double value, const std::string& unit) {
-  const std::string shown = display_unit(unit);
-  return format_value(shown == unit ? value : convert(value, unit, shown)) + (shown == "-" ? "" : " " + shown);
-}
-
 /// The number that is furthest outside its band, in words.
 std::string worst_of(const MotionGroup& group) {
   const MotionNumber* worst = nullptr;
@@ -171,8 +167,8 @@ std::string worst_of(const MotionGroup& group) {
   std::string name = "its " + worst->name;
   if (worst->name == "lag") name = fmt::format("at a lag of {:.2g} s it", worst->at);
   if (worst->name == "power") name = fmt::format("the power at {:.2g} Hz", worst->at);
-  return name + " is " + in_unit(worst->measured, group.unit) + ", simulated between " + in_unit(worst->low, group.unit) + " and " +
-         in_unit(worst->high, group.unit);
+  return name + " is " + in_display_unit(worst->measured, group.unit) + ", simulated between " + in_display_unit(worst->low, group.unit) +
+         " and " + in_display_unit(worst->high, group.unit);
 }
 
 }  // namespace

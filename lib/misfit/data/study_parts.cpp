@@ -26,13 +26,13 @@ std::optional<fs::path> existing_file(const Section& section, std::string_view k
   std::error_code error;
   if (!name->empty() && fs::is_regular_file(path, error)) return path;
   if (!name->empty() && fs::exists(path, error)) section.fail(key, "'" + *name + "' is no file");
+  const fs::path where = path.has_parent_path() ? path.parent_path() : ".";
   std::vector<std::string> names;
-  for (fs::directory_iterator it(path.parent_path(), error), end; !error && it != end; it.increment(error)) {
+  for (fs::directory_iterator it(where, error), end; !error && it != end; it.increment(error)) {
     if (it->is_regular_file(error)) names.push_back(it->path().filename().string());
   }
   const std::string nearest = nearest_name(path.filename().string(), names);
-  section.fail(key, "no such file '" + *name + "' in " + path.parent_path().string() +
-                        (nearest.empty() ? "" : " — did you mean '" + nearest + "'?"));
+  section.fail(key, "no such file '" + *name + "' in " + where.string() + (nearest.empty() ? "" : " — did you mean '" + nearest + "'?"));
 }
 
 config::Number number_as_written(const Section& section, std::string_view key) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/core/work_queue.h"
@@ -16,10 +17,6 @@ namespace {
 
 constexpr double significant = 0.01;  // corrected for all maps
 
-std::string in_unit(double value, double sigma, const std::string& unit) {
-  const std::string shown = display_unit(unit);
-  return format_value(convert(value, unit, shown), convert(sigma, unit, shown)) + " " + shown;
-}
 std::string place(double value, const std::string& unit) {
   const std::string shown = display_unit(unit);
   return format_value(std::round(10.0 * convert(value, unit, shown)) / 10.0) + " " + shown;
@@ -51,9 +48,9 @@ std::string where_it_fails(const ForceMap& map) {
   }
   const double value = sum / weight, sigma = 1.0 / std::sqrt(weight);
   const double half = map.x.size() > 1 ? 0.5 * (map.x[1] - map.x[0]) : 0.0;
-  return "the model's " + map.port + " is " + in_unit(std::abs(value), sigma, map.port_unit) + (value < 0.0 ? " too high" : " too low") +
-         " where " + map.quantity + " is between " + place(map.x[best_from] - half, map.quantity_unit) + " and " +
-         place(map.x[best_to] + half, map.quantity_unit);
+  return "the model's " + map.port + " is " + in_display_unit(std::abs(value), map.port_unit, sigma) +
+         (value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " +
+         place(map.x[best_from] - half, map.quantity_unit) + " and " + place(map.x[best_to] + half, map.quantity_unit);
 }
 
 ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features& features, const SystemSpec& spec, int port) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
-#include "misfit/core/units.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -20,12 +20,9 @@ void add_likenesses(const std::vector<Screened>& screened, const ScoreTest& scor
     for (std::size_t i = 0; i < s.specimen->strengths.size(); ++i) {
       const Parameter& p = s.specimen->model.parameters[static_cast<std::size_t>(s.specimen->strengths[i])];
       const auto k = static_cast<Eigen::Index>(i);
-      const std::string unit = display_unit(p.unit);
-      numbers += (i == 0 ? "" : ", ") + p.name + " = " +
-                 format_value(convert(free.amplitude[k], p.unit, unit), convert(free.sigma[k], p.unit, unit)) + " " + unit;
+      numbers += (i == 0 ? "" : ", ") + p.name + " = " + in_display_unit(free.amplitude[k], p.unit, free.sigma[k]);
       if (s.specimen->priors.precision[k] > 0.0)
-        allowed += (allowed.empty() ? "" : ", ") + format_value(convert(1.0 / std::sqrt(s.specimen->priors.precision[k]), p.unit, unit)) +
-                   " " + unit;
+        allowed += (allowed.empty() ? "" : ", ") + in_display_unit(1.0 / std::sqrt(s.specimen->priors.precision[k]), p.unit);
     }
     out.sentences.push_back(s.specimen->effect + " with " + numbers + " would imitate part of it (predicted drop " +
                             format_value(free.chi2) + "), but the calibration allows only sigmas of " + allowed);

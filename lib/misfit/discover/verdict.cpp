@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
-#include "misfit/core/units.h"
 
 namespace misfit {
 namespace {
@@ -12,10 +12,7 @@ namespace {
 std::string numbers(const Candidate& c) {
   std::string out;
   for (const auto& [name, estimate] : c.parameters) {
-    const std::string unit = display_unit(estimate.unit);
-    out += (out.empty() ? "" : ", ") + name + " = " +
-           format_value(convert(estimate.value, estimate.unit, unit), convert(estimate.sigma, estimate.unit, unit)) +
-           (unit == "-" ? "" : " " + unit);
+    out += (out.empty() ? "" : ", ") + name + " = " + in_display_unit(estimate.value, estimate.unit, estimate.sigma);
   }
   return out;
 }
@@ -115,9 +112,7 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
     const Parameter& p = model.parameters[static_cast<std::size_t>(index)];
     for (const double bound : {p.lower, p.upper}) {
       if (bound == 0.0 || !std::isfinite(bound) || std::abs(p.value - bound) > close * p.scale) continue;
-      const std::string unit = display_unit(p.unit);
-      return "its strength " + p.name + " ends at the bound " + format_value(convert(bound, p.unit, unit)) +
-             (unit == "-" ? "" : " " + unit) + ": not believable";
+      return "its strength " + p.name + " ends at the bound " + in_display_unit(bound, p.unit) + ": not believable";
     }
   }
   return std::nullopt;

@@ -24,16 +24,20 @@ FilterOptions filter_options(const FittedMethod& from) {
   return options;
 }
 
+OutputErrorStart quick_output_error() {
+  OutputErrorStart options;
+  options.coloured = false;
+  options.keep_roughness = true;
+  return options;
+}
+
 Fit refitted(const FittedMethod& from, const std::vector<Signals>& experiments) {
   const Model model = with_roughness(from.fitted.model, from.fitted.penalties);
   if (from.method == "equation_error") return equation_error(model, experiments).fit;
   FittedModel start = from.fitted;
   start.model = model;
   if (from.method == "filter_error") return filter_error(start, experiments, filter_options(from)).fit;
-  OutputErrorStart options;
-  options.coloured = false;
-  options.keep_roughness = true;
-  return output_error(start, experiments, options).fit;
+  return output_error(start, experiments, quick_output_error()).fit;
 }
 
 }  // namespace
@@ -49,22 +53,31 @@ Fit fit_again(const FittedMethod& from, const std::vector<Signals>& experiments)
   }
 }
 
+bool has_likelihood(const std::string& method) { return method == "output_error" || method == "filter_error"; }
+
+std::string why_no_profile(const Model& model, const std::string& name) {
+  const int known = model.find_parameter(name);
+  const bool of_a_curve = known >= 0 && model.parameters[static_cast<std::size_t>(known)].curve >= 0;
+  if (of_a_curve) return "is a coefficient of a curve, which means nothing alone; a profile is of a parameter";
+  if (known >= 0 && model.parameters[static_cast<std::size_t>(known)].free) return {};
+  std::vector<std::string> free;
+  for (const int i : model.free_parameters()) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(i)];
+    if (p.curve < 0) free.push_back(p.name);
+  }
+  if (free.empty()) return "is not free: the model has no free parameter that is not a curve's coefficient";
+  return (known >= 0 ? "is held in this study, and only a free parameter has a profile" : "is no free parameter of the model") +
+         suggest(name, free);
+}
+
 HeldFit::HeldFit(FittedMethod from, const std::vector<Signals>& experiments, const std::string& parameter)
     : at_(std::move(from)), experiments_(&experiments) {
-  if (at_.method != "output_error" && at_.method != "filter_error")
+  if (!has_likelihood(at_.method))
     throw InputError("profile: " + at_.method + " has no likelihood of the motion; output_error and filter_error have");
-  std::vector<std::string> names;
-  int found = -1;
-  for (const int index : at_.fitted.model.free_parameters()) {
-    const Parameter& p = at_.fitted.model.parameters[static_cast<std::size_t>(index)];
-    if (p.curve < 0) names.push_back(p.name);
-    if (p.name == parameter) found = index;
-  }
-  if (found < 0) throw InputError("profile: '" + parameter + "' is no free parameter of the model" + suggest(parameter, names));
-  parameter_ = static_cast<std::size_t>(found);
-  Parameter& p = at_.fitted.model.parameters[parameter_];
-  if (p.curve >= 0)
-    throw InputError("profile: '" + parameter + "' is a coefficient of a curve, which means nothing alone; a profile is of a parameter");
+  const std::string why = why_no_profile(at_.fitted.model, parameter);
+  if (!why.empty()) throw InputError("profile: '" + parameter + "' " + why);
+  parameter_ = static_cast<std::size_t>(at_.fitted.model.find_parameter(parameter));
+  const Parameter& p = at_.fitted.model.parameters[parameter_];
   prior_sigma_ = p.prior_sigma;
   prior_mean_ = p.prior_mean;
   at_.fitted.model = with_roughness(at_.fitted.model, at_.fitted.penalties);
@@ -84,10 +97,7 @@ std::optional<double> HeldFit::operator()(double value) {
 }
 
 std::optional<double> HeldFit::by_output_error() {
-  OutputErrorStart options;
-  options.coloured = false;
-  options.keep_roughness = true;
-  FittedModel out = output_error(at_.fitted, *experiments_, options);
+  FittedModel out = output_error(at_.fitted, *experiments_, quick_output_error());
   if (out.fit.status != FitStatus::converged || !out.fit.loglik) return std::nullopt;
   at_.fitted.model.parameters = out.model.parameters;
   at_.fitted.initial_states = out.initial_states;

@@ -22,11 +22,18 @@ struct FittedMethod {
 /// at once.
 [[nodiscard]] Fit fit_again(const FittedMethod& from, const std::vector<Signals>& experiments);
 
+/// Has the method a likelihood of the motion, and so profiles?
+[[nodiscard]] bool has_likelihood(const std::string& method);
+
+/// Why a parameter can have no profile, as "is no free parameter of the model — did you mean …"; empty if it can: it is free, and no
+/// coefficient of a curve.
+[[nodiscard]] std::string why_no_profile(const Model& model, const std::string& name);
+
 /// Penalised log-likelihood at its maximum over everything but one parameter: what a profile is made of. Starts from where the last call
 /// ended.
 class HeldFit {
  public:
-  /// Keeps a reference to the experiments. InputError: a method without likelihood, a name that is no free parameter of the model.
+  /// Keeps a reference to the experiments. InputError: a method without likelihood, a parameter that can have no profile.
   HeldFit(FittedMethod from, const std::vector<Signals>& experiments, const std::string& parameter);
   /// nullopt where the model cannot be run, or the fit does not converge, with the parameter at `value`.
   [[nodiscard]] std::optional<double> operator()(double value);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/fit/curves.h"
 #include "misfit/fit/whiteness.h"
@@ -16,10 +17,6 @@ namespace misfit::output_error_parts {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-std::string in_display_unit(double value, const std::string& unit) {
-  return unit == "rad" ? format_value(value * 180.0 / pi) + " deg" : format_value(value) + " " + unit;
-}
 
 }  // namespace
 

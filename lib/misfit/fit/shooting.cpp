@@ -38,13 +38,6 @@ Shooting::Shooting(Model model, const std::vector<Signals>& experiments, std::ve
   }
 }
 
-std::optional<double> Shooting::known_start(std::size_t experiment, std::size_t state) const {
-  const StateSpec& spec = model_.state_specs[state];
-  if (spec.initial == Initial::fixed) return spec.start;
-  if (spec.initial == Initial::shared || !held_out_[experiment]) return std::nullopt;
-  return read_start_[experiment][static_cast<Eigen::Index>(state)];
-}
-
 bool Shooting::counts(std::size_t experiment, std::size_t i, std::size_t o) const {
   const Signals& s = experiments_[experiment];
   return i >= s.exclude && !s.held_out(i) && o < s.measured.size() && std::isfinite(s.measured[o].values[i]);
@@ -122,44 +115,6 @@ void Shooting::note_failure(const Segment& segment, std::size_t experiment) {
   failure_ = "the simulated motion left the finite numbers at t = " + format_value(experiments_[experiment].t[segment.failed_at]) +
              " s of '" + experiments_[experiment].name + "'";
   if (!stepper_->failure().empty()) failure_ += " (" + stepper_->failure() + ")";
-}
-
-double Shooting::holding(std::size_t state) const {
-  constexpr double tight = 1e3;   // per sigma of a defect: far below anything the data can show, far above rounding
-  constexpr double small = 1e-2;  // of the state's typical size: where nothing measures it, a sigma of a defect is only a guess
-  const double weight = tight / std::min(state_scale_[state], small * model_.state_specs[state].scale);
-  return weight * weight;
-}
-
-/// Initial states that are known or shared, by stiff residuals.
-void Shooting::add_initial(LeastSquares& problem, const std::vector<Piece>& pieces) const {
-  int first = -1;
-  for (const Piece& piece : pieces) {
-    if (piece.first != 0) continue;
-    if (first < 0) first = piece.block;
-    for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
-      const StateSpec& state = model_.state_specs[j];
-      const std::optional<double> known = known_start(piece.experiment, j);
-      const bool tied = state.initial == Initial::shared && piece.block != first;
-      if (!known && !tied) continue;
-      const double weight = std::sqrt(holding(j)), value = known.value_or(0.0);
-      const auto n = static_cast<std::size_t>(model_.states());
-      const auto row = [j, n](double* J, double slope) {
-        if (J == nullptr) return;
-        std::fill_n(J, n, 0.0);
-        J[j] = slope;
-      };
-      std::vector<int> blocks{piece.block};
-      if (tied) blocks.push_back(first);
-      problem.add_residuals(blocks, 1, [weight, value, j, tied, row](const double* const* x, double* r, double** J) {
-        r[0] = weight * (x[0][j] - (tied ? x[1][j] : value));
-        if (J == nullptr) return true;
-        row(J[0], weight);
-        if (tied) row(J[1], -weight);
-        return true;
-      });
-    }
-  }
 }
 
 void Shooting::add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const {

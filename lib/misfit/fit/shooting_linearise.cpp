@@ -119,29 +119,4 @@ bool Shooting::linearise(Linearised& out) {
   return true;
 }
 
-void Shooting::hold_initial(Linearised& out) const {
-  const auto columns = static_cast<Eigen::Index>(free_.size());
-  const Eigen::Index n = model_.states();
-  for (std::size_t e = 0; e < experiments_.size(); ++e) {
-    for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
-      const StateSpec& state = model_.state_specs[j];
-      const Eigen::Index own = columns + n * static_cast<Eigen::Index>(e) + static_cast<Eigen::Index>(j),
-                         first = columns + static_cast<Eigen::Index>(j);
-      const double weight = holding(j);
-      if (const std::optional<double> known = known_start(e, j)) {
-        out.N(own, own) += weight;
-        out.g[own] += weight * (out.theta[own] - *known);
-      } else if (state.initial == Initial::shared && e > 0) {
-        const double difference = out.theta[own] - out.theta[first];
-        out.N(own, own) += weight;
-        out.N(first, first) += weight;
-        out.N(own, first) -= weight;
-        out.N(first, own) -= weight;
-        out.g[own] += weight * difference;
-        out.g[first] -= weight * difference;
-      }
-    }
-  }
-}
-
 }  // namespace misfit

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
@@ -22,13 +23,6 @@ void check(const SlidingBinOptions& options) {
   need(options.width > 0.0 && std::isfinite(options.width), "the width of a bin must be positive", options.width);
   need(options.step > 0.0 && std::isfinite(options.step), "the step of the bins must be positive", options.step);
   need(options.minimum_samples >= 4, "a bin of three unknowns needs at least 4 samples", static_cast<double>(options.minimum_samples));
-}
-
-/// "12.3 deg" for 0.2147 rad.
-std::string in_words(double value, const std::string& unit, double sigma = 0.0) {
-  const std::string shown = display_unit(unit);
-  const std::string number = format_value(convert(value, unit, shown), convert(sigma, unit, shown));
-  return shown == "-" ? number : number + " " + shown;
 }
 
 /// Σ x'' x' over all usable samples, with a sigma from the scatter of its blocks.
@@ -173,10 +167,11 @@ std::string largest_difference(const SlidBins& a, const SlidBins& b, const std::
 void tell_bins(const BinForm& form, const SlidingBinOptions& options, const Pass& pass, const Pass& other, Fit& fit) {
   const auto& spec = form.model.system->spec();
   const std::string unit = fit.curves.front().of_unit;
-  fit.facts["bins"] =
-      std::to_string(pass.bins.bins.size()) + " bins of " + in_words(options.width, unit) + " every " + in_words(options.step, unit) +
-      " over " + std::to_string(pass.usable) + " usable samples; left out: " + std::to_string(pass.bins.too_few) + " with fewer than " +
-      std::to_string(options.minimum_samples) + " samples, " + std::to_string(pass.bins.undetermined) + " where level or rate do not vary";
+  fit.facts["bins"] = std::to_string(pass.bins.bins.size()) + " bins of " + in_display_unit(options.width, unit) + " every " +
+                      in_display_unit(options.step, unit) + " over " + std::to_string(pass.usable) +
+                      " usable samples; left out: " + std::to_string(pass.bins.too_few) + " with fewer than " +
+                      std::to_string(options.minimum_samples) + " samples, " + std::to_string(pass.bins.undetermined) +
+                      " where level or rate do not vary";
   fit.facts["average"] = options.three_point_average ? "the channel was averaged over three samples"
                                                      : "the channel was taken as given, without a three-point average";
   const Stencils second = options.stencils == Stencils::fourth_order ? Stencils::second_order_four_point : Stencils::fourth_order;
@@ -186,7 +181,7 @@ void tell_bins(const BinForm& form, const SlidingBinOptions& options, const Pass
             largest_difference(pass.bins, other.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma) + ", " +
             largest_difference(pass.bins, other.bins, spec.damping_curve, &BinSolution::damping, &BinSolution::damping_sigma);
     const auto trim = stable_zero(curve(form, other.bins.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma));
-    if (trim) text += ", trim " + in_words(trim->value, unit, trim->sigma);
+    if (trim) text += ", trim " + in_display_unit(trim->value, unit, trim->sigma);
   }
   fit.facts["stencils"] = text;
 }

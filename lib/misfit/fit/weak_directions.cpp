@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
-#include "misfit/core/units.h"
 #include "misfit/fit/identifiable.h"
 
 namespace misfit {
@@ -49,15 +49,9 @@ std::string percent(double share) {
   return format_value(value < 10.0 ? std::round(10.0 * value) / 10.0 : std::round(value)) + " %";
 }
 
-std::string in_display_unit(double value, double sigma, const std::string& unit) {
-  const std::string display = display_unit(unit);
-  const std::string number = format_value(convert(value, unit, display), sigma > 0.0 ? convert(sigma, unit, display) : 0.0);
-  return display == "-" ? number : number + " " + display;
-}
-
 /// How well it is known: as a share of its value, unless that is lost in it.
 std::string known_to(const Direction& d, double sigma) {
-  return sigma < std::abs(d.value) ? percent(sigma / std::abs(d.value)) : "± " + in_display_unit(sigma, 0.0, d.unit);
+  return sigma < std::abs(d.value) ? percent(sigma / std::abs(d.value)) : "± " + in_display_unit(sigma, d.unit);
 }
 
 /// Two directions of sigmas a, b and their correlation, in words.
@@ -140,10 +134,10 @@ void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance,
     if (p.prior_sigma && sigma > nothing_new * *p.prior_sigma) {
       prior_only += (prior_only.empty() ? "" : ", ") + p.name;
     } else if (p.kind == CoefficientKind::shape && sigma > (p.lower >= 0.0 ? std::abs(p.value) : p.scale)) {
-      fit.warnings.push_back(p.name + " is hardly determined by these data: " + in_display_unit(p.value, sigma, p.unit));
+      fit.warnings.push_back(p.name + " is hardly determined by these data: " + in_display_unit(p.value, p.unit, sigma));
     }
     if (const std::optional<double> bound = bound_reached(p))
-      fit.warnings.push_back(p.name + " ends at its bound, " + in_display_unit(*bound, 0.0, p.unit) +
+      fit.warnings.push_back(p.name + " ends at its bound, " + in_display_unit(*bound, p.unit) +
                              ": the best value may lie beyond, and its sigma does not describe an interval there");
   }
   if (!prior_only.empty()) fit.facts["prior_only"] = "these data say nothing of " + prior_only + " beyond the prior";
@@ -158,8 +152,8 @@ void refuse_runaways(const Model& model, const Eigen::MatrixXd& covariance, Fit&
     if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
     if (std::abs(p.value - p.prior_mean) < far * *p.prior_sigma || sigma < tells_little * *p.prior_sigma) continue;
     fit.status = FitStatus::failed;
-    fit.message = p.name + " has run to " + in_display_unit(p.value, sigma, p.unit) + ", away from its prior " +
-                  in_display_unit(p.prior_mean, *p.prior_sigma, p.unit) +
+    fit.message = p.name + " has run to " + in_display_unit(p.value, p.unit, sigma) + ", away from its prior " +
+                  in_display_unit(p.prior_mean, p.unit, *p.prior_sigma) +
                   ", although these data tell less of it than the prior: what is free beside it (a curve's scale) makes up for it, and the "
                   "roughness prefers the smaller curve. Do not free it: with its sigma beside its value ([geometry] " +
                   p.name + " = { value, sigma }) it stays what it is and widens what depends on it";

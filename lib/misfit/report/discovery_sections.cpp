@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/report/figures_discovery.h"
@@ -36,10 +37,7 @@ void say_which(const ReportInput& input, const std::string& of, Page& page) {
 }
 constexpr const char* own_model = "the study's own model, before anything was added (rung 0)";
 
-std::string shown(const Estimate& e) {
-  const Row row("", e.value, e.sigma, e.unit.empty() ? "-" : e.unit);
-  return row.shown_number() + (row.shown_unit() == "-" ? "" : " " + row.shown_unit());
-}
+std::string shown(const Estimate& e) { return in_display_unit(e.value, e.unit, e.sigma); }
 
 std::string number(const std::optional<double>& value) { return value && std::isfinite(*value) ? fmt::format("{:.1f}", *value) : "–"; }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "misfit/core/display.h"
 #include "misfit/report/figures_intervals.h"
 #include "misfit/report/rows.h"
 #include "misfit/report/sections.h"
@@ -9,11 +10,6 @@ namespace misfit::report {
 namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
-
-std::string shown(double value, double sigma, const std::string& unit) {
-  const Row row("", value, sigma, unit);
-  return row.shown_number() + (row.shown_unit() == "-" ? "" : " " + row.shown_unit());
-}
 
 /// The end of an interval, to a tenth of the sigma; it has no sigma of its own.
 std::string end_at(double value, double sigma, const std::string& unit) {
@@ -33,7 +29,7 @@ void bootstraps(const Resampling& r, Page& page) {
   std::vector<std::string> words;
   for (const Bootstrap& b : r.bootstraps) {
     for (const BootstrapNumber& n : b.numbers) {
-      rows.push_back({b.method, n.name, shown(n.value, n.fit_sigma, n.unit), shown(n.mean, n.sigma, n.unit),
+      rows.push_back({b.method, n.name, in_display_unit(n.value, n.unit, n.fit_sigma), in_display_unit(n.mean, n.unit, n.sigma),
                       end_at(n.lower, n.sigma, n.unit), end_at(n.upper, n.sigma, n.unit), std::to_string(n.runs)});
     }
     words.push_back(fmt::format("{}: {} runs of {}, blocks of {} samples; {} gave no fit.", b.method, b.runs, b.how, b.block, b.failed));
@@ -48,7 +44,7 @@ void profiles(const Resampling& r, Page& page) {
   if (r.profiles.empty()) return;
   Cells rows{{"profile of", "method", "fit ± its sigma", "95 % from", "95 % to", "what to know"}};
   for (const LikelihoodProfile& p : r.profiles) {
-    rows.push_back({p.parameter, p.method, shown(p.best, p.sigma, p.unit), end_of(p.lower_found, p.lower, p.sigma, p.unit),
+    rows.push_back({p.parameter, p.method, in_display_unit(p.best, p.unit, p.sigma), end_of(p.lower_found, p.lower, p.sigma, p.unit),
                     end_of(p.upper_found, p.upper, p.sigma, p.unit), fmt::format("{}", fmt::join(p.words, "; "))});
   }
   page.table(rows);

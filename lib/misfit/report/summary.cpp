@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "misfit/data/curve_coefficient.h"
 #include "misfit/report/rows.h"
 #include "misfit/report/sections.h"
 #include "misfit/report/symbols.h"
@@ -111,7 +112,7 @@ void parameters_section(const ReportInput& input, Page& page) {
   for (const Fit& fit : input.fits) {
     std::vector<Row> rows;
     for (const auto& [name, estimate] : fit.parameters) {
-      if (name.find('[') == std::string::npos) rows.emplace_back(name, estimate);
+      if (!is_curve_coefficient(name)) rows.emplace_back(name, estimate);
     }
     add_rows(rows, "noise: ", fit.noise, "");
     add_rows(rows, "force: ", fit.force, "");

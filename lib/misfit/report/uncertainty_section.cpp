@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/report/figures_uncertainty.h"
 #include "misfit/report/rows.h"
 #include "misfit/report/sections.h"
@@ -11,21 +12,17 @@ namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-std::string shown(double value, double sigma, const std::string& unit) {
-  const Row row("", value, sigma, unit);
-  return row.shown_number() + (row.shown_unit() == "-" ? "" : " " + row.shown_unit());
-}
-
 Cells perturbed_rows(const Uncertainty& u) {
   Cells rows{{"perturbed", "nominal ± sigma", "how it was read"}};
-  for (const PerturbedParameter& p : u.perturbed) rows.push_back({p.name, shown(p.value, p.sigma, p.unit), p.reading});
+  for (const PerturbedParameter& p : u.perturbed) rows.push_back({p.name, in_display_unit(p.value, p.unit, p.sigma), p.reading});
   return rows;
 }
 
 Cells number_rows(const Uncertainty& u) {
   Cells rows{{"result", "nominal, noise alone", "over the runs, set-up alone", "runs"}};
   for (const SpreadNumber& n : u.numbers)
-    rows.push_back({n.name, shown(n.nominal, n.nominal_sigma, n.unit), shown(n.mean, n.sigma, n.unit), std::to_string(n.count)});
+    rows.push_back(
+        {n.name, in_display_unit(n.nominal, n.unit, n.nominal_sigma), in_display_unit(n.mean, n.unit, n.sigma), std::to_string(n.count)});
   return rows;
 }
 

@@ -6,6 +6,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/ranks.h"
+#include "misfit/data/curve_coefficient.h"
 
 namespace misfit {
 namespace {
@@ -64,7 +65,7 @@ BlockBootstrap::BlockBootstrap(const Fit& fit, const std::vector<Signals>& exper
     : fit_(fit), options_(options), what_(what), refit_(std::move(refit)), resampler_(what, fit, experiments, options.block) {
   if (options.runs < 2) throw InputError("bootstrap: " + std::to_string(options.runs) + " runs; at least 2 are needed for a scatter");
   for (const auto& [name, estimate] : fit.parameters) {
-    if (name.find('[') == std::string::npos) names_.push_back(name);
+    if (!is_curve_coefficient(name)) names_.push_back(name);
   }
   size_ = names_.size() + 1;
   for (const auto& curve : fit.curves) size_ += curve.x.size();

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/ranks.h"
 #include "misfit/core/text.h"
-#include "misfit/core/units.h"
 
 namespace misfit {
 namespace {
@@ -99,15 +99,9 @@ class Search {
   Side side_;
 };
 
-std::string shown(double value, const std::string& unit) {
-  const std::string display = display_unit(unit);
-  const std::string number = format_value(convert(value, unit, display));
-  return display == "-" ? number : number + " " + display;
-}
-
 void add_words(LikelihoodProfile& p, const Side& below, const Side& above) {
-  if (!below.found) p.words.push_back("no lower end: " + below.why + ", the search ended at " + shown(p.lower, p.unit));
-  if (!above.found) p.words.push_back("no upper end: " + above.why + ", the search ended at " + shown(p.upper, p.unit));
+  if (!below.found) p.words.push_back("no lower end: " + below.why + ", the search ended at " + in_display_unit(p.lower, p.unit));
+  if (!above.found) p.words.push_back("no upper end: " + above.why + ", the search ended at " + in_display_unit(p.upper, p.unit));
   const double least = p.drop.empty() ? 0.0 : *std::min_element(p.drop.begin(), p.drop.end());
   constexpr double worth_saying = 0.2;
   if (least < -worth_saying)
@@ -118,7 +112,8 @@ void add_words(LikelihoodProfile& p, const Side& below, const Side& above) {
   if (!below.found || !above.found) return;
   const double left = p.best - p.lower, right = p.upper - p.best;
   if (std::abs(left - right) > worth_saying * 0.5 * (left + right))
-    p.words.push_back("lopsided: -" + shown(left, p.unit) + ", +" + shown(right, p.unit) + "; a sigma does not describe it");
+    p.words.push_back("lopsided: -" + in_display_unit(left, p.unit) + ", +" + in_display_unit(right, p.unit) +
+                      "; a sigma does not describe it");
 }
 
 LikelihoodProfile joined(const ProfileRequest& r, const Side& below, const Side& above) {

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace misfit {
+
+/// A number for a sentence, in the unit people like to read: "12.30 ± 0.21 deg" for 0.2147 ± 0.0037 rad; a pure number ("-" or "") without
+/// one. sigma 0: not estimated, the number alone. InputError: `si` is no unit.
+[[nodiscard]] std::string in_display_unit(double value, const std::string& si, double sigma = 0.0);
+
+}  // namespace misfit
