@@ -57,11 +57,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    if (!options.summary.empty()) {
-      bench::print_summary(bench::read_rows(options.summary));
-    } else {
-      run(options);
-    }
+    if (options.summary.empty()) run(options);
+    bench::print_summary(bench::read_rows(options.summary.empty() ? options.out : options.summary));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -159,7 +159,7 @@ void FilterClimb::iterate(int most, double tolerance) {
   }
 }
 
-bool FilterClimb::joint_step(const Eigen::VectorXd& gradient, double enough) {
+std::optional<double> FilterClimb::joint_step(const Eigen::VectorXd& gradient, const Eigen::VectorXd& slope, double enough) {
   const Eigen::Index n = theta.size();
   const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
   const auto [lower, upper] = bounds_of(out.model, free);
@@ -168,24 +168,28 @@ bool FilterClimb::joint_step(const Eigen::VectorXd& gradient, double enough) {
     both << a, Eigen::Map<const Eigen::VectorXd>(b.data(), static_cast<Eigen::Index>(b.size()));
     return both;
   };
-  const Eigen::VectorXd here = joined(theta, out.noise_fit.logs), newton = out.joint_covariance * gradient;
+  Eigen::VectorXd whole = gradient;
+  whole.tail(slope.size()) += slope;
+  const Eigen::VectorXd here = joined(theta, out.noise_fit.logs), newton = out.joint_covariance * whole;
   const BoundedMaximum there = maximum_inside(here + newton, out.joint_covariance, joined(lower, noise.lower), joined(upper, noise.upper));
   const Eigen::VectorXd step = there.at - here;
-  const double promised = 0.5 * gradient.dot(newton) - there.below;
+  const double promised = 0.5 * whole.dot(newton) - there.below;
   out.left = promised;
-  if (promised < enough) return false;
+  if (promised < enough) return std::nullopt;
   for (double share = 1.0; share > 0.1; share *= 0.5) {
     const Eigen::VectorXd at = here + share * step;
     const std::vector<double> logs(at.data() + n, at.data() + at.size());
     const FilterNoise with = unpack(logs);
-    if (!(objective_at(at.head(n), with) > objective)) continue;
+    const double gained = objective_at(at.head(n), with) - objective + share * slope.dot(step.tail(slope.size()));
+    if (!(gained > 0.0)) continue;
     theta = at.head(n);
     out.noise = with;
     out.noise_fit.logs = logs;
     set_time();
-    return linearise();
+    if (!linearise()) return std::nullopt;
+    return gained;
   }
-  return false;
+  return std::nullopt;
 }
 
 std::string FilterClimb::failure() const {

@@ -20,10 +20,11 @@ class FilterClimb {
   void iterate(int most, double tolerance);
   /// False if the model cannot be run with it: all is as before.
   bool take_noise(const NoiseFit& fit);
-  /// A Newton step over parameters and log noise together, inside their bounds, with `gradient` that of the exact objective and
-  /// `out.joint_covariance` the inverse of its curvature; shortened until the objective rises. `out.left` is what it promises. False: that
-  /// is less than `enough`, or no length of it rises.
-  bool joint_step(const Eigen::VectorXd& gradient, double enough);
+  /// A Newton step over parameters and log noise together, inside their bounds, with `gradient` that of the exact objective,
+  /// `out.joint_covariance` the inverse of its curvature and `slope` a further term of the objective, linear in the log noise (what
+  /// restricted_likelihood() adds); shortened until their sum rises. `out.left` is what it promises. What it gained; nullopt: it promises
+  /// less than `enough`, or no length of it rises.
+  std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::VectorXd& slope, double enough);
 
   [[nodiscard]] std::vector<double> values() const;  ///< of all parameters of the forced model
   [[nodiscard]] LinearisedRuns runs() const { return {&out.forced, &out.data, &out.traces}; }

@@ -3,11 +3,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 #include "misfit/fit/filter_climb.h"
 #include "misfit/fit/filter_exact.h"
+#include "misfit/fit/filter_restricted.h"
 
 namespace misfit {
 namespace {
@@ -120,18 +122,39 @@ class Estimation {
         at_.iterate(15, tolerance());
         continue;
       }
+      restrict_noise();
       unverified_ = "the information matrix cannot be inverted";
-      if (!invert_scaled(joint_precision(out_, exact), out_.joint_covariance)) return;
+      if (!invert_joint(exact)) return;
       constexpr double enough = 0.02, nearly = 0.5;
-      const double before = at_.objective;
-      if (!at_.joint_step(exact.gradient, enough)) return;
+      const std::optional<double> gained = at_.joint_step(exact.gradient, restricted_.slope, enough);
+      if (!gained) return;
       const double promised = *out_.left;
       // A short step that gains what was promised ends at the maximum; a longer one is looked at again.
       if (promised < nearly) {
-        out_.left = std::abs(promised - (at_.objective - before));
+        out_.left = std::abs(promised - *gained);
         return;
       }
     }
+  }
+
+  /// −½ log det N is all but straight in the logarithms of the noise: its slope is kept until these have gone some way.
+  void restrict_noise() {
+    constexpr double some_way = 0.1;
+    const std::vector<double>& logs = out_.noise_fit.logs;
+    bool moved = restricted_at_.size() != logs.size();
+    for (std::size_t i = 0; i < logs.size() && !moved; ++i) moved = std::abs(logs[i] - restricted_at_[i]) > some_way;
+    if (!moved) return;
+    restricted_ = restricted_likelihood(out_, at_.theta, options_.threads);
+    restricted_at_ = logs;
+  }
+
+  /// Where so little is known of the noise that nothing would be left after what is lost, the loss, an approximation, is not taken off.
+  bool invert_joint(const ExactDerivatives& exact) {
+    const Eigen::MatrixXd whole = joint_precision(out_, exact);
+    Eigen::MatrixXd less = whole;
+    const Eigen::Index q = restricted_.lost.rows();
+    less.bottomRightCorner(q, q) -= restricted_.lost;
+    return invert_scaled(less, out_.joint_covariance) || invert_scaled(whole, out_.joint_covariance);
   }
 
   bool uncount(const std::vector<std::vector<std::size_t>>& rough) {
@@ -178,6 +201,8 @@ class Estimation {
   }
 
   FilterOptions options_;
+  RestrictedLikelihood restricted_;
+  std::vector<double> restricted_at_;  ///< the logarithms where it was taken
   std::string unverified_ = "readings at which the model cannot be followed kept coming";
   FilterClimb at_;
   FilterEstimate& out_ = at_.out;

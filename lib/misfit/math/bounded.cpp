@@ -54,10 +54,7 @@ BoundedMaximum maximum_inside(const Eigen::VectorXd& centre, const Eigen::Matrix
       out.at += covariance(Eigen::all, held.at) * held.pull;
       out.below = 0.5 * held.excess.dot(held.pull);
     }
-    for (std::size_t k = 0; k < held.at.size(); ++k) {
-      const Eigen::Index i = held.at[k];
-      out.at[i] = side[static_cast<std::size_t>(i)] < 0 ? lower[i] : upper[i];
-    }
+    for (const Eigen::Index i : held.at) out.at[i] = side[static_cast<std::size_t>(i)] < 0 ? lower[i] : upper[i];
     bool inside = true;
     for (Eigen::Index i = 0; i < n; ++i) {
       if (out.at[i] >= lower[i] && out.at[i] <= upper[i]) continue;
