@@ -136,7 +136,7 @@ TEST(VideosThatCannotBeTracked, AreAnsweredInWords) {
   study.write("empty.mkv", "");
   video("empty.mkv");
   expect_refused(study, 1, {"empty.mkv", "the file is empty"});
-  Writer(study.path("none.avi"), 720, 720, frame_rate);
+  { const Writer nothing(study.path("none.avi"), 720, 720, frame_rate); }
   video("none.avi");
   expect_refused(study, 1, {"none.avi"});
   Writer(study.path("one.mkv"), 720, 720, frame_rate).add(frames().front());

@@ -76,7 +76,7 @@ void trajectory(const World& world, const Model& model, bool sensitivities) {
 
 void right_hand_sides(const World& world, const Model& model) {
   Evaluator evaluator(model);
-  std::vector<double> D(2 * kRowStride);
+  std::vector<double> D(2 * std::size_t{kRowStride});
   std::array<double, 2> x = {0.2, 0.3}, dx{};
   Slots slots;
   for (std::size_t i = 0; i < samples; ++i) {

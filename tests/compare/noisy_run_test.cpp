@@ -24,7 +24,7 @@ Signals clock(std::size_t samples) {
 double deviation(const std::vector<double>& values) {
   double sum = 0.0, squares = 0.0;
   for (double v : values) sum += v, squares += v * v;
-  const double n = static_cast<double>(values.size());
+  const auto n = static_cast<double>(values.size());
   return std::sqrt(squares / n - sum * sum / (n * n));
 }
 

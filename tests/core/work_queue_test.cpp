@@ -61,12 +61,11 @@ TEST(RunJobs, RethrowsTheExceptionOfTheLowestJob) {
 
 TEST(RunJobs, AnExceptionStopsTheRest) {
   std::atomic<int> ran{0};
-  EXPECT_THROW(run_jobs(1000, 1,
-                        [&](std::size_t k) {
-                          ++ran;
-                          if (k == 3) throw std::runtime_error("x");
-                        }),
-               std::runtime_error);
+  const auto job = [&](std::size_t k) {
+    ++ran;
+    if (k == 3) throw std::runtime_error("x");
+  };
+  EXPECT_THROW(run_jobs(1000, 1, job), std::runtime_error);
   EXPECT_EQ(ran, 4);
 }
 

@@ -84,7 +84,7 @@ TEST(UncertainRoughness, BandsHoldWhatTheySay) {
     Eigen::VectorXd c = Eigen::VectorXd::Zero(r.A.cols());
     for (Eigen::Index i = 2; i < c.size(); ++i) c += eigen.eigenvectors().col(i) * normal(random) * tau / std::sqrt(eigen.eigenvalues()[i]);
     Eigen::VectorXd y = r.A * c;
-    for (Eigen::Index i = 0; i < y.size(); ++i) y[i] += normal(random);
+    for (double& reading : y) reading += normal(random);
     const Linearised problem = problem_of(r, y);
     std::vector<Penalty> penalties{penalty_of(r, 1.0 / (tau * tau), true)};
     const Smoothed smoothed = smooth(problem, penalties, 1.0);

@@ -31,8 +31,8 @@ Correlogram first_order(int readings, int every, double phi, int lags) {
       sum += product;
       count += 1.0;
     }
-    out.products.push_back(Eigen::MatrixXd::Constant(1, 1, sum));
-    out.pairs.push_back(Eigen::MatrixXd::Constant(1, 1, count));
+    out.products.emplace_back(Eigen::MatrixXd::Constant(1, 1, sum));
+    out.pairs.emplace_back(Eigen::MatrixXd::Constant(1, 1, count));
   }
   return out;
 }

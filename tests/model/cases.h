@@ -56,10 +56,10 @@ inline ModelRequest with_equal_knots(ModelRequest request) {
   return request;
 }
 
-/// Both forms of the parachute, one effect of each kind on it, everything at once, and another system; each also with all constants freed.
-inline std::vector<Case> cases() {
+/// Both forms of the planar parachute, one effect of each kind on it, and everything at once.
+inline std::vector<Case> planar_cases() {
   const std::map<std::string, double> friction = {{"friction", 8.0}, {"width", 0.2}};
-  std::vector<Case> fixed = {
+  return {
       {"paper_form", parachute(false)},
       {"induced_form", parachute(true)},
       {"curves_on_equal_knots", with_equal_knots(parachute(false))},
@@ -73,7 +73,11 @@ inline std::vector<Case> cases() {
        with_values(parachute(true, {effect("time_offset"), effect("periodic_forcing")}), {{"clock_offset", 0.013}, {"cosine", 9.0}})},
       {"friction", with_values(parachute(true, {effect("coulomb_friction"), effect("viscous_friction")}), friction)},
       {"everything", parachute(true, {effect("periodic_forcing"), effect("dynamic_pressure_drift"), effect("inertia_swell"), effect("lag"),
-                                      effect("pressure_memory"), effect("bias"), effect("time_offset"), effect("viscous_friction")})},
+                                      effect("pressure_memory"), effect("bias"), effect("time_offset"), effect("viscous_friction")})}};
+}
+
+inline std::vector<Case> cases_of_other_systems() {
+  return {
       {"cart_all_ports",
        cart({effect("viscous_friction"), effect("viscous_friction", {{"rate", "x"}, {"port", "slip"}}, "leak"), effect("lag"),
              effect("bias", {{"output", "speed_reading"}}), effect("periodic_forcing", {{"port", "added_mass"}}, "breathing")})},
@@ -97,6 +101,15 @@ inline std::vector<Case> cases() {
            tanks({effect("overflow", {{"level", "x1"}, {"port", "dx1/dt"}}),
                   effect("overflow_into", {{"level", "x1"}, {"to_port", "dx2/dt"}}), effect("sensor_lag"), effect("input_gain")}),
            {{"spill", 0.5}, {"threshold", 0.1}, {"caught", 0.3}, {"caught_threshold", -0.2}, {"share", 0.6}, {"gain_error", 0.02}})},
+      {"declared_pendulum", declared("pendulum", {})},
+      {"declared_with_effects",
+       declared("pendulum", {effect("coulomb_friction"), effect("viscous_friction"), effect("bias"), effect("lag")})},
+      {"declared_with_changed_input", declared("duffing", {effect("viscous_friction"), effect("bias", {{"output", "u"}}, "zero_of_u")})},
+      {"cart_curve_of_an_output", with_scale_curve(cart({effect("sensor_scale"), effect("coulomb_friction")}))}};
+}
+
+inline std::vector<Case> spherical_cases() {
+  return {
       {"spherical", spherical()},
       {"wake",
        with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}, {"wake_push", 0.15}, {"wake_phi", -1.6}, {"wake_width", 0.9}})},
@@ -117,16 +130,17 @@ inline std::vector<Case> cases() {
                                      {"friction", 20.0},
                                      {"width", 0.2},
                                      {"viscosity", 5.0}})},
-      {"lagging_flow", with_values(spherical({effect("aerodynamic_lag"), effect("vortex_shedding")}), {{"C_lag", 0.3}, {"y_sine", 0.01}})},
-      {"declared_pendulum", declared("pendulum", {})},
-      {"declared_with_effects",
-       declared("pendulum", {effect("coulomb_friction"), effect("viscous_friction"), effect("bias"), effect("lag")})},
-      {"declared_with_changed_input", declared("duffing", {effect("viscous_friction"), effect("bias", {{"output", "u"}}, "zero_of_u")})},
-      {"cart_curve_of_an_output", with_scale_curve(cart({effect("sensor_scale"), effect("coulomb_friction")}))}};
+      {"lagging_flow", with_values(spherical({effect("aerodynamic_lag"), effect("vortex_shedding")}), {{"C_lag", 0.3}, {"y_sine", 0.01}})}};
+}
+
+/// All of these, each also with all constants freed.
+inline std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const auto& c : fixed) {
-    all.push_back(c);
-    all.push_back(with_free_constants(c));
+  for (const auto& part : {planar_cases(), spherical_cases(), cases_of_other_systems()}) {
+    for (const auto& c : part) {
+      all.push_back(c);
+      all.push_back(with_free_constants(c));
+    }
   }
   return all;
 }

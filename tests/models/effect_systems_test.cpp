@@ -46,38 +46,40 @@ std::vector<Model> models_with(const std::string& key) {
 
 TEST_P(EffectInSystems, SuitsAtLeastOneSystemWithItsDefaultRoles) { EXPECT_FALSE(models_with(GetParam()).empty()); }
 
-TEST_P(EffectInSystems, NeverAddsPowerIfDeclaredDissipative) {
-  const EffectSpec& spec = registry().effect(GetParam()).spec();
-  if (!spec.dissipative) return;
-  std::mt19937 random(5);
+/// Power that the first effect of a model gives to the dynamic ports it acts on, at random states, inputs and coefficients.
+double random_power(const Model& model, std::mt19937& random) {
   std::normal_distribution<double> normal;
+  const SystemSpec& system = model.system->spec();
+  const BoundEffect& bound = model.effects.front();
+  const EffectSpec& spec = bound.effect->spec();
+  std::vector<double> x(static_cast<std::size_t>(model.states())), u(static_cast<std::size_t>(model.inputs()) + 1),
+      q(system.quantities.size());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = (i < system.states.size() ? 2.0 * system.states[i].scale : 1.0) * normal(random);
+  for (double& value : u) value = normal(random);
+  Evaluator(model).quantities(x.data(), u.data(), 0.0, q.data());
+  Example at;
+  for (int i : bound.quantities) at.quantities.push_back(i < 0 ? 0.0 : q[static_cast<std::size_t>(i)]);
+  for (const auto& c : spec.coefficients) at.coefficients.push_back(std::clamp(c.value + 3.0 * c.scale * normal(random), c.lower, c.upper));
+  at.states.assign(spec.states.size(), normal(random));
+  for (int i : bound.constants) at.constants.push_back(model.parameters[static_cast<std::size_t>(i)].value);
+  std::vector<double> out(spec.ports.size() + spec.states.size());
+  bound.effect->evaluate({at.quantities.data(), at.coefficients.data(), at.states.data(), at.constants.data(), 0.0}, out.data());
+  double power = 0.0;
+  for (std::size_t p = 0; p < bound.ports.size(); ++p) {
+    if (bound.ports[p] < 0 || bound.kind != PortKind::dynamic) continue;
+    const auto& conjugate = system.dynamic_ports[static_cast<std::size_t>(bound.ports[p])].conjugate;
+    for (std::size_t i = 0; i < system.quantities.size(); ++i) power += system.quantities[i].name == conjugate ? out[p] * q[i] : 0.0;
+  }
+  return power;
+}
+
+TEST_P(EffectInSystems, NeverAddsPowerIfDeclaredDissipative) {
+  if (!registry().effect(GetParam()).spec().dissipative) return;
+  std::mt19937 random(5);
   int judged = 0;
   for (const Model& model : models_with(GetParam())) {
-    const SystemSpec& system = model.system->spec();
-    const BoundEffect& bound = model.effects.front();
-    Evaluator evaluator(model);
     for (int trial = 0; trial < 300; ++trial) {
-      std::vector<double> x(static_cast<std::size_t>(model.states())), u(static_cast<std::size_t>(model.inputs()) + 1),
-          q(system.quantities.size());
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] = (i < system.states.size() ? 2.0 * system.states[i].scale : 1.0) * normal(random);
-      for (double& value : u) value = normal(random);
-      evaluator.quantities(x.data(), u.data(), 0.0, q.data());
-      Example at;
-      for (int i : bound.quantities) at.quantities.push_back(i < 0 ? 0.0 : q[static_cast<std::size_t>(i)]);
-      for (const auto& c : spec.coefficients)
-        at.coefficients.push_back(std::clamp(c.value + 3.0 * c.scale * normal(random), c.lower, c.upper));
-      at.states.assign(spec.states.size(), normal(random));
-      for (int i : bound.constants) at.constants.push_back(model.parameters[static_cast<std::size_t>(i)].value);
-      std::vector<double> out(spec.ports.size() + spec.states.size());
-      bound.effect->evaluate({at.quantities.data(), at.coefficients.data(), at.states.data(), at.constants.data(), 0.0}, out.data());
-      double power = 0.0;
-      for (std::size_t p = 0; p < bound.ports.size(); ++p) {
-        if (bound.ports[p] < 0 || bound.kind != PortKind::dynamic) continue;
-        const auto& conjugate = system.dynamic_ports[static_cast<std::size_t>(bound.ports[p])].conjugate;
-        for (std::size_t i = 0; i < system.quantities.size(); ++i) {
-          if (system.quantities[i].name == conjugate) power += out[p] * q[i];
-        }
-      }
+      const double power = random_power(model, random);
       EXPECT_LE(power, 0.0);
       judged += power < 0.0 ? 1 : 0;
     }

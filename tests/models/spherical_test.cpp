@@ -78,12 +78,12 @@ TEST(SphericalParachute, GoingRoundTheTiltAcceleratesAsThePlanarSystemWithConing
 
 TEST(SphericalParachute, SteadyConingIsHeldByTheStaticMoment) {
   // eta' = 0: I phi'^2 sin(eta) cos(eta) = -M. The canopy goes round at V-ratio R phi' sin(eta)/V, so that alpha_T > eta.
-  constexpr double eta = 0.3, V = 35.1, qSD = 736.0 * 1.9554 * 1.5816;
+  constexpr double eta = 0.3, V = 35.1, q_SD = 736.0 * 1.9554 * 1.5816;
   double phi_rate = 0.0, alpha = 0.0;
   for (int i = 0; i < 200; ++i) {
     const double across = R * phi_rate * std::sin(eta), v = std::hypot(V, across);
     alpha = std::atan2(std::hypot(V * std::sin(eta), across), V * std::cos(eta));
-    const double M = qSD * (-0.0062 / degree) * (alpha - 12.0 * degree) / std::sin(alpha) * V * std::sin(eta) / v;
+    const double M = q_SD * (-0.0062 / degree) * (alpha - 12.0 * degree) / std::sin(alpha) * V * std::sin(eta) / v;
     phi_rate = std::sqrt(-M / (I * std::sin(eta) * std::cos(eta)));
   }
   const State x = from_angles(eta, 1.1, 0.0, phi_rate);
@@ -119,7 +119,7 @@ TEST(SphericalParachute, FrictionOpposesTheRotationWhateverThePlaneOfTheTilt) {
 TEST(SphericalParachute, MomentsAboutFixedAxesAreTorqueCrossAxis) {
   const Model m = with({effect("vortex_shedding")}, {{"y_cosine", 0.004}, {"z_cosine", -0.007}});
   const Model free = with({});
-  constexpr double qSD = 736.0 * 1.9554 * 1.5816, M_y = 0.004 * qSD, M_z = -0.007 * qSD;
+  constexpr double q_SD = 736.0 * 1.9554 * 1.5816, M_y = 0.004 * q_SD, M_z = -0.007 * q_SD;
   for (const State& x : some_states) {
     const State a = rates(free, x), b = rates(m, x);
     // tau = (tau_x, M_y, M_z) without a part along n gives n'' of (tau x n)/I; a part along n does nothing, so tau_x = 0 will do.
@@ -179,10 +179,10 @@ TEST(SphericalParachute, IsRegularThroughZeroTilt) {
             return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(d.data(), 4));
           },
           x[j]);
-      for (std::size_t i = 0; i < 4; ++i)
-        EXPECT_NEAR(D[i * kRowStride + j], difference[static_cast<Eigen::Index>(i)],
-                    2e-6 * (1.0 + std::abs(difference[static_cast<Eigen::Index>(i)])))
-            << i << ", " << j;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const double slope = difference[static_cast<Eigen::Index>(i)];
+        EXPECT_NEAR(D[i * kRowStride + j], slope, 2e-6 * (1.0 + std::abs(slope))) << i << ", " << j;
+      }
     }
     const State near = rates(m, {x[0] + 1e-9, x[1] - 1e-9, x[2], x[3]});
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(near[i], dx[i], 1e-5);

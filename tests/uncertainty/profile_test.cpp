@@ -163,7 +163,8 @@ TEST(Profile, OnDiskEachSideIsKeptToTheBit) {
 }
 
 TEST(Profile, AParameterWithoutSigmaHasNone) {
-  EXPECT_THROW(static_cast<void>(profile_likelihood({request(0.0, 0.0, 0.0, [](double) { return std::optional(0.0); })}, 1)), InputError);
+  const ProfileRequest without = request(0.0, 0.0, 0.0, [](double) { return std::optional(0.0); });
+  EXPECT_THROW(static_cast<void>(profile_likelihood({without}, 1)), InputError);
 }
 
 }  // namespace

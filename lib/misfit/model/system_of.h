@@ -38,25 +38,21 @@ class SystemOf final : public System {
   }
   void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
                             const QuantityDerivatives& d) const override {
-    if (d.k != nullptr) {
-      differentiate_quantities<S::NX + S::NP + S::NK>(at, P, needed, q, d);
-    } else if (d.P != nullptr && S::NP > 0) {
-      differentiate_quantities<S::NX + S::NP>(at, P, needed, q, d);
-    } else {
-      differentiate_quantities<S::NX>(at, P, needed, q, d);
+    if (d.k != nullptr) return differentiate_quantities<S::NX + S::NP + S::NK>(at, P, needed, q, d);
+    if constexpr (S::NP > 0) {
+      if (d.P != nullptr) return differentiate_quantities<S::NX + S::NP>(at, P, needed, q, d);
     }
+    differentiate_quantities<S::NX>(at, P, needed, q, d);
   }
   void rates(const Point& at, const double* P, const double* F, double* dx) const override {
     system_.template rates<double, double>(at.x, at.u, at.t, at.k, P, F, dx);
   }
   void linearise_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const override {
-    if (d.k != nullptr) {
-      differentiate_rates<S::NX + S::NF + S::NP + S::NK>(at, P, F, dx, d);
-    } else if (d.P != nullptr && S::NP > 0) {
-      differentiate_rates<S::NX + S::NF + S::NP>(at, P, F, dx, d);
-    } else {
-      differentiate_rates<S::NX + S::NF>(at, P, F, dx, d);
+    if (d.k != nullptr) return differentiate_rates<S::NX + S::NF + S::NP + S::NK>(at, P, F, dx, d);
+    if constexpr (S::NP > 0) {
+      if (d.P != nullptr) return differentiate_rates<S::NX + S::NF + S::NP>(at, P, F, dx, d);
     }
+    differentiate_rates<S::NX + S::NF>(at, P, F, dx, d);
   }
   void outputs(const Point& at, double* y) const override { system_.template outputs<double, double>(at.x, at.u, at.t, at.k, y); }
   void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const override {
