@@ -28,6 +28,12 @@ Box bounds_of(const Model& model, const std::vector<int>& free) {
   return box;
 }
 
+Eigen::VectorXd joined(const Eigen::VectorXd& a, const std::vector<double>& b) {
+  Eigen::VectorXd both(a.size() + static_cast<Eigen::Index>(b.size()));
+  both << a, Eigen::Map<const Eigen::VectorXd>(b.data(), static_cast<Eigen::Index>(b.size()));
+  return both;
+}
+
 }  // namespace
 
 FilterClimb::FilterClimb(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
@@ -131,14 +137,31 @@ double FilterClimb::physical_step() {
 
 bool FilterClimb::take_noise(const NoiseFit& fit) {
   const FilterNoise before = out.noise;
+  const std::vector<double> logs = pack(before, out.model.system->spec(), out.around).value;
   const double then = objective;
   out.noise = fit.noise;
   out.noise_fit = fit;
   set_time();
   if (linearise() && objective > then - 1.0) return true;
   out.noise = before;
+  out.noise_fit.logs = logs;
   set_time();
   linearise();
+  return false;
+}
+
+bool FilterClimb::move_to(const Eigen::VectorXd& there, const std::vector<double>& logs) {
+  const Eigen::VectorXd theta_before = theta;
+  const std::vector<double> logs_before = out.noise_fit.logs;
+  const auto set = [&](const Eigen::VectorXd& parameters, const std::vector<double>& noise) {
+    theta = parameters;
+    out.noise_fit.logs = noise;
+    out.noise = unpack(noise);
+    set_time();
+    return linearise();
+  };
+  if (set(there, logs)) return true;
+  set(theta_before, logs_before);
   return false;
 }
 
@@ -159,37 +182,38 @@ void FilterClimb::iterate(int most, double tolerance) {
   }
 }
 
-std::optional<double> FilterClimb::joint_step(const Eigen::VectorXd& gradient, const Eigen::VectorXd& slope, double enough) {
+Eigen::VectorXd FilterClimb::joint() const { return joined(theta, out.noise_fit.logs); }
+
+std::optional<double> FilterClimb::joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope,
+                                              double enough) {
   const Eigen::Index n = theta.size();
   const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
   const auto [lower, upper] = bounds_of(out.model, free);
-  const auto joined = [](const Eigen::VectorXd& a, const std::vector<double>& b) {
-    Eigen::VectorXd both(a.size() + static_cast<Eigen::Index>(b.size()));
-    both << a, Eigen::Map<const Eigen::VectorXd>(b.data(), static_cast<Eigen::Index>(b.size()));
-    return both;
-  };
   Eigen::VectorXd whole = gradient;
   whole.tail(slope.size()) += slope;
-  const Eigen::VectorXd here = joined(theta, out.noise_fit.logs), newton = out.joint_covariance * whole;
-  const BoundedMaximum there = maximum_inside(here + newton, out.joint_covariance, joined(lower, noise.lower), joined(upper, noise.upper));
+  const Eigen::VectorXd here = joint(), newton = inverse * whole;
+  const Eigen::VectorXd lowest = joined(lower, noise.lower), highest = joined(upper, noise.upper);
+  const BoundedMaximum there = maximum_inside(here + newton, inverse, lowest, highest);
   const Eigen::VectorXd step = there.at - here;
   const double promised = 0.5 * whole.dot(newton) - there.below;
   out.left = promised;
   if (promised < enough) return std::nullopt;
-  for (double share = 1.0; share > 0.1; share *= 0.5) {
-    const Eigen::VectorXd at = here + share * step;
-    const std::vector<double> logs(at.data() + n, at.data() + at.size());
-    const FilterNoise with = unpack(logs);
-    const double gained = objective_at(at.head(n), with) - objective + share * slope.dot(step.tail(slope.size()));
-    if (!(gained > 0.0)) continue;
-    theta = at.head(n);
-    out.noise = with;
-    out.noise_fit.logs = logs;
-    set_time();
-    if (!linearise()) return std::nullopt;
-    return gained;
+  const auto gain = [&](double share) {
+    const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
+    return objective_at(at.head(n), unpack({at.data() + n, at.data() + at.size()})) - objective + slope.dot((at - here).tail(slope.size()));
+  };
+  double share = 1.0, gained = gain(share);
+  while (!(gained > 0.0) && share > 0.2) gained = gain(share *= 0.5);
+  if (!(gained > 0.0)) return std::nullopt;
+  constexpr double more = 1.2, furthest = 256.0;
+  for (double longer = 2.0; share >= 1.0 && gained > more * promised && longer <= furthest; longer *= 2.0) {
+    const double value = gain(longer);
+    if (!(value > gained)) break;
+    share = longer;
+    gained = value;
   }
-  return std::nullopt;
+  const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
+  return move_to(at.head(n), {at.data() + n, at.data() + at.size()}) ? std::optional(gained) : std::nullopt;
 }
 
 std::string FilterClimb::failure() const {

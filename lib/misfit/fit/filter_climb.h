@@ -20,11 +20,13 @@ class FilterClimb {
   void iterate(int most, double tolerance);
   /// False if the model cannot be run with it: all is as before.
   bool take_noise(const NoiseFit& fit);
-  /// A Newton step over parameters and log noise together, inside their bounds, with `gradient` that of the exact objective,
-  /// `out.joint_covariance` the inverse of its curvature and `slope` a further term of the objective, linear in the log noise (what
-  /// restricted_likelihood() adds); shortened until their sum rises. `out.left` is what it promises. What it gained; nullopt: it promises
-  /// less than `enough`, or no length of it rises.
-  std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::VectorXd& slope, double enough);
+  /// A step of a Newton kind over parameters and log noise together, inside their bounds: `gradient` of the exact objective, `inverse` of
+  /// its curvature, `slope` a further term of the objective that is linear in the log noise (what restricted_likelihood() adds). Shortened
+  /// until their sum rises, lengthened where it gains more than it promised. `out.left` is what it promises. What it gained; nullopt: it
+  /// promises less than `enough`, or no length of it rises.
+  std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope,
+                                   double enough);
+  [[nodiscard]] Eigen::VectorXd joint() const;  ///< the free parameters, then the logarithms of the noise
 
   [[nodiscard]] std::vector<double> values() const;  ///< of all parameters of the forced model
   [[nodiscard]] LinearisedRuns runs() const { return {&out.forced, &out.data, &out.traces}; }
@@ -37,6 +39,8 @@ class FilterClimb {
   double objective = 0.0;  ///< at `theta` and `out.noise`
 
  private:
+  /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
+  bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
   void set_time();
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
 

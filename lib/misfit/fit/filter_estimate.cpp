@@ -10,6 +10,7 @@
 #include "misfit/fit/filter_climb.h"
 #include "misfit/fit/filter_exact.h"
 #include "misfit/fit/filter_restricted.h"
+#include "misfit/math/learned_curvature.h"
 
 namespace misfit {
 namespace {
@@ -109,7 +110,7 @@ class Estimation {
 
   /// Steps by the exact derivatives. Readings at which the filter's linearisation breaks still move it, but no longer count.
   void polish() {
-    constexpr int most = 6;
+    constexpr int most = 20;
     for (int k = 0; k < most; ++k) {
       const ExactDerivatives exact = exact_derivatives(out_, at_.theta, options_.threads);
       out_.left.reset();
@@ -120,13 +121,18 @@ class Estimation {
       if (!options_.use && uncount(exact.rough)) {
         at_.linearise();
         at_.iterate(15, tolerance());
+        learned_ = {};
         continue;
       }
       restrict_noise();
       unverified_ = "the information matrix cannot be inverted";
       if (!invert_joint(exact)) return;
       constexpr double enough = 0.02, nearly = 0.5;
-      const std::optional<double> gained = at_.joint_step(exact.gradient, restricted_.slope, enough);
+      Eigen::VectorXd gradient = exact.gradient;
+      gradient.tail(restricted_.slope.size()) += restricted_.slope;
+      learned_.look(at_.joint(), gradient);
+      const std::optional<double> gained =
+          at_.joint_step(exact.gradient, learned_.inverse(out_.joint_covariance), restricted_.slope, enough);
       if (!gained) return;
       const double promised = *out_.left;
       // A short step that gains what was promised ends at the maximum; a longer one is looked at again.
@@ -201,6 +207,7 @@ class Estimation {
   }
 
   FilterOptions options_;
+  LearnedCurvature learned_;
   RestrictedLikelihood restricted_;
   std::vector<double> restricted_at_;  ///< the logarithms where it was taken
   std::string unverified_ = "readings at which the model cannot be followed kept coming";
