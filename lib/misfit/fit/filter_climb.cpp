@@ -202,8 +202,9 @@ std::optional<double> FilterClimb::joint_step(const Eigen::VectorXd& gradient, c
     const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
     return objective_at(at.head(n), unpack({at.data() + n, at.data() + at.size()})) - objective + slope.dot((at - here).tail(slope.size()));
   };
+  constexpr double shortest = 0.005;  // at a kink of the likelihood only a short step rises
   double share = 1.0, gained = gain(share);
-  while (!(gained > 0.0) && share > 0.2) gained = gain(share *= 0.5);
+  while (!(gained > 0.0) && share > shortest) gained = gain(share *= 0.5);
   if (!(gained > 0.0)) return std::nullopt;
   constexpr double more = 1.2, furthest = 256.0;
   for (double longer = 2.0; share >= 1.0 && gained > more * promised && longer <= furthest; longer *= 2.0) {
