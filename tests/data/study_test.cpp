@@ -140,6 +140,18 @@ TEST_F(StudyFolder, AMissingOrBrokenStudyNamesThePlace) {
   expect_parts(error_of("[system]\nkind = \n"), {"study.toml:2:", "not valid TOML"});
 }
 
+TEST_F(StudyFolder, AParameterOfAnEffectNeedsNoQuotes) {
+  for (const std::string name : {"bearing.friction", "\"bearing.friction\"", "bearing . \"friction\""}) {
+    const Study study = read("[system]\nkind = \"x\"\n[parameters]\n" + name + " = { value = \"3 N m\", free = false }\n");
+    ASSERT_TRUE(study.parameters.contains("bearing.friction")) << name;
+    EXPECT_EQ(study.parameters.at("bearing.friction").free, false);
+    EXPECT_DOUBLE_EQ(study.parameters.at("bearing.friction").section->number("value", "N m")->value, 3.0);
+  }
+  expect_parts(error_with("[parameters]\nbearing.friction = { valeu = 3 }\n"),
+               {"study.toml:4", "parameters.bearing.friction.valeu", "'value'"});
+  expect_parts(error_with("[parameters]\nbearing = { value = 3, friction = { value = 3 } }\n"), {"study.toml:4", "'value'"});
+}
+
 TEST_F(StudyFolder, AnUnknownSectionOrKeyNamesTheNearest) {
   expect_parts(error_with("[geometri]\nD = 1\n"), {"study.toml:3:2", "[geometri]", "did you mean 'geometry'", "sliding_bin"});
   expect_parts(error_with("[study]\nsede = 1\n"), {"study.toml:4:1", "'sede' in [study]", "did you mean 'seed'"});

@@ -163,21 +163,32 @@ void read_effects(const Section& root, Study& study) {
   effects->finish();
 }
 
+/// What is said of one parameter, or, under the first part of a name with a point ("coulomb_friction.friction", which TOML without quotes
+/// reads as a table in a table), of those of one effect.
+void read_parameter(const std::string& name, const Section& section, const Source& where, Study& study) {
+  const std::vector<std::string> known{"free", "value", "bounds", "sigma"};
+  bool of_an_effect = false;
+  for (const std::string& entry : section.keys()) {
+    if (std::find(known.begin(), known.end(), entry) != known.end()) continue;
+    if (!section.is_table(entry)) section.fail(entry, "unknown key" + suggest(entry, known));
+    read_parameter(name + "." + entry, *section.table(entry), section.where(entry), study);
+    of_an_effect = true;
+  }
+  if (of_an_effect) {
+    section.finish();
+    return;
+  }
+  ParameterStudy parameter;
+  parameter.free = section.flag("free");
+  parameter.where = where;
+  parameter.section = section;
+  study.parameters[name] = std::move(parameter);
+}
+
 void read_parameters(const Section& root, Study& study) {
   const auto parameters = root.table("parameters");
   if (!parameters) return;
-  const std::vector<std::string> known{"free", "value", "bounds", "sigma"};
-  for (const std::string& key : parameters->keys()) {
-    const Section section = *parameters->table(key);
-    for (const std::string& entry : section.keys()) {
-      if (std::find(known.begin(), known.end(), entry) == known.end()) section.fail(entry, "unknown key" + suggest(entry, known));
-    }
-    ParameterStudy parameter;
-    parameter.free = section.flag("free");
-    parameter.where = parameters->where(key);
-    parameter.section = section;
-    study.parameters[key] = std::move(parameter);
-  }
+  for (const std::string& key : parameters->keys()) read_parameter(key, *parameters->table(key), parameters->where(key), study);
   parameters->finish();
 }
 
