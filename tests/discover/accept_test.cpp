@@ -70,6 +70,33 @@ bool leaves_something(const Entry& e, const World& world) {
 }
 
 /// Hysteresis catches a little of the friction and would be accepted by itself; the order is as if it had caught the most.
+TEST(NamedCandidate, WhatTheModelAllButDescribesIsDescribedUnlessTheRestIsBeyondDoubt) {
+  const World world = with_friction(3.0);
+  Screened screened = *world.entry("coulomb_friction", false).screened;
+  const auto described = [&](double independent, double p) {
+    screened.result.independent = independent;
+    screened.p_value = p;
+    return named_candidate(screened, world.families()).described;
+  };
+  EXPECT_FALSE(described(0.5, 0.5));
+  EXPECT_TRUE(described(0.005, 0.01));
+  EXPECT_FALSE(described(0.005, 1e-9)) << "half a percent of a strong effect";
+  EXPECT_TRUE(described(1e-9, 1e-9)) << "rounding";
+}
+
+TEST(Refit, FromOneStepOnEndsWhereTheEstimateWithTheEffectDoes) {
+  const World world = with_friction(3.0);
+  const Screened& screened = *world.entry("coulomb_friction", false).screened;
+  const OneStep step = one_step(world.estimate, ScoreTest(world.estimate), screened, registry(), 0);
+  ASSERT_TRUE(step.model.has_value());
+  EXPECT_GE(step.drop, screened.result.chi2);
+  const Refit plain = refit(world.estimate, world.signals, screened, registry(), 0),
+              onwards = refit(world.estimate, world.signals, screened, registry(), 0, step);
+  ASSERT_TRUE(plain.ok && onwards.ok) << plain.why << onwards.why;
+  EXPECT_NEAR(onwards.drop, plain.drop, 0.1);
+  EXPECT_LE(onwards.estimate.linearisations, plain.estimate.linearisations);
+}
+
 TEST(Accept, ALikenessGivesWayToWhatLeavesNothing) {
   const World world = with_friction(1.5);
   std::vector<Entry> entries = {world.entry("hysteresis"), world.entry("coulomb_friction")};

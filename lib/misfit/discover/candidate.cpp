@@ -10,6 +10,8 @@ namespace misfit {
 
 Candidate named_candidate(const Screened& s, double families) {
   constexpr double imitated = 0.01;  // 1 − R² of the columns with those of the free parameters
+  constexpr double same = 1e-6;      // what is left of the columns then is rounding
+  constexpr double beyond_doubt = 1e-4;
   const Specimen& specimen = *s.specimen;
   Candidate c;
   c.effect = specimen.effect;
@@ -23,7 +25,9 @@ Candidate named_candidate(const Screened& s, double families) {
     return c;
   }
   c.p_value = sidak(s.p_value, families);
-  c.described = s.result.independent < imitated && !specimen.has_priors;
+  // A little of a strong effect can be more than the data can miss: that is no imitation.
+  const bool hidden_in_it = s.result.independent < same || !(c.p_value < beyond_doubt);
+  c.described = s.result.independent < imitated && hidden_in_it && !specimen.has_priors;
   for (std::size_t i = 0; i < specimen.strengths.size(); ++i) {
     const Parameter& p = specimen.model.parameters[static_cast<std::size_t>(specimen.strengths[i])];
     const auto k = static_cast<Eigen::Index>(i);

@@ -51,7 +51,7 @@ class Search {
     rank();
     for (auto& e : entries_) {
       if (e.screened->runs && !e.candidate.described)
-        e.candidate.predicted_drop = predicted_drop(estimate_, score_, *e.screened, registry_, options_.threads);
+        e.candidate.predicted_drop = one_step(estimate_, score_, *e.screened, registry_, options_.threads).drop;
       out_.candidates.push_back(e.candidate);
     }
     return std::move(out_);
@@ -107,8 +107,9 @@ class Search {
     for (auto& e : entries_) {
       if (refits >= count) break;
       if (!worth_it(e)) continue;
-      e.candidate.predicted_drop = predicted_drop(estimate_, score_, *e.screened, registry_, options_.threads);
-      e.refit = refit(estimate_, experiments_, *e.screened, registry_, options_.threads);
+      const OneStep step = one_step(estimate_, score_, *e.screened, registry_, options_.threads);
+      e.candidate.predicted_drop = step.drop;
+      e.refit = refit(estimate_, experiments_, *e.screened, registry_, options_.threads, step);
       take_refit(e);
       ++refits;
       if (progress) progress(refits, count);

@@ -84,8 +84,7 @@ std::vector<std::vector<Use>> without_last_quarter(const FilterEstimate& estimat
 
 }  // namespace
 
-double predicted_drop(const FilterEstimate& without, const ScoreTest& score, const Screened& screened, const Registry& registry,
-                      int threads) {
+OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Screened& screened, const Registry& registry, int threads) {
   Model model = start_model(without, screened, registry);
   const Eigen::VectorXd step = score.step_beside(screened.columns, screened.result.amplitude);
   const std::vector<int> free = without.model.free_parameters();
@@ -101,22 +100,26 @@ double predicted_drop(const FilterEstimate& without, const ScoreTest& score, con
   std::vector<FilterTrace> traces(without.data.size());
   for (std::size_t e = 0; e < without.data.size(); ++e) {
     data.push_back(filter_data_like(forced, without.data[e]));
-    if (!runner.run(data[e], without.noise, traces[e])) return screened.result.chi2;
+    if (!runner.run(data[e], without.noise, traces[e])) return {screened.result.chi2, std::nullopt, {}};
   }
   constexpr int steps_of_noise = 3;
   const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, without.around, threads, steps_of_noise);
   const double objective = -noise.minus_loglik + log_prior(model, same_roughness(model, without));
   const double drop = 2.0 * (objective - without.objective - prior_of_off(*screened.specimen));
-  return std::max(drop, screened.result.chi2);  // a step too long for the linearisation says nothing
+  OneStep out{std::max(drop, screened.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing
+  if (drop > 0.0) out.model = std::move(model);
+  return out;
 }
 
 Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened, const Registry& registry,
-            int threads) {
+            int threads, const OneStep& from) {
   Refit out;
   out.request = screened.specimen->request;
-  const Model start = start_model(without, screened, registry);
+  const Model start = from.model ? *from.model : start_model(without, screened, registry);
+  FilterOptions options = like(without, threads);
+  if (from.model) options.noise = from.noise;
   try {
-    out.estimate = estimate_filter(start, same_roughness(start, without), experiments, like(without, threads));
+    out.estimate = estimate_filter(start, same_roughness(start, without), experiments, options);
   } catch (const RunError& error) {
     out.why = error.what();
     return out;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "misfit/discover/screen.h"
 
 namespace misfit {
@@ -13,13 +15,21 @@ struct Refit {
   ModelRequest request;
   std::map<std::string, Estimate> parameters;  ///< of the effect
 };
-[[nodiscard]] Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened,
-                          const Registry& registry, int threads);
 
-/// Drop of one Gauss–Newton step of all parameters from the estimate, noise included: the model is run there once and the noise fitted
-/// about that run, since what is explained leaves the random force. Never below the score's chi², which holds the noise.
-[[nodiscard]] double predicted_drop(const FilterEstimate& without, const ScoreTest& score, const Screened& screened,
-                                    const Registry& registry, int threads);
+/// One Gauss–Newton step of all parameters from the estimate with the effect at its screened strength: the model is run there once and the
+/// noise fitted about that run, since what is explained leaves the random force.
+struct OneStep {
+  double drop = 0.0;           ///< never below the score's chi², which holds the noise
+  std::optional<Model> model;  ///< where it ended; nullopt: it could not be run, or is no better than the estimate
+  FilterNoise noise;           ///< there
+};
+[[nodiscard]] OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Screened& screened, const Registry& registry,
+                               int threads);
+
+/// `from`: where to start, if it ended anywhere; otherwise at the estimate with the effect added to it, which an effect that the other
+/// parameters must make room for can throw out of the finite numbers.
+[[nodiscard]] Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened,
+                          const Registry& registry, int threads, const OneStep& from = {});
 
 /// Gain of the held-out log-likelihood. Where the study holds nothing out, both models are fitted again without the last quarter of every
 /// experiment, and judged on it.
