@@ -61,6 +61,11 @@ double prior_of_off(const Specimen& specimen) {
 /// promises whatever the curvature there says.
 double still_to_gain(const FilterEstimate& estimate) { return estimate.converged ? estimate.left.value_or(0.0) : 0.0; }
 
+/// A maximum, and of two the higher.
+bool better(const FilterEstimate& a, const FilterEstimate& b) {
+  return a.converged != b.converged ? a.converged : a.objective > b.objective;
+}
+
 FilterOptions like(const FilterEstimate& estimate, int threads) {
   FilterOptions options;
   options.threads = threads;
@@ -115,16 +120,20 @@ Refit refit(const FilterEstimate& without, const std::vector<Signals>& experimen
             int threads, const OneStep& from) {
   Refit out;
   out.request = screened.specimen->request;
-  const Model start = from.model ? *from.model : start_model(without, screened, registry);
-  FilterOptions options = like(without, threads);
-  if (from.model) options.noise = from.noise;
-  try {
-    out.estimate = estimate_filter(start, same_roughness(start, without), experiments, options);
-  } catch (const RunError& error) {
-    out.why = error.what();
-    return out;
-  }
-  out.ok = true;
+  const auto climb = [&](const Model& start, const FilterNoise& noise) {
+    FilterOptions options = like(without, threads);
+    options.noise = noise;
+    try {
+      FilterEstimate there = estimate_filter(start, same_roughness(start, without), experiments, options);
+      if (!out.ok || better(there, out.estimate)) out.estimate = std::move(there);
+      out.ok = true;
+    } catch (const RunError& error) {
+      out.why = error.what();
+    }
+  };
+  if (from.model) climb(*from.model, from.noise);
+  if (!out.ok || !out.estimate.converged) climb(start_model(without, screened, registry), without.noise);
+  if (!out.ok) return out;
   out.drop = 2.0 * (out.estimate.objective + still_to_gain(out.estimate) - without.objective - still_to_gain(without) -
                     prior_of_off(*screened.specimen));
   const std::vector<int> free = out.estimate.model.free_parameters();

@@ -26,8 +26,8 @@ struct OneStep {
 [[nodiscard]] OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Screened& screened, const Registry& registry,
                                int threads);
 
-/// `from`: where to start, if it ended anywhere; otherwise at the estimate with the effect added to it, which an effect that the other
-/// parameters must make room for can throw out of the finite numbers.
+/// `from`: where to start, if it ended anywhere. Where no maximum is reached from there, and without it: from the estimate with the effect
+/// added to it, which an effect that the other parameters must make room for can throw out of the finite numbers.
 [[nodiscard]] Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened,
                           const Registry& registry, int threads, const OneStep& from = {});
 
