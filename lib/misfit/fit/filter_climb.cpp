@@ -189,13 +189,11 @@ std::optional<double> FilterClimb::joint_step(const Eigen::VectorXd& gradient, c
   const Eigen::Index n = theta.size();
   const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
   const auto [lower, upper] = bounds_of(out.model, free);
-  Eigen::VectorXd whole = gradient;
-  whole.tail(slope.size()) += slope;
-  const Eigen::VectorXd here = joint(), newton = inverse * whole;
+  const Eigen::VectorXd here = joint(), newton = inverse * gradient;
   const Eigen::VectorXd lowest = joined(lower, noise.lower), highest = joined(upper, noise.upper);
   const BoundedMaximum there = maximum_inside(here + newton, inverse, lowest, highest);
   const Eigen::VectorXd step = there.at - here;
-  const double promised = 0.5 * whole.dot(newton) - there.below;
+  const double promised = 0.5 * gradient.dot(newton) - there.below;
   out.left = promised;
   if (promised < enough) return std::nullopt;
   const auto gain = [&](double share) {

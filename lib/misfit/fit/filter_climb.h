@@ -20,10 +20,10 @@ class FilterClimb {
   void iterate(int most, double tolerance);
   /// False if the model cannot be run with it: all is as before.
   bool take_noise(const NoiseFit& fit);
-  /// A step of a Newton kind over parameters and log noise together, inside their bounds: `gradient` of the exact objective, `inverse` of
-  /// its curvature, `slope` a further term of the objective that is linear in the log noise (what restricted_likelihood() adds). Shortened
-  /// until their sum rises, lengthened where it gains more than it promised. `out.left` is what it promises. What it gained; nullopt: it
-  /// promises less than `enough`, or no length of it rises.
+  /// A step of a Newton kind over parameters and log noise together, inside their bounds: `gradient` of the exact objective and of a
+  /// further term linear in the log noise, with `slope` (what restricted_likelihood() adds), `inverse` of their curvature. Shortened until
+  /// their sum rises, lengthened where it gains more than it promised. `out.left` is what it promises. What it gained; nullopt: it promises
+  /// less than `enough`, or no length of it rises.
   std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope,
                                    double enough);
   [[nodiscard]] Eigen::VectorXd joint() const;  ///< the free parameters, then the logarithms of the noise

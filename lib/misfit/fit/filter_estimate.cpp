@@ -131,10 +131,10 @@ class Estimation {
       Eigen::VectorXd gradient = exact.gradient;
       gradient.tail(restricted_.slope.size()) += restricted_.slope;
       learned_.look(at_.joint(), gradient);
-      std::optional<double> gained = at_.joint_step(exact.gradient, learned_.inverse(out_.joint_covariance), restricted_.slope, enough);
+      std::optional<double> gained = at_.joint_step(gradient, learned_.inverse(out_.joint_covariance), restricted_.slope, enough);
       if (!gained && learned_.anything()) {  // from kinks one learns nonsense
         learned_ = {};
-        gained = at_.joint_step(exact.gradient, out_.joint_covariance, restricted_.slope, enough);
+        gained = at_.joint_step(gradient, out_.joint_covariance, restricted_.slope, enough);
       }
       if (!gained) return;
       const double promised = *out_.left;
