@@ -31,7 +31,11 @@ std::string curve_text(const CurveEstimate& curve) {
 }
 
 void add_estimates(const char* what, const std::map<std::string, Estimate>& estimates, std::vector<std::vector<std::string>>& rows) {
-  for (const auto& [name, e] : estimates) rows.push_back({std::string(what) + " " + name, shown(e)});
+  for (const auto& [name, e] : estimates) {
+    std::string text = shown(e);
+    if (e.interval) text += ", 95 %: " + interval_in_display_unit(e.interval->first, e.interval->second, e.unit, e.sigma);
+    rows.push_back({std::string(what) + " " + name, std::move(text)});
+  }
 }
 
 std::string fit_text(const Fit& fit) {

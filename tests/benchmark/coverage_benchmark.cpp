@@ -13,6 +13,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "misfit/core/error.h"
 #include "misfit/core/work_queue.h"
@@ -100,6 +101,10 @@ std::vector<CoverageRow> look(const Job& job, double seconds, const Registry& re
     rows.push_back(
         {job.method, job.kind, job.number, to_string(fit.status), quantity, truth, value, sigma, plain > 0.0 ? plain : std::nan("")});
   };
+  const auto add_noise = [&](const std::string& quantity, double truth, const Estimate& e) {
+    add(quantity, truth, e.value, e.sigma, 0.0);
+    if (e.interval) std::tie(rows.back().low, rows.back().high) = *e.interval;
+  };
   const auto plain = [&](const std::string& name) { return fit.plain_sigmas.contains(name) ? fit.plain_sigmas.at(name) : 0.0; };
   if (fit.status == FitStatus::converged || fit.status == FitStatus::not_converged) {
     for (const auto& name : flight.free) {
@@ -115,10 +120,10 @@ std::vector<CoverageRow> look(const Job& job, double seconds, const Registry& re
   }
   if (flight.force > 0.0 && fit.force.contains("correlation_time")) {
     const Estimate& time = fit.force.at("correlation_time");
-    add("correlation_time", flight.force_time, time.value, time.sigma, 0.0);
+    add_noise("correlation_time", flight.force_time, time);
     const auto force =
         std::find_if(fit.force.begin(), fit.force.end(), [](const auto& entry) { return entry.first != "correlation_time"; });
-    if (force != fit.force.end()) add("force", flight.force, force->second.value, force->second.sigma, 0.0);  // common to all ports
+    if (force != fit.force.end()) add_noise("force", flight.force, force->second);  // common to all ports
   }
   add("end", 0.0, fit.seconds, 0.0, 0.0);
   return rows;

@@ -11,7 +11,7 @@
 namespace misfit::bench {
 namespace {
 
-constexpr const char* header = "method,kind,number,status,quantity,truth,value,sigma,plain_sigma";
+constexpr const char* header = "method,kind,number,status,quantity,truth,value,sigma,plain_sigma,low,high";
 constexpr double two_sided = 1.959964;  // of 95 %
 
 std::string key(const CoverageRow& row) { return row.method + " " + row.kind + " " + std::to_string(row.number); }
@@ -20,11 +20,19 @@ CoverageRow parse(const std::string& line) {
   std::vector<std::string> cells;
   std::istringstream in(line);
   for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-  constexpr std::size_t columns = 9;
+  constexpr std::size_t columns = 11;
   if (cells.size() != columns) return {};
-  return {
-      cells[0],           cells[1], std::stoi(cells[2]), cells[3], cells[4], std::stod(cells[5]), std::stod(cells[6]), std::stod(cells[7]),
-      std::stod(cells[8])};
+  return {cells[0],
+          cells[1],
+          std::stoi(cells[2]),
+          cells[3],
+          cells[4],
+          std::stod(cells[5]),
+          std::stod(cells[6]),
+          std::stod(cells[7]),
+          std::stod(cells[8]),
+          std::stod(cells[9]),
+          std::stod(cells[10])};
 }
 
 struct Cell {
@@ -34,7 +42,8 @@ struct Cell {
   void add(const CoverageRow& row) {
     const double e = row.value - row.truth;
     ++flights;
-    inside += std::abs(e) <= two_sided * row.sigma ? 1 : 0;
+    const bool own = row.high > row.low;
+    inside += (own ? row.low <= row.truth && row.truth <= row.high : std::abs(e) <= two_sided * row.sigma) ? 1 : 0;
     error += e / row.sigma;
     squares += std::pow(e / row.sigma, 2);
     if (!std::isfinite(row.plain_sigma)) return;
@@ -68,7 +77,7 @@ void append_coverage(const std::string& path, const std::vector<CoverageRow>& ro
   if (!std::ifstream(path).good()) text << header << "\n";
   for (const auto& r : rows)
     text << r.method << ',' << r.kind << ',' << r.number << ',' << r.status << ',' << r.quantity << ',' << r.truth << ',' << r.value << ','
-         << r.sigma << ',' << r.plain_sigma << "\n";
+         << r.sigma << ',' << r.plain_sigma << ',' << r.low << ',' << r.high << "\n";
   std::ofstream out(path, std::ios::app);
   out << text.str() << std::flush;
 }

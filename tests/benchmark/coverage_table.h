@@ -11,6 +11,7 @@ struct CoverageRow {
   int number = 0;
   std::string status, quantity;
   double truth = 0.0, value = 0.0, sigma = 0.0, plain_sigma = 0.0;
+  double low = 0.0, high = 0.0;  ///< of the 95 % interval where it is not value ± 1.96 sigma, else both 0
 };
 
 /// Rows of a CSV, without those of flights that are not complete; empty if there is no file.

@@ -8,6 +8,13 @@
 namespace misfit {
 namespace {
 
+TEST(FormatInterval, IsToTheDigitsOfSigma) {
+  EXPECT_EQ(format_interval(26.1048, 29.5692, 0.88), "26.10 to 29.57");
+  EXPECT_EQ(format_interval(0.077433, 0.10749, 0.0076), "0.0774 to 0.1075");
+  EXPECT_EQ(format_interval(1.0, 2.0, 0.0), "1 to 2");
+  EXPECT_EQ(format_interval(1.23e7, 1.31e7, 2e5), "1.23e+07 to 1.31e+07");
+}
+
 TEST(FormatValue, GivesSigmaTwoDigitsAndTheValueTheSamePlace) {
   EXPECT_EQ(format_value(12.0312, 0.21), "12.03 ± 0.21");
   EXPECT_EQ(format_value(-0.6, 0.0456), "-0.600 ± 0.046");

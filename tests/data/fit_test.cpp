@@ -32,7 +32,7 @@ Fit example() {
   fit.names = {"R_cp", "C_m[0]"};
   fit.covariance = Eigen::MatrixXd::Identity(2, 2) * 4e-4;
   fit.noise = {{"white", {0.5, 0.01, "px"}}};
-  fit.force = {{"sigma", {27.0, nan, "N m"}}};
+  fit.force = {{"sigma", {27.0, nan, "N m"}}, {"correlation_time", {0.1, 0.025, "s", std::pair(0.067, 0.19)}}};
   fit.loglik = 1234.5;
   fit.trim = Estimate{12.0 * degree, 0.2 * degree, "rad"};
   fit.rms = {{"alpha_T", {0.01, 0.0, "rad"}}};
@@ -120,6 +120,8 @@ TEST(Fit, ReadsBackWhatWasWritten) {
   EXPECT_EQ(back.status, fit.status);
   EXPECT_EQ(back.message, fit.message);
   EXPECT_EQ(back.warnings, fit.warnings);
+  EXPECT_EQ(back.force.at("correlation_time").interval, fit.force.at("correlation_time").interval);
+  EXPECT_FALSE(back.force.at("sigma").interval.has_value());
   EXPECT_EQ(back.names, fit.names);
   EXPECT_EQ(back.covariance, fit.covariance);
   EXPECT_EQ(back.facts, fit.facts);

@@ -97,6 +97,24 @@ TEST(EstimateFilter, DerivativesThatCannotBeTakenSaySoInsteadOfBeingZero) {
   EXPECT_NE(exact_derivatives(estimate, theta, 1).failure, "");
 }
 
+TEST(EstimateFilter, DerivativesToOneSideAreThoseToBoth) {
+  const std::vector<Signals> flights = {fly(10.0, 7)};
+  const FilterEstimate estimate = fitted(request_for(flights), flights);
+  const std::vector<int> free = estimate.model.free_parameters();
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(free.size()));
+  for (Eigen::Index c = 0; c < theta.size(); ++c)
+    theta[c] = estimate.model.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
+  const ExactDerivatives both = exact_derivatives(estimate, theta, 2), one = exact_derivatives(estimate, theta, 2, &both);
+  ASSERT_EQ(one.failure, "");
+  ASSERT_EQ(one.gradient.size(), both.gradient.size());
+  const Eigen::VectorXd sigma = estimate.joint_covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd apart = estimate.joint_covariance * (one.gradient - both.gradient);
+  for (Eigen::Index i = 0; i < apart.size(); ++i) {
+    EXPECT_LT(std::abs(apart[i]), 0.05 * sigma[i]) << i << ": where the maximum is seen";
+    EXPECT_NEAR(one.information(i, i), both.information(i, i), 0.1 * both.information(i, i)) << i;
+  }
+}
+
 TEST(LogPrior, IsThatOfTheEstimate) {
   const std::vector<Signals> flights = {fly(8.0, 7)};
   const FilterEstimate estimate = fitted(request_for(flights), flights);

@@ -5,10 +5,29 @@
 
 namespace misfit {
 
+namespace {
+
+struct Display {
+  double factor;
+  std::string unit;  ///< with a space before it; empty for a pure number
+
+  explicit Display(const std::string& si) {
+    const std::string shown = display_unit(si);
+    factor = shown == si ? 1.0 : convert(1.0, si, shown);
+    unit = shown == "-" || shown.empty() ? "" : " " + shown;
+  }
+};
+
+}  // namespace
+
 std::string in_display_unit(double value, const std::string& si, double sigma) {
-  const std::string unit = display_unit(si);
-  const double factor = unit == si ? 1.0 : convert(1.0, si, unit);
-  return format_value(value * factor, sigma * factor) + (unit == "-" || unit.empty() ? "" : " " + unit);
+  const Display display(si);
+  return format_value(value * display.factor, sigma * display.factor) + display.unit;
+}
+
+std::string interval_in_display_unit(double low, double high, const std::string& si, double sigma) {
+  const Display display(si);
+  return format_interval(low * display.factor, high * display.factor, sigma * display.factor) + display.unit;
 }
 
 }  // namespace misfit

@@ -8,4 +8,7 @@ namespace misfit {
 /// one. sigma 0: not estimated, the number alone. InputError: `si` is no unit.
 [[nodiscard]] std::string in_display_unit(double value, const std::string& si, double sigma = 0.0);
 
+/// Its 95 % interval: "26.10 to 29.57 N m", to the digits of sigma.
+[[nodiscard]] std::string interval_in_display_unit(double low, double high, const std::string& si, double sigma);
+
 }  // namespace misfit

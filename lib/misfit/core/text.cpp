@@ -56,6 +56,15 @@ std::string format_value(double value, double sigma) {
   return fmt::format("({} ± {})e{}", fixed(value / scale, decimals + exponent), fixed(sigma / scale, decimals + exponent), exponent);
 }
 
+std::string format_interval(double low, double high, double sigma) {
+  const auto end = [&](double value) {
+    const std::string whole = format_value(value, sigma);
+    const std::size_t open = whole.front() == '(' ? 1 : 0, stop = whole.find(" ±");
+    return open > 0 || stop == std::string::npos ? format_value(value) : whole.substr(0, stop);
+  };
+  return end(low) + " to " + end(high);
+}
+
 std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::string& indent) {
   std::vector<std::size_t> width;
   for (const auto& row : rows) {

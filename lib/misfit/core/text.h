@@ -9,6 +9,9 @@ namespace misfit {
 /// finite sigma: five significant digits. NaN → "not available".
 [[nodiscard]] std::string format_value(double value, double sigma = 0.0);
 
+/// "26.10 to 29.57": both to the digits of `sigma` (five significant ones without it).
+[[nodiscard]] std::string format_interval(double low, double high, double sigma);
+
 /// A p-value: two significant digits, "below 1e-300" where it is not representable.
 [[nodiscard]] std::string format_probability(double p);
 

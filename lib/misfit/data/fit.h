@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace misfit {
@@ -14,6 +15,7 @@ struct Estimate {
   double value = 0.0;
   double sigma = 0.0;  ///< 0: not estimated
   std::string unit;
+  std::optional<std::pair<double, double>> interval = std::nullopt;  ///< 95 %, where it is not value ± 1.96 sigma
 };
 
 /// A curve with its band, on a grid of its argument.

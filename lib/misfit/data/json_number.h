@@ -31,14 +31,18 @@ using Json = nlohmann::ordered_json;
 /// A sigma of 0 means "not estimated" and is written as null: nobody must take it for certainty.
 [[nodiscard]] inline Json sigma_or_null(double sigma) { return sigma > 0.0 ? number_or_null(sigma) : Json(nullptr); }
 
-/// {"value","sigma","unit"}
+/// {"value","sigma","unit"}, and "interval": [low, high] (95 %) where it is not value ± 1.96 sigma.
 [[nodiscard]] inline Json estimate_to_json(const Estimate& estimate) {
-  return {{"value", number_or_null(estimate.value)}, {"sigma", sigma_or_null(estimate.sigma)}, {"unit", estimate.unit}};
+  Json object{{"value", number_or_null(estimate.value)}, {"sigma", sigma_or_null(estimate.sigma)}, {"unit", estimate.unit}};
+  if (estimate.interval) object["interval"] = {estimate.interval->first, estimate.interval->second};
+  return object;
 }
 
 [[nodiscard]] inline Estimate estimate_from_json(const Json& object) {
   const double sigma = number_or_nan(object, "sigma");
-  return {number_or_nan(object, "value"), std::isnan(sigma) ? 0.0 : sigma, object.value("unit", "")};
+  Estimate out{number_or_nan(object, "value"), std::isnan(sigma) ? 0.0 : sigma, object.value("unit", "")};
+  if (object.contains("interval")) out.interval = object.at("interval").get<std::pair<double, double>>();
+  return out;
 }
 
 /// {NAME: {"value","sigma","unit"}, …}

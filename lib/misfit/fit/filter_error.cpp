@@ -11,6 +11,7 @@
 #include "misfit/core/units.h"
 #include "misfit/data/ladder.h"
 #include "misfit/fit/curves.h"
+#include "misfit/fit/filter_interval.h"
 #include "misfit/fit/identifiable.h"
 #include "misfit/fit/whiteness.h"
 #include "misfit/math/statistics.h"
@@ -66,7 +67,7 @@ std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
   return out;
 }
 
-void add_noise(const FilterEstimate& estimate, Fit& fit) {
+void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
   const SystemSpec& spec = estimate.model.system->spec();
   const NoiseVector vector = pack(estimate.noise, spec, estimate.around);
   const std::vector<double> sigmas = noise_sigmas(estimate);
@@ -74,11 +75,14 @@ void add_noise(const FilterEstimate& estimate, Fit& fit) {
     const double value = std::exp(vector.value[i]);
     return Estimate{value, value * sigmas[i], unit};
   };
+  const auto intervals = noise_intervals(estimate, {0, 1}, threads);
   for (int port : estimate.forced.force_ports) {
     const PortSpec& named = spec.dynamic_ports[static_cast<std::size_t>(port)];
     fit.force[named.name] = as_estimate(0, named.unit);
+    fit.force[named.name].interval = intervals[0];
   }
   fit.force["correlation_time"] = as_estimate(1, "s");
+  fit.force["correlation_time"].interval = intervals[1];
   if (!(sigmas[0] > 0.0)) fit.facts["random_force"] = "the data ask for no random force: the motion is not driven";
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     const std::string& name = spec.outputs[o].name;
@@ -226,7 +230,7 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
 
 }  // namespace
 
-Fit filter_fit(const FilterEstimate& estimate) {
+Fit filter_fit(const FilterEstimate& estimate, int threads) {
   Fit fit;
   fit.method = "filter_error";
   fit.status = estimate.converged ? FitStatus::converged : FitStatus::not_converged;
@@ -236,7 +240,7 @@ Fit filter_fit(const FilterEstimate& estimate) {
   for (const auto& trace : estimate.traces) validated += trace.validated;
   if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
   if (estimate.covariance.size() > 0) describe(estimate.model, covariance_of(estimate), visited_by_filter(estimate), fit);
-  add_noise(estimate, fit);
+  add_noise(estimate, threads, fit);
   add_predictions(estimate, fit);
   describe_gaps(estimate, fit);
   test_innovations(estimate, fit);
@@ -267,7 +271,7 @@ FilterError filter_error(const FittedModel& start, const std::vector<Signals>& e
   FilterError out;
   try {
     out.estimate = estimate_filter(start.model, curve_penalties(start.model), experiments, options);
-    out.fit = filter_fit(*out.estimate);
+    out.fit = filter_fit(*out.estimate, options.threads);
   } catch (const RunError& error) {
     out.fit.method = "filter_error";
     out.fit.status = FitStatus::declined;

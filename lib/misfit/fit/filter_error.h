@@ -6,7 +6,7 @@ namespace misfit {
 
 /// The filter's estimate as a fit: parameters, curves with bands, trim, noise, force, one-step predictions with sigma, log-likelihoods, and
 /// what a reader must know (outliers, gaps, whether the motion is driven at all, what the exact derivatives said).
-[[nodiscard]] Fit filter_fit(const FilterEstimate& estimate);
+[[nodiscard]] Fit filter_fit(const FilterEstimate& estimate, int threads = 1);
 
 /// Estimate and fit in one: DESIGN 5. Status `declined` in words where the states cannot be read or too little data are left.
 struct FilterError {

@@ -111,8 +111,11 @@ class Estimation {
   /// Steps by the exact derivatives. Readings at which the filter's linearisation breaks still move it, but no longer count.
   void polish() {
     constexpr int most = 20;
+    ExactDerivatives exact;
+    bool near = false;  // to where the derivatives were taken, and the step from there gained what they promised
     for (int k = 0; k < most; ++k) {
-      const ExactDerivatives exact = exact_derivatives(out_, at_.theta, options_.threads);
+      exact = exact_derivatives(out_, at_.theta, options_.threads, near ? &exact : nullptr);
+      near = false;
       out_.left.reset();
       if (!exact.failure.empty()) {
         unverified_ = exact.failure;
@@ -143,6 +146,8 @@ class Estimation {
         out_.left = std::abs(promised - *gained);
         return;
       }
+      constexpr double short_step = 8.0, as_promised = 0.2;  // four sigmas of one parameter
+      near = promised < short_step && std::abs(*gained - promised) < as_promised * promised;
     }
   }
 

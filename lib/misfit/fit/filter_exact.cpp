@@ -93,8 +93,29 @@ class Differences {
 
   [[nodiscard]] const Axes& axes() const { return axes_; }
 
+  /// To one side; `precision`: minus the second derivatives of the objective over parameters and noise, about.
+  OneDerivative upwards(Eigen::Index i, const Eigen::MatrixXd& precision, const Eigen::Ref<Eigen::VectorXd>& column) const {
+    const Eigen::Index n = theta_.size();
+    Runs above(estimate_.data.size());
+    double there = 0.0, h = longest, curvature = 0.0;
+    if (i < n) {
+      const auto along = axes_.along.col(i);
+      curvature = along.dot(precision.topLeftCorner(n, n) * along);
+      there = objective_.at(theta_ + h * along, estimate_.noise, &above);
+    } else {
+      std::vector<double> logs = estimate_.noise_fit.logs;
+      h = noise_step;
+      curvature = precision(i, i);
+      logs[static_cast<std::size_t>(i - n)] += h;
+      there = objective_.at(theta_, unpack(logs), &above);
+    }
+    OneDerivative out = between(there, -std::numeric_limits<double>::infinity(), h, above, above, column);
+    out.slope += 0.5 * h * curvature;
+    return out;
+  }
+
   OneDerivative by_noise(std::size_t i, const Eigen::Ref<Eigen::VectorXd>& column) const {
-    constexpr double h = 1e-3;
+    constexpr double h = noise_step;
     std::vector<double> there = estimate_.noise_fit.logs;
     Runs above(estimate_.data.size()), below = above;
     there[i] += h;
@@ -132,7 +153,7 @@ class Differences {
     return {true, true, ((up ? plus : here_) - (down ? minus : here_)) / span, {}};
   }
 
-  static constexpr double longest = 0.05;
+  static constexpr double longest = 0.05, noise_step = 1e-3;
 
   const FilterEstimate& estimate_;
   const Eigen::VectorXd& theta_;
@@ -140,6 +161,18 @@ class Differences {
   double here_;
   Axes axes_;
 };
+
+/// Information with roughness and priors over (parameters, log noise).
+Eigen::MatrixXd with_priors(const FilterEstimate& estimate, const Eigen::MatrixXd& information) {
+  const auto n = static_cast<Eigen::Index>(estimate.model.free_parameters().size());
+  Eigen::MatrixXd out = information;
+  Linearised priors;
+  priors.N = Eigen::MatrixXd::Zero(n, n);
+  priors.theta = Eigen::VectorXd::Zero(n);
+  set_priors(estimate.model, priors);
+  out.topLeftCorner(n, n) += precision_of(priors, estimate.penalties, 1.0);
+  return out;
+}
 
 std::string failure_of(const std::vector<OneDerivative>& parts) {
   const auto torn = std::count_if(parts.begin(), parts.end(), [](const OneDerivative& part) { return !part.finite; });
@@ -189,14 +222,20 @@ double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise
   return sum;
 }
 
-ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads) {
+ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads,
+                                   const ExactDerivatives* near) {
   const auto n = static_cast<std::size_t>(theta.size());
   if (n > 0 && estimate.covariance.size() == 0) return {{}, {}, {}, "the information matrix cannot be inverted"};
   const Differences differences(estimate, theta);
   std::vector<OneDerivative> parts(n + estimate.noise_fit.logs.size());
   Eigen::MatrixXd columns(2 * counted_readings(estimate), static_cast<Eigen::Index>(parts.size()));
+  const Eigen::MatrixXd precision = near != nullptr ? with_priors(estimate, near->information) : Eigen::MatrixXd();
   run_jobs(parts.size(), threads, [&](std::size_t i) {
     auto column = columns.col(static_cast<Eigen::Index>(i));
+    if (near != nullptr) {
+      parts[i] = differences.upwards(static_cast<Eigen::Index>(i), precision, column);
+      return;
+    }
     parts[i] = i < n ? differences.along_axis(static_cast<Eigen::Index>(i), column) : differences.by_noise(i - n, column);
   });
   ExactDerivatives out{Eigen::VectorXd(columns.cols()), Eigen::MatrixXd::Zero(columns.cols(), columns.cols()),
@@ -221,12 +260,7 @@ ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::
 
 Eigen::MatrixXd joint_precision(const FilterEstimate& estimate, const ExactDerivatives& exact) {
   const auto n = static_cast<Eigen::Index>(estimate.model.free_parameters().size());
-  Eigen::MatrixXd out = exact.information;
-  Linearised priors;
-  priors.N = Eigen::MatrixXd::Zero(n, n);
-  priors.theta = Eigen::VectorXd::Zero(n);
-  set_priors(estimate.model, priors);
-  out.topLeftCorner(n, n) += precision_of(priors, estimate.penalties, 1.0);
+  Eigen::MatrixXd out = with_priors(estimate, exact.information);
   for (Eigen::Index i = n; i < out.rows(); ++i) {
     constexpr double determined = 1.0, pin = 1e12;
     if (estimate.noise_fit.at_bound[static_cast<std::size_t>(i - n)] || out(i, i) < determined) out(i, i) += pin;

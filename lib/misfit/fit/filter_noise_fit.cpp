@@ -47,6 +47,11 @@ class Scoring {
   Scoring(const LinearisedRuns& runs, const NoiseVector& start, int threads)
       : runs_(runs), vector_(start), threads_(threads), counts_(counted(runs)) {}
 
+  Eigen::MatrixXd information(const std::vector<double>& at) {
+    derivatives(at, run_all(runs_, unpack(at)));
+    return information_;
+  }
+
   NoiseFit run(int max_iterations) {
     NoiseFit out;
     std::vector<double> at = vector_.value;
@@ -156,6 +161,11 @@ class Scoring {
 NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const FilterNoise& around, int threads, int max_iterations) {
   const NoiseVector vector = pack(start, runs.model->model.system->spec(), around);
   return Scoring(runs, vector, threads).run(max_iterations);
+}
+
+Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around, int threads) {
+  const NoiseVector vector = pack(unpack(logs), runs.model->model.system->spec(), around);
+  return Scoring(runs, vector, threads).information(logs);
 }
 
 double minus_loglik(const LinearisedRuns& runs, const FilterNoise& noise) { return cost(run_all(runs, noise), counted(runs)); }

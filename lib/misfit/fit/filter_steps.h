@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "misfit/fit/filter_run.h"
 #include "misfit/fit/kalman.h"
@@ -9,22 +11,25 @@ namespace misfit {
 
 using ConstMap = Eigen::Map<const RowMatrix>;
 
-/// Discretisations by step length: recordings have few distinct ones.
+/// Discretisations by step length: recordings have few distinct ones, often two or three in turn (times with few digits).
 class NoiseSteps {
  public:
-  explicit NoiseSteps(const FilterNoise& noise) : noise_(noise) {}
+  explicit NoiseSteps(const FilterNoise& noise) : noise_(noise) { lengths_.fill(-1.0); }
   const NoiseStep& at(double h) {
-    if (!(std::abs(h - last_) <= 1e-9 * h)) {
-      step_ = discretise(noise_, h);
-      last_ = h;
+    for (std::size_t i = 0; i < kept; ++i) {
+      if (std::abs(h - lengths_[i]) <= 1e-9 * h) return steps_[i];
     }
-    return step_;
+    const std::size_t oldest = next_++ % kept;
+    lengths_[oldest] = h;
+    return steps_[oldest] = discretise(noise_, h);
   }
 
  private:
+  static constexpr std::size_t kept = 4;
   const FilterNoise& noise_;
-  double last_ = -1.0;
-  NoiseStep step_;
+  std::array<double, kept> lengths_;
+  std::array<NoiseStep, kept> steps_;
+  std::size_t next_ = 0;
 };
 
 /// What is known before the first reading: states as uncertain as they are large, forces and jitter stationary.

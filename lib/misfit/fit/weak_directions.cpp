@@ -46,6 +46,8 @@ std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& 
 
 std::string percent(double share) {
   const double value = 100.0 * share;
+  constexpr double least = 0.05;  // what one digit shows
+  if (value < least) return "better than 0.1 %";
   return format_value(value < 10.0 ? std::round(10.0 * value) / 10.0 : std::round(value)) + " %";
 }
 

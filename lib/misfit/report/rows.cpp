@@ -76,7 +76,12 @@ void write_rows_csv(const std::filesystem::path& path, const std::vector<Row>& r
 std::string rows_html(const std::vector<Row>& rows) {
   std::string html = "<div class=\"wide\"><table><thead><tr><th></th><th class=\"number\">value</th><th>unit</th></tr></thead><tbody>\n";
   for (const Row& row : rows) {
-    html += "<tr>" + cell("th", "", html_text(row.what)) + cell("td", "number", html_text(row.shown_number())) +
+    std::string number = row.shown_number();
+    if (row.interval) {
+      const double low = row.in_shown_unit(row.interval->first), high = row.in_shown_unit(row.interval->second);
+      number += " (95 %: " + format_interval(low, high, row.in_shown_unit(row.sigma)) + ")";
+    }
+    html += "<tr>" + cell("th", "", html_text(row.what)) + cell("td", "number", html_text(number)) +
             cell("td", "unit", html_text(row.shown_unit())) + "</tr>\n";
   }
   return html + "</tbody></table></div>\n";

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "misfit/data/fit.h"
@@ -15,10 +17,11 @@ struct Row {
   double value;
   double sigma;
   std::string unit;
+  std::optional<std::pair<double, double>> interval;  ///< 95 %, where it is not value ± 1.96 sigma; only shown in rows_html
 
   /// InputError if the unit is empty or unknown (core/units.h).
   Row(std::string what_, double value_, double sigma_, std::string unit_);
-  Row(std::string what_, const Estimate& e) : Row(std::move(what_), e.value, e.sigma, e.unit) {}
+  Row(std::string what_, const Estimate& e) : Row(std::move(what_), e.value, e.sigma, e.unit) { interval = e.interval; }
 
   [[nodiscard]] std::string shown_unit() const;    ///< deg for rad, otherwise the unit
   [[nodiscard]] std::string shown_number() const;  ///< "12.03 ± 0.21", in shown_unit()
