@@ -2,6 +2,7 @@
 #include <chrono>
 
 #include "apps/methods.h"
+#include "misfit/core/config.h"
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/core/progress.h"
@@ -21,7 +22,8 @@ std::vector<std::string> outputs_of(const fs::path& run_folder, const fs::path& 
 
 }  // namespace
 
-std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method) {
+std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method,
+                                                 const std::vector<std::string>& without) {
   std::vector<fs::path> files;
   if (session.study.system_file) files.push_back(*session.study.system_file);
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
@@ -35,7 +37,7 @@ std::map<std::string, std::string> inputs_of_fit(const Session& session, const s
   for (const auto& [name, curve] : session.study.curves) {
     if (curve.table) files.push_back(*curve.table);
   }
-  return session.inputs(method + "\n" + session.study.text, files);
+  return session.inputs(method + "\n" + config::content_of(session.study.text, without), files);
 }
 
 std::shared_ptr<const FilterWork> filter_work(Session& session) {

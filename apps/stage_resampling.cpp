@@ -110,9 +110,12 @@ class Work {
     if (!wishes_.profile.empty() && has_likelihood(method)) add_profiles(s);
   }
 
-  [[nodiscard]] StoredJobs jobs(const std::string& what, const std::string& method) const {
-    Inputs inputs = inputs_of(session_);
-    inputs["methods"] = method;  // the others do not matter to it
+  /// `wish`: what of [uncertainty] a job's result depends on. Other methods do not matter to it, nor how many runs there are.
+  [[nodiscard]] StoredJobs jobs(const std::string& what, const std::string& method, const std::string& wish) const {
+    Inputs inputs = inputs_of_fit(session_, stage, {"study.name", "study.question", "study.methods", "reference", "uncertainty"});
+    inputs["methods"] = method;
+    inputs["seed"] = std::to_string(session_.study.seed);
+    inputs["wish"] = wish;
     return {session_.folder.file(what + "_" + method), digest_of(inputs), 0, session_.options.threads};
   }
 
@@ -134,7 +137,8 @@ class Work {
     if (!attempt(s.from.method, [&] { bootstrap.emplace(s.fit, methods_.prepared().experiments, what, refit, options); })) return;
     Progress progress(fmt::format("bootstrap of {}, {} runs", s.from.method, wishes_.bootstrap), session_.options.quiet);
     const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    const auto results = finished(stored_runs(*bootstrap, jobs("bootstrap", s.from.method), told, &interrupted()));
+    const auto results =
+        finished(stored_runs(*bootstrap, jobs("bootstrap", s.from.method, fmt::format("block {}", wishes_.block)), told, &interrupted()));
     if (ranks().first()) attempt(s.from.method, [&] { out_.bootstraps.push_back(bootstrap->summary(results)); });
   }
 
@@ -144,7 +148,8 @@ class Work {
     if (requests.empty()) return;
     Progress progress("profiles of " + s.from.method, session_.options.quiet);
     const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    for (auto& profile : finished(stored_profiles(requests, jobs("profile", s.from.method), told, &interrupted())))
+    for (auto& profile : finished(stored_profiles(
+             requests, jobs("profile", s.from.method, fmt::format("{}", fmt::join(wishes_.profile, " "))), told, &interrupted())))
       out_.profiles.push_back(std::move(profile));
   }
 

@@ -28,9 +28,11 @@ std::size_t runs_of(const Session& session) {
   return static_cast<std::size_t>(session.options.runs > 0 ? session.options.runs : session.study.uncertainty->runs);
 }
 
-/// All that a run depends on but its number.
+/// All that a run depends on but its number: not how many there are, what else is asked for, or what the study is called.
 Inputs inputs_of_run(const Session& session) {
-  Inputs inputs = inputs_of_fit(session, stage);
+  Inputs inputs = inputs_of_fit(session, stage,
+                                {"study.name", "study.question", "study.methods", "reference", "uncertainty.runs", "uncertainty.bootstrap",
+                                 "uncertainty.block", "uncertainty.profile"});
   inputs["methods"] = fmt::format("{}", fmt::join(session.methods(), " "));
   inputs["seed"] = std::to_string(session.study.seed);
   return inputs;

@@ -72,8 +72,10 @@ struct FilterWork {
 /// filter_error's estimate: the one of this run of the program, else estimated again (about two seconds, and the same answer). RunError
 /// with the fit's words if it declined.
 [[nodiscard]] std::shared_ptr<const FilterWork> filter_work(Session& session);
-/// What a fit by `method` depends on.
-[[nodiscard]] std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method);
+/// What a fit by `method` depends on;
+/// not on comments and spaces of the study, nor on the tables and keys in `without` (config::content_of).
+[[nodiscard]] std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method,
+                                                               const std::vector<std::string>& without = {});
 /// Everything the fits left on disk.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_fits(const Session& session, const std::vector<Fit>& fits);
 [[nodiscard]] std::vector<Reference> references(const Session& session);

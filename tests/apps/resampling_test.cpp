@@ -63,6 +63,22 @@ TEST(Resampling, OfEveryMethodThatCanBeFittedAgain) {
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "the report has drawn the figures again";
 }
 
+TEST(Resampling, MoreRunsGoOnFromThoseThatAreThere) {
+  const ForcedMotion study("bootstrap = 6\nblock = 40");
+  study.methods("[\"equation_error\"]");
+  ASSERT_EQ(study.uncertainty({}).status, 0);
+  const fs::path stored = study.out("bootstrap_equation_error") / "checkpoint_0.bin";
+  const std::string before = content(stored);
+  study.change("bootstrap = 6", "bootstrap = 9  # more of them");
+  study.change("question = .*", "question = \"And now?\"");
+  const Outcome more = study.uncertainty({});
+  ASSERT_EQ(more.status, 0) << more.err;
+  expect_parts(more.out, {"block bootstrap of equation_error: 9 runs"});
+  const std::string after = content(stored);
+  ASSERT_GT(after.size(), before.size());
+  EXPECT_EQ(after.substr(0, before.size()), before) << "the first six were not done again";
+}
+
 TEST(Resampling, OfAWrongNameIsRefusedBeforeAnythingIsComputed) {
   const ForcedMotion study("bootstrap = 20\nprofile = [\"sine\", \"cosin\"]");
   const auto refused = [&](std::initializer_list<const char*> told) {

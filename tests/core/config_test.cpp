@@ -189,5 +189,22 @@ TEST(Fail, PutsPlaceAndPathInFront) {
   expect_parts(error_of("[g]\na = 1\n", [](const Section& s) { s.table("g")->fail("a", "is wrong"); }), {"study.toml:2:1: g.a: is wrong"});
 }
 
+TEST(ContentOf, IsWhatATextSays) {
+  const std::string text = "# a study\n[study]\nname = \"x\"\nseed = 1\n[effects]\nb = {}\na = { gain = 0.1, on = [\"x\", 2] }\n";
+  const std::string respaced = "[study]\nname =   \"x\"  # called so\n\nseed=1\n[effects]\nb={}\na={gain=0.10,on=[\"x\",2,]}\n";
+  EXPECT_EQ(content_of(text), content_of(respaced));
+  EXPECT_NE(content_of(text), content_of("[study]\nname = \"x\"\nseed = 1\n[effects]\na = { gain = 0.1, on = [\"x\", 2] }\nb = {}\n"))
+      << "effects are summed in their order";
+  EXPECT_NE(content_of("x = 0.1"), content_of("x = 0.10000000000000002"));
+  EXPECT_NE(content_of("x = 1"), content_of("x = \"1\""));
+}
+
+TEST(ContentOf, LeavesOutWhatDoesNotMatter) {
+  const std::string text = "[study]\nname = \"x\"\nseed = 1\n[uncertainty]\nruns = 10\n";
+  EXPECT_EQ(content_of(text, {"study.name", "uncertainty.runs"}), content_of("[study]\nseed = 1\n[uncertainty]\n"));
+  EXPECT_EQ(content_of(text, {"study.name", "uncertainty"}), content_of("[study]\nseed = 1\n"));
+  EXPECT_NE(content_of(text, {"name"}), content_of("[study]\nseed = 1\n[uncertainty]\nruns = 10\n")) << "the whole path is named";
+}
+
 }  // namespace
 }  // namespace misfit::config

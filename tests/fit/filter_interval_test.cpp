@@ -58,7 +58,8 @@ TEST(NoiseIntervals, AreTheEndsOfThePathInManySteps) {
   }
   const double sigma = std::sqrt(known.estimate.joint_covariance(1, 1));
   ASSERT_GT(sigma, 0.05) << "or there would be nothing to tell apart";
-  const double down = -std::log(found[1]->first / known.cart.noise.force_time), up = std::log(found[1]->second / known.cart.noise.force_time);
+  const double down = -std::log(found[1]->first / known.cart.noise.force_time),
+               up = std::log(found[1]->second / known.cart.noise.force_time);
   EXPECT_GT(up, 1.02 * down) << "a longer correlation time is less well known, even of its own size";
   EXPECT_EQ(found, noise_intervals(known.estimate, {0, 1}, 1));
 }

@@ -65,4 +65,8 @@ class Section {
   std::shared_ptr<State> state_;
 };
 
+/// What a TOML text says, as one line: keys in the order of the file, without comments and spaces, without the tables and keys in `without`
+/// ("uncertainty", "study.name"). Two texts with the same content compute the same. `text` is valid TOML.
+[[nodiscard]] std::string content_of(const std::string& text, const std::vector<std::string>& without = {});
+
 }  // namespace misfit::config

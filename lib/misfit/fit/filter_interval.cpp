@@ -45,7 +45,9 @@ class Paths {
   }
 
   [[nodiscard]] Eigen::VectorXd inside(const Eigen::VectorXd& logs) const {
-    const auto at = [](const std::vector<double>& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())); };
+    const auto at = [](const std::vector<double>& v) {
+      return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+    };
     return logs.cwiseMax(at(bounds_.lower)).cwiseMin(at(bounds_.upper));
   }
 
@@ -59,8 +61,8 @@ class Paths {
 
 }  // namespace
 
-std::vector<std::optional<std::pair<double, double>>> noise_intervals(const FilterEstimate& estimate,
-                                                                      const std::vector<std::size_t>& which, int threads) {
+std::vector<std::optional<std::pair<double, double>>> noise_intervals(const FilterEstimate& estimate, const std::vector<std::size_t>& which,
+                                                                      int threads) {
   std::vector<std::optional<std::pair<double, double>>> out(which.size());
   if (estimate.joint_covariance.size() == 0) return out;
   constexpr double two_sided = 1.959964;  // of 95 %
