@@ -34,6 +34,20 @@ class RanBefore : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST(RunFolderMade, GoesIfNothingWasPutIntoIt) {
+  const TemporaryFolder folder;
+  const std::filesystem::path made = folder.path() / "made", there = folder.path() / "there", used = folder.path() / "used";
+  std::filesystem::create_directory(there);
+  {
+    const RunFolder one(made, "misfit fit study.toml", 7), two(there, "misfit fit study.toml", 7), three(used, "misfit fit study.toml", 7);
+    EXPECT_TRUE(std::filesystem::is_directory(made));
+    write_atomically(used / "camera.json", "{}");
+  }
+  EXPECT_FALSE(std::filesystem::exists(made));
+  EXPECT_TRUE(std::filesystem::exists(there)) << "it was there before";
+  EXPECT_TRUE(std::filesystem::exists(used / "camera.json"));
+}
+
 TEST_F(RanBefore, ASecondRunIsUpToDate) { EXPECT_TRUE(up_to_date(inputs)); }
 
 TEST_F(RanBefore, AnotherStageIsNot) { EXPECT_FALSE(RunFolder(out(), "", 7).up_to_date("attitude", inputs)); }

@@ -8,6 +8,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/ranks.h"
 #include "misfit/core/version.h"
 
 namespace misfit {
@@ -52,12 +53,24 @@ std::map<std::string, StageRecord> read_stages(const std::filesystem::path& path
 
 }  // namespace
 
+RunFolder::Made::Made(const std::filesystem::path& dir) {
+  std::error_code error;
+  const bool before = std::filesystem::exists(dir, error);
+  make_writable_folder(dir);
+  if (!before && ranks().first()) dir_ = dir;
+}
+
+RunFolder::Made::~Made() {
+  std::error_code error;  // also: not empty
+  if (!dir_.empty()) std::filesystem::remove(dir_, error);
+}
+
 RunFolder::RunFolder(std::filesystem::path dir, std::string command, unsigned long seed, std::filesystem::path study)
     : dir_(std::move(dir)),
+      made_(dir_),
       command_(std::move(command)),
       seed_(seed),
       study_(study.empty() ? std::move(study) : std::filesystem::absolute(study).lexically_normal()) {
-  make_writable_folder(dir_);
   stages_ = read_stages(file("run.json"), study_before_);
 }
 

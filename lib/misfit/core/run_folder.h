@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace misfit {
@@ -22,8 +23,8 @@ struct StageRecord {
 /// The output folder of a study. run.json is rewritten (atomically) after every stage.
 class RunFolder {
  public:
-  /// Makes the folder and reads run.json if there is one (an unreadable one is treated as absent, said on stderr). `study`: the file whose
-  /// results these are; run.json names it relative to the folder.
+  /// Makes the folder (it goes with this object if nothing was put into it) and reads run.json if there is one (an unreadable one is
+  /// treated as absent, said on stderr). `study`: the file whose results these are; run.json names it relative to the folder.
   RunFolder(std::filesystem::path dir, std::string command, unsigned long seed, std::filesystem::path study = {});
 
   [[nodiscard]] const std::filesystem::path& path() const { return dir_; }
@@ -38,8 +39,24 @@ class RunFolder {
   [[nodiscard]] std::optional<std::filesystem::path> other_study() const;
 
  private:
+  /// Removes a folder that we made, if it is empty; on the first rank only, others may still be about to write.
+  class Made {
+   public:
+    explicit Made(const std::filesystem::path& dir);
+    Made(Made&& other) noexcept : dir_(std::exchange(other.dir_, {})) {}
+    Made& operator=(Made&& other) noexcept {
+      std::swap(dir_, other.dir_);
+      return *this;
+    }
+    ~Made();
+
+   private:
+    std::filesystem::path dir_;  ///< empty: it was there before
+  };
+
   void write() const;
   std::filesystem::path dir_;
+  Made made_;
   std::string command_;
   unsigned long seed_;
   std::filesystem::path study_, study_before_;  ///< as given, absolute; as run.json has it
