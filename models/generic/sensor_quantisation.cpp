@@ -1,0 +1,45 @@
+#include <cmath>
+#include <numbers>
+
+#include "misfit/model/registry.h"
+
+namespace {
+
+using namespace misfit;
+
+/// A reading in whole steps of a converter or an encoder: what rounding to the next of them adds, its first three harmonics, since a jump has
+/// no derivative. The step is usually known or seen at once (the smallest difference of two readings) and is held; where the reading's own
+/// noise is above a third of a step, rounding is only a little more noise (step/sqrt(12)).
+struct SensorQuantisation {
+  static constexpr const char* formula = "y = h + rounded step/pi sum_{k=1..3} (-1)^k/k sin(2 pi k h/step)";
+  static constexpr const char* symbols = "h predicted reading [output], rounded share [-] (1: whole steps are read), step [output]";
+  static constexpr const char* valid = "readings that cross steps slowly; the reading is within 0.15 step of the rounded one, but at its jumps";
+  static constexpr const char* size = "at most half a step, on average step/sqrt(12): 2.9 mV for steps of 10 mV";
+  static constexpr const char* source = "B. Widrow, I. Kollar, Quantization Noise (2008), ch. 2: the rounding error as a sawtooth; its Fourier series";
+  static constexpr const char* excludes = "steps that are not even, rounding down (bias), hysteresis between steps (backlash)";
+  static constexpr Role quantities[] = {{"reading", "*"}};
+  static constexpr Role ports[] = {{"output", "{reading}"}};
+  static constexpr CoefficientSpec coefficients[] = {
+      {"rounded", CoefficientKind::strength, 0.0, "-", 0.0, 1.0, 0.1, "share of the rounding"},
+      held(scanned({"step", CoefficientKind::shape, 0.1, "{output}", 1e-9, 1e9, 0.1, "smallest difference of two readings"},
+                   {0.05, 0.2, 3, "|reading|"}))};
+
+  template <class T, class K>
+  static void add(const Reads<T, K>& in, T* y) {
+    using std::sin;
+    constexpr int harmonics = 3;
+    constexpr double pi = std::numbers::pi;
+    T sum(0.0);
+    for (int k = 1; k <= harmonics; ++k) sum += T((k % 2 == 0 ? 1.0 : -1.0) / k) * sin(2.0 * pi * k * in.q[0] / in.c[1]);
+    y[0] = in.c[0] * in.c[1] / pi * sum;
+  }
+
+  static std::vector<Example> examples() {
+    return {{{}, {0.3}, {1.0, 1.0}, {}, 0.0, {-0.3339136}, {}, "(-0.951057 - 0.587785/2 + 0.587785/3)/pi, by hand; the sawtooth: -0.3"},
+            {{}, {0.6}, {0.5, 0.5}, {}, 0.0, {-0.03670395}, {}, "0.25 (-0.951057 + 0.587785/2 + 0.587785/3)/pi, by hand"}};
+  }
+};
+
+}  // namespace
+
+MISFIT_EFFECT(sensor_quantisation, SensorQuantisation)
