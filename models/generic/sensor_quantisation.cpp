@@ -7,15 +7,17 @@ namespace {
 
 using namespace misfit;
 
-/// A reading in whole steps of a converter or an encoder: what rounding to the next of them adds, its first three harmonics, since a jump has
-/// no derivative. The step is usually known or seen at once (the smallest difference of two readings) and is held; where the reading's own
-/// noise is above a third of a step, rounding is only a little more noise (step/sqrt(12)).
+/// A reading in whole steps of a converter or an encoder: what rounding to the next of them adds, its first three harmonics, since a jump
+/// has no derivative. The step is usually known or seen at once (the smallest difference of two readings) and is held; where the reading's
+/// own noise is above a third of a step, rounding is only a little more noise (step/sqrt(12)).
 struct SensorQuantisation {
   static constexpr const char* formula = "y = h + rounded step/pi sum_{k=1..3} (-1)^k/k sin(2 pi k h/step)";
   static constexpr const char* symbols = "h predicted reading [output], rounded share [-] (1: whole steps are read), step [output]";
-  static constexpr const char* valid = "readings that cross steps slowly; the reading is within 0.15 step of the rounded one, but at its jumps";
+  static constexpr const char* valid =
+      "readings that cross steps slowly; the reading is within 0.15 step of the rounded one, but at its jumps";
   static constexpr const char* size = "at most half a step, on average step/sqrt(12): 2.9 mV for steps of 10 mV";
-  static constexpr const char* source = "B. Widrow, I. Kollar, Quantization Noise (2008), ch. 2: the rounding error as a sawtooth; its Fourier series";
+  static constexpr const char* source =
+      "B. Widrow, I. Kollar, Quantization Noise (2008), ch. 2: the rounding error as a sawtooth; its Fourier series";
   static constexpr const char* excludes = "steps that are not even, rounding down (bias), hysteresis between steps (backlash)";
   static constexpr Role quantities[] = {{"reading", "*"}};
   static constexpr Role ports[] = {{"output", "{reading}"}};

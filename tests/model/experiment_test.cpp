@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "tests/model/declared_texts.h"
 
 namespace misfit {
 namespace {
@@ -63,6 +64,30 @@ TEST(SignalsFrom, AnInputIsUnwrappedAndMissingValuesAreBridgedButNotUsed) {
   EXPECT_NEAR(s.inputs[0].values[100], 200.0 * degree, 1e-9);
   EXPECT_TRUE(std::isnan(s.measured.front().values[100]));
   EXPECT_TRUE(s.inputs[1].values.empty());  // phi_rate: nobody needs it
+}
+
+TEST(SignalsFrom, AnInputWithADelayIsSeenLater) {
+  const auto seen = [](const std::string& keys) {
+    const auto registry = testing_models::registry_with("[states]\nx = { unit = \"m\" }\n[inputs]\nu = { unit = \"m/s\", " + keys +
+                                                        " }\n[parameters]\nk = { unit = \"1/s\", value = 1.0, free = true }\n"
+                                                        "[equations]\nx = \"u - k*x\"\n[outputs]\nx = { unit = \"m\", noise = 0.1 }\n");
+    const Model model = assemble(testing_models::request_of("text"), *registry);
+    Table table;
+    table.source = "made.csv";
+    table.add("t", "s", {0.0, 1.0, 2.0, 3.0, 4.0});
+    table.add("u", "m/s", {5.0, 7.0, 11.0, 13.0, 17.0});
+    table.add("x", "m", {0.0, 0.0, 0.0, 0.0, 0.0});
+    return signals_from(table, model, plain());
+  };
+  using Values = std::vector<double>;
+  EXPECT_EQ(seen("delay = \"2 s\"").inputs[0].values, (Values{5.0, 5.0, 5.0, 7.0, 11.0}));
+  EXPECT_EQ(seen("delay = \"500 ms\"").inputs[0].values, (Values{5.0, 6.0, 9.0, 12.0, 15.0})) << "between samples";
+  EXPECT_EQ(seen("delay = 0.5, hold = \"zero_order\"").inputs[0].values, (Values{5.0, 5.0, 7.0, 11.0, 13.0}));
+  EXPECT_EQ(seen("hold = \"zero_order\"").inputs[0].values, (Values{5.0, 7.0, 11.0, 13.0, 17.0}));
+  EXPECT_EQ(seen("delay = 9.0").inputs[0].values, (Values{5.0, 5.0, 5.0, 5.0, 5.0})) << "longer than the record";
+  const std::vector<std::string> notes = seen("delay = 2.0").notes;
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) { return note.find("acts 2 s after") != note.npos; }));
+  EXPECT_THROW(static_cast<void>(seen("delay = -1.0")), InputError);
 }
 
 TEST(SignalsFrom, IsolatedWildSamplesAreSetAsideAndSaid) {

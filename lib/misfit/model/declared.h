@@ -13,7 +13,8 @@ namespace misfit {
 ///   [states]     NAME = { unit, initial, min, max, scale, rate_of }  initial: "free" (default), "shared" between experiments, a number
 ///   (fixed), or
 ///                { value, kind = "free" | "shared" | "fixed" }; no step leaves a state outside min … max, and formulas never see it there
-///   [inputs]     NAME = { unit, hold = "zero_order" | "first_order" (default), doc }
+///   [inputs]     NAME = { unit, hold = "zero_order" | "first_order" (default), delay [s], doc }  delay: a dead time that is
+///                known; one to be estimated is the effect `delay`
 ///   [parameters] NAME = { unit, value, bounds, free = false, sigma, doc }
 ///   [quantities] NAME = { unit, formula, doc }
 ///   [ports]      NAME = { unit, rate, doc }: places for effects inside formulas; `rate`: quantity whose product with the port is power

@@ -113,6 +113,8 @@ class Reader {
     input.unit = read_unit(s);
     input.doc = s.text("doc").value_or("");
     if (s.choice("hold", {"zero_order", "first_order"}).value_or("first_order") == "zero_order") input.hold = Hold::zero_order;
+    input.delay = number(s, "delay", "s", 0.0);
+    if (input.delay < 0.0) s.fail("delay", "must not be negative: the system cannot see what has not happened yet");
     out_.spec.inputs.push_back(input);
   }
 

@@ -11,6 +11,21 @@
 namespace misfit {
 namespace {
 
+/// values(t − delay) at every t, the first value before the record; between samples as `hold` says.
+std::vector<double> delayed(const std::vector<double>& t, const std::vector<double>& values, double delay, Hold hold) {
+  std::vector<double> out;
+  std::size_t k = 0;  // of the last sample not after t − delay
+  constexpr double rounding = 1e-9;
+  for (const double now : t) {
+    const double then = now - delay;
+    while (k + 1 < t.size() && t[k + 1] <= then + rounding * (t[k + 1] - t[k])) ++k;
+    const bool between = hold == Hold::first_order && k + 1 < t.size() && then > t[k];
+    const double share = between ? (then - t[k]) / (t[k + 1] - t[k]) : 0.0;
+    out.push_back(share > 0.0 ? values[k] + share * (values[k + 1] - values[k]) : values[k]);
+  }
+  return out;
+}
+
 constexpr double pi = 3.14159265358979323846;
 
 /// Adds multiples of a full turn so that neighbours differ by less than half a turn; missing values stay missing.
@@ -114,6 +129,14 @@ class Reader {
   }
 
   std::vector<double> read_input(const InputSpec& input) {
+    std::vector<double> values = read_as_recorded(input);
+    if (input.delay == 0.0) return values;
+    out_.notes.push_back("input " + input.name + " acts " + format_value(input.delay) +
+                         " s after it is recorded; before that its first value is taken");
+    return delayed(out_.t, values, input.delay, input.hold);
+  }
+
+  std::vector<double> read_as_recorded(const InputSpec& input) {
     const bool angle = parse_unit(input.unit).angle;
     std::vector<double> values;
     constexpr std::string_view suffix = "_rate";
