@@ -193,12 +193,16 @@ Eigen::MatrixXd covariance_of(const FilterEstimate& estimate) {
   const std::vector<int> free = estimate.model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c)
     problem.theta[static_cast<Eigen::Index>(c)] = estimate.model.parameters[static_cast<std::size_t>(free[c])].value;
-  if (!invert_scaled(whole, problem.N)) return estimate.covariance;
+  if (joint) {
+    problem.N = estimate.joint_information;
+  } else {
+    if (!invert_scaled(whole, problem.N)) return estimate.covariance;
+    for (const auto& p : estimate.penalties) problem.N.block(p.first, p.first, p.omega.rows(), p.omega.rows()) -= p.lambda * p.omega;
+  }
   problem.g = -problem.prior_precision.cwiseProduct(problem.theta - problem.prior_mean);
   problem.N.diagonal() -= problem.prior_precision;
   for (const auto& p : estimate.penalties) {
     const auto size = p.omega.rows();
-    problem.N.block(p.first, p.first, size, size) -= p.lambda * p.omega;
     problem.g.segment(p.first, size) -= p.lambda * (p.omega * problem.theta.segment(p.first, size));
   }
   const Eigen::MatrixXd out = with_uncertain_roughness(problem, estimate.penalties, 1.0);

@@ -115,6 +115,7 @@ class Estimation {
     bool near = false;  // to where the derivatives were taken, and the step from there gained what they promised
     for (int k = 0; k < most; ++k) {
       exact = exact_derivatives(out_, at_.theta, options_.threads, near ? &exact : nullptr);
+      if (near && !exact.failure.empty()) exact = exact_derivatives(out_, at_.theta, options_.threads);
       near = false;
       out_.left.reset();
       if (!exact.failure.empty()) {
@@ -164,11 +165,16 @@ class Estimation {
 
   /// Where so little is known of the noise that nothing would be left after what is lost, the loss, an approximation, is not taken off.
   bool invert_joint(const ExactDerivatives& exact) {
-    const Eigen::MatrixXd whole = joint_precision(out_, exact);
+    const Eigen::MatrixXd whole = joint_information(out_, exact);
     Eigen::MatrixXd less = whole;
     const Eigen::Index q = restricted_.lost.rows();
     less.bottomRightCorner(q, q) -= restricted_.lost;
-    return invert_scaled(less, out_.joint_covariance) || invert_scaled(whole, out_.joint_covariance);
+    for (const Eigen::MatrixXd& information : {less, whole}) {
+      if (!invert_with(information, out_.penalties, out_.joint_covariance)) continue;
+      out_.joint_information = information;
+      return true;
+    }
+    return false;
   }
 
   bool uncount(const std::vector<std::vector<std::size_t>>& rough) {

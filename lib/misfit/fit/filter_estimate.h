@@ -31,6 +31,7 @@ struct FilterEstimate {
   std::vector<FilterJacobian> jacobians;  ///< at the estimate
   Eigen::MatrixXd covariance;             ///< of the free parameters: inverse of the information with roughness and priors
   Eigen::MatrixXd joint_covariance;       ///< of parameters and log noise together, nothing held; empty where not verified
+  Eigen::MatrixXd joint_information;      ///< of which that is the inverse, without the roughness
   double objective = 0.0;                 ///< log-likelihood − ½ Σ λ cᵀΩc − ½ Σ ((θ − mean)/prior sigma)²
   double loglik = 0.0, validation_loglik = 0.0;
   std::optional<double> left;  ///< what one more Newton step on the exact likelihood would still gain; nullopt: not verified

@@ -70,7 +70,7 @@ class Differences {
       : estimate_(estimate),
         theta_(theta),
         objective_(estimate, estimate.model.free_parameters()),
-        here_(estimate.loglik + log_prior_at(estimate.model, estimate.penalties, theta)),
+        here_(estimate.loglik),
         axes_(estimate.covariance) {}
 
   /// A step at which a good part of all readings bends is too long, not the run rough: the axis of what can hardly be told apart is long,
@@ -93,21 +93,21 @@ class Differences {
 
   [[nodiscard]] const Axes& axes() const { return axes_; }
 
-  /// To one side; `precision`: minus the second derivatives of the objective over parameters and noise, about.
-  OneDerivative upwards(Eigen::Index i, const Eigen::MatrixXd& precision, const Eigen::Ref<Eigen::VectorXd>& column) const {
+  /// To one side; `information`: minus the second derivatives of the log-likelihood over parameters and noise, about.
+  OneDerivative upwards(Eigen::Index i, const Eigen::MatrixXd& information, const Eigen::Ref<Eigen::VectorXd>& column) const {
     const Eigen::Index n = theta_.size();
     Runs above(estimate_.data.size());
     double there = 0.0, h = longest, curvature = 0.0;
     if (i < n) {
       const auto along = axes_.along.col(i);
-      curvature = along.dot(precision.topLeftCorner(n, n) * along);
-      there = objective_.at(theta_ + h * along, estimate_.noise, &above);
+      curvature = along.dot(information.topLeftCorner(n, n) * along);
+      there = objective_.loglik_at(theta_ + h * along, estimate_.noise, &above);
     } else {
       std::vector<double> logs = estimate_.noise_fit.logs;
       h = noise_step;
-      curvature = precision(i, i);
+      curvature = information(i, i);
       logs[static_cast<std::size_t>(i - n)] += h;
-      there = objective_.at(theta_, unpack(logs), &above);
+      there = objective_.loglik_at(theta_, unpack(logs), &above);
     }
     OneDerivative out = between(there, -std::numeric_limits<double>::infinity(), h, above, above, column);
     out.slope += 0.5 * h * curvature;
@@ -119,9 +119,9 @@ class Differences {
     std::vector<double> there = estimate_.noise_fit.logs;
     Runs above(estimate_.data.size()), below = above;
     there[i] += h;
-    const double plus = objective_.at(theta_, unpack(there), &above);
+    const double plus = objective_.loglik_at(theta_, unpack(there), &above);
     there[i] -= 2.0 * h;
-    const double minus = objective_.at(theta_, unpack(there), &below);
+    const double minus = objective_.loglik_at(theta_, unpack(there), &below);
     return between(plus, minus, h, above, below, column);
   }
 
@@ -130,8 +130,8 @@ class Differences {
 
   OneDerivative with_step(const Eigen::VectorXd& step, double h, const Eigen::Ref<Eigen::VectorXd>& column) const {
     Runs above(estimate_.data.size()), below = above;
-    const double plus = objective_.at(theta_ + step, estimate_.noise, &above);
-    const double minus = objective_.at(theta_ - step, estimate_.noise, &below);
+    const double plus = objective_.loglik_at(theta_ + step, estimate_.noise, &above);
+    const double minus = objective_.loglik_at(theta_ - step, estimate_.noise, &below);
     OneDerivative out = between(plus, minus, h, above, below, column);
     out.rough.resize(above.size());
     if (!out.finite) return out;
@@ -162,15 +162,14 @@ class Differences {
   Axes axes_;
 };
 
-/// Information with roughness and priors over (parameters, log noise).
-Eigen::MatrixXd with_priors(const FilterEstimate& estimate, const Eigen::MatrixXd& information) {
-  const auto n = static_cast<Eigen::Index>(estimate.model.free_parameters().size());
-  Eigen::MatrixXd out = information;
+/// Gradient of log_prior_at.
+Eigen::VectorXd log_prior_slope(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta) {
   Linearised priors;
-  priors.N = Eigen::MatrixXd::Zero(n, n);
-  priors.theta = Eigen::VectorXd::Zero(n);
-  set_priors(estimate.model, priors);
-  out.topLeftCorner(n, n) += precision_of(priors, estimate.penalties, 1.0);
+  priors.N = Eigen::MatrixXd::Zero(theta.size(), theta.size());
+  priors.theta = theta;
+  set_priors(model, priors);
+  Eigen::VectorXd out = priors.prior_precision.cwiseProduct(priors.prior_mean - theta);
+  for (const auto& p : penalties) out.segment(p.first, p.omega.rows()) -= p.lambda * (p.omega * theta.segment(p.first, p.omega.rows()));
   return out;
 }
 
@@ -205,14 +204,18 @@ double log_prior_at(const Model& model, const std::vector<Penalty>& penalties, c
   return sum;
 }
 
-double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* traces) const {
+double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise) const {
+  return loglik_at(theta, noise) + log_prior_at(estimate_->model, estimate_->penalties, theta);
+}
+
+double ExactObjective::loglik_at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* traces) const {
   FilterModel forced = estimate_->forced;
   forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = noise.force_time;
   FilterRunner runner(forced, false);
   std::vector<double> all = forced.model.values();
   for (std::size_t c = 0; c < free_.size(); ++c) all[static_cast<std::size_t>(free_[c])] = theta[static_cast<Eigen::Index>(c)];
   runner.set_parameters(all);
-  double sum = log_prior_at(estimate_->model, estimate_->penalties, theta);
+  double sum = 0.0;
   std::vector<FilterTrace> own(traces == nullptr ? estimate_->data.size() : 0);
   std::vector<FilterTrace>& runs = traces != nullptr ? *traces : own;
   for (std::size_t e = 0; e < estimate_->data.size(); ++e) {
@@ -229,11 +232,10 @@ ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::
   const Differences differences(estimate, theta);
   std::vector<OneDerivative> parts(n + estimate.noise_fit.logs.size());
   Eigen::MatrixXd columns(2 * counted_readings(estimate), static_cast<Eigen::Index>(parts.size()));
-  const Eigen::MatrixXd precision = near != nullptr ? with_priors(estimate, near->information) : Eigen::MatrixXd();
   run_jobs(parts.size(), threads, [&](std::size_t i) {
     auto column = columns.col(static_cast<Eigen::Index>(i));
     if (near != nullptr) {
-      parts[i] = differences.upwards(static_cast<Eigen::Index>(i), precision, column);
+      parts[i] = differences.upwards(static_cast<Eigen::Index>(i), near->information, column);
       return;
     }
     parts[i] = i < n ? differences.along_axis(static_cast<Eigen::Index>(i), column) : differences.by_noise(i - n, column);
@@ -247,7 +249,8 @@ ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::
       out.rough[e].insert(out.rough[e].end(), parts[i].rough[e].begin(), parts[i].rough[e].end());
   }
   const Eigen::MatrixXd& back = differences.axes().back;
-  out.gradient.head(theta.size()) = back.transpose() * out.gradient.head(theta.size()).eval();
+  out.gradient.head(theta.size()) =
+      back.transpose() * out.gradient.head(theta.size()).eval() + log_prior_slope(estimate.model, estimate.penalties, theta);
   columns.leftCols(theta.size()) = columns.leftCols(theta.size()) * back;
   out.information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
   out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
@@ -258,9 +261,13 @@ ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::
   return out;
 }
 
-Eigen::MatrixXd joint_precision(const FilterEstimate& estimate, const ExactDerivatives& exact) {
+Eigen::MatrixXd joint_information(const FilterEstimate& estimate, const ExactDerivatives& exact) {
   const auto n = static_cast<Eigen::Index>(estimate.model.free_parameters().size());
-  Eigen::MatrixXd out = with_priors(estimate, exact.information);
+  Eigen::MatrixXd out = exact.information;
+  Linearised priors;
+  priors.N = Eigen::MatrixXd::Zero(n, n);
+  set_priors(estimate.model, priors);
+  out.topLeftCorner(n, n).diagonal() += priors.prior_precision;
   for (Eigen::Index i = n; i < out.rows(); ++i) {
     constexpr double determined = 1.0, pin = 1e12;
     if (estimate.noise_fit.at_bound[static_cast<std::size_t>(i - n)] || out(i, i) < determined) out(i, i) += pin;

@@ -16,16 +16,19 @@ class ExactObjective {
   ExactObjective(const FilterEstimate& estimate, std::vector<int> free) : estimate_(&estimate), free_(std::move(free)) {}
 
   /// −infinity where a run fails. `theta` in the order of the free parameters; `traces`, if given, one per experiment.
-  [[nodiscard]] double at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* traces = nullptr) const;
+  [[nodiscard]] double at(const Eigen::VectorXd& theta, const FilterNoise& noise) const;
+  /// The same without log prior and roughness.
+  [[nodiscard]] double loglik_at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* traces = nullptr) const;
 
  private:
   const FilterEstimate* estimate_;
   std::vector<int> free_;
 };
 
-/// First derivatives of the exact objective by central differences (to one side where the model cannot be run on the other): 1e-3 of a
-/// noise's logarithm; 0.05 sigma along each principal axis of the covariance that the held gains give. One parameter alone, moved by a
-/// share of its sigma, would be no small step where others can stand in for it: these do not go along.
+/// First derivatives of the exact objective, log prior and roughness in closed form (what a stiff roughness says of a line is a difference
+/// of large numbers), the log-likelihood by central differences (to one side where the model cannot be run on the other): 1e-3 of a noise's
+/// logarithm; 0.05 sigma along each principal axis of the covariance that the held gains give. One parameter alone, moved by a share of its
+/// sigma, would be no small step where others can stand in for it: these do not go along.
 struct ExactDerivatives {
   Eigen::VectorXd gradient;  ///< by the free parameters, then by the logarithms of the noise
   /// Fisher information of the counted readings over the same unknowns, nothing held: with innovations e and their variances S,
@@ -45,9 +48,10 @@ struct ExactDerivatives {
 [[nodiscard]] ExactDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads,
                                                  const ExactDerivatives* near = nullptr);
 
-/// The posterior precision over (parameters, log noise): information, priors and roughness. A noise parameter that is at its bound, or of
-/// which the data do not even know the logarithm to one unit (the shape of something that is not there), is pinned.
-[[nodiscard]] Eigen::MatrixXd joint_precision(const FilterEstimate& estimate, const ExactDerivatives& exact);
+/// The information over (parameters, log noise) with the parameters' priors, without the roughness (invert_with adds it). A noise parameter
+/// that is at its bound, or of which the data do not even know the logarithm to one unit (the shape of something that is not there), is
+/// pinned.
+[[nodiscard]] Eigen::MatrixXd joint_information(const FilterEstimate& estimate, const ExactDerivatives& exact);
 
 /// log prior of the free parameters at `theta`, roughness included (constants left out).
 [[nodiscard]] double log_prior_at(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta);

@@ -31,6 +31,29 @@ bool invert_scaled(const Eigen::MatrixXd& H, Eigen::MatrixXd& inverse) {
   return inverse.allFinite();
 }
 
+Bends bends_of(Eigen::Index columns, const std::vector<Penalty>& penalties) {
+  Bends out{Eigen::MatrixXd::Identity(columns, columns), penalties};
+  for (Penalty& p : out.penalties) {
+    const auto size = p.omega.rows();
+    const auto bends = static_cast<Eigen::Index>(p.rank);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(p.omega);
+    out.turn.block(p.first, p.first, size, size) = solver.eigenvectors();
+    Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(size);
+    stiffness.tail(bends) = solver.eigenvalues().tail(bends).cwiseMax(0.0);
+    p.omega = stiffness.asDiagonal();
+  }
+  return out;
+}
+
+bool invert_with(const Eigen::MatrixXd& information, const std::vector<Penalty>& penalties, Eigen::MatrixXd& inverse) {
+  const auto [turn, turned] = bends_of(information.rows(), penalties);
+  Eigen::MatrixXd H = turn.transpose() * information * turn, inside;
+  for (const auto& p : turned) H.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
+  if (!invert_scaled(H, inside)) return false;
+  inverse = turn * inside * turn.transpose();
+  return true;
+}
+
 std::vector<Penalty> curve_penalties(const Model& model) {
   std::vector<Penalty> penalties;
   const std::vector<int> free = model.free_parameters();
@@ -57,8 +80,7 @@ Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, doub
   double sigma2 = sigma2_given > 0.0 ? sigma2_given : std::max(problem.rss / std::max(problem.count, 1.0), 1e-300);
   constexpr int most = 60;
   for (int round = 0; round < most; ++round) {
-    const Eigen::MatrixXd H = precision_of(problem, penalties, sigma2);
-    if (!invert_scaled(H, out.covariance)) return out;
+    if (!invert_with(precision_of(problem, {}, sigma2), penalties, out.covariance)) return out;
     Eigen::VectorXd b = (problem.N * problem.theta - problem.g) / sigma2;
     b += problem.prior_precision.cwiseProduct(problem.prior_mean);
     out.theta = out.covariance * b;

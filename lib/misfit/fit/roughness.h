@@ -59,6 +59,18 @@ void set_priors(const Model& model, Linearised& sums);
 /// orders of magnitude. False if it is not positive definite.
 [[nodiscard]] bool invert_scaled(const Eigen::MatrixXd& H, Eigen::MatrixXd& inverse);
 
+/// Unknowns turned into the eigenvectors of each Ω: x = turn · x', Ω diagonal, exactly 0 for the straight line. The weight of a curve that
+/// is a straight line to all that the data show has more digits than a double between its bends and what the data say of the line: in the
+/// curve's coefficients they mix, and λ Ω c and λ cᵀΩc of a line are rounding times a large number; here they do not.
+struct Bends {
+  Eigen::MatrixXd turn;
+  std::vector<Penalty> penalties;
+};
+[[nodiscard]] Bends bends_of(Eigen::Index columns, const std::vector<Penalty>& penalties);
+
+/// Inverse of `information` + λ Ω of all penalties, taken in their Bends. False as above.
+[[nodiscard]] bool invert_with(const Eigen::MatrixXd& information, const std::vector<Penalty>& penalties, Eigen::MatrixXd& inverse);
+
 /// Maximises the marginal likelihood over the λ marked `chosen` and σ² for the linearised problem [FS], updating `penalties`. With
 /// `sigma2_given` > 0 the variance is kept.
 [[nodiscard]] Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, double sigma2_given = 0.0);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "misfit/fit/roughness.h"
 
@@ -17,8 +18,8 @@ struct Place {
 
 class Mixture {
  public:
-  Mixture(const Linearised& problem, const std::vector<Penalty>& penalties, double sigma2, const Eigen::MatrixXd& excess)
-      : problem_(problem), penalties_(penalties), sigma2_(sigma2), excess_(excess) {}
+  Mixture(Linearised problem, const std::vector<Penalty>& penalties, double sigma2, const Eigen::MatrixXd& excess)
+      : problem_(std::move(problem)), penalties_(penalties), sigma2_(sigma2), excess_(excess) {}
 
   Eigen::MatrixXd run() {
     const std::optional<Place> best = at(0, penalties_[0].lambda);
@@ -90,21 +91,36 @@ class Mixture {
     return out / sum;
   }
 
-  const Linearised& problem_;
+  const Linearised problem_;
   const std::vector<Penalty>& penalties_;
   double sigma2_;
   const Eigen::MatrixXd& excess_;
 };
+
+/// Priors counted as data, everything in the Bends.
+Linearised turned(const Linearised& problem, const Eigen::MatrixXd& turn, double sigma2) {
+  Linearised out = problem;
+  const Eigen::MatrixXd priors = sigma2 * Eigen::MatrixXd(problem.prior_precision.asDiagonal());
+  out.N = turn.transpose() * (problem.N + priors) * turn;
+  out.g = turn.transpose() * (problem.g + priors * (problem.theta - problem.prior_mean));
+  out.theta = turn.transpose() * problem.theta;
+  out.prior_precision.setZero();
+  out.prior_mean.setZero();
+  return out;
+}
 
 }  // namespace
 
 Eigen::MatrixXd with_uncertain_roughness(const Linearised& problem, const std::vector<Penalty>& penalties, double sigma2,
                                          const Eigen::MatrixXd& excess) {
   if (!penalties.empty()) {
-    if (Eigen::MatrixXd out = Mixture(problem, penalties, sigma2, excess).run(); out.size() > 0) return out;
+    const auto [turn, bends] = bends_of(problem.N.rows(), penalties);
+    const Eigen::MatrixXd more = excess.size() > 0 ? Eigen::MatrixXd(turn.transpose() * excess * turn) : excess;
+    if (const Eigen::MatrixXd out = Mixture(turned(problem, turn, sigma2), bends, sigma2, more).run(); out.size() > 0)
+      return turn * out * turn.transpose();
   }
   Eigen::MatrixXd plain;
-  if (!invert_scaled(precision_of(problem, penalties, sigma2), plain)) return {};
+  if (!invert_with(precision_of(problem, {}, sigma2), penalties, plain)) return {};
   if (excess.size() > 0) plain += plain * excess * plain;
   return plain;
 }
