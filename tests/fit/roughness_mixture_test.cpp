@@ -121,5 +121,49 @@ TEST(UncertainRoughness, AStraightLineKeepsTheBandOfTheBendsItMayHave) {
   EXPECT_LT(middle.dot(covariance * middle), 9.0 * middle.dot(smoothed.covariance * middle));
 }
 
+/// A curve so stiff that it is a line, beside a parameter that is known a million times less well than the line and almost stands in for
+/// it: all that is known of both is what a line in its place would give, written down with two columns.
+struct StiffBesideWeak {
+  Readings r = readings();
+  Eigen::MatrixXd X, line;  ///< columns of curve and parameter; of the line's two numbers and the parameter
+  double lambda = 1e16;
+
+  StiffBesideWeak() {
+    const Eigen::Index n = r.A.rows(), size = r.A.cols();
+    Eigen::MatrixXd straight(n, 2);
+    straight << Eigen::VectorXd::Ones(n), Eigen::VectorXd::LinSpaced(n, -1.0, 1.0);
+    Eigen::VectorXd beside = 2.0 * straight.col(0) - straight.col(1);
+    for (Eigen::Index i = 0; i < n; ++i) beside[i] += 1e-3 * std::cos(0.7 * static_cast<double>(i));
+    constexpr double sure = 1e3;
+    X = Eigen::MatrixXd(n, size + 1);
+    X << sure * r.A, beside;
+    line = Eigen::MatrixXd(n, 3);
+    line << sure * straight, beside;
+  }
+  [[nodiscard]] double expected() const { return Eigen::MatrixXd(line.transpose() * line).inverse()(2, 2); }
+};
+
+TEST(InvertWith, AStiffCurveIsALineInItsPlace) {
+  const StiffBesideWeak s;
+  Eigen::MatrixXd covariance;
+  ASSERT_TRUE(invert_with(s.X.transpose() * s.X, {penalty_of(s.r, s.lambda, false)}, covariance));
+  EXPECT_NEAR(covariance.bottomRightCorner(1, 1)(0, 0), s.expected(), 1e-3 * s.expected());
+}
+
+TEST(UncertainRoughness, OfAStiffCurveIsThatOfALineInItsPlace) {
+  const StiffBesideWeak s;
+  Linearised problem;
+  problem.N = s.X.transpose() * s.X;
+  problem.theta = Eigen::VectorXd::Constant(s.X.cols(), 7.0);  // a line at 7
+  problem.g = Eigen::VectorXd::Zero(s.X.cols());
+  problem.prior_precision = Eigen::VectorXd::Constant(s.X.cols(), 1e-12);
+  problem.prior_mean = problem.theta;
+  const Eigen::MatrixXd covariance = with_uncertain_roughness(problem, {penalty_of(s.r, s.lambda, true)}, 1.0);
+  ASSERT_GT(covariance.size(), 0);
+  const double found = covariance.bottomRightCorner(1, 1)(0, 0);
+  EXPECT_GT(found, 0.99 * s.expected());
+  EXPECT_LT(found, 2.0 * s.expected()) << "some bends cannot be excluded, but nothing is lost in rounding";
+}
+
 }  // namespace
 }  // namespace misfit
