@@ -112,9 +112,8 @@ class Work {
 
   /// `wish`: what of [uncertainty] a job's result depends on. Other methods do not matter to it, nor how many runs there are.
   [[nodiscard]] StoredJobs jobs(const std::string& what, const std::string& method, const std::string& wish) const {
-    Inputs inputs = inputs_of_fit(session_, stage, {"study.name", "study.question", "study.methods", "reference", "uncertainty"});
+    Inputs inputs = inputs_of_jobs(session_, stage, {"uncertainty"});
     inputs["methods"] = method;
-    inputs["seed"] = std::to_string(session_.study.seed);
     inputs["wish"] = wish;
     return {session_.folder.file(what + "_" + method), digest_of(inputs), 0, session_.options.threads};
   }

@@ -30,11 +30,8 @@ std::size_t runs_of(const Session& session) {
 
 /// All that a run depends on but its number: not how many there are, what else is asked for, or what the study is called.
 Inputs inputs_of_run(const Session& session) {
-  Inputs inputs = inputs_of_fit(session, stage,
-                                {"study.name", "study.question", "study.methods", "reference", "uncertainty.runs", "uncertainty.bootstrap",
-                                 "uncertainty.block", "uncertainty.profile"});
+  Inputs inputs = inputs_of_jobs(session, stage, {"uncertainty.runs", "uncertainty.bootstrap", "uncertainty.block", "uncertainty.profile"});
   inputs["methods"] = fmt::format("{}", fmt::join(session.methods(), " "));
-  inputs["seed"] = std::to_string(session.study.seed);
   return inputs;
 }
 
@@ -94,6 +91,13 @@ void write(Session& session, const Uncertainty& result, double seconds) {
 }
 
 }  // namespace
+
+Inputs inputs_of_jobs(const Session& session, const std::string& what, std::vector<std::string> more) {
+  for (const char* key : {"study.name", "study.question", "study.methods", "reference"}) more.emplace_back(key);
+  Inputs inputs = inputs_of_fit(session, what, more);
+  inputs["seed"] = std::to_string(session.study.seed);
+  return inputs;
+}
 
 std::string digest_of(const Inputs& inputs) {
   std::string text;

@@ -72,8 +72,7 @@ struct FilterWork {
 /// filter_error's estimate: the one of this run of the program, else estimated again (about two seconds, and the same answer). RunError
 /// with the fit's words if it declined.
 [[nodiscard]] std::shared_ptr<const FilterWork> filter_work(Session& session);
-/// What a fit by `method` depends on;
-/// not on comments and spaces of the study, nor on the tables and keys in `without` (config::content_of).
+/// What a fit by `method` depends on: not comments and spaces of the study, nor the tables and keys in `without` (config::content_of).
 [[nodiscard]] std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method,
                                                                const std::vector<std::string>& without = {});
 /// Everything the fits left on disk.
@@ -89,6 +88,10 @@ std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fit
 /// uncertainty.json, uncertainty.csv and their figures: the Monte-Carlo of [uncertainty]. On ranks other than the first the result is
 /// empty. InputError if the study has no such section.
 [[nodiscard]] Uncertainty uncertainty_stage(Session& session);
+/// What a stored job of `stage` depends on but its number, `more` left out too: not what the study is called, nor which methods it asks
+/// for.
+[[nodiscard]] std::map<std::string, std::string> inputs_of_jobs(const Session& session, const std::string& stage,
+                                                                std::vector<std::string> more);
 /// One word for all these.
 [[nodiscard]] std::string digest_of(const std::map<std::string, std::string>& inputs);
 /// What it left on disk, where it still belongs to the study and its data.

@@ -14,7 +14,7 @@ struct SensorQuantisation {
   static constexpr const char* formula = "y = h + rounded step/pi sum_{k=1..3} (-1)^k/k sin(2 pi k h/step)";
   static constexpr const char* symbols = "h predicted reading [output], rounded share [-] (1: whole steps are read), step [output]";
   static constexpr const char* valid =
-      "readings that cross steps slowly; the reading is within 0.15 step of the rounded one, but at its jumps";
+      "readings that cross steps slowly; within 0.1 step of the rounded one up to 0.4 step from its middle, smooth where that jumps";
   static constexpr const char* size = "at most half a step, on average step/sqrt(12): 2.9 mV for steps of 10 mV";
   static constexpr const char* source =
       "B. Widrow, I. Kollar, Quantization Noise (2008), ch. 2: the rounding error as a sawtooth; its Fourier series";

@@ -146,7 +146,7 @@ struct StiffBesideWeak {
 TEST(InvertWith, AStiffCurveIsALineInItsPlace) {
   const StiffBesideWeak s;
   Eigen::MatrixXd covariance;
-  ASSERT_TRUE(invert_with(s.X.transpose() * s.X, {penalty_of(s.r, s.lambda, false)}, covariance));
+  ASSERT_TRUE(invert_with(s.X.transpose() * s.X, bends_of(s.X.cols(), {penalty_of(s.r, s.lambda, false)}), covariance));
   EXPECT_NEAR(covariance.bottomRightCorner(1, 1)(0, 0), s.expected(), 1e-3 * s.expected());
 }
 

@@ -36,6 +36,12 @@ TEST(Rows, TextAndCsvCarryTheUnit) {
   EXPECT_EQ(read_file(folder.path() / "rows.csv"), "what,value,sigma,unit\n\"trim, free\",12,0.25,deg\nmass,0.5,,kg\nlost,,,m\n");
 }
 
+TEST(Rows, AnIntervalOfItsOwnStandsBesideSigma) {
+  const Row row("slope", Estimate{0.2, 0.01, "rad", std::pair(0.15, 0.3)});
+  const std::string html = rows_html({row});
+  EXPECT_NE(html.find("11.46 ± 0.57 (95 %: 8.59 to 17.19)"), std::string::npos) << html;
+}
+
 TEST(Rows, HtmlIsEscaped) {
   const std::string html = rows_html({{"<b>x</b>", 1.0, 0.0, "m/s^2"}});
   EXPECT_EQ(html.find("<b>"), std::string::npos);

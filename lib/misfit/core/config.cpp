@@ -85,6 +85,16 @@ toml::table parse_document(std::string_view text, const std::string& name) {
   }
 }
 
+/// In file order (by line).
+std::vector<std::string> keys_of(const toml::table& table) {
+  std::vector<std::pair<toml::source_position, std::string>> found;
+  for (const auto& [key, node] : table) found.emplace_back(key.source().begin, std::string(key.str()));
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> out;
+  for (auto& [position, key] : found) out.push_back(std::move(key));
+  return out;
+}
+
 void append(const toml::table& table, const std::string& path, const std::vector<std::string>& without, std::ostringstream& out);
 
 void append(const toml::node& node, const std::string& path, const std::vector<std::string>& without, std::ostringstream& out) {
@@ -109,11 +119,8 @@ void append(const toml::node& node, const std::string& path, const std::vector<s
 }
 
 void append(const toml::table& table, const std::string& path, const std::vector<std::string>& without, std::ostringstream& out) {
-  std::vector<std::pair<toml::source_position, std::string>> keys;
-  for (const auto& [key, node] : table) keys.emplace_back(key.source().begin, std::string(key.str()));
-  std::sort(keys.begin(), keys.end());
   out << '{';
-  for (const auto& [position, key] : keys) {
+  for (const std::string& key : keys_of(table)) {
     const std::string there = path.empty() ? key : path + "." + key;
     if (std::find(without.begin(), without.end(), there) != without.end()) continue;
     out << toml::json_formatter(toml::value<std::string>(key)) << ':';
@@ -135,14 +142,7 @@ Section Section::parse(std::string_view text, const std::string& name) {
 
 bool Section::has(std::string_view key) const { return state_->node(key) != nullptr; }
 
-std::vector<std::string> Section::keys() const {
-  std::vector<std::pair<toml::source_position, std::string>> found;
-  for (const auto& [key, node] : *state_->table) found.emplace_back(key.source().begin, std::string(key.str()));
-  std::sort(found.begin(), found.end());
-  std::vector<std::string> out;
-  for (auto& [position, key] : found) out.push_back(std::move(key));
-  return out;
-}
+std::vector<std::string> Section::keys() const { return keys_of(*state_->table); }
 
 Source Section::where(std::string_view key) const {
   for (const auto& [name, node] : *state_->table) {

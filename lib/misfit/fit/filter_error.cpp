@@ -50,13 +50,8 @@ RowMatrix visited_by_filter(const FilterEstimate& estimate) {
 /// Standard deviations of the logarithms of the noise parameters; 0 where a parameter sits at its bound or is not determined.
 std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
   const NoiseFit& fit = estimate.noise_fit;
-  constexpr double determined = 1.0;
   Eigen::MatrixXd information = fit.information;
-  std::vector<bool> known;
-  for (Eigen::Index i = 0; i < information.rows(); ++i) {
-    known.push_back(!fit.at_bound[static_cast<std::size_t>(i)] && information(i, i) > determined);
-    if (!known.back()) information(i, i) += 1e12;
-  }
+  const std::vector<bool> known = pin_unknown(fit, information);
   const Eigen::Index q = information.rows();
   const Eigen::MatrixXd covariance = estimate.joint_covariance.size() > 0
                                          ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q))
@@ -193,14 +188,14 @@ Eigen::MatrixXd covariance_of(const FilterEstimate& estimate) {
   const std::vector<int> free = estimate.model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c)
     problem.theta[static_cast<Eigen::Index>(c)] = estimate.model.parameters[static_cast<std::size_t>(free[c])].value;
+  problem.N = Eigen::MatrixXd::Zero(all, all);
   if (joint) {
     problem.N = estimate.joint_information;
+    problem.N.diagonal() -= problem.prior_precision;
   } else {
-    if (!invert_scaled(whole, problem.N)) return estimate.covariance;
-    for (const auto& p : estimate.penalties) problem.N.block(p.first, p.first, p.omega.rows(), p.omega.rows()) -= p.lambda * p.omega;
+    for (const auto& jacobian : estimate.jacobians) problem.N += jacobian.J.transpose() * jacobian.J;
   }
   problem.g = -problem.prior_precision.cwiseProduct(problem.theta - problem.prior_mean);
-  problem.N.diagonal() -= problem.prior_precision;
   for (const auto& p : estimate.penalties) {
     const auto size = p.omega.rows();
     problem.g.segment(p.first, size) -= p.lambda * (p.omega * problem.theta.segment(p.first, size));

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -169,9 +170,10 @@ class Estimation {
     Eigen::MatrixXd less = whole;
     const Eigen::Index q = restricted_.lost.rows();
     less.bottomRightCorner(q, q) -= restricted_.lost;
-    for (const Eigen::MatrixXd& information : {less, whole}) {
-      if (!invert_with(information, out_.penalties, out_.joint_covariance)) continue;
-      out_.joint_information = information;
+    const Bends bends = bends_of(whole.rows(), out_.penalties);
+    for (const Eigen::MatrixXd* information : std::array<const Eigen::MatrixXd*, 2>{&less, &whole}) {
+      if (!invert_with(*information, bends, out_.joint_covariance)) continue;
+      out_.joint_information = *information;
       return true;
     }
     return false;

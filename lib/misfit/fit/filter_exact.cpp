@@ -268,10 +268,7 @@ Eigen::MatrixXd joint_information(const FilterEstimate& estimate, const ExactDer
   priors.N = Eigen::MatrixXd::Zero(n, n);
   set_priors(estimate.model, priors);
   out.topLeftCorner(n, n).diagonal() += priors.prior_precision;
-  for (Eigen::Index i = n; i < out.rows(); ++i) {
-    constexpr double determined = 1.0, pin = 1e12;
-    if (estimate.noise_fit.at_bound[static_cast<std::size_t>(i - n)] || out(i, i) < determined) out(i, i) += pin;
-  }
+  pin_unknown(estimate.noise_fit, out);
   return out;
 }
 

@@ -37,10 +37,7 @@ class Paths {
   [[nodiscard]] Eigen::MatrixXd covariance(const Eigen::VectorXd& logs) const {
     const LinearisedRuns runs{&estimate_.forced, &estimate_.data, &estimate_.traces};
     Eigen::MatrixXd information = noise_information(runs, {logs.data(), logs.data() + logs.size()}, estimate_.around, threads_);
-    constexpr double determined = 1.0, pin = 1e12;
-    for (Eigen::Index i = 0; i < information.rows(); ++i) {
-      if (estimate_.noise_fit.at_bound[static_cast<std::size_t>(i)] || information(i, i) < determined) information(i, i) += pin;
-    }
+    pin_unknown(estimate_.noise_fit, information);
     return scale_.asDiagonal() * information.inverse() * scale_.asDiagonal();
   }
 

@@ -168,6 +168,18 @@ Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<
   return Scoring(runs, vector, threads).information(logs);
 }
 
+std::vector<bool> pin_unknown(const NoiseFit& fit, Eigen::MatrixXd& information) {
+  constexpr double determined = 1.0, pin = 1e12;
+  const Eigen::Index first = information.rows() - static_cast<Eigen::Index>(fit.at_bound.size());
+  std::vector<bool> known;
+  for (std::size_t i = 0; i < fit.at_bound.size(); ++i) {
+    double& own = information(first + static_cast<Eigen::Index>(i), first + static_cast<Eigen::Index>(i));
+    known.push_back(!fit.at_bound[i] && own > determined);
+    if (!known.back()) own += pin;
+  }
+  return known;
+}
+
 double minus_loglik(const LinearisedRuns& runs, const FilterNoise& noise) { return cost(run_all(runs, noise), counted(runs)); }
 
 }  // namespace misfit

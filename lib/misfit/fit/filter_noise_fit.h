@@ -32,6 +32,10 @@ struct NoiseFit {
 [[nodiscard]] Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around,
                                                 int threads);
 
+/// Pins, in an information whose last rows are those of `fit`'s logarithms, what is at its bound or so unknown that the data do not even
+/// know the logarithm to one unit (the shape of something that is not there). Returned: which logarithms are known.
+std::vector<bool> pin_unknown(const NoiseFit& fit, Eigen::MatrixXd& information);
+
 /// −log-likelihood of the noise about the runs.
 [[nodiscard]] double minus_loglik(const LinearisedRuns& runs, const FilterNoise& noise);
 

@@ -45,12 +45,11 @@ Bends bends_of(Eigen::Index columns, const std::vector<Penalty>& penalties) {
   return out;
 }
 
-bool invert_with(const Eigen::MatrixXd& information, const std::vector<Penalty>& penalties, Eigen::MatrixXd& inverse) {
-  const auto [turn, turned] = bends_of(information.rows(), penalties);
-  Eigen::MatrixXd H = turn.transpose() * information * turn, inside;
-  for (const auto& p : turned) H.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
+bool invert_with(const Eigen::MatrixXd& information, const Bends& bends, Eigen::MatrixXd& inverse) {
+  Eigen::MatrixXd H = bends.turn.transpose() * information * bends.turn, inside;
+  for (const auto& p : bends.penalties) H.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
   if (!invert_scaled(H, inside)) return false;
-  inverse = turn * inside * turn.transpose();
+  inverse = bends.turn * inside * bends.turn.transpose();
   return true;
 }
 
@@ -78,9 +77,10 @@ std::vector<Penalty> curve_penalties(const Model& model) {
 Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, double sigma2_given) {
   Smoothed out;
   double sigma2 = sigma2_given > 0.0 ? sigma2_given : std::max(problem.rss / std::max(problem.count, 1.0), 1e-300);
+  Bends bends = bends_of(problem.N.rows(), penalties);
   constexpr int most = 60;
   for (int round = 0; round < most; ++round) {
-    if (!invert_with(precision_of(problem, {}, sigma2), penalties, out.covariance)) return out;
+    if (!invert_with(precision_of(problem, {}, sigma2), bends, out.covariance)) return out;
     Eigen::VectorXd b = (problem.N * problem.theta - problem.g) / sigma2;
     b += problem.prior_precision.cwiseProduct(problem.prior_mean);
     out.theta = out.covariance * b;
@@ -90,7 +90,8 @@ Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, doub
     out.sigma2 = sigma2;
     out.ok = true;
     double change = 0.0;
-    for (auto& p : penalties) {
+    for (std::size_t k = 0; k < penalties.size(); ++k) {
+      Penalty& p = penalties[k];
       if (!p.chosen) continue;
       const auto size = p.omega.rows();
       const Eigen::VectorXd c = out.theta.segment(p.first, size);
@@ -99,7 +100,7 @@ Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, doub
       const double target = std::max(p.rank - p.lambda * trace, 1e-3) / quadratic;
       const double next = std::min(std::clamp(target, p.lambda * 1e-2, p.lambda * 1e2), std::max(stiffest(problem, p, sigma2), 1e-300));
       change = std::max(change, std::abs(std::log(next / p.lambda)));
-      p.lambda = next;
+      p.lambda = bends.penalties[k].lambda = next;
     }
     if (sigma2_given <= 0.0) {
       const double next = std::max(out.rss / std::max(problem.count - out.edf, 1.0), 1e-300);

@@ -68,8 +68,8 @@ struct Bends {
 };
 [[nodiscard]] Bends bends_of(Eigen::Index columns, const std::vector<Penalty>& penalties);
 
-/// Inverse of `information` + λ Ω of all penalties, taken in their Bends. False as above.
-[[nodiscard]] bool invert_with(const Eigen::MatrixXd& information, const std::vector<Penalty>& penalties, Eigen::MatrixXd& inverse);
+/// Inverse of `information` + λ Ω of all penalties (neither is turned), taken in the bends. False as above.
+[[nodiscard]] bool invert_with(const Eigen::MatrixXd& information, const Bends& bends, Eigen::MatrixXd& inverse);
 
 /// Maximises the marginal likelihood over the λ marked `chosen` and σ² for the linearised problem [FS], updating `penalties`. With
 /// `sigma2_given` > 0 the variance is kept.

@@ -113,14 +113,15 @@ Linearised turned(const Linearised& problem, const Eigen::MatrixXd& turn, double
 
 Eigen::MatrixXd with_uncertain_roughness(const Linearised& problem, const std::vector<Penalty>& penalties, double sigma2,
                                          const Eigen::MatrixXd& excess) {
+  const Bends bends = bends_of(problem.N.rows(), penalties);
+  const Eigen::MatrixXd& turn = bends.turn;
   if (!penalties.empty()) {
-    const auto [turn, bends] = bends_of(problem.N.rows(), penalties);
     const Eigen::MatrixXd more = excess.size() > 0 ? Eigen::MatrixXd(turn.transpose() * excess * turn) : excess;
-    if (const Eigen::MatrixXd out = Mixture(turned(problem, turn, sigma2), bends, sigma2, more).run(); out.size() > 0)
+    if (const Eigen::MatrixXd out = Mixture(turned(problem, turn, sigma2), bends.penalties, sigma2, more).run(); out.size() > 0)
       return turn * out * turn.transpose();
   }
   Eigen::MatrixXd plain;
-  if (!invert_with(precision_of(problem, {}, sigma2), penalties, plain)) return {};
+  if (!invert_with(precision_of(problem, {}, sigma2), bends, plain)) return {};
   if (excess.size() > 0) plain += plain * excess * plain;
   return plain;
 }

@@ -10,9 +10,9 @@ namespace misfit {
 
 /// Columns of a recording (any units) → what a model measures and is driven by, in SI. Outputs are looked for under their names in the
 /// system, through `columns`; so are inputs that the model needs. An input NAME_rate that is not there is differentiated from NAME (angles
-/// are unwrapped first). Gaps of inputs are bridged linearly and the samples inside are not used; inputs with a delay
-/// are shifted by it. Rows without time are dropped; time that
-/// runs backwards is an InputError with the line. All of it is said in `notes`. RunError if no sample is left.
+/// are unwrapped first). Gaps of inputs are bridged linearly and the samples inside are not used; inputs with a delay are shifted by it.
+/// Rows without time are dropped; time that runs backwards is an InputError with the line. All of it is said in `notes`. RunError if no
+/// sample is left.
 [[nodiscard]] Signals signals_from(const Table& table, const Model& model, const ExperimentStudy& study);
 
 /// The attitude as a recording in SI: t, theta, psi, alpha, beta, alpha_T, eta, phi (unwrapped) and phi_rate.

@@ -32,8 +32,7 @@ enum class Hold { zero_order, first_order };  ///< how an input runs between its
 struct InputSpec {
   std::string name, unit, doc;
   Hold hold = Hold::first_order;
-  double delay =
-      0.0;  ///< [s] the system sees what was recorded this much earlier (signals_from); one to be estimated is the effect `delay`
+  double delay = 0.0;  ///< [s] the system sees what was recorded this much earlier (signals_from)
 };
 
 /// A named function of state, input, time and quantity ports. The first `base_quantities` of a system do not depend on quantity ports.
