@@ -21,12 +21,6 @@ void add_scale(const Prepared& form, Fit& fit) {
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
 }
 
-void damping_to_zero(Model& model) {
-  const Curve* damping = model.find_curve(model.system->spec().damping_curve);
-  if (damping == nullptr) return;
-  for (int i = 0; i < damping->spline.size(); ++i) model.parameters[static_cast<std::size_t>(damping->first + i)].value = 0.0;
-}
-
 void add_notes(const Prepared& prepared, Fit& fit) {
   for (const auto& experiment : prepared.experiments) {
     for (const auto& note : experiment.notes) fit.facts["data: " + experiment.name + ": " + note] = note;
@@ -48,7 +42,7 @@ std::shared_ptr<const FilterWork> Methods::run_filter_error() {
   work->prepared = prepared();
   FilterOptions options;
   options.threads = session_.options.threads;
-  FilterError result = filter_error(started().first, work->prepared.experiments, options);
+  FilterError result = filter_error(started().from, work->prepared.experiments, options);
   work->fit = std::move(result.fit);
   work->estimate = std::move(result.estimate);
   add_notes(work->prepared, work->fit);
@@ -83,33 +77,8 @@ Fit Methods::run_sliding_bin() {
   return fit;
 }
 
-/// The regression with every shape (a clock angle, a frequency) where the study puts it: linear, so that no start is lost in a valley of
-/// another shape. Its parameters are then as free as the study says.
-FittedModel Methods::with_shapes_kept() {
-  const Model& asked = prepared().model;
-  Model kept = asked;
-  bool any = false;
-  for (auto& p : kept.parameters) {
-    const bool shape = p.free && p.curve < 0 && p.kind == CoefficientKind::shape;
-    if (shape) p.free = false;
-    any = any || shape;
-  }
-  if (!any) return regression();
-  FittedModel start = equation_error(kept, prepared().experiments);
-  for (std::size_t i = 0; i < asked.parameters.size(); ++i) start.model.parameters[i].free = asked.parameters[i].free;
-  std::vector<Penalty> penalties = curve_penalties(start.model);
-  for (std::size_t k = 0; k < penalties.size(); ++k) penalties[k].lambda = start.penalties[k].lambda;
-  start.penalties = std::move(penalties);
-  return start;
-}
-
-/// Where the trajectory methods start, and whether the regression gave it.
-std::pair<FittedModel, bool> Methods::started() {
-  FittedModel start = with_shapes_kept();
-  const bool regressed = start.fit.status != FitStatus::declined && start.fit.status != FitStatus::failed;
-  // Of a regression on driven motion only the static curve means something (DESIGN 5).
-  if (regressed && start.fit.driven) damping_to_zero(start.model);
-  return {std::move(start), regressed};
+TrajectoryStart Methods::started() {
+  return trajectory_start(prepared().model, prepared().experiments, [this]() -> const FittedModel& { return regression(); });
 }
 
 FittedModel Methods::run_output_error() {

@@ -3,11 +3,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/stages.h"
 #include "misfit/fit/sliding_bin.h"
+#include "misfit/fit/trajectory_start.h"
 
 namespace misfit {
 
@@ -25,8 +25,7 @@ class Methods {
 
  private:
   [[nodiscard]] Fit run_sliding_bin();
-  [[nodiscard]] FittedModel with_shapes_kept();
-  [[nodiscard]] std::pair<FittedModel, bool> started();
+  [[nodiscard]] TrajectoryStart started();
 
   Session& session_;
   std::optional<Prepared> prepared_;

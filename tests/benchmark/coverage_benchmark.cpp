@@ -20,6 +20,7 @@
 #include "misfit/fit/curves.h"
 #include "misfit/fit/filter_error.h"
 #include "misfit/fit/output_error.h"
+#include "misfit/fit/trajectory_start.h"
 #include "misfit_models_registry.h"
 #include "tests/benchmark/coverage_flights.h"
 #include "tests/benchmark/coverage_table.h"
@@ -57,24 +58,13 @@ CurveValue at(const std::vector<CurveEstimate>& curves, const std::string& name,
   return {std::nan(""), 0.0};
 }
 
-/// Equation error with shapes kept where they start, as misfit's fit does.
-FittedModel start_of(const Model& asked, const std::vector<Signals>& experiments) {
-  Model kept = asked;
-  for (auto& p : kept.parameters) {
-    if (p.curve < 0 && p.kind == CoefficientKind::shape) p.free = false;
-  }
-  FittedModel start = equation_error(kept, experiments);
-  for (std::size_t i = 0; i < asked.parameters.size(); ++i) start.model.parameters[i].free = asked.parameters[i].free;
-  return start;
-}
-
 struct Answer {
   Fit fit;
   std::vector<CurveEstimate> plain;  ///< as if the residuals were white; empty where the method knows no other
 };
 
 Answer estimated(const std::string& method, const Model& asked, const std::vector<Signals>& experiments) {
-  const FittedModel start = start_of(asked, experiments);
+  const FittedModel start = trajectory_start(asked, experiments).from;
   if (method == "output_error") {
     FittedModel fitted = output_error(start, experiments);
     Fit plain;
