@@ -101,8 +101,8 @@ std::vector<std::string> verb_names() {
 
 /// Verbs that are one job would do it several times over, in one folder.
 void refuse_ranks(const std::string& verb) {
-  if (ranks_started() > 1 && verb != "uncertainty" && verb != "batch")
-    throw InputError("'" + verb + "' is not for several processes: under mpirun there are uncertainty and batch");
+  if (ranks_started() > 1 && verb != "uncertainty" && verb != "batch" && verb != "discover")
+    throw InputError("'" + verb + "' is not for several processes: under mpirun there are uncertainty, batch and discover");
 }
 
 int dispatch(int argc, char** argv, const Registry& registry) {

@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <iostream>
+#include <optional>
 
 #include "apps/ladder.h"
 #include "apps/print.h"
 #include "apps/verbs.h"
+#include "misfit/core/error.h"
+#include "misfit/core/ranks.h"
 
 namespace misfit {
 namespace {
@@ -46,10 +49,23 @@ int climb(Climb& ladder, const Registry& registry, bool json) {
 }  // namespace
 
 int discover_verb(const Options& options, const Registry& registry) {
-  Climb ladder(options, registry);
-  if (options.automatic) return climb(ladder, registry, options.json);
-  Session& session = ladder.top();
+  Options own = options;
+  own.quiet = options.quiet || !ranks().first();
+  if (options.automatic && ranks().size() > 1)
+    throw InputError("discover --auto is not for several processes: its rungs come one after the other; under mpirun there is discover");
+  // The fit that discovery starts from is written by one rank only; the others find it done.
+  std::optional<Climb> ladder;
+  on_first_rank([&] {
+    ladder.emplace(own, registry);
+    if (filter_declined(ladder->top())) refuse_declined(ladder->top());
+  });
+  if (own.threads == 0) own.threads = threads_of_rank();
+  if (!ladder) ladder.emplace(own, registry);
+  if (options.automatic) return climb(*ladder, registry, options.json);
+  Session& session = ladder->top();
+  session.options.threads = own.threads;
   const Discovery discovery = discovered(session);
+  if (!ranks().first()) return 0;
   if (options.json) {
     print_file(session.folder.file("candidates.json"));
     return 0;

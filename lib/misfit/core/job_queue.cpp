@@ -27,11 +27,6 @@ std::vector<fs::path> checkpoints_in(const fs::path& folder) {
   return files;
 }
 
-int threads_of(const StoredJobs& jobs) {
-  if (jobs.threads > 0) return jobs.threads;
-  return ranks().size() > 1 ? 1 : 0;
-}
-
 /// Numbers of the jobs of this rank that nobody has done yet.
 std::vector<std::size_t> left_to_do(const StoredJobs& jobs) {
   std::vector<bool> done(jobs.count, false);
@@ -83,7 +78,7 @@ std::optional<JobResults> run_stored_jobs(const StoredJobs& jobs, const std::fun
     const auto told = [&](std::size_t done, std::size_t) {
       if (progress) progress(before + done, own);
     };
-    finished = run_jobs(left.size(), threads_of(jobs), one, told, stop);
+    finished = run_jobs(left.size(), jobs.threads > 0 ? jobs.threads : threads_of_rank(), one, told, stop);
     writer.sync();
   }
   if (!ranks().agree(finished)) return std::nullopt;

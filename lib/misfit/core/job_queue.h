@@ -16,7 +16,7 @@ struct StoredJobs {
   std::filesystem::path folder;  ///< of the checkpoints, made if it is not there; on a disk that all ranks see
   std::string digest;            ///< one word: hash of all that a result depends on but its number; others' results are not taken
   std::size_t count = 0;         ///< may grow from one run to the next: what is there is kept
-  int threads = 0;               ///< of this process; 0: one per core, and one where there are several ranks
+  int threads = 0;               ///< of this process; 0: one per core, or this rank's share of them
 };
 
 /// Results on disk, by number of the job. Holds 16 bytes per job; a result is read when it is asked for.

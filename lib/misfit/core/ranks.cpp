@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <thread>
 
 #include "misfit/core/module.h"
 
@@ -24,6 +25,12 @@ Ranks& load() {
   return *static_cast<const mpi_module::Entry*>(entry)->start();
 }
 
+/// At least 1.
+int number_from(const char* variable) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? 1 : std::max(1, std::atoi(text));
+}
+
 Ranks& started() {
   static Alone alone;
   return ranks_started() > 1 ? load() : alone;
@@ -31,9 +38,12 @@ Ranks& started() {
 
 }  // namespace
 
-int ranks_started() {
-  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
-  return size == nullptr ? 1 : std::max(1, std::atoi(size));
+int ranks_started() { return number_from("OMPI_COMM_WORLD_SIZE"); }
+
+int threads_of_rank() {
+  if (ranks_started() == 1) return 0;
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());  // those that mpirun leaves to this rank
+  return std::max(1, cores / number_from("OMPI_COMM_WORLD_LOCAL_SIZE"));
 }
 
 Ranks& ranks() {

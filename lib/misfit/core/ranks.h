@@ -33,6 +33,9 @@ void end_ranks(int status);
 /// How many ranks mpirun has started, without starting MPI: 1 without mpirun.
 [[nodiscard]] int ranks_started();
 
+/// Threads of this rank where nobody said how many: its share of the machine's cores. 0, one per core, without mpirun.
+[[nodiscard]] int threads_of_rank();
+
 /// Thrown on the ranks that were waiting for one that failed: that one says why.
 class EndedElsewhere : public std::exception {
  public:

@@ -5,12 +5,14 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/ranks.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/discover/accept.h"
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/likeness.h"
+#include "misfit/discover/refit_jobs.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/math/statistics.h"
 
@@ -35,6 +37,7 @@ class Search {
     families_ = static_cast<double>(screened_.size() + unknown_.size());
     rank();
     refit_best();
+    if (options_.refits && !ranks().first()) return {};
     left_ = accept_best(entries_, {estimate_, registry_, experiments_, options_, families_});
     list_unknown();
     describe_search();
@@ -102,17 +105,21 @@ class Search {
     };
     const auto most = static_cast<std::size_t>(options_.most_refits);
     const std::size_t count = std::min(most, static_cast<std::size_t>(std::count_if(entries_.begin(), entries_.end(), worth_it)));
-    const ProgressFn progress = part(end_of_curves, end_of_refits);
-    std::size_t refits = 0;
+    std::vector<Entry*> chosen;
+    std::vector<const Screened*> effects;
     for (auto& e : entries_) {
-      if (refits >= count) break;
+      if (chosen.size() >= count) break;
       if (!worth_it(e)) continue;
-      const OneStep step = one_step(estimate_, score_, *e.screened, registry_, options_.threads);
-      e.candidate.predicted_drop = step.drop;
-      e.refit = refit(estimate_, experiments_, *e.screened, registry_, options_.threads, step);
-      take_refit(e);
-      ++refits;
-      if (progress) progress(refits, count);
+      chosen.push_back(&e);
+      effects.push_back(e.screened);
+    }
+    auto refits = refit_all({estimate_, score_, experiments_, registry_}, effects, options_.threads, options_.refits,
+                            part(end_of_curves, end_of_refits), options_.stop);
+    if (!refits) throw RunError("discover: stopped before all refits were done");
+    for (std::size_t k = 0; k < refits->size(); ++k) {  // none on ranks other than the first
+      chosen[k]->candidate.predicted_drop = (*refits)[k].predicted_drop;
+      chosen[k]->refit = std::move((*refits)[k].refit);
+      take_refit(*chosen[k]);
     }
     sort_entries();
   }

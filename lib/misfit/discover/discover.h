@@ -3,9 +3,10 @@
 // References
 //   [D]  R. B. Davies, Biometrika 74 (1987): tests when a nuisance parameter is present only under the alternative.
 
+#include <optional>
 #include <string>
 
-#include "misfit/core/work_queue.h"
+#include "misfit/core/job_queue.h"
 #include "misfit/data/calibration.h"
 #include "misfit/data/candidates.h"
 #include "misfit/fit/filter_estimate.h"
@@ -20,13 +21,17 @@ struct DiscoverOptions {
   int most_refits = 6;
   std::string only;  ///< key of an effect: it alone is screened, and the drop of one Gauss–Newton step predicted; nothing is refitted
   ProgressFn progress = {};  ///< called with (done, total) as the search goes on
+  /// Where refits are kept as they end, to be shared by ranks and found again by a search that was stopped; nullopt: in memory.
+  std::optional<StoredJobs> refits = std::nullopt;
+  const std::atomic<bool>* stop = nullptr;  ///< between refits
 };
 
 /// Ranks what the model could lack (DESIGN 6): score tests of every effect in the registry that suits the system and of unknown curves,
 /// with shapes scanned; refits of those worth it; groups that the data cannot separate; acceptance by family-wise p-value and held-out
 /// gain. `request` is what the estimate's model was assembled from. With `only` the answer holds that one candidate, its p-value corrected
 /// for all families a whole search would look at; no candidate where the effect cannot be screened (it has no strength, does not suit the
-/// system, is driven by noise, or another effect stands for it).
+/// system, is driven by noise, or another effect stands for it). With `refits` the answer of ranks other than the first is empty.
+/// RunError: stopped.
 [[nodiscard]] Discovery discover(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                  const std::vector<Signals>& experiments, const DiscoverOptions& options = {});
 

@@ -24,31 +24,6 @@ std::vector<Penalty> same_roughness(const Model& model, const FilterEstimate& fr
   return out;
 }
 
-/// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
-Model start_model(const FilterEstimate& without, const Screened& screened, const Registry& registry) {
-  const Specimen& specimen = *screened.specimen;
-  Model model = assemble(specimen.request, registry);
-  for (std::size_t i = 0; i < without.model.parameters.size(); ++i) {  // the effect's own follow behind; names may have changed
-    model.parameters[i].value = without.model.parameters[i].value;
-    model.parameters[i].free = without.model.parameters[i].free;
-  }
-  for (std::size_t i = 0; i < specimen.strengths.size(); ++i) {
-    Parameter& p = model.parameters[static_cast<std::size_t>(specimen.strengths[i])];
-    const auto k = static_cast<Eigen::Index>(i);
-    p.value = std::clamp(screened.result.amplitude[k], p.lower, p.upper);
-    p.free = true;
-    if (specimen.priors.precision[k] > 0.0) {
-      p.prior_sigma = 1.0 / std::sqrt(specimen.priors.precision[k]);
-      p.prior_mean = specimen.priors.mean[k];
-    }
-  }
-  for (std::size_t i = 0; i < screened.cell.size(); ++i) {
-    const int shape = i < specimen.shapes.size() ? specimen.shapes[i] : specimen.frequency;
-    model.parameters[static_cast<std::size_t>(shape)].value = screened.cell[i];
-  }
-  return model;
-}
-
 /// log prior of the effect being off: its strengths at 0.
 double prior_of_off(const Specimen& specimen) {
   double sum = 0.0;
@@ -88,6 +63,30 @@ std::vector<std::vector<Use>> without_last_quarter(const FilterEstimate& estimat
 }
 
 }  // namespace
+
+Model start_model(const FilterEstimate& without, const Screened& screened, const Registry& registry) {
+  const Specimen& specimen = *screened.specimen;
+  Model model = assemble(specimen.request, registry);
+  for (std::size_t i = 0; i < without.model.parameters.size(); ++i) {  // the effect's own follow behind; names may have changed
+    model.parameters[i].value = without.model.parameters[i].value;
+    model.parameters[i].free = without.model.parameters[i].free;
+  }
+  for (std::size_t i = 0; i < specimen.strengths.size(); ++i) {
+    Parameter& p = model.parameters[static_cast<std::size_t>(specimen.strengths[i])];
+    const auto k = static_cast<Eigen::Index>(i);
+    p.value = std::clamp(screened.result.amplitude[k], p.lower, p.upper);
+    p.free = true;
+    if (specimen.priors.precision[k] > 0.0) {
+      p.prior_sigma = 1.0 / std::sqrt(specimen.priors.precision[k]);
+      p.prior_mean = specimen.priors.mean[k];
+    }
+  }
+  for (std::size_t i = 0; i < screened.cell.size(); ++i) {
+    const int shape = i < specimen.shapes.size() ? specimen.shapes[i] : specimen.frequency;
+    model.parameters[static_cast<std::size_t>(shape)].value = screened.cell[i];
+  }
+  return model;
+}
 
 OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Screened& screened, const Registry& registry, int threads) {
   Model model = start_model(without, screened, registry);

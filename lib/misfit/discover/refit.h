@@ -16,6 +16,9 @@ struct Refit {
   std::map<std::string, Estimate> parameters;  ///< of the effect
 };
 
+/// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
+[[nodiscard]] Model start_model(const FilterEstimate& without, const Screened& screened, const Registry& registry);
+
 /// One Gauss–Newton step of all parameters from the estimate with the effect at its screened strength: the model is run there once and the
 /// noise fitted about that run, since what is explained leaves the random force.
 struct OneStep {

@@ -1,6 +1,9 @@
 // misfit_mpi.so: the only thing that is linked to MPI, loaded when mpirun has started the program (core/ranks.h).
 #include <mpi.h>
 
+#include <chrono>
+#include <thread>
+
 #include "misfit/core/ranks.h"
 
 namespace {
@@ -15,8 +18,12 @@ class Mpi : public misfit::Ranks {
   [[nodiscard]] int rank() const override { return rank_; }
   [[nodiscard]] int size() const override { return size_; }
   [[nodiscard]] bool agree(bool ok) override {
-    int mine = ok ? 1 : 0, all = 0;
-    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    int mine = ok ? 1 : 0, all = 0, done = 0;
+    MPI_Request request{};
+    MPI_Iallreduce(&mine, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD, &request);
+    // MPI itself would wait at full speed and take the core from a rank that still works.
+    for (MPI_Test(&request, &done, MPI_STATUS_IGNORE); done == 0; MPI_Test(&request, &done, MPI_STATUS_IGNORE))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     agreed_on_failure_ = all == 0;
     return all == 1;
   }

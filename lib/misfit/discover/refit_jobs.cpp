@@ -1,0 +1,73 @@
+#include "misfit/discover/refit_jobs.h"
+
+#include <type_traits>
+
+#include "misfit/core/ranks.h"
+#include "misfit/fit/filter_bytes.h"
+
+namespace misfit {
+
+template <class Bytes, class Data>
+  requires std::is_same_v<std::remove_const_t<Data>, Estimate>
+void fields(Bytes& bytes, Data& estimate) {
+  auto& [value, sigma, unit, interval] = estimate;
+  bytes(value, sigma, unit, interval);
+}
+
+namespace {
+
+SteppedRefit stepped(const RefitWork& work, const Screened& effect, int threads) {
+  const OneStep step = one_step(work.without, work.score, effect, work.registry, threads);
+  return {step.drop, refit(work.without, work.experiments, effect, work.registry, threads, step)};
+}
+
+}  // namespace
+
+std::string pack(const SteppedRefit& result, const Screened& effect) {
+  const auto& [ok, why, drop, estimate, request, parameters] = result.refit;
+  static_cast<void>(request);  // the specimen's
+  ByteWriter bytes;
+  bytes(effect.specimen->effect, effect.specimen->roles, result.predicted_drop, ok, why, drop, parameters);
+  if (ok) write_estimate(bytes, estimate);
+  return bytes.take();
+}
+
+SteppedRefit unpack_refit(std::string_view from, const RefitWork& work, const Screened& effect) {
+  ByteReader bytes(from);
+  SteppedRefit out;
+  std::string name;
+  std::map<std::string, std::string> roles;
+  bytes(name, roles, out.predicted_drop, out.refit.ok, out.refit.why, out.refit.drop, out.refit.parameters);
+  if (name != effect.specimen->effect || roles != effect.specimen->roles)
+    throw RunError("a stored refit is of '" + name + "' and not of '" + effect.specimen->effect + "'");
+  out.refit.request = effect.specimen->request;
+  if (out.refit.ok) out.refit.estimate = read_estimate(bytes, start_model(work.without, effect, work.registry), work.experiments);
+  if (!bytes.at_end()) throw RunError("a stored refit of '" + name + "' is too long");
+  return out;
+}
+
+std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const std::vector<const Screened*>& effects, int threads,
+                                                   const std::optional<StoredJobs>& stored, const ProgressFn& progress,
+                                                   const std::atomic<bool>* stop) {
+  const int within = effects.size() > 1 || ranks_started() > 1 ? 1 : threads;
+  const auto one = [&](std::size_t k) { return stepped(work, *effects[k], within); };
+  std::vector<SteppedRefit> out;
+  if (!stored) {
+    out.resize(effects.size());
+    if (!run_jobs(
+            out.size(), threads, [&](std::size_t k) { out[k] = one(k); }, progress, stop))
+      return std::nullopt;
+    return out;
+  }
+  StoredJobs all = *stored;
+  all.count = effects.size();
+  all.threads = threads;
+  const auto results = run_stored_jobs(
+      all, [&](std::size_t k) { return pack(one(k), *effects[k]); }, progress, stop);
+  if (!results) return std::nullopt;
+  if (!ranks().first()) return out;
+  for (std::size_t k = 0; k < effects.size(); ++k) out.push_back(unpack_refit(results->result(k), work, *effects[k]));
+  return out;
+}
+
+}  // namespace misfit

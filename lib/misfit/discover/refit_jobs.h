@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/core/job_queue.h"
+#include "misfit/discover/refit.h"
+
+namespace misfit {
+
+/// One effect refitted from where one step leads, and the drop of that step.
+struct SteppedRefit {
+  double predicted_drop = 0.0;
+  Refit refit;
+};
+
+/// What refits have in common.
+struct RefitWork {
+  const FilterEstimate& without;
+  const ScoreTest& score;
+  const std::vector<Signals>& experiments;
+  const Registry& registry;
+};
+
+/// A job each, in the order of `effects`; the answer does not depend on threads and ranks.
+///
+/// With `stored` (its `count` is told by the effects) each is on disk when it ends and the ranks share them (run_stored_jobs()): a search
+/// begun again goes on; on ranks other than the first the answer is empty. nullopt if `stop` became true before all were done.
+[[nodiscard]] std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const std::vector<const Screened*>& effects,
+                                                                 int threads, const std::optional<StoredJobs>& stored,
+                                                                 const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
+
+/// To the last bit, and back beside what it was made of. RunError: the bytes are of another refit.
+[[nodiscard]] std::string pack(const SteppedRefit& result, const Screened& effect);
+[[nodiscard]] SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const Screened& effect);
+
+}  // namespace misfit
