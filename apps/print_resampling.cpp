@@ -32,12 +32,22 @@ std::string profile_text(const LikelihoodProfile& p) {
   return out;
 }
 
+std::string starts_text(const MultiStart& s) {
+  std::string out = fmt::format("\nrandom starts of {}: {} of {} end at the fit's maximum, {} lower, {} higher, {} nowhere\n", s.method,
+                                s.same, s.runs, s.lower, s.higher, s.failed);
+  for (const auto& words : s.words) out += wrap_text((s.higher > 0 ? "! " : "") + words, 110, "  ") + "\n";
+  for (const auto& [reason, runs] : s.failures)
+    out += wrap_text(fmt::format("{} of {} starts: {}", runs, s.runs, reason), 110, "  ") + "\n";
+  return out;
+}
+
 }  // namespace
 
 std::string resampling_text(const Resampling& r) {
   std::string out;
   for (const auto& b : r.bootstraps) out += bootstrap_text(b);
   for (const auto& p : r.profiles) out += profile_text(p);
+  for (const auto& s : r.starts) out += starts_text(s);
   for (const auto& note : r.notes) out += "\n" + wrap_text("! " + note, 110, "  ") + "\n";
   return out;
 }

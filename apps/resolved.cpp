@@ -223,6 +223,7 @@ void add_uncertainty(const Study& study, std::string& text) {
   }
   if (u.bootstrap > 0) text += fmt::format("bootstrap = {}\n", u.bootstrap);
   if (u.block > 0) text += fmt::format("block = {}\n", u.block);
+  if (u.starts > 0) text += fmt::format("starts = {}\n", u.starts);
   if (!u.profile.empty()) text += "profile = " + list_of(u.profile) + "\n";
   text += "perturb = { " + perturb + " }  # in SI\nreadings = { " + readings + " }\n";
 }

@@ -1,4 +1,4 @@
-// Block bootstrap and profile likelihood of [uncertainty].
+// Block bootstrap, profile likelihood and random starts of [uncertainty].
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,6 +16,7 @@
 #include "misfit/fit/held.h"
 #include "misfit/report/figures_intervals.h"
 #include "misfit/uncertainty/bootstrap.h"
+#include "misfit/uncertainty/multi_start.h"
 #include "misfit/uncertainty/profile.h"
 
 namespace misfit {
@@ -57,6 +58,7 @@ Inputs inputs_of(const Session& session) {
   inputs["methods"] = fmt::format("{}", fmt::join(session.methods(), " "));
   inputs["seed"] = std::to_string(session.study.seed);
   inputs["bootstrap"] = fmt::format("{} runs, block {}", wishes.bootstrap, wishes.block);
+  inputs["starts"] = std::to_string(wishes.starts);
   inputs["profile"] = fmt::format("{}", fmt::join(wishes.profile, " "));
   return inputs;
 }
@@ -75,7 +77,7 @@ class Work {
       }
       resample(method);
     }
-    if (ranks().first() && out_.bootstraps.empty() && out_.profiles.empty())
+    if (ranks().first() && out_.bootstraps.empty() && out_.profiles.empty() && out_.starts.empty())
       throw RunError(fmt::format("no method asked for could be resampled: {}", fmt::join(out_.notes, "; ")));
     return std::move(out_);
   }
@@ -108,14 +110,15 @@ class Work {
       out_.notes.push_back(method + " has not converged (" + s.fit.message + "): what is resampled starts from there");
     if (wishes_.bootstrap > 0) add_bootstrap(s);
     if (!wishes_.profile.empty() && has_likelihood(method)) add_profiles(s);
+    if (wishes_.starts > 0 && has_likelihood(method)) add_starts(s);
   }
 
   /// `wish`: what of [uncertainty] a job's result depends on. Other methods do not matter to it, nor how many runs there are.
-  [[nodiscard]] StoredJobs jobs(const std::string& what, const std::string& method, const std::string& wish) const {
+  [[nodiscard]] StoredJobs jobs(const std::string& what, const std::string& method, const std::string& wish, std::size_t count = 0) const {
     Inputs inputs = inputs_of_jobs(session_, stage, {"uncertainty"});
     inputs["methods"] = method;
     inputs["wish"] = wish;
-    return {session_.folder.file(what + "_" + method), digest_of(inputs), 0, session_.options.threads};
+    return {session_.folder.file(what + "_" + method), digest_of(inputs), count, session_.options.threads};
   }
 
   template <class Result>
@@ -137,7 +140,8 @@ class Work {
     Progress progress(fmt::format("bootstrap of {}, {} runs", s.from.method, wishes_.bootstrap), session_.options.quiet);
     const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
     const auto results =
-        finished(stored_runs(*bootstrap, jobs("bootstrap", s.from.method, fmt::format("block {}", wishes_.block)), told, &interrupted()));
+        finished(stored_runs([&](std::size_t k) { return bootstrap->run(k); },
+                             jobs("bootstrap", s.from.method, fmt::format("block {}", wishes_.block), options.runs), told, &interrupted()));
     if (ranks().first()) attempt(s.from.method, [&] { out_.bootstraps.push_back(bootstrap->summary(results)); });
   }
 
@@ -150,6 +154,30 @@ class Work {
     for (auto& profile : finished(stored_profiles(
              requests, jobs("profile", s.from.method, fmt::format("{}", fmt::join(wishes_.profile, " "))), told, &interrupted())))
       out_.profiles.push_back(std::move(profile));
+  }
+
+  void add_starts(const Started& s) {
+    MultiStartOptions options;
+    options.runs = static_cast<std::size_t>(wishes_.starts);
+    options.seed = static_cast<unsigned long long>(session_.study.seed);
+    const std::vector<Signals>& experiments = methods_.prepared().experiments;
+    const SearchFrom search = [&](const std::vector<double>& values) {
+      const Reached end = maximum_from(s.from, values, experiments);
+      return Maximum{end.objective, end.why, end.at.fitted.model.values()};
+    };
+    std::optional<MultiStarts> starts;
+    const bool possible = attempt(s.from.method, [&] {
+      const Reached best = maximum_near(s.from, experiments);
+      if (!best.objective) throw RunError("starts: it cannot be fitted again where it ended: " + best.why);
+      starts.emplace(s.fit, s.from.fitted.model, *best.objective, search, options);
+    });
+    if (!possible) return;
+    Progress progress(fmt::format("{} random starts of {}", wishes_.starts, s.from.method), session_.options.quiet);
+    const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    const auto results =
+        finished(stored_runs([&](std::size_t k) { return starts->run(k); },
+                             jobs("starts", s.from.method, "from the model's typical sizes", options.runs), told, &interrupted()));
+    if (ranks().first()) attempt(s.from.method, [&] { out_.starts.push_back(starts->summary(results)); });
   }
 
   ProfileRequest request_for(const Started& s, const std::string& parameter) {
@@ -191,6 +219,10 @@ void write(Session& session, const Resampling& r, double seconds) {
     write_profiles(dir, r.profiles);
     outputs.emplace_back("profile.json");
   }
+  if (session.study.uncertainty->starts > 0) {
+    write_multi_starts(dir, r.starts);
+    outputs.emplace_back("starts.json");
+  }
   for (const auto& file : report::write_interval_figures(session.folder.file("figures"), r)) outputs.push_back("figures/" + file);
   session.folder.record({stage, session.options.command, inputs_of(session), outputs, seconds, "", ""});
 }
@@ -199,13 +231,16 @@ Resampling read(const Session& session) {
   const std::filesystem::path dir = session.folder.path();
   const UncertaintyStudy& wishes = *session.study.uncertainty;
   return {wishes.bootstrap > 0 ? read_bootstrap(dir) : std::vector<Bootstrap>{},
-          wishes.profile.empty() ? std::vector<LikelihoodProfile>{} : read_profiles(dir), read_resampling_notes(dir)};
+          wishes.profile.empty() ? std::vector<LikelihoodProfile>{} : read_profiles(dir), read_resampling_notes(dir),
+          wishes.starts > 0 ? read_multi_starts(dir) : std::vector<MultiStart>{}};
 }
 
 }  // namespace
 
 bool asks_for_resampling(const Study& study) {
-  return study.uncertainty && (study.uncertainty->bootstrap > 0 || !study.uncertainty->profile.empty());
+  if (!study.uncertainty) return false;
+  const UncertaintyStudy& wishes = *study.uncertainty;
+  return wishes.bootstrap > 0 || !wishes.profile.empty() || wishes.starts > 0;
 }
 
 void check_profile_names(Session& session) {

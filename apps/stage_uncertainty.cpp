@@ -30,7 +30,8 @@ std::size_t runs_of(const Session& session) {
 
 /// All that a run depends on but its number: not how many there are, what else is asked for, or what the study is called.
 Inputs inputs_of_run(const Session& session) {
-  Inputs inputs = inputs_of_jobs(session, stage, {"uncertainty.runs", "uncertainty.bootstrap", "uncertainty.block", "uncertainty.profile"});
+  Inputs inputs = inputs_of_jobs(
+      session, stage, {"uncertainty.runs", "uncertainty.bootstrap", "uncertainty.block", "uncertainty.profile", "uncertainty.starts"});
   inputs["methods"] = fmt::format("{}", fmt::join(session.methods(), " "));
   return inputs;
 }

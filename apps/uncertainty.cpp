@@ -26,7 +26,10 @@ int uncertainty_verb(const Options& options, const Registry& registry) {
   if (resampling) again = resampling_stage(session);
   if (!ranks().first()) return 0;
   if (options.json) {
-    print_file(session.folder.file(set_up ? "uncertainty.json" : again.bootstraps.empty() ? "profile.json" : "bootstrap.json"));
+    print_file(session.folder.file(set_up                      ? "uncertainty.json"
+                                   : !again.bootstraps.empty() ? "bootstrap.json"
+                                   : !again.profiles.empty()   ? "profile.json"
+                                                               : "starts.json"));
   } else {
     if (set_up) std::cout << uncertainty_text(result);
     std::cout << resampling_text(again);

@@ -1,4 +1,4 @@
-// Block bootstrap and profiles of [uncertainty], as a user runs them.
+// Block bootstrap, profiles and random starts of [uncertainty], as a user runs them.
 
 #include <algorithm>
 
@@ -57,7 +57,7 @@ TEST(Resampling, OfEveryMethodThatCanBeFittedAgain) {
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "done once";
 
   ASSERT_EQ(study.run("report").status, 0);
-  expect_parts(content(study.out("report.html")), {"Intervals by resampling and by profiles", "Block bootstrap: C_m",
+  expect_parts(content(study.out("report.html")), {"Intervals by resampling and by profiles, random starts", "Block bootstrap: C_m",
                                                    "Profile likelihood: cosine", "sliding_bin is not resampled"});
   EXPECT_EQ(study.uncertainty({}).out, outcome.out);
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "the report has drawn the figures again";
@@ -96,6 +96,24 @@ TEST(Resampling, OfAWrongNameIsRefusedBeforeAnythingIsComputed) {
   refused({"study.toml:", "equation_error has no likelihood", "output_error and filter_error"});
 }
 
+TEST(Resampling, RandomStartsEndWhereTheFitDid) {
+  const ForcedMotion study("starts = 6");
+  const Outcome outcome = study.uncertainty({});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  expect_parts(outcome.out, {"random starts of output_error: 6 of 6 end at the fit's maximum, 0 lower, 0 higher, 0 nowhere"});
+  const json starts = study.result("starts.json").at(0);
+  EXPECT_EQ(starts.at("drop").size(), 6U);
+  for (const json& number : starts.at("numbers"))
+    EXPECT_NEAR(number.at("best").get<double>(), number.at("value").get<double>(), number.at("sigma").get<double>()) << number.at("name");
+  EXPECT_TRUE(fs::exists(study.out("figures") / "starts_output_error.svg"));
+  ASSERT_EQ(study.run("report").status, 0);
+  expect_parts(content(study.out("report.html")), {"random starts of", "Random starts: output_error"});
+  study.change("starts = 6", "starts = 0");
+  const Outcome none = study.uncertainty({});
+  EXPECT_EQ(none.status, 2);
+  expect_parts(none.err, {"study.toml:", "starts", "1"});
+}
+
 /// The flight of the paper is driven: output_error declines, which takes nothing from the others.
 TEST(Resampling, AMethodThatDeclinesIsNamedAndTheOthersGoOn) {
   const ShortFlight flight("parachute_planar", 20.0);
@@ -126,16 +144,16 @@ class ResamplingBits : public testing::Test {
     return {"uncertainty", study_.path("study.toml").string(), "--out", study_.path(out).string(), "--threads", threads};
   }
   void expect_same(const std::string& a, const std::string& b) const {
-    for (const char* file : {"bootstrap.json", "bootstrap.csv", "profile.json"})
+    for (const char* file : {"bootstrap.json", "bootstrap.csv", "profile.json", "starts.json"})
       EXPECT_EQ(content(study_.path(a) / file), content(study_.path(b) / file)) << b << "/" << file;
   }
-  const ForcedMotion study_{"bootstrap = 20\nprofile = [\"cosine\", \"sine\"]"};
+  const ForcedMotion study_{"bootstrap = 20\nprofile = [\"cosine\", \"sine\"]\nstarts = 10"};
 };
 
 TEST_F(ResamplingBits, AreThoseOfOneRunHoweverOftenItIsKilled) {
   ASSERT_EQ(program::run(words("whole")).status, 0);
   int among_the_jobs = 0;
-  for (const char* stage : {"bootstrap_output_error", "profile_output_error"}) {
+  for (const char* stage : {"bootstrap_output_error", "profile_output_error", "starts_output_error"}) {
     const fs::path whole = study_.path("whole") / stage / "checkpoint_0.bin", file = study_.path("killed") / stage / "checkpoint_0.bin";
     const std::uintmax_t head = checkpoint_head(whole);
     std::uintmax_t stored = head;
@@ -146,7 +164,7 @@ TEST_F(ResamplingBits, AreThoseOfOneRunHoweverOftenItIsKilled) {
       stored = std::max(stored, size);
     }
   }
-  EXPECT_GE(among_the_jobs, 2) << "too few kills fell among the jobs";
+  EXPECT_GE(among_the_jobs, 3) << "too few kills fell among the jobs";
   ASSERT_EQ(program::run(words("killed", "2")).status, 0);
   expect_same("whole", "killed");
 }
@@ -163,7 +181,7 @@ TEST_F(ResamplingBitsUnderMpi, AreTheSameOnRanks) {
     EXPECT_EQ(outcome.out, alone.out) << "one rank speaks";
     expect_same("alone", name);
     const std::string last = "checkpoint_" + std::to_string(ranks - 1) + ".bin";
-    for (const char* stage : {"bootstrap_output_error", "profile_output_error"})
+    for (const char* stage : {"bootstrap_output_error", "profile_output_error", "starts_output_error"})
       EXPECT_TRUE(fs::exists(study_.path(name) / stage / last)) << stage << ": the last rank has done its share";
   }
 }

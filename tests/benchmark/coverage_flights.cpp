@@ -208,8 +208,9 @@ CoverageFlight draw_flight(const std::string& kind, int number, double seconds, 
   for (int attempt = 0; attempt < most; ++attempt) {
     CoverageFlight flight = kind == "forced" ? in_gusts(seconds, dice, registry) : limit_cycle(kind, seconds, dice, registry);
     flight.signals.name = "flight";
-    constexpr double upright = 30.0 * degree;
-    if (!flight.angles.empty() && flight.angles.back() < upright) return flight;
+    // One that was thrown over hangs there: the apex hardly moves, at what looks like a small angle.
+    constexpr double upright = 30.0 * degree, hanging = 1.0 * degree;
+    if (!flight.angles.empty() && flight.angles.back() < upright && flight.angles.back() - flight.angles.front() > hanging) return flight;
   }
   throw std::runtime_error("no flight stays up");
 }

@@ -40,8 +40,8 @@ struct Everything {
 
   template <class Bytes>
   void all(Bytes& bytes) {
-    bytes(number, infinite, none, count, yes, colour, text, empty, numbers, flags, points, there, absent, pair, map, matrix, nothing, vector,
-          rows);
+    bytes(number, infinite, none, count, yes, colour, text, empty, numbers, flags, points, there, absent, pair, map, matrix, nothing,
+          vector, rows);
   }
 };
 

@@ -58,6 +58,22 @@ TEST(Intervals, ProfilesAreReadAsTheyWereWritten) {
   EXPECT_EQ(back.words, p.words);
 }
 
+TEST(Intervals, RandomStartsAreReadAsTheyWereWritten) {
+  const TemporaryFolder folder;
+  const MultiStart s{"filter_error", 5, 1, 7, {{"it cannot be run", 1}}, {-2.0, 0.1, 3.0, 40.0}, 1, 2, 1, {{"k", "N/m", 2.0, 0.1, 2.5}},
+                     {"a word"}};
+  write_multi_starts(folder.path(), {s});
+  const MultiStart back = read_multi_starts(folder.path()).front();
+  EXPECT_EQ(back.drop, s.drop);
+  EXPECT_EQ(back.failures, s.failures);
+  EXPECT_EQ(back.same + 10 * back.lower + 100 * back.higher, 121U);
+  EXPECT_EQ(back.runs + 10 * back.failed, 15U);
+  EXPECT_EQ(back.seed, 7U);
+  EXPECT_EQ(back.numbers.front().best, 2.5);
+  EXPECT_EQ(back.numbers.front().sigma, 0.1);
+  EXPECT_EQ(back.words, s.words);
+}
+
 TEST(Intervals, AFileOfAnotherFormIsNamed) {
   const TemporaryFolder folder;
   write_atomically(folder.path() / "profile.json", "[{\"method\": 3}]");

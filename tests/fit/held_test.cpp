@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -82,6 +83,49 @@ TEST(HeldFit, FilterErrorDropsByTheSquareOfItsSigma) {
   const std::optional<double> at_best = held(best), beside = held(best + 2.0 * sigma);
   ASSERT_TRUE(at_best && beside);
   EXPECT_NEAR(2.0 * (*at_best - *beside), 4.0, 0.8);
+}
+
+/// Elsewhere by the typical size of every parameter, or by a line over the curve's knots.
+std::vector<double> moved(const Model& model, double by) {
+  std::vector<double> values = model.values();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Parameter& p = model.parameters[i];
+    const double scale = p.curve >= 0 ? model.curves[static_cast<std::size_t>(p.curve)].scale : p.scale;
+    if (p.free) values[i] = std::clamp(values[i] + by * scale, p.lower, p.upper);
+  }
+  return values;
+}
+
+TEST(MaximumFrom, ElsewhereOutputErrorComesBackToTheFit) {
+  const Fitted f = fitted(false);
+  const Reached near = maximum_near(f.method, f.experiments);
+  ASSERT_TRUE(near.objective) << near.why;
+  for (const double by : {-0.5, 0.5}) {
+    const Reached there = maximum_from(f.method, moved(f.method.fitted.model, by), f.experiments);
+    ASSERT_TRUE(there.objective) << there.why;
+    EXPECT_NEAR(*there.objective, *near.objective, 0.05) << by;
+  }
+}
+
+TEST(MaximumFrom, ElsewhereFilterErrorComesBackToTheFit) {
+  const testing_cart::Cart cart(600);
+  FilterEstimate estimate;
+  const FittedMethod method = filtered(cart, estimate);
+  const Reached near = maximum_near(method, {cart.signals});
+  ASSERT_TRUE(near.objective) << near.why;
+  EXPECT_NEAR(*near.objective, estimate.objective, 0.05);
+  for (const double by : {-0.5, 1.0}) {
+    const Reached there = maximum_from(method, moved(method.fitted.model, by), {cart.signals});
+    ASSERT_TRUE(there.objective) << there.why;
+    EXPECT_NEAR(*there.objective, *near.objective, 0.05) << by;
+  }
+}
+
+TEST(MaximumFrom, WhatCannotBeRunSaysWhy) {
+  const Fitted f = fitted(false);
+  const Reached there = maximum_from(f.method, std::vector<double>(f.method.fitted.model.parameters.size(), 0.0), f.experiments);
+  EXPECT_FALSE(there.objective);
+  EXPECT_FALSE(there.why.empty());
 }
 
 TEST(HeldFit, RefitsOfTheSameDataStayWhereTheFitWas) {

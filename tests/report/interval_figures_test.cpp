@@ -71,6 +71,32 @@ TEST(IntervalFigures, AProfileIsDrawnOverItsScaleInDegrees) {
   EXPECT_EQ(figure.x_unit, "deg");
 }
 
+MultiStart starts() {
+  return {"output_error",
+          6,
+          1,
+          3,
+          {{"failed: no state", 1}},
+          {-12.0, 0.0, 0.1, 3.0, 25000.0},
+          2,
+          2,
+          1,
+          {{"wake_phi", "rad", -1.5, 0.1, -1.2}},
+          {"the fit is not at the highest maximum there is"}};
+}
+
+TEST(IntervalFigures, StartsThatEndElsewhereStandApart) {
+  const Figure figure = starts_figure(starts());
+  const Panel& panel = figure.panels.front();
+  ASSERT_EQ(panel.series.size(), 2U);
+  EXPECT_EQ(panel.series[0].x, (std::vector<double>{2.0, 3.0}));
+  EXPECT_EQ(panel.series[1].x, (std::vector<double>{1.0, 4.0, 5.0}));
+  EXPECT_LT(panel.series[1].y[0], 0.0) << "higher than the fit";
+  EXPECT_NEAR(panel.series[1].y[2], std::log10(25001.0), 1e-12);
+  const TemporaryFolder folder;
+  EXPECT_NE(read_file(write_figure(folder.path(), figure)).find("<svg"), std::string::npos);
+}
+
 TEST(IntervalFigures, AreWrittenWithTheirData) {
   const TemporaryFolder folder;
   const std::vector<std::string> files = write_interval_figures(folder.path(), {{bootstrap()}, {profile()}, {}});
@@ -84,7 +110,7 @@ TEST(IntervalFigures, AreWrittenWithTheirData) {
 TEST(IntervalsInTheReport, EndsOfIntervalsHaveNoSigmaAndWhatFailedIsNamed) {
   const TemporaryFolder folder;
   ReportInput input;
-  input.resampling.emplace(Resampling{{bootstrap()}, {profile()}, {"sliding_bin is not resampled"}});
+  input.resampling.emplace(Resampling{{bootstrap()}, {profile()}, {"sliding_bin is not resampled"}, {starts()}});
   Resampling& r = *input.resampling;
   r.bootstraps[0].numbers = {{"trim", "rad", 12.0 * degree, 0.1 * degree, 12.01 * degree, 0.2 * degree, 11.6 * degree, 12.4 * degree, 198}};
   r.bootstraps[0].notes = {"blocks are cut"};
@@ -92,7 +118,8 @@ TEST(IntervalsInTheReport, EndsOfIntervalsHaveNoSigmaAndWhatFailedIsNamed) {
   const std::string page = read_file(write_report(folder.path(), input));
   expect_parts(page,
                {"Intervals by resampling", "12.00 ± 0.10 deg", "12.01 ± 0.20 deg", ">11.60", ">12.40", "not reached", "blocks are cut",
-                "2 runs: failed: no state", "sliding_bin is not resampled", "Block bootstrap: C_m", "Profile likelihood: wake_phi"});
+                "2 runs: failed: no state", "sliding_bin is not resampled", "Block bootstrap: C_m", "Profile likelihood: wake_phi",
+                "Random starts: output_error", "output_error: 1 starts: failed: no state", "not at the highest maximum"});
   EXPECT_EQ(page.find("11.60 ±"), std::string::npos);
 }
 

@@ -130,9 +130,10 @@ TEST(BlockBootstrap, OnDiskItGoesOnWhereItStoppedToTheSameBits) {
     return mean_of(s);
   };
   const BlockBootstrap bootstrap(fit, data, Resampled::residuals, counted, options);
-  const StoredJobs jobs{folder.path() / "jobs", "digest", 0, 1};
-  EXPECT_FALSE(stored_runs(bootstrap, jobs, {}, &stop));
-  const auto results = stored_runs(bootstrap, jobs);
+  const auto run = [&](std::size_t k) { return bootstrap.run(k); };
+  const StoredJobs jobs{folder.path() / "jobs", "digest", options.runs, 1};
+  EXPECT_FALSE(stored_runs(run, jobs, {}, &stop));
+  const auto results = stored_runs(run, jobs);
   ASSERT_TRUE(results);
   EXPECT_EQ(fits, 40) << "what is on disk is not done again";
   const Bootstrap stored = bootstrap.summary(*results), whole = bootstrap_of_mean(data, Resampled::residuals, options);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "misfit/data/multi_start.h"
+
 namespace misfit {
 
 /// One number over the runs of a bootstrap, beside what the fit says of it. SI.
@@ -46,11 +48,12 @@ struct LikelihoodProfile {
   std::vector<std::string> words;                     ///< what a reader must know
 };
 
-/// What [uncertainty] `bootstrap` and `profile` gave.
+/// What [uncertainty] `bootstrap`, `profile` and `starts` gave.
 struct Resampling {
   std::vector<Bootstrap> bootstraps;
   std::vector<LikelihoodProfile> profiles;
   std::vector<std::string> notes;  ///< methods that could not be resampled, and why
+  std::vector<MultiStart> starts = {};
 };
 
 /// `bootstrap.json`, `bootstrap.csv` (curves) and `profile.json` in `dir`; angles of trims and curves in degrees in the CSV, SI in JSON.

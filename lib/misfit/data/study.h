@@ -108,7 +108,7 @@ struct PerturbStudy {
   std::string reading = "3 sigma";  ///< of the number: "3 sigma", "2 sigma", "sigma" of a normal distribution; "uniform": its bounds
 };
 
-/// [uncertainty]: the Monte-Carlo over the set-up, block bootstrap and profiles.
+/// [uncertainty]: the Monte-Carlo over the set-up, block bootstrap, profiles and random starts.
 struct UncertaintyStudy {
   long runs = 1000;
   std::vector<PerturbStudy> perturb;  ///< in file order
@@ -116,6 +116,7 @@ struct UncertaintyStudy {
   long bootstrap = 0;                 ///< runs of the block bootstrap of every method asked for; 0: none
   long block = 0;                     ///< its blocks [samples]; 0: from the residuals
   std::vector<std::string> profile;   ///< parameters whose profile likelihood is wanted
+  long starts = 0;                    ///< random starts of every method that has a likelihood; 0: none
   bool recalibrate = false;           ///< the camera is calibrated again in every run, from the sweep with the perturbed geometry
   Source where, where_camera, where_profile;
 };

@@ -64,6 +64,7 @@ void read_uncertainty(const Section& root, Study& study) {
   constexpr long most_block = 10'000'000;
   out.bootstrap = section->integer("bootstrap", 2, most_runs).value_or(0);
   out.block = section->integer("block", 1, most_block).value_or(0);
+  out.starts = section->integer("starts", 1, most_runs).value_or(0);
   out.profile = section->texts("profile").value_or(std::vector<std::string>{});
   section->finish();
   study.uncertainty = std::move(out);

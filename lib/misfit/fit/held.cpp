@@ -1,6 +1,7 @@
 #include "misfit/fit/held.h"
 
 #include <cmath>
+#include <functional>
 
 #include "misfit/core/error.h"
 #include "misfit/fit/filter_error.h"
@@ -40,7 +41,61 @@ Fit refitted(const FittedMethod& from, const std::vector<Signals>& experiments) 
   return output_error(start, experiments, quick_output_error()).fit;
 }
 
+Reached by_output_error(const FittedMethod& from, const std::vector<Signals>& experiments, const OutputErrorStart& options) {
+  const FittedModel end = output_error(from.fitted, experiments, options);
+  if (end.fit.status != FitStatus::converged || !end.fit.loglik) return {{}, to_string(end.fit.status) + ": " + end.fit.message, {}};
+  Reached out{*end.fit.loglik + log_prior(end.model, from.fitted.penalties), "", from};
+  out.at.fitted.model.parameters = end.model.parameters;
+  out.at.fitted.initial_states = end.initial_states;
+  return out;
+}
+
+/// Verified: the noise at its restricted likelihood, as in the fit. Without that the two blocks drift to another maximum in turn.
+Reached by_filter_error(const FittedMethod& from, const std::vector<Signals>& experiments, FilterOptions options) {
+  options.use = from.use;
+  options.verify = true;
+  const FilterEstimate end = estimate_filter(from.fitted.model, from.fitted.penalties, experiments, options);
+  if (!end.converged) return {{}, to_string(FitStatus::not_converged) + ": " + end.message, {}};
+  Reached out{end.objective, "", from};
+  out.at.fitted.model.parameters = end.model.parameters;
+  out.at.noise = end.noise;
+  return out;
+}
+
+/// What cannot be run has no maximum.
+Reached reached(const std::function<Reached()>& search) {
+  try {
+    return search();
+  } catch (const RunError& error) {
+    return {{}, error.what(), {}};
+  }
+}
+
 }  // namespace
+
+Reached maximum_near(const FittedMethod& from, const std::vector<Signals>& experiments) {
+  return reached([&] {
+    return from.method == "output_error" ? by_output_error(from, experiments, quick_output_error())
+                                         : by_filter_error(from, experiments, filter_options(from));
+  });
+}
+
+Reached maximum_from(const FittedMethod& from, const std::vector<double>& values, const std::vector<Signals>& experiments) {
+  FittedMethod start = from;
+  start.fitted.model = with_roughness(std::move(start.fitted.model), start.fitted.penalties);
+  for (std::size_t i = 0; i < values.size(); ++i) start.fitted.model.parameters[i].value = values[i];
+  return reached([&] {
+    if (start.method == "output_error") {
+      start.fitted.initial_states.clear();
+      OutputErrorStart options = quick_output_error();
+      options.from_regression = false;
+      return by_output_error(start, experiments, options);
+    }
+    FilterOptions options = filter_options(start);
+    options.noise.reset();
+    return by_filter_error(start, experiments, options);
+  });
+}
 
 Fit fit_again(const FittedMethod& from, const std::vector<Signals>& experiments) {
   try {
@@ -88,30 +143,10 @@ HeldFit::HeldFit(FittedMethod from, const std::vector<Signals>& experiments, con
 std::optional<double> HeldFit::operator()(double value) {
   at_.fitted.model.parameters[parameter_].value = value;
   const double prior = prior_sigma_ ? -0.5 * std::pow((value - prior_mean_) / *prior_sigma_, 2) : 0.0;
-  try {
-    const std::optional<double> rest = at_.method == "output_error" ? by_output_error() : by_filter_error();
-    return rest ? std::optional(*rest + prior) : std::nullopt;
-  } catch (const RunError&) {
-    return std::nullopt;
-  }
-}
-
-std::optional<double> HeldFit::by_output_error() {
-  FittedModel out = output_error(at_.fitted, *experiments_, quick_output_error());
-  if (out.fit.status != FitStatus::converged || !out.fit.loglik) return std::nullopt;
-  at_.fitted.model.parameters = out.model.parameters;
-  at_.fitted.initial_states = out.initial_states;
-  return *out.fit.loglik + log_prior(out.model, at_.fitted.penalties);
-}
-
-std::optional<double> HeldFit::by_filter_error() {
-  FilterOptions options = filter_options(at_);
-  options.use = at_.use;
-  const FilterEstimate out = estimate_filter(at_.fitted.model, at_.fitted.penalties, *experiments_, options);
-  if (!out.converged) return std::nullopt;
-  at_.fitted.model.parameters = out.model.parameters;
-  at_.noise = out.noise;
-  return out.objective;
+  Reached there = maximum_near(at_, *experiments_);
+  if (!there.objective) return std::nullopt;
+  at_ = std::move(there.at);
+  return *there.objective + prior;
 }
 
 }  // namespace misfit

@@ -22,6 +22,20 @@ struct FittedMethod {
 /// at once.
 [[nodiscard]] Fit fit_again(const FittedMethod& from, const std::vector<Signals>& experiments);
 
+/// A maximum of the penalised log-likelihood, roughness held.
+struct Reached {
+  std::optional<double> objective;  ///< nullopt: the search ended nowhere …
+  std::string why;                  ///< … for this reason
+  FittedMethod at;                  ///< the fit's, moved to where the search ended
+};
+
+/// Where the method ends when it begins near a maximum: from where `from` stands, its noise and initial states too.
+[[nodiscard]] Reached maximum_near(const FittedMethod& from, const std::vector<Signals>& experiments);
+
+/// Where it ends when it begins at other values of all parameters, as a new fit does: initial states and noise are looked for.
+/// Several threads may call it at once.
+[[nodiscard]] Reached maximum_from(const FittedMethod& from, const std::vector<double>& values, const std::vector<Signals>& experiments);
+
 /// Has the method a likelihood of the motion, and so profiles?
 [[nodiscard]] bool has_likelihood(const std::string& method);
 
@@ -39,9 +53,6 @@ class HeldFit {
   [[nodiscard]] std::optional<double> operator()(double value);
 
  private:
-  [[nodiscard]] std::optional<double> by_output_error();
-  [[nodiscard]] std::optional<double> by_filter_error();
-
   FittedMethod at_;
   const std::vector<Signals>* experiments_;
   std::size_t parameter_ = 0;

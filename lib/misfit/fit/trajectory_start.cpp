@@ -9,7 +9,8 @@ void damping_to_zero(Model& model) {
   for (int i = 0; i < damping->spline.size(); ++i) model.parameters[static_cast<std::size_t>(damping->first + i)].value = 0.0;
 }
 
-FittedModel with_shapes_kept(const Model& asked, const std::vector<Signals>& experiments, const std::function<const FittedModel&()>& whole) {
+FittedModel with_shapes_kept(const Model& asked, const std::vector<Signals>& experiments,
+                             const std::function<const FittedModel&()>& whole) {
   Model kept = asked;
   bool any = false;
   for (auto& p : kept.parameters) {
@@ -28,7 +29,8 @@ FittedModel with_shapes_kept(const Model& asked, const std::vector<Signals>& exp
 
 }  // namespace
 
-TrajectoryStart trajectory_start(const Model& asked, const std::vector<Signals>& experiments, const std::function<const FittedModel&()>& whole) {
+TrajectoryStart trajectory_start(const Model& asked, const std::vector<Signals>& experiments,
+                                 const std::function<const FittedModel&()>& whole) {
   TrajectoryStart out{with_shapes_kept(asked, experiments, whole), false};
   const FitStatus status = out.from.fit.status;
   out.regressed = status != FitStatus::declined && status != FitStatus::failed;

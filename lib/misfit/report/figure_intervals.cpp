@@ -115,6 +115,47 @@ Figure profile_figure(const LikelihoodProfile& p) {
   return figure;
 }
 
+Figure starts_figure(const MultiStart& s) {
+  Figure figure;
+  figure.name = "starts_" + as_key(s.method);
+  figure.title = "Random starts: " + s.method;
+  figure.caption =
+      "Where searches from random values end: how far the likelihood stays below that of the fit. All on the line of 0: one "
+      "maximum, and the fit is at it. Below that line: the fit is not the best there is.";
+  figure.x_label = "start, best first";
+  figure.x_unit = "-";
+  const auto drawn = [](double drop) { return std::copysign(std::log10(1.0 + std::abs(drop)), drop); };
+  Panel panel;
+  panel.y_label = "drop";
+  panel.y_unit = "-";
+  panel.zero_line = true;
+  Series same{"same", "end where the fit did", Style::markers, palette(0), {}, {}, {}, {}}, other = same;
+  other.key = "other";
+  other.legend = "end elsewhere";
+  other.colour = palette(1);
+  for (std::size_t i = 0; i < s.drop.size(); ++i) {
+    Series& to = std::abs(s.drop[i]) > kSameMaximum ? other : same;
+    to.x.push_back(static_cast<double>(i + 1));
+    to.y.push_back(drawn(s.drop[i]));
+  }
+  const double least = std::min(s.drop.empty() ? 0.0 : s.drop.front(), -1.0), most = std::max(s.drop.empty() ? 0.0 : s.drop.back(), 10.0);
+  for (const double sign : {-1.0, 1.0}) {
+    const double end = sign < 0.0 ? -least : most;
+    for (double size = 1.0; size <= 10.0 * end; size *= 10.0)
+      panel.y_marks.push_back({drawn(sign * size), fmt::format("{:g}", sign * size)});
+  }
+  panel.y_marks.push_back({0.0, "0"});
+  constexpr double beyond = 1.3;
+  panel.y_range = {drawn(beyond * least), drawn(beyond * most)};
+  if (!same.x.empty()) panel.series.push_back(std::move(same));
+  if (!other.x.empty()) panel.series.push_back(std::move(other));
+  figure.panels.push_back(std::move(panel));
+  figure.x_range = {0.0, static_cast<double>(s.drop.size() + 1)};
+  figure.notes = s.words;
+  if (s.failed > 0) figure.notes.push_back(fmt::format("{} of {} starts ended nowhere and are not drawn.", s.failed, s.runs));
+  return figure;
+}
+
 std::vector<Figure> interval_figures(const Resampling& resampling) {
   std::vector<Figure> figures;
   std::set<std::string> curves;
@@ -123,6 +164,7 @@ std::vector<Figure> interval_figures(const Resampling& resampling) {
   }
   for (const auto& curve : curves) figures.push_back(bootstrap_figure(curve, resampling.bootstraps));
   for (const auto& p : resampling.profiles) figures.push_back(profile_figure(p));
+  for (const auto& s : resampling.starts) figures.push_back(starts_figure(s));
   return figures;
 }
 

@@ -16,7 +16,10 @@ namespace misfit::report {
 /// dotted, the parabola of the fit's sigma. Angles in degrees.
 [[nodiscard]] Figure profile_figure(const LikelihoodProfile& profile);
 
-/// All of them: a figure per curve, then one per profile.
+/// How far below the fit's maximum each random start ended, in order; those above it below the line of 0. Logarithmic beyond a drop of 1.
+[[nodiscard]] Figure starts_figure(const MultiStart& starts);
+
+/// All of them: a figure per curve, then one per profile and one per method's starts.
 [[nodiscard]] std::vector<Figure> interval_figures(const Resampling& resampling);
 
 /// Draws them into `dir`; returns the names of all files, CSV and gnuplot script beside each SVG.

@@ -50,19 +50,32 @@ void profiles(const Resampling& r, Page& page) {
   page.table(rows);
 }
 
+void starts(const Resampling& r, Page& page) {
+  if (r.starts.empty()) return;
+  Cells rows{{"random starts of", "starts", "end at the fit's maximum", "lower", "higher", "nowhere", "what to know"}};
+  std::vector<std::string> words;
+  for (const MultiStart& s : r.starts) {
+    rows.push_back({s.method, std::to_string(s.runs), std::to_string(s.same), std::to_string(s.lower), std::to_string(s.higher),
+                    std::to_string(s.failed), fmt::format("{}", fmt::join(s.words, "; "))});
+    for (const auto& [reason, runs] : s.failures) words.push_back(fmt::format("{}: {} starts: {}", s.method, runs, reason));
+  }
+  page.table(rows);
+  page.list(words);
+}
+
 }  // namespace
 
 void resampling_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (!input.resampling) return;
   const Resampling& r = *input.resampling;
-  page.section("Intervals by resampling and by profiles");
+  page.section("Intervals by resampling and by profiles, random starts");
   page.paragraph(
-      "Beside the sigmas of the fits: how the result scatters over replicas of the data that keep the memory of the residuals, and where "
-      "the "
-      "likelihood itself has dropped by as much as a 95 % interval allows.");
+      "Beside the sigmas of the fits: how the result scatters over replicas of the data that keep the memory of the residuals, where the "
+      "likelihood itself has dropped by as much as a 95 % interval allows, and whether searches from elsewhere end where the fit did.");
   for (const Figure& figure : interval_figures(r)) draw(figure);
   bootstraps(r, page);
   profiles(r, page);
+  starts(r, page);
   page.list(r.notes);
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "misfit/core/error.h"
-#include "misfit/core/ranks.h"
 #include "misfit/data/curve_coefficient.h"
 
 namespace misfit {
@@ -143,19 +142,6 @@ Bootstrap block_bootstrap(const BlockBootstrap& bootstrap, int threads, const Pr
           results.size(), threads, [&](std::size_t k) { results[k] = bootstrap.run(k); }, progress, stop))
     throw RunError("bootstrap: stopped before all runs were done");
   return bootstrap.summary(results);
-}
-
-std::optional<std::vector<ChainResult>> stored_runs(const BlockBootstrap& bootstrap, const StoredJobs& jobs, const ProgressFn& progress,
-                                                    const std::atomic<bool>* stop) {
-  StoredJobs all = jobs;
-  all.count = bootstrap.runs();
-  const auto stored = run_stored_jobs(
-      all, [&](std::size_t k) { return pack(bootstrap.run(k)); }, progress, stop);
-  if (!stored) return std::nullopt;
-  std::vector<ChainResult> results;
-  if (!ranks().first()) return results;
-  for (std::size_t k = 0; k < stored->size(); ++k) results.push_back(unpack_result(stored->result(k)));
-  return results;
 }
 
 }  // namespace misfit

@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "misfit/core/job_queue.h"
+#include "misfit/core/work_queue.h"
 #include "misfit/data/intervals.h"
 #include "misfit/uncertainty/chain_result.h"
 #include "misfit/uncertainty/resample.h"
@@ -54,10 +54,5 @@ class BlockBootstrap {
 /// All runs over threads (0: one per core), which do not change the answer. RunError as summary(), or if it was stopped.
 [[nodiscard]] Bootstrap block_bootstrap(const BlockBootstrap& bootstrap, int threads, const ProgressFn& progress = {},
                                         const std::atomic<bool>* stop = nullptr);
-
-/// All runs over threads and ranks, each on disk at once (run_stored_jobs(); `jobs.count` is the number of runs), in their order; nullopt
-/// if it was stopped; on ranks other than the first none.
-[[nodiscard]] std::optional<std::vector<ChainResult>> stored_runs(const BlockBootstrap& bootstrap, const StoredJobs& jobs,
-                                                                  const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace misfit

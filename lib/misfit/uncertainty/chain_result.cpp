@@ -4,6 +4,7 @@
 
 #include "misfit/core/checkpoint.h"
 #include "misfit/core/error.h"
+#include "misfit/core/ranks.h"
 
 namespace misfit {
 namespace {
@@ -23,6 +24,17 @@ ChainResult unpack_result(std::string_view bytes) {
   const std::string_view rest = bytes.substr(1);
   if (bytes.front() == failed) return {{}, std::string(rest)};
   return {unpack_numbers(rest), ""};
+}
+
+std::optional<std::vector<ChainResult>> stored_runs(const std::function<ChainResult(std::size_t)>& run, const StoredJobs& jobs,
+                                                    const ProgressFn& progress, const std::atomic<bool>* stop) {
+  const auto stored = run_stored_jobs(
+      jobs, [&](std::size_t k) { return pack(run(k)); }, progress, stop);
+  if (!stored) return std::nullopt;
+  std::vector<ChainResult> results;
+  if (!ranks().first()) return results;
+  for (std::size_t k = 0; k < stored->size(); ++k) results.push_back(unpack_result(stored->result(k)));
+  return results;
 }
 
 void count_failure(const std::string& reason, std::map<std::string, std::size_t>& failures) {

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "misfit/core/job_queue.h"
 
 namespace misfit {
 
@@ -17,6 +21,12 @@ struct ChainResult {
 /// As bytes, to the last bit, and back. RunError if they are none of these.
 [[nodiscard]] std::string pack(const ChainResult& result);
 [[nodiscard]] ChainResult unpack_result(std::string_view bytes);
+
+/// Runs 0 … jobs.count − 1 over threads and ranks, each on disk at once (run_stored_jobs()), in their order; nullopt if it was stopped; on
+/// ranks other than the first none.
+[[nodiscard]] std::optional<std::vector<ChainResult>> stored_runs(const std::function<ChainResult(std::size_t k)>& run,
+                                                                  const StoredJobs& jobs, const ProgressFn& progress = {},
+                                                                  const std::atomic<bool>* stop = nullptr);
 
 /// Counts a failed run under its reason; beyond twenty reasons the others are counted together.
 void count_failure(const std::string& reason, std::map<std::string, std::size_t>& failures);
