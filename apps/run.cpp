@@ -36,6 +36,8 @@ int run_verb(const Options& options, const Registry& registry) {
   if (discovery) std::cout << discovery_text(*discovery) << '\n';
   if (const auto ladder = known_ladder(session)) std::cout << ladder_text(*ladder) << '\n';
   std::cout << "report: " << page.string() << '\n';
+  if (session.study.uncertainty && !known_uncertainty(session) && !known_resampling(session))
+    std::cout << "the study's [uncertainty] is work of its own: misfit uncertainty " << options.study << '\n';
   return status_of(fits);
 }
 

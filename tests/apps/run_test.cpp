@@ -67,6 +67,13 @@ TEST_F(RunOnValidation, LeavesEverythingTheContractNames) {
             "t[s],alpha_T_measured[deg],alpha_T_predicted[deg],alpha_T_sigma[deg],held_o");
 }
 
+TEST_F(RunOnValidation, TellsWhatItLeavesToAnotherVerb) {
+  const std::string hint = "misfit uncertainty " + study->path("study.toml").string();
+  EXPECT_NE(outcome.out.find(hint), std::string::npos) << outcome.out;
+  ASSERT_EQ(study->run("uncertainty", {"--method", "sliding_bin", "--runs", "20"}).status, 0);
+  EXPECT_EQ(study->run().out.find(hint), std::string::npos) << "it has been done";
+}
+
 TEST_F(RunOnValidation, APipeGetsNoProgressCharacters) {
   EXPECT_EQ((outcome.out + outcome.err).find_first_of("\r\033"), std::string::npos);
 }

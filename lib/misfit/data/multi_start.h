@@ -19,11 +19,11 @@ struct MultiStart {
   std::string method;  ///< of the fit
   std::size_t runs = 0, failed = 0;
   unsigned long long seed = 0;
-  std::map<std::string, std::size_t> failures;    ///< reason → starts that gave no fit for it
-  std::vector<double> drop;                       ///< of those that did: 2 (log L of the fit − log L there), priors counted; lowest first
-  std::size_t same = 0, lower = 0, higher = 0;    ///< ended at the fit's maximum (drops beside 0 by no more than kSameMaximum), elsewhere
-  std::vector<StartedNumber> numbers;             ///< free parameters that are no coefficients of curves
-  std::vector<std::string> words;                 ///< what a reader must know
+  std::map<std::string, std::size_t> failures;  ///< reason → starts that gave no fit for it
+  std::vector<double> drop;                     ///< of those that did: 2 (log L of the fit − log L there), priors counted; lowest first
+  std::size_t same = 0, lower = 0, higher = 0;  ///< ended at the fit's maximum (drops beside 0 by no more than kSameMaximum), elsewhere
+  std::vector<StartedNumber> numbers;           ///< free parameters that are no coefficients of curves
+  std::vector<std::string> words;               ///< what a reader must know
 };
 
 /// Ends of two searches nearer than this in 2 log L are one maximum: parameters are then 0.7 sigma apart at most.

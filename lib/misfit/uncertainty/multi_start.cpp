@@ -20,15 +20,15 @@ std::vector<std::string> words_of(const MultiStart& s) {
   if (s.higher > 0) {
     std::string there;
     for (const auto& n : s.numbers) there += (there.empty() ? "" : ", ") + n.name + " = " + in_display_unit(n.best, n.unit, 0.0);
-    words.push_back(fmt::format("the fit is not at the highest maximum there is: {} of {} starts end higher, the best by {}{}. Begin there: "
-                                "these values under [parameters]",
-                                s.higher, s.runs, format_value(-s.drop.front()), there.empty() ? "" : ", at " + there));
+    words.push_back(
+        fmt::format("the fit is not at the highest maximum there is: {} of {} starts end higher, the best by {}{}. Begin there: "
+                    "these values under [parameters]",
+                    s.higher, s.runs, format_value(-s.drop.front()), there.empty() ? "" : ", at " + there));
   }
   if (s.lower > 0) {
     const double nearest = s.drop[s.drop.size() - s.lower];
-    words.push_back(
-        fmt::format("{} of {} starts end at a lower maximum, the nearest by {}: a fit begun there would stay there", s.lower, s.runs,
-                    format_value(nearest)));
+    words.push_back(fmt::format("{} of {} starts end at a lower maximum, the nearest by {}: a fit begun there would stay there", s.lower,
+                                s.runs, format_value(nearest)));
   }
   if (s.same == 0) words.emplace_back("no random start ends where the fit did");
   return words;
@@ -92,8 +92,7 @@ MultiStart MultiStarts::summary(const std::vector<ChainResult>& results) const {
     out.drop.push_back(result.numbers.front());
     if (best == nullptr || result.numbers.front() < best->numbers.front()) best = &result;
   }
-  if (best == nullptr)
-    throw RunError(fmt::format("starts: none of {} gave a fit; most often: {}", out.runs, most_frequent(out.failures)));
+  if (best == nullptr) throw RunError(fmt::format("starts: none of {} gave a fit; most often: {}", out.runs, most_frequent(out.failures)));
   std::sort(out.drop.begin(), out.drop.end());
   for (const double drop : out.drop) ++(drop < -kSameMaximum ? out.higher : drop > kSameMaximum ? out.lower : out.same);
   for (std::size_t i = 0; i < shown_.size(); ++i) {
