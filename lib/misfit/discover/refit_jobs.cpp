@@ -32,17 +32,17 @@ std::string pack(const SteppedRefit& result, const Screened& effect) {
   return bytes.take();
 }
 
-SteppedRefit unpack_refit(std::string_view from, const RefitWork& work, const Screened& effect) {
-  ByteReader bytes(from);
+SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const Screened& effect) {
+  ByteReader reader(bytes);
   SteppedRefit out;
   std::string name;
   std::map<std::string, std::string> roles;
-  bytes(name, roles, out.predicted_drop, out.refit.ok, out.refit.why, out.refit.drop, out.refit.parameters);
+  reader(name, roles, out.predicted_drop, out.refit.ok, out.refit.why, out.refit.drop, out.refit.parameters);
   if (name != effect.specimen->effect || roles != effect.specimen->roles)
     throw RunError("a stored refit is of '" + name + "' and not of '" + effect.specimen->effect + "'");
   out.refit.request = effect.specimen->request;
-  if (out.refit.ok) out.refit.estimate = read_estimate(bytes, start_model(work.without, effect, work.registry), work.experiments);
-  if (!bytes.at_end()) throw RunError("a stored refit of '" + name + "' is too long");
+  if (out.refit.ok) out.refit.estimate = read_estimate(reader, start_model(work.without, effect, work.registry), work.experiments);
+  if (!reader.at_end()) throw RunError("a stored refit of '" + name + "' is too long");
   return out;
 }
 
