@@ -88,9 +88,9 @@ std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fit
 /// uncertainty.json, uncertainty.csv and their figures: the Monte-Carlo of [uncertainty]. On ranks other than the first the result is
 /// empty. InputError if the study has no such section.
 [[nodiscard]] Uncertainty uncertainty_stage(Session& session);
-/// What a stored job of `stage` depends on but its number, `more` left out too: not what the study is called, nor which methods it asks
+/// What a stored job of `what` depends on but its number, `more` left out too: not what the study is called, nor which methods it asks
 /// for.
-[[nodiscard]] std::map<std::string, std::string> inputs_of_jobs(const Session& session, const std::string& stage,
+[[nodiscard]] std::map<std::string, std::string> inputs_of_jobs(const Session& session, const std::string& what,
                                                                 std::vector<std::string> more);
 /// One word for all these.
 [[nodiscard]] std::string digest_of(const std::map<std::string, std::string>& inputs);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 
@@ -227,21 +228,61 @@ void mark_not_informative(const Model& model, const std::string& curve, const st
   }
 }
 
-std::optional<Estimate> stable_zero(const CurveEstimate& curve) {
-  std::optional<Estimate> best;
-  double most = 0.0;
+namespace {
+
+/// A zero with negative slope, between grid points `after` − 1 and `after`.
+struct StableZero {
+  std::size_t after = 0;
+  double count = 0.0;
+  Estimate at;
+};
+
+std::vector<StableZero> stable_zeros(const CurveEstimate& curve) {
+  std::vector<StableZero> out;
   for (std::size_t i = 1; i < curve.x.size(); ++i) {
     const double a = curve.value[i - 1], b = curve.value[i];
-    if (!(a > 0.0) || !(b <= 0.0) || !(curve.x[i - 1] > 0.0)) continue;
     const double count = curve.count[i - 1] + curve.count[i];
-    if (!(count > most)) continue;
-    most = count;
+    if (!(a > 0.0) || !(b <= 0.0) || !(curve.x[i - 1] > 0.0) || !(count > 0.0)) continue;
     const double step = curve.x[i] - curve.x[i - 1];
     const double fraction = a / (a - b);
     const double sigma = curve.sigma[i - 1] + fraction * (curve.sigma[i] - curve.sigma[i - 1]);
-    best = Estimate{curve.x[i - 1] + fraction * step, sigma / ((a - b) / step), curve.of_unit};
+    out.push_back({i, count, {curve.x[i - 1] + fraction * step, sigma / ((a - b) / step), curve.of_unit}});
   }
-  return best;
+  return out;
+}
+
+/// Does the curve leave 0 between two of its stable zeros, below and then above, by more than its band?
+bool told_apart(const CurveEstimate& curve, const StableZero& a, const StableZero& b) {
+  constexpr double sigmas = 3.0;
+  bool below = false, above = false;
+  for (std::size_t i = a.after; i < b.after; ++i) {
+    below = below || curve.value[i] < -sigmas * curve.sigma[i];
+    above = above || (below && curve.value[i] > sigmas * curve.sigma[i]);
+  }
+  return below && above;
+}
+
+}  // namespace
+
+std::optional<Estimate> stable_zero(const CurveEstimate& curve) {
+  const std::vector<StableZero> zeros = stable_zeros(curve);
+  const auto most = std::max_element(zeros.begin(), zeros.end(), [](const auto& a, const auto& b) { return a.count < b.count; });
+  return most == zeros.end() ? std::nullopt : std::optional(most->at);
+}
+
+void tell_other_trims(Fit& fit) {
+  for (const auto& curve : fit.curves) {
+    if (!curve.trimmed || !curve.informative) continue;
+    std::vector<StableZero> apart;
+    for (const auto& zero : stable_zeros(curve)) {
+      if (apart.empty() || told_apart(curve, apart.back(), zero)) apart.push_back(zero);
+    }
+    if (apart.size() < 2) continue;
+    std::string where;
+    for (const auto& zero : apart) where += (where.empty() ? "" : ", ") + in_display_unit(zero.at.value, zero.at.unit, zero.at.sigma);
+    fit.warnings.push_back(curve.name + " has " + std::to_string(apart.size()) + " stable zeros among the values visited: " + where +
+                           "; the trim given is the one where the most samples were");
+  }
 }
 
 }  // namespace misfit

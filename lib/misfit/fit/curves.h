@@ -41,4 +41,8 @@ void mark_not_informative(const Model& model, const std::string& curve, const st
 /// the visited range.
 [[nodiscard]] std::optional<Estimate> stable_zero(const CurveEstimate& curve);
 
+/// A warning where the curve that gives the trim has further stable zeros among the values visited: those between which it goes below
+/// and above 0 by more than three of its sigmas.
+void tell_other_trims(Fit& fit);
+
 }  // namespace misfit

@@ -246,6 +246,7 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
   }
   if (const std::string which = undetermined_beside_priors(out.model, regression.sums); !which.empty()) out.fit.warnings.push_back(which);
   tell_weak_directions(out.model, out.fit.covariance, out.fit);
+  tell_other_trims(out.fit);
   refuse_runaways(out.model, out.fit.covariance, out.fit);
 }
 

@@ -260,6 +260,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
   tell_weak_directions(estimate.model, fit.covariance, fit);
+  tell_other_trims(fit);
   refuse_runaways(estimate.model, fit.covariance, fit);
   fit.linearisations = estimate.linearisations;
   return fit;

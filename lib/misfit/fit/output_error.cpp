@@ -243,6 +243,7 @@ class Estimator {
         scale_uncertainties(out.model, out.initial_states.front().data(), inputs.at(0), experiments_.front().t.front());
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
     tell_weak_directions(out.model, covariance.topLeftCorner(columns, columns), fit);
+    tell_other_trims(fit);
     judge(out.model, setting_, fit);
     refuse_runaways(out.model, covariance.topLeftCorner(columns, columns), fit);
     fit.linearisations = shooting_.linearisations();
