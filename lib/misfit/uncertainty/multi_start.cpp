@@ -21,14 +21,14 @@ std::vector<std::string> words_of(const MultiStart& s) {
     std::string there;
     for (const auto& n : s.numbers) there += (there.empty() ? "" : ", ") + n.name + " = " + in_display_unit(n.best, n.unit, 0.0);
     words.push_back(
-        fmt::format("the fit is not at the highest maximum there is: {} of {} starts end higher, the best by {}{}. Begin there: "
+        fmt::format("the fit is not at the highest maximum there is: {} of {} starts end higher, the best by {} in 2 log L{}. Begin there: "
                     "these values under [parameters]",
                     s.higher, s.runs, format_value(-s.drop.front()), there.empty() ? "" : ", at " + there));
   }
   if (s.lower > 0) {
     const double nearest = s.drop[s.drop.size() - s.lower];
-    words.push_back(fmt::format("{} of {} starts end at a lower maximum, the nearest by {}: a fit begun there would stay there", s.lower,
-                                s.runs, format_value(nearest)));
+    words.push_back(fmt::format("{} of {} starts end at a lower maximum, the nearest by {} in 2 log L: a fit begun there would stay there",
+                                s.lower, s.runs, format_value(nearest)));
   }
   if (s.same == 0) words.emplace_back("no random start ends where the fit did");
   return words;
