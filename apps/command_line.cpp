@@ -61,7 +61,7 @@ void add_running(CLI::App& verb, Options& options) {
 void add_options(CLI::App& verb, Options& options, bool study_required) {
   if (verb.get_name() == "init") {
     verb.add_option("data", options.study, "file of columns under a line of names")->type_name("DATA.csv")->required();
-    verb.add_flag("--force", options.force, "write over a study that is there");
+    verb.add_flag("--force", options.force, "write over files that are there (never over the data)");
     verb.add_option("--out", options.out, "folder of the study (default: called like the data, in the present folder)")->type_name("DIR");
     verb.add_flag("--json", options.json, "print what was found as JSON");
     return;
@@ -71,6 +71,7 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
         ->type_name("LIST|FOLDER…")
         ->required();
     verb.add_option("--out", options.out, "folder of the results (default: batch/ beside the list or in the folder)")->type_name("DIR");
+    verb.add_flag("--force", options.force, "write over files that misfit did not make (never over data, never through links)");
     add_method(verb, options);
     add_running(verb, options);
     return;
@@ -83,6 +84,7 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
     verb.add_option("--runs", options.runs, "overrides the study's number of runs")->type_name("N")->check(CLI::Range(1, 100'000'000));
   if (verb.get_name() == "discover") verb.add_flag("--auto", options.automatic, "add what is accepted and look again, until nothing is");
   verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
+  verb.add_flag("--force", options.force, "write over files that misfit did not make (never over data, never through links)");
   add_method(verb, options);
   add_running(verb, options);
 }

@@ -240,7 +240,7 @@ void add_rest(const Session& session, std::string& text) {
 
 }  // namespace
 
-void write_resolved(const Session& session, const Prepared& prepared) {
+void write_resolved(const Session& session, const Prepared& prepared, const std::filesystem::path& dir) {
   std::string text;
   add_head(session, text);
   add_geometry(session, prepared, text);
@@ -250,7 +250,7 @@ void write_resolved(const Session& session, const Prepared& prepared) {
   add_model(session, prepared, text);
   add_initial(prepared, text);
   add_rest(session, text);
-  write_atomically(session.folder.file("resolved.toml"), text);
+  write_atomically(dir / "resolved.toml", text);
 }
 
 }  // namespace misfit

@@ -144,7 +144,8 @@ int simulate_verb(const Options& options, const Registry& registry) {
   const Case c = session.study.simulate ? from_section(session) : from_fit(session);
   const Table table = simulate(c, session);
   const auto file = session.folder.file("simulation.csv");
-  write_csv(file, table);
+  session.redo_stage("simulate", session.inputs(session.study.text, {}), {"simulation.csv"},
+                     [&](const std::filesystem::path& dir) { write_csv(dir / "simulation.csv", table); });
   if (options.json) {
     std::cout << nlohmann::json{{"file", file.string()}, {"samples", table.rows()}, {"system", c.model.system->spec().key}}.dump(1) << '\n';
     return 0;

@@ -17,7 +17,8 @@ namespace {
 void append_number(std::string& out, double value, int digits) {
   if (!std::isfinite(value)) return;  // missing: an empty field
   char buffer[64];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits);
+  const auto result = digits == all_digits ? std::to_chars(buffer, buffer + sizeof buffer, value)
+                                           : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits);
   out.append(buffer, result.ptr);
 }
 
