@@ -44,7 +44,10 @@ class Reader {
     if (!head) return;
     out_.spec.doc = head->text("doc").value_or(out_.spec.doc);
     out_.spec.source = head->text("source").value_or("");
-    if (const auto rate = head->number("fastest_rate", "1/s")) out_.spec.fastest_rate = rate->value;
+    if (const auto rate = head->number("fastest_rate", "1/s")) {
+      if (!(rate->value > 0.0)) head->fail("fastest_rate", "must be above 0");
+      out_.spec.fastest_rate = rate->value;
+    }
     head->finish();
   }
 

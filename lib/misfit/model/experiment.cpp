@@ -80,6 +80,13 @@ std::size_t set_spikes_aside(std::vector<double>& y) {
   return wild.size();
 }
 
+/// The input's name without "_rate"; empty if it is no rate.
+std::string level_of(const std::string& input) {
+  constexpr std::string_view suffix = "_rate";
+  const bool rate = input.size() > suffix.size() && input.ends_with(suffix);
+  return rate ? input.substr(0, input.size() - suffix.size()) : "";
+}
+
 class Reader {
  public:
   Reader(const Table& table, const Model& model, const ExperimentStudy& study) : table_(table), model_(model), study_(study) {}
@@ -139,10 +146,8 @@ class Reader {
   std::vector<double> read_as_recorded(const InputSpec& input) {
     const bool angle = parse_unit(input.unit).angle;
     std::vector<double> values;
-    constexpr std::string_view suffix = "_rate";
-    const bool rate = input.name.size() > suffix.size() && input.name.ends_with(suffix);
-    if (rate && table_.find(header(input.name)) == nullptr) {
-      const std::string base = input.name.substr(0, input.name.size() - suffix.size());
+    const std::string base = level_of(input.name);
+    if (!base.empty() && table_.find(header(input.name)) == nullptr) {
       if (table_.find(header(base)) == nullptr) static_cast<void>(table_.at(header(input.name)));  // throws, naming the nearest
       const std::string base_unit = input.unit.ends_with("/s") ? input.unit.substr(0, input.unit.size() - 2) : input.unit;
       std::vector<double> level = kept(table_.values(header(base), base_unit));
@@ -215,6 +220,17 @@ class Reader {
 }  // namespace
 
 Signals signals_from(const Table& table, const Model& model, const ExperimentStudy& study) { return Reader(table, model, study).run(); }
+
+std::vector<std::string> signal_names(const SystemSpec& spec) {
+  std::vector<std::string> names{"t"};
+  const auto add = [&](const std::string& name) {
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const auto& output : spec.outputs) add(output.name);
+  for (const auto& input : spec.inputs) add(input.name);
+  for (const auto& input : spec.inputs) add(level_of(input.name));
+  return names;
+}
 
 Table attitude_table(const Attitude& a) {
   Table table;
