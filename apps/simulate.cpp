@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -142,6 +143,8 @@ Table simulate(const Case& c, const Session& session) {
       values.push_back(convert(run.y(i, o), output.unit, unit));
       noisy.push_back(convert(run.y(i, o) + sigma * normal(random), output.unit, unit));
     }
+    if (!std::all_of(noisy.begin(), noisy.end(), [](double v) { return std::isfinite(v); }))
+      throw RunError("output " + output.name + " with its noise of " + format_value(sigma) + " left the finite numbers");
     if (sigma > 0.0) table.add(output.name, unit, noisy);
     table.add(sigma > 0.0 ? output.name + "_true" : output.name, unit, values);
   }

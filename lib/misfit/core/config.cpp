@@ -15,6 +15,22 @@
 
 namespace misfit::config {
 
+namespace {
+
+/// Without the line breaks and indents of a table or an array as TOML.
+std::string on_one_line(const std::string& text) {
+  std::string out;
+  bool indent = false;
+  for (const char c : text) {
+    indent = c == '\n' || (indent && c == ' ');
+    if (c == '\n') out += ' ';
+    if (!indent) out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
 /// One table of the document. Children are kept, so that all views of one table share their notes.
 struct Section::State {
   std::shared_ptr<const toml::table> root;  ///< keeps `table` alive
@@ -52,7 +68,7 @@ struct Section::State {
   [[noreturn]] void fail(std::string_view key, const toml::node& node, const std::string& expected) const {
     std::ostringstream text;
     node.visit([&text](const auto& value) { text << value; });  // as TOML
-    throw InputError(place(node.source()), shown(full(key)) + " = " + shown(text.str()) + ": " + expected);
+    throw InputError(place(node.source()), shown(full(key)) + " = " + shown(on_one_line(text.str())) + ": " + expected);
   }
 };
 

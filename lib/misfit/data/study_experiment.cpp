@@ -63,7 +63,8 @@ void read_validation(const Section& section, ExperimentStudy& experiment) {
   if (!given) return;
   const std::string& text = *given;
   std::smatch match;
-  if (std::regex_match(text, match, std::regex(R"(\s*last\s+(\d{1,3}(\.\d{1,9})?)\s*%\s*)"))) {
+  constexpr std::size_t longest = 60;  // characters: matching takes stack for each
+  if (text.size() <= longest && std::regex_match(text, match, std::regex(R"(\s*last\s+(\d{1,3}(\.\d{1,9})?)\s*%\s*)"))) {
     experiment.validation = ExperimentStudy::Validation::last_fraction;
     experiment.fraction = std::stod(match[1]) / 100.0;
     if (experiment.fraction <= 0.0 || experiment.fraction >= 1.0)

@@ -22,7 +22,7 @@ struct Sweep {
 };
 
 /// Reads `theta[deg],P_1y[px],P_1z[px],…,P_3z[px]`. P_ky may be absent. InputErrors as read_csv, and for
-/// positions farther than 1e5 px from the image centre.
+/// positions farther than 1e5 px from the image centre and more than 5000 rows.
 [[nodiscard]] Sweep read_sweep(const std::filesystem::path& path);
 
 /// Writes the same columns; points without any P_y leave that column out.
