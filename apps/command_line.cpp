@@ -167,7 +167,7 @@ void let_the_first_speak() {
   }
 }
 
-void say_error(const std::string& message) { std::cerr << "misfit: " << shortened(message) << '\n'; }
+void say_error(const std::string& message) { std::cerr << shortened("misfit: " + message) << '\n'; }
 
 int status_of(int argc, char** argv, const Registry& registry, PrintableStream& out) {
   try {

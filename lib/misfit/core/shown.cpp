@@ -107,7 +107,7 @@ std::string shortened(std::string_view message, std::size_t most) {
 }
 
 std::string some_names(std::string_view name, const std::vector<std::string>& valid) {
-  constexpr std::size_t room = 110;  // characters
+  constexpr std::size_t room = 90;  // characters
   const std::size_t all =
       std::accumulate(valid.begin(), valid.end(), std::size_t{0}, [](std::size_t sum, const auto& v) { return sum + v.size() + 2; });
   const std::vector<std::string> order = all > room ? nearest_first(name, valid) : valid;

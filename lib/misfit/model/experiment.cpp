@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/math/statistics.h"
@@ -131,7 +132,8 @@ class Reader {
     }
     if (rows_.size() < t.size()) out_.notes.push_back(std::to_string(t.size() - rows_.size()) + " rows without time dropped");
     if (rows_.size() < 2)
-      throw RunError("experiment '" + study_.name + "': " + std::to_string(rows_.size()) + " samples with a time are not a recording");
+      throw RunError("experiment '" + shown(study_.name) + "': " + std::to_string(rows_.size()) +
+                     " samples with a time are not a recording");
     for (std::size_t row : rows_) out_.t.push_back(t[row]);
   }
 
@@ -161,7 +163,7 @@ class Reader {
     std::vector<bool> missing;
     for (double v : values) missing.push_back(!std::isfinite(v));
     const std::size_t filled = bridge(out_.t, values);
-    if (filled == values.size()) throw RunError("experiment '" + study_.name + "': input " + input.name + " has no value at all");
+    if (filled == values.size()) throw RunError("experiment '" + shown(study_.name) + "': input " + input.name + " has no value at all");
     if (filled == 0) return values;
     out_.notes.push_back("input " + input.name + ": " + std::to_string(filled) + " missing values bridged; the samples there are not used");
     for (auto& channel : out_.measured) {
@@ -195,7 +197,7 @@ class Reader {
     for (const auto& channel : out_.measured) {
       const auto missing = std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isfinite(v); });
       if (missing == static_cast<long>(channel.values.size()))
-        throw RunError("experiment '" + study_.name + "': channel " + channel.name + " has no value at all: all samples are lost");
+        throw RunError("experiment '" + shown(study_.name) + "': channel " + channel.name + " has no value at all: all samples are lost");
       if (missing > 0)
         out_.notes.push_back("channel " + channel.name + ": " + std::to_string(missing) + " of " + std::to_string(channel.values.size()) +
                              " samples missing, carried as gaps");

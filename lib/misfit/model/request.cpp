@@ -145,7 +145,8 @@ StudyModel read_model(const Study& study, const Registry& registry) {
   request.system_where = where == study.system_where.end() ? Source{study.file.string(), 0, 0} : where->second;
   const SystemType& type = registry.system(request.system, request.system_where);
   for (const auto& [name, number] : study.system_numbers) {
-    throw InputError(number.where, "system '" + request.system + "' has no option '" + name + "'" + suggest(name, type.flags));
+    throw InputError(number.where,
+                     "system '" + shown(request.system) + "' has no option '" + shown(name) + "'" + suggest(name, type.flags));
   }
   const SystemSpec spec = type.make(request.options)->spec();
   check_columns(study, request.system, spec);
