@@ -3,6 +3,7 @@
 
 #include "apps/stages.h"
 #include "misfit/core/error.h"
+#include "misfit/core/file_name.h"
 #include "misfit/core/progress.h"
 #include "misfit/diagnose/diagnose.h"
 
@@ -25,7 +26,7 @@ void record(Session& session, const std::string& stage, const std::map<std::stri
 std::vector<std::string> files_of(const Diagnosis& diagnosis) {
   std::vector<std::string> files{"diagnosis.json"};
   for (std::size_t k = 0; k < diagnosis.missing.size(); ++k)
-    files.push_back(k == 0 ? "missing_force.csv" : "missing_force_" + diagnosis.missing[k].experiment + ".csv");
+    files.push_back(k == 0 ? "missing_force.csv" : "missing_force_" + file_name_for(diagnosis.missing[k].experiment) + ".csv");
   return files;
 }
 

@@ -81,6 +81,17 @@ std::string palette(std::size_t k) {
   return colours[k % colours.size()];
 }
 
+std::string free_name(const std::string& name, std::set<std::string>& used) {
+  std::string result = name;
+  for (int number = 2; !used.insert(result).second; ++number) result = name + "." + std::to_string(number);
+  return result;
+}
+
+void make_names_unique(std::vector<Figure>& figures) {
+  std::set<std::string> used;
+  for (Figure& figure : figures) figure.name = free_name(figure.name, used);
+}
+
 std::filesystem::path write_figure(const std::filesystem::path& dir, const Figure& figure) {
   check(figure);
   make_writable_folder(dir);

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,12 @@ struct Figure {
 [[nodiscard]] std::string palette(std::size_t k);
 inline constexpr const char* grey = "#8a8a8a";
 inline constexpr const char* black = "#000000";
+
+/// `name`, or with ".2", ".3", … behind it the first that is not in `used`, where it is put.
+[[nodiscard]] std::string free_name(const std::string& name, std::set<std::string>& used);
+
+/// Figures whose name another one before them has get ".2", ".3", … behind it: no figure's files may be written over by the next.
+void make_names_unique(std::vector<Figure>& figures);
 
 /// Writes DIR/NAME.csv (every number drawn, columns SERIES.x[unit], SERIES.y[unit], …, shorter series padded with empty fields),
 /// DIR/NAME.gp (a stand-alone gnuplot script that draws NAME.svg from NAME.csv when run in that folder) and DIR/NAME.svg, drawn by that
