@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "apps/init_names.h"
 #include "apps/init_text.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
@@ -32,12 +33,6 @@ fs::path folder_for(const Options& options, const fs::path& data) {
   }
   make_writable_folder(folder);
   return folder;
-}
-
-std::vector<std::string> part_names(const std::string& stem, std::size_t count) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < count; ++i) names.push_back(count == 1 ? stem : stem + "_" + std::to_string(i + 1));
-  return names;
 }
 
 std::string survey_text(const RecordingSurvey& survey) {
@@ -104,14 +99,15 @@ void draw(const RecordingSurvey& survey, const GuessedModel& model, const std::v
 
 int init_verb(const Options& options, const Registry& /*registry*/) {
   const fs::path data = options.study;
-  const RecordingSurvey survey = survey_recording(data);
-  const fs::path folder = folder_for(options, data);
-  const std::vector<std::string> names = part_names(data.stem().string(), survey.parts.size());
+  RecordingSurvey survey = survey_recording(data, names_of_formulas());
   const GuessedModel model = guess_model(survey);
+  survey.remarks.insert(survey.remarks.end(), model.remarks.begin(), model.remarks.end());
+  const fs::path folder = folder_for(options, data);
+  const std::vector<std::string> names = part_names(data, survey.parts.size());
   constexpr int all_digits = 12;
   for (std::size_t i = 0; i < names.size(); ++i) write_csv(folder / (names[i] + ".csv"), survey.parts[i], all_digits);
   write_atomically(folder / "model.toml", model_text(model, survey));
-  write_atomically(folder / "study.toml", study_text(data.stem().string(), names, survey));
+  write_atomically(folder / "study.toml", study_text(study_name(data), names, survey));
   draw(survey, model, names, folder);
   if (options.json) {
     std::cout << as_json(survey).dump(1) << '\n';

@@ -7,13 +7,8 @@
 
 namespace misfit {
 
-[[nodiscard]] bool is_utf8(std::string_view text);
-
-/// TOML is UTF-8: every byte that is not becomes U+FFFD.
-[[nodiscard]] std::string valid_utf8(std::string_view text);
-
 /// A string in quotation marks, on one line; quotation marks, backslashes, line breaks and other control characters are escaped. A text
-/// that is UTF-8 reads back to itself, others to valid_utf8().
+/// that is UTF-8 reads back to itself, others to valid_utf8() of printable.h.
 [[nodiscard]] std::string toml_string(std::string_view text);
 
 /// A key: bare where TOML allows it, else in quotation marks.

@@ -3,7 +3,6 @@
 #include <array>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -79,9 +78,6 @@ struct Figure {
 [[nodiscard]] std::string palette(std::size_t k);
 inline constexpr const char* grey = "#8a8a8a";
 inline constexpr const char* black = "#000000";
-
-/// `name`, or with ".2", ".3", … behind it the first that is not in `used`, where it is put.
-[[nodiscard]] std::string free_name(const std::string& name, std::set<std::string>& used);
 
 /// Figures whose name another one before them has get ".2", ".3", … behind it: no figure's files may be written over by the next.
 void make_names_unique(std::vector<Figure>& figures);

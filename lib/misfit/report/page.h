@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/core/unique_name.h"
 #include "misfit/report/figure.h"
 
 namespace misfit::report {
@@ -20,7 +21,7 @@ class Page {
   void table(const std::vector<std::vector<std::string>>& rows);  ///< first row is the header; nothing if only that
   void figure(const Figure& figure, const std::string& svg);      ///< drawing, caption, notes
   /// A name for the next figure: `name`, or if a figure of the page has it one with a number behind.
-  [[nodiscard]] std::string free_figure_name(const std::string& name) { return free_name(name, figure_names_); }
+  [[nodiscard]] std::string free_figure_name(const std::string& name) { return unique_name(name, figure_names_, "."); }
   void html(const std::string& markup) { body_ += markup; }
 
   /// The whole page: title, style and a list of its sections included.
