@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "apps/init_names.h"
 #include "apps/init_text.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
@@ -27,12 +28,6 @@ const char* word_of(ColumnUse use) {
 /// Where the study goes: --out, else a folder called like the data in the present one.
 fs::path folder_for(const Options& options, const fs::path& data) {
   return options.out.empty() ? fs::path(data.stem()) : fs::path(options.out);
-}
-
-std::vector<std::string> part_names(const std::string& stem, std::size_t count) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < count; ++i) names.push_back(count == 1 ? stem : stem + "_" + std::to_string(i + 1));
-  return names;
 }
 
 std::string survey_text(const RecordingSurvey& survey) {
@@ -99,14 +94,15 @@ void draw(const RecordingSurvey& survey, const GuessedModel& model, const std::v
 
 int init_verb(const Options& options, const Registry& /*registry*/) {
   const fs::path data = options.study;
-  const RecordingSurvey survey = survey_recording(data);
-  const fs::path folder = folder_for(options, data);
-  const std::vector<std::string> names = part_names(data.stem().string(), survey.parts.size());
+  RecordingSurvey survey = survey_recording(data, names_of_formulas());
   const GuessedModel model = guess_model(survey);
+  survey.remarks.insert(survey.remarks.end(), model.remarks.begin(), model.remarks.end());
+  const fs::path folder = folder_for(options, data);
+  const std::vector<std::string> names = part_names(data, survey.parts.size());
   write_files(folder, {{data}, options.force}, {"study.toml", "model.toml", names.front() + ".csv"}, [&](const fs::path& dir) {
     for (std::size_t i = 0; i < names.size(); ++i) write_csv(dir / (names[i] + ".csv"), survey.parts[i]);
     write_atomically(dir / "model.toml", model_text(model, survey));
-    write_atomically(dir / "study.toml", study_text(data.stem().string(), names, survey));
+    write_atomically(dir / "study.toml", study_text(study_name(data), names, survey));
     draw(survey, model, names, dir);
   });
   if (options.json) {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/fit/filter_error.h"
@@ -128,12 +128,6 @@ std::map<std::string, std::string> inputs_of_ladder(const Session& session) {
   return out;
 }
 
-std::string file_name(const std::string& added) {
-  std::string name;
-  for (const char c : added) name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ? c : '_';
-  return name;
-}
-
 /// Why discovery could not say beforehand what an effect would bring.
 std::string not_predicted(const Effect& effect, const std::optional<Candidate>& from) {
   const auto& coefficients = effect.spec().coefficients;
@@ -214,7 +208,7 @@ const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>
   const int id = static_cast<int>(std::max<std::size_t>(ladder_.rungs.size(), 1));
   const bool system = effect.starts_with(system_prefix);
   const std::string name = system ? effect.substr(std::string(system_prefix).size()) : effect;
-  const std::string place = fmt::format("rungs/{:02}_{}", id, file_name(name));
+  const std::string place = fmt::format("rungs/{:02}_{}", id, file_name_for(name));
   const fs::path folder = original_.folder.file(place);
   std::vector<std::string> left_out;
   const std::string text = system ? study_with_system(below, name, folder, left_out) : study_with_effect(below, effect, from, folder);

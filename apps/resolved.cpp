@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "apps/stages.h"
 #include "misfit/core/files.h"
+#include "misfit/core/toml_text.h"
 #include "misfit/core/version.h"
 
 namespace misfit {
@@ -13,18 +13,9 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (char c : text) {
-    if (c == '"' || c == '\\') out.push_back('\\');
-    out.push_back(c == '\n' ? ' ' : c);
-  }
-  return out + "\"";
-}
-
 std::string list_of(const std::vector<std::string>& names) {
   std::string out;
-  for (const auto& name : names) out += (out.empty() ? "" : ", ") + quoted(name);
+  for (const auto& name : names) out += (out.empty() ? "" : ", ") + toml_string(name);
   return "[" + out + "]";
 }
 
@@ -36,26 +27,19 @@ std::string numbers_of(const std::vector<double>& values, double scale) {
 
 /// As seen from resolved.toml, which can be run where it lies.
 std::string path_of(const Session& session, const std::filesystem::path& file) {
-  return quoted(std::filesystem::relative(file, session.folder.path()).generic_string());
+  return toml_string(std::filesystem::relative(file, session.folder.path()).generic_string());
 }
 
 void add_head(const Session& session, std::string& text) {
   const Study& study = session.study;
   text +=
       fmt::format("# Written by misfit {} ({}): the study with all defaults and everything chosen from the data.\n", version(), commit());
-  text += fmt::format("[study]\nname = {}\nquestion = {}\nmethods = {}\nseed = {}\n", quoted(study.name), quoted(study.question),
+  text += fmt::format("[study]\nname = {}\nquestion = {}\nmethods = {}\nseed = {}\n", toml_string(study.name), toml_string(study.question),
                       list_of(session.methods()), study.seed);
   text += "\n[system]\n";
   text += study.system_file ? fmt::format("file = {}\n", path_of(session, *study.system_file))
-                            : fmt::format("kind = {}\n", quoted(session.model.request.system));
-  for (const auto& [name, flag] : session.model.request.options.flags) text += fmt::format("{} = {}\n", name, flag);
-}
-
-/// A key of a TOML table: bare where it may be.
-std::string key_of(const std::string& name) {
-  const bool bare = !name.empty() && std::all_of(name.begin(), name.end(),
-                                                 [](unsigned char c) { return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '-'); });
-  return bare ? name : quoted(name);
+                            : fmt::format("kind = {}\n", toml_string(session.model.request.system));
+  for (const auto& [name, flag] : session.model.request.options.flags) text += fmt::format("{} = {}\n", toml_key(name), flag);
 }
 
 std::string number_of(const config::Number& number) {
@@ -69,12 +53,13 @@ void add_geometry(const Session& session, const Prepared& prepared, std::string&
     const auto& all = prepared.model.parameters;
     const auto constant = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.name == name; });
     const std::string unit = constant != all.end() ? constant->unit : name == "V" ? "m/s" : "m";  // what is not the system's is the rig's
-    text += fmt::format("{} = {}  # {}\n", name, number_of(*session.study.geometry->number(name, unit, true)), unit);
+    text +=
+        fmt::format("{} = {}  # {}\n", toml_key(name), number_of(*session.study.geometry->number(name, unit, true)), toml_comment(unit));
   }
 }
 
 std::string marker_name(const Session& session, const MarkerStudy& marker) {
-  return marker.picture ? path_of(session, *marker.picture) : quoted(marker.kind);
+  return marker.picture ? path_of(session, *marker.picture) : toml_string(marker.kind);
 }
 
 /// [video], if any experiment starts from one.
@@ -82,7 +67,7 @@ void add_video(const Session& session, std::string& text) {
   const auto& all = session.study.experiments;
   if (std::none_of(all.begin(), all.end(), [](const ExperimentStudy& e) { return e.video.has_value(); })) return;
   const VideoStudy& video = session.study.video;
-  text += fmt::format("\n[video]\nfields = {}\ncheck_fields = {}\nmarker = {}\n", quoted(video.fields), video.check_fields,
+  text += fmt::format("\n[video]\nfields = {}\ncheck_fields = {}\nmarker = {}\n", toml_string(video.fields), video.check_fields,
                       marker_name(session, video.marker));
   if (video.start) text += fmt::format("start = {}\n", numbers_of({video.start->column, video.start->row}, 1.0));
   if (video.region) text += fmt::format("region = {}\n", numbers_of({video.region->begin(), video.region->end()}, 1.0));
@@ -91,7 +76,7 @@ void add_video(const Session& session, std::string& text) {
 void add_camera(const Session& session, std::string& text) {
   const CameraStudy& camera = session.study.camera;
   if (!session.study.has_camera) return;
-  text += fmt::format("\n[camera]\nmodel = {}\n", quoted(camera.model));
+  text += fmt::format("\n[camera]\nmodel = {}\n", toml_string(camera.model));
   if (camera.from_sweep()) {
     text +=
         fmt::format("{} = {}\noffer = {}\ntake_in = {}\n", camera.sweep ? "sweep" : "sweep_images",
@@ -103,7 +88,7 @@ void add_camera(const Session& session, std::string& text) {
     for (const PixelPoint& p : camera.sweep_points) flat.insert(flat.end(), {p.column, p.row});
     text += fmt::format("sweep_points = {}\n", numbers_of(flat, 1.0));
   }
-  for (const auto& [name, number] : camera.given) text += fmt::format("{} = {}\n", name, number_of(number));
+  for (const auto& [name, number] : camera.given) text += fmt::format("{} = {}\n", toml_key(name), number_of(number));
 }
 
 void add_experiments(const Session& session, const Prepared& prepared, std::string& text) {
@@ -111,7 +96,7 @@ void add_experiments(const Session& session, const Prepared& prepared, std::stri
     const Signals& s = prepared.experiments[e];
     const ExperimentStudy& study = session.study.experiments[e];
     text += fmt::format("\n[[experiment]]  # {} samples, {:.6g} s to {:.6g} s\nname = {}\n{} = {}\nexclude = {}\n", s.samples(),
-                        s.t.front(), s.t.back(), quoted(s.name),
+                        s.t.front(), s.t.back(), toml_string(s.name),
                         study.track   ? "track"
                         : study.video ? "video"
                                       : "data",
@@ -124,25 +109,25 @@ void add_experiments(const Session& session, const Prepared& prepared, std::stri
     if (study.columns.header_of.empty()) continue;
     std::string columns;
     for (const auto& [name, header] : study.columns.header_of)
-      columns += fmt::format("{}{} = {}", columns.empty() ? "" : ", ", key_of(name), quoted(header));
+      columns += fmt::format("{}{} = {}", columns.empty() ? "" : ", ", toml_key(name), toml_string(header));
     text += "columns = { " + columns + " }\n";
   }
 }
 
 void add_parameter(const Parameter& p, std::string& text) {
-  text += fmt::format("{} = {{ free = {}, value = {}, bounds = [{}, {}]", key_of(p.name), p.free, p.value, p.lower, p.upper);
+  text += fmt::format("{} = {{ free = {}, value = {}, bounds = [{}, {}]", toml_key(p.name), p.free, p.value, p.lower, p.upper);
   if (p.prior_sigma) text += fmt::format(", sigma = {}", *p.prior_sigma);
-  text += fmt::format(" }}  # {}; {}\n", p.unit, p.doc);
+  text += fmt::format(" }}  # {}\n", toml_comment(p.unit + "; " + p.doc));
 }
 
 void add_curve(const Session& session, const Curve& curve, std::string& text) {
   const bool angle = curve.of_unit == "rad";
-  text += fmt::format("{} = {{ of = {}, knots = {}, roughness = {}", key_of(curve.name), quoted(curve.of),
+  text += fmt::format("{} = {{ of = {}, knots = {}, roughness = {}", toml_key(curve.name), toml_string(curve.of),
                       numbers_of(curve.spline.breakpoints(), angle ? 1.0 / degree : 1.0),
                       curve.roughness ? fmt::format("{}", *curve.roughness) : "\"auto\"");
   const auto study = session.study.curves.find(curve.name);
   if (study != session.study.curves.end() && study->second.table) text += ", table = " + path_of(session, *study->second.table);
-  text += fmt::format(" }}  # knots in {}\n", angle ? "deg" : curve.of_unit);
+  text += fmt::format(" }}  # knots in {}\n", angle ? "deg" : toml_comment(curve.of_unit));
 }
 
 /// The wish of the study where there is one: it holds for a curve as a whole.
@@ -156,7 +141,7 @@ void add_curve_parameter(const Session& session, const std::string& curve, std::
   if (p.value) add(fmt::format("value = {}", *p.value));
   if (p.lower && p.upper) add(fmt::format("bounds = [{}, {}]", *p.lower, *p.upper));
   if (p.sigma) add(fmt::format("sigma = {}", *p.sigma));
-  text += fmt::format("{} = {{ {} }}\n", key_of(curve), entries);
+  text += fmt::format("{} = {{ {} }}\n", toml_key(curve), entries);
 }
 
 /// An effect that the study declares by a formula; false if it is none.
@@ -164,17 +149,18 @@ bool add_declared(const Session& session, const std::string& name, std::string& 
   const auto& all = session.study.effects;
   const auto found = std::find_if(all.begin(), all.end(), [&](const EffectStudy& e) { return e.name == name; });
   if (found == all.end() || !found->declared) return false;
-  text += fmt::format("{} = {{ port = {}, formula = {}, strengths = [", key_of(name), quoted(found->declared->port),
-                      quoted(found->declared->formula));
+  text += fmt::format("{} = {{ port = {}, formula = {}, strengths = [", toml_key(name), toml_string(found->declared->port),
+                      toml_string(found->declared->formula));
   std::string parameters;
   bool any = false;
   for (const auto& c : session.registry.effect(name).spec().coefficients) {
     if (c.kind == CoefficientKind::strength) {
-      text += (any ? ", " : "") + quoted(c.name);
+      text += (any ? ", " : "") + toml_string(c.name);
       any = true;
     }
-    parameters += fmt::format("{}{} = {{ unit = {}, value = {}, bounds = [{}, {}], scale = {}, free = {} }}",
-                              parameters.empty() ? "" : ", ", c.name, quoted(c.unit), c.value, c.lower, c.upper, c.scale, !c.fixed);
+    parameters +=
+        fmt::format("{}{} = {{ unit = {}, value = {}, bounds = [{}, {}], scale = {}, free = {} }}", parameters.empty() ? "" : ", ",
+                    toml_key(c.name), toml_string(c.unit), c.value, c.lower, c.upper, c.scale, !c.fixed);
   }
   text += "], parameters = { " + parameters + " } }\n";
   return true;
@@ -187,8 +173,9 @@ void add_initial(const Prepared& prepared, std::string& text) {
     const bool valued = std::isfinite(state.start);
     if (state.initial == Initial::free && !valued) continue;
     const char* kind = state.initial == Initial::free ? "free" : state.initial == Initial::shared ? "shared" : "fixed";
-    entries += valued ? fmt::format("{} = {{ kind = \"{}\", value = {} }}  # {}\n", state.name, kind, state.start, state.unit)
-                      : fmt::format("{} = \"{}\"\n", state.name, kind);
+    entries += valued ? fmt::format("{} = {{ kind = \"{}\", value = {} }}  # {}\n", toml_key(state.name), kind, state.start,
+                                    toml_comment(state.unit))
+                      : fmt::format("{} = \"{}\"\n", toml_key(state.name), kind);
   }
   if (!entries.empty()) text += "\n[initial]\n" + entries;
 }
@@ -197,8 +184,8 @@ void add_model(const Session& session, const Prepared& prepared, std::string& te
   text += "\n[effects]\n";
   for (const auto& effect : prepared.request.effects) {
     if (add_declared(session, effect.name, text)) continue;
-    text += fmt::format("{} = {{ kind = {}", key_of(effect.name), quoted(effect.kind));
-    for (const auto& [role, target] : effect.roles) text += fmt::format(", {} = {}", role, quoted(target));
+    text += fmt::format("{} = {{ kind = {}", toml_key(effect.name), toml_string(effect.kind));
+    for (const auto& [role, target] : effect.roles) text += fmt::format(", {} = {}", toml_key(role), toml_string(target));
     text += " }\n";
   }
   text += "\n[parameters]\n";
@@ -218,8 +205,8 @@ void add_uncertainty(const Study& study, std::string& text) {
   std::string perturb, readings;
   for (const PerturbStudy& p : u.perturb) {
     const char* comma = perturb.empty() ? "" : ", ";
-    perturb += fmt::format("{}{} = {}", comma, key_of(p.name), p.number.value);
-    readings += fmt::format("{}{} = {}", comma, key_of(p.name), quoted(p.reading));
+    perturb += fmt::format("{}{} = {}", comma, toml_key(p.name), p.number.value);
+    readings += fmt::format("{}{} = {}", comma, toml_key(p.name), toml_string(p.reading));
   }
   if (u.bootstrap > 0) text += fmt::format("bootstrap = {}\n", u.bootstrap);
   if (u.block > 0) text += fmt::format("block = {}\n", u.block);
@@ -231,7 +218,7 @@ void add_uncertainty(const Study& study, std::string& text) {
 void add_rest(const Session& session, std::string& text) {
   const Study& study = session.study;
   if (!study.reference.empty()) text += "\n[reference]\n";
-  for (const auto& [curve, file] : study.reference) text += fmt::format("{} = {}\n", key_of(curve), path_of(session, file));
+  for (const auto& [curve, file] : study.reference) text += fmt::format("{} = {}\n", toml_key(curve), path_of(session, file));
   if (study.bin_width > 0.0 || study.bin_step > 0.0) text += "\n[sliding_bin]\n";
   if (study.bin_width > 0.0) text += fmt::format("width = {}\n", study.bin_width);
   if (study.bin_step > 0.0) text += fmt::format("step = {}\n", study.bin_step);
@@ -250,6 +237,8 @@ void write_resolved(const Session& session, const Prepared& prepared, const std:
   add_model(session, prepared, text);
   add_initial(prepared, text);
   add_rest(session, text);
+  if (text.find("\uFFFD") != std::string::npos)
+    text = "# U+FFFD stands for bytes that are no UTF-8: TOML cannot name a file called so.\n" + text;
   write_atomically(dir / "resolved.toml", text);
 }
 

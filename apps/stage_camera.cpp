@@ -5,6 +5,7 @@
 #include "misfit/calibrate/calibrate.h"
 #include "misfit/calibrate/given.h"
 #include "misfit/core/error.h"
+#include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 
 namespace misfit {
@@ -39,7 +40,7 @@ Calibration make_calibration(const Session& session, const fs::path& sweep) {
 }
 
 fs::path attitude_file(const Session& session, std::size_t e) {
-  return session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + session.study.experiments[e].name + ".csv");
+  return session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + file_name_for(session.study.experiments[e].name) + ".csv");
 }
 
 std::vector<std::string> lines_of(const fs::path& path) {

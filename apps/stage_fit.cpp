@@ -3,6 +3,7 @@
 #include "apps/methods.h"
 #include "misfit/core/config.h"
 #include "misfit/core/error.h"
+#include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/core/progress.h"
 
@@ -29,7 +30,7 @@ std::map<std::string, std::string> inputs_of_fit(const Session& session, const s
     if (experiment.data) files.push_back(*experiment.data);
     if (!has_track(experiment)) continue;
     files.push_back(track_files(session, e).track);
-    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + experiment.name + ".csv"));
+    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + file_name_for(experiment.name) + ".csv"));
   }
   if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
   for (const auto& [name, curve] : session.study.curves) {

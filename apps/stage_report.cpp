@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "apps/stages.h"
+#include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/core/version.h"
 #include "misfit/report/report.h"
@@ -55,7 +56,7 @@ std::vector<fs::path> files_of_report(const Session& session, const std::vector<
     const ExperimentStudy& experiment = session.study.experiments[e];
     if (!has_track(experiment)) continue;
     files.push_back(track_files(session, e).track);
-    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + experiment.name + ".csv"));
+    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + file_name_for(experiment.name) + ".csv"));
   }
   return files;
 }

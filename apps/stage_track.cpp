@@ -1,5 +1,6 @@
 #include "apps/stages.h"
 #include "apps/track_video.h"
+#include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/core/progress.h"
 
@@ -8,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string suffix(const Session& session, std::size_t e) { return e == 0 ? "" : "_" + session.study.experiments[e].name; }
+std::string suffix(const Session& session, std::size_t e) { return e == 0 ? "" : "_" + file_name_for(session.study.experiments[e].name); }
 
 std::string settings_of(const VideoStudy& video) {
   std::string text = video.fields + (video.check_fields ? " checked " : " insisted ") + video.marker.kind;

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "misfit/core/error.h"
+#include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/core/table.h"
 #include "misfit/core/units.h"
@@ -81,7 +82,7 @@ std::vector<CurveFile> curve_files(const std::vector<CurveEstimate>& curves) {
   std::stable_partition(files.begin(), files.end(), of_tilt);
   std::vector<std::string> used;
   for (CurveFile& file : files) {
-    const std::string base = used.empty() ? "curves" : "curves_" + curves[file.curves.front()].of;
+    const std::string base = used.empty() ? "curves" : "curves_" + file_name_for(curves[file.curves.front()].of);
     const auto taken = [&](const std::string& name) { return std::find(used.begin(), used.end(), name) != used.end(); };
     std::string name = base;
     for (int number = 2; taken(name); ++number) name = base + "_" + std::to_string(number);
@@ -131,7 +132,7 @@ std::vector<PredictionFile> prediction_files(const std::vector<ChannelPrediction
     const std::string& experiment = predictions[k].experiment;
     const auto found = std::find_if(files.begin(), files.end(), [&](const PredictionFile& file) { return file.experiment == experiment; });
     if (found == files.end()) {
-      files.push_back({files.empty() ? "prediction.csv" : "prediction_" + experiment + ".csv", experiment, {k}});
+      files.push_back({files.empty() ? "prediction.csv" : "prediction_" + file_name_for(experiment) + ".csv", experiment, {k}});
     } else {
       found->channels.push_back(k);
     }

@@ -10,7 +10,9 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/loose_csv.h"
+#include "misfit/core/printable.h"
 #include "misfit/core/text.h"
+#include "misfit/core/unique_name.h"
 #include "misfit/core/units.h"
 #include "misfit/data/column_facts.h"
 #include "misfit/data/recording_time.h"
@@ -20,7 +22,9 @@ namespace {
 
 class Surveyor {
  public:
-  explicit Surveyor(const std::filesystem::path& path) : table_(read_loose_csv(path)) {
+  Surveyor(const std::filesystem::path& path, const std::vector<std::string>& reserved)
+      : table_(read_loose_csv(path)), taken_(reserved.begin(), reserved.end()) {
+    taken_.insert("t");
     out_.source = table_.source;
     out_.rows = table_.rows();
   }
@@ -28,11 +32,11 @@ class Surveyor {
   RecordingSurvey run() {
     describe_format();
     for (const auto& column : table_.columns) out_.columns.push_back(look_at(column));
-    make_names_unique();
     find_time();
     run_time();
     find_segments();
     find_inputs_and_outputs();
+    make_names_usable();
     find_rates();
     name_unknown_units();
     fill_parts();
@@ -55,17 +59,17 @@ class Surveyor {
   ColumnSurvey look_at(const LooseColumn& column) {
     ColumnSurvey s;
     const NameAndUnit header = read_header(column.header);
-    s.header = column.header;
+    s.header = printable(column.header, longest_header);
     s.name = header.name;
     s.unit = header.unit.empty() ? "-" : header.unit;
-    not_understood_.push_back(header.not_understood);
+    not_understood_.push_back(printable(header.not_understood, longest_header));
     const std::vector<double> known = finite(column.values);
     s.missing = column.values.size() - known.size() - column.text;
     if (column.text > 0) {
       if (known.size() > column.text) {
         fail(column.text_line,
              fmt::format("column '{}': '{}' is not a number (a missing value is an empty cell or NaN); {} cell{} of {} are text", s.header,
-                         column.first_text, column.text, column.text == 1 ? "" : "s", column.values.size()));
+                         printable(column.first_text, longest_header), column.text, column.text == 1 ? "" : "s", column.values.size()));
       }
       s.use = ColumnUse::text;
       s.why = "text";
@@ -91,11 +95,15 @@ class Surveyor {
     return s;
   }
 
-  void make_names_unique() {
-    std::set<std::string> taken;
+  void make_names_usable() {
+    const std::set<std::string> reserved = taken_;
     for (auto& c : out_.columns) {
-      const std::string stem = c.name;
-      for (int k = 2; !taken.insert(c.name).second; ++k) c.name = stem + "_" + std::to_string(k);
+      if (c.use == ColumnUse::time) continue;
+      const std::string wanted = c.name;
+      c.name = unique_name(wanted.substr(0, longest_name), taken_);
+      if (reserved.contains(wanted))
+        out_.remarks.push_back(
+            fmt::format("column '{}' is called {}: the word {} means something else in formulas", c.header, c.name, wanted));
     }
   }
 
@@ -253,8 +261,10 @@ class Surveyor {
   }
 
   std::vector<std::string> not_understood_;  ///< unit in the header, per column; empty: known, or none, or found out
+  static constexpr std::size_t longest_name = 64, longest_header = 80;  // bytes
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   LooseTable table_;
+  std::set<std::string> taken_;  // names that are reserved or given
   RecordingSurvey out_;
   std::size_t time_ = none;
   std::vector<double> t_;                         // [s], a value per row
@@ -271,6 +281,8 @@ std::vector<const ColumnSurvey*> RecordingSurvey::of_use(ColumnUse use) const {
   return out;
 }
 
-RecordingSurvey survey_recording(const std::filesystem::path& path) { return Surveyor(path).run(); }
+RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved) {
+  return Surveyor(path, reserved).run();
+}
 
 }  // namespace misfit

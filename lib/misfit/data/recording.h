@@ -12,8 +12,8 @@ enum class ColumnUse { time, input, output, rate, segment, constant, text, unuse
 
 /// What can be said of one column by looking at it.
 struct ColumnSurvey {
-  std::string header;  ///< as in the file
-  std::string name;    ///< usable in formulas: letters, digits and '_'
+  std::string header;  ///< as in the file, on one line, shortened if it is long
+  std::string name;    ///< usable in formulas: letters, digits and '_', at most 64, unique, not reserved
   std::string unit;    ///< from the header ("u_V", "theta[deg]", "omega1_radps"); "-" if it names none
   ColumnUse use = ColumnUse::unused;
   std::string why;  ///< of the use, in words
@@ -48,7 +48,8 @@ struct RecordingSurvey {
 /// Looks at a file of columns, asking nothing. Time: a column called so or in a unit of time that runs forward; inputs by name ("u",
 /// "force", "valve", …) or because they stand still between jumps; the rest are outputs, one that is the derivative of another its rate.
 /// InputError: what read_loose_csv() refuses, text among numbers, no time column, nothing that could be an output, too few rows.
-[[nodiscard]] RecordingSurvey survey_recording(const std::filesystem::path& path);
+/// `reserved`: names that no input, output or rate may have ("t" is always one).
+[[nodiscard]] RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved = {});
 
 /// "omega1_radps" → {"omega1", "rad/s"}; "theta[deg]" → {"theta", "deg"}; "Flow (l/min)" → {"Flow", ""} as litres are not known.
 struct NameAndUnit {

@@ -8,6 +8,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/core/table.h"
+#include "misfit/core/unique_name.h"
 #include "misfit/report/gnuplot_run.h"
 #include "misfit/report/gnuplot_script.h"
 #include "misfit/report/gnuplot_series.h"
@@ -20,13 +21,6 @@ constexpr const char* name_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLM
 std::vector<double> padded(std::vector<double> values, std::size_t rows) {
   values.resize(rows, std::numeric_limits<double>::quiet_NaN());
   return values;
-}
-
-std::string unique_key(const std::string& key, std::set<std::string>& used) {
-  const std::string base = key.empty() ? "series" : key;
-  std::string result = base;
-  for (int number = 2; !used.insert(result).second; ++number) result = base + "_" + std::to_string(number);
-  return result;
 }
 
 /// Does this column run along x, and so have the unit of x?
@@ -64,7 +58,7 @@ Table numbers_of(const Figure& figure) {
   std::set<std::string> used;
   for (const Panel& panel : figure.panels) {
     for (const Series& s : panel.series) {
-      const std::string key = unique_key(s.key, used);
+      const std::string key = unique_name(s.key.empty() ? "series" : s.key, used);
       for (const auto& [column, values] : columns_of(s)) {
         table.add(key + "." + column, unit_of(figure, panel, s.style, column), padded(*values, rows));
       }
@@ -79,6 +73,11 @@ Table numbers_of(const Figure& figure) {
 std::string palette(std::size_t k) {
   static constexpr std::array<const char*, 6> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"};
   return colours[k % colours.size()];
+}
+
+void make_names_unique(std::vector<Figure>& figures) {
+  std::set<std::string> used;
+  for (Figure& figure : figures) figure.name = unique_name(figure.name, used, ".");
 }
 
 std::filesystem::path write_figure(const std::filesystem::path& dir, const Figure& figure) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/file_name.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
 
@@ -16,7 +17,7 @@ std::vector<double> degrees(const std::vector<double>& radians) { return shown(r
 
 Figure time_figure(const std::string& name, const std::string& experiment, const std::string& title) {
   Figure figure;
-  figure.name = as_key(name + "_" + experiment);
+  figure.name = as_key(name) + "_" + file_name_for(experiment);
   figure.title = experiment + ": " + title;
   figure.x_label = "time";
   figure.x_unit = std::string("s");  // g++ 12 warns wrongly about a one-letter literal assigned
@@ -65,7 +66,7 @@ Figure orientation_figure(const std::string& experiment, const Attitude& a, cons
 
 Figure path_figure(const std::string& experiment, const Attitude& a) {
   Figure figure;
-  figure.name = as_key("path_" + experiment);
+  figure.name = "path_" + file_name_for(experiment);
   figure.title = experiment + ": path of the axis";
   figure.caption = "Pitch against yaw, three-point averages, the whole record: the path of the apex about the swivel.";
   figure.x_label = "psi";
@@ -94,7 +95,7 @@ Figure history_figure(const std::string& experiment, const Attitude& a) {
 Figure histogram_figure(const std::string& experiment, const Attitude& a) {
   constexpr double bin = 0.5;  // [deg]
   Figure figure;
-  figure.name = as_key("histogram_" + experiment);
+  figure.name = "histogram_" + file_name_for(experiment);
   figure.title = experiment + ": samples per " + fmt::format("{}", bin) + " deg of alpha_T";
   figure.caption = "How much data stands behind each angle: curves are uncertain where there are few samples.";
   figure.x_label = "alpha_T";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/file_name.h"
 #include "misfit/core/text.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures_discovery.h"
@@ -49,7 +50,7 @@ std::size_t quantity_index(const MissingForce& missing, const std::string& quant
 
 Figure map_figure(const ForceMap& map) {
   Figure figure;
-  figure.name = as_key("map_" + map.port + "_by_" + map.quantity);
+  figure.name = "map_" + as_key(map.port) + "_by_" + as_key(map.quantity);
   figure.title = fmt::format("Missing {} by {} (p {})", map.port, map.quantity, probability(map.p_corrected));
   figure.caption = fmt::format(
       "The {} that the data ask for on top of the model where {} is near each place, with all free parameters allowed to follow, ± 1 "
@@ -78,7 +79,7 @@ Figure map_figure(const ForceMap& map) {
 
 Figure pair_figure(const PairMap& map) {
   Figure figure;
-  figure.name = as_key("map_" + map.port + "_by_" + map.quantity_x + "_and_" + map.quantity_y);
+  figure.name = "map_" + as_key(map.port) + "_by_" + as_key(map.quantity_x) + "_and_" + as_key(map.quantity_y);
   figure.title = fmt::format("Missing {} by {} and {} (p {})", map.port, map.quantity_x, map.quantity_y, probability(map.p_corrected));
   figure.caption =
       "The colour is the force that the data ask for on top of the model, in units of its own sigma: beyond 3 is unlikely by chance. White "
@@ -176,7 +177,7 @@ Figure periodogram_figure(const std::vector<WhitenessReport>& whiteness) {
 
 Figure nis_figure(const NisSeries& series) {
   Figure figure;
-  figure.name = as_key("nis_" + series.experiment);
+  figure.name = "nis_" + file_name_for(series.experiment);
   figure.title = fmt::format("Normalised innovations squared, {}", series.experiment);
   figure.caption = fmt::format(
       "Innovations over their predicted sigma, squared and averaged over windows: 1 for a right model, inside the band in 95 % of the "
@@ -197,7 +198,7 @@ Figure nis_figure(const NisSeries& series) {
 
 Figure missing_force_figure(const MissingForce& missing, const std::optional<Interval>& zoom) {
   Figure figure;
-  figure.name = as_key("missing_force_" + missing.experiment) + (zoom ? "_zoom" : "");
+  figure.name = "missing_force_" + file_name_for(missing.experiment) + (zoom ? "_zoom" : "");
   figure.title = fmt::format("Missing force over time, {}{}", missing.experiment, zoom ? " (part)" : "");
   figure.caption =
       "The force that the filter needs on top of the model, from all data (smoothed), ± 1 sigma. That it goes with the motion is expected "
@@ -231,7 +232,7 @@ Figure missing_force_figure(const MissingForce& missing, const std::optional<Int
 
 Figure missing_force_by_figure(const MissingForce& missing, const std::string& quantity) {
   Figure figure;
-  figure.name = as_key("missing_force_" + missing.experiment + "_by_" + quantity);
+  figure.name = "missing_force_" + file_name_for(missing.experiment) + "_by_" + as_key(quantity);
   figure.title = fmt::format("Missing force against {}, {}", quantity, missing.experiment);
   figure.caption =
       "Every sample of the smoothed missing force. For looking only: a dependence on the motion is expected even where nothing is missing; "

@@ -165,6 +165,7 @@ std::vector<Figure> interval_figures(const Resampling& resampling) {
   for (const auto& curve : curves) figures.push_back(bootstrap_figure(curve, resampling.bootstraps));
   for (const auto& p : resampling.profiles) figures.push_back(profile_figure(p));
   for (const auto& s : resampling.starts) figures.push_back(starts_figure(s));
+  make_names_unique(figures);
   return figures;
 }
 

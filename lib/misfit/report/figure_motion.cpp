@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/file_name.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
 
@@ -139,7 +140,8 @@ Figure motion_figure(const std::string& method, const ChannelPrediction& channel
   const ChannelPrediction c = zoom ? cut(channel, *zoom) : channel;
   const std::string unit = display_unit(c.unit);
   Figure figure;
-  figure.name = as_key("motion_" + method + "_" + channel.experiment + "_" + channel.channel) + (zoom ? "_zoom" : "");
+  figure.name =
+      "motion_" + as_key(method) + "_" + file_name_for(channel.experiment) + "_" + file_name_for(channel.channel) + (zoom ? "_zoom" : "");
   figure.title =
       fmt::format("{} of {}: measured and predicted by {}{}", channel.channel, channel.experiment, method, zoom ? " (part)" : "");
   figure.caption = fmt::format("{} against time, measured and as {} predicts it; below, their difference.", channel.channel, method);
@@ -153,7 +155,7 @@ Figure autocorrelation_figure(const std::string& method, const ChannelPrediction
   const std::vector<double> r = normalised_residuals(channel);
   const auto count = static_cast<double>(std::count_if(r.begin(), r.end(), [](double v) { return std::isfinite(v); }));
   Figure figure;
-  figure.name = as_key("autocorrelation_" + method + "_" + channel.experiment + "_" + channel.channel);
+  figure.name = "autocorrelation_" + as_key(method) + "_" + file_name_for(channel.experiment) + "_" + file_name_for(channel.channel);
   figure.title = fmt::format("Residuals of {} ({}, {}): autocorrelation", channel.channel, method, channel.experiment);
   figure.caption = "If the model says all there is to say, the residuals are white: 95 % of the lags stay inside the band.";
   figure.x_label = "lag";

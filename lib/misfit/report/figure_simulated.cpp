@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "misfit/core/file_name.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures_simulated.h"
 
@@ -52,7 +53,7 @@ Panel panel_of(const MotionSeries& series, const MotionGroup& group) {
 
 Figure simulated_figure(const SimulatedMotion& motion, const std::string& experiment, const std::string& group) {
   Figure figure;
-  figure.name = as_key("simulated_" + group + "_" + experiment);
+  figure.name = "simulated_" + as_key(group) + "_" + file_name_for(experiment);
   for (const Look& look : looks) {
     if (group != look.group) continue;
     figure.title = fmt::format("{}: {}", look.title, experiment);

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/file_name.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
 
@@ -40,7 +41,7 @@ Panel place_panel(const char* label, const Track& track, const std::vector<doubl
 
 Figure track_figure(const std::string& experiment, const Track& track) {
   Figure figure;
-  figure.name = as_key("track_" + experiment);
+  figure.name = "track_" + file_name_for(experiment);
   figure.title = experiment + ": the marker in the image";
   figure.caption =
       "P_y and P_z of the marker from the image centre, one sample per field or frame; lost samples are marked at the lower edge. Below: "

@@ -173,6 +173,7 @@ std::vector<Figure> uncertainty_figures(const Uncertainty& u, const std::vector<
   std::vector<Figure> out;
   for (const SpreadCurve& curve : u.curves) out.push_back(spread_figure(curve, u, references));
   if (!shared_numbers(u).empty()) out.push_back(shares_figure(u));
+  make_names_unique(out);
   return out;
 }
 

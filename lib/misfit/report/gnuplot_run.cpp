@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 #include <gnuplot-iostream.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <optional>
@@ -55,23 +58,52 @@ std::string replace_all(const std::string& text, const std::string& from, const 
 
 std::string shell_quoted(const std::string& text) { return fmt::format("'{}'", replace_all(text, "'", "'\\''")); }
 
+/// A file in memory that a program we start can write under path(): what gnuplot draws and says does not depend on room on the disk, and
+/// leaves nothing behind if the program is killed.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const char* name) : number_(::memfd_create(name, 0)) {
+    if (number_ < 0) throw RunError(std::string("no file in memory can be opened for gnuplot: ") + std::generic_category().message(errno));
+  }
+  ~MemoryFile() { ::close(number_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  /// Of the file in a program that was started from here.
+  [[nodiscard]] std::string path() const { return fmt::format("/proc/self/fd/{}", number_); }
+
+  [[nodiscard]] std::string text() const {
+    std::string out;
+    std::array<char, 1 << 16> buffer{};
+    for (;;) {
+      const ssize_t n = ::pread(number_, buffer.data(), buffer.size(), static_cast<off_t>(out.size()));
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) return out;
+      out.append(buffer.data(), static_cast<std::size_t>(n));
+    }
+  }
+
+ private:
+  int number_;
+};
+
 /// Printed if the script came to its end, where it sets `drawn`: gnuplot closes its drawing properly, and reads on, when a command fails.
 constexpr const char* all_drawn = "misfit: all drawn";
 
-bool complete_drawing(const fs::path& path, const std::string& words) {
-  std::error_code ignored;
-  if (words.find(all_drawn) == std::string::npos || !fs::is_regular_file(path, ignored)) return false;
-  const std::string text = read_file(path);
-  return text.find("</svg>", text.size() < 64 ? 0 : text.size() - 64) != std::string::npos;
+bool complete(const std::string& drawing, const std::string& words) {
+  return words.find(all_drawn) != std::string::npos &&
+         drawing.find("</svg>", drawing.size() < 64 ? 0 : drawing.size() - 64) != std::string::npos;
 }
 
-std::string words_of(const fs::path& log) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(log, ignored)) return "it says nothing";
-  const std::string text = read_file(log);
-  const std::size_t end = text.find_last_not_of(" \n\r\t");
-  return end == std::string::npos ? "it says nothing" : text.substr(0, end + 1);
+/// What gnuplot said, without our own line.
+std::string shown(std::string words) {
+  words = replace_all(words, all_drawn, "");
+  const std::size_t end = words.find_last_not_of(" \n\r\t");
+  return end == std::string::npos ? "it says nothing" : words.substr(0, end + 1);
 }
+
+/// Neither ~/.gnuplot nor ./.gnuplot (-d), nor GNUTERM, GNUPLOT_LIB, locale and the like of the user.
+constexpr const char* environment = "/usr/bin/env -i PATH=/usr/bin:/bin HOME=/nonexistent LC_ALL=C.UTF-8";
 
 }  // namespace
 
@@ -80,25 +112,16 @@ void run_gnuplot(const fs::path& dir, const std::string& name) {
   if (!program)
     throw RunError("gnuplot is not installed (not on the PATH): the figures cannot be drawn; their .csv and .gp files are in " +
                    dir.string());
-  const fs::path part = dir / ("." + name + ".svg.part");
-  const fs::path log = dir / ("." + name + ".log");
-  std::error_code ignored;
-  fs::remove(part, ignored);
+  const MemoryFile drawing("drawing"), said("words of gnuplot");
   {
     const IgnoreBrokenPipe guard;
-    Gnuplot gnuplot(fmt::format("cd {} && {} >{} 2>&1 || true", shell_quoted(dir.string()), shell_quoted(fs::absolute(*program).string()),
-                                shell_quoted(log.filename().string())));
-    gnuplot << fmt::format("out = '{}'\nload '{}.gp'\nif (exists('drawn')) print '{}'\n", part.filename().string(), name, all_drawn);
+    Gnuplot gnuplot(fmt::format("cd -- {} && {} {} -d >{} 2>&1 || true", shell_quoted(fs::absolute(dir).string()), environment,
+                                shell_quoted(fs::absolute(*program).string()), said.path()));
+    gnuplot << fmt::format("out = '{}'\nload '{}.gp'\nif (exists('drawn')) print '{}'\n", drawing.path(), name, all_drawn);
   }
-  const std::string words = words_of(log);
-  fs::remove(log, ignored);
-  if (!complete_drawing(part, words)) {
-    fs::remove(part, ignored);
-    throw RunError("gnuplot failed on " + (dir / (name + ".gp")).string() + ": " + words);
-  }
-  std::error_code failed;
-  fs::rename(part, dir / (name + ".svg"), failed);
-  if (failed) throw RunError((dir / (name + ".svg")).string() + ": " + failed.message());
+  const std::string svg = drawing.text(), words = said.text();
+  if (!complete(svg, words)) throw RunError("gnuplot failed on " + (dir / (name + ".gp")).string() + ": " + shown(words));
+  write_atomically(dir / (name + ".svg"), svg);
 }
 
 }  // namespace misfit::report

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
+#include "misfit/core/unique_name.h"
 #include "misfit/report/figure.h"
 
 namespace misfit::report {
@@ -18,6 +20,8 @@ class Page {
   void list(const std::vector<std::string>& items);               ///< nothing if empty
   void table(const std::vector<std::vector<std::string>>& rows);  ///< first row is the header; nothing if only that
   void figure(const Figure& figure, const std::string& svg);      ///< drawing, caption, notes
+  /// A name for the next figure: `name`, or if a figure of the page has it one with a number behind.
+  [[nodiscard]] std::string free_figure_name(const std::string& name) { return unique_name(name, figure_names_, "."); }
   void html(const std::string& markup) { body_ += markup; }
 
   /// The whole page: title, style and a list of its sections included.
@@ -26,6 +30,7 @@ class Page {
  private:
   std::string title_, body_;
   std::vector<std::string> sections_;
+  std::set<std::string> figure_names_;
 };
 
 /// An SVG file as an element of a page: without prolog and namespaces, scaling with the page, every id and reference to it led by `prefix`

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "misfit/core/file_name.h"
 #include "misfit/report/figure_units.h"
 
 namespace misfit::report {
@@ -45,7 +46,7 @@ Figure recording_figure(const RecordingSurvey& survey, std::size_t part, const s
   const std::vector<double>& t = table.columns.front().values;
   const Interval all = zoom.value_or(Interval{t.front(), t.back()});
   Figure figure;
-  figure.name = as_key("data_" + name) + (zoom ? "_zoom" : "");
+  figure.name = "data_" + file_name_for(name) + (zoom ? "_zoom" : "");
   figure.title = name + ": the recording" + (zoom ? " (part)" : "");
   figure.caption = fmt::format("The columns of {} as misfit reads them; {} rows, one each {:g} s.", name, t.size(), survey.step);
   figure.x_label = "time";

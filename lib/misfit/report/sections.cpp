@@ -45,7 +45,10 @@ void differences_table(const Comparison& comparison, Page& page) {
 
 }  // namespace
 
-void Draw::operator()(const Figure& figure) const { page_.figure(figure, read_file(write_figure(folder_, figure))); }
+void Draw::operator()(Figure figure) const {
+  figure.name = page_.free_figure_name(figure.name);
+  page_.figure(figure, read_file(write_figure(folder_, figure)));
+}
 
 void curves_section(const ReportInput& input, Page& page, const Draw& draw) {
   const auto names = curves_of(input);

@@ -9,11 +9,11 @@
 
 namespace misfit::report {
 
-/// Draws a figure and puts it on the page.
+/// Draws a figure, under a name that no other one of the page has, and puts it there.
 class Draw {
  public:
   Draw(std::filesystem::path folder, Page& page) : folder_(std::move(folder)), page_(page) {}
-  void operator()(const Figure& figure) const;
+  void operator()(Figure figure) const;
 
  private:
   std::filesystem::path folder_;

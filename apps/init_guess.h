@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/data/recording.h"
+#include "misfit/fit/linear_guess.h"
+
+namespace misfit {
+
+/// An output with the linear model guessed for it.
+struct GuessedOutput {
+  std::string name, unit;                     ///< SI
+  std::string rate, rate_unit;                ///< column that is its measured rate; empty: none
+  std::string rate_state;                     ///< order 2: the state that is its rate
+  std::string stiffness, damping, tau, rest;  ///< parameters of its equation
+  std::vector<std::string> gains;             ///< one per input
+  double scale = 1.0;                         ///< largest of its values, without sign
+  std::vector<double> gain_scales;            ///< its range by that of each input
+  double noise = 0.0, rate_noise = 0.0;       ///< reading noise [unit]
+  LinearGuess guess;
+};
+
+struct GuessedModel {
+  std::vector<std::string> inputs, input_units;  ///< SI
+  std::vector<std::string> hold_reasons;
+  std::vector<GuessedOutput> outputs;
+  std::vector<std::string> remarks;  ///< which columns are not in it, and why: one sentence each
+};
+
+/// Names that no column may have: those of formulas.
+[[nodiscard]] std::vector<std::string> names_of_formulas();
+
+/// The unit of a column in SI: "deg/s" → "rad/s", "kPa" → "Pa", "cm" → "m".
+[[nodiscard]] std::string si_unit(const std::string& unit);
+
+/// Reads a linear model off the survey's longest part, of as many inputs and outputs as a declared system takes, first ones first.
+/// InputError: values whose squares are beyond the numbers of this machine.
+[[nodiscard]] GuessedModel guess_model(const RecordingSurvey& survey);
+
+/// The column of that name, which the survey has.
+[[nodiscard]] const ColumnSurvey& column_called(const RecordingSurvey& survey, const std::string& name);
+
+}  // namespace misfit
