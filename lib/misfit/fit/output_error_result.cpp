@@ -133,23 +133,35 @@ double motion_size(const std::vector<double>& values) {
   return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
 }
 
+namespace {
+
+/// Of a channel's estimation part in all experiments, on an even grid.
+std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
+  std::vector<std::vector<double>> all;
+  for (const auto& p : fit.predictions) {
+    if (p.channel != channel) continue;
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < p.t.size(); ++i) residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
+    all.push_back(on_even_grid(p.t, residuals));
+  }
+  return joined_series(all);
+}
+
+}  // namespace
+
 void judge(const Model& model, const Setting& setting, Fit& fit) {
   const ChannelPrediction& p = fit.predictions.front();
-  std::vector<double> residuals;
-  for (std::size_t i = 0; i < p.t.size(); ++i) residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
-  const int last = std::max(6, static_cast<int>(pi / setting.frequency / setting.step));
-  const WhitenessTest test = whiteness(residuals, 1, last);
+  const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
+  const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period));
   const double noise = reading_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
-  fit.facts["whiteness"] = "residuals of " + p.channel + " at lags 1 to " + std::to_string(test.last_lag) +
-                           " samples (half a period): largest autocorrelation " + format_value(test.largest) + " at lag " +
-                           std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
+  fit.facts["whiteness"] = "residuals of " + p.channel + " at " + in_words(test);
   fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
                            ", reading noise about " + in_display_unit(noise, p.unit);
   constexpr double clearly_above_noise = 2.0;
   fit.driven = looks_driven(test) && rms > clearly_above_noise * noise;
   constexpr double follows = 0.5;  // of the motion's own size: a model that leaves less explains most of it
   if (!fit.driven || rms < follows * size) {
-    if (test.p_value < 1e-3) {
+    if (clearly_coloured(test)) {
       fit.warnings.push_back(
           "residuals are not white (" + fit.facts["whiteness"] + "; " + fit.facts["explained"] +
           "): something is missing from the model, or the readings' own noise has memory. Sigmas allow for that memory as noise (" +
