@@ -8,6 +8,7 @@
 #include "misfit/fit/curves.h"
 #include "misfit/fit/identifiable.h"
 #include "misfit/fit/output_error_result.h"
+#include "misfit/fit/short_record.h"
 
 namespace misfit {
 namespace {
@@ -215,11 +216,12 @@ class Estimator {
     if (!smoothed.ok) return failed(not_determined(linearised));
     if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(which);
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
+    const double degrees = linearised.count - smoothed.edf;
     const std::vector<Segment> runs = shooting_.run(true);
     const auto& outputs = out.model.system->spec().outputs;
     for (std::size_t o = 0; o < outputs.size(); ++o) {
       const double sigma = shooting_.sigma()[o];
-      fit.noise[outputs[o].name] = {sigma, sigma / std::sqrt(2.0 * std::max(linearised.count / static_cast<double>(outputs.size()), 1.0)),
+      fit.noise[outputs[o].name] = {sigma, sigma / std::sqrt(2.0 * std::max(degrees / static_cast<double>(outputs.size()), 1.0)),
                                     outputs[o].unit};
     }
     RowMatrix visited = visited_quantities(out.model, experiments_.front(), setting_.states.front());
@@ -229,7 +231,7 @@ class Estimator {
       visited.conservativeResize(old + more.rows(), visited.cols());
       visited.bottomRows(more.rows()) = more;
     }
-    const Eigen::MatrixXd covariance = allowing_for_memory(linearised, smoothed.covariance, runs, visited, out);
+    const Eigen::MatrixXd covariance = allowing_for_memory(linearised, smoothed.covariance, runs, visited, degrees, out);
     predictions_of(shooting_, runs, experiments_, covariance, fit);
     errors_of(experiments_, fit);
     for (std::size_t e = 0; e < experiments_.size(); ++e) out.initial_states.push_back(shooting_.initial_state(e));
@@ -246,22 +248,31 @@ class Estimator {
     tell_other_trims(fit);
     judge(out.model, setting_, fit);
     refuse_runaways(out.model, covariance.topLeftCorner(columns, columns), fit);
+    if (degrees < kFewestDegrees) withhold_sigmas(too_few(linearised.count, smoothed.edf), fit);
     fit.linearisations = shooting_.linearisations();
     return out;
   }
 
+  static std::string too_few(double count, double unknowns) {
+    return format_value(count) + " readings for " + format_value(std::round(10.0 * unknowns) / 10.0) +
+           " unknowns (free parameters and initial states) are too few to tell how far off the values are: no sigma is given";
+  }
+
   /// Of all unknowns; tells parameters, curves and trim with it, and what the plain one would give.
   Eigen::MatrixXd allowing_for_memory(const Linearised& linearised, const Eigen::MatrixXd& plain, const std::vector<Segment>& runs,
-                                      const RowMatrix& visited, FittedModel& out) const {
+                                      const RowMatrix& visited, double degrees, FittedModel& out) const {
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
     if (!options_.coloured) {
       describe(out.model, plain.topLeftCorner(columns, columns), visited, out.fit);
       return plain;
     }
-    const ColouredCovariance coloured = coloured_covariance(residual_rows(shooting_, runs, experiments_), plain, out.model.outputs());
+    const std::vector<ResidualRows> rows = residual_rows(shooting_, runs, experiments_);
+    const ColouredCovariance coloured =
+        memory_of_residuals(residual_rows(shooting_, runs, experiments_), plain, out.model.outputs(), degrees);
     Eigen::MatrixXd covariance = with_uncertain_roughness(linearised, penalties_, 1.0, coloured.excess);
     out.plain_covariance = with_uncertain_roughness(linearised, penalties_, 1.0).topLeftCorner(columns, columns);
     describe_both(out.model, out.plain_covariance, covariance.topLeftCorner(columns, columns), visited, out.fit);
+    if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
     out.fit.facts["covariance"] = in_words(coloured);
     const auto& outputs = out.model.system->spec().outputs;
     for (std::size_t o = 0; o < outputs.size(); ++o)
