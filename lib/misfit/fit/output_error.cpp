@@ -162,12 +162,12 @@ class Estimator {
   /// along the curved valley of equal phase.
   FittedModel whole_trajectory(const ShootingPass& lengthened) {
     Linearised linearised;
-    constexpr int most_rounds = 8;
+    constexpr int most_rounds = 8, most_iterations = 200;
     double before = 0.0;
     settled_ = false;
     for (int round = 0; round < most_rounds; ++round) {
       if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
-      if (!solve({0, 10.0, 1e8, 60, 1e-7})) return failed(last_.message);
+      if (!solve({0, 10.0, 1e8, most_iterations, 1e-7})) return failed(last_.message);
       const Smoothed smoothed = smooth_present(shooting_, penalties_, linearised);
       if (!smoothed.ok) return failed(shooting_.failure().empty() ? not_determined(linearised) : "");
       const std::vector<double> sigma = channel_sigmas(shooting_, shooting_.run(false), experiments_, smoothed.edf);
@@ -176,14 +176,36 @@ class Estimator {
                                               [](double now, double then) { return std::abs(now / then - 1.0) < 0.01; });
       before = smoothed.edf;
       shooting_.set_sigma(sigma);
-      if (settled_) break;
+      if (!settled_) continue;
+      add_digits(linearised, smoothed);
+      break;
     }
     return finish(last_);
   }
 
-  std::string not_determined(const Linearised& linearised) const {
+  /// A search in a long valley ends by its tolerance some way before the minimum: on to it, if a step of more than 1e-4 sigma is left.
+  void add_digits(const Linearised& linearised, const Smoothed& smoothed) {
+    constexpr double enough = 1e-4;
+    const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+    if ((smoothed.theta - linearised.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < enough) return;
+    const Shooting::State before = shooting_.state();
+    const LeastSquares::Summary then = last_;
+    if (solve({0, 10.0, 1e8, 100, 1e-13})) {
+      last_ = then;
+      return;
+    }
+    shooting_.restore(before);
+    shooting_.forget_failure();
+    last_ = then;
+  }
+
+  std::string not_determined(const Linearised& linearised) {
     const std::string which = linearised.N.size() > 0 ? undetermined(shooting_.model(), linearised) : "";
-    return which.empty() ? "the information matrix is singular: some parameters are not determined by these data" : which;
+    return at_the_end(which.empty() ? "the information matrix is singular: some parameters are not determined by these data" : which);
+  }
+
+  std::string at_the_end(const std::string& which) {
+    return said_of_the_end(which, last_.converged, shooting_, shooting_.run(false), experiments_);
   }
 
   /// On motion that is driven a failure to simulate is what had to be expected: then the method declines, in words.
@@ -214,7 +236,7 @@ class Estimator {
     std::vector<Penalty> penalties = kept(penalties_);
     const Smoothed smoothed = smooth(linearised, penalties, 1.0);
     if (!smoothed.ok) return failed(not_determined(linearised));
-    if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(which);
+    if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(at_the_end(which));
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
     const double degrees = linearised.count - smoothed.edf;
     const std::vector<Segment> runs = shooting_.run(true);

@@ -18,6 +18,34 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+/// Predicted − measured of output o, per experiment and sample; NaN where it does not count.
+std::vector<std::vector<double>> channel_residuals(const Shooting& shooting, const std::vector<Segment>& runs,
+                                                   const std::vector<Signals>& experiments, std::size_t o) {
+  std::vector<std::vector<double>> out;
+  for (std::size_t e = 0; e < runs.size(); ++e) {
+    out.emplace_back(experiments[e].samples(), std::nan(""));
+    for (std::size_t i = 0; i < experiments[e].samples() && runs[e].finite; ++i) {
+      if (!shooting.counts(e, i, o)) continue;
+      out.back()[i] = runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i];
+    }
+  }
+  return out;
+}
+
+struct Squares {
+  double sum = 0.0, count = 0.0;
+};
+
+Squares squares_of(const std::vector<std::vector<double>>& residuals) {
+  Squares out;
+  for (const auto& series : residuals) {
+    for (const double r : series) {
+      if (std::isfinite(r)) out.sum += r * r, out.count += 1.0;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
@@ -25,15 +53,7 @@ std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<S
   std::vector<double> sigma = shooting.sigma();
   const double share = edf / static_cast<double>(sigma.size());
   for (std::size_t o = 0; o < sigma.size(); ++o) {
-    double squares = 0.0, count = 0.0;
-    for (std::size_t e = 0; e < runs.size(); ++e) {
-      for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
-        if (!shooting.counts(e, i, o)) continue;
-        const double r = runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i];
-        squares += r * r;
-        count += 1.0;
-      }
-    }
+    const auto [squares, count] = squares_of(channel_residuals(shooting, runs, experiments, o));
     if (count > share + 1.0 && squares > 0.0) sigma[o] = std::sqrt(squares / (count - share));
   }
   return sigma;
@@ -131,6 +151,23 @@ double motion_size(const std::vector<double>& values) {
     if (std::isfinite(v)) sum += v, squares += v * v, n += 1.0;
   }
   return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
+}
+
+std::string said_of_the_end(const std::string& which, bool converged, const Shooting& shooting, const std::vector<Segment>& runs,
+                            const std::vector<Signals>& experiments) {
+  const auto& outputs = shooting.model().system->spec().outputs;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    std::vector<std::vector<double>> residuals = channel_residuals(shooting, runs, experiments, o);
+    const auto [squares, count] = squares_of(residuals);
+    for (std::size_t e = 0; e < residuals.size(); ++e) residuals[e] = on_even_grid(experiments[e].t, residuals[e]);
+    constexpr int lags = 20;
+    if (converged && !clearly_coloured(whiteness(joined_series(residuals), 1, lags))) continue;
+    return "the search ended at no fit of " + outputs[o].name + " (residual RMS " +
+           in_display_unit(std::sqrt(squares / std::max(count, 1.0)), outputs[o].unit) + ", motion RMS " +
+           in_display_unit(motion_size(experiments.front().measured[o].values), outputs[o].unit) + "): there " +
+           which.substr(0, which.find_first_of(":;")) + ", which need not be so elsewhere. Begin with other values, or give bounds";
+  }
+  return which;
 }
 
 namespace {
