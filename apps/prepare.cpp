@@ -4,6 +4,7 @@
 #include "apps/stages.h"
 #include "misfit/core/error.h"
 #include "misfit/fit/curves.h"
+#include "misfit/fit/gaps.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/curve_table.h"
 #include "misfit/model/experiment.h"
@@ -67,7 +68,8 @@ std::vector<Signals> read_experiments(Session& session, const Model& model) {
       plain.columns = {};
       out.push_back(signals_from(attitude_table(*attitudes[e]), model, plain));
     } else {
-      out.push_back(signals_from(read_csv(*experiment.data), model, experiment));
+      for (Signals& part : split_at_gaps(model, signals_from(read_csv(*experiment.data), model, experiment)))
+        out.push_back(std::move(part));
     }
   }
   return out;
