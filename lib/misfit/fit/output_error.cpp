@@ -269,7 +269,7 @@ class Estimator {
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
     tell_weak_directions(out.model, covariance.topLeftCorner(columns, columns), fit);
     tell_other_trims(fit);
-    judge(out.model, setting_, fit);
+    judge(out.model, setting_, smoothed.edf / static_cast<double>(outputs.size()), fit);
     refuse_runaways(out.model, covariance.topLeftCorner(columns, columns), fit);
     if (degrees < kFewestDegrees) withhold_sigmas(too_few(linearised.count, smoothed.edf), fit);
     fit.linearisations = shooting_.linearisations();
