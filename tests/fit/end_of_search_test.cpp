@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
+#include <string>
+#include <vector>
 
 #include "misfit/fit/output_error.h"
 #include "tests/model/declared_texts.h"
@@ -40,20 +41,47 @@ constexpr std::array<std::array<double, 2>, 35> eckerle = {
      {460.5, 0.0337200}, {462.0, 0.0194023}, {463.5, 0.0117831}, {465.0, 0.0074357}, {470.0, 0.0022732}, {475.0, 0.0008800},
      {480.0, 0.0004579}, {485.0, 0.0002345}, {490.0, 0.0001586}, {495.0, 0.0001143}, {500.0, 0.0000710}}};
 
-FittedModel fitted(double b1, double b2, double b3) {
-  const auto known = registry_with(eckerle_text);
+const std::string mgh09_text = R"toml(
+[states]
+s = { unit = "-", initial = 0.0 }
+[inputs]
+x = { unit = "-" }
+[parameters]
+b1 = { unit = "-", value = 1.0, free = true }
+b2 = { unit = "-", value = 1.0, free = true }
+b3 = { unit = "-", value = 1.0, free = true }
+b4 = { unit = "-", value = 1.0, free = true }
+[equations]
+s = "0"
+[outputs]
+y = { unit = "-", formula = "b1*(x^2 + x*b2)/(x^2 + x*b3 + b4)", noise = 0.01 }
+)toml";
+
+constexpr std::array<std::array<double, 2>, 11> mgh09 = {{{4.0, 0.1957},
+                                                          {2.0, 0.1947},
+                                                          {1.0, 0.1735},
+                                                          {0.5, 0.16},
+                                                          {0.25, 0.0844},
+                                                          {0.167, 0.0627},
+                                                          {0.125, 0.0456},
+                                                          {0.1, 0.0342},
+                                                          {0.0833, 0.0323},
+                                                          {0.0714, 0.0235},
+                                                          {0.0625, 0.0246}}};
+
+template <std::size_t rows>
+FittedModel fitted(const std::string& text, const std::array<std::array<double, 2>, rows>& data, const std::vector<double>& start_values) {
+  const auto known = registry_with(text);
   ModelRequest request = request_of("text");
-  request.parameters["b1"].value = b1;
-  request.parameters["b2"].value = b2;
-  request.parameters["b3"].value = b3;
+  for (std::size_t k = 0; k < start_values.size(); ++k) request.parameters["b" + std::to_string(k + 1)].value = start_values[k];
   Signals s;
-  s.name = "eckerle";
+  s.name = "table";
   s.measured = {{"y", "-", {}, 0.0}};
   s.inputs = {{"x", "-", {}, 0.0}};
-  for (std::size_t i = 0; i < eckerle.size(); ++i) {
-    s.t.push_back(static_cast<double>(i));
-    s.inputs[0].values.push_back(eckerle[i][0]);
-    s.measured[0].values.push_back(eckerle[i][1]);
+  for (const auto& [x, y] : data) {
+    s.t.push_back(static_cast<double>(s.t.size()));
+    s.inputs[0].values.push_back(x);
+    s.measured[0].values.push_back(y);
   }
   OutputErrorStart options;
   options.from_regression = false;
@@ -62,7 +90,7 @@ FittedModel fitted(double b1, double b2, double b3) {
 }
 
 TEST(EndOfSearch, HasSixDigitsAtACertifiedMinimum) {
-  const Fit fit = fitted(1.5, 5.0, 450.0).fit;
+  const Fit fit = fitted(eckerle_text, eckerle, {1.5, 5.0, 450.0}).fit;
   ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
   constexpr double six_digits = 1e-6;
   EXPECT_NEAR(fit.parameters.at("b1").value / 1.5543827178, 1.0, six_digits);
@@ -72,8 +100,16 @@ TEST(EndOfSearch, HasSixDigitsAtACertifiedMinimum) {
       << "three parameters of 35 values, the state that stands is no fourth";
 }
 
+TEST(EndOfSearch, HasSixDigitsInALongValley) {
+  const std::vector<double> certified = {1.9280693458e-01, 1.9128232873e-01, 1.2305650693e-01, 1.3606233068e-01};
+  const Fit fit = fitted(mgh09_text, mgh09, {0.25, 0.39, 0.415, 0.39}).fit;
+  ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+  for (std::size_t k = 0; k < certified.size(); ++k)
+    EXPECT_NEAR(fit.parameters.at("b" + std::to_string(k + 1)).value / certified[k], 1.0, 1e-6) << "b" << k + 1;
+}
+
 TEST(EndOfSearch, WhereItGotStuckNothingIsSaidOfTheData) {
-  const Fit fit = fitted(1.0, 10.0, 500.0).fit;
+  const Fit fit = fitted(eckerle_text, eckerle, {1.0, 10.0, 500.0}).fit;
   if (fit.status == FitStatus::converged) {  // found after all
     EXPECT_NEAR(fit.parameters.at("b3").value, 451.54, 0.01);
     return;

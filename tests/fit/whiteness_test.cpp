@@ -159,6 +159,12 @@ TEST(Whiteness, MoreLagsThanAQuarterOfTheValuesAreNotLookedAt) {
   EXPECT_NE(in_words(none).find("too few"), std::string::npos);
 }
 
+TEST(Whiteness, SaysNothingOfResidualsOfNearlyAsManyUnknowns) {
+  const std::vector<double> r = autoregressive(39, 0.9, 1);
+  EXPECT_LT(whiteness(r, 1, 10, 3.0).p_value, 0.01);
+  EXPECT_EQ(whiteness(r, 1, 10, 4.0).p_value, 1.0);
+}
+
 TEST(Whiteness, ColouredShortSeriesAlarm) {
   int alarms = 0;
   for (unsigned seed = 1; seed <= 100; ++seed) alarms += whiteness(autoregressive(50, 0.7, seed), 1, 100).p_value < 0.05 ? 1 : 0;

@@ -230,7 +230,7 @@ ColouredCovariance coloured_covariance(const std::vector<ResidualRows>& experime
   return Sandwich(experiments, plain, channels).run();
 }
 
-bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::Index channels) {
+bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::Index channels, double unknowns) {
   constexpr double unusual = 0.05;
   constexpr int lags = 10;
   for (Eigen::Index a = 0; a < channels; ++a) {
@@ -239,7 +239,7 @@ bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::In
       series.emplace_back();
       for (Eigen::Index i = a; i < e.r.size(); i += channels) series.back().push_back(e.r[i]);
     }
-    if (whiteness(joined_series(series), 1, lags).p_value < unusual) return false;
+    if (whiteness(joined_series(series), 1, lags, unknowns / static_cast<double>(channels)).p_value < unusual) return false;
   }
   return true;
 }
@@ -266,7 +266,9 @@ ColouredCovariance white_covariance(const Eigen::MatrixXd& plain, Eigen::Index c
 ColouredCovariance memory_of_residuals(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels,
                                        double degrees) {
   if (degrees >= kShortRecord) return coloured_covariance(experiments, plain, channels);
-  if (residuals_are_white(experiments, channels)) return white_covariance(plain, channels);
+  double readings = 0.0;
+  for (const ResidualRows& e : experiments) readings += static_cast<double>(e.r.array().isFinite().count());
+  if (residuals_are_white(experiments, channels, readings - degrees)) return white_covariance(plain, channels);
   return widening_only(coloured_covariance(experiments, plain, channels), plain);
 }
 

@@ -35,7 +35,7 @@ struct ColouredCovariance {
 
 /// Do the residuals of every channel pass a test of whiteness at 5 %, experiments one after the other? For short records, of which
 /// correlations by lag are known too poorly to be used without need: with them 95 % intervals of 50 white residuals hold 70 to 85 %.
-[[nodiscard]] bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::Index channels);
+[[nodiscard]] bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::Index channels, double unknowns);
 
 /// The same where what memory takes off N (residuals that swing to and fro) is left out: of a short record only what widens is believed.
 [[nodiscard]] ColouredCovariance widening_only(ColouredCovariance covariance, const Eigen::MatrixXd& plain);

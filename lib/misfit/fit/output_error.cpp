@@ -183,11 +183,12 @@ class Estimator {
     return finish(last_);
   }
 
-  /// A search in a long valley ends by its tolerance some way before the minimum: on to it, if a step of more than 1e-4 sigma is left.
+  /// A search in a long valley ends by its tolerance some way before the minimum: on to it, if a step of more than 1e-6 sigma is left. Not
+  /// for fits by the thousand.
   void add_digits(const Linearised& linearised, const Smoothed& smoothed) {
-    constexpr double enough = 1e-4;
+    constexpr double enough = 1e-6;
     const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
-    if ((smoothed.theta - linearised.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < enough) return;
+    if ((smoothed.theta - linearised.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < enough || !options_.coloured) return;
     const Shooting::State before = shooting_.state();
     const LeastSquares::Summary then = last_;
     if (solve({0, 10.0, 1e8, 100, 1e-13})) {
@@ -268,7 +269,7 @@ class Estimator {
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
     tell_weak_directions(out.model, covariance.topLeftCorner(columns, columns), fit);
     tell_other_trims(fit);
-    judge(out.model, setting_, fit);
+    judge(out.model, setting_, smoothed.edf / static_cast<double>(outputs.size()), fit);
     refuse_runaways(out.model, covariance.topLeftCorner(columns, columns), fit);
     if (degrees < kFewestDegrees) withhold_sigmas(too_few(linearised.count, smoothed.edf), fit);
     fit.linearisations = shooting_.linearisations();

@@ -186,10 +186,10 @@ std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
 
 }  // namespace
 
-void judge(const Model& model, const Setting& setting, Fit& fit) {
+void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit) {
   const ChannelPrediction& p = fit.predictions.front();
   const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
-  const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period));
+  const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period), unknowns);
   const double noise = reading_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
   fit.facts["whiteness"] = "residuals of " + p.channel + " at " + in_words(test);
   fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +

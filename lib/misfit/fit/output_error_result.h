@@ -32,6 +32,6 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit);
                                           const std::vector<Segment>& runs, const std::vector<Signals>& experiments);
 
 /// Says whether a deterministic model followed the motion, and marks the fit where it did not.
-void judge(const Model& model, const Setting& setting, Fit& fit);
+void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit);
 
 }  // namespace misfit::output_error_parts

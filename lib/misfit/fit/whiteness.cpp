@@ -103,11 +103,13 @@ std::vector<double> autocorrelation(const std::vector<double>& residuals, int ma
   return rho;
 }
 
-WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int last_lag) {
+WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int last_lag, double fitted) {
   const auto n = static_cast<double>(finite_values(residuals));
   WhitenessTest test;
   test.first_lag = first_lag;
   test.last_lag = static_cast<int>(std::min({static_cast<double>(std::max(first_lag, last_lag)), n / 4.0, 10.0 + 2.0 * std::sqrt(n)}));
+  constexpr double of_an_unknown = 10.0;  // fewest values
+  if (n < of_an_unknown * fitted) test.last_lag = 0;
   if (test.last_lag < first_lag) return test;
   const std::vector<double> rho = autocorrelation(residuals, test.last_lag);
   const std::vector<double> pairs = pairs_of(residuals, 2 * static_cast<std::size_t>(test.last_lag));

@@ -33,8 +33,9 @@ struct WhitenessTest {
 /// not independent (covariance 4 P_{j+k}/n² of lags j and k): the p-value is that of the multiple of chi² with the sum's mean and
 /// variance [B]; chi² with as many degrees of freedom as lags would alarm at 7 % instead of 5 for n/4 lags of 50.
 /// Lags below the reach of a stencil are left out by the caller (`first_lag`): noise that went through a
-/// stencil of five samples is correlated up to lag 4 whatever the model. Assumes residuals of a model with few parameters beside n.
-[[nodiscard]] WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int last_lag);
+/// stencil of five samples is correlated up to lag 4 whatever the model. A fit takes memory into its residuals: with more than n/10
+/// unknowns `fitted` no lag is looked at (four of 15 values alarm at 1 % where p < 1e-3).
+[[nodiscard]] WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int last_lag, double fitted = 0.0);
 
 /// "lags 1 to 20 samples: largest autocorrelation 0.31 at lag 2, Ljung-Box p = 0.0012", or that there are too few samples.
 [[nodiscard]] std::string in_words(const WhitenessTest& test);
