@@ -128,7 +128,7 @@ std::string bounds_text(double lower, double upper) {
 }
 
 void add_parameter(const Parameter& p, std::string& text) {
-  text += fmt::format("{} = {{ free = {}, value = {}{}", key_of(p.name), p.free, p.value, bounds_text(p.lower, p.upper));
+  text += fmt::format("{} = {{ free = {}, value = {}{}", toml_key(p.name), p.free, p.value, bounds_text(p.lower, p.upper));
   if (p.prior_sigma) text += fmt::format(", sigma = {}", *p.prior_sigma);
   text += fmt::format(" }}  # {}\n", toml_comment(p.unit + "; " + p.doc));
 }

@@ -63,6 +63,16 @@ std::map<std::string, std::string> renamed_coefficients(const SystemSpec& from, 
   return out;
 }
 
+/// An edit that is refused names the study.
+template <class Edit>
+std::string edited(const Session& session, const Edit& edit) {
+  try {
+    return edit();
+  } catch (const InputError& error) {
+    throw InputError({session.study.file.string(), 0, 0}, error.what());
+  }
+}
+
 }  // namespace
 
 std::string study_with_effect(const Session& session, const std::string& effect, const std::optional<Candidate>& from,
@@ -83,7 +93,8 @@ std::string study_with_effect(const Session& session, const std::string& effect,
     throw InputError("effect '" + effect + "' does not suit this model: " + error.what());
   }
   const auto start = from ? start_found(found, *from) : std::map<std::string, double>{};
-  return with_effect(text_for_folder(session.study, folder), effect_line(name, effect, roles, start));
+  const std::string text = text_for_folder(session.study, folder);
+  return edited(session, [&] { return with_effect(text, effect_line(name, effect, roles, start)); });
 }
 
 std::string study_with_system(const Session& session, const std::string& kind, const std::filesystem::path& folder,
@@ -91,13 +102,14 @@ std::string study_with_system(const Session& session, const std::string& kind, c
   const ModelRequest& model = session.model.request;
   if (kind == model.system) throw InputError("the model's system is already '" + kind + "'");
   const SystemType& type = session.registry.system(kind);  // InputError with the nearest name
-  std::string text = with_system(text_for_folder(session.study, folder), kind);
+  std::string text = text_for_folder(session.study, folder);
+  text = edited(session, [&] { return with_system(text, kind); });
   SystemOptions options;
   for (const auto& [flag, value] : model.options.flags) {
     if (std::find(type.flags.begin(), type.flags.end(), flag) != type.flags.end()) {
       options.flags[flag] = value;
     } else {
-      text = without_entry(text, "system", flag, "of " + model.system);
+      text = edited(session, [&] { return without_entry(text, "system", flag, "of " + model.system); });
     }
   }
   const SystemSpec from = session.registry.system(model.system).make(model.options)->spec();
@@ -122,12 +134,13 @@ std::string study_with_system(const Session& session, const std::string& kind, c
     } catch (const InputError& error) {
       if (with.effects.size() > 1) continue;
       left_out.push_back(effect.name);
-      text = without_entry(text, "effects", effect.name, "does not suit " + kind);
+      text = edited(session, [&] { return without_entry(text, "effects", effect.name, "does not suit " + kind); });
     }
   }
   for (const auto& [old_name, new_name] : renamed_coefficients(from, to)) {
-    text = with_renamed_entry(text, "curves", old_name, new_name);
-    text = with_renamed_entry(text, "parameters", old_name, new_name);
+    for (const char* section : {"curves", "parameters"})
+      text =
+          edited(session, [&, from_name = old_name, to_name = new_name] { return with_renamed_entry(text, section, from_name, to_name); });
   }
   return text;
 }

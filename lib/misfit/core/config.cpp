@@ -9,8 +9,11 @@
 #include <sstream>
 
 #include "misfit/core/files.h"
+#include "misfit/core/printable.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/toml_depth.h"
+#include "misfit/core/toml_outline.h"
+#include "misfit/core/toml_text.h"
 #include "misfit/core/units.h"
 
 namespace misfit::config {
@@ -310,3 +313,98 @@ std::string content_of(const std::string& text, const std::vector<std::string>& 
 }
 
 }  // namespace misfit::config
+
+// What else needs the TOML library, which has this one includer: toml_text.h and toml_outline.h.
+
+namespace misfit {
+namespace {
+
+/// Bytes of a text by line and column, the latter counted in code points.
+class Places {
+ public:
+  explicit Places(const std::string& text) : text_(text), first_(text.starts_with("\xEF\xBB\xBF") ? 3 : 0) {
+    lines_.push_back(first_);
+    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) lines_.push_back(at + 1);
+  }
+
+  [[nodiscard]] std::size_t byte(const toml::source_position& place) const {
+    std::size_t at = lines_.at(std::min<std::size_t>(place.line, lines_.size()) - 1);
+    for (toml::source_index column = 1; column < place.column && at < text_.size(); ++column) {
+      ++at;
+      while (at < text_.size() && (static_cast<unsigned char>(text_[at]) & 0xC0U) == 0x80U) ++at;
+    }
+    return at;
+  }
+
+ private:
+  const std::string& text_;
+  std::size_t first_;
+  std::vector<std::size_t> lines_;
+};
+
+class Outliner {
+ public:
+  explicit Outliner(const std::string& text) : text_(text), places_(text) {}
+
+  std::vector<TomlNode> run() {
+    const toml::table root = config::parse_document(text_, "text");
+    add_entries(root, {});
+    return std::move(nodes_);
+  }
+
+ private:
+  void add_entries(const toml::table& table, const std::vector<std::string>& path) {
+    for (const std::string& name : config::keys_of(table)) {
+      const auto entry = table.find(name);
+      TomlNode node;
+      node.path = path;
+      node.path.push_back(name);
+      node.key_begin = places_.byte(entry->first.source().begin);
+      node.key_end = places_.byte(entry->first.source().end);
+      add(entry->second, std::move(node));
+    }
+  }
+
+  void add(const toml::node& found, TomlNode node) {
+    node.begin = places_.byte(found.source().begin);
+    node.end = places_.byte(found.source().end);
+    node.inline_table = found.is_table() && found.as_table()->is_inline();
+    node.kind = found.is_string()  ? TomlNode::Kind::text
+                : found.is_table() ? TomlNode::Kind::table
+                : found.is_array() ? TomlNode::Kind::array
+                                   : TomlNode::Kind::other;
+    if (found.is_string()) node.value = found.as_string()->get();
+    if (node.kind == TomlNode::Kind::other) node.value = text_.substr(node.begin, node.end - node.begin);
+    const std::vector<std::string> path = node.path;
+    nodes_.push_back(std::move(node));
+    if (found.is_table()) add_entries(*found.as_table(), path);
+    if (found.is_array()) add_elements(*found.as_array(), path);
+  }
+
+  void add_elements(const toml::array& array, const std::vector<std::string>& path) {
+    std::size_t number = 0;
+    for (const toml::node& element : array) {
+      TomlNode node;
+      node.path = path;
+      node.path.push_back(std::to_string(number++));
+      add(element, std::move(node));
+    }
+  }
+
+  const std::string& text_;
+  Places places_;
+  std::vector<TomlNode> nodes_;
+};
+
+}  // namespace
+
+std::vector<TomlNode> toml_outline(const std::string& text) { return Outliner(text).run(); }
+
+std::string toml_string(std::string_view text) {
+  const toml::value<std::string> value(valid_utf8(text));
+  std::ostringstream out;
+  out << toml::toml_formatter(value, toml::format_flags::allow_unicode_strings);
+  return out.str();
+}
+
+}  // namespace misfit

@@ -1,9 +1,6 @@
 #include "misfit/core/toml_text.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
-#include <sstream>
 
 #include "misfit/core/printable.h"
 
@@ -14,12 +11,7 @@ bool may_be_bare(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z
 
 }  // namespace
 
-std::string toml_string(std::string_view text) {
-  const toml::value<std::string> value(valid_utf8(text));
-  std::ostringstream out;
-  out << toml::toml_formatter(value, toml::format_flags::allow_unicode_strings);
-  return out.str();
-}
+// toml_string() is in config.cpp, the one includer of the TOML library.
 
 std::string toml_key(std::string_view name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), may_be_bare) ? std::string(name) : toml_string(name);

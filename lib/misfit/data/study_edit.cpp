@@ -3,229 +3,171 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <vector>
+#include <set>
 
 #include "misfit/core/error.h"
+#include "misfit/core/printable.h"
+#include "misfit/core/toml_text.h"
+#include "misfit/data/study_text.h"
 
 namespace misfit {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// A string on one line, quotes included.
-struct Quoted {
-  std::size_t begin = 0, end = 0;
-};
-
-/// One line of the text as the editor sees it.
-struct Line {
-  std::size_t begin = 0, end = 0;  ///< without the line's end
-  std::string section;             ///< "effects" for lines below [effects]; the header itself counts as below
-  std::string key;                 ///< of "KEY = …" and of "[effects.KEY]"; empty for all others
-  bool header = false;
-  bool continued = false;  ///< inside brackets or a string that an earlier line opened
-};
-
-class Reader {
- public:
-  explicit Reader(const std::string& text) : text_(text) {
-    while (at_ < text_.size()) line();
+/// `after` must say what `before` says, but for what stands under `path`, which goes by the name of `as` if one is given.
+void refuse_unless_same(const StudyText& before, const std::string& after, const TomlPath& path, const TomlPath& as = {}) {
+  const std::string refusal = fmt::format(
+      "[{}] cannot be changed as it is written: write its entries below a header of its own, one line each", toml_key(path.front()));
+  try {
+    const bool same = as.empty() ? values_of(before, path) == values_of(StudyText(after), path)
+                                 : values_of(before, path, as) == values_of(StudyText(after), {}, as);
+    if (same) return;
+  } catch (const InputError& error) {
+    throw InputError(refusal + " (it would be " + error.what() + ")");
   }
-  std::vector<Line> lines;
-  std::vector<Quoted> strings;
-
- private:
-  void line() {
-    Line l;
-    l.begin = at_;
-    l.continued = depth_ > 0 || !fence_.empty();
-    if (!l.continued) start_of(l);
-    l.section = section_;
-    while (at_ < text_.size() && text_[at_] != '\n') token();
-    l.end = at_;
-    if (at_ < text_.size()) ++at_;
-    lines.push_back(l);
-  }
-
-  /// A header or a key.
-  void start_of(Line& l) {
-    std::size_t i = skip_blanks(at_);
-    if (i < text_.size() && text_[i] == '[') {
-      while (i < text_.size() && text_[i] == '[') ++i;
-      const std::size_t end = text_.find_first_of("]\n", i);
-      std::string name = trimmed(text_.substr(i, end == std::string::npos ? std::string::npos : end - i));
-      const std::size_t dot = name.find('.');
-      if (dot != std::string::npos) {
-        l.key = bare(name.substr(dot + 1));
-        name.resize(dot);
-      }
-      section_ = bare(name);
-      l.header = true;
-      const std::size_t line_end = std::min(text_.find('\n', at_), text_.size());
-      at_ = end == std::string::npos ? line_end : std::min(text_.find_first_not_of(']', end), line_end);
-      return;
-    }
-    const std::size_t equals = text_.find_first_of("=\n#", i);
-    if (equals != std::string::npos && text_[equals] == '=') l.key = bare(trimmed(text_.substr(i, equals - i)));
-  }
-
-  void token() {
-    if (!fence_.empty()) {
-      if (text_.compare(at_, 3, fence_) == 0) {
-        fence_.clear();
-        at_ += 3;
-      } else {
-        ++at_;
-      }
-      return;
-    }
-    const char c = text_[at_];
-    if (c == '#') {
-      at_ = std::min(text_.find('\n', at_), text_.size());
-    } else if (text_.compare(at_, 3, "\"\"\"") == 0 || text_.compare(at_, 3, "'''") == 0) {
-      fence_ = text_.substr(at_, 3);
-      at_ += 3;
-    } else if (c == '"' || c == '\'') {
-      const std::size_t begin = at_++;
-      while (at_ < text_.size() && text_[at_] != c && text_[at_] != '\n') at_ += c == '"' && text_[at_] == '\\' ? 2 : 1;
-      at_ = std::min(at_ + 1, text_.size());
-      strings.push_back({begin, at_});
-    } else {
-      if (c == '[' || c == '{') ++depth_;
-      if (c == ']' || c == '}') depth_ = std::max(depth_ - 1, 0);
-      ++at_;
-    }
-  }
-
-  [[nodiscard]] std::size_t skip_blanks(std::size_t i) const {
-    while (i < text_.size() && (text_[i] == ' ' || text_[i] == '\t')) ++i;
-    return i;
-  }
-  static std::string trimmed(const std::string& s) {
-    const auto first = s.find_first_not_of(" \t\r");
-    return first == std::string::npos ? std::string() : s.substr(first, s.find_last_not_of(" \t\r") - first + 1);
-  }
-  static std::string bare(const std::string& s) {
-    const bool quoted = s.size() >= 2 && (s.front() == '"' || s.front() == '\'') && s.back() == s.front();
-    return quoted ? s.substr(1, s.size() - 2) : s;
-  }
-
-  const std::string& text_;
-  std::size_t at_ = 0;
-  std::string section_, fence_;
-  int depth_ = 0;
-};
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out.push_back('\\');
-    out.push_back(c);
-  }
-  return out + "\"";
+  throw InputError(refusal);
 }
 
-std::string unquoted(const std::string& text) {
+/// The key of "NAME = …".
+std::string name_of(const std::string& line) { return toml_outline(line).front().path.front(); }
+
+std::string inserted(const std::string& text, std::size_t at, const std::string& piece) {
+  return text.substr(0, at) + piece + text.substr(at);
+}
+
+/// `entry` as the last one between the braces of an inline table.
+std::string with_inline_entry(const StudyText& study, const TomlNode& table, const std::string& entry) {
+  if (study.entries(table).empty()) return study.text().substr(0, table.begin) + "{ " + entry + " }" + study.text().substr(table.end);
+  std::size_t end = 0;
+  for (const TomlNode* known : study.entries(table)) end = std::max(end, study.end_of(*known));
+  return inserted(study.text(), end, ", " + entry);
+}
+
+std::string with_new_section(const StudyText& study, const std::string& section, const std::string& line) {
+  const std::string& text = study.text();
+  const std::string end = study.newline();
+  return text + (text.empty() || text.back() == '\n' ? "" : end) + end + "[" + section + "]" + end + line + end;
+}
+
+/// Lines, by where they begin.
+using Lines = std::set<std::size_t>;
+
+void add_lines(const StudyText& study, std::size_t begin, std::size_t end, Lines& lines) {
+  for (std::size_t at = study.line_begin(begin); at < end; at = study.text().find('\n', at) + 1) {
+    lines.insert(at);
+    if (study.text().find('\n', at) == std::string::npos) return;
+  }
+}
+
+/// The lines that make an entry, wherever they stand.
+void lines_of(const StudyText& study, const TomlNode& node, Lines& lines) {
+  if (node.kind != TomlNode::Kind::table || node.inline_table) {
+    add_lines(study, node.key_begin, node.end, lines);
+    return;
+  }
+  if (study.has_header(node)) add_lines(study, node.begin, study.next_header(node.begin), lines);
+  for (const TomlNode* entry : study.entries(node)) lines_of(study, *entry, lines);
+}
+
+std::string as_comments(const StudyText& study, const Lines& lines, const std::string& why) {
   std::string out;
-  for (std::size_t i = 1; i + 1 < text.size(); ++i) {
-    if (text.front() == '"' && text[i] == '\\') ++i;
-    out.push_back(text[i]);
+  std::size_t done = 0;
+  for (const std::size_t at : lines) {
+    const std::size_t end = study.line_end(at);
+    out += study.text().substr(done, at - done);
+    const std::string line = study.text().substr(at, end - at);
+    out += line.find_first_not_of(" \t\r") == std::string::npos ? line : "# " + line;
+    if (at == *lines.begin()) out += "  # " + toml_comment(why);
+    done = end;
   }
-  return out;
+  return out + study.text().substr(done);
 }
 
-std::string key_text(const std::string& name) {
-  const bool bare = !name.empty() && std::all_of(name.begin(), name.end(),
-                                                 [](unsigned char c) { return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '-'); });
-  return bare ? name : quoted(name);
-}
-
-/// Index of the line with this entry, or the number of lines.
-std::size_t find_entry(const std::vector<Line>& lines, const std::string& section, const std::string& key) {
-  const auto found = std::find_if(lines.begin(), lines.end(), [&](const Line& l) { return l.section == section && l.key == key; });
-  return static_cast<std::size_t>(found - lines.begin());
+/// Without an entry between braces; what it was stands in a comment above.
+std::string without_inline_entry(const StudyText& study, const TomlNode& node, const std::string& why) {
+  const TomlPath above(node.path.begin(), node.path.end() - 1);
+  const TomlNode& table = *study.find(above);
+  const std::string& text = study.text();
+  const std::size_t end = study.end_of(node);
+  std::size_t before = 0, next = text.size();  // where the entry before it ends, and the one behind it begins
+  for (const TomlNode* other : study.entries(table)) {
+    if (other->key_begin < node.key_begin) before = std::max(before, study.end_of(*other));
+    if (other->key_begin > end) next = std::min(next, other->key_begin);
+  }
+  const std::size_t from = before > 0 ? before : node.key_begin;
+  const std::size_t to = before > 0 || next == text.size() ? end : next;
+  const std::size_t line = study.line_begin(study.outermost_inline(node)->key_begin);
+  const std::string comment =
+      "# " + toml_comment(text.substr(node.key_begin, end - node.key_begin)) + "  # " + toml_comment(why) + study.newline();
+  return text.substr(0, line) + comment + text.substr(line, from - line) + text.substr(to);
 }
 
 }  // namespace
 
-std::string text_for_folder(const Study& study, const fs::path& folder) {
-  const fs::path from = fs::absolute(study.folder).lexically_normal(), to = fs::absolute(folder).lexically_normal();
-  const Reader reader(study.text);
-  std::string out;
-  std::size_t done = 0;
-  for (const Quoted& string : reader.strings) {
-    const std::string name = unquoted(study.text.substr(string.begin, string.end - string.begin));
-    std::error_code error;
-    if (name.empty() || fs::path(name).is_absolute() || !fs::is_regular_file(from / name, error)) continue;
-    out += study.text.substr(done, string.begin - done);
-    out += quoted((from / name).lexically_normal().lexically_relative(to).generic_string());
-    done = string.end;
-  }
-  return out + study.text.substr(done);
-}
-
 std::string effect_line(const std::string& name, const std::string& kind, const std::map<std::string, std::string>& roles,
                         const std::map<std::string, double>& start) {
   std::vector<std::string> entries;
-  if (kind != name) entries.push_back("kind = " + quoted(kind));
-  for (const auto& [role, target] : roles) entries.push_back(key_text(role) + " = " + quoted(target));
+  if (kind != name) entries.push_back("kind = " + toml_string(kind));
+  for (const auto& [role, target] : roles) entries.push_back(toml_key(role) + " = " + toml_string(target));
   std::vector<std::string> values;
-  for (const auto& [parameter, value] : start) values.push_back(fmt::format("{} = {:.6g}", key_text(parameter), value));
+  for (const auto& [parameter, value] : start) values.push_back(fmt::format("{} = {:.6g}", toml_key(parameter), value));
   if (!values.empty()) entries.push_back(fmt::format("start = {{ {} }}", fmt::join(values, ", ")));
-  if (entries.empty()) return key_text(name) + " = {}";
-  return fmt::format("{} = {{ {} }}", key_text(name), fmt::join(entries, ", "));
+  if (entries.empty()) return toml_key(name) + " = {}";
+  return fmt::format("{} = {{ {} }}", toml_key(name), fmt::join(entries, ", "));
 }
 
 std::string with_effect(const std::string& text, const std::string& line) {
-  const Reader reader(text);
-  const Line* last = nullptr;
-  bool plain = false;  // there is a header [effects] itself
-  for (const Line& l : reader.lines) {
-    if (l.section != "effects") continue;
-    if (l.header && !l.key.empty()) break;  // [effects.NAME]: entries below belong to that table
-    plain = plain || l.header;
-    if (plain && (l.header || l.continued || !l.key.empty())) last = &l;
+  const StudyText study(text);
+  const TomlNode* effects = study.find({"effects"});
+  std::string out;
+  if (effects == nullptr || (study.has_header(*effects) && !study.has_own_header(*effects))) {
+    out = with_new_section(study, "effects", line);
+  } else if (effects->inline_table) {
+    out = with_inline_entry(study, *effects, line);
+  } else {  // below [effects], or among dotted keys: effects.NAME = …
+    const std::string entry = study.has_header(*effects) ? line : "effects." + line;
+    out = inserted(text, study.line_end(study.end_of(*effects)), study.newline() + entry);
   }
-  if (last == nullptr) return text + (text.empty() || text.back() == '\n' ? "" : "\n") + "\n[effects]\n" + line + "\n";
-  return text.substr(0, last->end) + "\n" + line + text.substr(last->end);
+  const TomlPath added{"effects", name_of(line)};
+  refuse_unless_same(study, out, added);
+  if (study.find(added) != nullptr) throw InputError("[effects] has an effect '" + printable(added.back(), 80) + "' already");
+  return out;
 }
 
 std::string without_entry(const std::string& text, const std::string& section, const std::string& key, const std::string& why) {
-  const Reader reader(text);
-  std::size_t i = find_entry(reader.lines, section, key);
-  if (i == reader.lines.size()) return text;
-  const bool table = reader.lines[i].header;
-  std::string out = text.substr(0, reader.lines[i].begin);
-  std::size_t done = reader.lines[i].begin;
-  for (bool first = true; i < reader.lines.size(); ++i, first = false) {
-    const Line& l = reader.lines[i];
-    if (!first && (l.header || (!table && !l.continued))) break;
-    out += "# " + text.substr(l.begin, l.end - l.begin) + (first ? "  # " + why : "") + (l.end < text.size() ? "\n" : "");
-    done = std::min(l.end + 1, text.size());
+  const StudyText study(text);
+  const TomlNode* entry = study.find({section, key});
+  if (entry == nullptr) return text;
+  std::string out;
+  if (study.outermost_inline(*entry) != nullptr) {
+    out = without_inline_entry(study, *entry, why);
+  } else {
+    Lines lines;
+    lines_of(study, *entry, lines);
+    out = as_comments(study, lines, why);
   }
-  return out + text.substr(done);
+  refuse_unless_same(study, out, {section, key});
+  if (StudyText(out).find({section, key}) != nullptr)
+    throw InputError("'" + printable(key, 80) + "' cannot be taken out of [" + section + "]");
+  return out;
 }
 
 std::string with_renamed_entry(const std::string& text, const std::string& section, const std::string& key, const std::string& name) {
-  const Reader reader(text);
-  const std::size_t i = find_entry(reader.lines, section, key);
-  if (i == reader.lines.size()) return text;
-  const std::size_t at = text.find(key, reader.lines[i].begin);
-  return text.substr(0, at) + name + text.substr(at + key.size());
+  const StudyText study(text);
+  const TomlNode* entry = study.find({section, key});
+  if (entry == nullptr || key == name) return text;
+  std::string out = text.substr(0, entry->key_begin) + toml_key(name) + text.substr(entry->key_end);
+  refuse_unless_same(study, out, {section, key}, {section, name});
+  return out;
 }
 
 std::string with_system(const std::string& text, const std::string& kind) {
-  const Reader reader(text);
-  const std::size_t i = find_entry(reader.lines, "system", "kind");
-  if (i < reader.lines.size()) {
-    for (const Quoted& string : reader.strings) {
-      if (string.begin < reader.lines[i].begin || string.end > reader.lines[i].end) continue;
-      if (text.substr(reader.lines[i].begin, string.begin - reader.lines[i].begin).find('=') == std::string::npos) continue;
-      return text.substr(0, string.begin) + quoted(kind) + text.substr(string.end);
-    }
-  }
-  throw InputError("the study has no line kind = \"…\" under [system] that could be changed");
+  const StudyText study(text);
+  const TomlNode* entry = study.find({"system", "kind"});
+  if (entry == nullptr || entry->kind != TomlNode::Kind::text)
+    throw InputError("the study has no line kind = \"…\" under [system] that could be changed");
+  std::string out = text.substr(0, entry->begin) + toml_string(kind) + text.substr(entry->end);
+  refuse_unless_same(study, out, {"system", "kind"});
+  return out;
 }
 
 }  // namespace misfit

@@ -8,11 +8,12 @@
 
 namespace misfit {
 
-// Changes to the text of a study that keep everything else as it is, comments and layout included. They read TOML as far as they need:
-// section headers, keys at the start of a line, strings, brackets over several lines.
+// Changes to the text of a study that keep everything else as it is, comments and layout included, however TOML lets it be written:
+// headers, inline tables, dotted keys. After every change the text is read again: where it would say anything else than before and the
+// change, it is refused (InputError without the file's name).
 
-/// Every string that names an existing file, taken from the study's folder, rewritten so that it names the same file from `folder`.
-/// Absolute paths stay.
+/// Every entry that names an existing file, taken from the study's folder, rewritten so that it names the same file from `folder`. Absolute
+/// paths stay.
 [[nodiscard]] std::string text_for_folder(const Study& study, const std::filesystem::path& folder);
 
 /// The line of [effects] for an effect: "bearing = { kind = \"coulomb_friction\", rate = \"omega\" }". `start`: values of parameters to
@@ -23,7 +24,8 @@ namespace misfit {
 /// `line` after the last entry of [effects]; the section is made where there is none.
 [[nodiscard]] std::string with_effect(const std::string& text, const std::string& line);
 
-/// The entry KEY of [section] as a comment with `why` behind it; text unchanged if there is no such entry.
+/// The entry KEY of [section] as a comment with `why` behind it; out of an inline table the comment stands above it. Text unchanged if
+/// there is no such entry.
 [[nodiscard]] std::string without_entry(const std::string& text, const std::string& section, const std::string& key,
                                         const std::string& why);
 
