@@ -34,7 +34,7 @@ Fit example() {
   fit.noise = {{"white", {0.5, 0.01, "px"}}};
   fit.force = {{"sigma", {27.0, nan, "N m"}}, {"correlation_time", {0.1, 0.025, "s", std::pair(0.067, 0.19)}}};
   fit.loglik = 1234.5;
-  fit.trim = Estimate{12.0 * degree, 0.2 * degree, "rad"};
+  fit.trim = Estimate{12.0 * degree, 0.2 * degree, "rad", std::pair{11.5 * degree, 12.5 * degree}};
   fit.rms = {{"alpha_T", {0.01, 0.0, "rad"}}};
   fit.curves = {curve("C_m"), curve("C_m_alphadot")};
   fit.curves[1].informative = false;
@@ -130,6 +130,8 @@ TEST(Fit, ReadsBackWhatWasWritten) {
   EXPECT_TRUE(back.driven);
   EXPECT_EQ(back.linearisations, 14);
   EXPECT_NEAR(back.trim->value, fit.trim->value, 1e-15);
+  ASSERT_TRUE(back.trim->interval.has_value());
+  EXPECT_NEAR(back.trim->interval->second, 12.5 * degree, 1e-15);
   EXPECT_EQ(back.parameters.at("C_m[0]").sigma, 0.0);
   ASSERT_EQ(back.curves.size(), 2U);
   EXPECT_FALSE(back.curves[1].informative);

@@ -1,10 +1,13 @@
 // How often the 95 % intervals of short records hold the truth.
+#include "misfit/fit/short_record.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 #include <random>
 
+#include "misfit/fit/coloured.h"
 #include "misfit/fit/filter_error.h"
 #include "misfit/fit/output_error.h"
 #include "misfit/fit/trajectory_start.h"
@@ -102,6 +105,63 @@ TEST(ShortRecords, IntervalsOfFilterErrorHoldOrAreNotGiven) {
     if (c.given == 0) continue;
     EXPECT_GT(c.inside, 0.92 * c.given) << samples;
   }
+}
+
+Fit with_one_parameter() {
+  Fit fit;
+  fit.parameters["a"] = {2.0, 0.1, "1/s"};
+  fit.plain_sigmas["a"] = 0.09;
+  fit.noise["y"] = {0.01, 0.001, "V"};
+  fit.covariance = Eigen::MatrixXd::Constant(1, 1, 0.01);
+  return fit;
+}
+
+TEST(ShortRecords, IntervalsAreStudentsAndTheSigmaStaysTheStandardError) {
+  Fit fit = with_one_parameter();
+  add_student_intervals(10.0, fit);
+  const Estimate& a = fit.parameters.at("a");
+  EXPECT_EQ(a.sigma, 0.1);
+  ASSERT_TRUE(a.interval.has_value());
+  EXPECT_NEAR(a.interval->first, 2.0 - 0.2228, 1e-4);
+  EXPECT_NEAR(a.interval->second, 2.0 + 0.2228, 1e-4);
+}
+
+TEST(ShortRecords, WithheldSigmasAreNotGivenAnywhere) {
+  Fit fit = with_one_parameter();
+  add_student_intervals(10.0, fit);
+  withhold_sigmas("too few", fit);
+  EXPECT_EQ(fit.parameters.at("a").value, 2.0);
+  EXPECT_EQ(fit.parameters.at("a").sigma, 0.0);
+  EXPECT_FALSE(fit.parameters.at("a").interval.has_value());
+  EXPECT_EQ(fit.plain_sigmas.at("a"), 0.0);
+  EXPECT_EQ(fit.noise.at("y").sigma, 0.0);
+  EXPECT_TRUE(std::isnan(fit.covariance(0, 0)));
+  EXPECT_EQ(fit.warnings, std::vector<std::string>{"too few"});
+}
+
+/// A constant fitted to 60 values of first-order noise.
+ColouredCovariance of_a_constant(double memory, unsigned seed) {
+  constexpr Eigen::Index n = 60;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  ResidualRows rows{RowMatrix::Ones(n, 1), Eigen::VectorXd(n), {0}};
+  double last = normal(random) / std::sqrt(1.0 - memory * memory);
+  for (double& r : rows.r) r = last = memory * last + normal(random);
+  rows.r.array() -= rows.r.mean();
+  rows.r /= std::sqrt(rows.r.squaredNorm() / (n - 1.0));
+  const Eigen::MatrixXd plain = Eigen::MatrixXd::Constant(1, 1, 1.0 / static_cast<double>(n));
+  return memory_of_residuals({rows}, plain, 1, n - 1.0);
+}
+
+TEST(ShortRecords, MemoryWidensWhereItIsSeenAndNeverNarrows) {
+  int plain = 0, wider = 0;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    plain += of_a_constant(0.0, seed).covariance(0, 0) * 60.0 == 1.0 ? 1 : 0;
+    wider += of_a_constant(0.8, seed).covariance(0, 0) * 60.0 > 2.0 ? 1 : 0;
+    EXPECT_GE(of_a_constant(-0.8, seed).covariance(0, 0) * 60.0, 1.0 - 1e-12) << seed;
+  }
+  EXPECT_GE(plain, 88) << "95 of 100 pass the test of whiteness";
+  EXPECT_GE(wider, 90) << "the true variance is nine times as large";
 }
 
 }  // namespace

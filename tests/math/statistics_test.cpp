@@ -44,6 +44,13 @@ TEST(Statistics, FTailAgainstTablesAndItsChiSquareLimit) {
   EXPECT_EQ(f_tail(0.0, 2, 5), 1.0);
 }
 
+TEST(Statistics, StudentQuantilesAreThoseOfTheTables) {
+  EXPECT_NEAR(student_quantile(0.975, 1.0), 12.706, 5e-4);
+  EXPECT_NEAR(student_quantile(0.975, 3.0), 3.182, 5e-4);
+  EXPECT_NEAR(student_quantile(0.975, 10.0), 2.228, 5e-4);
+  EXPECT_NEAR(student_quantile(0.975, 1e7), normal_quantile(0.975), 1e-6);
+}
+
 TEST(Statistics, NormalQuantileAndTailAreInverse) {
   EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-12);
   for (const double p : {1e-12, 1e-3, 0.4}) EXPECT_NEAR(normal_tail(normal_quantile(1.0 - p)) / p, 1.0, 1e-3);

@@ -164,8 +164,8 @@ TEST(Figures, WhiteResidualsStayInTheBandAndAnAlternatingOneDoesNot) {
   EXPECT_LE(outside, 9);  // 3 expected of 60
   for (std::size_t i = 0; i < c.t.size(); ++i) c.measured[i] = 0.2 + (i % 2 == 0 ? 0.01 : -0.01);
   const Figure alternating = autocorrelation_figure("output_error", c, 4);
-  EXPECT_NEAR(find(alternating, "residual")->y[0], -1.0, 1e-9);
-  EXPECT_NEAR(find(alternating, "residual")->y[1], 1.0, 1e-9);
+  EXPECT_NEAR(find(alternating, "residual")->y[0], -3999.0 / 4000.0, 1e-9);  // 1/n before the sum of n − lag products
+  EXPECT_NEAR(find(alternating, "residual")->y[1], 3998.0 / 4000.0, 1e-9);
 }
 
 TEST(Figures, HistogramCountsEveryFiniteSampleOnce) {

@@ -17,6 +17,7 @@ namespace misfit::output_error_parts {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr double follows = 0.5;  // of the motion's own size: a model that leaves less explains most of it
 
 /// Predicted − measured of output o, per experiment and sample; NaN where it does not count.
 std::vector<std::vector<double>> channel_residuals(const Shooting& shooting, const std::vector<Segment>& runs,
@@ -157,15 +158,12 @@ std::string said_of_the_end(const std::string& which, bool converged, const Shoo
                             const std::vector<Signals>& experiments) {
   const auto& outputs = shooting.model().system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
-    std::vector<std::vector<double>> residuals = channel_residuals(shooting, runs, experiments, o);
-    const auto [squares, count] = squares_of(residuals);
-    for (std::size_t e = 0; e < residuals.size(); ++e) residuals[e] = on_even_grid(experiments[e].t, residuals[e]);
-    constexpr int lags = 20;
-    if (converged && !clearly_coloured(whiteness(joined_series(residuals), 1, lags))) continue;
-    return "the search ended at no fit of " + outputs[o].name + " (residual RMS " +
-           in_display_unit(std::sqrt(squares / std::max(count, 1.0)), outputs[o].unit) + ", motion RMS " +
-           in_display_unit(motion_size(experiments.front().measured[o].values), outputs[o].unit) + "): there " +
-           which.substr(0, which.find_first_of(":;")) + ", which need not be so elsewhere. Begin with other values, or give bounds";
+    const auto [squares, count] = squares_of(channel_residuals(shooting, runs, experiments, o));
+    const double rms = std::sqrt(squares / std::max(count, 1.0)), size = motion_size(experiments.front().measured[o].values);
+    if (converged && rms < follows * size) continue;
+    return "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
+           ", motion RMS " + in_display_unit(size, outputs[o].unit) + "): there " + which.substr(0, which.find_first_of(":;")) +
+           ", which need not be so elsewhere. Begin with other values, or give bounds";
   }
   return which;
 }
@@ -196,7 +194,6 @@ void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit
                            ", reading noise about " + in_display_unit(noise, p.unit);
   constexpr double clearly_above_noise = 2.0;
   fit.driven = looks_driven(test) && rms > clearly_above_noise * noise;
-  constexpr double follows = 0.5;  // of the motion's own size: a model that leaves less explains most of it
   if (!fit.driven || rms < follows * size) {
     if (clearly_coloured(test)) {
       fit.warnings.push_back(

@@ -26,8 +26,8 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 /// Standard deviation of the known values.
 [[nodiscard]] double motion_size(const std::vector<double>& values);
 
-/// What the information matrix where the search ended cannot tell (`which`, a sentence) is said of the data only if the model describes
-/// them there: the search has converged and the residuals are not clearly coloured. Else it is said of that place.
+/// What the information matrix where the search ended cannot tell (`which`, a sentence) is said of the data only if the model follows them
+/// there: the search has converged and leaves less than half of the motion. Else it is said of that place.
 [[nodiscard]] std::string said_of_the_end(const std::string& which, bool converged, const Shooting& shooting,
                                           const std::vector<Segment>& runs, const std::vector<Signals>& experiments);
 

@@ -152,15 +152,17 @@ void Shooting::add_priors(LeastSquares& problem, int theta_block, const std::vec
 namespace {
 
 int add_parameters(LeastSquares& problem, const Model& model, const std::vector<int>& free) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
+  constexpr double infinite = std::numeric_limits<double>::infinity(), beyond = 1e300;
   std::vector<double> theta, lower, upper;
   bool bounded = false;
   for (int index : free) {
     const Parameter& p = model.parameters[static_cast<std::size_t>(index)];
     theta.push_back(p.value);
     // Bounds of curve coefficients would bind combinations that mean nothing: roughness holds them.
-    lower.push_back(p.curve >= 0 ? -infinite : p.lower);
-    upper.push_back(p.curve >= 0 ? infinite : p.upper);
+    // Where there are bounds the solver searches along every step (Armijo), which keeps it from leaping into a far valley where a parameter
+    // no longer acts: what has none gets bounds beyond all numbers that a formula can use.
+    lower.push_back(p.curve >= 0 ? -infinite : std::max(p.lower, -beyond));
+    upper.push_back(p.curve >= 0 ? infinite : std::min(p.upper, beyond));
     bounded = bounded || p.curve < 0;
   }
   return bounded ? problem.add_block(theta, lower, upper) : problem.add_block(theta);
