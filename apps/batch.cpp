@@ -77,6 +77,11 @@ class BatchJob {
 
   [[nodiscard]] const fs::path& folder() const { return folder_; }
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
+  [[nodiscard]] std::vector<fs::path> studies() const {
+    std::vector<fs::path> files;
+    for (const BatchEntry& entry : entries_) files.push_back(entry.file);
+    return files;
+  }
 
   /// The rows of one study as text. What is wrong with the study is in them; what is wrong with the machine (no space, no memory) is
   /// thrown, so that the same command does this study again.
@@ -87,7 +92,7 @@ class BatchJob {
     study.folder = (fs::path("studies") / study.study).string();
     std::vector<BatchRow> rows;
     try {
-      Session session(options_of(k), registry_);
+      Session session(options_of(k), registry_, RunFolder::Access::write);
       for (const Fit& fit : fit_stage(session)) rows.push_back(row_of(study, fit));
     } catch (const MachineError&) {
       throw;
@@ -142,7 +147,8 @@ int status_of(const Batch& batch) {
 
 int batch_verb(const Options& options, const Registry& registry) {
   const BatchJob job(options, registry);
-  on_first_rank([&] { make_writable_folder(job.folder()); });
+  std::optional<RunFolder> folder;
+  on_first_rank([&] { folder.emplace(job.folder(), options.command, options.seed, fs::path(), WriteRules{job.studies(), options.force}); });
   Progress progress(fmt::format("batch of {} studies", job.size()), options.quiet || !ranks().first());
   const StoredJobs jobs{job.folder() / "checkpoints", job.digest(), job.size(), options.threads};
   const auto results = run_stored_jobs(
@@ -152,8 +158,10 @@ int batch_verb(const Options& options, const Registry& registry) {
   if (!results) throw EndedElsewhere();
   if (!ranks().first()) return 0;
   const Batch batch = merged(*results);
-  write_batch(job.folder(), batch);
-  static_cast<void>(report::write_batch_figures(job.folder() / "figures", batch));
+  const PartFolder part(job.folder());
+  write_batch(part.path(), batch);
+  static_cast<void>(report::write_batch_figures(part.path() / "figures", batch));
+  folder->commit(part, {"batch", options.command, {{"settings", job.digest()}}});
   if (options.json) {
     print_file(job.folder() / "batch.json");
   } else {

@@ -7,6 +7,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/shown.h"
 
 namespace misfit {
 namespace {
@@ -52,7 +53,7 @@ void read_list(const fs::path& list, std::vector<fs::path>& found) {
       found.push_back(path);
     } else {
       throw InputError({list.string(), number, 0},
-                       "a study (.toml) or a folder is expected on every line, this is neither: '" + name + "'");
+                       "a study (.toml) or a folder is expected on every line, this is neither: '" + shown(name) + "'");
     }
   }
   if (found.size() == before) throw InputError({list.string(), 0, 0}, "names no study: one per line is expected");

@@ -2,14 +2,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <iostream>
+#include <limits>
 #include <map>
+#include <new>
 #include <thread>
 
+#include "apps/terminal.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
 #include "misfit/core/ranks.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/version.h"
 
 namespace misfit {
@@ -49,11 +54,23 @@ void add_method(CLI::App& verb, Options& options) {
       ->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
 }
 
+/// CLI11 takes what does not fit for the largest number that does. As in a study, where TOML sets the limit.
+CLI::Validator whole_number_check() {
+  constexpr long most = std::numeric_limits<long>::max();
+  const auto check = [](const std::string& text) -> std::string {
+    long value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = error == std::errc() && end == text.data() + text.size() && value >= 0;
+    return good ? "" : "'" + shown(text) + "': a whole number from 0 to " + std::to_string(most) + " is expected";
+  };
+  return {check, ""};
+}
+
 void add_running(CLI::App& verb, Options& options) {
   verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")
       ->type_name("N")
       ->check(CLI::Range(0, 1024));
-  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N")->check(CLI::NonNegativeNumber);
+  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N")->check(whole_number_check());
   verb.add_flag("--quiet", options.quiet, "no progress and no remarks on stderr");
   verb.add_flag("--json", options.json, "print the result as JSON");
 }
@@ -61,7 +78,7 @@ void add_running(CLI::App& verb, Options& options) {
 void add_options(CLI::App& verb, Options& options, bool study_required) {
   if (verb.get_name() == "init") {
     verb.add_option("data", options.study, "file of columns under a line of names")->type_name("DATA.csv")->required();
-    verb.add_flag("--force", options.force, "write over a study that is there");
+    verb.add_flag("--force", options.force, "write over files that are there (never over the data)");
     verb.add_option("--out", options.out, "folder of the study (default: called like the data, in the present folder)")->type_name("DIR");
     verb.add_flag("--json", options.json, "print what was found as JSON");
     return;
@@ -71,6 +88,7 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
         ->type_name("LIST|FOLDER…")
         ->required();
     verb.add_option("--out", options.out, "folder of the results (default: batch/ beside the list or in the folder)")->type_name("DIR");
+    verb.add_flag("--force", options.force, "write over files that misfit did not make (never over data, never through links)");
     add_method(verb, options);
     add_running(verb, options);
     return;
@@ -83,6 +101,7 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
     verb.add_option("--runs", options.runs, "overrides the study's number of runs")->type_name("N")->check(CLI::Range(1, 100'000'000));
   if (verb.get_name() == "discover") verb.add_flag("--auto", options.automatic, "add what is accepted and look again, until nothing is");
   verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
+  verb.add_flag("--force", options.force, "write over files that misfit did not make (never over data, never through links)");
   add_method(verb, options);
   add_running(verb, options);
 }
@@ -105,7 +124,7 @@ void refuse_ranks(const std::string& verb) {
     throw InputError("'" + verb + "' is not for several processes: under mpirun there are uncertainty, batch and discover");
 }
 
-int dispatch(int argc, char** argv, const Registry& registry) {
+int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out) {
   CLI::App app{"misfit — find out what your model is missing"};
   app.set_version_flag("--version", std::string("misfit ") + version() + " (" + commit() + ")");
   app.require_subcommand(1);
@@ -123,18 +142,20 @@ int dispatch(int argc, char** argv, const Registry& registry) {
   if (argc > 1 && argv[1][0] != '-') {
     const std::vector<std::string> names = verb_names();
     if (std::find(names.begin(), names.end(), argv[1]) == names.end())
-      throw InputError(std::string("unknown verb '") + argv[1] + "'" + suggest(argv[1], names));
+      throw InputError(std::string("unknown verb '") + shown(argv[1]) + "'" + suggest(argv[1], names));
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    throw InputError(shortened(error.what(), longest_message / 2) + "; misfit --help and misfit VERB --help tell what is possible");
   }
   const CLI::App* chosen = app.get_subcommands().front();
   const CLI::Option* seed = chosen->get_option_no_throw("--seed");
   options.has_seed = seed != nullptr && seed->count() > 0;
   watch_interrupts();
   refuse_ranks(chosen->get_name());
+  if (options.json) out.use_json_escapes();
   return calls.at(chosen)(options, registry);
 }
 
@@ -148,29 +169,45 @@ void let_the_first_speak() {
   }
 }
 
-int status_of(int argc, char** argv, const Registry& registry) {
+void say_error(const std::string& message) { std::cerr << shortened("misfit: " + message) << '\n'; }
+
+int status_of(int argc, char** argv, const Registry& registry, PrintableStream& out) {
   try {
-    return dispatch(argc, argv, registry);
+    return dispatch(argc, argv, registry, out);
   } catch (const EndedElsewhere&) {
     return 1;  // the rank where it failed says why
   } catch (const InputError& error) {
     let_the_first_speak();
-    std::cerr << "misfit: " << error.what() << '\n';
+    say_error(error.what());
     return 2;
+  } catch (const std::bad_alloc&) {
+    say_error("out of memory while " + typed(argc, argv) + ": smaller data, fewer threads (--threads 1) or more memory is needed");
+    return 1;
   } catch (const std::exception& error) {
-    std::cerr << "misfit: " << error.what() << '\n';
+    say_error(error.what());
     return 1;
   }
+}
+
+/// Results in files are whole; what was to be printed is not.
+int with_output_checked(int status) {
+  const std::string failure = output_failure();
+  if (failure.empty()) return status;
+  say_error(failure);
+  return std::max(status, 1);
 }
 
 }  // namespace
 
 int run_command_line(int argc, char** argv, const Registry& registry) {
-  const int status = status_of(argc, argv, registry);
+  reserve_standard_streams();
+  PrintableStream out(std::cout);
+  const PrintableStream errors(std::cerr);
+  const int status = with_output_checked(status_of(argc, argv, registry, out));
   try {
     end_ranks(status);
   } catch (const std::exception& error) {
-    if (status == 0) std::cerr << "misfit: " << error.what() << '\n';
+    if (status == 0) say_error(error.what());
     return std::max(status, 1);
   }
   return status;

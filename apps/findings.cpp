@@ -33,7 +33,7 @@ std::optional<RungFindings> findings_of_last_rung(const Session& session, const 
   for (auto rung = ladder.rungs.rbegin(); rung != ladder.rungs.rend() && rung->parent >= 0; ++rung) {
     const fs::path study = session.folder.file(rung->study);
     if (!fs::exists(study)) continue;
-    const Session above(options_for(session.options, study), session.registry);
+    const Session above(options_for(session.options, study), session.registry, RunFolder::Access::read);
     RungFindings out{rung->id, rung->added, findings_of(above, notes)};
     if (out.findings.diagnosis || out.findings.discovery) return out;
   }

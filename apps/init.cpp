@@ -12,6 +12,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/core/text.h"
+#include "misfit/core/written_files.h"
 #include "misfit/report/recording_figure.h"
 
 namespace misfit {
@@ -26,13 +27,7 @@ const char* word_of(ColumnUse use) {
 
 /// Where the study goes: --out, else a folder called like the data in the present one.
 fs::path folder_for(const Options& options, const fs::path& data) {
-  fs::path folder = options.out.empty() ? fs::path(data.stem()) : fs::path(options.out);
-  for (const char* file : {"study.toml", "model.toml"}) {
-    if (fs::exists(folder / file) && !options.force)
-      throw InputError((folder / file).string() + " is there already: --force overwrites it, --out DIR writes elsewhere");
-  }
-  make_writable_folder(folder);
-  return folder;
+  return options.out.empty() ? fs::path(part_names(data, 1).front()) : fs::path(options.out);
 }
 
 std::string survey_text(const RecordingSurvey& survey) {
@@ -104,11 +99,12 @@ int init_verb(const Options& options, const Registry& /*registry*/) {
   survey.remarks.insert(survey.remarks.end(), model.remarks.begin(), model.remarks.end());
   const fs::path folder = folder_for(options, data);
   const std::vector<std::string> names = part_names(data, survey.parts.size());
-  constexpr int all_digits = 12;
-  for (std::size_t i = 0; i < names.size(); ++i) write_csv(folder / (names[i] + ".csv"), survey.parts[i], all_digits);
-  write_atomically(folder / "model.toml", model_text(model, survey));
-  write_atomically(folder / "study.toml", study_text(study_name(data), names, survey));
-  draw(survey, model, names, folder);
+  write_files(folder, {{data}, options.force}, {"study.toml", "model.toml", names.front() + ".csv"}, [&](const fs::path& dir) {
+    for (std::size_t i = 0; i < names.size(); ++i) write_csv(dir / (names[i] + ".csv"), survey.parts[i]);
+    write_atomically(dir / "model.toml", model_text(model, survey));
+    write_atomically(dir / "study.toml", study_text(study_name(data), names, survey));
+    draw(survey, model, names, dir);
+  });
   if (options.json) {
     std::cout << as_json(survey).dump(1) << '\n';
     return 0;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "misfit/core/error.h"
@@ -150,18 +149,19 @@ Options options_for(const Options& options, const fs::path& study) {
 }
 
 std::optional<Ladder> known_ladder(const Session& session) {
-  const fs::path file = session.folder.file(ladder_name);
   const auto& stages = session.folder.stages();
   const auto recorded = stages.find("ladder");
-  if (!fs::exists(file) || recorded == stages.end() || recorded->second.inputs != inputs_of_ladder(session)) return std::nullopt;
-  return read_ladder(file);
+  if (recorded == stages.end() || recorded->second.inputs != inputs_of_ladder(session) || !session.folder.intact(ladder_name))
+    return std::nullopt;
+  return read_ladder(session.folder.file(ladder_name));
 }
 
 Climb::Climb(const Options& options, const Registry& registry) : options_(options), registry_(registry), original_(options, registry) {
   if (auto known = known_ladder(original_)) {
     ladder_ = std::move(*known);
   } else if (fs::exists(original_.folder.file(ladder_name))) {
-    original_.say("the study or its data have changed since its ladder was climbed: it is begun anew");
+    original_.say("the study, its data or " + original_.folder.file(ladder_name).string() +
+                  " have changed since the ladder was climbed: it is begun anew");
   }
 }
 
@@ -174,7 +174,7 @@ Session& Climb::top() {
       throw RunError("rung " + std::to_string(last.id) + " of the ladder is gone: " + study.string() + " — remove " +
                      original_.folder.file(ladder_name).string() + " to begin anew");
     original_.say(fmt::format("going on from rung {} of the ladder, {}", last.id, study.parent_path().lexically_normal().string()));
-    top_.emplace(options_for(options_, study), registry_);
+    top_ = std::make_unique<Session>(options_for(options_, study), registry_);
   }
   return *top_;
 }
@@ -197,11 +197,10 @@ std::string Climb::relative_study(const Session& session) const {
 }
 
 void Climb::append(Rung rung) {
-  const auto begin = std::chrono::steady_clock::now();
   ladder_.rungs.push_back(std::move(rung));
-  write_ladder(original_.folder.file(ladder_name), ladder_);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  original_.folder.record({"ladder", options_.command, inputs_of_ladder(original_), {ladder_name}, seconds, "", ""});
+  original_.redo_stage("ladder", inputs_of_ladder(original_), {ladder_name},
+                       [&](const fs::path& dir) { write_ladder(dir / ladder_name, ladder_); });
+  ladder_ = read_ladder(original_.folder.file(ladder_name));
 }
 
 const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>& from) {
@@ -209,21 +208,23 @@ const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>
   const int id = static_cast<int>(std::max<std::size_t>(ladder_.rungs.size(), 1));
   const bool system = effect.starts_with(system_prefix);
   const std::string name = system ? effect.substr(std::string(system_prefix).size()) : effect;
-  const fs::path folder = original_.folder.file(fmt::format("rungs/{:02}_{}", id, file_name_for(name)));
+  const std::string place = fmt::format("rungs/{:02}_{}", id, file_name_for(name));
+  const fs::path folder = original_.folder.file(place);
   std::vector<std::string> left_out;
   const std::string text = system ? study_with_system(below, name, folder, left_out) : study_with_effect(below, effect, from, folder);
   const Rung parent = top_rung();  // a study that cannot be climbed is refused by now: fit what is below
   const auto below_work = fitted(below);
-  fs::remove_all(folder);
-  make_writable_folder(folder);
-  write_atomically(folder / "study.toml", text);
-  Session above(options_for(options_, folder / "study.toml"), registry_);
-  above.below = below.folder.path();
-  const auto work = fitted(above);
-  Rung rung = rung_of(above, *work);
+  original_.do_stage("rung/" + std::to_string(id), {{"settings", hash_text(text)}}, {place + "/study.toml"}, [&](const fs::path& dir) {
+    make_writable_folder(dir / place);
+    write_atomically(dir / place / "study.toml", text);
+  });
+  auto above = std::make_unique<Session>(options_for(options_, folder / "study.toml"), registry_);
+  above->below = below.folder.path();
+  const auto work = fitted(*above);
+  Rung rung = rung_of(*above, *work);
   rung.id = id;
   rung.parent = parent.id;
-  rung.study = relative_study(above);
+  rung.study = relative_study(*above);
   rung.added = effect;
   if (system) {
     also(rung.note, "a change of system has no drop: its channels and states are others; compare k-step errors and the force");
@@ -239,9 +240,7 @@ const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>
     }
   }
   append(std::move(rung));
-  top_.reset();
-  top_.emplace(options_for(options_, folder / "study.toml"), registry_);
-  top_->filter = work;
+  top_ = std::move(above);
   return ladder_.rungs.back();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -35,7 +36,7 @@ class Climb {
   Options options_;
   const Registry& registry_;
   Session original_;
-  std::optional<Session> top_;
+  std::unique_ptr<Session> top_;
   Ladder ladder_;
 };
 

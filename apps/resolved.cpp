@@ -227,7 +227,7 @@ void add_rest(const Session& session, std::string& text) {
 
 }  // namespace
 
-void write_resolved(const Session& session, const Prepared& prepared) {
+void write_resolved(const Session& session, const Prepared& prepared, const std::filesystem::path& dir) {
   std::string text;
   add_head(session, text);
   add_geometry(session, prepared, text);
@@ -239,7 +239,7 @@ void write_resolved(const Session& session, const Prepared& prepared) {
   add_rest(session, text);
   if (text.find("\uFFFD") != std::string::npos)
     text = "# U+FFFD stands for bytes that are no UTF-8: TOML cannot name a file called so.\n" + text;
-  write_atomically(session.folder.file("resolved.toml"), text);
+  write_atomically(dir / "resolved.toml", text);
 }
 
 }  // namespace misfit

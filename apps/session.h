@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,17 +26,21 @@ struct Options {
   std::vector<std::string> studies;  ///< of `batch`: lists, folders, studies
   std::string effect;                ///< of `add`
   bool automatic = false;            ///< discover --auto
-  bool force = false;                ///< init: write over a study
+  bool force = false;                ///< write over files that misfit did not make
   std::string check_video;           ///< track: write the video with the track drawn to this file
   std::string command;               ///< the command line as typed, for run.json
 };
 
 struct FilterWork;
 
+/// Of several ranks the first alone writes into run folders of studies.
+[[nodiscard]] RunFolder::Access access_of_rank();
+
 /// A study opened for work: what was asked, the run folder, and the hashes that decide what must be done again. InputError if the run
-/// folder holds the results of another study.
+/// folder holds the results of another study, or one of the small files that the study names (references, tables of curves; sweep and data
+/// where a video is to be tracked first) is not as it must be.
 struct Session {
-  Session(const Options& options, const Registry& registry);
+  Session(const Options& options, const Registry& registry, RunFolder::Access access = access_of_rank());
 
   Options options;
   Study study;
@@ -51,6 +56,17 @@ struct Session {
   /// {"program", "settings"} and the files, hashed: the inputs of a stage.
   [[nodiscard]] std::map<std::string, std::string> inputs(const std::string& settings,
                                                           const std::vector<std::filesystem::path>& files) const;
+  /// Does a stage unless it was done from the same inputs and its files are as they were written (those that are not are said on stderr):
+  /// `make` writes them into the folder that it is given, as they are to lie in the run folder, and they come to their places when all are
+  /// whole (RunFolder). `files`: those that are known beforehand, so that what must not be written over is refused before the work. What
+  /// follows reads the results from the run folder: so it is the same whether the stage was done now or before.
+  void do_stage(const std::string& stage, const std::map<std::string, std::string>& inputs, const std::vector<std::string>& files,
+                const std::function<void(const std::filesystem::path&)>& make);
+  /// The same, whether it was done before or not.
+  void redo_stage(const std::string& stage, const std::map<std::string, std::string>& inputs, const std::vector<std::string>& files,
+                  const std::function<void(const std::filesystem::path&)>& make);
+  /// Where a stage's files lie; none if it was not done.
+  [[nodiscard]] std::vector<std::filesystem::path> files_of_stage(const std::string& stage) const;
   /// True if this stage was done from the same inputs in the run folder of the rung below: its files are then copied from there, and
   /// run.json says so with their hashes.
   [[nodiscard]] bool copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs);

@@ -8,6 +8,7 @@
 #include "apps/stages.h"
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 
@@ -114,7 +115,7 @@ void SetUp::add(const PerturbStudy& wish, const Model& model) {
     for (const auto& [name, entry] : known_) {
       if (!is_free(model, name)) valid.push_back(name);
     }
-    throw InputError(where, "nothing that is held in this study is called '" + wish.name + "'" + suggest(wish.name, valid));
+    throw InputError(where, "nothing that is held in this study is called '" + shown(wish.name) + "'" + suggest(wish.name, valid));
   }
   const auto& [unit, value] = known->second;
   if (!wish.number.unit.empty() && !parse_unit(wish.number.unit).same_dimension(parse_unit(unit)))
@@ -133,7 +134,7 @@ void SetUp::add_calibration(const Session& session) {
   for (const std::string& name : calibration.names) {
     const auto& single = perturbations_.single;
     if (std::any_of(single.begin(), single.end(), [&](const Perturbation& p) { return p.name == name; }))
-      throw InputError(where, "'" + name + "' is in perturb as well: give it one of the two");
+      throw InputError(where, "'" + shown(name) + "' is in perturb as well: give it one of the two");
     group.units.push_back(known_.at(name).unit);
     described_.push_back({name, group.units.back(), calibration.value(name), calibration.sigma(name),
                           "normal, with the covariance of the calibration", group.label});

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -8,6 +9,7 @@
 #include "apps/stages.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/table.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
@@ -59,12 +61,22 @@ void curves_from_tables(const Session& session, Model& model) {
   }
 }
 
+void check_noise(const SimulateStudy& ask, const SystemSpec& spec) {
+  std::vector<std::string> names;
+  for (const auto& output : spec.outputs) names.push_back(output.name);
+  for (const auto& [name, number] : ask.noise) {
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw InputError(number.where, "[simulate] noise: the system has no output '" + shown(name) + "'" + suggest(name, names));
+  }
+}
+
 Case from_section(Session& session) {
   const SimulateStudy& ask = *session.study.simulate;
   ModelRequest request = session.model.request;
   add_camera(session, request);
   knots_from_tables(session, request);
   Case out{assemble(request, session.registry), {}, {}};
+  check_noise(ask, out.model.system->spec());
   curves_from_tables(session, out.model);
   const auto samples = static_cast<std::size_t>(ask.duration / ask.step) + 1;
   out.signals.name = "simulation";
@@ -80,7 +92,7 @@ Case from_section(Session& session) {
   for (const auto& [name, number] : ask.initial) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end())
-      throw InputError(number.where, "[simulate] initial: the system has no state '" + name + "'" + suggest(name, names));
+      throw InputError(number.where, "[simulate] initial: the system has no state '" + shown(name) + "'" + suggest(name, names));
     out.initial[found - names.begin()] = in_unit(number, name, states[static_cast<std::size_t>(found - names.begin())].unit);
   }
   return out;
@@ -131,6 +143,8 @@ Table simulate(const Case& c, const Session& session) {
       values.push_back(convert(run.y(i, o), output.unit, unit));
       noisy.push_back(convert(run.y(i, o) + sigma * normal(random), output.unit, unit));
     }
+    if (!std::all_of(noisy.begin(), noisy.end(), [](double v) { return std::isfinite(v); }))
+      throw RunError("output " + output.name + " with its noise of " + format_value(sigma) + " left the finite numbers");
     if (sigma > 0.0) table.add(output.name, unit, noisy);
     table.add(sigma > 0.0 ? output.name + "_true" : output.name, unit, values);
   }
@@ -144,7 +158,8 @@ int simulate_verb(const Options& options, const Registry& registry) {
   const Case c = session.study.simulate ? from_section(session) : from_fit(session);
   const Table table = simulate(c, session);
   const auto file = session.folder.file("simulation.csv");
-  write_csv(file, table);
+  session.redo_stage("simulate", session.inputs(session.study.text, {}), {"simulation.csv"},
+                     [&](const std::filesystem::path& dir) { write_csv(dir / "simulation.csv", table); });
   if (options.json) {
     std::cout << nlohmann::json{{"file", file.string()}, {"samples", table.rows()}, {"system", c.model.system->spec().key}}.dump(1) << '\n';
     return 0;

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
-
 #include "apps/stages.h"
 #include "misfit/attitude/attitude.h"
 #include "misfit/calibrate/calibrate.h"
@@ -28,10 +26,6 @@ std::string settings_of(const Session& session) {
   for (const auto& [name, number] : session.study.camera.given)
     text += fmt::format(" {}={}~{}", name, number.value, number.sigma.value_or(0.0));
   return text;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 Calibration make_calibration(const Session& session, const fs::path& sweep) {
@@ -76,12 +70,10 @@ std::optional<Calibration> calibrate_stage(Session& session) {
   std::vector<fs::path> files;
   if (session.study.camera.from_sweep()) files.push_back(sweep_stage(session));
   const auto inputs = session.inputs(settings_of(session), files);
-  if (session.folder.up_to_date("calibrate", inputs)) return read_calibration(file);
-  const auto begin = std::chrono::steady_clock::now();
-  const Calibration calibration = make_calibration(session, files.empty() ? fs::path() : files.front());
-  write_calibration(file, calibration);
-  session.folder.record({"calibrate", session.options.command, inputs, {"camera.json"}, seconds_since(begin), "", ""});
-  return calibration;
+  session.do_stage("calibrate", inputs, {"camera.json"}, [&](const fs::path& dir) {
+    write_calibration(dir / "camera.json", make_calibration(session, files.empty() ? fs::path() : files.front()));
+  });
+  return read_calibration(file);
 }
 
 std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
@@ -103,22 +95,17 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
     std::string settings = settings_of(session);
     for (const auto& [name, header] : experiment.columns.header_of) settings += fmt::format("\ncolumn {}={}", name, header);
     const auto inputs = session.inputs(settings, {track_files(session, e).track, session.folder.file("camera.json")});
-    const std::string stage = "attitude/" + experiment.name;
-    if (session.folder.up_to_date(stage, inputs)) {
-      out.emplace_back(read_attitude(file));
-      out.back()->notes = lines_of(notes);
-      continue;
-    }
-    const auto begin = std::chrono::steady_clock::now();
-    const Track track = read_track(track_files(session, e).track, experiment.columns);
-    Attitude result = attitude(track, *calibration, session.model.rig);
-    if (videos[e]) result.notes.insert(result.notes.begin(), videos[e]->warnings.begin(), videos[e]->warnings.end());
-    result.notes.insert(result.notes.begin(), track.notes.begin(), track.notes.end());
-    write_attitude(file, result);
-    write_notes(notes, result.notes);
-    session.folder.record(
-        {stage, session.options.command, inputs, {file.filename().string(), notes.filename().string()}, seconds_since(begin), "", ""});
-    out.emplace_back(std::move(result));
+    const std::string angles_name = file.filename().string(), notes_name = notes.filename().string();
+    session.do_stage("attitude/" + experiment.name, inputs, {angles_name, notes_name}, [&](const fs::path& dir) {
+      const Track track = read_track(track_files(session, e).track, experiment.columns);
+      Attitude result = attitude(track, *calibration, session.model.rig);
+      if (videos[e]) result.notes.insert(result.notes.begin(), videos[e]->warnings.begin(), videos[e]->warnings.end());
+      result.notes.insert(result.notes.begin(), track.notes.begin(), track.notes.end());
+      write_attitude(dir / angles_name, result);
+      write_notes(dir / notes_name, result.notes);
+    });
+    out.emplace_back(read_attitude(file));
+    out.back()->notes = lines_of(notes);
   }
   return out;
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 
 #include "apps/stages.h"
 #include "misfit/compare/compare.h"
@@ -22,7 +21,8 @@ bool can_be_simulated(const std::vector<Fit>& fits) {
 std::vector<fs::path> files_of_fits(const Session& session, const std::vector<Fit>& fits) {
   std::vector<fs::path> files;
   for (const auto& fit : fits) {
-    for (const auto& entry : fs::directory_iterator(session.folder.file("fit/" + fit.method))) files.push_back(entry.path());
+    const std::vector<fs::path> own = session.files_of_stage("fit/" + fit.method);
+    files.insert(files.end(), own.begin(), own.end());
   }
   return files;
 }
@@ -39,19 +39,17 @@ Comparison compare_stage(Session& session, const std::vector<Fit>& fits) {
   std::vector<fs::path> files = files_of_fits(session, fits);
   for (const auto& [curve, reference] : session.study.reference) files.push_back(reference);
   const auto inputs = session.inputs("seed " + std::to_string(session.study.seed), files);
-  if (session.folder.up_to_date("compare", inputs)) return read_comparison(file);
-  const auto begin = std::chrono::steady_clock::now();
-  Comparison comparison = compare(fits, references(session));
-  if (can_be_simulated(fits)) {
-    const auto work = filter_work(session);
-    Progress progress("compare", session.options.quiet);
-    comparison.motion = simulated_motion(*work, session.study.seed, session.options.threads,
-                                         [&](std::size_t done, std::size_t total) { progress.update(done, total); });
-  }
-  write_comparison(file, comparison);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  session.folder.record({"compare", session.options.command, inputs, {"compare.json"}, seconds, "", ""});
-  return comparison;
+  session.do_stage("compare", inputs, {"compare.json"}, [&](const fs::path& dir) {
+    Comparison comparison = compare(fits, references(session));
+    if (can_be_simulated(fits)) {
+      const auto work = filter_work(session);
+      Progress progress("compare", session.options.quiet);
+      comparison.motion = simulated_motion(*work, session.study.seed, session.options.threads,
+                                           [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+    }
+    write_comparison(dir / "compare.json", comparison);
+  });
+  return read_comparison(file);
 }
 
 }  // namespace misfit

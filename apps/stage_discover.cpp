@@ -1,7 +1,6 @@
-#include <chrono>
-
 #include "apps/stages.h"
 #include "misfit/core/error.h"
+#include "misfit/core/job_queue.h"
 #include "misfit/core/progress.h"
 #include "misfit/core/ranks.h"
 #include "misfit/discover/discover.h"
@@ -48,15 +47,11 @@ std::optional<Discovery> discover_stage(Session& session) {
   if (filter_declined(session)) return std::nullopt;
   stop_if_interrupted();
   if (auto known = known_discovery(session)) return known;
-  const auto inputs = inputs_of_discovery(session);
-  const auto begin = std::chrono::steady_clock::now();
-  Discovery discovery = search(session, "");
-  if (!ranks().first()) return discovery;
-  write_discovery(session.folder.path(), discovery);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  session.folder.record({"discover", session.options.command, inputs, {"candidates.json", "discovery.json"}, seconds, "", ""});
-  std::filesystem::remove_all(session.folder.file(refits));  // megabytes each, and all said
-  return discovery;
+  if (!ranks().first()) return search(session, "");
+  session.do_stage("discover", inputs_of_discovery(session), {"candidates.json", "discovery.json"},
+                   [&](const std::filesystem::path& dir) { write_discovery(dir, search(session, "")); });
+  remove_stored_jobs(session.folder.file(refits));  // megabytes each, and all said
+  return read_discovery(session.folder.path());
 }
 
 }  // namespace misfit

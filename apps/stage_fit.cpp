@@ -1,5 +1,4 @@
-#include <algorithm>
-#include <chrono>
+#include <fmt/ranges.h>
 
 #include "apps/methods.h"
 #include "misfit/core/config.h"
@@ -13,12 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> outputs_of(const fs::path& run_folder, const fs::path& dir) {
-  std::vector<std::string> out;
-  for (const auto& entry : fs::directory_iterator(dir)) out.push_back(entry.path().lexically_relative(run_folder).string());
-  out.emplace_back("resolved.toml");
-  std::sort(out.begin(), out.end());
-  return out;
+/// resolved.toml. A study that makes no model is refused here, before any method has left a result.
+void resolved_stage(Session& session, Methods& methods) {
+  auto inputs = inputs_of_fit(session, "resolved");
+  inputs["methods"] = fmt::format("{} seed {}", fmt::join(session.methods(), " "), session.study.seed);
+  session.do_stage("resolved", inputs, {"resolved.toml"}, [&](const fs::path& dir) { write_resolved(session, methods.prepared(), dir); });
 }
 
 }  // namespace
@@ -57,25 +55,14 @@ std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& nam
   static_cast<void>(attitude_stage(session));
   std::vector<Fit> fits;
   Methods methods(session);
+  resolved_stage(session, methods);
   Progress progress("fit", session.options.quiet);
   for (std::size_t k = 0; k < names.size(); ++k) {
     stop_if_interrupted();
     const std::string stage = "fit/" + names[k];
-    const fs::path dir = session.folder.file(stage);
-    const auto inputs = inputs_of_fit(session, names[k]);
-    if (session.folder.up_to_date(stage, inputs)) {
-      fits.push_back(read_fit(dir));
-    } else {
-      const auto begin = std::chrono::steady_clock::now();
-      const Prepared& prepared = methods.prepared();  // a study that makes no model is refused before any method has left a result
-      fits.push_back(methods.run(names[k]));
-      fs::remove_all(dir);
-      make_writable_folder(dir);
-      write_fit(dir, fits.back());
-      write_resolved(session, prepared);
-      session.folder.record({stage, session.options.command, inputs, outputs_of(session.folder.path(), dir),
-                             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), "", ""});
-    }
+    session.do_stage(stage, inputs_of_fit(session, names[k]), {stage + "/fit.json"},
+                     [&](const fs::path& dir) { write_fit(dir / stage, methods.run(names[k])); });
+    fits.push_back(read_fit(session.folder.file(stage)));
     progress.update(k + 1, names.size());
   }
   return fits;

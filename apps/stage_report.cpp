@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
-
 #include "apps/stages.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
@@ -47,28 +44,6 @@ report::RunFacts facts_of(const Session& session) {
   }
   facts.hashes[session.study.file.filename().string()] = hash_text(session.study.text);
   return facts;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-/// FOLDER/FILE for every file of the folder, sorted; none if it does not exist.
-std::vector<std::string> names_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder, none)) names.push_back((folder.filename() / entry.path().filename()).string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-/// What an earlier report drew; contact sheets belong to the track stage.
-void remove_figures(const fs::path& folder) {
-  std::error_code none;
-  for (const std::string& name : names_in(folder)) {
-    const fs::path file = folder.parent_path() / name;
-    if (file.extension() != ".png") fs::remove_all(file, none);
-  }
 }
 
 std::vector<fs::path> files_of_report(const Session& session, const std::vector<Fit>& fits) {
@@ -117,19 +92,15 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
     if (input.resampling && fs::exists(session.folder.file(file))) files.push_back(session.folder.file(file));
   }
   const auto inputs = session.inputs(session.study.text + fmt::format("{}", fmt::join(input.notes, "\n")), files);
-  if (session.folder.up_to_date("report", inputs)) return session.folder.file("report.html");
-  const auto begin = std::chrono::steady_clock::now();
-  input.study = session.study.name;
-  input.question = session.study.question;
-  input.fits = fits;
-  input.references = references(session);
-  input.run = facts_of(session);
-  remove_figures(session.folder.file("figures"));
-  fs::path page = report::write_report(session.folder.path(), input);
-  std::vector<std::string> outputs = names_in(session.folder.file("figures"));
-  outputs.emplace_back("report.html");
-  session.folder.record({"report", session.options.command, inputs, outputs, seconds_since(begin), "", ""});
-  return page;
+  session.do_stage("report", inputs, {"report.html"}, [&](const fs::path& dir) {
+    input.study = session.study.name;
+    input.question = session.study.question;
+    input.fits = fits;
+    input.references = references(session);
+    input.run = facts_of(session);
+    static_cast<void>(report::write_report(dir, input));
+  });
+  return session.folder.file("report.html");
 }
 
 }  // namespace misfit

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "apps/methods.h"
 #include "apps/stages.h"
@@ -207,24 +206,13 @@ class Work {
   Resampling out_;
 };
 
-void write(Session& session, const Resampling& r, double seconds) {
-  const std::filesystem::path dir = session.folder.path();
-  std::vector<std::string> outputs{"resampling.json"};
+void write(const Session& session, const std::filesystem::path& dir, const Resampling& r) {
+  const UncertaintyStudy& wishes = *session.study.uncertainty;
   write_resampling_notes(dir, r.notes);
-  if (session.study.uncertainty->bootstrap > 0) {
-    write_bootstrap(dir, r.bootstraps);
-    outputs.insert(outputs.end(), {"bootstrap.json", "bootstrap.csv"});
-  }
-  if (!session.study.uncertainty->profile.empty()) {
-    write_profiles(dir, r.profiles);
-    outputs.emplace_back("profile.json");
-  }
-  if (session.study.uncertainty->starts > 0) {
-    write_multi_starts(dir, r.starts);
-    outputs.emplace_back("starts.json");
-  }
-  for (const auto& file : report::write_interval_figures(session.folder.file("figures"), r)) outputs.push_back("figures/" + file);
-  session.folder.record({stage, session.options.command, inputs_of(session), outputs, seconds, "", ""});
+  if (wishes.bootstrap > 0) write_bootstrap(dir, r.bootstraps);
+  if (!wishes.profile.empty()) write_profiles(dir, r.profiles);
+  if (wishes.starts > 0) write_multi_starts(dir, r.starts);
+  static_cast<void>(report::write_interval_figures(dir / "figures", r));
 }
 
 Resampling read(const Session& session) {
@@ -258,12 +246,13 @@ void check_profile_names(Session& session) {
 }
 
 Resampling resampling_stage(Session& session) {
-  if (session.folder.up_to_date(stage, inputs_of(session))) return ranks().first() ? read(session) : Resampling{};
-  const auto begin = std::chrono::steady_clock::now();
-  Resampling out = Work(session).run();
-  if (!ranks().first()) return {};
-  write(session, out, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  return out;
+  if (!ranks().first()) {
+    if (!session.folder.up_to_date(stage, inputs_of(session))) static_cast<void>(Work(session).run());
+    return {};
+  }
+  session.do_stage(stage, inputs_of(session), {"resampling.json"},
+                   [&](const std::filesystem::path& dir) { write(session, dir, Work(session).run()); });
+  return read(session);
 }
 
 std::optional<Resampling> known_resampling(const Session& session) {

@@ -1,7 +1,6 @@
 // Positions of the rig's three points out of pictures of the sweep.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -132,17 +131,15 @@ fs::path sweep_stage(Session& session) {
   const CameraStudy& camera = session.study.camera;
   if (camera.sweep) return *camera.sweep;
   fs::path file = session.folder.file("sweep.csv");
-  const fs::path sheet = session.folder.file("figures/sweep_sheet.png");
+  const std::string sheet = "figures/sweep_sheet.png";
   const std::vector<SweepPicture> pictures = read_sweep_pictures(*camera.sweep_images);
   std::vector<fs::path> read{*camera.sweep_images};
   for (const SweepPicture& picture : pictures) read.push_back(picture.file);
   if (camera.sweep_marker.picture) read.push_back(*camera.sweep_marker.picture);
   const auto inputs = session.inputs(settings_of(camera), read);
   if (session.folder.up_to_date("sweep", inputs) || session.copied_from_below("sweep", inputs)) return file;
-  const auto begin = std::chrono::steady_clock::now();
-  make_sweep(session, pictures, file, sheet);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  session.folder.record({"sweep", session.options.command, inputs, {"sweep.csv", "figures/sweep_sheet.png"}, seconds, "", ""});
+  session.do_stage("sweep", inputs, {"sweep.csv", sheet},
+                   [&](const fs::path& dir) { make_sweep(session, pictures, dir / "sweep.csv", dir / sheet); });
   return file;
 }
 

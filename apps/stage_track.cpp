@@ -1,5 +1,3 @@
-#include <chrono>
-
 #include "apps/stages.h"
 #include "apps/track_video.h"
 #include "misfit/core/file_name.h"
@@ -21,24 +19,19 @@ std::string settings_of(const VideoStudy& video) {
   return text;
 }
 
-void make_track(Session& session, std::size_t e, const TrackFiles& files, const std::map<std::string, std::string>& inputs) {
-  const ExperimentStudy& experiment = session.study.experiments[e];
-  const auto begin = std::chrono::steady_clock::now();
+void make_track(Session& session, std::size_t e, const TrackFiles& files) {
   Progress progress("track", session.options.quiet);
-  const VideoTrack result =
-      track_video(*experiment.video, session.study.video, [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+  const VideoTrack result = track_video(*session.study.experiments[e].video, session.study.video,
+                                        [&](std::size_t done, std::size_t total) { progress.update(done, total); });
   write_track(files.track, result.track);
   write_track_facts(files.facts, result.facts);
   make_writable_folder(files.sheet.parent_path());
   write_contact_sheet(files.sheet, result.shots);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  session.folder.record({"track/" + experiment.name,
-                         session.options.command,
-                         inputs,
-                         {files.track.filename().string(), files.facts.filename().string(), "figures/" + files.sheet.filename().string()},
-                         seconds,
-                         "",
-                         ""});
+}
+
+/// What the track stage writes into DIR.
+TrackFiles made_files(const fs::path& dir, const std::string& end) {
+  return {dir / ("track" + end + ".csv"), dir / ("track" + end + ".json"), dir / ("figures/contact_sheet" + end + ".png")};
 }
 
 }  // namespace
@@ -48,9 +41,7 @@ bool has_track(const ExperimentStudy& experiment) { return experiment.track || e
 TrackFiles track_files(const Session& session, std::size_t e) {
   const ExperimentStudy& experiment = session.study.experiments[e];
   if (experiment.track) return {*experiment.track, {}, {}};
-  const std::string end = suffix(session, e);
-  return {session.folder.file("track" + end + ".csv"), session.folder.file("track" + end + ".json"),
-          session.folder.file("figures/contact_sheet" + end + ".png")};
+  return made_files(session.folder.path(), suffix(session, e));
 }
 
 std::vector<std::optional<TrackFacts>> track_stage(Session& session) {
@@ -67,7 +58,11 @@ std::vector<std::optional<TrackFacts>> track_stage(Session& session) {
     if (session.study.video.marker.picture) read.push_back(*session.study.video.marker.picture);
     const auto inputs = session.inputs(settings_of(session.study.video), read);
     const std::string stage = "track/" + experiment.name;
-    if (!session.folder.up_to_date(stage, inputs) && !session.copied_from_below(stage, inputs)) make_track(session, e, files, inputs);
+    if (!session.folder.up_to_date(stage, inputs) && !session.copied_from_below(stage, inputs)) {
+      const std::string end = suffix(session, e);
+      session.do_stage(stage, inputs, {"track" + end + ".csv", "track" + end + ".json"},
+                       [&](const fs::path& dir) { make_track(session, e, made_files(dir, end)); });
+    }
     out.emplace_back(read_track_facts(files.facts));
   }
   return out;

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
-
 #include "apps/stages.h"
 #include "apps/study_chain.h"
 #include "misfit/core/error.h"
@@ -84,11 +82,11 @@ Uncertainty result_of(const Session& session, const StudyChain& chain, const Sam
   return out;
 }
 
-void write(Session& session, const Uncertainty& result, double seconds) {
-  std::vector<std::string> outputs = write_uncertainty(session.folder.path(), result);
-  for (const std::string& file : report::write_uncertainty_figures(session.folder.file("figures"), result, references(session)))
-    outputs.push_back("figures/" + file);
-  session.folder.record({stage, session.options.command, inputs_of(session), outputs, seconds, "", ""});
+/// The runs of all ranks.
+MonteCarloResult finished(std::optional<MonteCarloResult> runs) {
+  if (runs) return std::move(*runs);
+  stop_if_interrupted();
+  throw EndedElsewhere();  // Ctrl-C reached another rank only
 }
 
 }  // namespace
@@ -110,17 +108,17 @@ Uncertainty uncertainty_stage(Session& session) {
   static_cast<void>(wishes_of(session));
   static_cast<void>(attitude_stage(session));
   if (session.folder.up_to_date(stage, inputs_of(session))) return read_uncertainty(session.folder.path());
-  const auto begin = std::chrono::steady_clock::now();
   const std::unique_ptr<StudyChain> chain = chain_of(session);
   const Sampler sampler(chain->set_up().perturbations(), session.study.seed);
-  const auto runs = sampled(session, *chain, sampler);
-  if (!runs) {
-    stop_if_interrupted();
-    throw EndedElsewhere();  // Ctrl-C reached another rank only
+  if (!ranks().first()) {
+    static_cast<void>(finished(sampled(session, *chain, sampler)));
+    return {};
   }
-  if (!ranks().first()) return {};
-  Uncertainty result = result_of(session, *chain, sampler, *runs);
-  write(session, result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  session.do_stage(stage, inputs_of(session), {"uncertainty.json"}, [&](const std::filesystem::path& dir) {
+    const Uncertainty result = result_of(session, *chain, sampler, finished(sampled(session, *chain, sampler)));
+    static_cast<void>(write_uncertainty(dir, result));
+    static_cast<void>(report::write_uncertainty_figures(dir / "figures", result, references(session)));
+  });
   return read_uncertainty(session.folder.path());
 }
 

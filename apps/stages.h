@@ -143,7 +143,7 @@ struct RungFindings {
 /// RunError with the words of the declined fit: for verbs that cannot go on without it.
 [[noreturn]] void refuse_declined(Session& session);
 
-/// resolved.toml: the study with every default and every choice made from the data spelled out.
-void write_resolved(const Session& session, const Prepared& prepared);
+/// DIR/resolved.toml: the study with every default and every choice made from the data spelled out, as it is to lie in the run folder.
+void write_resolved(const Session& session, const Prepared& prepared, const std::filesystem::path& dir);
 
 }  // namespace misfit

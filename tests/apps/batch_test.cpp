@@ -119,13 +119,14 @@ TEST_F(ThreeTests, EveryFileOfAStudyMakesItAnotherBatch) {
   EXPECT_NE(digest(), reference);
 }
 
-/// One file may be open at a time, and the checkpoint is: the studies are not to blame, and are done when there is room again.
+/// Two files may be open at a time, and the folder and the checkpoint are: the studies are not to blame, and are done when there is room
+/// again.
 TEST_F(ThreeTests, WhatTheMachineRefusesIsNoRow) {
   const std::vector<std::string> words{"batch", folder_.path().string(), "--threads", "1"};
   const Outcome first = program::run(words, [] {
     const int next = ::dup(STDIN_FILENO);
     ::close(next);
-    const rlimit limit{static_cast<rlim_t>(next) + 1, static_cast<rlim_t>(next) + 1};
+    const rlimit limit{static_cast<rlim_t>(next) + 2, static_cast<rlim_t>(next) + 2};
     if (next < 0 || ::setrlimit(RLIMIT_NOFILE, &limit) != 0) ::_exit(77);
   });
   EXPECT_EQ(first.status, 1) << first.out;

@@ -88,6 +88,45 @@ TEST(Number, RefusesWhatIsNoFiniteNumber) {
   }
 }
 
+TEST(Message, StaysShortWhateverTheText) {
+  const std::string big(10'000'000, 'x');
+  const auto number = [](const Section& s) { (void)s.number("D", "m"); };
+  const std::vector<std::string> messages{
+      error_of("D = \"" + big + "\"\n", number),
+      error_of("D = \"1 " + big + "\"\n", number),
+      error_of("D = [\"" + big + "\"]\n", number),
+      error_of(big + " = 1\n", [](const Section& s) { s.finish(); }),
+      error_of("[" + big + "]\nD = 1\n", [](const Section& s) { s.finish(); }),
+      error_of("[" + big + "]\nD = \"x\"\n", [&](const Section& s) { (void)s.table(s.keys().front())->number("D", "m"); }),
+      error_of("D = \"" + big + "\"\n",
+               [](const Section& s) {
+                 (void)s.choice("D", {"a", "b"});
+               }),
+      error_of(big + " = 1\n" + big + " = 2\n", [](const Section&) {})};
+  for (const std::string& message : messages) {
+    expect_parts(message, {"study.toml:"});
+    EXPECT_LT(message.size(), 300U) << message.substr(0, 400);
+  }
+}
+
+TEST(Message, ShowsControlCharactersAsEscapes) {
+  expect_parts(error_of("D = \"\\u001b[2J\\u0000\"\n", [](const Section& s) { (void)s.number("D", "m"); }), {"\\x1b[2J", "\\x00"});
+}
+
+TEST(Message, ShowsAnArrayOnOneLine) {
+  const std::string message = error_of("D = [[1, 2], [3, 4]]\n", [](const Section& s) { (void)s.number("D", "m"); });
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+  EXPECT_EQ(message.find("\\n"), std::string::npos) << message;
+}
+
+TEST(Section, ManyKeysTakeNoQuadraticTime) {
+  std::string text;
+  for (int i = 0; i < 100'000; ++i) text += "k" + std::to_string(i) + " = 1\n";
+  const Section s = parse(text);
+  for (const std::string& key : s.keys()) (void)s.number(key, "m");
+  EXPECT_NO_THROW(s.finish());
+}
+
 TEST(Flag, TakesTrueAndFalseOnly) {
   EXPECT_EQ(parse("a = false").flag("a"), false);
   EXPECT_FALSE(parse("").flag("a").has_value());

@@ -90,12 +90,42 @@ TEST_F(StoredJobsTest, AFlippedBitIsFoundAndAllBehindItIsDoneAgain) {
   EXPECT_LT(again.size(), 40U);
 }
 
-TEST_F(StoredJobsTest, AFileThatIsNoneIsOverwritten) {
+TEST_F(StoredJobsTest, ATornHeadIsOverwritten) {
   fs::create_directories(folder_.path() / "jobs");
-  for (const char* text : {"", "misfit", "something else altogether, and longer than the head of a checkpoint is"}) {
+  for (const char* text : {"", "misfit", "misfit checkpoint 1 dig"}) {
     folder_.write("jobs/checkpoint_0.bin", text);
     EXPECT_EQ(run(jobs(3, std::string("digest") + text[0])).size(), 3U);
   }
+}
+
+TEST_F(StoredJobsTest, AFileThatIsNoCheckpointIsKeptAndNamed) {
+  fs::create_directories(folder_.path() / "jobs");
+  const fs::path mine = folder_.write("jobs/checkpoint_0.bin", "something else altogether, and longer than the head of a checkpoint is");
+  const std::string before = read_file(mine);
+  expect_parts(message_of<WriteError>([&] { (void)run(jobs(3, "digest")); }), {"checkpoint_0.bin", "misfit did not make it"});
+  remove_stored_jobs(folder_.path() / "jobs");
+  EXPECT_EQ(read_file(mine), before);
+}
+
+TEST_F(StoredJobsTest, NothingIsWrittenThroughALink) {
+  fs::create_directories(folder_.path() / "jobs");
+  const fs::path victim = folder_.write("victim", "");
+  fs::create_symlink(victim, folder_.path() / "jobs/checkpoint_0.bin");
+  expect_parts(message_of<WriteError>([&] { (void)run(jobs(3, "digest")); }), {"checkpoint_0.bin", "is a link"});
+  fs::remove_all(folder_.path() / "jobs");
+  fs::create_directory(folder_.path() / "elsewhere");
+  fs::create_directory_symlink(folder_.path() / "elsewhere", folder_.path() / "jobs");
+  expect_parts(message_of<WriteError>([&] { (void)run(jobs(3, "digest")); }), {"jobs", "is a link"});
+  EXPECT_EQ(read_file(victim), "");
+  EXPECT_TRUE(fs::is_empty(folder_.path() / "elsewhere"));
+}
+
+TEST_F(StoredJobsTest, RemovingThemLeavesWhatIsNotOurs) {
+  (void)run(jobs(3, "digest"));
+  folder_.write("jobs/mine.txt", "mine");
+  remove_stored_jobs(folder_.path() / "jobs");
+  EXPECT_FALSE(fs::exists(checkpoint()));
+  EXPECT_EQ(read_file(folder_.path() / "jobs/mine.txt"), "mine");
 }
 
 TEST_F(StoredJobsTest, ResultsOfAnotherRankAreTaken) {

@@ -45,6 +45,16 @@ TEST(LooseCsv, ReadsADecimalCommaWhereSemicolonsSeparate) {
   EXPECT_THAT(table.columns[1].values, ElementsAre(1.25, -25.0));
 }
 
+TEST(LooseCsv, ManyColumnsTakeNoQuadraticTime) {
+  std::string header = "t", row = "0";
+  for (int i = 1; i < 100'000; ++i) {
+    header += ",c" + std::to_string(i);
+    row += ",1";
+  }
+  EXPECT_EQ(read(header + "\n" + row + "\n" + row + "\n").columns.size(), 100'000U);
+  EXPECT_THAT(refusal(header + ",c77\n" + row + ",1\n"), HasSubstr("'c77' twice"));
+}
+
 TEST(LooseCsv, TakesTheHeaderFromTheLastComment) {
   const LooseTable table = read("# made by a logger\n# t y\n0 1\n1 2\n");
   EXPECT_EQ(table.comments, 2U);

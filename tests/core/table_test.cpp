@@ -91,6 +91,45 @@ TEST(ReadCsv, TextIsAcceptedWhereItIsToBeIgnored) {
 
 TEST(ReadCsv, AHeaderUsedTwiceIsNamed) { expect_parts(error_of("t,y[m],y[m]\n0,1,2\n"), {"data.csv:1", "'y[m]' twice"}); }
 
+TEST(ReadCsv, AColumnGivenTwiceInTwoUnitsIsRefused) {
+  expect_parts(error_of("t[s],y[V],y[mV]\n0,1,2\n"), {"data.csv:1", "'y' twice", "'y[V]'", "'y[mV]'"});
+  expect_parts(error_of("t[s],y[V],y\n0,1,2\n"), {"data.csv:1", "'y' twice", "'y[V]'"});
+  expect_parts(error_of("t[s],y,y []\n0,1,2\n"), {"data.csv:1", "'y' twice"});
+}
+
+std::string header_of(int columns) {
+  std::string header = "t";
+  for (int i = 1; i < columns; ++i) header += ",c" + std::to_string(i);
+  return header + "\n";
+}
+
+TEST(ReadCsv, TwentyThousandColumnsAreReadAndMoreRefused) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(read_csv(folder.write("x.csv", header_of(20'000) + std::string(19'999, ',') + "\n")).columns.size(), 20'000U);
+  expect_parts(error_of(header_of(100'000)), {"data.csv:1", "100000 columns", "at most 20000"});
+  expect_parts(error_of(std::string(1'000'000, ',') + "\n"), {"data.csv:1", "1000001 columns"});
+}
+
+TEST(ReadCsv, AFieldOfTenMegabytesIsShownInPart) {
+  for (const char* quote : {"", "\""}) {
+    const std::string message = error_of("t,y\n0," + std::string(quote) + std::string(10'000'000, 'x') + quote + "\n");
+    expect_parts(message, {"data.csv:2", "column 'y'", "'xxx", "…'", "not a finite number"});
+    EXPECT_LT(message.size(), 300U);
+  }
+}
+
+TEST(ReadCsv, ControlCharactersOfAFieldAreShownAsEscapes) {
+  expect_parts(error_of("t,y\x1b[2J\n0,1\a\n"), {"column 'y\\x1b[2J'", "'1\\x07'"});
+}
+
+TEST(Table, AMissingColumnAmongManyIsAShortMessage) {
+  const TemporaryFolder folder;
+  const Table table = read_csv(folder.write("x.csv", header_of(5000) + std::string(4999, ',') + "\n"));
+  const std::string message = message_of<InputError>([&] { (void)table.at("c4321x"); });
+  expect_parts(message, {"'c4321x'", "did you mean 'c4321'?", " more"});
+  EXPECT_LT(message.size(), 300U);
+}
+
 TEST(ReadCsv, AColumnWithoutNameIsRefused) { expect_parts(error_of("t,,y\n0,1,2\n"), {"data.csv:1", "column 2 has no name"}); }
 
 TEST(ReadCsv, ARaggedRowNamesLineAndCounts) {

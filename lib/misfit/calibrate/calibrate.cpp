@@ -130,26 +130,17 @@ void note_outliers(Calibration& calibration, std::size_t points) {
   }
 }
 
-/// What was not offered and the sweep asks for all the same: in the tests, not in the camera.
-void add_what_was_not_offered(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options, Calibration& calibration) {
-  CalibrateOptions everything = options;
-  everything.offer = optional_camera_parameters();
-  const auto offered = [&](const std::string& name) {
-    return std::count(options.offer.begin(), options.offer.end(), name) + std::count(options.take_in.begin(), options.take_in.end(), name) >
-           0;
-  };
-  if (std::all_of(everything.offer.begin(), everything.offer.end(), offered)) return;
-  for (CameraTest test : calibrate(sweep, geometry, everything).tests) {
-    if (!test.taken_in || offered(test.name)) continue;
-    test.taken_in = false;
-    calibration.notes.push_back("the sweep asks for " + test.name + " (drop " + format_value(test.drop) + "), which was not offered");
-    calibration.tests.push_back(std::move(test));
-  }
+/// Points that do not follow the angles determine no scale.
+void check_scale(const SweepFit& fit) {
+  constexpr double sigmas = 3.0;
+  const std::size_t scale = camera_parameter("K");
+  const double K = camera_entry(fit.camera, scale), sigma = fit.sigma(scale);
+  if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > sigmas * sigma) return;
+  throw RunError("the points do not follow the angles: the scale K = " + format_value(K, sigma) +
+                 " px/m cannot be told from zero; check that points, angles and geometry belong together");
 }
 
-}  // namespace
-
-Calibration calibrate(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options) {
+Calibration calibrate_once(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options) {
   const double l_b = geometry.l_b;
   const std::vector<SweepPoint> points = sweep_points(sweep, geometry);
   Plan plan = make_plan(options, has_y(points));
@@ -157,6 +148,7 @@ Calibration calibrate(const Sweep& sweep, const RigGeometry& geometry, const Cal
   std::vector<bool> keep = first_keep(points, l_b, plan, options.outlier_limit);
   const Selection selection = select_and_clean(points, keep, l_b, plan, options);
   if (!selection.fit.determined) throw RunError("the sweep cannot tell these apart: " + names_of(selection.fit.free));
+  check_scale(selection.fit);
 
   Calibration calibration;
   calibration.model = options.model;
@@ -176,8 +168,37 @@ Calibration calibrate(const Sweep& sweep, const RigGeometry& geometry, const Cal
   note_separability(calibration);
   if (!selection.fit.inside)
     calibration.notes.emplace_back("a parameter ended at the edge of what is physical: do not believe this calibration");
-  add_what_was_not_offered(sweep, geometry, options, calibration);
   return calibration;
+}
+
+/// What was not offered and the sweep asks for all the same: in the tests, not in the camera.
+void add_what_was_not_offered(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options, Calibration& calibration) {
+  CalibrateOptions everything = options;
+  everything.offer = optional_camera_parameters();
+  const auto offered = [&](const std::string& name) {
+    return std::count(options.offer.begin(), options.offer.end(), name) + std::count(options.take_in.begin(), options.take_in.end(), name) >
+           0;
+  };
+  if (std::all_of(everything.offer.begin(), everything.offer.end(), offered)) return;
+  for (CameraTest test : calibrate_once(sweep, geometry, everything).tests) {
+    if (!test.taken_in || offered(test.name)) continue;
+    test.taken_in = false;
+    calibration.notes.push_back("the sweep asks for " + test.name + " (drop " + format_value(test.drop) + "), which was not offered");
+    calibration.tests.push_back(std::move(test));
+  }
+}
+
+}  // namespace
+
+Calibration calibrate(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options) {
+  try {
+    Calibration calibration = calibrate_once(sweep, geometry, options);
+    add_what_was_not_offered(sweep, geometry, options, calibration);
+    return calibration;
+  } catch (const RunError& error) {
+    if (sweep.source.empty()) throw;
+    throw RunError(sweep.source + ": " + error.what());
+  }
 }
 
 }  // namespace misfit

@@ -5,6 +5,7 @@
 
 #include "misfit/calibrate/calibrate.h"
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 
 namespace misfit {
 namespace {
@@ -37,7 +38,7 @@ const std::vector<std::string>& optional_camera_parameters() {
 std::size_t camera_parameter(const std::string& name) {
   const auto found = std::find(camera_parameter_names.begin(), camera_parameter_names.end(), name);
   if (found != camera_parameter_names.end()) return static_cast<std::size_t>(found - camera_parameter_names.begin());
-  throw InputError("'" + name + "' is not a camera parameter" +
+  throw InputError("'" + shown(name) + "' is not a camera parameter" +
                    suggest(name, {camera_parameter_names.begin(), camera_parameter_names.end()}));
 }
 
@@ -48,7 +49,7 @@ CameraGroup camera_group(const std::string& name, bool with_y) {
     for (const char* parameter : with_y ? entry.parameters : entry.of_z_alone) group.parameters.push_back(camera_parameter(parameter));
     return group;
   }
-  throw InputError("'" + name + "' is not an optional camera parameter" + suggest(name, optional_camera_parameters()));
+  throw InputError("'" + shown(name) + "' is not an optional camera parameter" + suggest(name, optional_camera_parameters()));
 }
 
 }  // namespace misfit

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "misfit/core/files.h"
+#include "misfit/core/written_files.h"
 
 namespace misfit {
 namespace {
@@ -42,7 +43,9 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t hash = fnv_start) {
 
 std::string_view view(const Word& word) { return {word.data(), word.size()}; }
 
-std::string head_of(const std::string& digest) { return "misfit checkpoint 1 " + digest + "\n"; }
+constexpr std::string_view head_start = "misfit checkpoint ";
+
+std::string head_of(const std::string& digest) { return std::string(head_start) + "1 " + digest + "\n"; }
 
 std::string record_of(std::uint64_t job, std::string_view bytes) {
   std::string record;
@@ -62,6 +65,18 @@ bool read_record(std::istream& in, CheckpointEntry& entry, std::string& bytes) {
   if (!in.read(bytes.data(), static_cast<std::streamsize>(entry.size)) || !in.read(sum.data(), 8)) return false;
   return number_of(sum) == checksum(bytes, checksum(view(size), checksum(view(job))));
 }
+
+/// A checkpoint is written where no file is, or over one that begins as a checkpoint does (as far as it goes).
+bool begins_as_ours(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string start(head_start.size(), '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(in.gcount()));
+  return head_start.starts_with(start);
+}
+
+/// WriteError where something lies that is no checkpoint.
+void refuse_foreign(const fs::path& path) { check_place(path.parent_path(), path.filename().string(), {}, begins_as_ours(path)); }
 
 std::string reason(int code) { return std::generic_category().message(code); }
 
@@ -90,7 +105,8 @@ CheckpointContent read_checkpoint(const fs::path& path, const std::string& diges
 }
 
 CheckpointWriter::CheckpointWriter(fs::path path, const std::string& digest) : path_(std::move(path)), synced_(seconds_now()) {
-  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  refuse_foreign(path_);
+  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (file_ < 0) throw WriteError(path_.string() + " cannot be written: " + reason(errno));
   try {
     if (::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
@@ -148,6 +164,11 @@ std::string read_checkpoint_entry(const fs::path& path, const CheckpointEntry& e
   in.seekg(static_cast<std::streamoff>(entry.offset));
   if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) throw RunError(path.string() + " has changed while it was read");
   return bytes;
+}
+
+bool is_checkpoint_of_ours(const fs::path& path) {
+  std::error_code none;
+  return fs::symlink_status(path, none).type() == fs::file_type::regular && begins_as_ours(path);
 }
 
 std::string pack_numbers(const std::vector<double>& numbers) {

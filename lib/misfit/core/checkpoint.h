@@ -31,7 +31,8 @@ struct CheckpointContent {
 /// Appends to a checkpoint from any thread. One writer per file: the file is locked as long as it lives.
 class CheckpointWriter {
  public:
-  /// Opens PATH, dropping what is torn or of another digest. RunError: cannot be written, or another process is writing it.
+  /// Opens PATH, dropping what is torn or of another digest. WriteError: it cannot be written, is a link, or is a file that is no
+  /// checkpoint. RunError: another process is writing it.
   CheckpointWriter(std::filesystem::path path, const std::string& digest);
   ~CheckpointWriter();
   CheckpointWriter(const CheckpointWriter&) = delete;
@@ -55,6 +56,9 @@ class CheckpointWriter {
 
 /// The bytes of one entry. RunError if the file has changed since.
 [[nodiscard]] std::string read_checkpoint_entry(const std::filesystem::path& path, const CheckpointEntry& entry);
+
+/// Is it a file (no link) that begins as a checkpoint does?
+[[nodiscard]] bool is_checkpoint_of_ours(const std::filesystem::path& path);
 
 /// Numbers as bytes, to the last bit.
 [[nodiscard]] std::string pack_numbers(const std::vector<double>& numbers);

@@ -9,12 +9,30 @@
 #include <sstream>
 
 #include "misfit/core/files.h"
-#include "misfit/core/printable.h"
+#include "misfit/core/shown.h"
+#include "misfit/core/toml_depth.h"
 #include "misfit/core/toml_outline.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/core/units.h"
+#include "misfit/core/utf8.h"
 
 namespace misfit::config {
+
+namespace {
+
+/// Without the line breaks and indents of a table or an array as TOML.
+std::string on_one_line(const std::string& text) {
+  std::string out;
+  bool indent = false;
+  for (const char c : text) {
+    indent = c == '\n' || (indent && c == ' ');
+    if (c == '\n') out += ' ';
+    if (!indent) out += c;
+  }
+  return out;
+}
+
+}  // namespace
 
 /// One table of the document. Children are kept, so that all views of one table share their notes.
 struct Section::State {
@@ -24,6 +42,7 @@ struct Section::State {
   std::string path;  ///< "" at the top
   Source where;
   std::vector<std::string> asked;  ///< keys that a reader knows, in order of asking
+  std::set<std::string> known;     ///< the same, to look up
   std::set<std::string> read;      ///< of these, those that stand in the file
   std::map<std::string, std::shared_ptr<State>> children;
 
@@ -31,7 +50,7 @@ struct Section::State {
 
   /// The node of `key`, noted as read; nullptr if absent.
   const toml::node* take(std::string_view key) {
-    if (std::find(asked.begin(), asked.end(), key) == asked.end()) asked.emplace_back(key);
+    if (known.emplace(key).second) asked.emplace_back(key);
     const toml::node* found = node(key);
     if (found) read.emplace(key);
     return found;
@@ -45,17 +64,14 @@ struct Section::State {
 
   std::shared_ptr<State> child(const std::string& name, const toml::table& of, const Source& at) {
     std::shared_ptr<State>& slot = children[name];
-    if (!slot) slot = std::make_shared<State>(State{root, &of, file, full(name), at, {}, {}, {}});
+    if (!slot) slot = std::make_shared<State>(State{root, &of, file, full(name), at, {}, {}, {}, {}});
     return slot;
   }
 
   [[noreturn]] void fail(std::string_view key, const toml::node& node, const std::string& expected) const {
     std::ostringstream text;
     node.visit([&text](const auto& value) { text << value; });  // as TOML
-    std::string shown = text.str();
-    std::replace(shown.begin(), shown.end(), '\n', ' ');
-    if (shown.size() > 60) shown = shown.substr(0, 57) + "...";
-    throw InputError(place(node.source()), full(key) + " = " + shown + ": " + expected);
+    throw InputError(place(node.source()), shown(full(key)) + " = " + shown(on_one_line(text.str())) + ": " + expected);
   }
 };
 
@@ -79,12 +95,13 @@ double number_of(const toml::node& node, std::string_view unit) {
 }
 
 toml::table parse_document(std::string_view text, const std::string& name) {
+  check_toml_depth(text, name);
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     const auto& begin = error.source().begin;
     throw InputError({name, static_cast<int>(begin.line), static_cast<int>(begin.column)},
-                     "not valid TOML: " + std::string(error.description()));
+                     "not valid TOML: " + shown(error.description(), longest_message / 2));
   }
 }
 
@@ -140,7 +157,7 @@ Section Section::load(const std::filesystem::path& path) { return parse(read_fil
 Section Section::parse(std::string_view text, const std::string& name) {
   auto root = std::make_shared<const toml::table>(parse_document(text, name));
   const toml::table* table = root.get();
-  return Section(std::make_shared<State>(State{std::move(root), table, name, "", {name, 0, 0}, {}, {}, {}}));
+  return Section(std::make_shared<State>(State{std::move(root), table, name, "", {name, 0, 0}, {}, {}, {}, {}}));
 }
 
 bool Section::has(std::string_view key) const { return state_->node(key) != nullptr; }
@@ -148,10 +165,8 @@ bool Section::has(std::string_view key) const { return state_->node(key) != null
 std::vector<std::string> Section::keys() const { return keys_of(*state_->table); }
 
 Source Section::where(std::string_view key) const {
-  for (const auto& [name, node] : *state_->table) {
-    if (name.str() == key) return state_->place(name.source());
-  }
-  return state_->where;
+  const auto found = state_->table->find(key);
+  return found == state_->table->end() ? state_->where : state_->place(found->first.source());
 }
 
 Source Section::where_text(std::string_view key) const {
@@ -281,19 +296,19 @@ void Section::finish() const {
     if (state_->read.count(key) > 0) continue;
     const std::string what = state_->node(key)->is_table() && state_->path.empty() ? "unknown section [" : "unknown key '";
     const std::string end = what.back() == '[' ? "]" : "'";
-    const std::string inside = state_->path.empty() ? "" : " in [" + state_->path + "]";
-    throw InputError(where(key), what + key + end + inside + suggest(key, state_->asked));
+    const std::string inside = state_->path.empty() ? "" : " in [" + shown(state_->path) + "]";
+    throw InputError(where(key), what + shown(key) + end + inside + suggest(key, state_->asked));
   }
 }
 
 void Section::fail(std::string_view key, const std::string& message) const {
   const std::string path = key.empty() ? state_->path : state_->full(key);
-  throw InputError(where(key), path.empty() ? message : path + ": " + message);
+  throw InputError(where(key), path.empty() ? message : shown(path) + ": " + message);
 }
 
 std::string content_of(const std::string& text, const std::vector<std::string>& without) {
   std::ostringstream out;
-  append(toml::parse(text), "", without, out);
+  append(parse_document(text, ""), "", without, out);
   return out.str();
 }
 

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <unordered_map>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/table.h"
 
 namespace misfit {
@@ -18,6 +20,8 @@ std::string_view trim(std::string_view text) {
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
   return text;
 }
+
+constexpr std::size_t most_columns = 20'000;
 
 bool is_nan_word(std::string_view text) {
   if (text.starts_with('-')) text.remove_prefix(1);
@@ -116,18 +120,26 @@ class CsvReader {
       fail(number, "fields must be separated by commas");
     const bool all_numbers = std::all_of(fields_.begin(), fields_.end(), [](std::string_view f) { return !f.empty() && parse_number(f); });
     if (all_numbers) fail(number, "no header line: the first line holds numbers, it must name the columns, as in t[s],y[m]");
+    if (fields_.size() > most_columns)
+      fail(number, std::to_string(fields_.size()) + " columns; at most " + std::to_string(most_columns) + " are possible");
+    std::unordered_map<std::string, std::string> headers;  // by bare name
     for (const std::string_view field : fields_) {
       if (field.empty()) fail(number, "column " + std::to_string(table_.columns.size() + 1) + " has no name in the header");
       Column column = parse_header(field);
-      for (const Column& earlier : table_.columns) {
-        if (earlier.header() == column.header()) fail(number, "the header names column '" + column.header() + "' twice");
-      }
+      const auto [earlier, is_new] = headers.emplace(column.name, column.header());
+      if (!is_new) refuse_twice(number, column.name, earlier->second, column.header());
       table_.columns.push_back(std::move(column));
     }
     for (const Column& column : table_.columns) {
       text_allowed_.push_back(std::any_of(ignore_text_of_.begin(), ignore_text_of_.end(),
                                           [&](const std::string& name) { return column.name == name || column.header() == name; }));
     }
+  }
+
+  /// Two units do not make two columns: which of them a name means could not be told.
+  [[noreturn]] void refuse_twice(int line, const std::string& name, const std::string& earlier, const std::string& header) const {
+    const std::string both = "'" + shown(earlier) + "' and '" + shown(header) + "'";
+    fail(line, "the header names column " + (earlier == header ? "'" + shown(header) + "' twice" : "'" + shown(name) + "' twice: " + both));
   }
 
   void read_row(int number) {
@@ -137,7 +149,7 @@ class CsvReader {
     for (std::size_t j = 0; j < fields_.size(); ++j) {
       const std::optional<double> value = parse_number(fields_[j]);
       if (!value && !text_allowed_[j]) {
-        fail(number, "column '" + table_.columns[j].header() + "': '" + std::string(fields_[j]) +
+        fail(number, "column '" + shown(table_.columns[j].header()) + "': '" + shown(fields_[j]) +
                          "' is not a finite number (leave a missing value empty)");
       }
       table_.columns[j].values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));

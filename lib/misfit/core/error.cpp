@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
+
+#include "misfit/core/edit_distance.h"
+#include "misfit/core/shown.h"
 
 namespace misfit {
 namespace {
@@ -11,22 +13,6 @@ std::string lower(std::string_view text) {
   std::string out(text);
   std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return out;
-}
-
-/// Levenshtein distance in bytes, one row of the table at a time.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace
@@ -43,14 +29,14 @@ InputError::InputError(const Source& where, const std::string& message)
     : std::runtime_error(where.file.empty() ? message : where.text() + ": " + message) {}
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& valid) {
-  if (name.empty()) return {};
+  if (name.empty() || name.size() > longest_name_compared) return {};
   const std::string wanted = lower(name);
   std::string best;
   std::size_t best_distance = 0;
   for (const std::string& candidate : valid) {
-    if (candidate.empty()) continue;
+    if (candidate.empty() || candidate.size() > longest_name_compared) continue;
     const std::string other = lower(candidate);
-    const std::size_t distance = edit_distance(wanted, other);
+    const std::size_t distance = edit_distance(name, candidate);
     const bool contained = other.find(wanted) != std::string::npos || wanted.find(other) != std::string::npos;
     if (2 * distance > wanted.size() && !contained) continue;
     if (best.empty() || distance < best_distance) {
@@ -64,9 +50,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 std::string suggest(std::string_view name, const std::vector<std::string>& valid) {
   if (valid.empty()) return {};
   const std::string nearest = nearest_name(name, valid);
-  std::string out = nearest.empty() ? " — valid: " : " — did you mean '" + nearest + "'? Valid: ";
-  for (std::size_t i = 0; i < valid.size(); ++i) out += (i == 0 ? "" : ", ") + valid[i];
-  return out;
+  return (nearest.empty() ? " — valid: " : " — did you mean '" + shown(nearest) + "'? Valid: ") + some_names(name, valid);
 }
 
 }  // namespace misfit

@@ -98,6 +98,19 @@ fs::path temporary_name(const fs::path& path) {
   return path.parent_path() / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), number);
 }
 
+/// 0, or why no file can be made in `dir`. The file has no name, so a sudden end leaves nothing, but where the file system has no such
+/// files.
+int try_writing(const fs::path& dir) {
+  const Descriptor nameless(::open(dir.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
+  if (nameless.number() >= 0) return 0;
+  if (errno != EOPNOTSUPP && errno != EISDIR && errno != ENOENT) return errno;
+  const fs::path probe = temporary_name(dir / "probe");
+  const int failure = write_new_file(probe, "");
+  std::error_code ignored;
+  fs::remove(probe, ignored);
+  return failure;
+}
+
 }  // namespace
 
 std::string read_file(const fs::path& path) {
@@ -134,10 +147,7 @@ void make_writable_folder(const fs::path& dir) {
   fs::create_directories(dir, error);
   if (error) refuse_folder(dir, "made", error.value());
   if (!fs::is_directory(dir, error)) throw InputError(dir.string() + ": is a file, a folder is needed");
-  const fs::path probe = temporary_name(dir / "probe");
-  const int failure = write_new_file(probe, "");
-  fs::remove(probe, error);
-  if (failure != 0) refuse_folder(dir, "written to", failure);
+  if (const int failure = try_writing(dir)) refuse_folder(dir, "written to", failure);
 }
 
 std::string hash_text(std::string_view content) {

@@ -7,6 +7,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/core/ranks.h"
+#include "misfit/core/written_files.h"
 
 namespace misfit {
 namespace {
@@ -67,6 +68,7 @@ std::string JobResults::result(std::size_t job) const {
 
 std::optional<JobResults> run_stored_jobs(const StoredJobs& jobs, const std::function<std::string(std::size_t)>& job,
                                           const ProgressFn& progress, const std::atomic<bool>* stop) {
+  check_folder(jobs.folder);
   make_writable_folder(jobs.folder);
   const std::vector<std::size_t> left = left_to_do(jobs);
   const auto rank = static_cast<std::size_t>(ranks().rank()), size = static_cast<std::size_t>(ranks().size());
@@ -83,6 +85,15 @@ std::optional<JobResults> run_stored_jobs(const StoredJobs& jobs, const std::fun
   }
   if (!ranks().agree(finished)) return std::nullopt;
   return stored_results(jobs);
+}
+
+void remove_stored_jobs(const std::filesystem::path& folder) {
+  std::error_code none;
+  if (fs::is_symlink(folder, none)) return;
+  for (const fs::path& file : checkpoints_in(folder)) {
+    if (is_checkpoint_of_ours(file)) fs::remove(file, none);
+  }
+  fs::remove(folder, none);
 }
 
 }  // namespace misfit

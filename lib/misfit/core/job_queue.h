@@ -47,4 +47,7 @@ class JobResults {
 [[nodiscard]] std::optional<JobResults> run_stored_jobs(const StoredJobs& jobs, const std::function<std::string(std::size_t k)>& job,
                                                         const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
 
+/// Removes the checkpoints in `folder`, and the folder if nothing else is in it.
+void remove_stored_jobs(const std::filesystem::path& folder);
+
 }  // namespace misfit

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <unordered_set>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/shown.h"
 
 namespace misfit {
 namespace {
@@ -79,7 +81,7 @@ class LooseReader {
     read_header();
     if (table_.columns.size() < 2)
       fail(lines_.front().number,
-           "one column alone ('" + table_.columns.front().header + "') is no recording: a time and what was measured are needed");
+           "one column alone ('" + shown(table_.columns.front().header) + "') is no recording: a time and what was measured are needed");
     if (first_row_ >= lines_.size()) fail(0, "no rows below the header");
     for (std::size_t i = first_row_; i < lines_.size(); ++i) read_row(lines_[i]);
     return std::move(table_);
@@ -139,12 +141,11 @@ class LooseReader {
       names = commented;
       first_row_ = 0;
     }
+    std::unordered_set<std::string> known;
     for (const std::string_view name : names) {
       LooseColumn column;
       column.header = name.empty() ? "column_" + std::to_string(table_.columns.size() + 1) : std::string(name);
-      for (const auto& earlier : table_.columns) {
-        if (earlier.header == column.header) fail(lines_.front().number, "the header names column '" + column.header + "' twice");
-      }
+      if (!known.insert(column.header).second) fail(lines_.front().number, "the header names column '" + shown(column.header) + "' twice");
       table_.columns.push_back(std::move(column));
     }
   }

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "misfit/core/shown.h"
+
 namespace misfit {
 namespace {
 
@@ -20,8 +22,8 @@ std::string time_left(double seconds) {
 
 }  // namespace
 
-Progress::Progress(std::string what, bool quiet)
-    : what_(std::move(what)), visible_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_ - between_lines) {}
+Progress::Progress(const std::string& what, bool quiet)
+    : what_(printable(what)), visible_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_ - between_lines) {}
 
 Progress::~Progress() {
   if (visible_) fmt::print(stderr, "{}", clear_line);

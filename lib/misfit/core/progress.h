@@ -10,7 +10,7 @@ namespace misfit {
 /// One line on stderr, "fit  43 %  12 s left", rewritten at most five times a second; silent when stderr is not a terminal or when quiet.
 class Progress {
  public:
-  Progress(std::string what, bool quiet);
+  Progress(const std::string& what, bool quiet);
   ~Progress();  ///< clears the line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -8,13 +8,16 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
-#include "misfit/core/ranks.h"
 #include "misfit/core/version.h"
 
 namespace misfit {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
+
+constexpr const char* run_name = "run.json";
+constexpr const char* copy_name = ".run.json";
 
 json to_json(const StageRecord& record) {
   return {{"command", record.command}, {"inputs", record.inputs},   {"outputs", record.outputs},
@@ -22,7 +25,7 @@ json to_json(const StageRecord& record) {
 }
 
 /// Throws json::exception where the form is not ours.
-StageRecord from_json(const std::string& stage, const json& entry) {
+StageRecord stage_from(const std::string& stage, const json& entry) {
   StageRecord record;
   record.stage = stage;
   entry.at("command").get_to(record.command);
@@ -34,75 +37,170 @@ StageRecord from_json(const std::string& stage, const json& entry) {
   return record;
 }
 
-std::map<std::string, StageRecord> read_stages(const std::filesystem::path& path, std::filesystem::path& study) {
+struct Content {
+  fs::path study;
   std::map<std::string, StageRecord> stages;
-  if (!std::filesystem::exists(path)) return stages;
-  try {
-    const json run = json::parse(read_file(path));
-    study = run.value("study", std::string());
-    for (const auto& [stage, entry] : run.at("stages").items()) stages[stage] = from_json(stage, entry);
-  } catch (const json::exception& error) {
-    fmt::print(stderr, "{}: cannot be understood, all stages will run again ({})\n", path.string(), error.what());
-    return {};
-  } catch (const InputError& error) {
-    fmt::print(stderr, "{}; all stages will run again\n", error.what());
-    return {};
+  std::map<std::string, std::string> files;
+};
+
+/// Throws json::exception.
+Content content_from(const json& run) {
+  Content content;
+  content.study = run.value("study", std::string());
+  for (const auto& [stage, entry] : run.at("stages").items()) content.stages[stage] = stage_from(stage, entry);
+  for (const auto& [name, stage] : content.stages) {
+    for (const std::string& output : stage.outputs) content.files.emplace(output, "");
   }
-  return stages;
+  if (run.contains("files")) {
+    for (const auto& [name, hash] : run.at("files").items()) content.files[name] = hash.get<std::string>();
+  }
+  return content;
+}
+
+/// nullopt where there is no such file (`why` empty), or it is not as misfit writes it (`why` says so).
+std::optional<Content> content_of(const fs::path& path, std::string& why) {
+  constexpr std::size_t most_words = 120;
+  std::error_code none;
+  if (!fs::exists(path, none)) return std::nullopt;
+  try {
+    return content_from(json::parse(read_file(path)));
+  } catch (const json::exception& error) {
+    why = "cannot be understood (" + std::string(error.what()).substr(0, most_words) + ")";
+  } catch (const InputError& error) {
+    why = "cannot be read (" + std::string(error.what()).substr(0, most_words) + ")";
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-RunFolder::Made::Made(const std::filesystem::path& dir) {
+RunFolder::Made::Made(const fs::path& dir, Access access) {
+  if (access == Access::read) return;
   std::error_code error;
-  const bool before = std::filesystem::exists(dir, error);
+  const bool before = fs::exists(dir, error);
   make_writable_folder(dir);
-  if (!before && ranks().first()) dir_ = dir;
+  if (!before) dir_ = dir;
 }
 
 RunFolder::Made::~Made() {
   std::error_code error;  // also: not empty
-  if (!dir_.empty()) std::filesystem::remove(dir_, error);
+  if (!dir_.empty()) fs::remove(dir_, error);
 }
 
-RunFolder::RunFolder(std::filesystem::path dir, std::string command, unsigned long seed, std::filesystem::path study)
+RunFolder::RunFolder(fs::path dir, std::string command, unsigned long seed, fs::path study, WriteRules rules, Access access)
     : dir_(std::move(dir)),
-      made_(dir_),
+      access_(access),
+      made_(dir_, access),
+      lock_(access == Access::write ? std::make_unique<FolderLock>(dir_) : nullptr),
       command_(std::move(command)),
       seed_(seed),
-      study_(study.empty() ? std::move(study) : std::filesystem::absolute(study).lexically_normal()) {
-  stages_ = read_stages(file("run.json"), study_before_);
+      study_(study.empty() ? std::move(study) : fs::absolute(study).lexically_normal()),
+      rules_(std::move(rules)) {
+  if (access == Access::write) PartFolder::sweep(dir_);
+  read();
 }
 
-std::optional<std::filesystem::path> RunFolder::other_study() const {
+void RunFolder::read() {
+  const fs::path path = file(run_name);
+  std::error_code none;
+  if (fs::is_directory(path, none))
+    throw InputError(path.string() + ": is a folder where misfit writes a file: move it away, or use --out DIR");
+  std::string why;
+  auto content = content_of(path, why);
+  if (content) {
+    study_before_ = std::move(content->study);
+    stages_ = std::move(content->stages);
+    files_ = std::move(content->files);
+    return;
+  }
+  std::string why_no_copy;
+  content = content_of(file(copy_name), why_no_copy);
+  if (content) files_ = std::move(content->files);
+  if (why.empty() && !content) return;  // nothing was here before
+  if (access_ == Access::read) return;
+  if (!content && !rules_.force)
+    throw InputError(fmt::format("{}: {}: is it a file of yours? --force writes over it, --out DIR writes elsewhere", path.string(), why));
+  fmt::print(stderr, "{}: {}, so all stages run again\n", path.string(), why.empty() ? "is gone" : why);
+}
+
+std::optional<fs::path> RunFolder::other_study() const {
   if (study_.empty() || study_before_.empty()) return std::nullopt;
-  const std::filesystem::path before = (std::filesystem::absolute(dir_) / study_before_).lexically_normal();
+  const fs::path before = (fs::absolute(dir_) / study_before_).lexically_normal();
   std::error_code error;
-  if (!std::filesystem::exists(before, error) || std::filesystem::equivalent(before, study_, error)) return std::nullopt;
+  if (!fs::exists(before, error) || fs::equivalent(before, study_, error)) return std::nullopt;
   return before;
+}
+
+bool RunFolder::intact(const std::string& name) const {
+  const auto known = files_.find(name);
+  if (known == files_.end() || known->second.empty()) return false;
+  std::error_code none;
+  if (fs::symlink_status(file(name), none).type() != fs::file_type::regular) return false;
+  try {
+    return hash_file(file(name)) == known->second;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+std::vector<std::string> RunFolder::damaged(const std::string& stage) const {
+  const auto it = stages_.find(stage);
+  if (it == stages_.end()) return {};
+  std::vector<std::string> names;
+  std::copy_if(it->second.outputs.begin(), it->second.outputs.end(), std::back_inserter(names),
+               [&](const std::string& name) { return !intact(name); });
+  return names;
 }
 
 bool RunFolder::up_to_date(const std::string& stage, const std::map<std::string, std::string>& inputs) const {
   const auto it = stages_.find(stage);
   if (it == stages_.end()) return false;
   const StageRecord& before = it->second;
-  if (before.version != version() || before.commit != commit() || before.inputs != inputs) return false;
-  return std::all_of(before.outputs.begin(), before.outputs.end(),
-                     [&](const std::string& name) { return std::filesystem::exists(file(name)); });
+  return before.version == version() && before.commit == misfit::commit() && before.inputs == inputs && damaged(stage).empty();
 }
 
-void RunFolder::record(const StageRecord& record) {
-  StageRecord& entry = stages_[record.stage] = record;
-  entry.version = version();
-  entry.commit = commit();
+void RunFolder::check_places(const std::vector<std::string>& names) const {
+  for (const std::string& name : names) check_place(dir_, name, rules_, files_.contains(name));
+}
+
+void RunFolder::commit(const PartFolder& part, StageRecord record) {
+  const std::vector<std::string> names = part.files();
+  check_places(names);
+  for (const char* name : {run_name, copy_name}) check_place(dir_, name, rules_, true);  // read() knows them for ours
+  const auto before = stages_.find(record.stage);
+  if (before != stages_.end()) remove_dropped(before->second, names);
+  for (const std::string& name : names) files_[name] = hash_file(part.path() / name);
+  record.outputs = names;
+  record.version = version();
+  record.commit = misfit::commit();
+  stages_[record.stage] = std::move(record);
   write();
+  part.put_into_place(names);
+}
+
+void RunFolder::remove_dropped(const StageRecord& before, const std::vector<std::string>& names) {
+  for (const std::string& name : before.outputs) {
+    const bool again = std::find(names.begin(), names.end(), name) != names.end();
+    const bool of_another = std::any_of(stages_.begin(), stages_.end(), [&](const auto& entry) {
+      const auto& outputs = entry.second.outputs;
+      return entry.first != before.stage && std::find(outputs.begin(), outputs.end(), name) != outputs.end();
+    });
+    if (again || of_another) continue;
+    std::error_code none;
+    if (intact(name)) fs::remove(file(name), none);
+    files_.erase(name);
+  }
 }
 
 void RunFolder::write() const {
-  json run = {{"version", version()}, {"commit", commit()}, {"seed", seed_}, {"command", command_}, {"stages", json::object()}};
-  if (!study_.empty()) run["study"] = study_.lexically_relative(std::filesystem::absolute(dir_).lexically_normal()).generic_string();
+  json run = {{"version", version()}, {"commit", misfit::commit()}, {"seed", seed_}, {"command", command_}, {"stages", json::object()}};
+  if (!study_.empty()) run["study"] = study_.lexically_relative(fs::absolute(dir_).lexically_normal()).generic_string();
   for (const auto& [stage, record] : stages_) run["stages"][stage] = to_json(record);
-  write_atomically(file("run.json"), run.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  run["files"] = files_;
+  const std::string text = run.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  const PartFolder part(dir_);
+  for (const char* name : {copy_name, run_name}) write_atomically(part.path() / name, text);
+  part.put_into_place({copy_name, run_name});
 }
 
 }  // namespace misfit

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "misfit/core/written_files.h"
 
 namespace misfit {
 
@@ -15,34 +17,57 @@ struct StageRecord {
   std::string stage;                          ///< "calibrate", "fit/output_error"
   std::string command;                        ///< command line that made it
   std::map<std::string, std::string> inputs;  ///< name → hash (files, and "settings" for the part of the study it depends on)
-  std::vector<std::string> outputs;           ///< paths relative to the run folder
+  std::vector<std::string> outputs = {};      ///< paths relative to the run folder: filled by RunFolder::commit
   double seconds = 0.0;
-  std::string version = {}, commit = {};  ///< of the program that made it: filled by RunFolder::record
+  std::string version = {}, commit = {};  ///< of the program that made it: filled by RunFolder::commit
 };
 
-/// The output folder of a study. run.json is rewritten (atomically) after every stage.
+/// The output folder of a study, and what misfit made in it. run.json has one entry per stage, and every file that misfit made with the
+/// hash of what was put there ("files"): only these are ever written over or removed, and a stage whose files are missing or were changed
+/// is done again. A copy, .run.json, keeps that list where run.json was damaged.
+///
+/// A stage makes its files in a PartFolder; commit() puts them into their places: first run.json says what will be there, then the files
+/// are renamed. Whatever moment the program ends at, a file is the old one or the whole new one, and one that is not the one which run.json
+/// names is made again.
 class RunFolder {
  public:
-  /// Makes the folder (it goes with this object if nothing was put into it) and reads run.json if there is one (an unreadable one is
-  /// treated as absent, said on stderr). `study`: the file whose results these are; run.json names it relative to the folder.
-  RunFolder(std::filesystem::path dir, std::string command, unsigned long seed, std::filesystem::path study = {});
+  /// `write`: makes the folder (it goes with this object if nothing was put into it) and keeps other processes out (FolderLock).
+  /// `read`: looks only; others may be at work in it, and it need not be there.
+  enum class Access { write, read };
+
+  /// `study`: the file whose results these are; run.json names it relative to the folder. An unreadable run.json is said on stderr, and all
+  /// stages count as not done.
+  RunFolder(std::filesystem::path dir, std::string command, unsigned long seed, std::filesystem::path study = {}, WriteRules rules = {},
+            Access access = Access::write);
 
   [[nodiscard]] const std::filesystem::path& path() const { return dir_; }
   [[nodiscard]] std::filesystem::path file(const std::string& name) const { return dir_ / name; }
+  [[nodiscard]] Access access() const { return access_; }
 
-  /// True if `stage` ran before with exactly these inputs and the same program version and commit, and all its outputs are still there.
+  /// True if `stage` ran before with exactly these inputs and the same program version and commit, and all its files are as they were
+  /// written.
   [[nodiscard]] bool up_to_date(const std::string& stage, const std::map<std::string, std::string>& inputs) const;
-  void record(const StageRecord& record);
+  /// Names of the files of `stage` that are not as they were written; none if the stage was not done.
+  [[nodiscard]] std::vector<std::string> damaged(const std::string& stage) const;
+  /// Is this file as misfit wrote it?
+  [[nodiscard]] bool intact(const std::string& name) const;
+
+  /// WriteError unless these files may be written (WriteRules): to be called before the work.
+  void check_places(const std::vector<std::string>& names) const;
+  /// Puts the files of `part` into their places and records the stage; what the stage had made before and did not make again is removed
+  /// where it is as it was written. WriteError: also where a file may not be written (WriteRules).
+  void commit(const PartFolder& part, StageRecord record);
+
   [[nodiscard]] const std::map<std::string, StageRecord>& stages() const { return stages_; }
   /// The study that run.json names, if it is another one than this folder was opened for and still exists (one that was renamed or moved is
   /// taken to be this one).
   [[nodiscard]] std::optional<std::filesystem::path> other_study() const;
 
  private:
-  /// Removes a folder that we made, if it is empty; on the first rank only, others may still be about to write.
+  /// Makes a folder and removes it again if it is empty at the end, and was not there before.
   class Made {
    public:
-    explicit Made(const std::filesystem::path& dir);
+    Made(const std::filesystem::path& dir, Access access);
     Made(Made&& other) noexcept : dir_(std::exchange(other.dir_, {})) {}
     Made& operator=(Made&& other) noexcept {
       std::swap(dir_, other.dir_);
@@ -54,13 +79,21 @@ class RunFolder {
     std::filesystem::path dir_;  ///< empty: it was there before
   };
 
+  void read();
+  void remove_dropped(const StageRecord& before, const std::vector<std::string>& names);
   void write() const;
+
   std::filesystem::path dir_;
+  Access access_;
   Made made_;
+  std::unique_ptr<FolderLock> lock_;
   std::string command_;
   unsigned long seed_;
   std::filesystem::path study_, study_before_;  ///< as given, absolute; as run.json has it
+  WriteRules rules_;
   std::map<std::string, StageRecord> stages_;
+  std::map<std::string, std::string>
+      files_;  ///< what misfit made: name → hash; an empty hash fits nothing (run.json of an earlier version)
 };
 
 }  // namespace misfit

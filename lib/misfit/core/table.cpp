@@ -9,6 +9,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 
 namespace misfit {
@@ -17,7 +18,8 @@ namespace {
 void append_number(std::string& out, double value, int digits) {
   if (!std::isfinite(value)) return;  // missing: an empty field
   char buffer[64];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits);
+  const auto result = digits == all_digits ? std::to_chars(buffer, buffer + sizeof buffer, value)
+                                           : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits);
   out.append(buffer, result.ptr);
 }
 
@@ -39,16 +41,14 @@ const Column* Table::find(std::string_view name) const {
 
 const Column& Table::at(std::string_view name) const {
   if (const Column* column = find(name)) return *column;
-  std::vector<std::string> names;
-  std::string headers;
+  std::vector<std::string> names, headers;
   for (const Column& column : columns) {
     names.push_back(column.name);
-    headers += headers.empty() ? "" : ", ";
-    headers += column.header();
+    headers.push_back(column.header());
   }
   const Column* nearest = find(nearest_name(name, names));  // by bare names: a unit would count as a difference
-  const std::string end = nearest ? fmt::format(" — did you mean '{}'? Valid: ", nearest->header()) : " — valid: ";
-  throw InputError({source, 0, 0}, fmt::format("no column '{}'{}{}", name, end, headers));
+  const std::string end = nearest ? fmt::format(" — did you mean '{}'? Valid: ", shown(nearest->header())) : " — valid: ";
+  throw InputError({source, 0, 0}, fmt::format("no column '{}'{}{}", shown(name), end, some_names(name, headers)));
 }
 
 std::vector<double> Table::values(std::string_view name, std::string_view unit) const {
@@ -58,7 +58,7 @@ std::vector<double> Table::values(std::string_view name, std::string_view unit) 
   try {
     factor = convert(1.0, column.unit, unit);
   } catch (const InputError& error) {
-    throw InputError({source, 0, 0}, "column '" + column.header() + "': " + error.what());
+    throw InputError({source, 0, 0}, "column '" + shown(column.header()) + "': " + error.what());
   }
   std::vector<double> out = column.values;
   for (double& value : out) value *= factor;

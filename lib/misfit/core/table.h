@@ -39,7 +39,9 @@ struct Table {
 /// line, column name, the text), a header used twice. Text columns are accepted when listed in `ignore_text_of` (values NaN).
 [[nodiscard]] Table read_csv(const std::filesystem::path& path, const std::vector<std::string>& ignore_text_of = {});
 
-/// Writes atomically (core/files.h). `digits` significant digits, shortest form that keeps them.
-void write_csv(const std::filesystem::path& path, const Table& table, int digits = 9);
+inline constexpr int all_digits = 0;
+
+/// Writes atomically (core/files.h). `digits` significant digits; all_digits: the shortest form that reads back as the same number.
+void write_csv(const std::filesystem::path& path, const Table& table, int digits = all_digits);
 
 }  // namespace misfit

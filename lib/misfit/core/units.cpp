@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 
 namespace misfit {
 namespace {
@@ -83,8 +84,8 @@ const Known& find_unit(std::string_view name, std::string_view whole) {
   if (it != std::end(known_units)) return *it;
   std::vector<std::string> names;
   for (const Known& k : known_units) names.emplace_back(k.name);
-  const std::string inside = name == whole ? "" : " in '" + std::string(whole) + "'";
-  throw InputError("unknown unit '" + std::string(name) + "'" + inside + suggest(name, names));
+  const std::string inside = name == whole ? "" : " in '" + shown(whole) + "'";
+  throw InputError("unknown unit '" + shown(name) + "'" + inside + suggest(name, names));
 }
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
@@ -121,7 +122,7 @@ class UnitReader {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& why) const { throw InputError("unit '" + std::string(whole_) + "': " + why); }
+  [[noreturn]] void refuse(const std::string& why) const { throw InputError("unit '" + shown(whole_) + "': " + why); }
 
   void skip_blanks() {
     while (!rest_.empty() && (rest_.front() == ' ' || rest_.front() == '\t')) rest_.remove_prefix(1);
@@ -209,13 +210,13 @@ Unit parse_unit(std::string_view text) { return UnitReader(trim(text)).read(); }
 
 Quantity parse_quantity(std::string_view text) {
   std::string_view rest = trim(text);
-  const std::string shown = fmt::format("'{}'", text);
+  const std::string quoted = "'" + shown(text) + "'";
   if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-  if (error == std::errc::result_out_of_range) throw InputError(shown + ": the number is out of range");
-  if (error != std::errc()) throw InputError(shown + " is not a number with a unit, as in '24 in'");
-  if (!std::isfinite(value)) throw InputError(shown + ": a finite number is needed");
+  if (error == std::errc::result_out_of_range) throw InputError(quoted + ": the number is out of range");
+  if (error != std::errc()) throw InputError(quoted + " is not a number with a unit, as in '24 in'");
+  if (!std::isfinite(value)) throw InputError(quoted + ": a finite number is needed");
   const std::string_view unit = trim(rest.substr(static_cast<std::size_t>(end - rest.data())));
   if (unit.empty()) return {value, ""};
   const Unit parsed = parse_unit(unit);
@@ -226,7 +227,7 @@ double convert(double value, std::string_view from, std::string_view to) {
   const Unit source = parse_unit(from);
   const Unit target = parse_unit(to);
   if (!source.same_dimension(target)) {
-    throw InputError("unit '" + std::string(from) + "' cannot be converted to '" + std::string(to) + "': they measure different things");
+    throw InputError("unit '" + shown(from) + "' cannot be converted to '" + shown(to) + "': they measure different things");
   }
   if (source.to_si == target.to_si) return value;
   return value * (source.to_si / target.to_si);

@@ -44,7 +44,7 @@ void write_attitude(const std::filesystem::path& path, const Attitude& attitude)
     for (double& v : values) v /= to_si;
     table.add(field.name, field.unit, std::move(values));
   }
-  write_csv(path, table, 12);
+  write_csv(path, table);
 }
 
 Attitude read_attitude(const std::filesystem::path& path) {

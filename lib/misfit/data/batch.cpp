@@ -62,8 +62,7 @@ std::vector<std::pair<std::string, std::string>> columns_of(const std::vector<Ba
 }
 
 std::string field(double value, const std::string& unit) {
-  constexpr int digits = 12;
-  return std::isfinite(value) ? fmt::format("{:.{}g}", shown(value, unit), digits) : std::string();
+  return std::isfinite(value) ? fmt::format("{}", shown(value, unit)) : std::string();
 }
 
 /// A text as one field of a CSV.

@@ -17,12 +17,10 @@
 namespace misfit {
 namespace {
 
-constexpr int digits = 12;
-
 bool same_columns(const CurveEstimate& a, const CurveEstimate& b) { return a.of == b.of && a.of_unit == b.of_unit && a.unit == b.unit; }
 
 std::string shown(double value, const std::string& unit) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", convert(value, unit, display_unit(unit)), digits) : std::string();
+  return std::isfinite(value) ? fmt::format("{}", convert(value, unit, display_unit(unit))) : std::string();
 }
 
 std::string curve_header(const CurveEstimate& curve) {
@@ -99,7 +97,7 @@ void write_curves(const std::filesystem::path& path, const std::vector<CurveEsti
   for (const std::size_t k : file.curves) {
     const CurveEstimate& curve = curves[k];
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
-      const std::string count = std::isfinite(curve.count[i]) ? fmt::format("{:.{}g}", curve.count[i], digits) : std::string();
+      const std::string count = std::isfinite(curve.count[i]) ? fmt::format("{}", curve.count[i]) : std::string();
       text += fmt::format("{},{},{},{},{}\n", curve.name, shown(curve.x[i], curve.of_unit), shown(curve.value[i], curve.unit),
                           shown(curve.sigma[i], curve.unit), count);
     }
@@ -157,7 +155,7 @@ void write_predictions(const std::filesystem::path& path, const std::vector<Chan
     table.add(channel.channel + "_sigma", unit, in_unit(channel.sigma, channel.unit, unit));
   }
   table.add("held_out", "", std::vector<double>(first.held_out.begin(), first.held_out.end()));
-  write_csv(path, table, digits);
+  write_csv(path, table);
 }
 
 void read_predictions(const std::filesystem::path& path, std::vector<ChannelPrediction>& predictions, const PredictionFile& file) {

@@ -72,9 +72,9 @@ std::string curves_as_csv(const std::vector<Bootstrap>& bootstraps) {
   for (const Bootstrap& b : bootstraps) {
     for (const BootstrapCurve& c : b.curves) {
       const std::string x_unit = display_unit(c.of_unit), unit = display_unit(c.unit);
-      const auto shown = [&](double v) { return std::isfinite(v) ? fmt::format("{:.9g}", convert(v, c.unit, unit)) : std::string(); };
+      const auto shown = [&](double v) { return std::isfinite(v) ? fmt::format("{}", convert(v, c.unit, unit)) : std::string(); };
       for (std::size_t i = 0; i < c.x.size(); ++i) {
-        text += fmt::format("{},{},{},{:.9g},{},{},{},{},{},{},{},{}\n", b.method, c.name, c.of, convert(c.x[i], c.of_unit, x_unit), x_unit,
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", b.method, c.name, c.of, convert(c.x[i], c.of_unit, x_unit), x_unit,
                             shown(c.value[i]), shown(c.fit_sigma[i]), shown(c.mean[i]), shown(c.sigma[i]), shown(c.lower[i]),
                             shown(c.upper[i]), unit);
       }

@@ -47,6 +47,7 @@ struct ExperimentStudy {
   std::string name;
   std::optional<std::filesystem::path> track, video, data;  ///< exactly one
   ColumnMap columns;
+  std::optional<config::Section> columns_section;  ///< where they stand, for messages
   enum class Validation { none, last_fraction, interval } validation = Validation::none;
   double fraction = 0.0;        ///< last_fraction: 0.25 for "last 25 %"
   double from = 0.0, to = 0.0;  ///< interval [s]

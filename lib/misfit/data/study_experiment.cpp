@@ -1,7 +1,9 @@
 // [[experiment]] of a study.
 
+#include <algorithm>
 #include <regex>
 
+#include "misfit/core/shown.h"
 #include "misfit/data/study_parts.h"
 
 namespace misfit::study_parts {
@@ -23,8 +25,13 @@ void read_columns(const Section& section, ExperimentStudy& experiment) {
   const auto columns = section.table("columns");
   if (!columns) return;
   if (experiment.video) section.fail("columns", "has no meaning with video: it names the columns of a file of numbers");
+  for (const std::string& name : columns->keys()) {
+    const bool known = !experiment.track || std::count(track_signals().begin(), track_signals().end(), name) > 0;
+    if (!known) columns->fail(name, "a track has no such signal" + suggest(name, track_signals()));
+  }
   for (const std::string& name : columns->keys()) experiment.columns.header_of.emplace_back(name, *columns->text(name));
   columns->finish();
+  experiment.columns_section = columns;
 }
 
 void read_interval(const Section& section, ExperimentStudy& experiment) {
@@ -56,20 +63,21 @@ void read_validation(const Section& section, ExperimentStudy& experiment) {
   if (!given) return;
   const std::string& text = *given;
   std::smatch match;
-  if (std::regex_match(text, match, std::regex(R"(\s*last\s+(\d{1,3}(\.\d{1,9})?)\s*%\s*)"))) {
+  constexpr std::size_t longest = 60;  // characters: matching takes stack for each
+  if (text.size() <= longest && std::regex_match(text, match, std::regex(R"(\s*last\s+(\d{1,3}(\.\d{1,9})?)\s*%\s*)"))) {
     experiment.validation = ExperimentStudy::Validation::last_fraction;
     experiment.fraction = std::stod(match[1]) / 100.0;
     if (experiment.fraction <= 0.0 || experiment.fraction >= 1.0)
       section.fail("validation", "the part held out must be above 0 % and below 100 %");
   } else if (!text.ends_with(".csv")) {
-    section.fail("validation", "'" + text + "': " + validation_forms);
+    section.fail("validation", "'" + shown(text) + "': " + validation_forms);
   }
 }
 
 void refuse_twice(const Section& section, const Study& study, const std::string& name) {
   for (const ExperimentStudy& earlier : study.experiments) {
     if (earlier.name != name) continue;
-    section.fail("name", "two experiments are called '" + name + "' (the other on line " + std::to_string(earlier.where.line) +
+    section.fail("name", "two experiments are called '" + shown(name) + "' (the other on line " + std::to_string(earlier.where.line) +
                              "): give each a name of its own");
   }
 }

@@ -1,8 +1,11 @@
 #include "misfit/data/study_parts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 
+#include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/math/camera.h"
 
@@ -14,25 +17,28 @@ using config::Section;
 void check_names(const Section& section, std::string_view key, const std::vector<std::string>& names,
                  const std::vector<std::string>& valid) {
   for (auto it = names.begin(); it != names.end(); ++it) {
-    if (std::find(valid.begin(), valid.end(), *it) == valid.end()) section.fail(key, "unknown name '" + *it + "'" + suggest(*it, valid));
-    if (std::find(names.begin(), it, *it) != it) section.fail(key, "'" + *it + "' is given twice");
+    if (std::find(valid.begin(), valid.end(), *it) == valid.end())
+      section.fail(key, "unknown name '" + shown(*it) + "'" + suggest(*it, valid));
+    if (std::find(names.begin(), it, *it) != it) section.fail(key, "'" + shown(*it) + "' is given twice");
   }
 }
 
 std::optional<fs::path> existing_file(const Section& section, std::string_view key, const fs::path& folder) {
   const auto name = section.text(key);
   if (!name) return std::nullopt;
+  if (name->find('\0') != std::string::npos) section.fail(key, "'" + shown(*name) + "': a file name cannot hold the character NUL");
   const fs::path path = (folder / *name).lexically_normal();
   std::error_code error;
   if (!name->empty() && fs::is_regular_file(path, error)) return path;
-  if (!name->empty() && fs::exists(path, error)) section.fail(key, "'" + *name + "' is no file");
+  if (!name->empty() && fs::exists(path, error)) section.fail(key, "'" + shown(*name) + "' is no file");
   const fs::path where = path.has_parent_path() ? path.parent_path() : ".";
   std::vector<std::string> names;
   for (fs::directory_iterator it(where, error), end; !error && it != end; it.increment(error)) {
     if (it->is_regular_file(error)) names.push_back(it->path().filename().string());
   }
   const std::string nearest = nearest_name(path.filename().string(), names);
-  section.fail(key, "no such file '" + *name + "' in " + where.string() + (nearest.empty() ? "" : " — did you mean '" + nearest + "'?"));
+  section.fail(key, "no such file '" + shown(*name) + "' in " + shown(where.string()) +
+                        (nearest.empty() ? "" : " — did you mean '" + shown(nearest) + "'?"));
 }
 
 config::Number number_as_written(const Section& section, std::string_view key) {
@@ -222,6 +228,21 @@ void read_reference(const Section& root, Study& study) {
   reference->finish();
 }
 
+namespace {
+
+void check_samples(const Section& section, const SimulateStudy& simulate) {
+  constexpr double most = 1e7;
+  const double samples = simulate.duration / simulate.step + 1.0;
+  if (samples <= most) return;
+  const char* key = section.has("duration") ? "duration" : "step";
+  section.fail(key,
+               fmt::format("duration / step = {:.4g} s / {:.4g} s makes {:.4g} samples; at most {:.0e} are possible: a shorter duration "
+                           "or a longer step is needed",
+                           simulate.duration, simulate.step, samples, most));
+}
+
+}  // namespace
+
 void read_simulate(const Section& root, Study& study) {
   const auto section = root.table("simulate");
   if (!section) return;
@@ -233,12 +254,15 @@ void read_simulate(const Section& root, Study& study) {
   };
   simulate.duration = positive("duration", simulate.duration);
   simulate.step = positive("step", simulate.step);
+  check_samples(*section, simulate);
   for (const char* key : {"initial", "noise"}) {
     const auto table = section->table(key);
     if (!table) continue;
     auto& into = std::string_view(key) == "initial" ? simulate.initial : simulate.noise;
     for (const std::string& name : table->keys()) {
       into[name] = table->is_text(name) ? number_as_written(*table, name) : *table->number(name, "");
+      if (&into == &simulate.noise && into[name].value < 0.0)
+        table->fail(name, fmt::format("{} is below 0: the standard deviation of white noise is expected", into[name].value));
     }
     table->finish();
   }

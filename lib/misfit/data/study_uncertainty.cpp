@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "misfit/core/shown.h"
 #include "misfit/data/study_parts.h"
 
 namespace misfit::study_parts {
@@ -37,7 +38,7 @@ void read_readings(const Section& section, UncertaintyStudy& study) {
   for (const PerturbStudy& p : study.perturb) names.push_back(p.name);
   for (const std::string& name : table.keys()) {
     const auto found = std::find_if(study.perturb.begin(), study.perturb.end(), [&](const PerturbStudy& p) { return p.name == name; });
-    if (found == study.perturb.end()) table.fail(name, "'" + name + "' is not in perturb" + suggest(name, names));
+    if (found == study.perturb.end()) table.fail(name, "'" + shown(name) + "' is not in perturb" + suggest(name, names));
     found->reading = *table.choice(name, known_readings());
   }
   table.finish();

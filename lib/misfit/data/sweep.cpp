@@ -9,6 +9,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/table.h"
 
 namespace misfit {
@@ -25,17 +26,36 @@ void check_angles(const Table& table, const std::vector<double>& theta) {
   }
 }
 
+std::vector<double> positions(const Table& table, const std::string& name) {
+  constexpr double farthest = 1e5;  // [px] beyond any image
+  std::vector<double> values = table.values(name, "px");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i]) > farthest)
+      throw InputError(
+          {table.source, table.line[i], 0},
+          fmt::format("{} = {} px is beyond any image: at most {:.0f} px from its centre are possible", name, values[i], farthest));
+  }
+  return values;
+}
+
 }  // namespace
 
 Sweep read_sweep(const std::filesystem::path& path) {
   const Table table = read_csv(path);
+  constexpr std::size_t most_rows = 5000;
+  if (table.rows() > most_rows)
+    throw InputError({table.source, 0, 0},
+                     fmt::format("{} rows; at most {} are possible: a sweep has one row for each angle at which the rig "
+                                 "stood still",
+                                 table.rows(), most_rows));
   Sweep sweep;
+  sweep.source = path.string();
   sweep.theta = table.values("theta", "rad");
   check_angles(table, sweep.theta);
   for (std::size_t k = 0; k < sweep.P_z.size(); ++k) {
     const std::string point = fmt::format("P_{}", k + 1);
-    sweep.P_z[k] = table.values(point + "z", "px");
-    if (table.find(point + "y") != nullptr) sweep.P_y[k] = table.values(point + "y", "px");
+    sweep.P_z[k] = positions(table, point + "z");
+    if (table.find(point + "y") != nullptr) sweep.P_y[k] = positions(table, point + "y");
   }
   return sweep;
 }
@@ -55,12 +75,17 @@ void write_sweep(const std::filesystem::path& path, const Sweep& sweep) {
 
 namespace {
 
-/// The text in column `index` of line `line` (from 1), without blanks and quotes about it.
-std::string field_of_line(const std::string& text, int line, std::size_t index) {
-  std::istringstream lines(text);
-  std::string row, field;
-  for (int k = 0; k < line; ++k) std::getline(lines, row);
-  std::istringstream fields(row);
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream rest(text);
+  for (std::string line; std::getline(rest, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The text in column `index` of a line, without blanks and quotes about it.
+std::string field_of(const std::string& line, std::size_t index) {
+  std::istringstream fields(line);
+  std::string field;
   for (std::size_t k = 0; k <= index; ++k) {
     field.clear();
     std::getline(fields, field, ',');
@@ -82,14 +107,16 @@ std::vector<SweepPicture> read_sweep_pictures(const std::filesystem::path& path)
   const auto column = static_cast<std::size_t>(&table.at("file") - table.columns.data());
   const auto times = [&](const char* name) { return table.find(name) == nullptr ? std::vector<double>{} : table.values(name, "s"); };
   const std::vector<double> from = times("from"), to = times("to");
-  const std::string text = read_file(path);
+  const std::vector<std::string> lines = lines_of(read_file(path));
   std::vector<SweepPicture> out;
   for (std::size_t k = 0; k < table.rows(); ++k) {
     const Source where{table.source, table.line[k], 0};
-    const std::string name = field_of_line(text, table.line[k], column);
+    const std::string name = field_of(lines.at(static_cast<std::size_t>(table.line[k]) - 1), column);
     if (name.empty()) throw InputError(where, "column 'file': the picture of this angle is missing");
+    if (name.find('\0') != std::string::npos) throw InputError(where, "column 'file': a file name cannot hold the character NUL");
     const std::filesystem::path file = (path.parent_path() / name).lexically_normal();
-    if (!std::filesystem::is_regular_file(file)) throw InputError(where, "no such file '" + name + "' in " + path.parent_path().string());
+    if (!std::filesystem::is_regular_file(file))
+      throw InputError(where, "no such file '" + shown(name) + "' in " + shown(path.parent_path().string()));
     const auto begin = time_at(from, k), end = time_at(to, k);
     if (begin && end && !(*begin < *end)) throw InputError(where, fmt::format("from = {} s must be before to = {} s", *begin, *end));
     out.push_back({theta[k], file, begin, end, where});

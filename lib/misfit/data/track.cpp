@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/table.h"
 
 namespace misfit {
@@ -16,10 +17,10 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double farthest = 1e5;  // [px] beyond any image: a tracker's mark for "not found"
 
 void check_names(const ColumnMap& columns) {
-  const std::vector<std::string> known{"t", "P_y", "P_z", "sigma", "ok"};
+  const std::vector<std::string>& known = track_signals();
   for (const auto& [name, header] : columns.header_of) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw InputError("columns: a track has no signal '" + name + "'" + suggest(name, known));
+    throw InputError("columns: a track has no signal '" + shown(name) + "'" + suggest(name, known));
   }
 }
 
@@ -84,6 +85,11 @@ class TrackBuilder {
 };
 
 }  // namespace
+
+const std::vector<std::string>& track_signals() {
+  static const std::vector<std::string> names{"t", "P_y", "P_z", "sigma", "ok"};
+  return names;
+}
 
 std::string ColumnMap::header(const std::string& name) const {
   const auto it = std::find_if(header_of.begin(), header_of.end(), [&](const auto& entry) { return entry.first == name; });

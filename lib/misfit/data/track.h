@@ -22,6 +22,9 @@ struct ColumnMap {
   [[nodiscard]] std::string header(const std::string& name) const;
 };
 
+/// Names that the map of a track may have.
+[[nodiscard]] const std::vector<std::string>& track_signals();
+
 /// Reads `t[s],P_y[px],P_z[px]` and, where present, `sigma[px]` and `ok`. Rows without t are dropped and said; time that does not increase
 /// is an InputError with the line; all samples lost is a RunError; samples farther than 1e5 px from the centre are lost and said.
 [[nodiscard]] Track read_track(const std::filesystem::path& path, const ColumnMap& columns = {});

@@ -112,8 +112,7 @@ Json to_json(const Uncertainty& u) {
 }
 
 std::string field(double value, const std::string& unit) {
-  constexpr int digits = 12;
-  return std::isfinite(value) ? fmt::format("{:.{}g}", shown(value, unit), digits) : std::string();
+  return std::isfinite(value) ? fmt::format("{}", shown(value, unit)) : std::string();
 }
 
 std::string table_of(const std::vector<SpreadCurve>& curves, const CurveFile& file) {

@@ -3,6 +3,8 @@
 #include <map>
 #include <numbers>
 
+#include "misfit/core/shown.h"
+
 namespace misfit::formula {
 namespace {
 
@@ -63,7 +65,7 @@ class Builder {
       if (const std::string why = names_.refusal(at_->text); !why.empty()) fail(why);
     }
     if (auto meaning = names_.find(at_->text)) return *meaning;
-    fail("there is no '" + at_->text + "' here" + suggest(at_->text, names_.all));
+    fail("there is no '" + misfit::shown(at_->text) + "' here" + suggest(at_->text, names_.all));
   }
 
   /// The common unit of arguments first … last.

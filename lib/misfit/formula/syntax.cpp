@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "misfit/core/shown.h"
+
 namespace misfit::formula {
 namespace {
 
@@ -213,7 +215,7 @@ class Parser {
     if (function == functions.end()) {
       std::vector<std::string> valid;
       for (const Function& f : functions) valid.emplace_back(f.name);
-      out_.source.fail(begin, name_end, "there is no function '" + name + "'" + suggest(name, valid));
+      out_.source.fail(begin, name_end, "there is no function '" + shown(name) + "'" + suggest(name, valid));
     }
     std::vector<int> arguments;
     if (!take(")")) {
@@ -244,7 +246,7 @@ void Text::fail(int begin, int end, const std::string& message) const {
   constexpr std::size_t longest = 60;
   const auto shortened = [](const std::string& part) { return part.size() > longest ? part.substr(0, longest - 3) + "..." : part; };
   const std::string part = shortened(text.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(std::max(end - begin, 0))));
-  throw InputError(place, of + (part.empty() ? "" : ", '" + part + "'") + ": " + message);
+  throw InputError(place, of + (part.empty() ? "" : ", '" + shown(part) + "'") + ": " + message);
 }
 
 Syntax parse(Text source) { return Parser(std::move(source)).run(); }

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/model/assembler.h"
 #include "misfit/model/role_units.h"
@@ -15,11 +16,13 @@ Assembler::Assembler(const ModelRequest& request, const Registry& registry) : re
   const SystemType& type = registry.system(request.system, request.system_where);
   for (const auto& [flag, value] : request.options.flags) {
     if (std::find(type.flags.begin(), type.flags.end(), flag) == type.flags.end()) {
-      throw InputError(request.system_where, "system '" + request.system + "' has no option '" + flag + "'" + suggest(flag, type.flags));
+      throw InputError(request.system_where,
+                       "system '" + shown(request.system) + "' has no option '" + shown(flag) + "'" + suggest(flag, type.flags));
     }
   }
   for (const auto& [number, value] : request.options.numbers) {
-    throw InputError(request.system_where, "system '" + request.system + "' has no option '" + number + "'" + suggest(number, type.flags));
+    throw InputError(request.system_where,
+                     "system '" + shown(request.system) + "' has no option '" + shown(number) + "'" + suggest(number, type.flags));
   }
   model_.system = type.make(request.options);
 }
@@ -73,7 +76,7 @@ void Assembler::add_states() {
   for (const auto& [name, request] : request_.initial) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end())
-      throw InputError(request.where, "[initial]: system '" + system().key + "' has no state '" + name + "'" + suggest(name, names));
+      throw InputError(request.where, "[initial]: system '" + system().key + "' has no state '" + shown(name) + "'" + suggest(name, names));
     StateSpec& state = model_.state_specs[static_cast<std::size_t>(found - names.begin())];
     if (request.value) state.start = *request.value;
     if (request.initial) state.initial = *request.initial;
@@ -147,11 +150,11 @@ void Assembler::check_everything_used() const {
   for (const auto& curve : model_.curves) names.push_back(curve.name);
   for (const auto& [name, request] : request_.parameters) {
     if (!used_parameters_.contains(name))
-      throw InputError(request.where, "[parameters]: the model has no parameter '" + name + "'" + suggest(name, names));
+      throw InputError(request.where, "[parameters]: the model has no parameter '" + shown(name) + "'" + suggest(name, names));
   }
   for (const auto& [name, request] : request_.curves) {
     if (!used_curves_.contains(name))
-      throw InputError(request.where, "[curves]: the model has no coefficient '" + name + "'" + suggest(name, curves));
+      throw InputError(request.where, "[curves]: the model has no coefficient '" + shown(name) + "'" + suggest(name, curves));
   }
 }
 

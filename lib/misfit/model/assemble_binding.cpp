@@ -1,5 +1,6 @@
 // One effect put in its place: ports, quantities, constants, coefficients.
 
+#include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/assembler.h"
 #include "misfit/model/role_units.h"
@@ -10,11 +11,11 @@ void Assembler::bind(std::size_t i) {
   const EffectRequest& request = request_.effects[i];
   const EffectSpec& spec = effect(i).spec();
   for (std::size_t j = 0; j < i; ++j) {
-    if (request_.effects[j].name == request.name) throw InputError(request.where, "effect '" + request.name + "' is named twice");
+    if (request_.effects[j].name == request.name) throw InputError(request.where, "effect '" + shown(request.name) + "' is named twice");
   }
   if (std::find(system().includes.begin(), system().includes.end(), spec.key) != system().includes.end()) {
-    throw InputError(request.where, "effect '" + request.name + "': the equations of system '" + system().key + "' have '" + spec.key +
-                                        "' by themselves, it would count twice");
+    throw InputError(request.where, "effect '" + shown(request.name) + "': the equations of system '" + system().key + "' have '" +
+                                        spec.key + "' by themselves, it would count twice");
   }
   BoundEffect bound;
   bound.effect = &effect(i);
@@ -41,7 +42,8 @@ void Assembler::check_roles(const EffectRequest& request, const EffectSpec& spec
   for (const auto& role : spec.ports) valid.emplace_back(role.name);
   for (const auto& [role, target] : request.roles) {
     if (std::find(valid.begin(), valid.end(), role) == valid.end()) {
-      throw InputError(request.where, "effect '" + request.name + "' (" + spec.key + ") has no role '" + role + "'" + suggest(role, valid));
+      throw InputError(request.where,
+                       "effect '" + shown(request.name) + "' (" + spec.key + ") has no role '" + shown(role) + "'" + suggest(role, valid));
     }
   }
 }
@@ -64,13 +66,13 @@ void Assembler::bind_ports(const EffectRequest& request, const EffectSpec& spec,
         bound.ports.push_back(-1);
         continue;
       }
-      throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no port '" + target + "'" +
-                                          suggest(target, port_names()));
+      throw InputError(request.where, "effect '" + shown(request.name) + "': system '" + system().key + "' has no port '" + shown(target) +
+                                          "'" + suggest(target, port_names()));
     }
-    check_unit(request, role, "port '" + target + "'", place->unit);
+    check_unit(request, role, "port '" + shown(target) + "'", place->unit);
     if (!first && place->kind != bound.kind) {
-      throw InputError(request.where,
-                       "effect '" + request.name + "' cannot add to '" + target + "' beside its other ports: they are of different kinds");
+      throw InputError(request.where, "effect '" + shown(request.name) + "' cannot add to '" + shown(target) +
+                                          "' beside its other ports: they are of different kinds");
     }
     bound.kind = place->kind;
     first = false;
@@ -82,8 +84,8 @@ void Assembler::check_unit(const EffectRequest& request, const Role& role, const
   if (role.unit[0] == '*') return;  // a generic role takes any unit
   const std::string needed = bind_unit(role.unit, role_units_);
   if (!parse_unit(needed).same_dimension(parse_unit(unit))) {
-    throw InputError(request.where,
-                     "effect '" + request.name + "': role '" + role.name + "' needs [" + needed + "], " + what + " has [" + unit + "]");
+    throw InputError(request.where, "effect '" + shown(request.name) + "': role '" + shown(role.name) + "' needs [" + needed + "], " +
+                                        what + " has [" + unit + "]");
   }
 }
 
@@ -93,20 +95,20 @@ int Assembler::bind_quantity(const EffectRequest& request, const Role& role, Por
   const int index = find_quantity(target);
   if (index < 0) {
     if (role.optional && !request.roles.contains(role.name)) return -1;
-    throw InputError(request.where, "effect '" + request.name + "': system '" + system().key + "' has no quantity '" + target + "'" +
-                                        suggest(target, quantity_names()));
+    throw InputError(request.where, "effect '" + shown(request.name) + "': system '" + system().key + "' has no quantity '" +
+                                        shown(target) + "'" + suggest(target, quantity_names()));
   }
-  check_order(request.where, "effect '" + request.name + "'", target, index, kind);
-  check_unit(request, role, "quantity '" + target + "'", unit_of_quantity(index));
+  check_order(request.where, "effect '" + shown(request.name) + "'", target, index, kind);
+  check_unit(request, role, "quantity '" + shown(target) + "'", unit_of_quantity(index));
   return index;
 }
 
 void Assembler::check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const {
   if (kind == PortKind::quantity && index >= system().base_quantities) {
-    throw InputError(where, who + " changes a quantity and so cannot read '" + target + "', which depends on such changes");
+    throw InputError(where, who + " changes a quantity and so cannot read '" + shown(target) + "', which depends on such changes");
   }
   if (kind != PortKind::sensor && index >= static_cast<int>(system().quantities.size())) {
-    throw InputError(where, who + " cannot read the predicted output '" + target + "': only effects on sensors can");
+    throw InputError(where, who + " cannot read the predicted output '" + shown(target) + "': only effects on sensors can");
   }
 }
 
@@ -115,7 +117,8 @@ int Assembler::bind_constant(const EffectRequest& request, const std::string& na
   for (std::size_t i = 0; i < constants.size(); ++i) {
     if (constants[i].name == name) return static_cast<int>(i);
   }
-  throw InputError(request.where, "effect '" + request.name + "' needs '" + name + "', which system '" + system().key + "' does not have");
+  throw InputError(request.where,
+                   "effect '" + shown(request.name) + "' needs '" + shown(name) + "', which system '" + system().key + "' does not have");
 }
 
 BoundCoefficient Assembler::bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request,
@@ -155,10 +158,10 @@ int Assembler::add_curve(const std::string& name, const CoefficientSpec& spec, c
   curve.unit = bind_unit(spec.unit, role_units_);
   curve.quantity = find_quantity(request.of);
   if (curve.quantity < 0) {
-    throw InputError(request.where, "curve " + name + ": system '" + system().key + "' has no quantity '" + request.of + "'" +
+    throw InputError(request.where, "curve " + name + ": system '" + system().key + "' has no quantity '" + shown(request.of) + "'" +
                                         suggest(request.of, quantity_names()));
   }
-  check_order(request.where, "effect '" + by.name + "'", request.of, curve.quantity, kind);
+  check_order(request.where, "effect '" + shown(by.name) + "'", request.of, curve.quantity, kind);
   const bool own = curve.quantity < static_cast<int>(system().quantities.size());
   curve.of_unit = unit_of_quantity(curve.quantity);
   curve.over_sine = spec.over_sine && own && !system().quantities[static_cast<std::size_t>(curve.quantity)].carries_sign;

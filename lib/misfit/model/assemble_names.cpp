@@ -1,5 +1,6 @@
 // What things are called in a model, and where a name leads.
 
+#include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/assembler.h"
 #include "misfit/model/role_units.h"
@@ -53,13 +54,13 @@ void Assembler::lend_coefficients() {
       BoundEffect& borrower = model_.effects[i];
       const auto lent = owned_coefficient(coefficients[c].name);
       if (!lent) {
-        throw InputError(request_.effects[i].where, "effect '" + borrower.name + "' changes what another effect adds by its coefficient '" +
-                                                        coefficients[c].name + "', and no effect of the model has one" +
-                                                        suggest(coefficients[c].name, owned_names()));
+        throw InputError(request_.effects[i].where,
+                         "effect '" + shown(borrower.name) + "' changes what another effect adds by its coefficient '" +
+                             coefficients[c].name + "', and no effect of the model has one" + suggest(coefficients[c].name, owned_names()));
       }
       if (lent->curve >= 0) {
         const Curve& curve = model_.curves[static_cast<std::size_t>(lent->curve)];
-        check_order(request_.effects[i].where, "effect '" + borrower.name + "'", curve.of, curve.quantity, borrower.kind);
+        check_order(request_.effects[i].where, "effect '" + shown(borrower.name) + "'", curve.of, curve.quantity, borrower.kind);
       }
       borrower.coefficients[c] = *lent;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 
 namespace misfit {
 namespace {
@@ -21,7 +22,7 @@ double value_at(const Model& model, const Curve& curve, double x) {
 
 double set_curve(Model& model, const std::string& name, const std::vector<double>& x, const std::vector<double>& value) {
   const Curve* curve = model.find_curve(name);
-  if (curve == nullptr) throw InputError("the model has no curve '" + name + "'");
+  if (curve == nullptr) throw InputError("the model has no curve '" + shown(name) + "'");
   const int size = curve->spline.size();
   Eigen::MatrixXd N = Eigen::MatrixXd::Zero(size, size);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(size);

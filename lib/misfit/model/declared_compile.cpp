@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/declared_system.h"
 #include "misfit/model/limits.h"
@@ -108,7 +109,7 @@ class Compiler {
     const formula::Names names{[this](const std::string& name) { return find(name); }, names_,
                                [this, in_equation](const std::string& name) {
                                  const bool port = !in_equation && own_port(name) >= 0;
-                                 return port ? "'" + name + "' is a port: it can stand in equations only" : std::string();
+                                 return port ? "'" + shown(name) + "' is a port: it can stand in equations only" : std::string();
                                }};
     const int origin = next_origin_;
     next_origin_ += static_cast<int>(f.syntax.nodes.size());
@@ -213,7 +214,7 @@ class Compiler {
       };
       const bool moves = used_by(equation_nodes_) || used_by(quantity_nodes_);
       if (!moves && !used_by(output_nodes_))
-        throw InputError(d_.where, "nothing depends on parameter '" + constant.name + "': use it in a formula, or take it out");
+        throw InputError(d_.where, "nothing depends on parameter '" + shown(constant.name) + "': use it in a formula, or take it out");
       constant.of_sensor = !moves;
       constant.strength = moves;
       for (int node : equation_nodes_) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 
+#include "misfit/core/shown.h"
 #include "misfit/formula/build.h"
 #include "misfit/formula/program.h"
 #include "misfit/model/declared_parameter.h"
@@ -97,8 +98,8 @@ class Maker {
     on_sensor_ = unit == nullptr;
     if (unit == nullptr) unit = look(system_.outputs);
     if (unit == nullptr)
-      throw InputError(study_.where, "effect '" + study_.name + "': system '" + system_.key + "' has no port '" + declared_.port + "'" +
-                                         suggest(declared_.port, names));
+      throw InputError(study_.where, "effect '" + shown(study_.name) + "': system '" + shown(system_.key) + "' has no port '" +
+                                         shown(declared_.port) + "'" + suggest(declared_.port, names));
     spec().ports.push_back({keep(declared_.port), keep(*unit)});
     return formula::measure_of(*unit);
   }
@@ -108,7 +109,7 @@ class Maker {
     for (const std::string& name : declared_.parameters->keys()) {
       if (!formula::is_name(name)) declared_.parameters->fail(name, "a name has letters, digits and underscores and is no function");
       if (find_quantity(name) != nullptr || find_constant(name) != nullptr)
-        declared_.parameters->fail(name, "the system has a '" + name + "' already");
+        declared_.parameters->fail(name, "the system has a '" + shown(name) + "' already");
       const config::Section s = *declared_.parameters->table(name);
       const declared::ParameterText text = declared::read_parameter(s);
       CoefficientSpec c;
@@ -162,7 +163,7 @@ class Maker {
     nc_ = static_cast<int>(spec().coefficients.size());
     nk_ = static_cast<int>(spec().constants.size());
     if (nq_ + nc_ + nk_ > kMaxWidth)
-      throw InputError(study_.where, "effect '" + study_.name + "' reads more than " + std::to_string(kMaxWidth) + " numbers");
+      throw InputError(study_.where, "effect '" + shown(study_.name) + "' reads more than " + std::to_string(kMaxWidth) + " numbers");
   }
   std::vector<Role>& roles() { return spec().quantities; }
 
@@ -206,7 +207,8 @@ class Maker {
       for (const auto& name : declared_.strengths) {
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end())
-          throw InputError(study_.where, "effect '" + study_.name + "': strengths: no parameter '" + name + "'" + suggest(name, names));
+          throw InputError(study_.where,
+                           "effect '" + shown(study_.name) + "': strengths: no parameter '" + shown(name) + "'" + suggest(name, names));
         chosen[static_cast<std::size_t>(found - names.begin())] = true;
       }
     } else {
@@ -221,7 +223,8 @@ class Maker {
       any = true;
     }
     if (!coefficients.empty() && !(any && graph_.is(off, 0.0))) {
-      throw InputError(study_.where, "effect '" + study_.name + "': no parameter switches it off: a strength must multiply all of it (" +
+      throw InputError(study_.where, "effect '" + shown(study_.name) +
+                                         "': no parameter switches it off: a strength must multiply all of it (" +
                                          "name them with strengths = [\"…\"])");
     }
   }
@@ -242,7 +245,7 @@ class Maker {
   void check_used(int node) {
     for (int i = 0; i < nc_; ++i) {
       if (!depends(node, nq_ + i))
-        throw InputError(study_.where, "effect '" + study_.name + "': nothing depends on its parameter '" +
+        throw InputError(study_.where, "effect '" + shown(study_.name) + "': nothing depends on its parameter '" +
                                            spec().coefficients[static_cast<std::size_t>(i)].name + "'");
     }
   }

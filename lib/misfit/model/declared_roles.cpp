@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "misfit/core/shown.h"
 #include "misfit/model/declared_system.h"
 
 namespace misfit::declared {
@@ -31,7 +32,7 @@ class Roles {
       if (p.conjugate.empty()) p.conjugate = by_default;
       if (index_of(s.quantities, p.conjugate) < 0)
         throw InputError(d_.where,
-                         "[ports] " + p.name + ": rate = '" + p.conjugate + "' is no quantity" + suggest(p.conjugate, quantities));
+                         "[ports] " + p.name + ": rate = '" + shown(p.conjugate) + "' is no quantity" + suggest(p.conjugate, quantities));
     }
     if (d_.roles) d_.roles->finish();
   }
@@ -56,7 +57,7 @@ class Roles {
   void check_role(const char* name, const std::string& given, const std::vector<std::string>& valid) {
     if (std::find(valid.begin(), valid.end(), given) == valid.end())
       throw InputError(d_.roles ? d_.roles->where(name) : d_.where,
-                       std::string("[roles] ") + name + ": there is no '" + given + "'" + suggest(given, valid));
+                       std::string("[roles] ") + name + ": there is no '" + shown(given) + "'" + suggest(given, valid));
   }
 
   Declaration& d_;

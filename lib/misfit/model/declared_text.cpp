@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/declared_parameter.h"
 
@@ -44,7 +45,10 @@ class Reader {
     if (!head) return;
     out_.spec.doc = head->text("doc").value_or(out_.spec.doc);
     out_.spec.source = head->text("source").value_or("");
-    if (const auto rate = head->number("fastest_rate", "1/s")) out_.spec.fastest_rate = rate->value;
+    if (const auto rate = head->number("fastest_rate", "1/s")) {
+      if (!(rate->value > 0.0)) head->fail("fastest_rate", "must be above 0");
+      out_.spec.fastest_rate = rate->value;
+    }
     head->finish();
   }
 
@@ -59,7 +63,7 @@ class Reader {
       if (!formula::is_name(name))
         section->fail(name, "a name has letters, digits and underscores, begins with a letter and is no function of formulas");
       if (!names_.insert(name).second)
-        section->fail(name, "the name '" + name + "' is taken by a state, input, parameter, quantity or port");
+        section->fail(name, "the name '" + shown(name) + "' is taken by a state, input, parameter, quantity or port");
       if (!section->is_table(name)) section->fail(name, "a table is expected, as { unit = \"V\" }");
       const Section entry = *section->table(name);
       read(entry, name);
@@ -166,7 +170,7 @@ class Reader {
       if (rate_of_[j].empty()) continue;
       const auto found = std::find(names.begin(), names.end(), rate_of_[j]);
       if (found == names.end())
-        throw InputError(rate_of_where_[j], "rate_of: there is no state '" + rate_of_[j] + "'" + suggest(rate_of_[j], names));
+        throw InputError(rate_of_where_[j], "rate_of: there is no state '" + shown(rate_of_[j]) + "'" + suggest(rate_of_[j], names));
       const auto of = static_cast<std::size_t>(found - names.begin());
       if (of == j) throw InputError(rate_of_where_[j], "a state cannot be its own rate");
       const auto wanted = formula::measure_of(rate_unit(states[of].unit));
@@ -185,7 +189,7 @@ class Reader {
     for (const auto& state : states) names.push_back(state.name);
     for (const std::string& key : section->keys()) {
       if (std::find(names.begin(), names.end(), key) == names.end())
-        section->fail(key, "there is no state '" + key + "'" + suggest(key, names));
+        section->fail(key, "there is no state '" + shown(key) + "'" + suggest(key, names));
     }
     for (std::size_t j = 0; j < states.size(); ++j) {
       if (section->has(states[j].name)) {
@@ -193,7 +197,7 @@ class Reader {
         continue;
       }
       const auto rate = std::find_if(states.begin(), states.end(), [&](const StateSpec& s) { return s.rate_of == static_cast<int>(j); });
-      if (rate == states.end()) section->fail(states[j].name, "the equation of state '" + states[j].name + "' is missing");
+      if (rate == states.end()) section->fail(states[j].name, "the equation of state '" + shown(states[j].name) + "' is missing");
       out_.equations.push_back(
           {formula::parse({rate->name, "equation " + states[j].name, out_.where}), formula::measure_of(rate_unit(states[j].unit))});
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/math/statistics.h"
@@ -80,6 +81,13 @@ std::size_t set_spikes_aside(std::vector<double>& y) {
   return wild.size();
 }
 
+/// The input's name without "_rate"; empty if it is no rate.
+std::string level_of(const std::string& input) {
+  constexpr std::string_view suffix = "_rate";
+  const bool rate = input.size() > suffix.size() && input.ends_with(suffix);
+  return rate ? input.substr(0, input.size() - suffix.size()) : "";
+}
+
 class Reader {
  public:
   Reader(const Table& table, const Model& model, const ExperimentStudy& study) : table_(table), model_(model), study_(study) {}
@@ -124,7 +132,8 @@ class Reader {
     }
     if (rows_.size() < t.size()) out_.notes.push_back(std::to_string(t.size() - rows_.size()) + " rows without time dropped");
     if (rows_.size() < 2)
-      throw RunError("experiment '" + study_.name + "': " + std::to_string(rows_.size()) + " samples with a time are not a recording");
+      throw RunError("experiment '" + shown(study_.name) + "': " + std::to_string(rows_.size()) +
+                     " samples with a time are not a recording");
     for (std::size_t row : rows_) out_.t.push_back(t[row]);
   }
 
@@ -139,10 +148,8 @@ class Reader {
   std::vector<double> read_as_recorded(const InputSpec& input) {
     const bool angle = parse_unit(input.unit).angle;
     std::vector<double> values;
-    constexpr std::string_view suffix = "_rate";
-    const bool rate = input.name.size() > suffix.size() && input.name.ends_with(suffix);
-    if (rate && table_.find(header(input.name)) == nullptr) {
-      const std::string base = input.name.substr(0, input.name.size() - suffix.size());
+    const std::string base = level_of(input.name);
+    if (!base.empty() && table_.find(header(input.name)) == nullptr) {
       if (table_.find(header(base)) == nullptr) static_cast<void>(table_.at(header(input.name)));  // throws, naming the nearest
       const std::string base_unit = input.unit.ends_with("/s") ? input.unit.substr(0, input.unit.size() - 2) : input.unit;
       std::vector<double> level = kept(table_.values(header(base), base_unit));
@@ -156,7 +163,7 @@ class Reader {
     std::vector<bool> missing;
     for (double v : values) missing.push_back(!std::isfinite(v));
     const std::size_t filled = bridge(out_.t, values);
-    if (filled == values.size()) throw RunError("experiment '" + study_.name + "': input " + input.name + " has no value at all");
+    if (filled == values.size()) throw RunError("experiment '" + shown(study_.name) + "': input " + input.name + " has no value at all");
     if (filled == 0) return values;
     out_.notes.push_back("input " + input.name + ": " + std::to_string(filled) + " missing values bridged; the samples there are not used");
     for (auto& channel : out_.measured) {
@@ -190,7 +197,7 @@ class Reader {
     for (const auto& channel : out_.measured) {
       const auto missing = std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isfinite(v); });
       if (missing == static_cast<long>(channel.values.size()))
-        throw RunError("experiment '" + study_.name + "': channel " + channel.name + " has no value at all: all samples are lost");
+        throw RunError("experiment '" + shown(study_.name) + "': channel " + channel.name + " has no value at all: all samples are lost");
       if (missing > 0)
         out_.notes.push_back("channel " + channel.name + ": " + std::to_string(missing) + " of " + std::to_string(channel.values.size()) +
                              " samples missing, carried as gaps");
@@ -215,6 +222,17 @@ class Reader {
 }  // namespace
 
 Signals signals_from(const Table& table, const Model& model, const ExperimentStudy& study) { return Reader(table, model, study).run(); }
+
+std::vector<std::string> signal_names(const SystemSpec& spec) {
+  std::vector<std::string> names{"t"};
+  const auto add = [&](const std::string& name) {
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const auto& output : spec.outputs) add(output.name);
+  for (const auto& input : spec.inputs) add(input.name);
+  for (const auto& input : spec.inputs) add(level_of(input.name));
+  return names;
+}
 
 Table attitude_table(const Attitude& a) {
   Table table;

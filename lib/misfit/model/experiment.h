@@ -15,6 +15,9 @@ namespace misfit {
 /// sample is left.
 [[nodiscard]] Signals signals_from(const Table& table, const Model& model, const ExperimentStudy& study);
 
+/// What `columns` of a recording may name: the time, outputs, inputs, and NAME for an input NAME_rate.
+[[nodiscard]] std::vector<std::string> signal_names(const SystemSpec& spec);
+
 /// The attitude as a recording in SI: t, theta, psi, alpha, beta, alpha_T, eta, phi (unwrapped) and phi_rate.
 [[nodiscard]] Table attitude_table(const Attitude& attitude);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "misfit/core/shown.h"
+
 namespace misfit {
 namespace {
 
@@ -28,25 +30,25 @@ Registry Registry::over(const Registry& base) {
 
 void Registry::add(std::unique_ptr<Effect> effect) {
   const std::string key = effect->spec().key;
-  if (!effects_.emplace(key, std::move(effect)).second) throw std::logic_error("effect '" + key + "' registered twice");
+  if (!effects_.emplace(key, std::move(effect)).second) throw std::logic_error("effect '" + shown(key) + "' registered twice");
 }
 
 void Registry::add(SystemType system) {
   const std::string key = system.key;
-  if (!systems_.emplace(key, std::move(system)).second) throw std::logic_error("system '" + key + "' registered twice");
+  if (!systems_.emplace(key, std::move(system)).second) throw std::logic_error("system '" + shown(key) + "' registered twice");
 }
 
 const Effect& Registry::effect(const std::string& key, const Source& where) const {
   const auto found = effects_.find(key);
   if (found == effects_.end() && base_ != nullptr) return base_->effect(key, where);
-  if (found == effects_.end()) throw InputError(where, "unknown effect '" + key + "'" + suggest(key, effect_keys()));
+  if (found == effects_.end()) throw InputError(where, "unknown effect '" + shown(key) + "'" + suggest(key, effect_keys()));
   return *found->second;
 }
 
 const SystemType& Registry::system(const std::string& key, const Source& where) const {
   const auto found = systems_.find(key);
   if (found == systems_.end() && base_ != nullptr) return base_->system(key, where);
-  if (found == systems_.end()) throw InputError(where, "unknown system '" + key + "'" + suggest(key, system_keys()));
+  if (found == systems_.end()) throw InputError(where, "unknown system '" + shown(key) + "'" + suggest(key, system_keys()));
   return found->second;
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "misfit/core/shown.h"
 #include "misfit/core/units.h"
+#include "misfit/model/experiment.h"
 
 namespace misfit {
 namespace {
@@ -115,6 +117,18 @@ void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& reque
   }
 }
 
+/// Names that nothing would ask a recording for; those of a track are checked with the study.
+void check_columns(const Study& study, const std::string& system, const SystemSpec& spec) {
+  const std::vector<std::string> valid = signal_names(spec);
+  for (const ExperimentStudy& experiment : study.experiments) {
+    if (!experiment.data || !experiment.columns_section) continue;
+    for (const auto& [name, header] : experiment.columns.header_of) {
+      if (std::find(valid.begin(), valid.end(), name) == valid.end())
+        experiment.columns_section->fail(name, "system '" + shown(system) + "' has no such signal" + suggest(name, valid));
+    }
+  }
+}
+
 }  // namespace
 
 std::span<const RigEntry> rig_entries() { return entries; }
@@ -131,9 +145,11 @@ StudyModel read_model(const Study& study, const Registry& registry) {
   request.system_where = where == study.system_where.end() ? Source{study.file.string(), 0, 0} : where->second;
   const SystemType& type = registry.system(request.system, request.system_where);
   for (const auto& [name, number] : study.system_numbers) {
-    throw InputError(number.where, "system '" + request.system + "' has no option '" + name + "'" + suggest(name, type.flags));
+    throw InputError(number.where,
+                     "system '" + shown(request.system) + "' has no option '" + shown(name) + "'" + suggest(name, type.flags));
   }
   const SystemSpec spec = type.make(request.options)->spec();
+  check_columns(study, request.system, spec);
   if (study.geometry) {
     read_rig(*study.geometry, out.rig);
     read_constants(*study.geometry, spec, request);

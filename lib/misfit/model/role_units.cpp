@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 
 namespace misfit {
@@ -39,7 +40,7 @@ void multiply_unit(Factors& factors, std::string_view unit, const std::map<std::
     }
     if (unit.front() == '{') {
       const auto close = unit.find('}');
-      if (close == std::string_view::npos) throw InputError("unit '" + std::string(unit) + "': '}' is missing");
+      if (close == std::string_view::npos) throw InputError("unit '" + shown(unit) + "': '}' is missing");
       const auto role = units.find(std::string(unit.substr(1, close - 1)));
       if (role != units.end()) {
         for (const auto& [symbol, own] : unit_symbols(role->second)) multiply(factors, symbol, sign * own);

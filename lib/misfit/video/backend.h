@@ -6,8 +6,8 @@
 #include <vector>
 
 /// What the video module gives to misfit::video. The module (lib/misfit/video/opencv) is the only code that is linked to OpenCV; it is
-/// loaded when a video or an image is first read, because loading OpenCV's videoio costs 0.2 s. No exceptions cross this border: an empty
-/// result comes with `why`.
+/// loaded when a video or an image is first read, because loading OpenCV's videoio costs 0.2 s. No exception but std::bad_alloc of
+/// next() crosses this border: an empty result comes with `why`.
 namespace misfit::video_module {
 
 /// Changes whenever anything in this file does: a module of another build is refused.

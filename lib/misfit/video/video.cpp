@@ -5,7 +5,9 @@
 #include <cmath>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 #include "misfit/core/error.h"
@@ -35,6 +37,7 @@ struct Video::State {
   std::mutex mutex;
   std::condition_variable changed;
   bool ended = false, stop = false;
+  std::exception_ptr failure;  ///< of the decoding thread, for the one that asks for frames
   std::thread thread;
   // of the decoding thread alone
   Image before = {};
@@ -82,20 +85,34 @@ struct Video::State {
     return frame;
   }
 
+  void start(const std::filesystem::path& path) {
+    try {
+      thread = std::thread([this] { run(); });
+    } catch (const std::system_error& error) {
+      throw RunError(path.string() + ": no thread can be started to decode the video: " + error.what());
+    }
+  }
+
   void run() {
-    for (;;) {
-      std::optional<Frame> frame = decode();
-      std::unique_lock lock(mutex);
-      if (!frame) {
-        ended = true;
-        changed.notify_all();
-        return;
+    try {
+      while (pass_on(decode())) {
       }
-      changed.wait(lock, [this] { return queue.size() < queue_length || stop; });
-      if (stop) return;
-      queue.push_back(std::move(*frame));
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      failure = std::current_exception();
+      ended = true;
       changed.notify_all();
     }
+  }
+
+  /// False if there is no more to do.
+  bool pass_on(std::optional<Frame> frame) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return !frame || queue.size() < queue_length || stop; });
+    if (frame && !stop) queue.push_back(std::move(*frame));
+    ended = !frame;
+    changed.notify_all();
+    return frame && !stop;
   }
 };
 
@@ -114,7 +131,7 @@ Video::Video(const std::filesystem::path& path) : state_(std::make_unique<State>
   if (facts.width <= 0 || facts.height <= 0) throw RunError(path.string() + ": not a video: its pictures have no size");
   if (!(facts.rate > 0.0) || facts.rate > 1e5)
     throw RunError(fmt::format("{}: the file declares {} frames per second: times cannot be told", path.string(), facts.rate));
-  state_->thread = std::thread([state = state_.get()] { state->run(); });
+  state_->start(path);
 }
 
 Video::Video(Video&&) noexcept = default;
@@ -126,6 +143,7 @@ std::optional<Frame> Video::next() {
   std::unique_lock lock(s.mutex);
   s.changed.wait(lock, [&s] { return !s.queue.empty() || s.ended; });
   if (s.queue.empty()) {
+    if (s.failure) std::rethrow_exception(s.failure);
     s.facts.finished = true;
     s.facts.missing = s.missing;
     s.facts.repeated = s.repeated;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -33,7 +34,8 @@ class OpencvStream : public VideoStream {
       }
       timestamp = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000.0;
       return true;
-    } catch (const cv::Exception&) {
+    } catch (const cv::Exception& error) {
+      if (error.code == cv::Error::StsNoMem) throw std::bad_alloc();  // no end of the video
       return false;
     }
   }

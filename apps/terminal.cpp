@@ -1,0 +1,81 @@
+#include "apps/terminal.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <iostream>
+#include <streambuf>
+#include <string>
+#include <system_error>
+
+#include "misfit/core/shown.h"
+
+namespace misfit {
+
+/// Hands on at once what it gets, but for the bytes of a character that has not ended yet.
+class PrintableStream::Buffer : public std::streambuf {
+ public:
+  explicit Buffer(std::streambuf* to) : to_(to) {}
+
+  Escapes escapes = Escapes::plain;
+
+  [[nodiscard]] std::streambuf* to() const { return to_; }
+
+  void end() { hand_on(pending_.size()); }
+
+ protected:
+  int_type overflow(int_type c) override {
+    if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
+    const char one = traits_type::to_char_type(c);
+    return xsputn(&one, 1) == 1 ? c : traits_type::eof();
+  }
+
+  std::streamsize xsputn(const char* text, std::streamsize size) override {
+    pending_.append(text, static_cast<std::size_t>(size));
+    return hand_on(pending_.size() - unfinished_bytes(pending_)) ? size : 0;
+  }
+
+  int sync() override { return to_->pubsync(); }
+
+ private:
+  bool hand_on(std::size_t bytes) {
+    const std::string text = printable(std::string_view(pending_).substr(0, bytes), escapes);
+    pending_.erase(0, bytes);
+    const auto size = static_cast<std::streamsize>(text.size());
+    return to_->sputn(text.data(), size) == size;
+  }
+
+  std::streambuf* to_;
+  std::string pending_;
+};
+
+PrintableStream::PrintableStream(std::ostream& stream) : stream_(stream), buffer_(std::make_unique<Buffer>(stream.rdbuf())) {
+  stream_.rdbuf(buffer_.get());
+}
+
+PrintableStream::~PrintableStream() {
+  buffer_->end();
+  stream_.rdbuf(buffer_->to());
+}
+
+void PrintableStream::use_json_escapes() { buffer_->escapes = Escapes::json; }
+
+void reserve_standard_streams() {
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
+    static_cast<void>(::open(number == STDOUT_FILENO ? "/dev/full" : "/dev/null", O_RDWR));  // takes the lowest free number
+  }
+}
+
+std::string output_failure() {
+  errno = 0;
+  std::cout.flush();
+  const int code = errno;
+  if (std::cout.good() && std::ferror(stdout) == 0) return {};
+  const std::string why = code == 0 ? "" : ": " + std::generic_category().message(code);
+  return "standard output could not be written" + why + "; results in files are not affected";
+}
+
+}  // namespace misfit

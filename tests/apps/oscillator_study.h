@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "tests/apps/program.h"
+
+namespace program {
+
+/// A driven oscillator with dry friction that its model lacks, as text, in a folder of its own: every verb takes it a second or two. The
+/// recording is made here by Euler steps of a fortieth of a sample, with nothing of sim/.
+class OscillatorStudy {
+ public:
+  OscillatorStudy() {
+    write("d.csv", recording());
+    write("m.toml", R"([system]
+doc = "an oscillator"
+[states]
+y = { unit = "m", initial = "free" }
+w = { unit = "m/s", rate_of = "y", initial = "free" }
+[inputs]
+u = { unit = "N", hold = "zero_order" }
+[parameters]
+k = { unit = "1/s^2", value = 3.0, bounds = [0.01, 100.0], free = true }
+c = { unit = "1/s", value = 0.5, bounds = [0.0, 10.0], free = true }
+g = { unit = "1/kg", value = 1.0, free = true }
+[equations]
+w = "g*u - k*y - c*w"
+[outputs]
+y = { unit = "m", noise = 0.005 }
+[roles]
+rate = "w"
+)");
+    write("study.toml", R"([study]
+name = "an oscillator"
+question = "What does it lack?"
+methods = ["output_error", "filter_error"]
+seed = 1
+[system]
+file = "m.toml"
+[[experiment]]
+name = "steps"
+data = "d.csv"
+validation = "last 25 %"
+[effects]
+[uncertainty]
+bootstrap = 40
+profile = ["k"]
+starts = 5
+)");
+    for (const char* name : {"one", "two", "three"}) {
+      fs::create_directories(path(std::string("batch/") + name));
+      for (const char* file : {"d.csv", "m.toml", "study.toml"}) fs::copy_file(path(file), path(std::string("batch/") + name) / file);
+    }
+  }
+
+  [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+
+  /// The words of a command that does all that VERB can do, with its results in `out`.
+  [[nodiscard]] std::vector<std::string> command(const std::string& verb, const fs::path& out) const {
+    const std::string study = path(verb == "batch" ? "batch" : "study.toml").string();
+    std::vector<std::string> words{verb, study, "--out", out.string(), "--quiet"};
+    if (verb == "discover") words.emplace_back("--auto");
+    return words;
+  }
+
+ private:
+  static std::string recording() {
+    std::string text = "t[s],u[N],y[m]\n";
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0.0, 0.005);
+    constexpr int samples = 600, steps = 40;
+    constexpr double dt = 0.05, h = dt / steps;
+    double y = 0.5, w = 0.0;
+    for (int i = 0; i < samples; ++i) {
+      const double u = (i / 60) % 2 == 0 ? 1.0 : -1.0;
+      char row[80];
+      std::snprintf(row, sizeof row, "%.3f,%.1f,%.5f\n", i * dt, u, y + noise(random));
+      text += row;
+      for (int k = 0; k < steps; ++k) {
+        w += h * (-4.0 * y - 0.2 * w + 2.0 * u - 0.5 * std::tanh(w / 0.02));
+        y += h * w;
+      }
+    }
+    return text;
+  }
+
+  TemporaryFolder folder_;
+};
+
+/// Every file below `folder` but run.json, "seconds" of JSON and reports' times left out: name → content.
+inline std::map<std::string, std::string> results_in(const fs::path& folder) {
+  static const std::regex times(R"("seconds": [-+.0-9e]+)");
+  std::map<std::string, std::string> out;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string(), file = entry.path().filename().string();
+    if (!entry.is_regular_file() || file == "run.json" || file == ".run.json" || file.ends_with(".bin")) continue;
+    if (file == "report.html") {
+      out[name] = "";  // tells how long the stages took
+      continue;
+    }
+    out[name] = std::regex_replace(content(entry.path()), times, "");
+  }
+  return out;
+}
+
+/// Files that differ, or are in one folder only.
+inline std::vector<std::string> differences(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b) {
+  std::vector<std::string> names;
+  for (const auto& [name, text] : a) {
+    if (const auto other = b.find(name); other == b.end() || other->second != text) names.push_back(name);
+  }
+  for (const auto& [name, text] : b) {
+    if (!a.contains(name)) names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace program
