@@ -190,10 +190,10 @@ int status_of(int argc, char** argv, const Registry& registry, PrintableStream& 
 }
 
 /// Results in files are whole; what was to be printed is not.
-int with_output_checked(int status) {
-  const std::string failure = output_failure();
+int with_output_checked(int status, PrintableStream& out) {
+  const std::string failure = out.failure();
   if (failure.empty()) return status;
-  say_error(failure);
+  say_error("standard output could not be written: " + failure + "; results in files are not affected");
   return std::max(status, 1);
 }
 
@@ -203,7 +203,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   reserve_standard_streams();
   PrintableStream out(std::cout);
   const PrintableStream errors(std::cerr);
-  const int status = with_output_checked(status_of(argc, argv, registry, out));
+  const int status = with_output_checked(status_of(argc, argv, registry, out), out);
   try {
     end_ranks(status);
   } catch (const std::exception& error) {

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "apps/stages.h"
 #include "misfit/core/error.h"
 #include "misfit/fit/curves.h"
+#include "misfit/fit/gaps.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/curve_table.h"
 #include "misfit/model/experiment.h"
@@ -54,7 +56,10 @@ Signals pixels_of(const ExperimentStudy& experiment, const std::filesystem::path
   return signals;
 }
 
-std::vector<Signals> read_experiments(Session& session, const Model& model) {
+/// Does the method run the model, so that a recording is cut where it cannot be run across? A regression takes no derivative across a gap.
+enum class Gaps { cut, left };
+
+std::vector<Signals> read_experiments(Session& session, const Model& model, Gaps gaps) {
   std::vector<Signals> out;
   const std::vector<std::optional<Attitude>> attitudes = attitude_stage(session);
   const bool pixels = predicts_pixels(model.system->spec());
@@ -67,7 +72,9 @@ std::vector<Signals> read_experiments(Session& session, const Model& model) {
       plain.columns = {};
       out.push_back(signals_from(attitude_table(*attitudes[e]), model, plain));
     } else {
-      out.push_back(signals_from(read_csv(*experiment.data), model, experiment));
+      Signals whole = signals_from(read_csv(*experiment.data), model, experiment);
+      std::vector<Signals> parts = gaps == Gaps::cut ? split_at_gaps(model, std::move(whole)) : std::vector<Signals>{std::move(whole)};
+      std::move(parts.begin(), parts.end(), std::back_inserter(out));
     }
   }
   return out;
@@ -82,12 +89,12 @@ void start_from_tables(const Session& session, Model& model) {
   }
 }
 
-Prepared prepare_request(Session& session, ModelRequest request) {
+Prepared prepare_request(Session& session, ModelRequest request, Gaps gaps) {
   if (session.study.experiments.empty())
     throw InputError({session.study.file.string(), 0, 0}, "the study has no [[experiment]]: there is nothing to fit");
   add_camera(session, request);
   Prepared out;
-  out.experiments = read_experiments(session, provisional(request, session.registry));
+  out.experiments = read_experiments(session, provisional(request, session.registry), gaps);
   choose_all_knots(request, session.registry, out.experiments, default_intervals);
   out.model = assemble(request, session.registry);
   out.request = std::move(request);
@@ -117,12 +124,12 @@ void add_camera(Session& session, ModelRequest& request) {
   }
 }
 
-Prepared prepare(Session& session) { return prepare_request(session, session.model.request); }
+Prepared prepare(Session& session) { return prepare_request(session, session.model.request, Gaps::cut); }
 
 std::optional<Prepared> prepare_regression(Session& session, std::vector<std::string>& left_out) {
   auto request = regression_form(session.model.request, session.registry, left_out);
   if (!request) return std::nullopt;
-  return prepare_request(session, std::move(*request));
+  return prepare_request(session, std::move(*request), Gaps::left);
 }
 
 bool averaged_by_attitude(const Session& session) { return has_track(session.study.experiments.front()); }

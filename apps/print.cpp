@@ -17,6 +17,13 @@ namespace {
 
 std::string shown(const Estimate& e) { return in_display_unit(e.value, e.unit, e.sigma); }
 
+/// With what is not usual of it: no sigma, or an interval that is not ± 1.96 sigma.
+std::string estimated(const Estimate& e) {
+  std::string text = e.sigma > 0.0 ? shown(e) : shown(e) + " (sigma not available)";
+  if (e.interval) text += ", 95 %: " + interval_in_display_unit(e.interval->first, e.interval->second, e.unit, e.sigma);
+  return text;
+}
+
 std::string curve_text(const CurveEstimate& curve) {
   if (!curve.informative) return "not informative: " + curve.why;
   double lowest = NAN, highest = NAN;
@@ -43,13 +50,13 @@ std::string fit_text(const Fit& fit) {
       fmt::format("{}  —  {}  ({:.2f} s, {} linearisations)\n", fit.method, to_string(fit.status), fit.seconds, fit.linearisations);
   out += wrap_text(fit.message, 110, "  ") + "\n";
   std::vector<std::vector<std::string>> rows{{"result", "value"}};
-  if (fit.trim) rows.push_back({"trim", shown(*fit.trim)});
+  if (fit.trim) rows.push_back({"trim", estimated(*fit.trim)});
   add_estimates("residual RMS", fit.rms, rows);
   add_estimates("validation RMS", fit.validation_rms, rows);
   add_estimates("random force", fit.force, rows);
   add_estimates("noise", fit.noise, rows);
   for (const auto& [name, e] : fit.parameters) {
-    if (!is_curve_coefficient(name)) rows.push_back({name, shown(e)});
+    if (!is_curve_coefficient(name)) rows.push_back({name, estimated(e)});
   }
   for (const auto& curve : fit.curves) rows.push_back({"curve " + curve.name, curve_text(curve)});
   if (rows.size() > 1) out += align_columns(rows);

@@ -7,6 +7,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/core/version.h"
+#include "misfit/fit/gaps.h"
 
 namespace misfit {
 namespace {
@@ -92,11 +93,18 @@ void add_camera(const Session& session, std::string& text) {
 }
 
 void add_experiments(const Session& session, const Prepared& prepared, std::string& text) {
-  for (std::size_t e = 0; e < prepared.experiments.size(); ++e) {
-    const Signals& s = prepared.experiments[e];
-    const ExperimentStudy& study = session.study.experiments[e];
-    text += fmt::format("\n[[experiment]]  # {} samples, {:.6g} s to {:.6g} s\nname = {}\n{} = {}\nexclude = {}\n", s.samples(),
-                        s.t.front(), s.t.back(), toml_string(s.name),
+  for (const ExperimentStudy& study : session.study.experiments) {
+    std::vector<const Signals*> parts;
+    std::size_t samples = 0;
+    for (const Signals& s : prepared.experiments) {
+      if (!is_part_of(s, study.name)) continue;
+      parts.push_back(&s);
+      samples += s.samples();
+    }
+    if (parts.empty()) continue;
+    const Signals& s = *parts.back();
+    text += fmt::format("\n[[experiment]]  # {} samples, {:.6g} s to {:.6g} s\nname = {}\n{} = {}\nexclude = {}\n", samples,
+                        parts.front()->t.front(), s.t.back(), toml_string(study.name),
                         study.track   ? "track"
                         : study.video ? "video"
                                       : "data",
@@ -114,8 +122,13 @@ void add_experiments(const Session& session, const Prepared& prepared, std::stri
   }
 }
 
+/// What has no bounds gets no key.
+std::string bounds_text(double lower, double upper) {
+  return std::isfinite(lower) || std::isfinite(upper) ? fmt::format(", bounds = [{}, {}]", lower, upper) : std::string();
+}
+
 void add_parameter(const Parameter& p, std::string& text) {
-  text += fmt::format("{} = {{ free = {}, value = {}, bounds = [{}, {}]", toml_key(p.name), p.free, p.value, p.lower, p.upper);
+  text += fmt::format("{} = {{ free = {}, value = {}{}", toml_key(p.name), p.free, p.value, bounds_text(p.lower, p.upper));
   if (p.prior_sigma) text += fmt::format(", sigma = {}", *p.prior_sigma);
   text += fmt::format(" }}  # {}\n", toml_comment(p.unit + "; " + p.doc));
 }
@@ -158,9 +171,8 @@ bool add_declared(const Session& session, const std::string& name, std::string& 
       text += (any ? ", " : "") + toml_string(c.name);
       any = true;
     }
-    parameters +=
-        fmt::format("{}{} = {{ unit = {}, value = {}, bounds = [{}, {}], scale = {}, free = {} }}", parameters.empty() ? "" : ", ",
-                    toml_key(c.name), toml_string(c.unit), c.value, c.lower, c.upper, c.scale, !c.fixed);
+    parameters += fmt::format("{}{} = {{ unit = {}, value = {}{}, scale = {}, free = {} }}", parameters.empty() ? "" : ", ", c.name,
+                              quoted(c.unit), c.value, bounds_text(c.lower, c.upper), c.scale, !c.fixed);
   }
   text += "], parameters = { " + parameters + " } }\n";
   return true;

@@ -5,6 +5,7 @@
 #include "misfit/attitude/attitude.h"
 #include "misfit/core/error.h"
 #include "misfit/fit/filter_error.h"
+#include "misfit/fit/gaps.h"
 #include "misfit/fit/output_error.h"
 #include "misfit/model/experiment.h"
 
@@ -80,8 +81,10 @@ void StudyChain::prepare_method(Session& session, const std::string& method) {
 
 void StudyChain::read_recordings(Session& session) {
   pixels_ = predicts_pixels(prepared_.model);
-  for (std::size_t e = 0; e < prepared_.experiments.size(); ++e) {
-    Recording recording{prepared_.experiments[e], {}, session.study.experiments[e]};
+  std::size_t e = 0;
+  for (const Signals& part : prepared_.experiments) {
+    while (!is_part_of(part, session.study.experiments.at(e).name)) ++e;
+    Recording recording{part, {}, session.study.experiments[e]};
     if (has_track(recording.study)) recording.track = read_track(track_files(session, e).track, recording.study.columns);
     if (recording.track) recording.study.columns = {};  // the map was for the track's columns
     recordings_.push_back(std::move(recording));

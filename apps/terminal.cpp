@@ -4,8 +4,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
-#include <iostream>
 #include <streambuf>
 #include <string>
 #include <system_error>
@@ -22,6 +20,7 @@ class PrintableStream::Buffer : public std::streambuf {
   Escapes escapes = Escapes::plain;
 
   [[nodiscard]] std::streambuf* to() const { return to_; }
+  [[nodiscard]] int error() const { return error_; }
 
   void end() { hand_on(pending_.size()); }
 
@@ -37,18 +36,28 @@ class PrintableStream::Buffer : public std::streambuf {
     return hand_on(pending_.size() - unfinished_bytes(pending_)) ? size : 0;
   }
 
-  int sync() override { return to_->pubsync(); }
+  int sync() override {
+    errno = 0;
+    return noted(to_->pubsync() == 0) ? 0 : -1;
+  }
 
  private:
   bool hand_on(std::size_t bytes) {
     const std::string text = printable(std::string_view(pending_).substr(0, bytes), escapes);
     pending_.erase(0, bytes);
     const auto size = static_cast<std::streamsize>(text.size());
-    return to_->sputn(text.data(), size) == size;
+    errno = 0;
+    return noted(to_->sputn(text.data(), size) == size);
+  }
+
+  bool noted(bool good) {
+    if (!good && error_ == 0) error_ = errno;
+    return good;
   }
 
   std::streambuf* to_;
   std::string pending_;
+  int error_ = 0;  ///< errno of the first failure, where there was one
 };
 
 PrintableStream::PrintableStream(std::ostream& stream) : stream_(stream), buffer_(std::make_unique<Buffer>(stream.rdbuf())) {
@@ -62,20 +71,17 @@ PrintableStream::~PrintableStream() {
 
 void PrintableStream::use_json_escapes() { buffer_->escapes = Escapes::json; }
 
+std::string PrintableStream::failure() {
+  stream_.flush();
+  if (stream_.good()) return {};
+  return buffer_->error() == 0 ? "it cannot be written to" : std::generic_category().message(buffer_->error());
+}
+
 void reserve_standard_streams() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
     static_cast<void>(::open(number == STDOUT_FILENO ? "/dev/full" : "/dev/null", O_RDWR));  // takes the lowest free number
   }
-}
-
-std::string output_failure() {
-  errno = 0;
-  std::cout.flush();
-  const int code = errno;
-  if (std::cout.good() && std::ferror(stdout) == 0) return {};
-  const std::string why = code == 0 ? "" : ": " + std::generic_category().message(code);
-  return "standard output could not be written" + why + "; results in files are not affected";
 }
 
 }  // namespace misfit

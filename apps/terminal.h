@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <ostream>
+#include <string>
 
 namespace misfit {
 
@@ -17,6 +18,9 @@ class PrintableStream {
   /// Escapes of JSON ("\u009b") from now on.
   void use_json_escapes();
 
+  /// Flushes; empty if all that was written has arrived, else why not.
+  [[nodiscard]] std::string failure();
+
  private:
   class Buffer;
   std::ostream& stream_;
@@ -26,8 +30,5 @@ class PrintableStream {
 /// Opens what stands in for standard input, output and error where the caller has closed them: else the first file of results would get
 /// their numbers, and what is printed would land in it. Writing to a closed standard output fails, as it should.
 void reserve_standard_streams();
-
-/// Flushes standard output; empty if all of it could be written, else why not.
-[[nodiscard]] std::string output_failure();
 
 }  // namespace misfit

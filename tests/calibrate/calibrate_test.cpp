@@ -221,6 +221,31 @@ TEST(Calibrate, TooFewAnglesAreRefusedInWords) {
   EXPECT_THAT(message_of([&] { (void)calibrate(three, sweeps::rig(), options); }), HasSubstr("3 usable coordinates for 4 unknowns"));
 }
 
+TEST(Calibrate, PointsThatStandStillAreRefusedInWords) {
+  for (const double place : {0.0, 7.0, -250.0, 1e5}) {
+    Sweep still = sweeps::read("null");
+    for (auto& column : still.P_z) column.assign(still.theta.size(), place);
+    for (auto& column : still.P_y) column.assign(still.theta.size(), place);
+    EXPECT_THROW((void)calibrate(still, sweeps::rig()), RunError) << place;
+    EXPECT_THROW((void)calibrate(without_y(still), sweeps::rig()), RunError) << place;
+  }
+}
+
+TEST(Calibrate, PointsThatDoNotFollowTheAnglesAreRefusedInWords) {
+  Sweep wrong = sweeps::read("null");
+  for (auto& column : wrong.P_z)
+    for (std::size_t i = 0; i < column.size(); ++i) column[i] = 300.0 * std::sin(1.0 + 7919.0 * static_cast<double>(i * i));
+  EXPECT_THAT(message_of([&] { (void)calibrate(without_y(wrong), sweeps::rig()); }), HasSubstr("the points do not follow the angles"));
+}
+
+TEST(Calibrate, MessagesNameTheFileOfTheSweep) {
+  const Sweep two = first_angles(sweeps::read("null"), 2);
+  EXPECT_THAT(message_of([&] { (void)calibrate(two, sweeps::rig()); }), HasSubstr("null.csv: the sweep has measured points at 2"));
+  Sweep made = two;
+  made.source.clear();
+  EXPECT_THAT(message_of([&] { (void)calibrate(made, sweeps::rig()); }), testing::StartsWith("the sweep has"));
+}
+
 TEST(Calibrate, ThreeAnglesAreEnough) {
   Sweep sweep = sweeps::read("null");
   for (auto* column : {&sweep.theta, &sweep.P_y[0], &sweep.P_y[1], &sweep.P_y[2], &sweep.P_z[0], &sweep.P_z[1], &sweep.P_z[2]}) {

@@ -2,8 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <new>
 
 #include "misfit/core/error.h"
 #include "misfit/video/canvas.h"
@@ -39,6 +43,36 @@ std::string error_of(const fs::path& file) {
     return error.what();
   }
   return "no error";
+}
+
+/// In a process of its own: reads `file` and keeps every frame until memory ends. Exit status 0: that was told as such.
+[[noreturn]] void read_until_memory_ends(const fs::path& file) {
+  constexpr int separate = 1 << 16;  // [bytes] from here on every piece of memory counts towards the limit
+  ::mallopt(M_MMAP_THRESHOLD, separate);
+  std::vector<Frame> frames;
+  frames.reserve(10'000);
+  try {
+    Video video(file);
+    frames.push_back(*video.next());
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    constexpr rlim_t more = 10'000'000;
+    const rlimit limit{pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + more, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_AS, &limit);
+    while (auto frame = video.next()) frames.push_back(std::move(*frame));
+  } catch (const std::bad_alloc&) {
+    ::_exit(0);
+  } catch (...) {
+    ::_exit(1);
+  }
+  ::_exit(2);
+}
+
+TEST(VideoDeathTest, WhereMemoryEndsInTheDecodingThreadTheCallerIsTold) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers reserve more address space than the limit leaves";
+#endif
+  EXPECT_EXIT(read_until_memory_ends(flight()), testing::ExitedWithCode(0), "");
 }
 
 /// A picture of which every line differs from every other, and every frame from every other.

@@ -132,10 +132,10 @@ void note_outliers(Calibration& calibration, std::size_t points) {
 
 /// Points that do not follow the angles determine no scale.
 void check_scale(const SweepFit& fit) {
-  constexpr double sigmas = 3.0;
+  constexpr double sigmas = 3.0, least = 0.1;  // px/m: the rig would be smaller than a pixel
   const std::size_t scale = camera_parameter("K");
   const double K = camera_entry(fit.camera, scale), sigma = fit.sigma(scale);
-  if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > sigmas * sigma) return;
+  if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > std::max(least, sigmas * sigma)) return;
   throw RunError("the points do not follow the angles: the scale K = " + format_value(K, sigma) +
                  " px/m cannot be told from zero; check that points, angles and geometry belong together");
 }

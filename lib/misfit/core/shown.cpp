@@ -98,14 +98,15 @@ std::string shortened(std::string_view message, std::size_t most) {
 }
 
 std::string some_names(std::string_view name, const std::vector<std::string>& valid) {
-  constexpr std::size_t room = 90;  // characters
+  constexpr std::size_t room = 140, room_of_some = 90;  // characters
   const std::size_t all =
       std::accumulate(valid.begin(), valid.end(), std::size_t{0}, [](std::size_t sum, const auto& v) { return sum + v.size() + 2; });
   const std::vector<std::string> order = all > room ? nearest_first(name, valid) : valid;
   std::string out;
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::string next = shown(order[i], longest_quote / 2);
-    if (i > 0 && all > room && out.size() + next.size() > room) return out + ", … and " + std::to_string(order.size() - i) + " more";
+    if (i > 0 && all > room && out.size() + next.size() > room_of_some)
+      return out + ", … and " + std::to_string(order.size() - i) + " more";
     out += (i == 0 ? "" : ", ") + next;
   }
   return out;

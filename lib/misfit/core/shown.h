@@ -6,7 +6,7 @@
 
 namespace misfit {
 
-inline constexpr std::size_t longest_quote = 60;     ///< characters of a user's text in a message
+inline constexpr std::size_t longest_quote = 50;     ///< characters of a user's text in a message
 inline constexpr std::size_t longest_message = 300;  ///< characters of an error message
 
 enum class Escapes {

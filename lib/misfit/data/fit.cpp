@@ -23,6 +23,7 @@ Json trim_to_json(const Fit& fit) {
   Json out{{"value", number_or_null(fit.trim->value / degree)}, {"sigma", sigma_or_null(fit.trim->sigma / degree)}};
   if (const auto plain = fit.plain_sigmas.find(trim_key); plain != fit.plain_sigmas.end())
     out["plain_sigma"] = sigma_or_null(plain->second / degree);
+  if (fit.trim->interval) out["interval"] = {fit.trim->interval->first / degree, fit.trim->interval->second / degree};
   return out;
 }
 
@@ -47,7 +48,9 @@ std::map<std::string, double> plain_sigmas_from(const Json& root) {
 std::optional<Estimate> trim_from_json(const Json& object) {
   if (object.is_null()) return std::nullopt;
   const Estimate degrees = estimate_from_json(object);
-  return Estimate{degrees.value * degree, degrees.sigma * degree, "rad"};
+  Estimate out{degrees.value * degree, degrees.sigma * degree, "rad"};
+  if (degrees.interval) out.interval = {degrees.interval->first * degree, degrees.interval->second * degree};
+  return out;
 }
 
 Json to_json(const Eigen::MatrixXd& matrix) {

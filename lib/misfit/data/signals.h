@@ -23,6 +23,7 @@ struct Signals {
   std::size_t exclude = 0;                                           ///< initial samples not counted in errors
   double validation_from = std::numeric_limits<double>::infinity();  ///< samples with validation_from <= t < validation_to are held out [s]
   double validation_to = std::numeric_limits<double>::infinity();
+  bool after_gap = false;  ///< goes on where the one before stops, after a gap too long to be bridged: its initial states are its own
   std::vector<std::string> notes;  ///< what was dropped and why, in words
 
   [[nodiscard]] std::size_t samples() const { return t.size(); }

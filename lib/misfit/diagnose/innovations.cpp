@@ -83,9 +83,10 @@ std::vector<WhitenessReport> whiteness_of(const FilterEstimate& estimate) {
       report.experiment = estimate.data[e].signals->name;
       report.channel = outputs[o].name;
       report.lags = std::min(lags, static_cast<int>(known / 10));
-      report.autocorrelation = autocorrelation(w, report.lags);
+      const std::vector<double> even = on_even_grid(estimate.data[e].signals->t, w);
+      report.autocorrelation = autocorrelation(even, report.lags);
       report.band = 1.96 / std::sqrt(static_cast<double>(known));
-      const WhitenessTest test = whiteness(w, 1, report.lags);
+      const WhitenessTest test = whiteness(even, 1, report.lags);
       report.ljung_box = test.statistic;
       report.ljung_box_p = test.p_value;
       for (double& v : w) {

@@ -1,10 +1,13 @@
 #include "misfit/fit/coloured.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
 #include "misfit/core/text.h"
+#include "misfit/fit/short_record.h"
+#include "misfit/fit/whiteness.h"
 #include "misfit/math/spectrum.h"
 
 namespace misfit {
@@ -39,6 +42,9 @@ class Sandwich {
     }
     const auto least = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(all))));
     out_.lags = memory_of(products_, pairs_, least);
+    double squares = 1.0;
+    for (int k = 1; k <= 2 * out_.lags; ++k) squares += 2.0 * std::pow(flat_top(k, out_.lags), 2);
+    out_.degrees = static_cast<double>(all) / squares;
   }
 
   ColouredCovariance run() {
@@ -224,7 +230,51 @@ ColouredCovariance coloured_covariance(const std::vector<ResidualRows>& experime
   return Sandwich(experiments, plain, channels).run();
 }
 
+bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::Index channels, double unknowns) {
+  constexpr double unusual = 0.05;
+  constexpr int lags = 10;
+  for (Eigen::Index a = 0; a < channels; ++a) {
+    std::vector<std::vector<double>> series;
+    for (const ResidualRows& e : experiments) {
+      series.emplace_back();
+      for (Eigen::Index i = a; i < e.r.size(); i += channels) series.back().push_back(e.r[i]);
+    }
+    if (whiteness(joined_series(series), 1, lags, unknowns / static_cast<double>(channels)).p_value < unusual) return false;
+  }
+  return true;
+}
+
+ColouredCovariance widening_only(ColouredCovariance covariance, const Eigen::MatrixXd& plain) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(plain);
+  if (factor.info() != Eigen::Success) return covariance;
+  const Eigen::MatrixXd L = factor.matrixL();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(L.transpose() * covariance.excess * L);
+  const Eigen::MatrixXd back = L.transpose().triangularView<Eigen::Upper>().solve(eigen.eigenvectors());
+  covariance.excess = back * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * back.transpose();
+  covariance.covariance = plain + plain * covariance.excess * plain;
+  return covariance;
+}
+
+ColouredCovariance white_covariance(const Eigen::MatrixXd& plain, Eigen::Index channels) {
+  ColouredCovariance out;
+  out.covariance = plain;
+  out.excess = Eigen::MatrixXd::Zero(plain.rows(), plain.cols());
+  out.squared_correlations = Eigen::VectorXd::Ones(channels);
+  return out;
+}
+
+ColouredCovariance memory_of_residuals(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels,
+                                       double degrees) {
+  if (degrees >= kShortRecord) return coloured_covariance(experiments, plain, channels);
+  double readings = 0.0;
+  for (const ResidualRows& e : experiments) readings += static_cast<double>(e.r.array().isFinite().count());
+  if (residuals_are_white(experiments, channels, readings - degrees)) return white_covariance(plain, channels);
+  return widening_only(coloured_covariance(experiments, plain, channels), plain);
+}
+
 std::string in_words(const ColouredCovariance& covariance) {
+  if (covariance.lags == 0 && std::isinf(covariance.degrees))
+    return "the residuals of this short record show no memory: sigmas are those of white residuals, 95 % intervals by Student's t";
   return "allows for residuals with memory (Morelli and Klein): correlations up to lag " + std::to_string(covariance.lags) +
          " samples count, the largest is " + format_value(std::round(1000.0 * covariance.largest_correlation) / 1000.0) + " at lag " +
          std::to_string(covariance.largest_lag) + "; plain_sigma is that of white residuals";

@@ -5,6 +5,7 @@
 //   [P]  D. N. Politis, J. Nonparametric Statist. 15 (2003), Econometric Theory 27 (2011): flat-top windows, made positive.
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,20 @@ struct ColouredCovariance {
   int largest_lag = 0;  ///< of the largest correlation in size at lag ≥ 1
   /// Per channel Σ ρ² over all lags: the variance of a residual variance is 2 σ⁴/n times this (Bartlett). 1 for white residuals.
   Eigen::VectorXd squared_correlations;
+  /// Degrees of freedom of such a variance, n/Σ w² over the lags of both signs with window w: 2/degrees is about the variance of its
+  /// relative error. Infinite where the residuals were taken as white.
+  double degrees = std::numeric_limits<double>::infinity();
 };
+
+/// Do the residuals of every channel pass a test of whiteness at 5 %, experiments one after the other? For short records, of which
+/// correlations by lag are known too poorly to be used without need: with them 95 % intervals of 50 white residuals hold 70 to 85 %.
+[[nodiscard]] bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::Index channels, double unknowns);
+
+/// The same where what memory takes off N (residuals that swing to and fro) is left out: of a short record only what widens is believed.
+[[nodiscard]] ColouredCovariance widening_only(ColouredCovariance covariance, const Eigen::MatrixXd& plain);
+
+/// That of white residuals: `plain`.
+[[nodiscard]] ColouredCovariance white_covariance(const Eigen::MatrixXd& plain, Eigen::Index channels);
 
 /// Covariance of a least-squares estimate whose residuals are not white [MK]:
 ///   Σ = H⁻¹ [Σ_ij S_iᵀ ℛ(i − j) S_j + P] H⁻¹,  H = N + P,  N = Σ S_iᵀ S_i,
@@ -45,6 +59,11 @@ struct ColouredCovariance {
 /// deterministic model.
 [[nodiscard]] ColouredCovariance coloured_covariance(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain,
                                                      Eigen::Index channels);
+
+/// coloured_covariance(); of a short record (kShortRecord) of so many degrees of freedom, only where the residuals are not white, and then
+/// only what widens.
+[[nodiscard]] ColouredCovariance memory_of_residuals(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain,
+                                                     Eigen::Index channels, double degrees);
 
 /// What was done, for a reader: "allows for residuals with memory (…): correlations up to lag 24 samples count, the largest
 /// is -0.61 at lag 3; …".

@@ -10,6 +10,7 @@
 #include "misfit/fit/coloured.h"
 #include "misfit/fit/curves.h"
 #include "misfit/fit/identifiable.h"
+#include "misfit/fit/short_record.h"
 #include "misfit/fit/whiteness.h"
 #include "misfit/math/bounded.h"
 
@@ -203,13 +204,11 @@ void test_residuals(const Regressor& regressor, const std::vector<Signals>& expe
   const double half_period = frequency > 0.0 ? 3.14159265358979 / frequency : 20.0 * step;
   constexpr int beyond_stencil = 5;
   const int last_lag = std::max(beyond_stencil + 5, static_cast<int>(half_period / step));
-  const WhitenessTest test = whiteness(regression.residuals.front(), beyond_stencil, last_lag);
+  const WhitenessTest test = whiteness(on_even_grid(experiments.front().t, regression.residuals.front()), beyond_stencil, last_lag);
   out.fit.driven = looks_driven(test);
   const std::string unit = rate_unit(out.model.system->spec().states[static_cast<std::size_t>(regressor.rows().front())].unit);
   out.fit.noise["equation_residual"] = {std::sqrt(sigma2), 0.0, unit};
-  out.fit.facts["whiteness"] = "equation residuals at lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) +
-                               " samples: largest autocorrelation " + format_value(test.largest) + " at lag " +
-                               std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
+  out.fit.facts["whiteness"] = "equation residuals at " + in_words(test);
   const auto rows = static_cast<std::ptrdiff_t>(regressor.rows().size());
   for (auto r = regression.residuals.begin(); r != regression.residuals.end(); r += rows) out.equation_residuals.emplace_back(r, r + rows);
 }
@@ -227,12 +226,14 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
     rows.J *= weight;
     rows.r *= weight;
   }
+  const double degrees = regression.sums.count - smoothed.edf;
   const ColouredCovariance coloured =
-      coloured_covariance(regression.rows, smoothed.covariance, static_cast<Eigen::Index>(regressor.rows().size()));
+      memory_of_residuals(regression.rows, smoothed.covariance, static_cast<Eigen::Index>(regressor.rows().size()), degrees);
   set_priors(out.model, regression.sums);
   out.plain_covariance = with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2);
   describe_both(out.model, out.plain_covariance, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess),
                 visited, out.fit);
+  if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
   const ReconstructedStates& states = regressor.states(0);
   const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
@@ -248,6 +249,11 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
   tell_weak_directions(out.model, out.fit.covariance, out.fit);
   tell_other_trims(out.fit);
   refuse_runaways(out.model, out.fit.covariance, out.fit);
+  if (degrees < kFewestDegrees) {
+    withhold_sigmas(format_value(regression.sums.count) + " usable samples for " + format_value(std::round(10.0 * smoothed.edf) / 10.0) +
+                        " unknowns are too few to tell how far off the values are: no sigma is given",
+                    out.fit);
+  }
 }
 
 }  // namespace

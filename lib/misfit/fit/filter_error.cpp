@@ -13,6 +13,7 @@
 #include "misfit/fit/curves.h"
 #include "misfit/fit/filter_interval.h"
 #include "misfit/fit/identifiable.h"
+#include "misfit/fit/short_record.h"
 #include "misfit/fit/whiteness.h"
 #include "misfit/math/statistics.h"
 
@@ -217,7 +218,7 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
         const std::size_t at = k * static_cast<std::size_t>(trace.ny) + o;
         if (estimate.data[e].use[at] == Use::counted && trace.S[at] > 0.0) innovations[k] = trace.e[at] / std::sqrt(trace.S[at]);
       }
-      const WhitenessTest test = whiteness(innovations, 1, last_lag);
+      const WhitenessTest test = whiteness(on_even_grid(estimate.data[e].signals->t, innovations), 1, last_lag);
       if (!(test.p_value < improbable) || std::abs(test.largest) < worth_saying) continue;
       fit.warnings.push_back("the innovations of " + outputs[o].name + " in '" + estimate.data[e].signals->name +
                              "' are not white (Ljung-Box p = " + format_probability(test.p_value) + ", largest autocorrelation " +
@@ -225,6 +226,47 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
                              "): model or noise lack something, and sigmas, which take them as white, may be too small");
     }
   }
+}
+
+/// What is estimated beside the free parameters: initial states of the system in every experiment, and the noise.
+double unknowns_beside_parameters(const FilterEstimate& estimate) {
+  const auto states = static_cast<double>(estimate.model.system_states()) * static_cast<double>(estimate.data.size());
+  return states + static_cast<double>(pack(estimate.noise, estimate.model.system->spec(), estimate.around).value.size());
+}
+
+/// Readings in the likelihood, and how many of them are left when everything estimated is taken off.
+struct Degrees {
+  double readings = 0.0, unknowns = 0.0;
+  [[nodiscard]] double left() const { return readings - unknowns; }
+};
+
+Degrees degrees_of(const FilterEstimate& estimate) {
+  Degrees out;
+  for (const auto& trace : estimate.traces) out.readings += static_cast<double>(trace.counted);
+  out.unknowns = estimate.edf + unknowns_beside_parameters(estimate);
+  return out;
+}
+
+/// The likelihood takes the noise for what fits best: on a short record its variances are too small by the share of readings that went into
+/// noise and initial states (those that went into parameters are put back by the restricted likelihood).
+double short_record_factor(const FilterEstimate& estimate) {
+  const Degrees degrees = degrees_of(estimate);
+  if (degrees.left() < kFewestDegrees || degrees.left() >= kShortRecord) return 1.0;
+  return degrees.readings / (degrees.readings - unknowns_beside_parameters(estimate));
+}
+
+/// Intervals of a short record, or that it is too short for any.
+void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
+  const Degrees degrees = degrees_of(estimate);
+  if (degrees.left() >= kShortRecord) return;
+  if (degrees.left() >= kFewestDegrees) {
+    add_student_intervals(degrees.left(), fit);
+    return;
+  }
+  withhold_sigmas(format_value(degrees.readings) + " readings for " + format_value(std::round(10.0 * degrees.unknowns) / 10.0) +
+                      " unknowns (free parameters, initial states, noise and random force) are too few to tell how far off the values "
+                      "are: no sigma is given",
+                  fit);
 }
 
 }  // namespace
@@ -238,7 +280,8 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   std::size_t validated = 0;
   for (const auto& trace : estimate.traces) validated += trace.validated;
   if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
-  if (estimate.covariance.size() > 0) describe(estimate.model, covariance_of(estimate), visited_by_filter(estimate), fit);
+  if (estimate.covariance.size() > 0)
+    describe(estimate.model, short_record_factor(estimate) * covariance_of(estimate), visited_by_filter(estimate), fit);
   add_noise(estimate, threads, fit);
   add_predictions(estimate, fit);
   describe_gaps(estimate, fit);
@@ -262,6 +305,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   tell_weak_directions(estimate.model, fit.covariance, fit);
   tell_other_trims(fit);
   refuse_runaways(estimate.model, fit.covariance, fit);
+  allow_for_length(estimate, fit);
   fit.linearisations = estimate.linearisations;
   return fit;
 }

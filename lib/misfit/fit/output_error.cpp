@@ -8,6 +8,7 @@
 #include "misfit/fit/curves.h"
 #include "misfit/fit/identifiable.h"
 #include "misfit/fit/output_error_result.h"
+#include "misfit/fit/short_record.h"
 
 namespace misfit {
 namespace {
@@ -161,12 +162,12 @@ class Estimator {
   /// along the curved valley of equal phase.
   FittedModel whole_trajectory(const ShootingPass& lengthened) {
     Linearised linearised;
-    constexpr int most_rounds = 8;
+    constexpr int most_rounds = 8, most_iterations = 200;
     double before = 0.0;
     settled_ = false;
     for (int round = 0; round < most_rounds; ++round) {
       if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
-      if (!solve({0, 10.0, 1e8, 60, 1e-7})) return failed(last_.message);
+      if (!solve({0, 10.0, 1e8, most_iterations, 1e-7})) return failed(last_.message);
       const Smoothed smoothed = smooth_present(shooting_, penalties_, linearised);
       if (!smoothed.ok) return failed(shooting_.failure().empty() ? not_determined(linearised) : "");
       const std::vector<double> sigma = channel_sigmas(shooting_, shooting_.run(false), experiments_, smoothed.edf);
@@ -175,14 +176,37 @@ class Estimator {
                                               [](double now, double then) { return std::abs(now / then - 1.0) < 0.01; });
       before = smoothed.edf;
       shooting_.set_sigma(sigma);
-      if (settled_) break;
+      if (!settled_) continue;
+      add_digits(linearised, smoothed);
+      break;
     }
     return finish(last_);
   }
 
-  std::string not_determined(const Linearised& linearised) const {
+  /// A search in a long valley ends by its tolerance some way before the minimum: on to it, if a step of more than 1e-6 sigma is left. Not
+  /// for fits by the thousand.
+  void add_digits(const Linearised& linearised, const Smoothed& smoothed) {
+    constexpr double enough = 1e-6;
+    const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+    if ((smoothed.theta - linearised.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < enough || !options_.coloured) return;
+    const Shooting::State before = shooting_.state();
+    const LeastSquares::Summary then = last_;
+    if (solve({0, 10.0, 1e8, 100, 1e-13})) {
+      last_ = then;
+      return;
+    }
+    shooting_.restore(before);
+    shooting_.forget_failure();
+    last_ = then;
+  }
+
+  std::string not_determined(const Linearised& linearised) {
     const std::string which = linearised.N.size() > 0 ? undetermined(shooting_.model(), linearised) : "";
-    return which.empty() ? "the information matrix is singular: some parameters are not determined by these data" : which;
+    return at_the_end(which.empty() ? "the information matrix is singular: some parameters are not determined by these data" : which);
+  }
+
+  std::string at_the_end(const std::string& which) {
+    return said_of_the_end(which, last_.converged, shooting_, shooting_.run(false), experiments_);
   }
 
   /// On motion that is driven a failure to simulate is what had to be expected: then the method declines, in words.
@@ -213,13 +237,14 @@ class Estimator {
     std::vector<Penalty> penalties = kept(penalties_);
     const Smoothed smoothed = smooth(linearised, penalties, 1.0);
     if (!smoothed.ok) return failed(not_determined(linearised));
-    if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(which);
+    if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(at_the_end(which));
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
+    const double degrees = linearised.count - smoothed.edf;
     const std::vector<Segment> runs = shooting_.run(true);
     const auto& outputs = out.model.system->spec().outputs;
     for (std::size_t o = 0; o < outputs.size(); ++o) {
       const double sigma = shooting_.sigma()[o];
-      fit.noise[outputs[o].name] = {sigma, sigma / std::sqrt(2.0 * std::max(linearised.count / static_cast<double>(outputs.size()), 1.0)),
+      fit.noise[outputs[o].name] = {sigma, sigma / std::sqrt(2.0 * std::max(degrees / static_cast<double>(outputs.size()), 1.0)),
                                     outputs[o].unit};
     }
     RowMatrix visited = visited_quantities(out.model, experiments_.front(), setting_.states.front());
@@ -229,7 +254,7 @@ class Estimator {
       visited.conservativeResize(old + more.rows(), visited.cols());
       visited.bottomRows(more.rows()) = more;
     }
-    const Eigen::MatrixXd covariance = allowing_for_memory(linearised, smoothed.covariance, runs, visited, out);
+    const Eigen::MatrixXd covariance = allowing_for_memory(linearised, smoothed.covariance, runs, visited, degrees, out);
     predictions_of(shooting_, runs, experiments_, covariance, fit);
     errors_of(experiments_, fit);
     for (std::size_t e = 0; e < experiments_.size(); ++e) out.initial_states.push_back(shooting_.initial_state(e));
@@ -244,24 +269,33 @@ class Estimator {
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
     tell_weak_directions(out.model, covariance.topLeftCorner(columns, columns), fit);
     tell_other_trims(fit);
-    judge(out.model, setting_, fit);
+    judge(out.model, setting_, smoothed.edf / static_cast<double>(outputs.size()), fit);
     refuse_runaways(out.model, covariance.topLeftCorner(columns, columns), fit);
+    if (degrees < kFewestDegrees) withhold_sigmas(too_few(linearised.count, smoothed.edf), fit);
     fit.linearisations = shooting_.linearisations();
     return out;
   }
 
+  static std::string too_few(double count, double unknowns) {
+    return format_value(count) + " readings for " + format_value(std::round(10.0 * unknowns) / 10.0) +
+           " unknowns (free parameters and initial states) are too few to tell how far off the values are: no sigma is given";
+  }
+
   /// Of all unknowns; tells parameters, curves and trim with it, and what the plain one would give.
   Eigen::MatrixXd allowing_for_memory(const Linearised& linearised, const Eigen::MatrixXd& plain, const std::vector<Segment>& runs,
-                                      const RowMatrix& visited, FittedModel& out) const {
+                                      const RowMatrix& visited, double degrees, FittedModel& out) const {
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
     if (!options_.coloured) {
       describe(out.model, plain.topLeftCorner(columns, columns), visited, out.fit);
       return plain;
     }
-    const ColouredCovariance coloured = coloured_covariance(residual_rows(shooting_, runs, experiments_), plain, out.model.outputs());
+    const std::vector<ResidualRows> rows = residual_rows(shooting_, runs, experiments_);
+    const ColouredCovariance coloured =
+        memory_of_residuals(residual_rows(shooting_, runs, experiments_), plain, out.model.outputs(), degrees);
     Eigen::MatrixXd covariance = with_uncertain_roughness(linearised, penalties_, 1.0, coloured.excess);
     out.plain_covariance = with_uncertain_roughness(linearised, penalties_, 1.0).topLeftCorner(columns, columns);
     describe_both(out.model, out.plain_covariance, covariance.topLeftCorner(columns, columns), visited, out.fit);
+    if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
     out.fit.facts["covariance"] = in_words(coloured);
     const auto& outputs = out.model.system->spec().outputs;
     for (std::size_t o = 0; o < outputs.size(); ++o)

@@ -18,6 +18,34 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+/// Predicted − measured of output o, per experiment and sample; NaN where it does not count.
+std::vector<std::vector<double>> channel_residuals(const Shooting& shooting, const std::vector<Segment>& runs,
+                                                   const std::vector<Signals>& experiments, std::size_t o) {
+  std::vector<std::vector<double>> out;
+  for (std::size_t e = 0; e < runs.size(); ++e) {
+    out.emplace_back(experiments[e].samples(), std::nan(""));
+    for (std::size_t i = 0; i < experiments[e].samples() && runs[e].finite; ++i) {
+      if (!shooting.counts(e, i, o)) continue;
+      out.back()[i] = runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i];
+    }
+  }
+  return out;
+}
+
+struct Squares {
+  double sum = 0.0, count = 0.0;
+};
+
+Squares squares_of(const std::vector<std::vector<double>>& residuals) {
+  Squares out;
+  for (const auto& series : residuals) {
+    for (const double r : series) {
+      if (std::isfinite(r)) out.sum += r * r, out.count += 1.0;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
@@ -25,15 +53,7 @@ std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<S
   std::vector<double> sigma = shooting.sigma();
   const double share = edf / static_cast<double>(sigma.size());
   for (std::size_t o = 0; o < sigma.size(); ++o) {
-    double squares = 0.0, count = 0.0;
-    for (std::size_t e = 0; e < runs.size(); ++e) {
-      for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
-        if (!shooting.counts(e, i, o)) continue;
-        const double r = runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i];
-        squares += r * r;
-        count += 1.0;
-      }
-    }
+    const auto [squares, count] = squares_of(channel_residuals(shooting, runs, experiments, o));
     if (count > share + 1.0 && squares > 0.0) sigma[o] = std::sqrt(squares / (count - share));
   }
   return sigma;
@@ -133,23 +153,52 @@ double motion_size(const std::vector<double>& values) {
   return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
 }
 
-void judge(const Model& model, const Setting& setting, Fit& fit) {
+std::string said_of_the_end(const std::string& which, bool converged, const Shooting& shooting, const std::vector<Segment>& runs,
+                            const std::vector<Signals>& experiments) {
+  const auto& outputs = shooting.model().system->spec().outputs;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    std::vector<std::vector<double>> residuals = channel_residuals(shooting, runs, experiments, o);
+    const auto [squares, count] = squares_of(residuals);
+    for (std::size_t e = 0; e < residuals.size(); ++e) residuals[e] = on_even_grid(experiments[e].t, residuals[e]);
+    constexpr int lags = 20;
+    if (converged && !clearly_coloured(whiteness(joined_series(residuals), 1, lags))) continue;
+    return "the search ended at no fit of " + outputs[o].name + " (residual RMS " +
+           in_display_unit(std::sqrt(squares / std::max(count, 1.0)), outputs[o].unit) + ", motion RMS " +
+           in_display_unit(motion_size(experiments.front().measured[o].values), outputs[o].unit) + "): there " +
+           which.substr(0, which.find_first_of(":;")) + ", which need not be so elsewhere. Begin with other values, or give bounds";
+  }
+  return which;
+}
+
+namespace {
+
+/// Of a channel's estimation part in all experiments, on an even grid.
+std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
+  std::vector<std::vector<double>> all;
+  for (const auto& p : fit.predictions) {
+    if (p.channel != channel) continue;
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < p.t.size(); ++i) residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
+    all.push_back(on_even_grid(p.t, residuals));
+  }
+  return joined_series(all);
+}
+
+}  // namespace
+
+void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit) {
   const ChannelPrediction& p = fit.predictions.front();
-  std::vector<double> residuals;
-  for (std::size_t i = 0; i < p.t.size(); ++i) residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
-  const int last = std::max(6, static_cast<int>(pi / setting.frequency / setting.step));
-  const WhitenessTest test = whiteness(residuals, 1, last);
+  const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
+  const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period), unknowns);
   const double noise = reading_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
-  fit.facts["whiteness"] = "residuals of " + p.channel + " at lags 1 to " + std::to_string(test.last_lag) +
-                           " samples (half a period): largest autocorrelation " + format_value(test.largest) + " at lag " +
-                           std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
+  fit.facts["whiteness"] = "residuals of " + p.channel + " at " + in_words(test);
   fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
                            ", reading noise about " + in_display_unit(noise, p.unit);
   constexpr double clearly_above_noise = 2.0;
   fit.driven = looks_driven(test) && rms > clearly_above_noise * noise;
   constexpr double follows = 0.5;  // of the motion's own size: a model that leaves less explains most of it
   if (!fit.driven || rms < follows * size) {
-    if (test.p_value < 1e-3) {
+    if (clearly_coloured(test)) {
       fit.warnings.push_back(
           "residuals are not white (" + fit.facts["whiteness"] + "; " + fit.facts["explained"] +
           "): something is missing from the model, or the readings' own noise has memory. Sigmas allow for that memory as noise (" +

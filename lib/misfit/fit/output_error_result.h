@@ -26,7 +26,12 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 /// Standard deviation of the known values.
 [[nodiscard]] double motion_size(const std::vector<double>& values);
 
+/// What the information matrix where the search ended cannot tell (`which`, a sentence) is said of the data only if the model describes
+/// them there: the search has converged and the residuals are not clearly coloured. Else it is said of that place.
+[[nodiscard]] std::string said_of_the_end(const std::string& which, bool converged, const Shooting& shooting,
+                                          const std::vector<Segment>& runs, const std::vector<Signals>& experiments);
+
 /// Says whether a deterministic model followed the motion, and marks the fit where it did not.
-void judge(const Model& model, const Setting& setting, Fit& fit);
+void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit);
 
 }  // namespace misfit::output_error_parts

@@ -86,7 +86,7 @@ Smoothed smooth(const Linearised& problem, std::vector<Penalty>& penalties, doub
     out.theta = out.covariance * b;
     const Eigen::VectorXd d = out.theta - problem.theta;
     out.rss = std::max(problem.rss + 2.0 * d.dot(problem.g) + d.dot(problem.N * d), 1e-300);
-    out.edf = (out.covariance * problem.N).trace() / sigma2;
+    out.edf = (out.covariance * problem.N).trace() / sigma2 - problem.held;
     out.sigma2 = sigma2;
     out.ok = true;
     double change = 0.0;

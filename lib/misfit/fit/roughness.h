@@ -37,13 +37,14 @@ struct Linearised {
   double count = 0.0;                           ///< residuals
   Eigen::VectorXd theta;                        ///< columns: where it was made
   Eigen::VectorXd prior_precision, prior_mean;  ///< per column; precision 0 = none
+  double held = 0.0;                            ///< unknowns that N holds stiffly to a known value or to another unknown: not estimated
 };
 
 struct Smoothed {
   Eigen::VectorXd theta;       ///< maximum of the penalised Gaussian
   Eigen::MatrixXd covariance;  ///< inverse of N/σ² + Σ λ Ω + priors
   double sigma2 = 0.0;         ///< residual variance, rss/(count − edf)
-  double edf = 0.0;            ///< effective number of parameters, tr(covariance N)/σ²
+  double edf = 0.0;            ///< effective number of parameters, tr(covariance N)/σ² without those held
   double rss = 0.0;            ///< at theta, by the linearisation
   bool ok = false;             ///< false: the information matrix is not positive definite
 };

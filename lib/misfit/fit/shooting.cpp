@@ -20,12 +20,14 @@ Shooting::Shooting(Model model, const std::vector<Signals>& experiments, std::ve
       values_(model_.values()),
       stepper_(std::make_unique<Stepper>(model_)) {
   for (const auto& experiment : experiments) inputs_.push_back(input_table(experiment, model_.inputs()));
-  for (RowMatrix& history : history_) {
+  for (std::size_t e = 0; e < history_.size(); ++e) {
+    RowMatrix& history = history_[e];
     for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
       const StateSpec& state = model_.state_specs[j];
       auto column = history.col(static_cast<Eigen::Index>(j)).array();
       column = column.max(state.lower).min(state.upper);
-      if (state.initial == Initial::fixed && history.rows() > 0) history(0, static_cast<Eigen::Index>(j)) = state.start;
+      if (state.initial == Initial::fixed && !experiments_[e].after_gap && history.rows() > 0)
+        history(0, static_cast<Eigen::Index>(j)) = state.start;
     }
   }
   for (std::size_t e = 0; e < experiments_.size(); ++e) {

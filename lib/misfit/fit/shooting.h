@@ -88,6 +88,8 @@ class Shooting {
   [[nodiscard]] double holding(std::size_t state) const;
   /// What an initial state is held to by itself.
   [[nodiscard]] std::optional<double> known_start(std::size_t experiment, std::size_t state) const;
+  /// Is it one unknown with that of the first experiment? Not after a gap.
+  [[nodiscard]] bool shared_start(std::size_t experiment, std::size_t state) const;
   void hold_initial(Linearised& out) const;
   void add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const;
   void remember(std::vector<Piece>& pieces, const LeastSquares& problem);

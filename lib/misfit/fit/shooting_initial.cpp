@@ -9,9 +9,14 @@ namespace misfit {
 
 std::optional<double> Shooting::known_start(std::size_t experiment, std::size_t state) const {
   const StateSpec& spec = model_.state_specs[state];
-  if (spec.initial == Initial::fixed) return spec.start;
-  if (spec.initial == Initial::shared || !held_out_[experiment]) return std::nullopt;
+  const bool goes_on = experiments_[experiment].after_gap;
+  if (spec.initial == Initial::fixed && !goes_on) return spec.start;
+  if ((spec.initial == Initial::shared && !goes_on) || !held_out_[experiment]) return std::nullopt;
   return read_start_[experiment][static_cast<Eigen::Index>(state)];
+}
+
+bool Shooting::shared_start(std::size_t experiment, std::size_t state) const {
+  return model_.state_specs[state].initial == Initial::shared && !experiments_[experiment].after_gap;
 }
 
 double Shooting::holding(std::size_t state) const {
@@ -28,9 +33,8 @@ void Shooting::add_initial(LeastSquares& problem, const std::vector<Piece>& piec
     if (piece.first != 0) continue;
     if (first < 0) first = piece.block;
     for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
-      const StateSpec& state = model_.state_specs[j];
       const std::optional<double> known = known_start(piece.experiment, j);
-      const bool tied = state.initial == Initial::shared && piece.block != first;
+      const bool tied = shared_start(piece.experiment, j) && piece.block != first;
       if (!known && !tied) continue;
       const double weight = std::sqrt(holding(j)), value = known.value_or(0.0);
       const auto n = static_cast<std::size_t>(model_.states());
@@ -57,15 +61,16 @@ void Shooting::hold_initial(Linearised& out) const {
   const Eigen::Index n = model_.states();
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
-      const StateSpec& state = model_.state_specs[j];
       const Eigen::Index own = columns + n * static_cast<Eigen::Index>(e) + static_cast<Eigen::Index>(j),
                          first = columns + static_cast<Eigen::Index>(j);
       const double weight = holding(j);
       if (const std::optional<double> known = known_start(e, j)) {
         out.N(own, own) += weight;
         out.g[own] += weight * (out.theta[own] - *known);
-      } else if (state.initial == Initial::shared && e > 0) {
+        out.held += 1.0;
+      } else if (shared_start(e, j) && e > 0) {
         const double difference = out.theta[own] - out.theta[first];
+        out.held += 1.0;
         out.N(own, own) += weight;
         out.N(first, first) += weight;
         out.N(own, first) -= weight;

@@ -115,7 +115,7 @@ Pass run(const BinForm& form, const Signals& signals, const SlidingBinOptions& o
   constexpr int fewest_lags = 5;
   const double half_period = frequency > 0.0 ? std::numbers::pi / frequency / usual_step(signals.t) : 0.0;
   const int last_lag = std::max(beyond_stencil + fewest_lags, static_cast<int>(half_period));
-  pass.whiteness = whiteness(residuals, beyond_stencil, last_lag);
+  pass.whiteness = whiteness(on_even_grid(signals.t, residuals), beyond_stencil, last_lag);
   pass.residual_rms = rms(residuals);
   pass.driven = looks_driven(pass.whiteness) && has_force(regression, pass.residual_rms);
   const std::vector<double> rho = memory(residuals, pass.driven ? last_lag : beyond_stencil - 1);
@@ -189,10 +189,7 @@ void tell_bins(const BinForm& form, const SlidingBinOptions& options, const Pass
 void tell_damping(const BinForm& form, const Pass& pass, Fit& fit) {
   const auto& spec = form.model.system->spec();
   const std::string name = spec.damping_curve, level_unit = spec.states[static_cast<std::size_t>(form.level)].unit;
-  fit.facts["whiteness"] = "residuals of the bins at lags " + std::to_string(pass.whiteness.first_lag) + " to " +
-                           std::to_string(pass.whiteness.last_lag) + " samples: largest autocorrelation " +
-                           format_value(pass.whiteness.largest) + " at lag " + std::to_string(pass.whiteness.largest_lag) +
-                           ", Ljung-Box p = " + format_probability(pass.whiteness.p_value);
+  fit.facts["whiteness"] = "residuals of the bins at " + in_words(pass.whiteness);
   const std::string sum = "sum of acceleration times rate over " + std::to_string(pass.sum.count) +
                           " samples: " + format_value(pass.sum.value, pass.sum.sigma) + " " + level_unit + "^2/s^3, " +
                           (pass.sum.zero() ? "within" : "beyond") + " 2 sigma of 0";

@@ -4,6 +4,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 
@@ -44,6 +45,8 @@ double f_tail(double x, double dof1, double dof2) {
 }
 
 double normal_quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }
+
+double student_quantile(double p, double dof) { return boost::math::quantile(boost::math::students_t(dof), p); }
 
 double normal_tail(double x) { return 0.5 * std::erfc(x / std::sqrt(2.0)); }
 

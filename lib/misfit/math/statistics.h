@@ -20,6 +20,9 @@ namespace misfit {
 /// The standard normal's quantile: x with P(z < x) = p, 0 < p < 1.
 [[nodiscard]] double normal_quantile(double p);
 
+/// Student's t of `dof` > 0 degrees of freedom: x with P(t < x) = p, 0 < p < 1.
+[[nodiscard]] double student_quantile(double p, double dof);
+
 /// P(z > x) for a standard normal z.
 [[nodiscard]] double normal_tail(double x);
 

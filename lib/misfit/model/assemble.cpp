@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "misfit/core/shown.h"
@@ -132,6 +133,7 @@ void Assembler::apply_request(Parameter& p) {
   if (r.lower) p.lower = *r.lower;
   if (r.upper) p.upper = *r.upper;
   if (r.value) p.value = *r.value;
+  if (r.value && !std::isfinite(p.lower) && !std::isfinite(p.upper)) p.scale = std::max(p.scale, std::abs(p.value));
   if (r.free) p.free = *r.free;
   if (r.sigma) p.prior_sigma = r.sigma;
   p.prior_mean = p.value;

@@ -119,7 +119,7 @@ class Maker {
       c.value = text.value.value_or(std::clamp(0.0, text.lower, text.upper));
       c.lower = text.lower;
       c.upper = text.upper;
-      c.scale = text.scale.value_or(c.value != 0.0 ? std::abs(c.value) : 1.0);
+      c.scale = text.scale.value_or(c.value != 0.0 ? std::abs(c.value) : text.sigma.value_or(1.0));
       c.fixed = !text.free.value_or(true);
       c.own_sigma = text.sigma.value_or(0.0);
       c.doc = keep(text.doc.empty() ? "declared in the study" : text.doc);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -14,7 +15,7 @@ struct ParameterText {
   formula::Measure measure;
   std::optional<double> value, sigma, scale;
   std::optional<bool> free;
-  double lower = -1e9, upper = 1e9;
+  double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();  ///< none unless given
 };
 
 /// InputError at its place for a missing or unknown unit, bounds that do not increase, a value outside them, a sigma or scale not above 0.

@@ -49,7 +49,7 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-/// mean of r[i] r[i+lag] over the pairs that exist, over mean of r². NaN entries are left out.
+/// c_lag/c_0 with c_lag = (1/n) Σ r[i] r[i+lag]; where entries are missing (NaN) the mean of the pairs that exist stands for all n − lag.
 double autocorrelation(const std::vector<double>& r, std::size_t lag) {
   double sum = 0.0;
   double square = 0.0;
@@ -65,7 +65,8 @@ double autocorrelation(const std::vector<double>& r, std::size_t lag) {
     }
   }
   if (pairs == 0 || !(square > 0.0)) return nan;
-  return sum / static_cast<double>(pairs) / (square / static_cast<double>(count));
+  const double share = static_cast<double>(r.size() - lag) / static_cast<double>(r.size());
+  return share * sum / static_cast<double>(pairs) / (square / static_cast<double>(count));
 }
 
 /// Residuals over their sigma, less their mean, NaN where held out or missing.

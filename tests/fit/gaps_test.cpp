@@ -1,0 +1,157 @@
+// Recordings with time between two samples that no model can be run across.
+#include "misfit/fit/gaps.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "misfit/fit/filter_error.h"
+#include "misfit/fit/output_error.h"
+#include "misfit/fit/trajectory_start.h"
+#include "tests/model/declared_texts.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_models;
+using testing::HasSubstr;
+
+const std::string first_order_text = R"toml(
+[states]
+x = { unit = "V", scale = 1.0 }
+[inputs]
+u = { unit = "V", hold = "zero_order" }
+[parameters]
+a = { unit = "1/s", value = 0.5, bounds = [0.0, 100.0], free = true }
+b = { unit = "1/s", value = 0.5, bounds = [-100.0, 100.0], free = true }
+[equations]
+x = "-a*x + b*u"
+[outputs]
+y = { unit = "V", formula = "x", noise = 0.01 }
+)toml";
+
+/// x' = rate (u − x) by its exact solution over steps of 0.1/rate, u on and off in turn; `gap` seconds pass before sample 101.
+Signals first_order(double gap, double rate = 1.0, std::size_t samples = 201) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  Signals s;
+  s.name = "e";
+  s.measured = {{"y", "V", {}, 0.0}};
+  s.inputs = {{"u", "V", {}, 0.0}};
+  double x = 0.5;
+  constexpr double step = 0.1, noise = 0.01;
+  const double before = 1.0 / rate, left = std::exp(-step);
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double u = (i / 25) % 2 == 0 ? 1.0 : 0.0;
+    s.t.push_back(static_cast<double>(i) * step * before + (i > 100 ? gap : 0.0));
+    s.inputs[0].values.push_back(u);
+    s.measured[0].values.push_back(x + noise * normal(random));
+    x = u + (x - u) * left;
+    if (i == 100) x = u + (x - u) * std::exp(-gap * rate);
+  }
+  return s;
+}
+
+Model first_order_model(double a = 0.5) {
+  const auto known = registry_with(first_order_text);
+  ModelRequest request = request_of("text");
+  request.parameters["a"].value = a;
+  return assemble(request, *known);
+}
+
+void expect_right(const Fit& fit, double rate) {
+  ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+  for (const char* name : {"a", "b"}) {
+    const Estimate& e = fit.parameters.at(name);
+    EXPECT_NEAR(e.value, rate, 4.0 * e.sigma) << fit.method << " " << name;
+    EXPECT_LT(e.sigma, 0.1 * rate) << fit.method << " " << name;
+  }
+}
+
+TEST(Gaps, AnHourWithoutSamplesCutsTheRecording) {
+  const Signals whole = first_order(3600.0);
+  const std::vector<Signals> parts = split_at_gaps(first_order_model(), whole);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].name, "e_part_1");
+  EXPECT_EQ(parts[1].name, "e_part_2");
+  EXPECT_TRUE(is_part_of(parts[1], "e"));
+  EXPECT_FALSE(is_part_of(parts[1], "f"));
+  EXPECT_FALSE(parts[0].after_gap);
+  EXPECT_TRUE(parts[1].after_gap);
+  EXPECT_EQ(parts[0].samples(), 101U);
+  EXPECT_EQ(parts[1].samples(), 100U);
+  EXPECT_EQ(parts[1].inputs[0].values.front(), whole.inputs[0].values[101]);
+  ASSERT_EQ(parts[0].notes.size(), 1U);
+  EXPECT_THAT(parts[0].notes[0], HasSubstr("cut at 1 gap in time of up to 3600"));
+}
+
+TEST(Gaps, AfterAnHourEveryMethodHasTheRightAnswer) {
+  const Model model = first_order_model();
+  const std::vector<Signals> parts = split_at_gaps(model, first_order(3600.0));
+  const TrajectoryStart start = trajectory_start(model, parts);
+  expect_right(start.from.fit, 1.0);
+  OutputErrorStart options;
+  options.from_regression = start.regressed;
+  const FittedModel fitted = output_error(start.from, parts, options);
+  expect_right(fitted.fit, 1.0);
+  EXPECT_NEAR(fitted.fit.rms.at("y").value, 0.01, 0.002);
+  EXPECT_EQ(fitted.fit.predictions.size(), 2U);
+  FilterOptions one;
+  one.threads = 1;
+  expect_right(filter_error(start.from, parts, one).fit, 1.0);
+}
+
+TEST(Gaps, AGapThatTheModelCanBeRunAcrossIsBridged) {
+  EXPECT_EQ(split_at_gaps(first_order_model(0.001), first_order(3600.0, 0.001)).size(), 1U) << "a time constant of 1000 s";
+  EXPECT_EQ(split_at_gaps(first_order_model(), first_order(5.0)).size(), 1U) << "50 steps, but five time constants";
+  EXPECT_EQ(split_at_gaps(first_order_model(), first_order(0.0)).size(), 1U);
+}
+
+TEST(Gaps, TheDataTellHowFastTheMotionIsWhereTheStartDoesNot) {
+  EXPECT_EQ(split_at_gaps(first_order_model(1e-4), first_order(3600.0)).size(), 2U);
+}
+
+TEST(Gaps, PartsTooShortForAStateAreLeftOutAndCounted) {
+  Signals whole = first_order(3600.0);
+  whole.t.back() += 7200.0;
+  const std::vector<Signals> parts = split_at_gaps(first_order_model(), whole);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_THAT(parts[0].notes.back(), HasSubstr("1 samples in parts of fewer than 5 are not used"));
+}
+
+TEST(Gaps, ExcludedSamplesAreThoseOfTheRecordingsBeginning) {
+  Signals whole = first_order(3600.0);
+  whole.exclude = 7;
+  const std::vector<Signals> parts = split_at_gaps(first_order_model(), whole);
+  EXPECT_EQ(parts[0].exclude, 7U);
+  EXPECT_EQ(parts[1].exclude, 0U);
+}
+
+/// A known first value is that of the recording, not of what follows a gap; and it counts as no unknown.
+TEST(Gaps, AFixedInitialStateHoldsForTheFirstPartOnly) {
+  const auto known = registry_with(first_order_text);
+  ModelRequest request = request_of("text");
+  request.initial["x"] = {Initial::fixed, 0.5, {}};
+  const Model model = assemble(request, *known);
+  const std::vector<Signals> parts = split_at_gaps(model, first_order(3600.0));
+  const FittedModel fitted = output_error(equation_error(model, parts), parts);
+  expect_right(fitted.fit, 1.0);
+  EXPECT_NEAR(fitted.initial_states[0][0], 0.5, 1e-6);
+  EXPECT_NEAR(fitted.initial_states[1][0], parts[1].measured[0].values[0], 0.05);
+  EXPECT_NEAR(std::stod(fitted.fit.facts.at("effective_parameters")), 3.0, 1e-3) << "a, b and one initial state";
+}
+
+TEST(EffectiveParameters, SharedInitialStatesAreOneUnknown) {
+  const auto known = registry_with(first_order_text);
+  ModelRequest request = request_of("text");
+  request.initial["x"] = {Initial::shared, std::nullopt, {}};
+  const Model model = assemble(request, *known);
+  const std::vector<Signals> twice{first_order(0.0), first_order(0.0)};
+  const FittedModel fitted = output_error(equation_error(model, twice), twice);
+  EXPECT_NEAR(std::stod(fitted.fit.facts.at("effective_parameters")), 3.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace misfit

@@ -1,0 +1,108 @@
+// How often the 95 % intervals of short records hold the truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "misfit/fit/filter_error.h"
+#include "misfit/fit/output_error.h"
+#include "misfit/fit/trajectory_start.h"
+#include "tests/model/declared_texts.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_models;
+
+const std::string decay_text = R"toml(
+[states]
+x = { unit = "V", scale = 1.0 }
+[parameters]
+a = { unit = "1/s", value = 0.5, bounds = [0.0, 100.0], free = true }
+[equations]
+x = "-a*x"
+[outputs]
+y = { unit = "V", formula = "x", noise = 0.01 }
+)toml";
+
+constexpr double truth = 1.0, noise = 0.01, duration = 3.0;
+
+/// exp(−t) over three seconds with white noise.
+Signals decay(std::size_t samples, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Signals s;
+  s.name = "decay";
+  s.measured = {{"y", "V", {}, 0.0}};
+  for (std::size_t i = 0; i < samples; ++i) {
+    s.t.push_back(duration * static_cast<double>(i) / static_cast<double>(samples));
+    s.measured[0].values.push_back(std::exp(-truth * s.t.back()) + noise * normal(random));
+  }
+  return s;
+}
+
+struct Coverage {
+  int given = 0, inside = 0, withheld = 0, failed = 0, alarms = 0;
+  double size = 0.0;  ///< mean of (value − truth)²/sigma² of those given
+};
+
+Coverage coverage(const Model& model, bool filter, std::size_t samples, unsigned seeds) {
+  Coverage out;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const std::vector<Signals> experiments{decay(samples, seed)};
+    const TrajectoryStart start = trajectory_start(model, experiments);
+    OutputErrorStart options;
+    options.from_regression = start.regressed;
+    FilterOptions one;
+    one.threads = 1;
+    const Fit fit = filter ? filter_error(start.from, experiments, one).fit : output_error(start.from, experiments, options).fit;
+    if (fit.status != FitStatus::converged) {
+      ++out.failed;
+      continue;
+    }
+    for (const auto& w : fit.warnings) out.alarms += w.find("not white") != std::string::npos ? 1 : 0;
+    const Estimate& a = fit.parameters.at("a");
+    if (!(a.sigma > 0.0)) {
+      ++out.withheld;
+      continue;
+    }
+    constexpr double normal = 1.96;
+    const auto [low, high] = a.interval.value_or(std::pair{a.value - normal * a.sigma, a.value + normal * a.sigma});
+    ++out.given;
+    out.inside += low <= truth && truth <= high ? 1 : 0;
+    out.size += std::pow((a.value - truth) / a.sigma, 2);
+  }
+  std::printf("%s, %3zu samples: %3d intervals, %5.1f %% hold; withheld %d, not converged %d, mean z^2 %.2f, not white %d\n",
+              filter ? "filter_error" : "output_error", samples, out.given, 100.0 * out.inside / std::max(out.given, 1), out.withheld,
+              out.failed, out.size / std::max(out.given, 1), out.alarms);
+  return out;
+}
+
+TEST(ShortRecords, IntervalsOfOutputErrorHoldOrAreNotGiven) {
+  const auto known = registry_with(decay_text);
+  const Model model = assemble(request_of("text"), *known);
+  constexpr unsigned seeds = 300;
+  for (const std::size_t samples : {2U, 3U, 4U, 5U, 6U, 8U, 10U, 20U, 50U, 100U}) {
+    const Coverage c = coverage(model, false, samples, seeds);
+    EXPECT_EQ(c.failed, 0) << samples;
+    EXPECT_LE(c.alarms, 3) << samples;
+    if (c.given == 0) continue;
+    EXPECT_GT(c.inside, 0.92 * c.given) << samples;
+    EXPECT_LT(c.inside, 0.98 * c.given) << samples;
+  }
+}
+
+TEST(ShortRecords, IntervalsOfFilterErrorHoldOrAreNotGiven) {
+  const auto known = registry_with(decay_text);
+  const Model model = assemble(request_of("text"), *known);
+  constexpr unsigned seeds = 400;
+  for (const std::size_t samples : {4U, 5U, 6U, 8U, 10U, 12U, 15U, 20U, 50U, 100U}) {
+    const Coverage c = coverage(model, true, samples, seeds);
+    if (c.given == 0) continue;
+    EXPECT_GT(c.inside, 0.92 * c.given) << samples;
+  }
+}
+
+}  // namespace
+}  // namespace misfit
