@@ -172,7 +172,7 @@ bool add_declared(const Session& session, const std::string& name, std::string& 
       any = true;
     }
     parameters += fmt::format("{}{} = {{ unit = {}, value = {}{}, scale = {}, free = {} }}", parameters.empty() ? "" : ", ", c.name,
-                              quoted(c.unit), c.value, bounds_text(c.lower, c.upper), c.scale, !c.fixed);
+                              toml_string(c.unit), c.value, bounds_text(c.lower, c.upper), c.scale, !c.fixed);
   }
   text += "], parameters = { " + parameters + " } }\n";
   return true;
