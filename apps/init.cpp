@@ -27,7 +27,7 @@ const char* word_of(ColumnUse use) {
 
 /// Where the study goes: --out, else a folder called like the data in the present one.
 fs::path folder_for(const Options& options, const fs::path& data) {
-  return options.out.empty() ? fs::path(data.stem()) : fs::path(options.out);
+  return options.out.empty() ? fs::path(part_names(data, 1).front()) : fs::path(options.out);
 }
 
 std::string survey_text(const RecordingSurvey& survey) {

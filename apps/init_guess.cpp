@@ -30,8 +30,6 @@ double largest(const ColumnSurvey& column, const std::string& unit) {
   return convert(std::max(std::abs(column.low), std::abs(column.high)), column.unit, unit);
 }
 
-double range(const ColumnSurvey& column, const std::string& unit) { return convert(column.high - column.low, column.unit, unit); }
-
 /// Sums of squares of what is measured must be numbers.
 void refuse_extremes(const RecordingSurvey& survey) {
   constexpr double most = 1e100, least = 1e-100;
@@ -101,16 +99,12 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
   say_left_out("inputs", left_out, fmt::format("a system has at most {} inputs", kMaxInputs), model.remarks);
 }
 
-GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, const ColumnSurvey& c, const GuessedModel& model,
-                           GuessData& data) {
+GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, const ColumnSurvey& c, GuessData& data) {
   GuessedOutput output;
   output.name = c.name;
   output.unit = si_unit(c.unit);
   data.y = table.values(c.name, output.unit);
   output.noise = noise_of(data.y, c, output.unit);
-  output.scale = largest(c, output.unit);
-  for (std::size_t i = 0; i < model.inputs.size(); ++i)
-    output.gain_scales.push_back(range(c, output.unit) / range(column_called(survey, model.inputs[i]), model.input_units[i]));
   output.guess = guess_linear(data);
   for (const ColumnSurvey* r : survey.of_use(ColumnUse::rate)) {
     if (r->rate_of != c.name) continue;
@@ -168,7 +162,7 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
   std::vector<std::string> left_out;
   for (const ColumnSurvey* c : survey.of_use(ColumnUse::output)) {
     const bool none_fits = room.states == 0 || room.outputs == 0;
-    GuessedOutput output = none_fits ? GuessedOutput{} : guess_output(survey, *longest, *c, model, data);
+    GuessedOutput output = none_fits ? GuessedOutput{} : guess_output(survey, *longest, *c, data);
     if (none_fits || !room.take(output, model.inputs.size())) {
       left_out.push_back(c->name);
       continue;

@@ -15,8 +15,6 @@ struct GuessedOutput {
   std::string rate_state;                     ///< order 2: the state that is its rate
   std::string stiffness, damping, tau, rest;  ///< parameters of its equation
   std::vector<std::string> gains;             ///< one per input
-  double scale = 1.0;                         ///< largest of its values, without sign
-  std::vector<double> gain_scales;            ///< its range by that of each input
   double noise = 0.0, rate_noise = 0.0;       ///< reading noise [unit]
   LinearGuess guess;
 };

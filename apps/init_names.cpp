@@ -1,7 +1,7 @@
 #include "apps/init_names.h"
 
 #include "misfit/core/file_name.h"
-#include "misfit/core/printable.h"
+#include "misfit/core/shown.h"
 
 namespace misfit {
 namespace {
@@ -11,13 +11,13 @@ constexpr std::size_t longest = 100;  // bytes
 std::string without_front(std::string stem) { return stem.erase(0, std::min(stem.find_first_not_of(".-"), stem.size())); }
 
 bool is_usable(const std::string& stem) {
-  return !stem.empty() && stem.size() <= longest && stem == printable(stem) && stem.find('\\') == std::string::npos;
+  return !stem.empty() && stem.size() <= longest && stem == shown(stem, longest) && stem.find('\\') == std::string::npos;
 }
 
 }  // namespace
 
 std::string study_name(const std::filesystem::path& data) {
-  const std::string name = printable(data.stem().string(), longest);
+  const std::string name = shown(data.stem().string(), longest);
   return without_front(name).empty() ? "recording" : name;
 }
 

@@ -21,12 +21,6 @@ std::string number(double value) {
 
 std::string ratio(const std::string& above, const std::string& below) { return bind_unit("{a}/{b}", {{"a", above}, {"b", below}}); }
 
-/// Where a parameter of this scale can be; a declared parameter without bounds is between -1e9 and 1e9.
-std::string wide_bounds(double scale) {
-  constexpr double usual = 1e5;
-  return scale < usual ? std::string() : fmt::format("bounds = [{}, {}]", number(-1e3 * scale), number(1e3 * scale));
-}
-
 /// Within a factor of 1000.
 std::string positive_bounds(double value) { return fmt::format("bounds = [{}, {}]", number(1e-3 * value), number(1e3 * value)); }
 
@@ -51,11 +45,9 @@ std::string parameters_of(const GuessedModel& model, const GuessedOutput& output
     text += parameter(output.tau, "s", g.tau, positive_bounds(g.tau), "time constant");
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    text += parameter(output.gains[i], ratio(output.unit, model.input_units[i]), g.gain[i],
-                      wide_bounds(std::max(output.gain_scales[i], std::abs(g.gain[i]))), "static answer to " + model.inputs[i]);
+    text += parameter(output.gains[i], ratio(output.unit, model.input_units[i]), g.gain[i], "", "static answer to " + model.inputs[i]);
   }
-  return text + parameter(output.rest, output.unit, g.rest, wide_bounds(std::max(output.scale, std::abs(g.rest))),
-                          model.inputs.empty() ? "where it comes to rest" : "answer to no input");
+  return text + parameter(output.rest, output.unit, g.rest, "", model.inputs.empty() ? "where it comes to rest" : "answer to no input");
 }
 
 std::string equations_of(const GuessedModel& model, const GuessedOutput& output) {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "misfit/core/config.h"
-#include "misfit/core/printable.h"
+#include "misfit/core/utf8.h"
 
 namespace misfit {
 namespace {
@@ -84,15 +84,6 @@ TEST(TomlKey, StaysBareWhereItMay) {
   EXPECT_EQ(toml_key("C_m"), "C_m");
   EXPECT_EQ(toml_key("a-1"), "a-1");
   EXPECT_EQ(toml_key("gravity.g"), "\"gravity.g\"");
-}
-
-TEST(Printable, CutsLongTextsBetweenLetters) {
-  EXPECT_EQ(printable("a\nb\x1b"
-                      "c"),
-            "a b c");
-  EXPECT_EQ(printable("abcdef", 6), "abcdef");
-  EXPECT_EQ(printable("abcdefg", 6), "abcdef…");
-  EXPECT_EQ(printable("ab\xE8\xAF\x95\xE9\xAA\x8C", 6), "ab\xE8\xAF\x95…");
 }
 
 }  // namespace

@@ -9,12 +9,12 @@
 #include <sstream>
 
 #include "misfit/core/files.h"
-#include "misfit/core/printable.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/toml_depth.h"
 #include "misfit/core/toml_outline.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/core/units.h"
+#include "misfit/core/utf8.h"
 
 namespace misfit::config {
 

@@ -15,11 +15,11 @@ bool is_plain(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') 
 
 std::string file_name_for(std::string_view name) {
   if (!name.empty() && name.size() <= longest && std::all_of(name.begin(), name.end(), is_plain)) return std::string(name);
-  constexpr std::size_t hash_digits = 10;
+  constexpr std::size_t hash_digits = 16;
   std::string out(name.empty() ? "_" : name.substr(0, longest - 1 - hash_digits));
   std::replace_if(
       out.begin(), out.end(), [](char c) { return !is_plain(c); }, '_');
-  return out + "." + hash_text(name).substr(0, hash_digits);
+  return out + "." + hash_text(name);
 }
 
 }  // namespace misfit

@@ -5,6 +5,7 @@
 
 #include "misfit/core/edit_distance.h"
 #include "misfit/core/error.h"
+#include "misfit/core/utf8.h"
 
 namespace misfit {
 namespace {
@@ -21,16 +22,6 @@ std::size_t bytes_of_character(unsigned char first) {
 
 bool continues(unsigned char byte) { return (byte & 0xC0U) == 0x80U; }
 
-/// Bytes of the character at the front of `text`; 0 if it is no UTF-8.
-std::size_t front_character(std::string_view text) {
-  const std::size_t bytes = bytes_of_character(byte_at(text, 0));
-  if (bytes == 0 || bytes > text.size()) return 0;
-  for (std::size_t i = 1; i < bytes; ++i) {
-    if (!continues(byte_at(text, i))) return 0;
-  }
-  return bytes;
-}
-
 void append_escape(std::string& out, unsigned char byte, Escapes escapes) {
   constexpr std::string_view digits = "0123456789abcdef";
   out.append(escapes == Escapes::json ? "\\u00" : "\\x").append(1, digits[byte >> 4U]).append(1, digits[byte & 15U]);
@@ -46,7 +37,7 @@ bool is_control(std::string_view character) {
 /// Where character number `count` of `text` begins; its size if it has no more.
 std::size_t place_of(std::string_view text, std::size_t count) {
   std::size_t i = 0;
-  for (; i < text.size() && count > 0; --count) i += std::max<std::size_t>(front_character(text.substr(i)), 1);
+  for (; i < text.size() && count > 0; --count) i += std::max<std::size_t>(utf8_length(text.substr(i)), 1);
   return i;
 }
 
@@ -72,7 +63,7 @@ std::vector<std::string> nearest_first(std::string_view name, const std::vector<
 std::string printable(std::string_view text, Escapes escapes) {
   std::string out;
   while (!text.empty()) {
-    const std::size_t bytes = front_character(text);
+    const std::size_t bytes = utf8_length(text);
     const std::string_view character = text.substr(0, std::max<std::size_t>(bytes, 1));
     if (bytes == 0) {
       append_escape(out, byte_at(text, 0), escapes);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "misfit/core/printable.h"
+#include "misfit/core/utf8.h"
 
 namespace misfit {
 namespace {
@@ -17,6 +17,11 @@ std::string toml_key(std::string_view name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), may_be_bare) ? std::string(name) : toml_string(name);
 }
 
-std::string toml_comment(std::string_view text) { return printable(text); }
+std::string toml_comment(std::string_view text) {
+  std::string out = valid_utf8(text);
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }, ' ');
+  return out;
+}
 
 }  // namespace misfit

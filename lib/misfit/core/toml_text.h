@@ -8,7 +8,7 @@
 namespace misfit {
 
 /// A string in quotation marks, on one line; quotation marks, backslashes, line breaks and other control characters are escaped. A text
-/// that is UTF-8 reads back to itself, others to valid_utf8() of printable.h.
+/// that is UTF-8 reads back to itself, others to valid_utf8() of utf8.h.
 [[nodiscard]] std::string toml_string(std::string_view text);
 
 /// A key: bare where TOML allows it, else in quotation marks.

@@ -10,7 +10,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/loose_csv.h"
-#include "misfit/core/printable.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/unique_name.h"
 #include "misfit/core/units.h"
@@ -59,17 +59,17 @@ class Surveyor {
   ColumnSurvey look_at(const LooseColumn& column) {
     ColumnSurvey s;
     const NameAndUnit header = read_header(column.header);
-    s.header = printable(column.header, longest_header);
+    s.header = shown(column.header, longest_header);
     s.name = header.name;
     s.unit = header.unit.empty() ? "-" : header.unit;
-    not_understood_.push_back(printable(header.not_understood, longest_header));
+    not_understood_.push_back(shown(header.not_understood, longest_header));
     const std::vector<double> known = finite(column.values);
     s.missing = column.values.size() - known.size() - column.text;
     if (column.text > 0) {
       if (known.size() > column.text) {
         fail(column.text_line,
              fmt::format("column '{}': '{}' is not a number (a missing value is an empty cell or NaN); {} cell{} of {} are text", s.header,
-                         printable(column.first_text, longest_header), column.text, column.text == 1 ? "" : "s", column.values.size()));
+                         shown(column.first_text, longest_header), column.text, column.text == 1 ? "" : "s", column.values.size()));
       }
       s.use = ColumnUse::text;
       s.why = "text";

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "misfit/core/error.h"
-#include "misfit/core/printable.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/data/study_text.h"
 
@@ -129,7 +129,7 @@ std::string with_effect(const std::string& text, const std::string& line) {
   }
   const TomlPath added{"effects", name_of(line)};
   refuse_unless_same(study, out, added);
-  if (study.find(added) != nullptr) throw InputError("[effects] has an effect '" + printable(added.back(), 80) + "' already");
+  if (study.find(added) != nullptr) throw InputError("[effects] has an effect '" + shown(added.back()) + "' already");
   return out;
 }
 
@@ -146,8 +146,7 @@ std::string without_entry(const std::string& text, const std::string& section, c
     out = as_comments(study, lines, why);
   }
   refuse_unless_same(study, out, {section, key});
-  if (StudyText(out).find({section, key}) != nullptr)
-    throw InputError("'" + printable(key, 80) + "' cannot be taken out of [" + section + "]");
+  if (StudyText(out).find({section, key}) != nullptr) throw InputError("'" + shown(key) + "' cannot be taken out of [" + section + "]");
   return out;
 }
 

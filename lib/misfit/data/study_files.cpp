@@ -4,8 +4,9 @@
 #include <functional>
 
 #include "misfit/core/error.h"
-#include "misfit/core/printable.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/toml_text.h"
+#include "misfit/core/utf8.h"
 #include "misfit/data/study_edit.h"
 #include "misfit/data/study_text.h"
 
@@ -54,8 +55,8 @@ std::string text_for_folder(const Study& study, const fs::path& folder) {
   for (const auto& [at, node] : found) {
     const std::string path = true_path((from / node->value).lexically_normal()).lexically_relative(to).generic_string();
     if (!is_utf8(path))
-      throw InputError({study.file.string(), 0, 0}, "'" + printable(node->value) + "' is '" + printable(path) + "' as seen from " +
-                                                        printable(folder.string()) + ": a path that is no UTF-8 cannot stand in a study");
+      throw InputError({study.file.string(), 0, 0}, "'" + shown(node->value) + "' is '" + shown(path) + "' as seen from " +
+                                                        shown(folder.string()) + ": a path that is no UTF-8 cannot stand in a study");
     out += study.text.substr(done, at - done) + toml_string(path);
     done = node->end;
   }

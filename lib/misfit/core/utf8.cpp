@@ -1,4 +1,4 @@
-#include "misfit/core/printable.h"
+#include "misfit/core/utf8.h"
 
 #include <algorithm>
 
@@ -7,8 +7,9 @@ namespace {
 
 bool continues(unsigned char byte) { return (byte & 0xC0U) == 0x80U; }
 
-/// Bytes of the code point that begins the text, 0 if they are no UTF-8 (Unicode, table 3-7).
-std::size_t code_point_length(std::string_view text) {
+}  // namespace
+
+std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
   if (first < 0x80U) return 1;
@@ -26,13 +27,9 @@ std::size_t code_point_length(std::string_view text) {
   return overlong || surrogate || beyond ? 0 : length;
 }
 
-bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }
-
-}  // namespace
-
 bool is_utf8(std::string_view text) {
   while (!text.empty()) {
-    const std::size_t length = code_point_length(text);
+    const std::size_t length = utf8_length(text);
     if (length == 0) return false;
     text.remove_prefix(length);
   }
@@ -42,20 +39,11 @@ bool is_utf8(std::string_view text) {
 std::string valid_utf8(std::string_view text) {
   std::string out;
   while (!text.empty()) {
-    const std::size_t length = code_point_length(text);
+    const std::size_t length = utf8_length(text);
     out += length == 0 ? std::string_view("\xEF\xBF\xBD") : text.substr(0, length);
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return out;
-}
-
-std::string printable(std::string_view text, std::size_t most) {
-  std::string out = valid_utf8(text.size() > most ? text.substr(0, most + 4) : text);
-  std::replace_if(out.begin(), out.end(), is_control, ' ');
-  if (out.size() <= most) return out;
-  std::size_t end = most;
-  while (end > 0 && continues(static_cast<unsigned char>(out[end]))) --end;
-  return out.substr(0, end) + "…";
 }
 
 }  // namespace misfit

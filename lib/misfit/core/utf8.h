@@ -6,12 +6,12 @@
 
 namespace misfit {
 
+/// Bytes of the character at the front of a text that is not empty (Unicode, table 3-7); 0 if it is no UTF-8.
+[[nodiscard]] std::size_t utf8_length(std::string_view text);
+
 [[nodiscard]] bool is_utf8(std::string_view text);
 
 /// Every byte that is no UTF-8 becomes U+FFFD.
 [[nodiscard]] std::string valid_utf8(std::string_view text);
-
-/// For a terminal, a comment or a title: UTF-8, one line, control characters as blanks; of more than `most` bytes the first ones and "…".
-[[nodiscard]] std::string printable(std::string_view text, std::size_t most = std::string_view::npos);
 
 }  // namespace misfit
