@@ -24,12 +24,12 @@ std::string trimmed(const std::string& line) {
 
 /// study.toml of the folder or, where there is none, of the folders below it, in the order of their names.
 void search(const fs::path& folder, std::vector<fs::path>& found) {
-  if (fs::is_regular_file(folder / usual_name)) {
+  std::error_code none;
+  if (fs::is_regular_file(folder / usual_name, none)) {
     found.push_back(folder / usual_name);
     return;
   }
   std::vector<fs::path> below;
-  std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {
     const std::string name = entry.path().filename().string();
     if (entry.is_directory(none) && !name.starts_with(".") && !entry.is_symlink(none)) below.push_back(entry.path());
@@ -46,8 +46,11 @@ void read_list(const fs::path& list, std::vector<fs::path>& found) {
     ++number;
     const std::string name = trimmed(line);
     if (name.empty()) continue;
+    if (name.find('\0') != std::string::npos)
+      throw InputError({list.string(), number, 0}, "'" + shown(name) + "': a file name cannot hold the character NUL");
     const fs::path path = (list.parent_path() / name).lexically_normal();
-    if (fs::is_directory(path)) {
+    std::error_code none;
+    if (fs::is_directory(path, none)) {
       search(path, found);
     } else if (path.extension() == ".toml") {
       found.push_back(path);
@@ -61,11 +64,12 @@ void read_list(const fs::path& list, std::vector<fs::path>& found) {
 
 void add_argument(const std::string& argument, std::vector<fs::path>& found) {
   const fs::path path = argument;
-  if (fs::is_directory(path)) {
+  std::error_code none;
+  if (fs::is_directory(path, none)) {
     const std::size_t before = found.size();
     search(path, found);
     if (found.size() == before) throw InputError({path.string(), 0, 0}, "no study.toml in this folder or below it");
-  } else if (path.extension() == ".toml" && fs::exists(path)) {
+  } else if (path.extension() == ".toml" && fs::exists(path, none)) {
     found.push_back(path);
   } else {
     read_list(path, found);

@@ -181,7 +181,8 @@ int status_of(int argc, char** argv, const Registry& registry, PrintableStream& 
     say_error(error.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    say_error("out of memory while " + typed(argc, argv) + ": smaller data, fewer threads (--threads 1) or more memory is needed");
+    say_error("out of memory while running '" + shown(typed(argc, argv), 2 * longest_quote) +
+              "': smaller data, fewer threads (--threads 1) or more memory is needed");
     return 1;
   } catch (const std::exception& error) {
     say_error(error.what());

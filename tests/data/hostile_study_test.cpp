@@ -80,6 +80,20 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
+    ExperimentName, HostileStudy,
+    testing::Values(
+        Hostile{"Long", track + "name = \"" + std::string(151, 'n') + "\"\n", {"study.toml:5", "experiment[0].name", "150 bytes"}},
+        Hostile{"VeryLong", track + "name = \"" + long_text() + "\"\n", {"study.toml:5", "…", "150 bytes"}},
+        Hostile{"WithNul", track + "name = \"a\\u0000b\"\n", {"study.toml:5", "'a\\x00b'", "control characters"}},
+        Hostile{"WithNewline", track + "name = \"a\\nb\"\n", {"study.toml:5", "'a\\nb'", "control characters"}},
+        Hostile{"WithTab", track + "name = \"a\\tb\"\n", {"study.toml:5", "control characters"}},
+        Hostile{"WithC1", track + "name = \"a\\u009bb\"\n", {"study.toml:5", "'a\\x9bb'", "control characters"}},
+        Hostile{"OfAFolder", track + "name = \"a/b\"\n", {"study.toml:5", "'a/b'"}},
+        Hostile{"Hidden", track + "name = \".a\"\n", {"study.toml:5", "'.a'", "dot"}},
+        Hostile{"Empty", track + "name = \"\"\n", {"study.toml:5", "''"}}),
+    name_of);
+
+INSTANTIATE_TEST_SUITE_P(
     LongTexts, HostileStudy,
     testing::Values(
         Hostile{"ValidationOfBlanks", track + "validation = \"" + blanks() + "\"\n", {"study.toml:5", "last 25 %"}},
@@ -104,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"CameraModel", "[camera]\nmodel = \"" + long_text() + "\"\n", {"study.toml:4", "pinhole"}},
         Hostile{"Unit", "[camera]\nh_c = \"1 " + long_text() + "\"\n", {"study.toml:4", "camera.h_c", "unknown unit"}},
         Hostile{"ExperimentNames",
-                track + "name = \"" + long_text() + "\"\n" + track + "name = \"" + long_text() + "\"\n",
+                track + "name = \"" + std::string(150, 'n') + "\"\n" + track + "name = \"" + std::string(150, 'n') + "\"\n",
                 {"study.toml:8", "two experiments are called"}},
         Hostile{"ParameterKey", "[parameters." + long_text() + "]\nfree = 1\nx = 2\n", {"study.toml:5", "unknown key"}},
         Hostile{"InitialKind", "[initial]\nx = { kind = \"" + long_text() + "\" }\n", {"study.toml:4", "free"}}),
@@ -122,6 +136,15 @@ TEST_F(LargeStudy, NoiseOfZeroIsNone) { EXPECT_NO_THROW((void)read_with("[simula
 TEST_F(LargeStudy, EveryColumnOfATrackMayBeNamed) {
   const Study study = read_with(track + "columns = { t = \"a\", P_y = \"b\", P_z = \"c\", sigma = \"d\", ok = \"e\" }\n");
   EXPECT_EQ(study.experiments[0].columns.header("ok"), "e");
+}
+
+TEST_F(LargeStudy, AnExperimentNameMayHaveLettersOfAnyScript) {
+  EXPECT_EQ(read_with(track + "name = \"Flug ä 试验 😀\"\n").experiments[0].name, "Flug ä 试验 😀");
+  EXPECT_EQ(read_with(track + "name = \"" + std::string(150, 'n') + "\"\n").experiments[0].name.size(), 150U);
+}
+
+TEST_F(LargeStudy, APathThatIsTooLongIsRefused) {
+  for (const std::size_t length : {300, 5000, 1'000'000}) EXPECT_THROW((void)read_study(std::string(length, 'x')), InputError) << length;
 }
 
 TEST_F(LargeStudy, TenThousandParametersAreRead) {

@@ -76,6 +76,14 @@ TEST_F(HostileText, EveryColumnThatMayBeReadCanBeNamed) {
   EXPECT_NO_THROW(read(replaced(study_, "columns = { t = \"t\", y = \"level\" }", columns), system_));
 }
 
+/// A ladder that goes on with another system keeps the columns of its recordings.
+TEST_F(HostileText, AColumnOfAnotherSystemOfTheProgramMayBeNamed) {
+  const std::string by_kind = replaced(study_, "file = \"tank.toml\"", "kind = \"cascaded_tanks\"");
+  EXPECT_NO_THROW(read(replaced(by_kind, "y = \"level\"", "alpha_T = \"level\", eta = \"level\""), system_));
+  expect_parts(message_of<InputError>([&] { read(replaced(by_kind, "y = \"level\"", "alphaT = \"level\""), system_); }),
+               {"study.toml:5:22", "columns.alphaT", "'cascaded_tanks'"});
+}
+
 std::string long_text() { return std::string(1'000'000, 'x'); }
 std::string name_of(const testing::TestParamInfo<Hostile>& instance) { return instance.param.name; }
 

@@ -36,7 +36,8 @@ struct Table {
 /// Reads comma-separated numbers with one header line. '#' starts a comment line; blank lines are passed over; an empty field, "nan" and
 /// "NaN" are missing. Quoted fields, a UTF-8 byte-order mark, CRLF and spaces around fields are accepted.
 /// InputError: file missing or unreadable, no header, no rows, a row with another number of fields, a field that is not a number (file,
-/// line, column name, the text), a header used twice. Text columns are accepted when listed in `ignore_text_of` (values NaN).
+/// line, column name, the text), a column named twice (in two units as well), more than 20,000 columns. Text columns are accepted when
+/// listed in `ignore_text_of` (values NaN).
 [[nodiscard]] Table read_csv(const std::filesystem::path& path, const std::vector<std::string>& ignore_text_of = {});
 
 inline constexpr int all_digits = 0;

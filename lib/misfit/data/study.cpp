@@ -78,7 +78,8 @@ void read_sliding_bin(const Section& root, Study& study) {
 
 Study read_study(const fs::path& path) {
   Study study;
-  study.file = fs::is_directory(path) ? path / "study.toml" : path;
+  std::error_code none;  // what cannot be looked at cannot be read either, which read_file() says
+  study.file = fs::is_directory(path, none) ? path / "study.toml" : path;
   study.folder = study.file.has_parent_path() ? study.file.parent_path() : fs::path(".");
   study.text = read_file(study.file);
   const Section root = Section::parse(study.text, study.file.string());

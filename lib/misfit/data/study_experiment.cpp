@@ -86,9 +86,12 @@ void refuse_twice(const Section& section, const Study& study, const std::string&
 void read_name(const Section& section, const Study& study, ExperimentStudy& experiment) {
   const auto& file = experiment.track ? experiment.track : experiment.video ? experiment.video : experiment.data;
   experiment.name = section.text("name").value_or(file->stem().string());
-  if (experiment.name.empty() || experiment.name.find_first_of("/\\") != std::string::npos || experiment.name.front() == '.') {
-    section.fail("name", "a name without / and \\ that does not begin with a dot is expected");
-  }
+  constexpr std::size_t longest = 150;  // bytes: what stands before and after it must fit too
+  const std::string& name = experiment.name;
+  const bool fits = !name.empty() && name.size() <= longest && name.front() != '.' && name.find_first_of("/\\\n\t") == std::string::npos;
+  if (!fits || printable(name) != name)
+    section.fail("name", "'" + shown(name) + "': a name without /, \\ and control characters, of at most " + std::to_string(longest) +
+                             " bytes, that does not begin with a dot is expected");
   refuse_twice(section, study, experiment.name);
 }
 

@@ -115,7 +115,8 @@ std::vector<SweepPicture> read_sweep_pictures(const std::filesystem::path& path)
     if (name.empty()) throw InputError(where, "column 'file': the picture of this angle is missing");
     if (name.find('\0') != std::string::npos) throw InputError(where, "column 'file': a file name cannot hold the character NUL");
     const std::filesystem::path file = (path.parent_path() / name).lexically_normal();
-    if (!std::filesystem::is_regular_file(file))
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(file, none))
       throw InputError(where, "no such file '" + shown(name) + "' in " + shown(path.parent_path().string()));
     const auto begin = time_at(from, k), end = time_at(to, k);
     if (begin && end && !(*begin < *end)) throw InputError(where, fmt::format("from = {} s must be before to = {} s", *begin, *end));

@@ -117,14 +117,32 @@ void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& reque
   }
 }
 
+/// Does some system that comes with the program, with its flags as they are or one set otherwise, have this signal? A ladder may go on with
+/// another system and the same recordings.
+bool is_known_signal(const std::string& name, const Registry& registry) {
+  for (const std::string& key : registry.system_keys()) {
+    const SystemType& type = registry.system(key);
+    std::vector<SystemOptions> options(1);
+    for (const std::string& flag : type.flags) {
+      for (const bool value : {false, true}) options.push_back({{{flag, value}}, {}});
+    }
+    for (const SystemOptions& o : options) {
+      const std::vector<std::string> names = signal_names(type.make(o)->spec());
+      if (std::find(names.begin(), names.end(), name) != names.end()) return true;
+    }
+  }
+  return false;
+}
+
 /// Names that nothing would ask a recording for; those of a track are checked with the study.
-void check_columns(const Study& study, const std::string& system, const SystemSpec& spec) {
+void check_columns(const Study& study, const std::string& system, const SystemSpec& spec, const Registry& registry) {
   const std::vector<std::string> valid = signal_names(spec);
   for (const ExperimentStudy& experiment : study.experiments) {
     if (!experiment.data || !experiment.columns_section) continue;
     for (const auto& [name, header] : experiment.columns.header_of) {
-      if (std::find(valid.begin(), valid.end(), name) == valid.end())
-        experiment.columns_section->fail(name, "system '" + shown(system) + "' has no such signal" + suggest(name, valid));
+      const bool own = std::find(valid.begin(), valid.end(), name) != valid.end();
+      if (own || (!study.system_file && is_known_signal(name, registry))) continue;
+      experiment.columns_section->fail(name, "system '" + shown(system) + "' has no such signal" + suggest(name, valid));
     }
   }
 }
@@ -149,7 +167,7 @@ StudyModel read_model(const Study& study, const Registry& registry) {
                      "system '" + shown(request.system) + "' has no option '" + shown(name) + "'" + suggest(name, type.flags));
   }
   const SystemSpec spec = type.make(request.options)->spec();
-  check_columns(study, request.system, spec);
+  check_columns(study, request.system, spec, registry);
   if (study.geometry) {
     read_rig(*study.geometry, out.rig);
     read_constants(*study.geometry, spec, request);

@@ -7,6 +7,7 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <system_error>
 #include <thread>
 
@@ -97,12 +98,18 @@ struct Video::State {
     try {
       while (pass_on(decode())) {
       }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      failure = std::current_exception();
-      ended = true;
-      changed.notify_all();
+    } catch (const std::bad_alloc&) {
+      fail(std::current_exception());
+    } catch (const std::exception& error) {
+      fail(std::make_exception_ptr(RunError(facts.file + ": the video cannot be decoded: " + error.what())));
     }
+  }
+
+  void fail(std::exception_ptr why) {
+    const std::lock_guard lock(mutex);
+    failure = std::move(why);
+    ended = true;
+    changed.notify_all();
   }
 
   /// False if there is no more to do.
