@@ -22,9 +22,9 @@ struct WhitenessTest {
 /// stencil of five samples is correlated up to lag 4 whatever the model. Assumes residuals of a model with few parameters beside n.
 [[nodiscard]] WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int last_lag);
 
-/// The motion is driven (DESIGN 5): residuals are correlated at the lags of the dynamics, from `first_lag` to half a period of the motion.
-/// True if Ljung–Box p < 1e-6 and some |ρ| there exceeds 0.15 (a level at which a deterministic model has lost a fifth of a residual to
-/// memory).
+/// The motion is driven (lib/misfit/README.md, 5.8): residuals are correlated at the lags of the dynamics, from `first_lag` to half a
+/// period of the motion. True if Ljung–Box p < 1e-6 and some |ρ| there exceeds 0.15 (a level at which a deterministic model has lost a
+/// fifth of a residual to memory).
 [[nodiscard]] bool looks_driven(const WhitenessTest& test);
 
 }  // namespace misfit
