@@ -9,7 +9,7 @@
 namespace misfit {
 namespace {
 
-/// What an uncertain inertia does to every C_m (DESIGN 5).
+/// What an uncertain inertia does to every C_m.
 void add_scale(const Prepared& form, Fit& fit) {
   const Signals& signals = form.experiments.front();
   const ReconstructedStates states = reconstruct_states(form.model, signals);

@@ -1,4 +1,4 @@
-// Motions that the fitted model makes, put through the same readings as the measured one (DESIGN 6, compare).
+// Motions that the fitted model makes, put through the same readings as the measured one (lib/misfit/README.md, 6.1).
 
 #include <fmt/format.h>
 

@@ -78,7 +78,7 @@ struct FilterWork {
 /// Everything the fits left on disk.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_fits(const Session& session, const std::vector<Fit>& fits);
 [[nodiscard]] std::vector<Reference> references(const Session& session);
-/// Statistics of motions that the fitted model of filter_error makes, against the measured one (DESIGN 6).
+/// Statistics of motions that the fitted model of filter_error makes, against the measured one (lib/misfit/README.md, 6.1).
 [[nodiscard]] SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int threads, const ProgressFn& progress);
 /// compare.json.
 [[nodiscard]] Comparison compare_stage(Session& session, const std::vector<Fit>& fits);

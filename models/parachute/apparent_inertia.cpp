@@ -8,7 +8,7 @@ using namespace misfit;
 struct ApparentInertia {
   static constexpr const char* formula = "I = (m + m_a) R_cp^2 + inertia_growth sin^2(eta)";
   static constexpr const char* symbols = "inertia_growth [kg m^2], eta tilt [rad]; I must stay positive over the tilts that are visited";
-  static constexpr const char* valid = "quasi-steady; the tilt stands for alpha_T, on which a change of inertia cannot depend (DESIGN 4)";
+  static constexpr const char* valid = "quasi-steady; the tilt stands for alpha_T, on which a change of inertia cannot depend";
   static constexpr const char* size = "20 kg m^2 at 12 deg: 0.86 kg m^2, 17 % of I = 4.96";
   static constexpr const char* source =
       "Cockrell and Doherr, AIAA 1981-1940: apparent mass of parachutes depends on the direction of the acceleration";

@@ -10,8 +10,7 @@ struct Coning {
   static constexpr const char* symbols = "I inertia about the swivel [kg m^2], phi' rate of the clock angle [rad/s], eta tilt [rad]";
   static constexpr const char* valid = "planar systems with measured phi(t); the spherical system has it by itself";
   static constexpr const char* size = "I = 4.96 kg m^2, phi' = 5 rad/s, eta = 12 deg: 25 N m, as large as the random moment";
-  static constexpr const char* source =
-      "spherical pendulum, eta'' = phi'^2 sin(eta) cos(eta) + M/I (Goldstein, Classical Mechanics); DESIGN 4.1";
+  static constexpr const char* source = "spherical pendulum, eta'' = phi'^2 sin(eta) cos(eta) + M/I (Goldstein, Classical Mechanics)";
   static constexpr const char* excludes = "exchange of angular momentum with the lateral motion";
   static constexpr Role quantities[] = {{"inertia", "kg m^2"}, {"phi_rate", "rad/s"}, {"eta", "rad"}};
   static constexpr Role ports[] = {{"pitching_moment", "N m"}};

@@ -11,8 +11,7 @@ struct LateralDamping {
       "q [Pa], S [m^2], D [m], V wind speed [m/s], omega_lateral rotation rate across the plane of the tilt [rad/s], C_lateral [-]";
   static constexpr const char* valid = "quasi-steady; adds to C_mq of pitch_damping; at tilts near 0 the two planes cannot differ";
   static constexpr const char* size = "-0.25 at 1 rad/s: -12.8 N m at 736 Pa, 35.1 m/s, D = 1.58 m";
-  static constexpr const char* source =
-      "Tobak and Schiff, NASA TR R-456 (1976): damping in coning motion is a characteristic of its own; DESIGN 4.1";
+  static constexpr const char* source = "Tobak and Schiff, NASA TR R-456 (1976): damping in coning motion is a characteristic of its own";
   static constexpr const char* excludes = "memory of the wake (aerodynamic_lag)";
   static constexpr Role quantities[] = {
       {"dynamic_pressure", "Pa"}, {"wind_speed", "m/s", false, true}, {"lateral_rate", "rad/s"}, {"eta", "rad"}};

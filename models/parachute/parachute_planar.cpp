@@ -4,7 +4,8 @@ namespace {
 
 using namespace misfit;
 
-/// Motion in the plane through tunnel axis and parachute axis; the clock angle phi(t) is an input, from the measurement (DESIGN 4.1).
+/// Motion in the plane through tunnel axis and parachute axis; the clock angle phi(t) is an input, from the measurement:
+/// lib/misfit/README.md (8) to (11); the paper is its [1].
 ///   I eta'' = M,  I = (m + m_a) R_cp² (+ port `inertia`)
 ///   felt wind: w_eta = V sin(eta) + R_cp eta',  w_phi = R_cp phi' sin(eta),  w_x = V cos(eta)
 ///   alpha_T = atan2(sqrt(w_eta² + w_phi²), w_x);  in-plane component of (v̂ × n): w_eta/|w|
@@ -87,7 +88,7 @@ struct ParachutePlanar {
     s.key = "parachute_planar";
     s.doc = induced ? "motion in the plane of the tilt, canopy feels V x - R_cp n'" : "the paper's Eq. 8: alpha_T is the state";
     s.formula = "I eta'' = sum of moments, I = (m + m_a) R_cp^2";
-    s.source = "paper Eq. 8; DESIGN 4.1";
+    s.source = "paper Eq. 8; lib/misfit/README.md (8) to (11)";
     s.states = {{"eta", "rad", -1, 0.1}, {"eta_rate", "rad/s", 0, 2.0}};
     s.force_ports = {"pitching_moment"};
     s.inputs = {{"phi", "rad", "clock angle of the axis, unwrapped", Hold::first_order},
@@ -131,7 +132,7 @@ struct ParachutePlanar {
     return s;
   }
 
-  /// C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T) (DESIGN 4.1): the induced angle damps as well.
+  /// C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T), lib/misfit/README.md (11): the induced angle damps as well.
   [[nodiscard]] std::vector<DerivedCurve> derived_curves(const double* k) const {
     if (!induced) return {};
     const double lever = 2.0 * k[R_cp] / k[D];

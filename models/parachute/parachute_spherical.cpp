@@ -5,7 +5,8 @@ namespace {
 
 using namespace misfit;
 
-/// Three-dimensional motion of an axisymmetric parachute about a fixed swivel, seen by one downstream camera. n = unit vector swivel → apex
+/// Three-dimensional motion of an axisymmetric parachute about a fixed swivel, seen by one downstream camera
+/// (lib/misfit/README.md (12) to (16)). n = unit vector swivel → apex
 /// (x downstream, y left looking upstream, z down), states n_y, n_z and their rates, |n_y, n_z| < 1 and n_x > 0:
 ///   n'' = (tau × n)/I − |n'|² n,  I = (m + m_a) R_cp² (+ port `inertia`)
 /// With s = sin(eta) and, where s > 0, theta^ = (n n_x − x^)/s (tilt grows) and phi^ = (n_z ŷ − n_y ẑ)/s (clock angle grows), a pair of
@@ -229,7 +230,7 @@ struct ParachuteSpherical {
     s.key = "parachute_spherical";
     s.doc = "three-dimensional motion about the swivel, in pixels of one downstream camera";
     s.formula = "n'' = (tau x n)/I - |n'|^2 n, I = (m + m_a) R_cp^2; P by the camera";
-    s.source = "DESIGN 4.1; rigid rotation of a line without spin";
+    s.source = "rigid rotation of a line without spin; lib/misfit/README.md (12), (13)";
     s.states = {{"n_y", "-", -1, 0.1}, {"n_z", "-", -1, 0.1}, {"n_y_rate", "1/s", 0, 2.0}, {"n_z_rate", "1/s", 1, 2.0}};
     s.quantities = quantity_list();
     s.base_quantities = dynamic_pressure;
@@ -258,7 +259,7 @@ struct ParachuteSpherical {
     return s;
   }
 
-  /// C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T) (DESIGN 4.1): the induced angle damps as well.
+  /// C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T), lib/misfit/README.md (11): the induced angle damps as well.
   [[nodiscard]] std::vector<DerivedCurve> derived_curves(const double* k) const {
     const double lever = 2.0 * k[R_cp] / k[D];
     return {{"C_m_alphadot",

@@ -5,13 +5,14 @@ namespace {
 using namespace misfit;
 
 /// Moment proportional to the rotation rate. Where the system has the felt wind in alpha_T the coefficient is C_mq; in the paper's form
-/// (Eq. 8, alpha_T the state itself) the same formula carries the paper's C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T).
+/// (lib/misfit/README.md, [1], Eq. 8, alpha_T the state itself) the same formula carries the paper's C_m_alphadot = C_mq + (2 R_cp/D)
+/// C_m_alpha cos(alpha_T).
 struct PitchDamping {
   static constexpr const char* formula = "M = q S D (D/2V) C_mq(alpha_T) omega";
   static constexpr const char* symbols = "q [Pa], S [m^2], D [m], V wind speed [m/s], omega rotation rate of the axis [rad/s], C_mq [-]";
   static constexpr const char* valid = "quasi-steady: omega D/V << 1";
   static constexpr const char* size = "C_mq = -0.25 at 1 rad/s: -12.8 N m at 736 Pa, 35.1 m/s, D = 1.58 m";
-  static constexpr const char* source = "paper Eq. 8; DESIGN 4.1";
+  static constexpr const char* source = "paper Eq. 8; lib/misfit/README.md (10), (13)";
   static constexpr const char* excludes = "memory of the wake (aerodynamic lag)";
   static constexpr Role quantities[] = {
       {"dynamic_pressure", "Pa"}, {"wind_speed", "m/s", false, true}, {"pitch_rate", "rad/s"}, {"lateral_rate", "rad/s", true}};

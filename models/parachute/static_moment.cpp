@@ -12,7 +12,7 @@ struct StaticMoment {
       "q dynamic pressure [Pa], S area [m^2], D diameter [m], v x n component of (wind direction x axis) [-]";
   static constexpr const char* valid = "axisymmetric canopy, quasi-steady, |alpha_T| < 90 deg";
   static constexpr const char* size = "C_m about +-0.02 within 3 deg of the trim: 45 N m at 736 Pa for D = 1.58 m";
-  static constexpr const char* source = "paper Eq. 9; DESIGN 4.1";
+  static constexpr const char* source = "paper Eq. 9; lib/misfit/README.md (10), (13)";
   static constexpr const char* excludes = "side moment, hysteresis, wake of the strut";
   static constexpr Role quantities[] = {{"dynamic_pressure", "Pa"}, {"wind_cross_axis", "-"}, {"wind_cross_axis_lateral", "-", true}};
   static constexpr Role ports[] = {{"pitching_moment", "N m"}, {"lateral_moment", "N m", true}};

@@ -1,4 +1,4 @@
-// `misfit run` on the shipped studies: the files and names of DESIGN section 8, and the numbers that are known.
+// `misfit run` on the shipped studies: the files and names that others rely on, and the numbers that are known.
 
 #include <cmath>
 

@@ -117,7 +117,8 @@ TEST(Attitude, ClockAngleIsZeroAtPositivePitchAndGrowsTowardsPositiveYaw) {
   EXPECT_NEAR(std::abs(clock_angle(-0.2, 0.0)), 180.0 * deg, 1e-15);
 }
 
-// DESIGN 4.1: pinhole pixels read by Eq. 1, alpha_T by Eq. 4 from the angles at rest, against the tilt of the axis that was projected.
+// lib/misfit/README.md, 4.7: pinhole pixels read by (15), alpha_T by (17) from the angles at rest, against the tilt of the axis that was
+// projected.
 TEST(Attitude, EquationOneMakesTwelveDegreesTooSmall) {
   const Calibration pinhole = camera();
   Track track;

@@ -1,4 +1,4 @@
-// The sums of sliding_bin against the paper's Eq. 11 solved densely, without the model mechanism.
+// The sums of sliding_bin against Eq. 11 of the paper (lib/misfit/README.md, [1]) solved densely, without the model mechanism.
 #include "misfit/fit/bin_equations.h"
 
 #include <gmock/gmock.h>

@@ -23,7 +23,7 @@ inline const Registry& registry() {
   return filled;
 }
 
-/// The paper's Table 1.
+/// Table 1 of the paper (lib/misfit/README.md, [1]).
 inline std::map<std::string, double> table_1() {
   return {{"D", 1.5816}, {"S", 1.9554}, {"R_cp", 3.15}, {"m", 0.206}, {"m_a", 0.294}, {"qbar", 736.0}, {"V", 35.1}};
 }

@@ -29,7 +29,7 @@ inline EffectRequest effect(const std::string& key, const std::map<std::string, 
   return {name.empty() ? key : name, key, roles, Source{"study.toml", 30, 1}};
 }
 
-/// The parachute of the paper: static moment and damping as curves, gravity, coning, and `more`.
+/// The parachute of the paper (lib/misfit/README.md, [1]): static moment and damping as curves, gravity, coning, and `more`.
 inline ModelRequest parachute(bool induced_angle, const std::vector<EffectRequest>& more = {}) {
   ModelRequest r;
   r.system = "parachute_planar";

@@ -1,4 +1,4 @@
-// Known answers for the parachute from outside the toolkit: DESIGN 4.1, closed forms, the spherical pendulum.
+// Known answers for the parachute from outside the toolkit: lib/misfit/README.md 4.5, closed forms, the spherical pendulum.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -43,9 +43,9 @@ Linearised at_trim(const Model& m) {
 TEST(PlanarParachute, InducedAngleIsAsLargeAsTheTiltAndDampsByItself) {
   const Linearised l = at_trim(bare(true, 0.0));
   const double omega0 = std::sqrt(l.stiffness);
-  EXPECT_NEAR(omega0 * R / V, 1.14, 0.01) << "DESIGN 4.1";
+  EXPECT_NEAR(omega0 * R / V, 1.14, 0.01) << "lib/misfit/README.md, 4.5";
   const double zeta = l.damping / (2.0 * omega0);
-  EXPECT_NEAR(zeta, 0.57, 0.02) << "DESIGN 4.1, which takes cos(alpha_T) as 1";
+  EXPECT_NEAR(zeta, 0.57, 0.02) << "lib/misfit/README.md, 4.5, which takes cos(alpha_T) as 1";
   EXPECT_NEAR(zeta, omega0 * R / (2.0 * V) * std::cos(trim), 1e-9) << "d alpha_T/d eta' = R cos(alpha_T)/V at the trim";
 }
 

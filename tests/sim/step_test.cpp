@@ -100,7 +100,7 @@ TEST_P(StepOf, AUsedStepperGivesTheSameBitsAsAFreshOne) {
 
 INSTANTIATE_TEST_SUITE_P(Every, StepOf, testing::ValuesIn(cases()), [](const auto& c) { return c.param.name; });
 
-/// The equations of DESIGN 4.1 written out again, with plain doubles and a straight C_m: nothing of the toolkit is in it.
+/// lib/misfit/README.md (8) to (10) written out again, with plain doubles and a straight C_m: nothing of the toolkit is in it.
 struct ByHand {
   bool induced;
   double D = 1.5816, S = 1.9554, R = 3.15, m = 0.206, m_a = 0.294, q = 736.0, V = 35.1;

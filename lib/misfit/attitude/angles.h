@@ -1,5 +1,8 @@
 #pragma once
 
+// References
+//   [P]  Parachute Aerodynamics from Video Data ("the paper"; lib/misfit/README.md, [1]).
+
 #include <cmath>
 
 namespace misfit {

@@ -1,5 +1,8 @@
 #pragma once
 
+// References
+//   [P]  the paper (lib/misfit/README.md, [1]).
+
 #include "misfit/data/attitude.h"
 #include "misfit/data/calibration.h"
 #include "misfit/data/geometry.h"

@@ -37,7 +37,7 @@ class JobResults {
   std::vector<Place> places_;
 };
 
-/// One queue for long computations (DESIGN 7). Job k runs on rank k mod n (core/ranks.h), there on the next free thread; when it ends its
+/// One queue for long computations. Job k runs on rank k mod n (core/ranks.h), there on the next free thread; when it ends its
 /// bytes are appended to this rank's own FOLDER/checkpoint_RANK.bin. What an earlier run left there, with whatever number of ranks and
 /// threads, is kept; a record torn by a sudden end is dropped and its job done again. Since a job must depend on nothing but its number
 /// (its random numbers too), the results are the same to the bit however often, and on however many threads and ranks, the work was done.

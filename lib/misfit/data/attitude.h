@@ -6,7 +6,8 @@
 
 namespace misfit {
 
-/// Attitude over time, radians and rad/s; NaN where a sample (or a neighbour a derivative needs) is lost. One entry per sample.
+/// Attitude over time (lib/misfit/README.md (17); the paper is its [1]), radians and rad/s; NaN where a sample (or a neighbour a derivative
+/// needs) is lost. One entry per sample.
 struct Attitude {
   std::vector<double> t;                     ///< [s]
   std::vector<double> theta, psi;            ///< pitch, yaw of the axis as read (not averaged) [rad]

@@ -50,7 +50,7 @@ struct Calibration {
   [[nodiscard]] double sigma(const std::string& name) const;  ///< 0 if not free
 };
 
-/// camera.json as DESIGN section 8: {"h_c":{"value","sigma","unit"},…,"names","covariance","rms_px","tests":{…}}; angles in radians, unit
+/// camera.json: {"h_c":{"value","sigma","unit"},…,"names","covariance","rms_px","tests":{…}}; angles in radians, unit
 /// "rad".
 void write_calibration(const std::filesystem::path& path, const Calibration& calibration);
 [[nodiscard]] Calibration read_calibration(const std::filesystem::path& path);

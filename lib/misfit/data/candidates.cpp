@@ -5,7 +5,7 @@
 namespace misfit {
 namespace {
 
-/// The keys of DESIGN section 8 first, then what this program knows beside them.
+/// The keys that other programs rely on first, then what this program knows beside them.
 Json to_json(const Candidate& c) {
   return {{"rank", c.rank},
           {"effect", c.effect},

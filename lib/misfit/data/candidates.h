@@ -47,7 +47,7 @@ struct Discovery {
   double seconds = 0.0;
 };
 
-/// candidates.json (DESIGN section 8: an array) and discovery.json (verdict, sentences, tried).
+/// candidates.json (an array) and discovery.json (verdict, sentences, tried).
 void write_discovery(const std::filesystem::path& dir, const Discovery& discovery);
 [[nodiscard]] Discovery read_discovery(const std::filesystem::path& dir);
 

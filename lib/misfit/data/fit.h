@@ -65,7 +65,7 @@ struct Fit {
   int linearisations = 0;
 };
 
-/// Writes fit.json, curves.csv and one prediction.csv (DESIGN section 8) into `dir`; several experiments: prediction_NAME.csv beside.
+/// Writes fit.json, curves.csv and one prediction.csv into `dir`; several experiments: prediction_NAME.csv beside.
 void write_fit(const std::filesystem::path& dir, const Fit& fit);
 [[nodiscard]] Fit read_fit(const std::filesystem::path& dir);
 

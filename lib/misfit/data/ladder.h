@@ -34,7 +34,7 @@ struct Ladder {
   std::vector<Rung> rungs;
 };
 
-/// ladder.json (DESIGN section 8: an array).
+/// ladder.json: an array.
 void write_ladder(const std::filesystem::path& path, const Ladder& ladder);
 [[nodiscard]] Ladder read_ladder(const std::filesystem::path& path);
 

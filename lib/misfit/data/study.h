@@ -20,7 +20,7 @@ struct MarkerStudy {
   std::optional<std::filesystem::path> picture;
 };
 
-/// One entry of [geometry] or [system]: kept raw until the system says which names exist and in which unit.
+/// [camera]: calibrated from a static sweep, or given as numbers.
 struct CameraStudy {
   std::optional<std::filesystem::path> sweep;         ///< calibrate from it …
   std::optional<std::filesystem::path> sweep_images;  ///< … or from pictures: a table of angles and image or video files (data/sweep.h)
@@ -150,7 +150,7 @@ struct Study {
   std::string text;        ///< the file's content, for hashing and resolved.toml
 };
 
-/// Reads and checks DIR/study.toml (DESIGN section 8). Relative paths are taken from the study's folder, and every file named must exist.
+/// Reads and checks DIR/study.toml. Relative paths are taken from the study's folder, and every file named must exist.
 [[nodiscard]] Study read_study(const std::filesystem::path& path);
 
 }  // namespace misfit

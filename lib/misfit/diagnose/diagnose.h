@@ -16,8 +16,8 @@ struct DiagnoseOptions {
 };
 
 /// Where the fitted model fails, from its innovations, which under a right model are independent of everything known one step before
-/// (DESIGN 6): whiteness per channel, maps of the missing force by the score test of hat functions at the predicted state [HK], the
-/// smoothed missing force, and the conclusions in plain sentences.
+/// (lib/misfit/README.md, 6.2): whiteness per channel, maps of the missing force by the score test of hat functions at the predicted state
+/// [HK], the smoothed missing force, and the conclusions in plain sentences.
 [[nodiscard]] Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& options = {});
 
 }  // namespace misfit

@@ -11,7 +11,7 @@
 namespace misfit {
 namespace {
 
-constexpr double tie = 6.0;  // refitted drops nearer than this do not tell two effects apart (DESIGN 6)
+constexpr double tie = 6.0;  // refitted drops nearer than this do not tell two effects apart
 
 std::string named(const Candidate& c) { return effect_at(c.effect, c.roles); }
 

@@ -24,13 +24,14 @@ struct Searched {
   double families = 1.0;  ///< that a p-value is corrected for
 };
 
-/// Accepts at most one of those that hold out: significant, with strengths away from their bounds, at a maximum that was reached, and the
-/// held-out readings more likely. Of these the first, in the order of the list, after which no unknown curve remains of a quantity that it
-/// or a likeness before it reads (what_is_left): an effect that leaves one is a likeness of what is missing, be its drop the largest. If
-/// all leave something, the first with which a second known effect leaves nothing, as long as each is still needed beside the other and no
-/// strength of the two ends at a bound. It comes to the front and is grouped with every other whose refitted drop is near (6, DESIGN 6):
-/// inseparable if both can be in the model and neither has a significant score once the other is in. Where nothing is accepted the group is
-/// that of the front. All that were refitted get their words. Returned: what remains, unexplained, where that is why nothing was accepted.
+/// Step by step: lib/misfit/README.md, 6.5. Accepts at most one of those that hold out: significant, with strengths away from their bounds,
+/// at a maximum that was reached, and the held-out readings more likely. Of these the first, in the order of the list, after which no
+/// unknown curve remains of a quantity that it or a likeness before it reads (what_is_left): an effect that leaves one is a likeness of
+/// what is missing, be its drop the largest. If all leave something, the first with which a second known effect leaves nothing, as long as
+/// each is still needed beside the other and no strength of the two ends at a bound. It comes to the front and is grouped with every other
+/// whose refitted drop is near (6): inseparable if both can be in the model and neither has a significant score once the other is in. Where
+/// nothing is accepted the group is that of the front. All that were refitted get their words. Returned: what remains, unexplained, where
+/// that is why nothing was accepted.
 [[nodiscard]] std::optional<UnknownCurve> accept_best(std::vector<Entry>& entries, const Searched& searched);
 
 }  // namespace misfit

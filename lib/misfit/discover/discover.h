@@ -26,12 +26,12 @@ struct DiscoverOptions {
   const std::atomic<bool>* stop = nullptr;  ///< between refits
 };
 
-/// Ranks what the model could lack (DESIGN 6): score tests of every effect in the registry that suits the system and of unknown curves,
-/// with shapes scanned; refits of those worth it; groups that the data cannot separate; acceptance by family-wise p-value and held-out
-/// gain. `request` is what the estimate's model was assembled from. With `only` the answer holds that one candidate, its p-value corrected
-/// for all families a whole search would look at; no candidate where the effect cannot be screened (it has no strength, does not suit the
-/// system, is driven by noise, or another effect stands for it). With `refits` the answer of ranks other than the first is empty.
-/// RunError: stopped.
+/// Ranks what the model could lack (lib/misfit/README.md, 6.3 to 6.5): score tests of every effect in the registry that suits the system
+/// and of unknown curves, with shapes scanned; refits of those worth it; groups that the data cannot separate; acceptance by family-wise
+/// p-value and held-out gain. `request` is what the estimate's model was assembled from. With `only` the answer holds that one candidate,
+/// its p-value corrected for all families a whole search would look at; no candidate where the effect cannot be screened (it has no
+/// strength, does not suit the system, is driven by noise, or another effect stands for it). With `refits` the answer of ranks other than
+/// the first is empty. RunError: stopped.
 [[nodiscard]] Discovery discover(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                  const std::vector<Signals>& experiments, const DiscoverOptions& options = {});
 

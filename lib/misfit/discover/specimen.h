@@ -32,8 +32,7 @@ struct Specimen {
 inline constexpr int kTime = -1;
 
 /// Every effect of the registry that suits the model's system, is not in it, and has a strength; generic ones at each place that the system
-/// suggests (places.h). Left out: effects driven by noise (the
-/// filter has them), and generic ones that a system's own effect specialises.
+/// suggests (places.h). Left out: effects driven by noise (the filter has them), and generic ones that a system's own effect specialises.
 [[nodiscard]] std::vector<Specimen> specimens(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                               const Calibration* calibration);
 

@@ -8,7 +8,8 @@ namespace misfit {
 /// what a reader must know (outliers, gaps, whether the motion is driven at all, what the exact derivatives said).
 [[nodiscard]] Fit filter_fit(const FilterEstimate& estimate, int threads = 1);
 
-/// Estimate and fit in one: DESIGN 5. Status `declined` in words where the states cannot be read or too little data are left.
+/// Estimate and fit in one (lib/misfit/README.md, 5.6). Status `declined` in words where the states cannot be read or too little data are
+/// left.
 struct FilterError {
   Fit fit;
   std::optional<FilterEstimate> estimate;

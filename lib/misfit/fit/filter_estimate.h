@@ -45,9 +45,9 @@ struct FilterEstimate {
 
 /// Maximum likelihood by blocks: physical parameters by Gauss–Newton on innovations with the gains held per iteration [MI], roughness by
 /// marginal likelihood, noise by Fisher scoring about the runs. Then, if verified, joint steps by exact derivatives of the whole likelihood
-/// (DESIGN 5), with the noise by restricted likelihood (filter_restricted.h) and the curvature corrected by what the steps before have
-/// shown (learned_curvature.h). Penalties: those of `start`. RunError if the states cannot be read from the channels or the model cannot be
-/// run from its start.
+/// (lib/misfit/README.md, 5.7), with the noise by restricted likelihood (filter_restricted.h) and the curvature corrected by what the steps
+/// before have shown (learned_curvature.h). Penalties: those of `start`. RunError if the states cannot be read from the channels or the
+/// model cannot be run from its start.
 [[nodiscard]] FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
                                              const FilterOptions& options = {});
 

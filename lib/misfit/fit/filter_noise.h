@@ -38,8 +38,9 @@ struct NoiseVector {
 
 /// Exact discretisation over one step h of everything whose noise does not depend on the state.
 struct NoiseStep {
-  /// Second moments of a unit force's noise on rows of three kinds: the force itself (0), a rate (1), a level (2), the last two relative to
-  /// the row's response Φ to the force at the start of the step; i.e. Q_ij = force² m[kind_i][kind_j] Φ_if Φ_jf. [J]
+  /// Second moments of a force's noise on rows of three kinds: the force itself (0), a rate (1), a level (2), the last two relative to
+  /// the row's response Φ to the force at the start of the step; i.e. Q_ij = m[kind_i][kind_j] Φ_if Φ_jf with Φ_ff taken as 1
+  /// (lib/misfit/README.md (29)). [J]
   std::array<std::array<double, 3>, 3> m{};
   struct Jitter {
     std::array<double, 4> phi{};  ///< of (j, j'/ω), row-major

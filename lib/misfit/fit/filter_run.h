@@ -91,7 +91,7 @@ class FilterRunner {
 };
 
 /// The same filter, linear about `trace`, with other noise: innovations and variances of every used reading (0 elsewhere).
-/// `force_time_changed` is allowed: the decay of the force is taken from `noise`.
+/// The correlation time may be another one than in `trace`: the force then decays and acts as `noise` says.
 void run_linear(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise,
                 std::vector<double>& e, std::vector<double>& S);
 

@@ -19,14 +19,14 @@ struct OutputErrorStart {
   bool coloured = true;  ///< false: sigmas of white residuals and known roughness, for fits by the thousand whose scatter is looked at
 };
 
-/// The whole trajectory of a deterministic model against the measured channels, by multiple shooting in Ceres (DESIGN 5): first segments at
-/// most half a period of the fastest motion, defects at ten times the measurement weight, then lengthened to one trajectory. Noise: white,
-/// one sigma per channel, estimated. Curves: roughness by marginal likelihood unless given. Covariance: inverse of the information at the
-/// optimum, roughness and priors included, with what residuals with memory (coloured.h) and roughness chosen from the data
-/// (with_uncertain_roughness()) add; that of white residuals stands beside. A start with initial states is taken as nearly there: one
-/// trajectory at once, segments only if that fails. Status: converged;
-/// not_converged (iteration limit); failed (the motion cannot be simulated, with time and place); declined when the motion is driven by
-/// something the model does not have: then the curves are kept but marked not informative. Never throws for numerical reasons.
+/// The whole trajectory of a deterministic model against the measured channels, by multiple shooting in Ceres (lib/misfit/README.md, 5.4):
+/// first segments at most half a period of the fastest motion, defects at ten times the measurement weight, then lengthened to one
+/// trajectory. Noise: white, one sigma per channel, estimated. Curves: roughness by marginal likelihood unless given. Covariance: inverse
+/// of the information at the optimum, roughness and priors included, with what residuals with memory (coloured.h) and roughness chosen from
+/// the data (with_uncertain_roughness()) add; that of white residuals stands beside. A start with initial states is taken as nearly there:
+/// one trajectory at once, segments only if that fails. Status: converged; not_converged (iteration limit); failed (the motion cannot be
+/// simulated, with time and place); declined when the motion is driven by something the model does not have: then the curves are kept but
+/// marked not informative. Never throws for numerical reasons.
 [[nodiscard]] FittedModel output_error(const FittedModel& start, const std::vector<Signals>& experiments,
                                        const OutputErrorStart& options = {});
 

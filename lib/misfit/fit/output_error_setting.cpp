@@ -53,8 +53,7 @@ std::vector<RowMatrix> start_states(const Setting& setting) {
 }
 
 std::vector<ShootingPass> short_passes(const Setting& setting, bool from_regression) {
-  constexpr double nearly_gauss_newton =
-      1e8;  // with segments this short the problem is nearly linear: a small region only slows it (DESIGN 5)
+  constexpr double nearly_gauss_newton = 1e8;  // with segments this short the problem is nearly linear: a small region only slows it
   const auto half_period = static_cast<std::size_t>(std::clamp(std::numbers::pi / setting.frequency / setting.step, 5.0, 1000.0));
   std::vector<ShootingPass> list;
   if (!from_regression) {

@@ -168,7 +168,7 @@ int add_parameters(LeastSquares& problem, const Model& model, const std::vector<
   return bounded ? problem.add_block(theta, lower, upper) : problem.add_block(theta);
 }
 
-/// In which states of a system are kept.
+/// Bounds within which the states of a system are kept.
 struct StateBounds {
   std::vector<double> least, most;
   bool any = false;

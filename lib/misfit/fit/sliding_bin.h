@@ -1,7 +1,7 @@
 #pragma once
 
 // References
-//   [P]  the paper, Eqs. 8-11, "Sliding Window Matrix Solution".
+//   [P]  Parachute Aerodynamics from Video Data ("the paper"; lib/misfit/README.md, [1]): Eqs. 8-11, "Sliding Window Matrix Solution".
 //   [MK] E. A. Morelli, V. Klein, J. Guidance 20 (1997).
 
 #include "misfit/data/fit.h"

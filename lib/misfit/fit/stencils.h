@@ -1,7 +1,7 @@
 #pragma once
 
 // References
-//   [P] the paper, "Data Reduction": second order finite differences (four-point stencils), three-point averages.
+//   [P] the paper (lib/misfit/README.md, [1]), "Data Reduction": second order four-point stencils, three-point averages.
 
 #include <vector>
 

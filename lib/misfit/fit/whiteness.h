@@ -43,9 +43,9 @@ struct WhitenessTest {
 /// Residuals of a deterministic model are not white, and a reader has to know: p < 1e-3.
 [[nodiscard]] bool clearly_coloured(const WhitenessTest& test);
 
-/// The motion is driven (DESIGN 5): residuals are correlated at the lags of the dynamics, from `first_lag` to half a period of the motion.
-/// True if Ljung–Box p < 1e-6 and some |ρ| there exceeds 0.15 (a level at which a deterministic model has lost a fifth of a residual to
-/// memory).
+/// The motion is driven (lib/misfit/README.md, 5.8): residuals are correlated at the lags of the dynamics, from `first_lag` to half a
+/// period of the motion. True if Ljung–Box p < 1e-6 and some |ρ| there exceeds 0.15 (a level at which a deterministic model has lost a
+/// fifth of a residual to memory).
 [[nodiscard]] bool looks_driven(const WhitenessTest& test);
 
 }  // namespace misfit

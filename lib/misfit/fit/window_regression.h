@@ -1,7 +1,7 @@
 #pragma once
 
 // References
-//   [P]  the paper, Eqs. 9-11.
+//   [P]  the paper (lib/misfit/README.md, [1]), Eqs. 9-11.
 //   [MK] E. A. Morelli, V. Klein, J. Guidance 20 (1997): sigmas of a regression with coloured residuals.
 
 #include <cstddef>

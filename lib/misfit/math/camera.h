@@ -1,7 +1,7 @@
 #pragma once
 
 // References
-//   [P]  "Parachute Aerodynamics from Video Data" (the paper): Eqs. 1, 5-7.
+//   [P]  Parachute Aerodynamics from Video Data ("the paper"; lib/misfit/README.md, [1]): Eqs. 1, 5-7.
 //   [B]  D. C. Brown, Close-range camera calibration, Photogramm. Eng. 37 (1971): radial distortion.
 
 #include <array>

@@ -71,7 +71,8 @@ class Assembler {
   void bind_ports(const EffectRequest& request, const EffectSpec& spec, BoundEffect& bound) const;
   void check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit) const;
   int bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const;
-  /// Effects on quantity ports read base quantities only; only effects on sensors read predicted outputs (DESIGN 4, order of evaluation).
+  /// Effects on quantity ports read base quantities only; only effects on sensors read predicted outputs
+  /// (lib/misfit/README.md, 4.1).
   void check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const;
   int find_quantity(const std::string& name) const;
   std::vector<std::string> quantity_names() const;

@@ -45,8 +45,9 @@ class Slots {
 inline constexpr int kRowStride = padded(kMaxStates + kMaxColumns);
 
 /// The assembled right-hand side x' = f(x, u, t; p) and outputs y = h(x, u, t; p) with first derivatives, by the chain rule over effects
-/// that are each linearised on their own (DESIGN 4). One object per thread: it holds scratch memory, so that nothing allocates. Order: base
-/// quantities → effects on quantity ports → derived quantities → effects on dynamic ports and own states → x'.
+/// that are each linearised on their own (lib/misfit/README.md (1) to (5); its index spaces: 8.3). One object per thread: it holds scratch
+/// memory, so that nothing allocates. Order: base quantities → effects on quantity ports → derived quantities → effects on dynamic ports
+/// and own states → x'.
 class Evaluator {
  public:
   /// Keeps pointers into `model`, which must outlive it.

@@ -100,9 +100,9 @@ struct SystemSpec {
   std::vector<std::string> force_ports;                  ///< dynamic ports of the random force that drives the motion, in fixed axes
   std::vector<std::string> includes;                     ///< effects that its equations have by themselves: refused beside it
   std::vector<int> readable_states;                      ///< states that System::read_states() gives
-  SystemForm regression;                                 ///< form in which sliding_bin is stated (the paper's Eq. 8); empty kind: none
-  std::string static_curve, damping_curve;               ///< coefficients that sliding_bin solves for; empty: none
-  double fastest_rate = 0.0;                             ///< [1/s], of the system without effects
+  SystemForm regression;                    ///< form in which sliding_bin is stated ([1] of lib/misfit/README.md, Eq. 8); empty kind: none
+  std::string static_curve, damping_curve;  ///< coefficients that sliding_bin solves for; empty: none
+  double fastest_rate = 0.0;                ///< [1/s], of the system without effects
 };
 
 /// Row-major blocks of first derivatives; a null pointer means "not wanted".

@@ -16,10 +16,10 @@ namespace misfit::report {
 // Each builder turns data into a Figure and computes nothing but what drawing needs (counts per bin, the autocorrelation of given
 // residuals). Method k of `fits` has colour palette(k) in every figure. Angles are drawn in degrees.
 
-/// One curve of all methods with 1-sigma bands on one axis (the paper's Figs. 5, 7, 9, 10), the points of the references with error bars
-/// and, for the static moment, every trim ± sigma as a diamond on the zero line. Dashed: outside the visited range (count 0). Grey dotted,
-/// "not informative" in the legend: the method says that it cannot give the curve from these data. Only curves of the quantity `of`; fits
-/// that declined or failed are noted.
+/// One curve of all methods with 1-sigma bands on one axis (as Figs. 5, 7, 9, 10 of the paper, lib/misfit/README.md [1]), the points of the
+/// references with error bars and, for the static moment, every trim ± sigma as a diamond on the zero line. Dashed: outside the visited
+/// range (count 0). Grey dotted, "not informative" in the legend: the method says that it cannot give the curve from these data. Only
+/// curves of the quantity `of`; fits that declined or failed are noted.
 [[nodiscard]] Figure curve_figure(const std::string& curve, const std::string& of, const std::vector<Fit>& fits,
                                   const std::vector<Reference>& references);
 

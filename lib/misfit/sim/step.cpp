@@ -90,7 +90,7 @@ void Stepper::note_failure(const double* x, const Interval& interval) {
 }
 
 int Stepper::substeps(double h) const {
-  constexpr double largest_product = 0.5;  // rate × step: above, explicit Runge–Kutta loses accuracy, then stability (DESIGN 4)
+  constexpr double largest_product = 0.5;  // rate × step: above, explicit Runge–Kutta loses accuracy, then stability
   constexpr double most = 1000.0;
   const double product = fastest_rate_ * std::abs(h);
   if (product <= largest_product) return 1;
