@@ -41,7 +41,7 @@ TEST_F(AttitudeFile, WritesDegreesAndEmptyFieldsAndReadsBack) {
   std::getline(in, second);
   EXPECT_EQ(header.rfind("t[s],theta[deg],psi[deg],alpha[deg],beta[deg],alpha_T[deg],phi[deg],eta[deg],", 0), 0u) << header;
   EXPECT_NE(header.find("theta_rate[deg/s]"), std::string::npos);
-  EXPECT_EQ(first.rfind("0,0.572957795131,", 0), 0u) << first;  // 0.01 rad
+  EXPECT_EQ(first.rfind("0,0.5729577951308232,", 0), 0u) << first;  // 0.01 rad
   EXPECT_EQ(second, "0.5,,,,,,,,,,,,,,,");
 
   const Attitude b = read_attitude(path_);
