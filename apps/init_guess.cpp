@@ -11,8 +11,8 @@
 #include "misfit/core/text.h"
 #include "misfit/core/unique_name.h"
 #include "misfit/core/units.h"
-#include "misfit/fit/states.h"
 #include "misfit/formula/syntax.h"
+#include "misfit/inference/states.h"
 #include "misfit/model/limits.h"
 
 namespace misfit {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "misfit/data/recording.h"
-#include "misfit/fit/linear_guess.h"
+#include "misfit/fit/regression/linear_guess.h"
 
 namespace misfit {
 

@@ -9,8 +9,8 @@
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/data/curve_coefficient.h"
-#include "misfit/fit/filter_error.h"
-#include "misfit/fit/k_step.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/filter/k_step.h"
 
 namespace misfit {
 namespace {
@@ -78,12 +78,12 @@ std::vector<Penalty> shared_penalties(const FilterEstimate& child, const FilterE
 }
 
 /// Readings that both models have and neither has set aside: an effect may need inputs that are missing where the other model reads on.
-std::vector<std::vector<Use>> common_use(const FilterEstimate& a, const FilterEstimate& b) {
-  std::vector<std::vector<Use>> use;
+std::vector<std::vector<SampleRole>> common_use(const FilterEstimate& a, const FilterEstimate& b) {
+  std::vector<std::vector<SampleRole>> use;
   for (std::size_t e = 0; e < a.data.size(); ++e) {
     use.push_back(a.data[e].use);
     for (std::size_t i = 0; i < use.back().size(); ++i) {
-      if (b.data[e].use[i] == Use::none) use.back()[i] = Use::none;
+      if (b.data[e].use[i] == SampleRole::none) use.back()[i] = SampleRole::none;
     }
   }
   return use;

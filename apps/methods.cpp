@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "misfit/fit/curves.h"
-#include "misfit/fit/filter_error.h"
-#include "misfit/fit/output_error.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/shooting/output_error.h"
+#include "misfit/inference/curves.h"
 
 namespace misfit {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/stages.h"
-#include "misfit/fit/sliding_bin.h"
+#include "misfit/fit/regression/sliding_bin.h"
 #include "misfit/fit/trajectory_start.h"
 
 namespace misfit {

@@ -4,8 +4,8 @@
 
 #include "apps/stages.h"
 #include "misfit/core/error.h"
-#include "misfit/fit/curves.h"
-#include "misfit/fit/gaps.h"
+#include "misfit/inference/curves.h"
+#include "misfit/inference/gaps.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/curve_table.h"
 #include "misfit/model/experiment.h"

@@ -7,7 +7,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/core/version.h"
-#include "misfit/fit/gaps.h"
+#include "misfit/inference/gaps.h"
 
 namespace misfit {
 namespace {

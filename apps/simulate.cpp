@@ -13,8 +13,8 @@
 #include "misfit/core/table.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
-#include "misfit/fit/curves.h"
-#include "misfit/fit/states.h"
+#include "misfit/inference/curves.h"
+#include "misfit/inference/states.h"
 #include "misfit/model/curve_table.h"
 #include "misfit/sim/random_run.h"
 

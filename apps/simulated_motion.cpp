@@ -9,7 +9,7 @@
 #include "apps/stages.h"
 #include "misfit/compare/motion_statistics.h"
 #include "misfit/compare/noisy_run.h"
-#include "misfit/fit/states.h"
+#include "misfit/inference/states.h"
 
 namespace misfit {
 namespace {
@@ -32,7 +32,7 @@ Signals as_filtered(const FilterData& data) {
   for (std::size_t c = 0; c < channels; ++c) {
     auto& values = out.measured[c].values;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (data.use[i * channels + c] == Use::none) values[i] = std::nan("");
+      if (data.use[i * channels + c] == SampleRole::none) values[i] = std::nan("");
     }
     values.erase(values.begin(), values.begin() + first);
   }

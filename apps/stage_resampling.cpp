@@ -11,8 +11,8 @@
 #include "misfit/core/files.h"
 #include "misfit/core/progress.h"
 #include "misfit/core/ranks.h"
-#include "misfit/fit/filter_error.h"
-#include "misfit/fit/held.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/profile_objective.h"
 #include "misfit/report/figures_intervals.h"
 #include "misfit/uncertainty/bootstrap.h"
 #include "misfit/uncertainty/multi_start.h"
@@ -161,12 +161,12 @@ class Work {
     options.seed = static_cast<unsigned long long>(session_.study.seed);
     const std::vector<Signals>& experiments = methods_.prepared().experiments;
     const SearchFrom search = [&](const std::vector<double>& values) {
-      const Reached end = maximum_from(s.from, values, experiments);
+      const Maximisation end = maximise_from(s.from, values, experiments);
       return Maximum{end.objective, end.why, end.at.fitted.model.values()};
     };
     std::optional<MultiStarts> starts;
     const bool possible = attempt(s.from.method, [&] {
-      const Reached best = maximum_near(s.from, experiments);
+      const Maximisation best = maximise_near(s.from, experiments);
       if (!best.objective) throw RunError("starts: it cannot be fitted again where it ended: " + best.why);
       starts.emplace(s.fit, s.from.fitted.model, *best.objective, search, options);
     });
@@ -183,7 +183,7 @@ class Work {
     const std::vector<Signals>& experiments = methods_.prepared().experiments;
     const auto found = std::find(s.fit.names.begin(), s.fit.names.end(), parameter);
     if (found == s.fit.names.end()) throw RunError("profile of " + parameter + ": it is not free in this fit");
-    HeldFit at_best(s.from, experiments, parameter);
+    ProfileObjective at_best(s.from, experiments, parameter);
     const Estimate& e = s.fit.parameters.at(parameter);
     const Parameter& p = s.from.fitted.model.parameters[static_cast<std::size_t>(s.from.fitted.model.find_parameter(parameter))];
     const std::optional<double> objective = at_best(e.value);
@@ -194,7 +194,7 @@ class Work {
         s.from.method, parameter, e.unit, e.value, *objective, e.sigma, plain == s.fit.plain_sigmas.end() ? 0.0 : plain->second,
         p.lower,       p.upper,   {}};
     r.from_best = [&s, &experiments, parameter] {
-      auto held = std::make_shared<HeldFit>(s.from, experiments, parameter);
+      auto held = std::make_shared<ProfileObjective>(s.from, experiments, parameter);
       return HeldMaximum([held](double value) { return (*held)(value); });
     };
     return r;

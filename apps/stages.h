@@ -17,8 +17,8 @@
 #include "misfit/data/signals.h"
 #include "misfit/data/track_facts.h"
 #include "misfit/data/uncertainty.h"
-#include "misfit/fit/equation_error.h"
-#include "misfit/fit/filter_estimate.h"
+#include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/fit/regression/equation_error.h"
 
 namespace misfit {
 

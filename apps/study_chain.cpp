@@ -4,9 +4,9 @@
 
 #include "misfit/attitude/attitude.h"
 #include "misfit/core/error.h"
-#include "misfit/fit/filter_error.h"
-#include "misfit/fit/gaps.h"
-#include "misfit/fit/output_error.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/shooting/output_error.h"
+#include "misfit/inference/gaps.h"
 #include "misfit/model/experiment.h"
 
 namespace misfit {

@@ -40,7 +40,7 @@ std::string read(const fs::path& path) {
 }
 
 Layers read_layers(const fs::path& root) {
-  static const std::regex call(R"((?:^|\n)misfit_layer\((\w+)([^)]*)\))");
+  static const std::regex call(R"((?:^|\n)misfit_layer\(([\w/]+)([^)]*)\))");
   const std::string text = read(root / "CMakeLists.txt");
   Layers layers;
   for (std::sregex_iterator it(text.begin(), text.end(), call), end; it != end; ++it) {
@@ -72,29 +72,34 @@ std::vector<Include> read_includes(const fs::path& root, const std::string& fold
   return includes;
 }
 
-/// Second component of "misfit/LAYER/x.h" or of "lib/misfit/LAYER/x.cpp" after `prefix`; empty without that prefix.
-std::string layer_of(const std::string& path, const std::string& prefix) {
+/// LAYER of "misfit/LAYER/x.h" or of "lib/misfit/LAYER/x.cpp" after `prefix`: the longest that is a layer, for a folder inside a folder may
+/// be one of its own; the first folder if none is. Empty without that prefix.
+std::string layer_of(const std::string& path, const std::string& prefix, const Layers& layers) {
   if (!path.starts_with(prefix)) return "";
-  return path.substr(prefix.size(), path.find('/', prefix.size()) - prefix.size());
+  const std::string rest = path.substr(prefix.size());
+  for (std::size_t end = rest.rfind('/'); end != std::string::npos && end > 0; end = rest.rfind('/', end - 1)) {
+    if (layers.contains(rest.substr(0, end))) return rest.substr(0, end);
+  }
+  return rest.substr(0, rest.find('/'));
 }
 
 void check_layer(const Include& include, const Layers& layers, std::vector<std::string>& faults) {
-  const std::string from = layer_of(include.file, "lib/misfit/");
+  const std::string from = layer_of(include.file, "lib/misfit/", layers);
   const auto layer = layers.find(from);
   if (layer == layers.end()) {
     faults.push_back(include.file + ": folder '" + from + "' has no misfit_layer line in CMakeLists.txt");
     return;
   }
-  const std::string to = layer_of(include.target, "misfit/");
+  const std::string to = layer_of(include.target, "misfit/", layers);
   if (!to.empty() && !layer->second.contains(to)) faults.push_back(include.text() + "; the LINKS of " + from + " do not permit " + to);
   if (include.target.starts_with("models/") || include.target.starts_with("apps/")) {
     faults.push_back(include.text() + "; lib knows neither models nor apps");
   }
 }
 
-void check_models(const Include& include, std::vector<std::string>& faults) {
+void check_models(const Include& include, const Layers& layers, std::vector<std::string>& faults) {
   static const std::set<std::string> allowed = {"core", "math", "data", "model"};
-  const std::string to = layer_of(include.target, "misfit/");
+  const std::string to = layer_of(include.target, "misfit/", layers);
   if ((!to.empty() && !allowed.contains(to)) || include.target.starts_with("apps/")) {
     faults.push_back(include.text() + "; models may include core, math, data and model");
   }
@@ -120,7 +125,7 @@ std::vector<std::string> faults_of(const fs::path& root) {
   std::vector<std::string> faults;
   for (const Include& include : all) check_layer(include, layers, faults);
   for (const Include& include : read_includes(root, "models")) {
-    check_models(include, faults);
+    check_models(include, layers, faults);
     all.push_back(include);
   }
   for (const Include& include : read_includes(root, "apps")) all.push_back(include);
@@ -169,6 +174,17 @@ TEST_F(MadeUpTree, PermittedIncludesPass) { EXPECT_THAT(faults_of(root_), IsEmpt
 TEST_F(MadeUpTree, UpwardIncludeIsFoundWithFileAndLine) {
   write("lib/misfit/math/spline.h", "#pragma once\n\n#  include \"misfit/fit/fit.h\"\n");
   EXPECT_THAT(faults_of(root_), ElementsAre(HasSubstr("lib/misfit/math/spline.h:3: includes misfit/fit/fit.h; the LINKS of math")));
+}
+
+TEST_F(MadeUpTree, AFolderInsideAFolderIsALayerOfItsOwn) {
+  write("CMakeLists.txt",
+        "misfit_layer(core LINKS)\nmisfit_layer(math LINKS core)\nmisfit_layer(model LINKS core)\n"
+        "misfit_layer(fit/filter LINKS core)\nmisfit_layer(fit LINKS core math fit/filter)\n");
+  write("lib/misfit/fit/table.h", "#include \"misfit/fit/filter/run.h\"\n");
+  EXPECT_THAT(faults_of(root_), IsEmpty());
+  write("lib/misfit/fit/filter/run.h", "#include \"misfit/fit/table.h\"\n#include \"misfit/math/spline.h\"\n");
+  EXPECT_THAT(faults_of(root_), ElementsAre(HasSubstr("fit/filter/run.h:1: includes misfit/fit/table.h"),
+                                            HasSubstr("fit/filter/run.h:2: includes misfit/math/spline.h")));
 }
 
 TEST_F(MadeUpTree, PrivatePackageIsNoPermissionForALayer) {

@@ -1,4 +1,5 @@
-# misfit_layer(NAME LINKS layers and packages… [PRIVATE packages…]): one folder of lib/misfit = one static library misfit_NAME.
+# misfit_layer(NAME LINKS layers and packages… [PRIVATE packages…]): one folder of lib/misfit = one static library misfit_NAME; a folder
+# inside a folder is a layer of its own: NAME = fit/filter, library misfit_fit_filter.
 # A folder of headers alone becomes an interface library, whose PRIVATE packages are left out.
 add_library(misfit_options INTERFACE)
 add_library(misfit::options ALIAS misfit_options)
@@ -29,18 +30,20 @@ function(misfit_use_pch target)
 endfunction()
 
 set(MISFIT_LAYERS "" CACHE INTERNAL "")
-function(misfit_layer name)
+function(misfit_layer folder)
   cmake_parse_arguments(arg "" "" "LINKS;PRIVATE" ${ARGN})
+  string(REPLACE / _ name ${folder})
   set(links misfit_options)
   foreach(item IN LISTS arg_LINKS)
-    if(TARGET misfit_${item})
-      list(APPEND links misfit_${item})
+    string(REPLACE / _ layer ${item})
+    if(TARGET misfit_${layer})
+      list(APPEND links misfit_${layer})
     else()
       list(APPEND links ${item})
     endif()
   endforeach()
 
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/misfit/${name}/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/misfit/${folder}/*.cpp)
   if(sources)
     set(scope PUBLIC)
     add_library(misfit_${name} STATIC ${sources})

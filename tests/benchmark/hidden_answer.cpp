@@ -8,8 +8,8 @@
 #include "misfit/core/error.h"
 #include "misfit/discover/discover.h"
 #include "misfit/discover/refit.h"
-#include "misfit/fit/curves.h"
-#include "misfit/fit/filter_error.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/inference/curves.h"
 #include "tests/benchmark/known_truth.h"
 
 namespace misfit::bench {

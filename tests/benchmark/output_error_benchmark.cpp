@@ -9,9 +9,9 @@
 #include <cstdio>
 
 #include "misfit/core/table.h"
-#include "misfit/fit/curves.h"
-#include "misfit/fit/output_error.h"
-#include "misfit/fit/shooting.h"
+#include "misfit/fit/shooting/output_error.h"
+#include "misfit/fit/shooting/shooting.h"
+#include "misfit/inference/curves.h"
 #include "tests/benchmark/hand_kernel.h"
 
 namespace misfit {
@@ -74,7 +74,7 @@ void linearisation_against_hand_kernel() {
 
   benchmark_data::HandKernel<coefficients>::Normal N;
   benchmark_data::HandKernel<coefficients>::Row g;
-  Linearised general;
+  NormalEquations general;
   double rss = 0.0;
   std::vector<double> by_hand, by_mechanism;
   constexpr int rounds = 200;

@@ -1,5 +1,5 @@
 // The sums of sliding_bin against Eq. 11 of the paper (lib/misfit/README.md, [1]) solved densely, without the model mechanism.
-#include "misfit/fit/bin_equations.h"
+#include "misfit/fit/regression/bin_equations.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "misfit/fit/sliding_bin.h"
+#include "misfit/fit/regression/sliding_bin.h"
 #include "tests/fit/planar_model.h"
 
 namespace misfit {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "misfit/fit/filter_run.h"
+#include "misfit/fit/filter/filter_run.h"
 #include "tests/model/requests.h"
 
 namespace misfit::testing_cart {
@@ -43,7 +43,7 @@ struct Cart {
     }
     data.signals = &signals;
     data.inputs = input_table(signals, 1);
-    data.use.assign(2 * samples, Use::counted);
+    data.use.assign(2 * samples, SampleRole::counted);
     data.start = data.scale = Eigen::VectorXd::Zero(model.model.states());
     data.start.head(2) << 0.3, 0.0;
     data.scale.head(2) << 0.2, 0.5;
@@ -138,7 +138,7 @@ struct Dense {
     for (Eigen::Index k = 0; k < N; ++k) {
       for (Eigen::Index o = 0; o < 2; ++o) {
         const auto channel = static_cast<std::size_t>(o), sample = static_cast<std::size_t>(k);
-        if (cart.data.use[2 * sample + channel] == Use::none) continue;
+        if (cart.data.use[2 * sample + channel] == SampleRole::none) continue;
         Eigen::VectorXd row = Eigen::VectorXd::Zero(N * n);
         row[k * n + o] = 1.0;
         row[k * n + m + 2 * o] = 1.0;

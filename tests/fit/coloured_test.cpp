@@ -1,4 +1,4 @@
-#include "misfit/fit/coloured.h"
+#include "misfit/inference/coloured.h"
 
 #include <gtest/gtest.h>
 

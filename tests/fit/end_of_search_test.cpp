@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "misfit/fit/output_error.h"
+#include "misfit/fit/shooting/output_error.h"
 #include "tests/model/declared_texts.h"
 
 namespace misfit {

@@ -1,5 +1,5 @@
 // The regression of x' = -a x + b u, an input that is held between its steps.
-#include "misfit/fit/equation_error.h"
+#include "misfit/fit/regression/equation_error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "misfit/fit/filter_estimate.h"
+#include "misfit/fit/filter/filter_estimate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "misfit/core/error.h"
-#include "misfit/fit/filter_error.h"
-#include "misfit/fit/filter_exact.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/filter/likelihood_derivatives.h"
 #include "tests/fit/flight.h"
 
 namespace misfit {
@@ -57,7 +57,7 @@ TEST(EstimateFilter, WildReadingsAreSetAsideAndTheRestKept) {
   const std::vector<Signals> flights = {flight};
   const FilterEstimate estimate = fitted(request_for(flights), flights);
   EXPECT_EQ(estimate.outliers, 3) << "a wild reading does not take its neighbours with it";
-  for (std::size_t k : {200U, 400U, 650U}) EXPECT_EQ(estimate.data[0].use[2 * k], Use::none) << k;
+  for (std::size_t k : {200U, 400U, 650U}) EXPECT_EQ(estimate.data[0].use[2 * k], SampleRole::none) << k;
 }
 
 TEST(EstimateFilter, ManyReadingsOffInARowAreNotOutliers) {
@@ -66,9 +66,9 @@ TEST(EstimateFilter, ManyReadingsOffInARowAreNotOutliers) {
   for (std::size_t k : {200U, 650U}) flight.measured[0].values[k] += 60.0;
   const std::vector<Signals> flights = {flight};
   const FilterEstimate estimate = fitted(request_for(flights), flights);
-  EXPECT_EQ(estimate.data[0].use[400], Use::none);
+  EXPECT_EQ(estimate.data[0].use[400], SampleRole::none);
   std::size_t aside = 0;
-  for (std::size_t k = 400; k < 412; ++k) aside += estimate.data[0].use[2 * k] == Use::none ? 1 : 0;
+  for (std::size_t k = 400; k < 412; ++k) aside += estimate.data[0].use[2 * k] == SampleRole::none ? 1 : 0;
   EXPECT_LE(aside, static_cast<std::size_t>(kLongestWildRun)) << "what the model cannot follow is what we look for";
 }
 
@@ -104,7 +104,7 @@ TEST(EstimateFilter, DerivativesToOneSideAreThoseToBoth) {
   Eigen::VectorXd theta(static_cast<Eigen::Index>(free.size()));
   for (Eigen::Index c = 0; c < theta.size(); ++c)
     theta[c] = estimate.model.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
-  const ExactDerivatives both = exact_derivatives(estimate, theta, 2), one = exact_derivatives(estimate, theta, 2, &both);
+  const LikelihoodDerivatives both = exact_derivatives(estimate, theta, 2), one = exact_derivatives(estimate, theta, 2, &both);
   ASSERT_EQ(one.failure, "");
   ASSERT_EQ(one.gradient.size(), both.gradient.size());
   const Eigen::VectorXd sigma = estimate.joint_covariance.diagonal().cwiseSqrt();
@@ -131,7 +131,7 @@ TEST(EstimateFilter, WhatCanStandInForAnotherChangesNothingElse) {
     request.effects.push_back(effect("viscous_friction"));
     const FilterEstimate beside = fitted(request, flights);
     EXPECT_TRUE(beside.converged) << seed << ": " << beside.message;
-    EXPECT_TRUE(beside.rough.empty()) << seed << ": two dampings that can stand in for each other are no roughness";
+    EXPECT_TRUE(beside.nonlinear.empty()) << seed << ": two dampings that can stand in for each other are no roughness";
     EXPECT_NEAR(beside.objective, without.objective, 0.5) << seed;
     EXPECT_LT(without.left.value(), 0.5) << seed;
     EXPECT_LT(beside.left.value(), 0.5) << seed;

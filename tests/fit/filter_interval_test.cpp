@@ -1,10 +1,9 @@
-#include "misfit/fit/filter_interval.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "misfit/fit/filter_noise_fit.h"
+#include "misfit/fit/filter/filter_noise_fit.h"
+#include "misfit/fit/filter/noise_interval.h"
 #include "tests/fit/cart_filter.h"
 
 namespace misfit {

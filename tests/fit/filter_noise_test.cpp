@@ -1,4 +1,4 @@
-#include "misfit/fit/filter_noise.h"
+#include "misfit/fit/filter/filter_noise.h"
 
 #include <gtest/gtest.h>
 

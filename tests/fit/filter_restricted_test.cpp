@@ -1,7 +1,6 @@
-#include "misfit/fit/filter_restricted.h"
-
 #include <gtest/gtest.h>
 
+#include "misfit/fit/filter/restricted_likelihood.h"
 #include "tests/fit/cart_filter.h"
 
 namespace misfit {

@@ -1,4 +1,4 @@
-#include "misfit/fit/filter_run.h"
+#include "misfit/fit/filter/filter_run.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ TEST(FilterRun, LikelihoodOfALinearSystemIsTheDensityOfItsReadings) {
 
 TEST(FilterRun, MissingReadingsAreLongerPredictions) {
   Cart cart(25);
-  for (std::size_t at : {8U, 9U, 10U, 11U, 12U, 13U, 30U}) cart.data.use[at] = Use::none;
+  for (std::size_t at : {8U, 9U, 10U, 11U, 12U, 13U, 30U}) cart.data.use[at] = SampleRole::none;
   const FilterTrace trace = cart.run();
   EXPECT_EQ(trace.counted, 43U);
   EXPECT_NEAR(trace.loglik, dense_loglik(Dense(cart, trace)), 1e-8 * std::abs(trace.loglik));
@@ -36,7 +36,7 @@ TEST(FilterRun, MissingReadingsAreLongerPredictions) {
 
 TEST(FilterRun, SmootherGivesTheConditionalMeanAndVariance) {
   Cart cart(20);
-  for (std::size_t at : {10U, 11U, 12U}) cart.data.use[at] = Use::none;
+  for (std::size_t at : {10U, 11U, 12U}) cart.data.use[at] = SampleRole::none;
   const FilterTrace trace = cart.run(nullptr, true);
   const Dense dense(cart, trace);
   const Smoothing smooth = smooth_states(trace, cart.data, cart.noise);

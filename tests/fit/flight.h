@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "misfit/fit/curves.h"
-#include "misfit/fit/filter_estimate.h"
+#include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/inference/curves.h"
 #include "misfit/sim/random_run.h"
 #include "tests/model/requests.h"
 

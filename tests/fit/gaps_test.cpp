@@ -1,5 +1,5 @@
 // Recordings with time between two samples that no model can be run across.
-#include "misfit/fit/gaps.h"
+#include "misfit/inference/gaps.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "misfit/fit/filter_error.h"
-#include "misfit/fit/output_error.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/trajectory_start.h"
 #include "tests/model/declared_texts.h"
 

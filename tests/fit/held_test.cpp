@@ -1,5 +1,3 @@
-#include "misfit/fit/held.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,8 +6,9 @@
 #include <random>
 
 #include "misfit/core/error.h"
-#include "misfit/fit/curves.h"
-#include "misfit/fit/filter_error.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/profile_objective.h"
+#include "misfit/inference/curves.h"
 #include "tests/fit/cart_filter.h"
 #include "tests/fit/planar_model.h"
 
@@ -50,10 +49,10 @@ Fitted fitted(bool coloured) {
   return out;
 }
 
-TEST(HeldFit, OutputErrorDropsByTheSquareOfItsPlainSigmas) {
+TEST(ProfileObjective, OutputErrorDropsByTheSquareOfItsPlainSigmas) {
   const Fitted f = fitted(false);
   ASSERT_EQ(f.fit.status, FitStatus::converged) << f.fit.message;
-  HeldFit held(f.method, f.experiments, "cosine");
+  ProfileObjective held(f.method, f.experiments, "cosine");
   const double best = f.fit.parameters.at("cosine").value, sigma = f.fit.plain_sigmas.at("cosine");
   const std::optional<double> at_best = held(best), beside = held(best + 2.0 * sigma);
   ASSERT_TRUE(at_best && beside);
@@ -71,13 +70,13 @@ FittedMethod filtered(const testing_cart::Cart& cart, FilterEstimate& estimate) 
   return out;
 }
 
-TEST(HeldFit, FilterErrorDropsByTheSquareOfItsSigma) {
+TEST(ProfileObjective, FilterErrorDropsByTheSquareOfItsSigma) {
   const testing_cart::Cart cart(600);
   FilterEstimate estimate;
   const FittedMethod method = filtered(cart, estimate);
   ASSERT_TRUE(estimate.converged) << estimate.message;
   const std::vector<Signals> experiments{cart.signals};
-  HeldFit held(method, experiments, "stiffness");
+  ProfileObjective held(method, experiments, "stiffness");
   const double best = estimate.model.parameters[static_cast<std::size_t>(estimate.model.find_parameter("stiffness"))].value;
   const double sigma = std::sqrt(estimate.covariance(0, 0));
   const std::optional<double> at_best = held(best), beside = held(best + 2.0 * sigma);
@@ -98,10 +97,10 @@ std::vector<double> moved(const Model& model, double by) {
 
 TEST(MaximumFrom, ElsewhereOutputErrorComesBackToTheFit) {
   const Fitted f = fitted(false);
-  const Reached near = maximum_near(f.method, f.experiments);
+  const Maximisation near = maximise_near(f.method, f.experiments);
   ASSERT_TRUE(near.objective) << near.why;
   for (const double by : {-0.5, 0.5}) {
-    const Reached there = maximum_from(f.method, moved(f.method.fitted.model, by), f.experiments);
+    const Maximisation there = maximise_from(f.method, moved(f.method.fitted.model, by), f.experiments);
     ASSERT_TRUE(there.objective) << there.why;
     EXPECT_NEAR(*there.objective, *near.objective, 0.05) << by;
   }
@@ -111,11 +110,11 @@ TEST(MaximumFrom, ElsewhereFilterErrorComesBackToTheFit) {
   const testing_cart::Cart cart(600);
   FilterEstimate estimate;
   const FittedMethod method = filtered(cart, estimate);
-  const Reached near = maximum_near(method, {cart.signals});
+  const Maximisation near = maximise_near(method, {cart.signals});
   ASSERT_TRUE(near.objective) << near.why;
   EXPECT_NEAR(*near.objective, estimate.objective, 0.05);
   for (const double by : {-0.5, 1.0}) {
-    const Reached there = maximum_from(method, moved(method.fitted.model, by), {cart.signals});
+    const Maximisation there = maximise_from(method, moved(method.fitted.model, by), {cart.signals});
     ASSERT_TRUE(there.objective) << there.why;
     EXPECT_NEAR(*there.objective, *near.objective, 0.05) << by;
   }
@@ -123,12 +122,12 @@ TEST(MaximumFrom, ElsewhereFilterErrorComesBackToTheFit) {
 
 TEST(MaximumFrom, WhatCannotBeRunSaysWhy) {
   const Fitted f = fitted(false);
-  const Reached there = maximum_from(f.method, std::vector<double>(f.method.fitted.model.parameters.size(), 0.0), f.experiments);
+  const Maximisation there = maximise_from(f.method, std::vector<double>(f.method.fitted.model.parameters.size(), 0.0), f.experiments);
   EXPECT_FALSE(there.objective);
   EXPECT_FALSE(there.why.empty());
 }
 
-TEST(HeldFit, RefitsOfTheSameDataStayWhereTheFitWas) {
+TEST(ProfileObjective, RefitsOfTheSameDataStayWhereTheFitWas) {
   const Fitted f = fitted(false);
   const Fit again = fit_again(f.method, f.experiments);
   ASSERT_EQ(again.status, FitStatus::converged) << again.message;
@@ -154,13 +153,13 @@ TEST(OutputErrorSigmas, OfWhiteReadingsAreNearlyThePlainOnes) {
   }
 }
 
-TEST(HeldFit, WrongNamesAndMethodsAreSaid) {
+TEST(ProfileObjective, WrongNamesAndMethodsAreSaid) {
   const Fitted f = fitted(false);
-  EXPECT_THROW(HeldFit(f.method, f.experiments, "cosin"), InputError);
-  EXPECT_THROW(HeldFit(f.method, f.experiments, "C_m[2]"), InputError);
+  EXPECT_THROW(ProfileObjective(f.method, f.experiments, "cosin"), InputError);
+  EXPECT_THROW(ProfileObjective(f.method, f.experiments, "C_m[2]"), InputError);
   FittedMethod regression = f.method;
   regression.method = "equation_error";
-  EXPECT_THROW(HeldFit(regression, f.experiments, "cosine"), InputError);
+  EXPECT_THROW(ProfileObjective(regression, f.experiments, "cosine"), InputError);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "misfit/fit/k_step.h"
+#include "misfit/fit/filter/k_step.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

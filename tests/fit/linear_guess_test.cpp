@@ -1,4 +1,4 @@
-#include "misfit/fit/linear_guess.h"
+#include "misfit/fit/regression/linear_guess.h"
 
 #include <gtest/gtest.h>
 

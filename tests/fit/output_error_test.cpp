@@ -1,4 +1,4 @@
-#include "misfit/fit/output_error.h"
+#include "misfit/fit/shooting/output_error.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numeric>
 #include <random>
 
-#include "misfit/fit/curves.h"
-#include "misfit/fit/sliding_bin.h"
+#include "misfit/fit/regression/sliding_bin.h"
+#include "misfit/inference/curves.h"
 #include "tests/fit/planar_model.h"
 
 namespace misfit {

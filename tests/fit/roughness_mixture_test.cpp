@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "misfit/fit/roughness.h"
+#include "misfit/inference/roughness.h"
 #include "misfit/math/bspline.h"
 
 namespace misfit {
@@ -29,8 +29,8 @@ Readings readings() {
   return out;
 }
 
-Linearised problem_of(const Readings& r, const Eigen::VectorXd& y) {
-  Linearised out;
+NormalEquations problem_of(const Readings& r, const Eigen::VectorXd& y) {
+  NormalEquations out;
   out.N = r.A.transpose() * r.A;
   out.theta = Eigen::VectorXd::Zero(r.A.cols());
   out.g = -r.A.transpose() * y;
@@ -51,8 +51,8 @@ Penalty penalty_of(const Readings& r, double lambda, bool chosen) {
 }
 
 /// Moves the problem to its maximum, where with_uncertain_roughness() wants it.
-Linearised at_maximum(const Linearised& problem, const Smoothed& smoothed) {
-  Linearised out = problem;
+NormalEquations at_maximum(const NormalEquations& problem, const PenalisedFit& smoothed) {
+  NormalEquations out = problem;
   out.theta = smoothed.theta;
   out.g = problem.g + problem.N * smoothed.theta;
   return out;
@@ -60,9 +60,9 @@ Linearised at_maximum(const Linearised& problem, const Smoothed& smoothed) {
 
 TEST(UncertainRoughness, AGivenRoughnessLeavesTheCovarianceAsItIs) {
   const Readings r = readings();
-  const Linearised problem = problem_of(r, Eigen::VectorXd::LinSpaced(r.A.rows(), -3.0, 3.0));
+  const NormalEquations problem = problem_of(r, Eigen::VectorXd::LinSpaced(r.A.rows(), -3.0, 3.0));
   std::vector<Penalty> penalties{penalty_of(r, 10.0, false)};
-  const Smoothed smoothed = smooth(problem, penalties, 1.0);
+  const PenalisedFit smoothed = estimate_smoothing(problem, penalties, 1.0);
   const Eigen::MatrixXd E = 0.5 * problem.N;
   const Eigen::MatrixXd found = with_uncertain_roughness(at_maximum(problem, smoothed), penalties, 1.0, E);
   const Eigen::MatrixXd expected = smoothed.covariance + smoothed.covariance * E * smoothed.covariance;
@@ -85,9 +85,9 @@ TEST(UncertainRoughness, BandsHoldWhatTheySay) {
     for (Eigen::Index i = 2; i < c.size(); ++i) c += eigen.eigenvectors().col(i) * normal(random) * tau / std::sqrt(eigen.eigenvalues()[i]);
     Eigen::VectorXd y = r.A * c;
     for (double& reading : y) reading += normal(random);
-    const Linearised problem = problem_of(r, y);
+    const NormalEquations problem = problem_of(r, y);
     std::vector<Penalty> penalties{penalty_of(r, 1.0 / (tau * tau), true)};
-    const Smoothed smoothed = smooth(problem, penalties, 1.0);
+    const PenalisedFit smoothed = estimate_smoothing(problem, penalties, 1.0);
     ASSERT_TRUE(smoothed.ok);
     const Eigen::MatrixXd covariance = with_uncertain_roughness(at_maximum(problem, smoothed), penalties, 1.0);
     for (const Eigen::Index i : {20, 50, 75, 110, 140}) {
@@ -111,9 +111,9 @@ TEST(UncertainRoughness, AStraightLineKeepsTheBandOfTheBendsItMayHave) {
   // Noise turned sign by sign: nothing in it bends.
   Eigen::VectorXd y(r.A.rows());
   for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = i % 2 == 0 ? 1.0 : -1.0;
-  const Linearised problem = problem_of(r, y);
+  const NormalEquations problem = problem_of(r, y);
   std::vector<Penalty> penalties{penalty_of(r, 1.0, true)};
-  const Smoothed smoothed = smooth(problem, penalties, 1.0);
+  const PenalisedFit smoothed = estimate_smoothing(problem, penalties, 1.0);
   ASSERT_LT(smoothed.edf, 2.2);
   const Eigen::MatrixXd covariance = with_uncertain_roughness(at_maximum(problem, smoothed), penalties, 1.0);
   const Eigen::VectorXd middle = r.A.row(75);
@@ -146,13 +146,13 @@ struct StiffBesideWeak {
 TEST(InvertWith, AStiffCurveIsALineInItsPlace) {
   const StiffBesideWeak s;
   Eigen::MatrixXd covariance;
-  ASSERT_TRUE(invert_with(s.X.transpose() * s.X, bends_of(s.X.cols(), {penalty_of(s.r, s.lambda, false)}), covariance));
+  ASSERT_TRUE(invert_with(s.X.transpose() * s.X, penalty_eigenbasis(s.X.cols(), {penalty_of(s.r, s.lambda, false)}), covariance));
   EXPECT_NEAR(covariance.bottomRightCorner(1, 1)(0, 0), s.expected(), 1e-3 * s.expected());
 }
 
 TEST(UncertainRoughness, OfAStiffCurveIsThatOfALineInItsPlace) {
   const StiffBesideWeak s;
-  Linearised problem;
+  NormalEquations problem;
   problem.N = s.X.transpose() * s.X;
   problem.theta = Eigen::VectorXd::Constant(s.X.cols(), 7.0);  // a line at 7
   problem.g = Eigen::VectorXd::Zero(s.X.cols());

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "misfit/fit/curves.h"
+#include "misfit/inference/curves.h"
 #include "tests/model/requests.h"
 
 namespace misfit {

@@ -1,5 +1,5 @@
 // How often the 95 % intervals of short records hold the truth.
-#include "misfit/fit/short_record.h"
+#include "misfit/inference/short_record.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <random>
 
-#include "misfit/fit/coloured.h"
-#include "misfit/fit/filter_error.h"
-#include "misfit/fit/output_error.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/trajectory_start.h"
+#include "misfit/inference/coloured.h"
 #include "tests/model/declared_texts.h"
 
 namespace misfit {

@@ -1,4 +1,4 @@
-#include "misfit/fit/sliding_bin.h"
+#include "misfit/fit/regression/sliding_bin.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

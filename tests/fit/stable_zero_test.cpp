@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 
-#include "misfit/fit/curves.h"
+#include "misfit/inference/curves.h"
 
 namespace misfit {
 namespace {

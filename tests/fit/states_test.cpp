@@ -1,4 +1,4 @@
-#include "misfit/fit/states.h"
+#include "misfit/inference/states.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "misfit/fit/stencils.h"
+#include "misfit/fit/regression/stencils.h"
 
 #include <gtest/gtest.h>
 

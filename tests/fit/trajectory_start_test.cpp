@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "misfit/fit/curves.h"
-#include "misfit/fit/filter_error.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/inference/curves.h"
 #include "tests/fit/flight.h"
 #include "tests/fit/planar_model.h"
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "misfit/fit/curves.h"
-#include "misfit/fit/identifiable.h"
-#include "misfit/fit/output_error.h"
+#include "misfit/fit/shooting/output_error.h"
+#include "misfit/inference/curves.h"
+#include "misfit/inference/identifiable.h"
 #include "tests/fit/planar_model.h"
 
 namespace misfit {

@@ -1,4 +1,4 @@
-#include "misfit/fit/whiteness.h"
+#include "misfit/inference/whiteness.h"
 
 #include <gtest/gtest.h>
 

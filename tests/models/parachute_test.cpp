@@ -25,10 +25,10 @@ Model bare(bool induced, double damping) {
   return m;
 }
 
-struct Linearised {
+struct NormalEquations {
   double stiffness, damping;  ///< eta'' = −stiffness eta − damping eta'
 };
-Linearised at_trim(const Model& m) {
+NormalEquations at_trim(const Model& m) {
   Evaluator evaluator(m);
   const double x[] = {trim, 0.0}, u[] = {0.0, 0.0};
   double dx[2];
@@ -41,7 +41,7 @@ Linearised at_trim(const Model& m) {
 }
 
 TEST(PlanarParachute, InducedAngleIsAsLargeAsTheTiltAndDampsByItself) {
-  const Linearised l = at_trim(bare(true, 0.0));
+  const NormalEquations l = at_trim(bare(true, 0.0));
   const double omega0 = std::sqrt(l.stiffness);
   EXPECT_NEAR(omega0 * R / V, 1.14, 0.01) << "lib/misfit/README.md, 4.5";
   const double zeta = l.damping / (2.0 * omega0);
@@ -59,7 +59,7 @@ TEST(PlanarParachute, BothFormsDampAlikeWhenCmAlphadotIsCmqAndTheInducedPart) {
   const double C_mq = -0.25;
   const double C_m_alphadot = C_mq + 2.0 * R / D * slope * std::cos(trim);
   EXPECT_NEAR(C_m_alphadot, -1.634, 0.002) << "the induced part is five times the other";
-  const Linearised induced = at_trim(bare(true, C_mq)), paper = at_trim(bare(false, C_m_alphadot));
+  const NormalEquations induced = at_trim(bare(true, C_mq)), paper = at_trim(bare(false, C_m_alphadot));
   EXPECT_NEAR(induced.damping, paper.damping, 1e-10 * paper.damping);
   EXPECT_NEAR(induced.stiffness, paper.stiffness, 1e-10 * paper.stiffness);
 }

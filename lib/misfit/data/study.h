@@ -89,7 +89,7 @@ struct ParameterStudy {
 struct CurveStudy {
   std::string of;                              ///< quantity
   std::optional<std::vector<double>> knots;    ///< as written (degrees for angles); nullopt = "auto"
-  std::optional<double> roughness;             ///< nullopt = "auto"; unit of the weight: see fit/roughness.h
+  std::optional<double> roughness;             ///< nullopt = "auto"; unit of the weight: see inference/roughness.h
   std::optional<std::filesystem::path> table;  ///< CSV with columns `of` and the curve's name: values to start from, or to simulate with
   Source where;
 };

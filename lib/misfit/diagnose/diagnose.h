@@ -6,7 +6,7 @@
 
 #include "misfit/core/work_queue.h"
 #include "misfit/data/diagnosis.h"
-#include "misfit/fit/filter_estimate.h"
+#include "misfit/fit/filter/filter_estimate.h"
 
 namespace misfit {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "misfit/fit/states.h"
-#include "misfit/fit/whiteness.h"
+#include "misfit/inference/states.h"
+#include "misfit/inference/whiteness.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -19,7 +19,7 @@ std::vector<double> standardised(const FilterTrace& trace, const FilterData& dat
   std::vector<double> out(trace.samples, std::nan(""));
   for (std::size_t k = 0; k < trace.samples; ++k) {
     const std::size_t at = k * ny + channel;
-    if (data.use[at] == Use::counted) out[k] = trace.e[at] / std::sqrt(trace.S[at]);
+    if (data.use[at] == SampleRole::counted) out[k] = trace.e[at] / std::sqrt(trace.S[at]);
   }
   return out;
 }
@@ -113,7 +113,7 @@ std::vector<NisSeries> nis_of(const FilterEstimate& estimate) {
     for (std::size_t from = data.first; from + window <= trace.samples; from += window) {
       double sum = 0.0, count = 0.0;
       for (std::size_t i = from * ny; i < (from + window) * ny; ++i) {
-        if (data.use[i] == Use::none || !(trace.S[i] > 0.0)) continue;
+        if (data.use[i] == SampleRole::none || !(trace.S[i] > 0.0)) continue;
         sum += trace.e[i] * trace.e[i] / trace.S[i];
         count += 1.0;
       }

@@ -6,7 +6,7 @@
 //   [B]  M. S. Bartlett (1955), J. Durbin, Biometrika 56 (1969): cumulative periodogram.
 
 #include "misfit/data/diagnosis.h"
-#include "misfit/fit/filter_estimate.h"
+#include "misfit/fit/filter/filter_estimate.h"
 
 namespace misfit {
 

@@ -61,7 +61,7 @@ ScoreTest::ScoreTest(const FilterEstimate& estimate) {
   }
   any_ = columns > 0;
   if (!any_) return;
-  Linearised sums;
+  NormalEquations sums;
   sums.theta = Eigen::VectorXd::Zero(columns);
   for (Eigen::Index c = 0; c < columns; ++c)
     sums.theta[c] = estimate.model.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
@@ -173,7 +173,7 @@ ForceColumns::ForceColumns(const FilterEstimate& estimate) : estimate_(estimate)
     times_.insert(times_.end(), signals.t.begin(), signals.t.end());
     stepper.prepare(data.start.data(), data.inputs.at(data.first), signals.t[data.first]);
     for (std::size_t k = data.first; k < trace.samples; ++k) {
-      for (std::size_t i = 0; i < N; ++i) x[i] = trace.predicted[k * N + i] + trace.moved[k * N + i];
+      for (std::size_t i = 0; i < N; ++i) x[i] = trace.predicted[k * N + i] + trace.correction[k * N + i];
       used_[offset + k] = true;
       values.quantities(x.data(), data.inputs.at(k), signals.t[k], quantities_.row(static_cast<Eigen::Index>(offset + k)).data());
       if (k + 1 == trace.samples) break;
@@ -208,10 +208,10 @@ Eigen::MatrixXd ForceColumns::columns(int port, const Eigen::MatrixXd& f, const 
     for (std::size_t k = data.first; k < trace.samples; ++k) {
       for (std::size_t o = 0; o < NY; ++o) {
         const std::size_t at = k * NY + o;
-        if (data.use[at] == Use::none) continue;
+        if (data.use[at] == SampleRole::none) continue;
         v.noalias() = Eigen::Map<const Eigen::RowVectorXd>(trace.H.data() + at * N, n) * s;
         v += jitter.row(2 * static_cast<Eigen::Index>(o));
-        if (data.use[at] == Use::counted) out.row(row++) = v / std::sqrt(trace.S[at]);
+        if (data.use[at] == SampleRole::counted) out.row(row++) = v / std::sqrt(trace.S[at]);
         s.noalias() -= Eigen::Map<const Eigen::VectorXd>(trace.K.data() + at * N, n) * v;
         jitter.noalias() -= Eigen::Map<const Eigen::VectorXd>(trace.Kj.data() + at * 2 * NY, 2 * ny) * v;
       }

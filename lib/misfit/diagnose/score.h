@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "misfit/fit/filter_estimate.h"
+#include "misfit/fit/filter/filter_estimate.h"
 
 namespace misfit {
 

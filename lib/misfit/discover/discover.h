@@ -9,7 +9,7 @@
 #include "misfit/core/job_queue.h"
 #include "misfit/data/calibration.h"
 #include "misfit/data/candidates.h"
-#include "misfit/fit/filter_estimate.h"
+#include "misfit/fit/filter/filter_estimate.h"
 #include "misfit/model/registry.h"
 
 namespace misfit {

@@ -125,7 +125,7 @@ Visited::Visited(const FilterEstimate& estimate) {
     const auto n = static_cast<std::size_t>(trace.n);
     x.resize(n);
     for (std::size_t k = data.first; k < trace.samples; ++k) {
-      for (std::size_t i = 0; i < n; ++i) x[i] = trace.predicted[k * n + i] + trace.moved[k * n + i];
+      for (std::size_t i = 0; i < n; ++i) x[i] = trace.predicted[k * n + i] + trace.correction[k * n + i];
       evaluator.quantities(x.data(), data.inputs.at(k), data.signals->t[k], q.data());
       for (std::size_t i = 0; i < count; ++i) values[i].push_back(q[i]);
       if (k > data.first) steps.push_back(data.signals->t[k] - data.signals->t[k - 1]);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "misfit/fit/filter_estimate.h"
+#include "misfit/fit/filter/filter_estimate.h"
 
 namespace misfit {
 

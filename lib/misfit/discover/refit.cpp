@@ -8,8 +8,8 @@
 namespace misfit {
 namespace {
 
-std::vector<std::vector<Use>> uses_of(const FilterEstimate& estimate) {
-  std::vector<std::vector<Use>> out;
+std::vector<std::vector<SampleRole>> uses_of(const FilterEstimate& estimate) {
+  std::vector<std::vector<SampleRole>> out;
   for (const auto& data : estimate.data) out.push_back(data.use);
   return out;
 }
@@ -52,11 +52,11 @@ FilterOptions like(const FilterEstimate& estimate, int threads) {
 }
 
 /// Held out: the last quarter of each experiment.
-std::vector<std::vector<Use>> without_last_quarter(const FilterEstimate& estimate) {
-  std::vector<std::vector<Use>> out = uses_of(estimate);
+std::vector<std::vector<SampleRole>> without_last_quarter(const FilterEstimate& estimate) {
+  std::vector<std::vector<SampleRole>> out = uses_of(estimate);
   for (auto& use : out) {
     for (std::size_t i = use.size() - use.size() / 4; i < use.size(); ++i) {
-      if (use[i] == Use::counted) use[i] = Use::validation;
+      if (use[i] == SampleRole::counted) use[i] = SampleRole::validation;
     }
   }
   return out;

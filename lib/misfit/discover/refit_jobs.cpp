@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "misfit/core/ranks.h"
-#include "misfit/fit/filter_bytes.h"
+#include "misfit/fit/filter/estimate_bytes.h"
 
 namespace misfit {
 

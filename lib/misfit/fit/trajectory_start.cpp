@@ -1,5 +1,7 @@
 #include "misfit/fit/trajectory_start.h"
 
+#include "misfit/fit/regression/equation_error.h"
+
 namespace misfit {
 namespace {
 

@@ -3,7 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "misfit/fit/equation_error.h"
+#include "misfit/data/signals.h"
+#include "misfit/inference/fitted_model.h"
 
 namespace misfit {
 

@@ -1,0 +1,101 @@
+#include "misfit/fit/filter/estimate_bytes.h"
+
+#include <type_traits>
+
+namespace misfit {
+
+// The structured bindings name every field: one more and they no longer compile.
+
+template <class T, class Of>
+concept Is = std::is_same_v<std::remove_const_t<T>, Of>;
+
+template <class Bytes, Is<ChannelNoise> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [white, jitter, jitter_frequency, jitter_damping] = data;
+  bytes(white, jitter, jitter_frequency, jitter_damping);
+}
+
+template <class Bytes, Is<FilterNoise> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [force, force_time, channels] = data;
+  bytes(force, force_time, channels);
+}
+
+template <class Bytes, Is<NoiseFit> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [noise, minus_loglik, information, logs, at_bound, converged] = data;
+  bytes(noise, minus_loglik, information, logs, at_bound, converged);
+}
+
+template <class Bytes, Is<Penalty> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [curve, first, omega, rank, lambda, chosen] = data;
+  bytes(curve, first, omega, rank, lambda, chosen);
+}
+
+template <class Bytes, Is<InputTable> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [inputs, values] = data;
+  bytes(inputs, values);
+}
+
+/// All but the readings.
+template <class Bytes, Is<FilterData> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [signals, inputs, use, first, start, scale] = data;
+  static_cast<void>(signals);
+  bytes(inputs, use, first, start, scale);
+}
+
+template <class Bytes, Is<FilterTrace> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, e, S, y, y_variance, P, loglik, validation_loglik,
+         counted, validated] = data;
+  bytes(n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, e, S, y, y_variance, P, loglik, validation_loglik,
+        counted, validated);
+}
+
+template <class Bytes, Is<FilterJacobian> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [J, r, index] = data;
+  bytes(J, r, index);
+}
+
+/// All but the models.
+template <class Bytes, Is<FilterEstimate> Data>
+void fields(Bytes& bytes, Data& estimate) {
+  auto& [model, forced, penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information,
+         objective, loglik, validation_loglik, left, edf, converged, message, outliers, nonlinear, linearisations] = estimate;
+  static_cast<void>(model);
+  static_cast<void>(forced);
+  bytes(penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information, objective, loglik,
+        validation_loglik, left, edf, converged, message, outliers, nonlinear, linearisations);
+}
+
+namespace {
+
+void set_values(Model& model, const std::vector<double>& values) {
+  if (values.size() != model.parameters.size()) throw RunError("a stored estimate is of another model");
+  for (std::size_t i = 0; i < values.size(); ++i) model.parameters[i].value = values[i];
+}
+
+}  // namespace
+
+void write_estimate(ByteWriter& bytes, const FilterEstimate& estimate) {
+  bytes(estimate.model.values(), estimate.forced.model.values(), estimate);
+}
+
+FilterEstimate read_estimate(ByteReader& bytes, const Model& model, const std::vector<Signals>& experiments) {
+  FilterEstimate out;
+  std::vector<double> values, forced;
+  bytes(values, forced, out);
+  out.model = model;
+  set_values(out.model, values);
+  out.forced = with_random_force(out.model);
+  set_values(out.forced.model, forced);
+  if (out.data.size() != experiments.size()) throw RunError("a stored estimate is of other experiments");
+  for (std::size_t e = 0; e < experiments.size(); ++e) out.data[e].signals = &experiments[e];
+  return out;
+}
+
+}  // namespace misfit

@@ -1,0 +1,185 @@
+#include "misfit/fit/filter/filter_noise_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/work_queue.h"
+
+namespace misfit {
+namespace {
+
+/// Innovations and variances of all experiments, one after the other.
+struct Stack {
+  std::vector<double> e, S;
+};
+
+Stack run_all(const LinearisedRuns& runs, const FilterNoise& noise) {
+  Stack out;
+  std::vector<double> e, S;
+  for (std::size_t k = 0; k < runs.data->size(); ++k) {
+    run_linear(*runs.model, (*runs.data)[k], (*runs.traces)[k], noise, e, S);
+    out.e.insert(out.e.end(), e.begin(), e.end());
+    out.S.insert(out.S.end(), S.begin(), S.end());
+  }
+  return out;
+}
+
+std::vector<bool> counted(const LinearisedRuns& runs) {
+  std::vector<bool> out;
+  for (const auto& data : *runs.data) {
+    for (SampleRole use : data.use) out.push_back(use == SampleRole::counted);
+  }
+  return out;
+}
+
+double cost(const Stack& s, const std::vector<bool>& counts) {
+  constexpr double log_two_pi = 1.8378770664093453;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < s.e.size(); ++i) {
+    if (counts[i]) sum += 0.5 * (log_two_pi + std::log(s.S[i]) + s.e[i] * s.e[i] / s.S[i]);
+  }
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+class Scoring {
+ public:
+  Scoring(const LinearisedRuns& runs, const NoiseVector& start, int threads)
+      : runs_(runs), vector_(start), threads_(threads), counts_(counted(runs)) {}
+
+  Eigen::MatrixXd information(const std::vector<double>& at) {
+    derivatives(at, run_all(runs_, unpack(at)));
+    return information_;
+  }
+
+  NoiseFit run(int max_iterations) {
+    NoiseFit out;
+    std::vector<double> at = vector_.value;
+    Stack present = run_all(runs_, unpack(at));
+    double best = cost(present, counts_);
+    double damping = 1e-3;
+    bool fresh = false;  // derivatives are those at `at`
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
+      derivatives(at, present);
+      fresh = true;
+      bool moved = false;
+      double expected = 0.0;
+      for (int attempt = 0; attempt < 6 && !moved; ++attempt) {
+        const std::vector<double> next = step(at, damping, expected);
+        if (expected < 1e-3) break;
+        Stack there = run_all(runs_, unpack(next));
+        const double value = cost(there, counts_);
+        if (value < best) {
+          moved = true;
+          fresh = false;
+          damping = std::max(damping * 0.2, 1e-6);
+          at = next;
+          present = std::move(there);
+          best = value;
+        } else {
+          damping = std::max(damping * 8.0, 1e-3);
+        }
+      }
+      if (!moved) {
+        out.converged = expected < 1e-2;
+        break;
+      }
+    }
+    if (!fresh && max_iterations > kRefinements) derivatives(at, present);
+    out.logs = at;
+    out.noise = unpack(at);
+    out.minus_loglik = best;
+    out.information = information_;
+    for (std::size_t i = 0; i < at.size(); ++i) out.at_bound.push_back(stuck(at, i));
+    return out;
+  }
+
+ private:
+  [[nodiscard]] bool stuck(const std::vector<double>& at, std::size_t i) const {
+    constexpr double near = 1e-6;
+    return at[i] < vector_.lower[i] + near || at[i] > vector_.upper[i] - near;
+  }
+
+  void derivatives(const std::vector<double>& at, const Stack& here) {
+    constexpr double difference = 1e-4;
+    const std::size_t n = at.size();
+    std::vector<Stack> moved(n);
+    run_jobs(n, threads_, [&](std::size_t i) {
+      std::vector<double> there = at;
+      there[i] += there[i] + difference < vector_.upper[i] ? difference : -difference;
+      moved[i] = run_all(runs_, unpack(there));
+      const double scale = 1.0 / (there[i] - at[i]);
+      for (std::size_t k = 0; k < here.e.size(); ++k) {
+        if (!counts_[k]) continue;
+        moved[i].e[k] = (moved[i].e[k] - here.e[k]) * scale / std::sqrt(here.S[k]);
+        moved[i].S[k] = (moved[i].S[k] - here.S[k]) * scale / here.S[k];
+      }
+    });
+    gradient_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
+    information_ = Eigen::MatrixXd::Zero(gradient_.size(), gradient_.size());
+    for (std::size_t k = 0; k < here.e.size(); ++k) {
+      if (!counts_[k]) continue;
+      const double w = here.e[k] / std::sqrt(here.S[k]);
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        gradient_[row] += w * moved[i].e[k] + 0.5 * (1.0 - w * w) * moved[i].S[k];
+        for (std::size_t j = 0; j <= i; ++j)
+          information_(row, static_cast<Eigen::Index>(j)) += moved[i].e[k] * moved[j].e[k] + 0.5 * moved[i].S[k] * moved[j].S[k];
+      }
+    }
+    information_ = Eigen::MatrixXd(information_.selfadjointView<Eigen::Lower>());
+  }
+
+  /// A damped step inside the bounds, each logarithm by at most 1; what it is expected to gain.
+  std::vector<double> step(const std::vector<double>& at, double damping, double& expected) const {
+    Eigen::MatrixXd A = information_;
+    for (Eigen::Index i = 0; i < A.rows(); ++i) {
+      A(i, i) += damping * A(i, i) + 1e-6;
+      const auto k = static_cast<std::size_t>(i);
+      const bool outward =
+          (at[k] <= vector_.lower[k] + 1e-9 && gradient_[i] > 0.0) || (at[k] >= vector_.upper[k] - 1e-9 && gradient_[i] < 0.0);
+      if (outward) A(i, i) += 1e12;
+    }
+    const Eigen::VectorXd d = A.ldlt().solve(gradient_);
+    expected = 0.5 * gradient_.dot(d);
+    std::vector<double> next = at;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      next[i] = std::clamp(at[i] - std::clamp(d[static_cast<Eigen::Index>(i)], -1.0, 1.0), vector_.lower[i], vector_.upper[i]);
+    return next;
+  }
+
+  const LinearisedRuns& runs_;
+  const NoiseVector& vector_;
+  int threads_;
+  std::vector<bool> counts_;
+  Eigen::VectorXd gradient_;
+  Eigen::MatrixXd information_;
+};
+
+}  // namespace
+
+NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const FilterNoise& around, int threads, int max_iterations) {
+  const NoiseVector vector = pack(start, runs.model->model.system->spec(), around);
+  return Scoring(runs, vector, threads).run(max_iterations);
+}
+
+Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around, int threads) {
+  const NoiseVector vector = pack(unpack(logs), runs.model->model.system->spec(), around);
+  return Scoring(runs, vector, threads).information(logs);
+}
+
+std::vector<bool> pin_unknown(const NoiseFit& fit, Eigen::MatrixXd& information) {
+  constexpr double determined = 1.0, pin = 1e12;
+  const Eigen::Index first = information.rows() - static_cast<Eigen::Index>(fit.at_bound.size());
+  std::vector<bool> known;
+  for (std::size_t i = 0; i < fit.at_bound.size(); ++i) {
+    double& own = information(first + static_cast<Eigen::Index>(i), first + static_cast<Eigen::Index>(i));
+    known.push_back(!fit.at_bound[i] && own > determined);
+    if (!known.back()) own += pin;
+  }
+  return known;
+}
+
+double minus_loglik(const LinearisedRuns& runs, const FilterNoise& noise) { return cost(run_all(runs, noise), counted(runs)); }
+
+}  // namespace misfit

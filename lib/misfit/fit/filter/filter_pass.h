@@ -1,0 +1,241 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "misfit/fit/filter/filter_steps.h"
+
+namespace misfit {
+
+/// What a pass of the filter is asked for besides the trace; null: not wanted.
+struct FilterPassOptions {
+  FilterJacobian* jacobian = nullptr;
+  std::vector<std::size_t>* rejected = nullptr;
+  bool keep_P = false;
+};
+
+/// One pass of the extended Kalman filter over one experiment, sample by sample. M, NY as in Kalman.
+template <int M, int NY>
+class FilterPass {
+ public:
+  FilterPass(const FilterModel& model, Stepper& stepper, const FilterData& data, const FilterNoise& noise, FilterTrace& trace,
+             const FilterPassOptions& wishes)
+      : model_(model),
+        stepper_(stepper),
+        evaluator_(stepper.evaluator()),
+        data_(data),
+        signals_(*data.signals),
+        noise_(noise),
+        trace_(trace),
+        wishes_(wishes),
+        n_(stepper.states()),
+        ny_(evaluator_.outputs()),
+        N_(static_cast<std::size_t>(n_)),
+        kalman_(n_, ny_),
+        steps_(noise),
+        D_(N_ * kRowStride),
+        O_((static_cast<std::size_t>(ny_) + 1) * kRowStride),
+        a_(StateVector::Zero(n_)) {
+    start_covariance(model, data, noise, kalman_);
+    if (wishes.jacobian != nullptr) begin_derivatives();
+    std::copy_n(data.start.data(), n_, x_.begin());
+    stepper_.prepare(x_.data(), data.inputs.at(data.first), signals_.t[data.first]);
+  }
+
+  bool run() {
+    for (std::size_t k = data_.first; k < signals_.samples(); ++k) {
+      predict_outputs(k);
+      for (int o = 0; o < ny_; ++o) {
+        if (!take_reading(k, o)) return fails(k);
+      }
+      move(k);
+      if (k + 1 < signals_.samples() && !step(k)) return fails(k);
+    }
+    trace_.finite = std::isfinite(trace_.loglik);
+    return trace_.finite;
+  }
+
+ private:
+  using StateVector = typename Kalman<M, NY>::StateVector;
+  static constexpr Eigen::Index twice(int count) { return 2 * static_cast<Eigen::Index>(count); }
+  static constexpr double kLogTwoPi = 1.8378770664093453;
+
+  void begin_derivatives() {
+    const auto rows = static_cast<Eigen::Index>(std::count(data_.use.begin(), data_.use.end(), SampleRole::counted));
+    const int columns = evaluator_.columns();
+    wishes_.jacobian->J.resize(rows, columns);
+    wishes_.jacobian->r.resize(rows);
+    wishes_.jacobian->index.clear();
+    s_model_ = RowMatrix::Zero(n_, columns);
+    s_jitter_ = RowMatrix::Zero(twice(ny_), columns);
+    s_work_.resize(n_, columns);
+    s_row_.resize(columns);
+  }
+
+  bool fails(std::size_t k) {
+    trace_.failed_at = k;
+    return false;
+  }
+
+  [[nodiscard]] const double* output_row(int o) const { return O_.data() + static_cast<std::ptrdiff_t>(o) * kRowStride; }
+  [[nodiscard]] std::size_t place(std::size_t k, int o) const { return k * static_cast<std::size_t>(ny_) + static_cast<std::size_t>(o); }
+
+  /// Outputs, their rows and their variances before any reading of the sample is taken in.
+  void predict_outputs(std::size_t k) {
+    const auto NY_ = static_cast<std::size_t>(ny_);
+    std::copy_n(x_.begin(), n_, trace_.predicted.begin() + static_cast<std::ptrdiff_t>(k * N_));
+    if (wishes_.keep_P) {
+      Eigen::Map<RowMatrix> joint(trace_.P.data() + k * N_ * (N_ + 2 * NY_), n_, n_ + twice(ny_));
+      joint.leftCols(n_) = kalman_.P;
+      joint.rightCols(twice(ny_)) = kalman_.C;
+    }
+    slots_.clear();
+    evaluator_.linearise_outputs(x_.data(), data_.inputs.at(k), signals_.t[k], slots_, y_.data(), O_.data());
+    if (evaluator_.shifts_time()) evaluator_.rates(x_.data(), data_.inputs.at(k), signals_.t[k], speed_.data());
+    kalman_.x.setZero();
+    for (int o = 0; o < ny_; ++o) {
+      const std::size_t at = place(k, o);
+      const auto channel = static_cast<std::size_t>(o);
+      for (int i = 0; i < n_; ++i) a_[i] = output_row(o)[i];
+      if (evaluator_.shifts_time()) {
+        motion_[channel] = 0.0;
+        for (int i = 0; i < n_; ++i) motion_[channel] += a_[i] * speed_[static_cast<std::size_t>(i)];
+        y_[channel] += motion_[channel] * y_[NY_];
+      }
+      Eigen::Map<Eigen::VectorXd>(trace_.H.data() + at * N_, n_) = a_;
+      trace_.y[at] = y_[channel] + kalman_.j[twice(o)];
+      trace_.y_variance[at] = kalman_.variance(a_, o, noise_.channels[channel].white);
+    }
+  }
+
+  /// False if the innovation is not a number.
+  bool take_reading(std::size_t k, int o) {
+    const std::size_t at = place(k, o);
+    const auto channel = static_cast<std::size_t>(o);
+    const SampleRole use = data_.use[at];
+    if (use == SampleRole::none) return true;
+    a_ = Eigen::Map<const Eigen::VectorXd>(trace_.H.data() + at * N_, n_);
+    const double S = kalman_.variance(a_, o, noise_.channels[channel].white);
+    const double z = signals_.measured[channel].values[k] - y_[channel];
+    const double innovation = z - a_.dot(kalman_.x) - kalman_.j[twice(o)];
+    if (!(S > 0.0) || !std::isfinite(innovation)) return false;
+    if (wishes_.rejected != nullptr && is_wild(at, channel, innovation * innovation > kOutlierGate * kOutlierGate * S)) return true;
+    trace_.z[at] = z;
+    trace_.e[at] = innovation;
+    trace_.S[at] = S;
+    count(use, -0.5 * (kLogTwoPi + std::log(S) + innovation * innovation / S));
+    kalman_.update(innovation, S);
+    Eigen::Map<Eigen::VectorXd>(trace_.K.data() + at * N_, n_) = kalman_.gain;
+    Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * static_cast<std::size_t>(ny_), twice(ny_)) = kalman_.gain_jitter;
+    if (wishes_.jacobian != nullptr) differentiate_reading(at, o, use);
+    return true;
+  }
+
+  /// Keeps the list of readings set aside: those beyond the gate, unless more than kLongestWildRun of the channel follow each other.
+  bool is_wild(std::size_t at, std::size_t channel, bool beyond) {
+    int& run = wild_run_[channel];
+    if (!beyond) run = 0;
+    if (!beyond || run < 0) return false;
+    if (++run <= kLongestWildRun) {
+      wishes_.rejected->push_back(at);
+      return true;
+    }
+    auto& aside = *wishes_.rejected;
+    const auto width = static_cast<std::size_t>(ny_);
+    for (std::size_t kept = kLongestWildRun, i = aside.size(); kept > 0 && i-- > 0;) {
+      if (aside[i] % width != channel) continue;
+      aside.erase(aside.begin() + static_cast<std::ptrdiff_t>(i));
+      --kept;
+    }
+    run = -1;  // lost: all are taken in until one is within the gate
+    return false;
+  }
+
+  void count(SampleRole use, double log_density) {
+    if (use == SampleRole::counted) {
+      trace_.loglik += log_density;
+      ++trace_.counted;
+    } else if (use == SampleRole::validation) {
+      trace_.validation_loglik += log_density;
+      ++trace_.validated;
+    }
+  }
+
+  void differentiate_reading(std::size_t at, int o, SampleRole use) {
+    s_row_.noalias() = a_.transpose() * s_model_;
+    s_row_ += s_jitter_.row(twice(o));
+    const double* row = output_row(o) + n_;
+    for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += row[c];
+    if (evaluator_.shifts_time()) {
+      const double* by_shift = output_row(ny_) + n_;
+      for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += motion_[static_cast<std::size_t>(o)] * by_shift[c];
+    }
+    if (use == SampleRole::counted) {
+      FilterJacobian& jacobian = *wishes_.jacobian;
+      const auto r = static_cast<Eigen::Index>(jacobian.index.size());
+      const double whiten = 1.0 / std::sqrt(trace_.S[at]);
+      jacobian.J.row(r) = whiten * s_row_;
+      jacobian.r[r] = -whiten * trace_.e[at];
+      jacobian.index.push_back(at);
+    }
+    s_model_.noalias() -= kalman_.gain * s_row_;
+    s_jitter_.noalias() -= kalman_.gain_jitter * s_row_;
+  }
+
+  void move(std::size_t k) {
+    for (int i = 0; i < n_; ++i) {
+      trace_.correction[k * N_ + static_cast<std::size_t>(i)] = kalman_.x[i];
+      x_[static_cast<std::size_t>(i)] += kalman_.x[i];
+    }
+  }
+
+  bool step(std::size_t k) {
+    const Interval interval{signals_.t[k], signals_.t[k + 1], data_.inputs.at(k), data_.inputs.at(k + 1)};
+    if (!stepper_.step_linear(x_.data(), interval, slots_, D_.data())) return false;
+    const Eigen::Map<const Eigen::Matrix<double, M, M, M == 1 ? Eigen::ColMajor : Eigen::RowMajor>, 0, Eigen::OuterStride<>> phi(
+        D_.data(), n_, n_, Eigen::OuterStride<>(kRowStride));
+    Eigen::Map<RowMatrix>(trace_.Phi.data() + k * N_ * N_, n_, n_) = phi;
+    const NoiseStep& noise_step = steps_.at(interval.t1 - interval.t0);
+    kalman_.predict(phi, noise_step, model_.kind, model_.force_states);
+    if (wishes_.jacobian == nullptr) return true;
+    s_work_.noalias() = phi * s_model_;
+    for (int i = 0; i < n_; ++i) {
+      const double* row = D_.data() + static_cast<std::ptrdiff_t>(i) * kRowStride + n_;
+      for (int c = 0; c < slots_.count(); ++c) s_work_(i, slots_.column(c)) += row[c];
+    }
+    s_model_.swap(s_work_);
+    for (int o = 0; o < ny_; ++o) {
+      const auto& p = noise_step.jitter[static_cast<std::size_t>(o)].phi;
+      s_row_ = s_jitter_.row(twice(o));
+      s_jitter_.row(twice(o)) = p[0] * s_row_ + p[1] * s_jitter_.row(twice(o) + 1);
+      s_jitter_.row(twice(o) + 1) = p[2] * s_row_ + p[3] * s_jitter_.row(twice(o) + 1);
+    }
+    return true;
+  }
+
+  const FilterModel& model_;
+  Stepper& stepper_;
+  Evaluator& evaluator_;
+  const FilterData& data_;
+  const Signals& signals_;
+  const FilterNoise& noise_;
+  FilterTrace& trace_;
+  FilterPassOptions wishes_;
+  int n_, ny_;
+  std::size_t N_;
+  Kalman<M, NY> kalman_;
+  NoiseSteps steps_;
+  std::vector<double> D_, O_;
+  StateVector a_;
+  Slots slots_;
+  std::array<double, kMaxStates> x_{}, speed_{};
+  std::array<double, kMaxOutputs + 1> y_{};
+  std::array<int, kMaxOutputs> wild_run_{};   // readings beyond the gate in a row; -1: too many
+  std::array<double, kMaxOutputs> motion_{};  // of each output over time: a reading taken later sees it
+  RowMatrix s_model_, s_jitter_, s_work_;     // ∂(state)/∂θ with the gains held
+  Eigen::RowVectorXd s_row_;
+};
+
+}  // namespace misfit

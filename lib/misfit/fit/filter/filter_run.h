@@ -1,0 +1,109 @@
+#pragma once
+
+// References
+//   [J]  A. H. Jazwinski, Stochastic Processes and Filtering Theory (1970): extended Kalman filter.
+//   [DK] J. Durbin, S. J. Koopman, Time Series Analysis by State Space Methods (2012): disturbance smoother.
+
+#include <cstdint>
+#include <vector>
+
+#include "misfit/fit/filter/filter_model.h"
+#include "misfit/fit/filter/filter_noise.h"
+#include "misfit/inference/states.h"
+#include "misfit/sim/step.h"
+
+namespace misfit {
+
+/// What a reading is used for.
+enum class SampleRole : std::uint8_t {
+  none,       ///< missing, or set aside as an outlier
+  update,     ///< moves the state, is not counted (initial samples that a study excludes)
+  counted,    ///< in the likelihood
+  validation  ///< in the held-out likelihood
+};
+
+/// One experiment as the filter takes it.
+struct FilterData {
+  const Signals* signals = nullptr;
+  InputTable inputs;
+  std::vector<SampleRole> use;   ///< samples × channels
+  std::size_t first = 0;         ///< first sample at which all states can be read
+  Eigen::VectorXd start, scale;  ///< model states there and their sigmas, force states excluded (0)
+};
+[[nodiscard]] FilterData filter_data(const FilterModel& model, const Signals& signals);
+/// The same experiment for a model of the same system with further own states: readings, start and uses as in `data`.
+[[nodiscard]] FilterData filter_data_like(const FilterModel& model, const FilterData& data);
+
+/// A run of the extended Kalman filter over one experiment [J], kept so that it can be run again with other noise (linear about this one),
+/// smoothed, and asked for the effect of further forces. Row-major blocks per sample.
+struct FilterTrace {
+  int n = 0, ny = 0;  ///< model states (forces included), channels
+  std::size_t samples = 0;
+  bool finite = false;  ///< false: a state left the finite numbers at sample failed_at
+  std::size_t failed_at = 0;
+  std::vector<double> Phi;            ///< from sample k (filtered) to k + 1: n × n
+  std::vector<double> H;              ///< ∂h/∂x at the predicted state: ny × n
+  std::vector<double> z;              ///< measured − h(predicted state), without jitter; 0 where not used: ny
+  std::vector<double> correction;     ///< filtered − predicted state: n
+  std::vector<double> predicted;      ///< state one step before: n
+  std::vector<double> K;              ///< gains on the model's states: ny × n
+  std::vector<double> Kj;             ///< gains on the jitter states: ny × 2 ny
+  std::vector<double> e, S;           ///< innovations and their variances, each given the earlier channels of its sample; S = 0: not used
+  std::vector<double> y, y_variance;  ///< one-step prediction of each channel before any of the sample is taken in (jitter included)
+  std::vector<double> P;              ///< only if asked for: covariance of the predicted state with [states | jitter], n × (n + 2 ny)
+  double loglik = 0.0, validation_loglik = 0.0;
+  std::size_t counted = 0, validated = 0;
+};
+
+/// Whitened residuals (predicted − measured)/√S of the counted readings and their derivatives by the free parameters with the gains held.
+struct FilterJacobian {
+  RowMatrix J;                     ///< rows × columns
+  Eigen::VectorXd r;               ///< rows
+  std::vector<std::size_t> index;  ///< sample · ny + channel of each row
+};
+
+inline constexpr double kOutlierGate = 5.0;  ///< sigmas: beyond, a reading is set aside as an outlier (5.7e-7 of good ones)
+inline constexpr int kLongestWildRun = 3;    ///< more in a row are not wild: the model has lost the motion, which is what we look for
+
+struct FilterPassOptions;  // filter_pass.h
+
+/// Runs the filter. One object per thread and experiment set; keeps pointers to model and data.
+class FilterRunner {
+ public:
+  /// `derivatives`: the model's free parameters have columns; otherwise they are all taken as fixed.
+  FilterRunner(const FilterModel& model, bool derivatives);
+
+  void set_parameters(const std::vector<double>& values);  ///< all of FilterModel::model, force_time included
+  /// Fills `trace`; `jacobian` may be null. Returns trace.finite.
+  bool run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, FilterJacobian* jacobian = nullptr, bool keep_P = false);
+  /// Passes over readings more than kOutlierGate sigmas from their prediction as it comes to them, so that a wild one does not spoil the
+  /// predictions by which its neighbours are judged; while nothing is taken in, the prediction's sigma grows and with it the gate.
+  /// Runs longer than kLongestWildRun are taken in: there the model fails, not the sensor.
+  /// `rejected`: sample · ny + channel of each.
+  bool run_gated(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, std::vector<std::size_t>& rejected);
+
+ private:
+  bool run_with(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterPassOptions& wishes);
+
+  const FilterModel* model_;
+  Model own_;
+  Stepper stepper_;
+};
+
+/// The same filter, linear about `trace`, with other noise: innovations and variances of every used reading (0 elsewhere).
+/// The correlation time may be another one than in `trace`: the force then decays and acts as `noise` says.
+void run_linear(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise,
+                std::vector<double>& e, std::vector<double>& S);
+
+/// −log of the Gaussian density of counted readings.
+[[nodiscard]] double minus_loglik(const FilterData& data, const std::vector<double>& e, const std::vector<double>& S);
+
+/// What all data, later ones included, say of the states: mean and variance of each model state at every sample [DK]. Needs trace.P.
+struct Smoothing {
+  RowMatrix x, variance;  ///< samples × n
+};
+/// ∂ log-likelihood/∂(predicted state) of each sample's and all later readings, gains held, held-out readings left out: samples × n.
+[[nodiscard]] RowMatrix adjoint_of(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise);
+[[nodiscard]] Smoothing smooth_states(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise);
+
+}  // namespace misfit

@@ -1,0 +1,57 @@
+#include "misfit/fit/filter/filter_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace misfit {
+namespace {
+
+/// Size of a force that gives the states' measured derivatives.
+double force_size(const FilterModel& model, const FilterData& data, const ReconstructedStates& states) {
+  Evaluator evaluator(model.model);
+  const int n = evaluator.states();
+  std::vector<double> dx(static_cast<std::size_t>(n)), D(static_cast<std::size_t>(n) * kRowStride);
+  Slots slots;
+  evaluator.linearise_rates(data.start.data(), data.inputs.at(data.first), data.signals->t[data.first], slots, dx.data(), D.data());
+  double size = 0.0;
+  for (int f : model.force_states) {
+    for (int i = 0; i < n; ++i) {
+      const double gain = std::abs(D[static_cast<std::size_t>(i) * kRowStride + static_cast<std::size_t>(f)]);
+      if (i == f || model.kind[static_cast<std::size_t>(i)] != 1 || !(gain > 0.0)) continue;
+      double squares = 0.0, count = 0.0;
+      for (Eigen::Index k = 0; k < states.dx.rows(); ++k) {
+        if (!states.ok[static_cast<std::size_t>(k)]) continue;
+        squares += states.dx(k, i) * states.dx(k, i);
+        count += 1.0;
+      }
+      if (count > 0.0) size = std::max(size, std::sqrt(squares / count) / gain);
+    }
+  }
+  return size > 0.0 ? size : 1.0;
+}
+
+}  // namespace
+
+FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>& data) {
+  constexpr double share_of_motion = 0.3, samples_of_memory = 6.0, share_of_rate = 0.15;
+  FilterNoise out;
+  const Signals& first = *data.front().signals;
+  const double h = usual_step(first.t);
+  out.force_time = samples_of_memory * h;
+  const ReconstructedStates states = reconstruct_states(model.model, first);
+  out.force = share_of_motion * force_size(model, data.front(), states);
+  // Well above the motion, which the model itself must explain: pack() lets the frequency down to half of this.
+  constexpr double above_motion = 3.0;
+  const double jitter_frequency =
+      std::min(std::max(share_of_rate / h, above_motion * motion_frequency(model.model, states) / (2.0 * std::numbers::pi)), 0.3 / h);
+  const auto& outputs = model.model.system->spec().outputs;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    double white = reading_noise(first.measured[o].values);
+    if (!(white > 0.0)) white = outputs[o].noise > 0.0 ? outputs[o].noise : 1.0;
+    out.channels.push_back({white, white, jitter_frequency, 0.3});
+  }
+  return out;
+}
+
+}  // namespace misfit

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "misfit/fit/filter/filter_run.h"
+
+namespace misfit {
+
+/// Noise as it usually is on such data, before anything is fitted: white noise from fifth differences of the channels, jitter as large at
+/// 0.15 of the sampling rate or three times the motion's own frequency, a force that explains half of the measured accelerations (or rates)
+/// with a correlation time of six samples.
+[[nodiscard]] FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>& data);
+
+}  // namespace misfit

@@ -1,0 +1,112 @@
+#include "misfit/fit/filter/k_step.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "misfit/data/ladder.h"
+
+namespace misfit {
+namespace {
+
+constexpr std::size_t lengths = std::size(kLadderSteps);
+
+/// Squared errors per channel and length, and runs per length.
+struct Errors {
+  std::vector<std::vector<double>> squares, counts;
+  std::vector<std::size_t> runs = std::vector<std::size_t>(lengths, 0), diverged = runs;
+  explicit Errors(std::size_t channels) : squares(channels, std::vector<double>(lengths, 0.0)), counts(squares) {}
+};
+
+/// Free runs of one experiment: from the filtered state of every third sample (neighbours say the same) as far as the longest length.
+class FreeRuns {
+ public:
+  FreeRuns(Stepper& stepper, const FilterData& data, const FilterTrace& trace, SampleRole counted, Errors& errors)
+      : stepper_(stepper), data_(data), trace_(trace), signals_(*data.signals), counted_(counted), errors_(errors) {}
+
+  void run() {
+    constexpr std::size_t stride = 3;
+    stepper_.prepare(data_.start.data(), data_.inputs.at(data_.first), signals_.t[data_.first]);
+    for (std::size_t k = data_.first; k + 1 < signals_.samples(); k += stride) run_from(k);
+  }
+
+ private:
+  void run_from(std::size_t k) {
+    const auto n = static_cast<std::size_t>(trace_.n);
+    std::array<double, kMaxStates> x{};
+    for (std::size_t i = 0; i < n; ++i) x[i] = trace_.predicted[k * n + i] + trace_.correction[k * n + i];
+    std::size_t next = 0;
+    bool fine = true;
+    for (std::size_t j = 1; next < lengths && k + j < signals_.samples(); ++j) {
+      const Interval interval{signals_.t[k + j - 1], signals_.t[k + j], data_.inputs.at(k + j - 1), data_.inputs.at(k + j)};
+      fine = fine && stepper_.step(x.data(), interval);
+      if (static_cast<int>(j) != kLadderSteps[next]) continue;
+      fine = fine && compare(x.data(), k + j, next);
+      ++errors_.runs[next];
+      errors_.diverged[next++] += fine ? 0U : 1U;
+    }
+  }
+
+  /// False: nothing can be read from the state.
+  bool compare(const double* x, std::size_t k, std::size_t length) {
+    std::array<double, kMaxOutputs + 1> y{};
+    if (!predict_at(stepper_, signals_, data_.inputs, k, x, y.data())) return false;
+    for (std::size_t o = 0; o < errors_.squares.size(); ++o) {
+      if (data_.use[k * errors_.squares.size() + o] != counted_) continue;
+      errors_.squares[o][length] += std::pow(signals_.measured[o].values[k] - y[o], 2);
+      errors_.counts[o][length] += 1.0;
+    }
+    return true;
+  }
+
+  Stepper& stepper_;
+  const FilterData& data_;
+  const FilterTrace& trace_;
+  const Signals& signals_;
+  SampleRole counted_;
+  Errors& errors_;
+};
+
+constexpr double most_lost = 0.03;  // share of the runs
+
+bool too_few(const Errors& errors, std::size_t length) {
+  return static_cast<double>(errors.diverged[length]) > most_lost * static_cast<double>(errors.runs[length]);
+}
+
+std::string words_on(const Errors& errors) {
+  std::string out;
+  for (std::size_t l = 0; l < lengths; ++l) {
+    if (errors.diverged[l] == 0) continue;
+    out += out.empty() ? "" : "; ";
+    out += fmt::format("{} of {} free runs diverge within {} step{}: ", errors.diverged[l], errors.runs[l], kLadderSteps[l],
+                       kLadderSteps[l] == 1 ? "" : "s");
+    out += too_few(errors, l) ? "no error is given there" : "they are not in its error";
+  }
+  return out;
+}
+
+}  // namespace
+
+KStepErrors k_step_errors(const FilterEstimate& estimate, bool validation) {
+  const auto& outputs = estimate.model.system->spec().outputs;
+  const Model fixed = all_fixed(estimate.forced.model);
+  Stepper stepper(fixed);
+  Errors errors(outputs.size());
+  for (std::size_t e = 0; e < estimate.data.size(); ++e)
+    FreeRuns(stepper, estimate.data[e], estimate.traces[e], validation ? SampleRole::validation : SampleRole::counted, errors).run();
+  KStepErrors out;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    for (std::size_t l = 0; l < lengths; ++l) {
+      const double count = errors.counts[o][l];
+      const bool known = count > 0.0 && !too_few(errors, l);
+      out.rms[outputs[o].name].push_back(known ? std::sqrt(errors.squares[o][l] / count) : std::nan(""));
+    }
+  }
+  out.words = words_on(errors);
+  out.runs = std::move(errors.runs);
+  out.diverged = std::move(errors.diverged);
+  return out;
+}
+
+}  // namespace misfit

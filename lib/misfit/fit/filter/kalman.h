@@ -1,0 +1,120 @@
+#pragma once
+
+// References
+//   [AM]  B. D. O. Anderson, J. B. Moore, Optimal Filtering (1979): sequential processing of uncorrelated measurements.
+
+#include <Eigen/Core>
+
+#include "misfit/fit/filter/filter_noise.h"
+#include "misfit/model/limits.h"
+
+namespace misfit {
+
+/// Covariance of a linear filter whose state is [model states | two jitter states per channel], with deviations `x` from a reference of the
+/// caller. Channels are taken one after the other [AM]: an innovation is that of its channel given the earlier ones of the same sample. M,
+/// NY: numbers of model states and channels, or Eigen::Dynamic.
+template <int M, int NY>
+class Kalman {
+ public:
+  static constexpr int J = NY == Eigen::Dynamic ? Eigen::Dynamic : 2 * NY;
+  static constexpr int kMaxJitter = 2 * kMaxOutputs;
+  static constexpr int MM = M == Eigen::Dynamic ? kMaxStates : M;
+  static constexpr int MJ = J == Eigen::Dynamic ? kMaxJitter : J;
+  using StateMatrix = Eigen::Matrix<double, M, M, Eigen::ColMajor, MM, MM>;
+  using CrossMatrix = Eigen::Matrix<double, M, J, Eigen::ColMajor, MM, MJ>;
+  using JitterMatrix = Eigen::Matrix<double, J, J, Eigen::ColMajor, MJ, MJ>;
+  using StateVector = Eigen::Matrix<double, M, 1, Eigen::ColMajor, MM, 1>;
+  using JitterVector = Eigen::Matrix<double, J, 1, Eigen::ColMajor, MJ, 1>;
+
+  StateMatrix P;     ///< model × model
+  CrossMatrix C;     ///< model × jitter
+  JitterMatrix G;    ///< jitter × jitter
+  StateVector x;     ///< deviation from the reference
+  JitterVector j;    ///< jitter
+  StateVector gain;  ///< of the last update
+  JitterVector gain_jitter;
+
+  Kalman(int states, int channels) {
+    P.setZero(states, states);
+    C.setZero(states, 2 * channels);
+    G.setZero(2 * channels, 2 * channels);
+    x.setZero(states);
+    j.setZero(2 * channels);
+    gain.setZero(states);
+    gain_jitter.setZero(2 * channels);
+  }
+
+  /// Variance of the innovation of channel o with the row `a` of ∂h/∂x; prepares the gain.
+  double variance(const StateVector& a, int o, double white) {
+    gain.noalias() = P * a;
+    gain += C.col(2 * o);
+    gain_jitter.noalias() = C.transpose() * a;
+    gain_jitter += G.col(2 * o);
+    const double S = a.dot(gain) + gain_jitter[2 * o] + white * white;
+    return S;
+  }
+  /// Takes the innovation in; after variance().
+  void update(double innovation, double S) {
+    P.noalias() -= gain * (gain.transpose() / S);
+    C.noalias() -= gain * (gain_jitter.transpose() / S);
+    G.noalias() -= gain_jitter * (gain_jitter.transpose() / S);
+    gain /= S;
+    gain_jitter /= S;
+    x += gain * innovation;
+    j += gain_jitter * innovation;
+  }
+  /// Over a step with the model's Φ: P → Φ P Φᵀ + Q. `kind` of each row (NoiseStep); `force`: indices of the force states. x is left to the
+  /// caller.
+  template <class Phi>
+  void predict(const Phi& phi, const NoiseStep& noise, const std::vector<int>& kind, const std::vector<int>& force) {
+    const StateMatrix turned = phi * P;
+    P.noalias() = turned * phi.transpose();
+    for (int f : force) {
+      for (Eigen::Index c = 0; c < P.cols(); ++c) {
+        const double right = c == f ? 1.0 : phi(c, f);
+        if (right == 0.0) continue;
+        const auto kc = static_cast<std::size_t>(kind[static_cast<std::size_t>(c)]);
+        for (Eigen::Index r = 0; r < P.rows(); ++r) {
+          const double left = r == f ? 1.0 : phi(r, f);
+          if (left != 0.0) P(r, c) += noise.m[static_cast<std::size_t>(kind[static_cast<std::size_t>(r)])][kc] * left * right;
+        }
+      }
+    }
+    const CrossMatrix crossed = phi * C;
+    for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
+      const auto& p = noise.jitter[o].phi;
+      const auto at = static_cast<Eigen::Index>(2 * o);
+      C.col(at) = p[0] * crossed.col(at) + p[1] * crossed.col(at + 1);
+      C.col(at + 1) = p[2] * crossed.col(at) + p[3] * crossed.col(at + 1);
+    }
+    rotate_jitter(noise);
+  }
+
+ private:
+  void rotate_jitter(const NoiseStep& noise) {
+    for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
+      const auto& p = noise.jitter[o].phi;
+      const auto at = static_cast<Eigen::Index>(2 * o);
+      const JitterVector first = G.col(at), second = G.col(at + 1);
+      G.col(at) = p[0] * first + p[1] * second;
+      G.col(at + 1) = p[2] * first + p[3] * second;
+      const double old = j[at];
+      j[at] = p[0] * old + p[1] * j[at + 1];
+      j[at + 1] = p[2] * old + p[3] * j[at + 1];
+    }
+    for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
+      const auto& p = noise.jitter[o].phi;
+      const auto& q = noise.jitter[o].q;
+      const auto at = static_cast<Eigen::Index>(2 * o);
+      const JitterVector first = G.row(at).transpose(), second = G.row(at + 1).transpose();
+      G.row(at) = (p[0] * first + p[1] * second).transpose();
+      G.row(at + 1) = (p[2] * first + p[3] * second).transpose();
+      G(at, at) += q[0];
+      G(at, at + 1) += q[1];
+      G(at + 1, at) += q[1];
+      G(at + 1, at + 1) += q[2];
+    }
+  }
+};
+
+}  // namespace misfit

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "misfit/fit/filter/filter_estimate.h"
+
+namespace misfit {
+
+/// Where an estimation stands: parameters, noise, the runs and derivatives there; and the steps that raise its objective. Held in `out`,
+/// which is always that of a run that succeeded unless a member says false.
+class LikelihoodAscent {
+ public:
+  LikelihoodAscent(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
+                   const FilterOptions& options);
+
+  /// Full run with derivatives at `theta`. False: the model cannot be run there, failure() says where it ended.
+  bool linearise();
+  /// One Gauss–Newton step of the physical parameters with new roughness; shortened until the exact objective rises. Returns what a step
+  /// promised of which no length rises: 0 if one did, or nothing was promised.
+  double gauss_newton_step();
+  /// Alternates the blocks, physical parameters and noise, until neither gains `tolerance`: then `out.converged`, unless a step that
+  /// promised as much as a sigma of one parameter found no way up.
+  void iterate(int most, double tolerance);
+  /// False if the model cannot be run with it: all is as before.
+  bool try_noise(const NoiseFit& fit);
+  /// A step of a Newton kind over parameters and log noise together, inside their bounds: `gradient` of the exact objective and of a
+  /// further term linear in the log noise, with `slope` (what restricted_likelihood() adds), `inverse` of their curvature. Shortened until
+  /// their sum rises, lengthened where it gains more than it promised. `out.left` is what it promises. What it gained; nullopt: it promises
+  /// less than `enough`, or no length of it rises.
+  std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope,
+                                   double enough);
+  [[nodiscard]] Eigen::VectorXd joint() const;  ///< the free parameters, then the logarithms of the noise
+
+  [[nodiscard]] std::vector<double> values() const;  ///< of all parameters of the forced model
+  [[nodiscard]] LinearisedRuns runs() const { return {&out.forced, &out.data, &out.traces}; }
+  [[nodiscard]] NormalEquations normal_equations() const;
+  [[nodiscard]] std::string failure() const;
+
+  FilterEstimate out;
+  Eigen::VectorXd theta;   ///< the free parameters, in the order of `free`
+  std::vector<int> free;   ///< Model::free_parameters() of the start
+  double objective = 0.0;  ///< at `theta` and `out.noise`
+
+ private:
+  /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
+  bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
+  void set_time();
+  [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
+
+  int threads_;
+  std::size_t failed_experiment_ = 0;
+};
+
+}  // namespace misfit

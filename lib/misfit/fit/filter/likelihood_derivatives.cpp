@@ -1,0 +1,275 @@
+#include "misfit/fit/filter/likelihood_derivatives.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "misfit/core/work_queue.h"
+
+namespace misfit {
+namespace {
+
+/// What each counted reading adds to the log-likelihood, constants left out.
+double log_density(const FilterTrace& trace, std::size_t i) {
+  return trace.S[i] > 0.0 ? -0.5 * (std::log(trace.S[i]) + trace.e[i] * trace.e[i] / trace.S[i]) : 0.0;
+}
+
+/// Adds to `nonlinear` the readings whose log density bends by more than `bend` between the three runs.
+void find_nonlinear(const FilterData& data, const FilterTrace& here, const FilterTrace& plus, const FilterTrace& minus, double bend,
+                    std::vector<std::size_t>& nonlinear) {
+  for (std::size_t i = 0; i < data.use.size(); ++i) {
+    if (data.use[i] != SampleRole::counted) continue;
+    if (!(std::abs(log_density(plus, i) + log_density(minus, i) - 2.0 * log_density(here, i)) <= bend)) nonlinear.push_back(i);
+  }
+}
+
+/// Whitened derivatives of innovations (first half) and of variances (second half) of the counted readings, all experiments in order.
+void whitened(const std::vector<FilterData>& data, const std::vector<FilterTrace>& here, const std::vector<FilterTrace>& plus,
+              const std::vector<FilterTrace>& minus, double per_step, Eigen::Ref<Eigen::VectorXd> column) {
+  const Eigen::Index rows = column.size() / 2;
+  Eigen::Index row = 0;
+  for (std::size_t e = 0; e < data.size(); ++e) {
+    for (std::size_t i = 0; i < data[e].use.size(); ++i) {
+      if (data[e].use[i] != SampleRole::counted) continue;
+      const double S = here[e].S[i];
+      column[row] = (plus[e].e[i] - minus[e].e[i]) * per_step / std::sqrt(S);
+      column[rows + row++] = (plus[e].S[i] - minus[e].S[i]) * per_step / (std::numbers::sqrt2 * S);
+    }
+  }
+}
+
+struct OneDerivative {
+  bool finite = false;  ///< a run beside succeeded
+  bool smooth = true;   ///< few readings are nonlinear
+  double slope = 0.0;
+  std::vector<std::vector<std::size_t>> nonlinear;
+};
+
+/// Principal axes of a covariance after scaling to unit sigmas: `along` has one sigma of each as a column, `back` is its inverse.
+struct Axes {
+  Eigen::MatrixXd along, back;
+
+  explicit Axes(const Eigen::MatrixXd& covariance) {
+    if (covariance.size() == 0) return;
+    constexpr double least = 1e-300, smallest = 1e-14;
+    const Eigen::VectorXd sigma = covariance.diagonal().cwiseMax(least).cwiseSqrt();
+    const Eigen::MatrixXd scaled = sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
+    const Eigen::VectorXd root = solver.eigenvalues().cwiseMax(smallest).cwiseSqrt();
+    along = sigma.asDiagonal() * solver.eigenvectors() * root.asDiagonal();
+    back = root.cwiseInverse().asDiagonal() * solver.eigenvectors().transpose() * sigma.cwiseInverse().asDiagonal();
+  }
+};
+
+/// Central differences; each fills its column of the whitened derivatives.
+class Differences {
+ public:
+  Differences(const FilterEstimate& estimate, const Eigen::VectorXd& theta)
+      : estimate_(estimate),
+        theta_(theta),
+        objective_(estimate, estimate.model.free_parameters()),
+        here_(estimate.loglik),
+        axes_(estimate.covariance) {}
+
+  /// A step at which a good part of all readings bends is too long, not the run nonlinear: the axis of what can hardly be told apart is
+  /// long, and straight for a part of it only. Then a shorter one, a few times.
+  OneDerivative along_axis(Eigen::Index i, const Eigen::Ref<Eigen::VectorXd>& column) const {
+    constexpr double shorter = 0.2, good_part = 0.1;
+    constexpr int most = 5;
+    const double enough = 0.5 * good_part * static_cast<double>(column.size());  // a column holds innovations and variances
+    OneDerivative out;
+    double h = longest;
+    for (int k = 0; k < most; ++k, h *= shorter) {
+      out = with_step(h * axes_.along.col(i), h, column);
+      std::size_t nonlinear = 0;
+      for (const auto& experiment : out.nonlinear) nonlinear += experiment.size();
+      out.smooth = static_cast<double>(nonlinear) <= enough;
+      if (out.finite && out.smooth) break;
+    }
+    return out;
+  }
+
+  [[nodiscard]] const Axes& axes() const { return axes_; }
+
+  /// To one side; `information`: minus the second derivatives of the log-likelihood over parameters and noise, about.
+  OneDerivative upwards(Eigen::Index i, const Eigen::MatrixXd& information, const Eigen::Ref<Eigen::VectorXd>& column) const {
+    const Eigen::Index n = theta_.size();
+    Runs above(estimate_.data.size());
+    double there = 0.0, h = longest, curvature = 0.0;
+    if (i < n) {
+      const auto along = axes_.along.col(i);
+      curvature = along.dot(information.topLeftCorner(n, n) * along);
+      there = objective_.loglik_at(theta_ + h * along, estimate_.noise, &above);
+    } else {
+      std::vector<double> logs = estimate_.noise_fit.logs;
+      h = noise_step;
+      curvature = information(i, i);
+      logs[static_cast<std::size_t>(i - n)] += h;
+      there = objective_.loglik_at(theta_, unpack(logs), &above);
+    }
+    OneDerivative out = between(there, -std::numeric_limits<double>::infinity(), h, above, above, column);
+    out.slope += 0.5 * h * curvature;
+    return out;
+  }
+
+  OneDerivative by_noise(std::size_t i, const Eigen::Ref<Eigen::VectorXd>& column) const {
+    constexpr double h = noise_step;
+    std::vector<double> there = estimate_.noise_fit.logs;
+    Runs above(estimate_.data.size()), below = above;
+    there[i] += h;
+    const double plus = objective_.loglik_at(theta_, unpack(there), &above);
+    there[i] -= 2.0 * h;
+    const double minus = objective_.loglik_at(theta_, unpack(there), &below);
+    return between(plus, minus, h, above, below, column);
+  }
+
+ private:
+  using Runs = std::vector<FilterTrace>;
+
+  OneDerivative with_step(const Eigen::VectorXd& step, double h, const Eigen::Ref<Eigen::VectorXd>& column) const {
+    Runs above(estimate_.data.size()), below = above;
+    const double plus = objective_.loglik_at(theta_ + step, estimate_.noise, &above);
+    const double minus = objective_.loglik_at(theta_ - step, estimate_.noise, &below);
+    OneDerivative out = between(plus, minus, h, above, below, column);
+    out.nonlinear.resize(above.size());
+    if (!out.finite) return out;
+    if (!std::isfinite(plus) || !std::isfinite(minus)) return out;
+    constexpr double bend = 0.05;
+    for (std::size_t e = 0; e < above.size(); ++e)
+      find_nonlinear(estimate_.data[e], estimate_.traces[e], above[e], below[e], bend * h / longest, out.nonlinear[e]);
+    return out;
+  }
+
+  OneDerivative between(double plus, double minus, double h, const Runs& above, const Runs& below,
+                        Eigen::Ref<Eigen::VectorXd> column) const {
+    column.setZero();
+    const bool up = std::isfinite(plus), down = std::isfinite(minus);
+    if (!up && !down) return {};
+    const double span = (up ? h : 0.0) + (down ? h : 0.0);
+    const Runs& here = estimate_.traces;
+    whitened(estimate_.data, here, up ? above : here, down ? below : here, 1.0 / span, column);
+    return {true, true, ((up ? plus : here_) - (down ? minus : here_)) / span, {}};
+  }
+
+  static constexpr double longest = 0.05, noise_step = 1e-3;
+
+  const FilterEstimate& estimate_;
+  const Eigen::VectorXd& theta_;
+  ExactObjective objective_;
+  double here_;
+  Axes axes_;
+};
+
+/// Gradient of log_prior_at.
+Eigen::VectorXd log_prior_slope(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta) {
+  NormalEquations priors;
+  priors.N = Eigen::MatrixXd::Zero(theta.size(), theta.size());
+  priors.theta = theta;
+  set_priors(model, priors);
+  Eigen::VectorXd out = priors.prior_precision.cwiseProduct(priors.prior_mean - theta);
+  for (const auto& p : penalties) out.segment(p.first, p.omega.rows()) -= p.lambda * (p.omega * theta.segment(p.first, p.omega.rows()));
+  return out;
+}
+
+std::string failure_of(const std::vector<OneDerivative>& parts) {
+  const auto torn = std::count_if(parts.begin(), parts.end(), [](const OneDerivative& part) { return !part.finite; });
+  const auto nonlinear = std::count_if(parts.begin(), parts.end(), [](const OneDerivative& part) { return !part.smooth; });
+  const std::string of = " of " + std::to_string(parts.size()) + " directions";
+  if (torn > 0) return "in " + std::to_string(torn) + of + " the model cannot be run beside the estimate";
+  if (nonlinear > 0) return "in " + std::to_string(nonlinear) + of + " more than a tenth of the readings cannot be followed";
+  return {};
+}
+
+Eigen::Index counted_readings(const FilterEstimate& estimate) {
+  std::ptrdiff_t sum = 0;
+  for (const auto& data : estimate.data) sum += std::count(data.use.begin(), data.use.end(), SampleRole::counted);
+  return sum;
+}
+
+}  // namespace
+
+double log_prior_at(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta) {
+  const std::vector<int> free = model.free_parameters();
+  double sum = 0.0;
+  for (const auto& p : penalties) {
+    const auto c = theta.segment(p.first, p.omega.rows());
+    sum -= 0.5 * p.lambda * c.dot(p.omega * c);
+  }
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    if (p.prior_sigma) sum -= 0.5 * std::pow((theta[static_cast<Eigen::Index>(c)] - p.prior_mean) / *p.prior_sigma, 2);
+  }
+  return sum;
+}
+
+double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise) const {
+  return loglik_at(theta, noise) + log_prior_at(estimate_->model, estimate_->penalties, theta);
+}
+
+double ExactObjective::loglik_at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* traces) const {
+  FilterModel forced = estimate_->forced;
+  forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = noise.force_time;
+  FilterRunner runner(forced, false);
+  std::vector<double> all = forced.model.values();
+  for (std::size_t c = 0; c < free_.size(); ++c) all[static_cast<std::size_t>(free_[c])] = theta[static_cast<Eigen::Index>(c)];
+  runner.set_parameters(all);
+  double sum = 0.0;
+  std::vector<FilterTrace> own(traces == nullptr ? estimate_->data.size() : 0);
+  std::vector<FilterTrace>& runs = traces != nullptr ? *traces : own;
+  for (std::size_t e = 0; e < estimate_->data.size(); ++e) {
+    if (!runner.run(estimate_->data[e], noise, runs[e])) return -std::numeric_limits<double>::infinity();
+    sum += runs[e].loglik;
+  }
+  return sum;
+}
+
+LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads,
+                                        const LikelihoodDerivatives* near) {
+  const auto n = static_cast<std::size_t>(theta.size());
+  if (n > 0 && estimate.covariance.size() == 0) return {{}, {}, {}, "the information matrix cannot be inverted"};
+  const Differences differences(estimate, theta);
+  std::vector<OneDerivative> parts(n + estimate.noise_fit.logs.size());
+  Eigen::MatrixXd columns(2 * counted_readings(estimate), static_cast<Eigen::Index>(parts.size()));
+  run_jobs(parts.size(), threads, [&](std::size_t i) {
+    auto column = columns.col(static_cast<Eigen::Index>(i));
+    if (near != nullptr) {
+      parts[i] = differences.upwards(static_cast<Eigen::Index>(i), near->information, column);
+      return;
+    }
+    parts[i] = i < n ? differences.along_axis(static_cast<Eigen::Index>(i), column) : differences.by_noise(i - n, column);
+  });
+  LikelihoodDerivatives out{Eigen::VectorXd(columns.cols()), Eigen::MatrixXd::Zero(columns.cols(), columns.cols()),
+                            std::vector<std::vector<std::size_t>>(estimate.data.size()), failure_of(parts)};
+  if (!out.failure.empty()) return out;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    out.gradient[static_cast<Eigen::Index>(i)] = parts[i].slope;
+    for (std::size_t e = 0; e < parts[i].nonlinear.size(); ++e)
+      out.nonlinear[e].insert(out.nonlinear[e].end(), parts[i].nonlinear[e].begin(), parts[i].nonlinear[e].end());
+  }
+  const Eigen::MatrixXd& back = differences.axes().back;
+  out.gradient.head(theta.size()) =
+      back.transpose() * out.gradient.head(theta.size()).eval() + log_prior_slope(estimate.model, estimate.penalties, theta);
+  columns.leftCols(theta.size()) = columns.leftCols(theta.size()) * back;
+  out.information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
+  for (auto& nonlinear : out.nonlinear) {
+    std::sort(nonlinear.begin(), nonlinear.end());
+    nonlinear.erase(std::unique(nonlinear.begin(), nonlinear.end()), nonlinear.end());
+  }
+  return out;
+}
+
+Eigen::MatrixXd joint_information(const FilterEstimate& estimate, const LikelihoodDerivatives& exact) {
+  const auto n = static_cast<Eigen::Index>(estimate.model.free_parameters().size());
+  Eigen::MatrixXd out = exact.information;
+  NormalEquations priors;
+  priors.N = Eigen::MatrixXd::Zero(n, n);
+  set_priors(estimate.model, priors);
+  out.topLeftCorner(n, n).diagonal() += priors.prior_precision;
+  pin_unknown(estimate.noise_fit, out);
+  return out;
+}
+
+}  // namespace misfit

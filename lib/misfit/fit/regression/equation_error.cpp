@@ -1,0 +1,292 @@
+#include "misfit/fit/regression/equation_error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+#include "misfit/inference/coloured.h"
+#include "misfit/inference/curves.h"
+#include "misfit/inference/identifiable.h"
+#include "misfit/inference/short_record.h"
+#include "misfit/inference/whiteness.h"
+#include "misfit/math/bounded.h"
+
+namespace misfit {
+namespace {
+
+/// States whose rate is an equation of motion and not just another state.
+std::vector<int> dynamic_states(const Model& model, const std::vector<bool>& shown) {
+  std::vector<int> rows;
+  const auto& states = model.system->spec().states;
+  for (std::size_t j = 0; j < states.size(); ++j) {
+    const bool kinematic = std::any_of(states.begin(), states.end(), [&](const StateSpec& s) { return s.rate_of == static_cast<int>(j); });
+    if (!kinematic && shown[j]) rows.push_back(static_cast<int>(j));
+  }
+  return rows;
+}
+
+/// States of the system that no channel shows, joined; empty if there are none.
+std::string hidden_states(const Model& model, const std::vector<bool>& shown) {
+  std::string names;
+  const auto& states = model.system->spec().states;
+  for (std::size_t j = 0; j < states.size(); ++j) {
+    if (!shown[j]) names += (names.empty() ? "the state " : ", ") + states[j].name;
+  }
+  return names;
+}
+
+/// Samples at which no derivative is taken across a step of an input that is held between its samples: a local polynomial smears the kink
+/// that the state has there. All, and `smeared`, where more than half would be left out: then the input steps at nearly every sample.
+struct Between {
+  std::vector<bool> steps;
+  bool smeared = false;
+};
+
+Between between_steps(const Model& model, const Signals& signals) {
+  const auto& inputs = model.system->spec().inputs;
+  const std::size_t n = signals.samples();
+  Between out{std::vector<bool>(n, true)};
+  for (std::size_t k = 0; k < inputs.size() && k < signals.inputs.size(); ++k) {
+    if (inputs[k].hold != Hold::zero_order) continue;
+    const std::vector<double>& u = signals.inputs[k].values;
+    for (std::size_t i = 1; i < n; ++i) {
+      if (u[i] == u[i - 1]) continue;
+      for (std::size_t at = i - 1; at <= std::min(i + 1, n - 1); ++at) out.steps[at] = false;
+    }
+  }
+  const auto left = static_cast<std::size_t>(std::count(out.steps.begin(), out.steps.end(), true));
+  if (2 * left >= n) return out;
+  return {std::vector<bool>(n, true), true};
+}
+
+struct Regression {
+  NormalEquations sums;
+  std::vector<std::vector<double>> residuals;  ///< per experiment and row, NaN where not used
+  std::vector<ResidualRows> rows;              ///< per experiment, if asked for; a row's channel is its place among the dynamic states
+};
+
+class Regressor {
+ public:
+  Regressor(const Model& model, const std::vector<Signals>& experiments) : experiments_(experiments) {
+    for (const auto& experiment : experiments) {
+      states_.push_back(reconstruct_states(model, experiment));
+      inputs_.push_back(input_table(experiment, model.inputs()));
+      between_.push_back(between_steps(model, experiment));
+    }
+    rows_ = dynamic_states(model, states_.front().shown);
+  }
+  const std::vector<int>& rows() const { return rows_; }
+  const ReconstructedStates& states(std::size_t e) const { return states_[e]; }
+  bool smeared() const {
+    return std::any_of(between_.begin(), between_.end(), [](const Between& b) { return b.smeared; });
+  }
+
+  Regression linearise(const Model& at, bool keep_rows = false) const {
+    Regression out;
+    Evaluator evaluator(at);
+    const std::vector<int> free = at.free_parameters();
+    const int columns = evaluator.columns();
+    out.sums.N = Eigen::MatrixXd::Zero(columns, columns);
+    out.sums.g = Eigen::VectorXd::Zero(columns);
+    out.sums.theta = Eigen::VectorXd::Zero(columns);
+    for (int c = 0; c < columns; ++c) out.sums.theta[c] = at.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      if (keep_rows) out.rows.push_back(empty_rows(e, columns));
+      add(e, evaluator, out);
+    }
+    return out;
+  }
+
+ private:
+  ResidualRows empty_rows(std::size_t e, int columns) const {
+    const auto rows = static_cast<Eigen::Index>(experiments_[e].samples() * rows_.size());
+    ResidualRows out{RowMatrix::Zero(rows, columns), Eigen::VectorXd::Constant(rows, std::nan("")), {}};
+    for (Eigen::Index c = 0; c < columns; ++c) out.place.push_back(c);
+    return out;
+  }
+
+  void add(std::size_t e, Evaluator& evaluator, Regression& out) const {
+    const Signals& signals = experiments_[e];
+    const ReconstructedStates& states = states_[e];
+    const int n = evaluator.states();
+    std::vector<double> D(static_cast<std::size_t>(n) * kRowStride), dx(static_cast<std::size_t>(n));
+    Slots slots;
+    for (std::size_t channel = 0; channel < rows_.size(); ++channel) {
+      const int row = rows_[channel];
+      std::vector<double> residuals(signals.samples(), std::nan(""));
+      for (std::size_t i = signals.exclude; i < signals.samples(); ++i) {
+        if (!states.ok[i] || signals.held_out(i) || !between_[e].steps[i]) continue;
+        slots.clear();
+        evaluator.linearise_rates(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs_[e].at(i), signals.t[i], slots, dx.data(),
+                                  D.data());
+        const double r = dx[static_cast<std::size_t>(row)] - states.dx(static_cast<Eigen::Index>(i), row);
+        if (!std::isfinite(r)) continue;
+        residuals[i] = r;
+        const double* d = D.data() + static_cast<std::ptrdiff_t>(row) * kRowStride + n;
+        if (out.rows.size() > e) keep(d, slots, r, static_cast<Eigen::Index>(i * rows_.size() + channel), out.rows[e]);
+        for (int a = 0; a < slots.count(); ++a) {
+          out.sums.g[slots.column(a)] += d[a] * r;
+          for (int b = 0; b < slots.count(); ++b) out.sums.N(slots.column(a), slots.column(b)) += d[a] * d[b];
+        }
+        out.sums.rss += r * r;
+        out.sums.count += 1.0;
+      }
+      out.residuals.push_back(std::move(residuals));
+    }
+  }
+
+  static void keep(const double* d, const Slots& slots, double r, Eigen::Index at, ResidualRows& rows) {
+    rows.r[at] = r;
+    for (int a = 0; a < slots.count(); ++a) rows.J(at, slots.column(a)) = d[a];
+  }
+
+  const std::vector<Signals>& experiments_;
+  std::vector<ReconstructedStates> states_;
+  std::vector<InputTable> inputs_;
+  std::vector<Between> between_;
+  std::vector<int> rows_;
+};
+
+/// The regression's answer inside the parameters' bounds; curves are held by their roughness alone.
+Eigen::VectorXd inside_bounds(const Model& model, const std::vector<int>& free, const PenalisedFit& smoothed) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd lower = Eigen::VectorXd::Constant(smoothed.theta.size(), -infinite), upper = -lower;
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    if (p.curve >= 0) continue;
+    lower[static_cast<Eigen::Index>(c)] = p.lower;
+    upper[static_cast<Eigen::Index>(c)] = p.upper;
+  }
+  return maximum_inside(smoothed.theta, smoothed.covariance, lower, upper).at;
+}
+
+/// Rounds of the regression: the first is exact for strengths and curves, the others are for shapes. False, with status and message, where
+/// there is no answer.
+bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed) {
+  const std::vector<int> free = out.model.free_parameters();
+  constexpr int rounds = 12;
+  constexpr double still = 1e-2;  // of a sigma
+  bool settled = false;
+  for (int round = 0; round < rounds && !settled; ++round) {
+    Regression regression = regressor.linearise(out.model);
+    ++out.fit.linearisations;
+    set_priors(out.model, regression.sums);
+    if (regression.sums.count < 2.0 * static_cast<double>(free.size()) || free.empty()) {
+      out.fit.status = FitStatus::declined;
+      out.fit.message = free.empty() ? "every parameter is fixed: there is nothing to estimate"
+                                     : "only " + std::to_string(static_cast<long>(regression.sums.count)) + " usable samples for " +
+                                           std::to_string(free.size()) + " unknowns";
+      return false;
+    }
+    smoothed = estimate_smoothing(regression.sums, out.penalties);
+    if (!smoothed.ok) break;
+    const Eigen::VectorXd there = inside_bounds(out.model, free, smoothed);
+    const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+    settled = round > 0 && (there - regression.sums.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < still;
+    for (std::size_t c = 0; c < free.size(); ++c)
+      out.model.parameters[static_cast<std::size_t>(free[c])].value = there[static_cast<Eigen::Index>(c)];
+  }
+  out.fit.status = !smoothed.ok ? FitStatus::failed : settled ? FitStatus::converged : FitStatus::not_converged;
+  out.fit.message = !smoothed.ok ? "the regression is singular: some coefficients are not determined by these data"
+                    : settled    ? "regression solved"
+                              : "the regression still moves after " + std::to_string(rounds) + " rounds: a shape has no place of its own";
+  return smoothed.ok;
+}
+
+/// Are the residuals white beyond the stencils, up to half a period of the motion?
+void test_residuals(const Regressor& regressor, const std::vector<Signals>& experiments, double sigma2, FittedModel& out) {
+  const Regression regression = regressor.linearise(out.model);
+  const double step = usual_step(experiments.front().t);
+  const double frequency = motion_frequency(out.model, regressor.states(0));
+  const double half_period = frequency > 0.0 ? 3.14159265358979 / frequency : 20.0 * step;
+  constexpr int beyond_stencil = 5;
+  const int last_lag = std::max(beyond_stencil + 5, static_cast<int>(half_period / step));
+  const WhitenessTest test = whiteness(on_even_grid(experiments.front().t, regression.residuals.front()), beyond_stencil, last_lag);
+  out.fit.driven = looks_driven(test);
+  const std::string unit = rate_unit(out.model.system->spec().states[static_cast<std::size_t>(regressor.rows().front())].unit);
+  out.fit.noise["equation_residual"] = {std::sqrt(sigma2), 0.0, unit};
+  out.fit.facts["whiteness"] = "equation residuals at " + in_words(test);
+  const auto rows = static_cast<std::ptrdiff_t>(regressor.rows().size());
+  for (auto r = regression.residuals.begin(); r != regression.residuals.end(); r += rows) out.equation_residuals.emplace_back(r, r + rows);
+}
+
+void describe_all(const Regressor& regressor, const std::vector<Signals>& experiments, const PenalisedFit& smoothed, FittedModel& out) {
+  RowMatrix visited = visited_quantities(out.model, experiments.front(), regressor.states(0));
+  for (std::size_t e = 1; e < experiments.size(); ++e) {
+    const RowMatrix more = visited_quantities(out.model, experiments[e], regressor.states(e));
+    visited.conservativeResize(visited.rows() + more.rows(), visited.cols());
+    visited.bottomRows(more.rows()) = more;
+  }
+  Regression regression = regressor.linearise(out.model, true);
+  const double weight = 1.0 / std::sqrt(smoothed.sigma2);
+  for (ResidualRows& rows : regression.rows) {
+    rows.J *= weight;
+    rows.r *= weight;
+  }
+  const double degrees = regression.sums.count - smoothed.edf;
+  const ColouredCovariance coloured =
+      memory_of_residuals(regression.rows, smoothed.covariance, static_cast<Eigen::Index>(regressor.rows().size()), degrees);
+  set_priors(out.model, regression.sums);
+  out.plain_covariance = with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2);
+  describe_both(out.model, out.plain_covariance, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess),
+                visited, out.fit);
+  if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
+  out.fit.facts["covariance"] = in_words(coloured);
+  const ReconstructedStates& states = regressor.states(0);
+  const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+  const InputTable inputs = input_table(experiments.front(), out.model.inputs());
+  const auto sample = static_cast<std::size_t>(known);
+  out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
+  if (regressor.smeared()) {
+    out.fit.warnings.emplace_back(
+        "an input steps at nearly every sample: the derivatives of this method smear what it does, so that its parameters are biased "
+        "by more than their sigmas; methods that run the model are not");
+  }
+  if (const std::string which = undetermined_beside_priors(out.model, regression.sums); !which.empty()) out.fit.warnings.push_back(which);
+  tell_weak_directions(out.model, out.fit.covariance, out.fit);
+  tell_other_trims(out.fit);
+  refuse_runaways(out.model, out.fit.covariance, out.fit);
+  if (degrees < kFewestDegrees) {
+    withhold_sigmas(format_value(regression.sums.count) + " usable samples for " + format_value(std::round(10.0 * smoothed.edf) / 10.0) +
+                        " unknowns are too few to tell how far off the values are: no sigma is given",
+                    out.fit);
+  }
+}
+
+}  // namespace
+
+FittedModel equation_error(const Model& model, const std::vector<Signals>& experiments) {
+  const auto begin = std::chrono::steady_clock::now();
+  FittedModel out{{}, model, curve_penalties(model), {}};
+  out.fit.method = "equation_error";
+  const Regressor regressor(model, experiments);
+  if (regressor.rows().empty()) {
+    out.fit.status = FitStatus::declined;
+    out.fit.message = "the measured channels do not show the states of system '" + model.system->spec().key +
+                      "' and their rates, so its equations cannot be regressed";
+    return out;
+  }
+  if (const std::string hidden = hidden_states(model, regressor.states(0).shown); !hidden.empty()) {
+    out.fit.status = FitStatus::declined;
+    out.fit.message = "no channel shows " + hidden + " of system '" + model.system->spec().key + "', so its equations cannot be regressed";
+    return out;
+  }
+  PenalisedFit smoothed;
+  if (!solve(regressor, out, smoothed)) return out;
+  test_residuals(regressor, experiments, smoothed.sigma2, out);
+  describe_all(regressor, experiments, smoothed, out);
+  if (out.fit.driven) {
+    out.fit.warnings.push_back(
+        "the motion is driven (" + out.fit.facts["whiteness"] +
+        "): on stationary driven motion the product of acceleration and rate telescopes, so the damping of this method is not informative");
+    mark_not_informative(out.model, model.system->spec().damping_curve, "driven motion: the sum of acceleration times rate telescopes",
+                         out.fit);
+  }
+  out.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace misfit

@@ -1,0 +1,277 @@
+#include "misfit/fit/regression/sliding_bin.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "misfit/core/display.h"
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/core/units.h"
+#include "misfit/fit/regression/bin_equations.h"
+#include "misfit/inference/curves.h"
+#include "misfit/inference/whiteness.h"
+
+namespace misfit {
+namespace {
+
+void check(const SlidingBinOptions& options) {
+  const auto need = [](bool holds, const std::string& what, double value) {
+    if (!holds) throw InputError("sliding_bin: " + what + ", not " + format_value(value));
+  };
+  need(options.width > 0.0 && std::isfinite(options.width), "the width of a bin must be positive", options.width);
+  need(options.step > 0.0 && std::isfinite(options.step), "the step of the bins must be positive", options.step);
+  need(options.minimum_samples >= 4, "a bin of three unknowns needs at least 4 samples", static_cast<double>(options.minimum_samples));
+}
+
+/// Σ x'' x' over all usable samples, with a sigma from the scatter of its blocks.
+struct TelescopedSum {
+  double value = 0.0, sigma = 0.0;
+  std::size_t count = 0;
+  [[nodiscard]] bool zero() const { return std::abs(value) < 2.0 * sigma; }
+};
+
+/// Blocks of one second, or one period if that is longer: within them samples may be correlated as they like. Blocks that follow one
+/// another share the rate at their border, with opposite sign, so that sigma is rather too wide than too narrow.
+TelescopedSum telescoped_sum(const BinForm& form, const Signals& signals, const ReconstructedStates& states, double frequency) {
+  const double block = std::max(1.0, frequency > 0.0 ? 2.0 * std::numbers::pi / frequency : 0.0);
+  std::vector<double> sums;
+  TelescopedSum out;
+  double begin = 0.0;
+  for (std::size_t i = 0; i < signals.samples(); ++i) {
+    if (!states.ok[i]) continue;
+    if (sums.empty() || signals.t[i] - begin >= block) {
+      sums.push_back(0.0);
+      begin = signals.t[i];
+    }
+    const auto row = static_cast<Eigen::Index>(i);
+    sums.back() += states.dx(row, form.rate) * states.x(row, form.rate);
+    ++out.count;
+  }
+  for (double s : sums) out.value += s;
+  const auto blocks = static_cast<double>(sums.size());
+  double squares = 0.0;
+  for (double s : sums) squares += (s - out.value / blocks) * (s - out.value / blocks);
+  if (blocks > 1.0) out.sigma = std::sqrt(squares * blocks / (blocks - 1.0));
+  return out;
+}
+
+/// One pass of the whole method with one reading of the stencils.
+struct Pass {
+  SlidBins bins;
+  BinSolution all;
+  TelescopedSum sum;
+  WhitenessTest whiteness;
+  double damping_of_acceleration = 0.0;  ///< over all data, had nothing been known: `all` less what the known terms add
+  double residual_rms = 0.0;
+  bool driven = false;
+  std::size_t usable = 0;
+};
+
+/// Autocorrelation by lag for the sigmas: what is beyond `last_lag` is taken as 0.
+std::vector<double> memory(const std::vector<double>& residuals, int last_lag) {
+  std::vector<double> rho = autocorrelation(residuals, last_lag);
+  for (double& r : rho) {
+    if (!std::isfinite(r)) r = 0.0;
+  }
+  return rho;
+}
+
+BinRegression acceleration_alone(const BinRegression& regression) {
+  std::vector<BinEquation> equations = regression.equations();
+  for (auto& e : equations) e.y += e.known;
+  return BinRegression(std::move(equations));
+}
+
+double rms(const std::vector<double>& values) {
+  double squares = 0.0, count = 0.0;
+  for (double v : values) {
+    if (std::isfinite(v)) squares += v * v, count += 1.0;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+/// On data without noise the residuals are what bins and stencils smooth away (2 to 4 % of the acceleration on the validation motion): they
+/// have memory, but no force is behind them. Below a tenth nothing is called driven.
+bool has_force(const BinRegression& regression, double residual_rms) {
+  constexpr double smoothed_away = 0.1;
+  std::vector<double> accelerations;
+  for (const auto& e : regression.equations()) accelerations.push_back(e.y);
+  return residual_rms > smoothed_away * rms(accelerations);
+}
+
+Pass run(const BinForm& form, const Signals& signals, const SlidingBinOptions& options, Stencils stencils) {
+  Pass pass;
+  const ReconstructedStates states = stencil_states(form, signals, stencils, options.three_point_average);
+  const BinRegression regression(bin_equations(form, signals, states));
+  const BinLayout layout{options.width, options.step, options.minimum_samples};
+  pass.usable = regression.equations().size();
+  pass.bins = regression.slide(layout, {});
+  if (pass.bins.bins.empty() || options.curves_only) return pass;
+  const std::vector<double> residuals = regression.residuals(pass.bins.bins, options.width, signals.samples());
+  const double frequency = motion_frequency(form.model, states);
+  constexpr int beyond_stencil = 2 * kStencilReach + 1;
+  constexpr int fewest_lags = 5;
+  const double half_period = frequency > 0.0 ? std::numbers::pi / frequency / usual_step(signals.t) : 0.0;
+  const int last_lag = std::max(beyond_stencil + fewest_lags, static_cast<int>(half_period));
+  pass.whiteness = whiteness(on_even_grid(signals.t, residuals), beyond_stencil, last_lag);
+  pass.residual_rms = rms(residuals);
+  pass.driven = looks_driven(pass.whiteness) && has_force(regression, pass.residual_rms);
+  const std::vector<double> rho = memory(residuals, pass.driven ? last_lag : beyond_stencil - 1);
+  pass.bins = regression.slide(layout, rho);
+  pass.all = regression.all(rho);
+  pass.damping_of_acceleration = acceleration_alone(regression).all({}).damping;
+  pass.sum = telescoped_sum(form, signals, states, frequency);
+  return pass;
+}
+
+CurveEstimate curve(const BinForm& form, const std::vector<BinSolution>& bins, const std::string& name, double BinSolution::*value,
+                    double BinSolution::*sigma) {
+  const Curve& own = *form.model.find_curve(form.model.system->spec().static_curve);
+  const Parameter& coefficient =
+      form.model
+          .parameters[static_cast<std::size_t>(name == own.name ? form.static_coefficients.front() : form.damping_coefficients.front())];
+  CurveEstimate out;
+  out.name = name;
+  out.of = own.of;
+  out.of_unit = own.of_unit;
+  out.unit = coefficient.unit;
+  for (const auto& bin : bins) {
+    out.x.push_back(bin.level);
+    out.value.push_back(bin.*value);
+    out.sigma.push_back(bin.*sigma);
+    out.count.push_back(bin.count);
+  }
+  return out;
+}
+
+std::string name_of(Stencils stencils) { return stencils == Stencils::fourth_order ? "fourth-order" : "second-order four-point"; }
+
+/// The largest difference of the two readings, in the sigmas of `a`, at equal bins.
+std::string largest_difference(const SlidBins& a, const SlidBins& b, const std::string& name, double BinSolution::*value,
+                               double BinSolution::*sigma) {
+  double largest = 0.0, in_sigmas = 0.0;
+  for (const auto& bin : a.bins) {
+    const auto other = std::min_element(b.bins.begin(), b.bins.end(), [&](const auto& p, const auto& q) {
+      return std::abs(p.level - bin.level) < std::abs(q.level - bin.level);
+    });
+    const double difference = std::abs(bin.*value - (*other).*value);
+    if (difference <= largest) continue;
+    largest = difference;
+    in_sigmas = difference / (bin.*sigma);
+  }
+  return name + " by at most " + format_value(largest) + " (" + format_value(in_sigmas) + " sigma)";
+}
+
+void tell_bins(const BinForm& form, const SlidingBinOptions& options, const Pass& pass, const Pass& other, Fit& fit) {
+  const auto& spec = form.model.system->spec();
+  const std::string unit = fit.curves.front().of_unit;
+  fit.facts["bins"] = std::to_string(pass.bins.bins.size()) + " bins of " + in_display_unit(options.width, unit) + " every " +
+                      in_display_unit(options.step, unit) + " over " + std::to_string(pass.usable) +
+                      " usable samples; left out: " + std::to_string(pass.bins.too_few) + " with fewer than " +
+                      std::to_string(options.minimum_samples) + " samples, " + std::to_string(pass.bins.undetermined) +
+                      " where level or rate do not vary";
+  fit.facts["average"] = options.three_point_average ? "the channel was averaged over three samples"
+                                                     : "the channel was taken as given, without a three-point average";
+  const Stencils second = options.stencils == Stencils::fourth_order ? Stencils::second_order_four_point : Stencils::fourth_order;
+  std::string text = name_of(options.stencils) + " stencils";
+  if (!other.bins.bins.empty()) {
+    text += "; with the " + name_of(second) + " ones the results differ: " +
+            largest_difference(pass.bins, other.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma) + ", " +
+            largest_difference(pass.bins, other.bins, spec.damping_curve, &BinSolution::damping, &BinSolution::damping_sigma);
+    const auto trim = stable_zero(curve(form, other.bins.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma));
+    if (trim) text += ", trim " + in_display_unit(trim->value, unit, trim->sigma);
+  }
+  fit.facts["stencils"] = text;
+}
+
+void tell_damping(const BinForm& form, const Pass& pass, Fit& fit) {
+  const auto& spec = form.model.system->spec();
+  const std::string name = spec.damping_curve, level_unit = spec.states[static_cast<std::size_t>(form.level)].unit;
+  fit.facts["whiteness"] = "residuals of the bins at " + in_words(pass.whiteness);
+  const std::string sum = "sum of acceleration times rate over " + std::to_string(pass.sum.count) +
+                          " samples: " + format_value(pass.sum.value, pass.sum.sigma) + " " + level_unit + "^2/s^3, " +
+                          (pass.sum.zero() ? "within" : "beyond") + " 2 sigma of 0";
+  fit.facts["telescoped_sum"] = sum;
+  const double known = pass.all.damping - pass.damping_of_acceleration;
+  fit.parameters[name + "_all_data"] = {pass.all.damping, pass.all.damping_sigma, fit.curves.back().unit};
+  fit.facts["all_data"] = name + " = " + format_value(pass.all.damping, pass.all.damping_sigma) +
+                          " by least squares over all data at once: " + format_value(pass.damping_of_acceleration) +
+                          " from the acceleration and " + format_value(known) + " from the terms taken as known";
+  if (fit.driven) {
+    fit.warnings.push_back("the motion is driven by something this equation does not have (" + fit.facts["whiteness"] + ")");
+  }
+  if (!pass.sum.zero()) return;
+  const std::string telescopes = sum + ". On stationary motion it telescopes to 0 by construction, whatever the truth: then the average " +
+                                 name + " over all data says nothing of the damping";
+  if (fit.driven) {
+    mark_not_informative(form.model, name, "driven motion: the sum of acceleration times rate telescopes to zero", fit);
+    fit.warnings.push_back(name + " of this method is not informative, the motion being driven: " + telescopes +
+                           ", and by bins it is a third moment of the motion");
+  } else {
+    fit.warnings.push_back(telescopes + ". The motion looks deterministic, so the bins hold");
+  }
+}
+
+Fit declined(const std::string& why) {
+  Fit fit;
+  fit.method = "sliding_bin";
+  fit.status = FitStatus::declined;
+  fit.message = why;
+  return fit;
+}
+
+std::string why_no_bins(const BinForm& form, const SlidingBinOptions& options, const Pass& pass) {
+  const std::string channel = form.model.system->spec().outputs[form.output].name;
+  if (pass.usable < options.minimum_samples) {
+    return "only " + std::to_string(pass.usable) + " samples of " + channel +
+           " have all the neighbours that its derivatives need; a bin needs " + std::to_string(options.minimum_samples);
+  }
+  if (pass.bins.too_many) {
+    return channel + " runs over more than " + std::to_string(SlidBins::most) + " steps of the bins: a wild sample, or use larger steps";
+  }
+  if (pass.bins.undetermined > 0) {
+    return channel + " does not move enough: in no bin with " + std::to_string(options.minimum_samples) +
+           " samples do its level and rate vary, or its equation has no static or damping term";
+  }
+  return "no bin holds " + std::to_string(options.minimum_samples) + " samples: " + channel + " has " + std::to_string(pass.usable) +
+         " usable ones, spread too thinly; use wider bins";
+}
+
+}  // namespace
+
+Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  check(options);
+  std::string why;
+  const std::optional<BinForm> form = bin_form(model, signals, why);
+  if (!form) return declined(why);
+  const Pass pass = run(*form, signals, options, options.stencils);
+  if (pass.bins.bins.empty()) return declined(why_no_bins(*form, options, pass));
+  const auto& spec = model.system->spec();
+  Fit fit;
+  fit.method = "sliding_bin";
+  fit.status = FitStatus::converged;
+  fit.curves = {curve(*form, pass.bins.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma),
+                curve(*form, pass.bins.bins, spec.damping_curve, &BinSolution::damping, &BinSolution::damping_sigma)};
+  fit.curves.front().trimmed = true;
+  fit.trim = stable_zero(fit.curves.front());
+  fit.message = "linear regression solved in " + std::to_string(pass.bins.bins.size()) + " bins";
+  if (options.curves_only) return fit;
+  const Pass other =
+      run(*form, signals, options, options.stencils == Stencils::fourth_order ? Stencils::second_order_four_point : Stencils::fourth_order);
+  fit.noise["equation_residual"] = {pass.residual_rms, 0.0, rate_unit(spec.states[static_cast<std::size_t>(form->rate)].unit)};
+  fit.driven = pass.driven;
+  tell_bins(*form, options, pass, other, fit);
+  tell_damping(*form, pass, fit);
+  if (!form->taken_as_known.empty()) {
+    std::string names;
+    for (const auto& name : form->taken_as_known) names += (names.empty() ? "" : ", ") + name;
+    fit.warnings.push_back("taken as known at their present values: " + names);
+  }
+  fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return fit;
+}
+
+}  // namespace misfit

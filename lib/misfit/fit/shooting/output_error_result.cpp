@@ -1,0 +1,215 @@
+#include "misfit/fit/shooting/output_error_result.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "misfit/core/display.h"
+#include "misfit/core/text.h"
+#include "misfit/inference/curves.h"
+#include "misfit/inference/whiteness.h"
+
+namespace misfit::output_error_parts {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double follows = 0.5;  // of the motion's own size: a model that leaves less explains most of it
+
+/// Predicted − measured of output o, per experiment and sample; NaN where it does not count.
+std::vector<std::vector<double>> channel_residuals(const Shooting& shooting, const std::vector<Segment>& runs,
+                                                   const std::vector<Signals>& experiments, std::size_t o) {
+  std::vector<std::vector<double>> out;
+  for (std::size_t e = 0; e < runs.size(); ++e) {
+    out.emplace_back(experiments[e].samples(), std::nan(""));
+    for (std::size_t i = 0; i < experiments[e].samples() && runs[e].finite; ++i) {
+      if (!shooting.counts(e, i, o)) continue;
+      out.back()[i] = runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i];
+    }
+  }
+  return out;
+}
+
+struct Squares {
+  double sum = 0.0, count = 0.0;
+};
+
+Squares squares_of(const std::vector<std::vector<double>>& residuals) {
+  Squares out;
+  for (const auto& series : residuals) {
+    for (const double r : series) {
+      if (std::isfinite(r)) out.sum += r * r, out.count += 1.0;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
+                                   double edf) {
+  std::vector<double> sigma = shooting.sigma();
+  const double share = edf / static_cast<double>(sigma.size());
+  for (std::size_t o = 0; o < sigma.size(); ++o) {
+    const auto [squares, count] = squares_of(channel_residuals(shooting, runs, experiments, o));
+    if (count > share + 1.0 && squares > 0.0) sigma[o] = std::sqrt(squares / (count - share));
+  }
+  return sigma;
+}
+
+std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vector<Segment>& runs,
+                                        const std::vector<Signals>& experiments) {
+  std::vector<ResidualRows> out;
+  const auto ny = static_cast<std::size_t>(shooting.model().outputs());
+  for (std::size_t e = 0; e < runs.size(); ++e) {
+    ResidualRows rows{runs[e].y_rows, Eigen::VectorXd(runs[e].y_rows.rows()), {}};
+    for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
+      for (std::size_t o = 0; o < ny; ++o) {
+        const auto at = static_cast<Eigen::Index>(i * ny + o);
+        const bool used = shooting.counts(e, i, o);
+        const double weight = used ? 1.0 / shooting.sigma()[o] : 0.0;
+        rows.J.row(at) *= weight;
+        rows.r[at] =
+            used ? weight * (runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i])
+                 : std::nan("");
+      }
+    }
+    const Eigen::Index n = shooting.model().states(), columns = rows.J.cols() - n;
+    for (Eigen::Index c = 0; c < columns; ++c) rows.place.push_back(c);
+    for (Eigen::Index j = 0; j < n; ++j) rows.place.push_back(columns + n * static_cast<Eigen::Index>(e) + j);
+    out.push_back(std::move(rows));
+  }
+  return out;
+}
+
+void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
+                    const Eigen::MatrixXd& covariance, Fit& fit) {
+  const auto& outputs = shooting.model().system->spec().outputs;
+  const auto ny = static_cast<Eigen::Index>(outputs.size());
+  const Eigen::Index n = shooting.model().states();
+  for (std::size_t e = 0; e < runs.size(); ++e) {
+    const Segment& run = runs[e];
+    const Eigen::Index columns = run.y_rows.cols() - n;
+    const RowMatrix& rows = run.y_rows;
+    Eigen::MatrixXd joint(columns + n, columns + n);
+    const Eigen::Index at = columns + n * static_cast<Eigen::Index>(e);
+    joint << covariance.topLeftCorner(columns, columns), covariance.block(0, at, columns, n), covariance.block(at, 0, n, columns),
+        covariance.block(at, at, n, n);
+    const Eigen::VectorXd spread = (rows * joint).cwiseProduct(rows).rowwise().sum();
+    for (Eigen::Index o = 0; o < ny; ++o) {
+      ChannelPrediction p;
+      p.experiment = experiments[e].name;
+      p.channel = outputs[static_cast<std::size_t>(o)].name;
+      p.unit = outputs[static_cast<std::size_t>(o)].unit;
+      p.t = experiments[e].t;
+      p.measured = experiments[e].measured[static_cast<std::size_t>(o)].values;
+      const double sigma = shooting.sigma()[static_cast<std::size_t>(o)];
+      for (std::size_t i = 0; i < p.t.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        p.predicted.push_back(run.y(row, o));
+        p.sigma.push_back(std::sqrt(sigma * sigma + std::max(spread[row * ny + o], 0.0)));
+        p.held_out.push_back(experiments[e].held_out(i));
+      }
+      fit.predictions.push_back(std::move(p));
+    }
+  }
+}
+
+void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
+  double loglik = 0.0, held_loglik = 0.0;
+  std::map<std::string, std::array<double, 4>> sums;  // squares, count, held-out squares, held-out count
+  bool any_held = false;
+  for (const auto& p : fit.predictions) {
+    const auto experiment = std::find_if(experiments.begin(), experiments.end(), [&](const Signals& s) { return s.name == p.experiment; });
+    auto& s = sums[p.channel];
+    const double sigma = fit.noise.at(p.channel).value;
+    for (std::size_t i = experiment->exclude; i < p.t.size(); ++i) {
+      const double r = p.measured[i] - p.predicted[i];
+      if (!std::isfinite(r)) continue;
+      const double term = -0.5 * r * r / (sigma * sigma) - std::log(sigma) - 0.5 * std::log(2.0 * pi);
+      const bool held = p.held_out[i];
+      any_held = any_held || held;
+      (held ? held_loglik : loglik) += term;
+      s[held ? 2 : 0] += r * r;
+      s[held ? 3 : 1] += 1.0;
+    }
+  }
+  fit.loglik = loglik;
+  if (any_held) fit.validation_loglik = held_loglik;
+  for (const auto& p : fit.predictions) {
+    const auto& s = sums[p.channel];
+    if (s[1] > 0.0) fit.rms[p.channel] = {std::sqrt(s[0] / s[1]), 0.0, p.unit};
+    if (s[3] > 0.0) fit.validation_rms[p.channel] = {std::sqrt(s[2] / s[3]), 0.0, p.unit};
+  }
+}
+
+double motion_size(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0, n = 0.0;
+  for (double v : values) {
+    if (std::isfinite(v)) sum += v, squares += v * v, n += 1.0;
+  }
+  return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
+}
+
+std::string said_of_the_end(const std::string& which, bool converged, const Shooting& shooting, const std::vector<Segment>& runs,
+                            const std::vector<Signals>& experiments) {
+  const auto& outputs = shooting.model().system->spec().outputs;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    const auto [squares, count] = squares_of(channel_residuals(shooting, runs, experiments, o));
+    const double rms = std::sqrt(squares / std::max(count, 1.0)), size = motion_size(experiments.front().measured[o].values);
+    if (converged && rms < follows * size) continue;
+    return "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
+           ", motion RMS " + in_display_unit(size, outputs[o].unit) + "): there " + which.substr(0, which.find_first_of(":;")) +
+           ", which need not be so elsewhere. Begin with other values, or give bounds";
+  }
+  return which;
+}
+
+namespace {
+
+/// Of a channel's estimation part in all experiments, on an even grid.
+std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
+  std::vector<std::vector<double>> all;
+  for (const auto& p : fit.predictions) {
+    if (p.channel != channel) continue;
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < p.t.size(); ++i) residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
+    all.push_back(on_even_grid(p.t, residuals));
+  }
+  return joined_series(all);
+}
+
+}  // namespace
+
+void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit) {
+  const ChannelPrediction& p = fit.predictions.front();
+  const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
+  const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period), unknowns);
+  const double noise = reading_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
+  fit.facts["whiteness"] = "residuals of " + p.channel + " at " + in_words(test);
+  fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
+                           ", reading noise about " + in_display_unit(noise, p.unit);
+  constexpr double clearly_above_noise = 2.0;
+  fit.driven = looks_driven(test) && rms > clearly_above_noise * noise;
+  if (!fit.driven || rms < follows * size) {
+    if (clearly_coloured(test)) {
+      fit.warnings.push_back(
+          "residuals are not white (" + fit.facts["whiteness"] + "; " + fit.facts["explained"] +
+          "): something is missing from the model, or the readings' own noise has memory. Sigmas allow for that memory as noise (" +
+          "plain_sigma: without it), not for a force that the model lacks");
+    }
+    return;
+  }
+  fit.status = FitStatus::declined;
+  fit.message = "the motion is driven by something this deterministic model does not have: it cannot follow the measured motion (" +
+                fit.facts["explained"] + "; " + fit.facts["whiteness"] +
+                "). The method that can estimate such motion is filter_error. Solver: " + fit.message;
+  for (const auto& curve : model.curves)
+    mark_not_informative(model, curve.name, "driven motion: a deterministic trajectory cannot follow it", fit);
+  fit.trim.reset();
+}
+
+}  // namespace misfit::output_error_parts

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "misfit/fit/shooting/output_error_setting.h"
+#include "misfit/inference/coloured.h"
+
+// What output error makes of a finished run: not for use outside.
+namespace misfit::output_error_parts {
+
+/// Per-channel residuals of the estimation part → standard deviations with the effective number of parameters taken off.
+[[nodiscard]] std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs,
+                                                 const std::vector<Signals>& experiments, double edf);
+
+/// Residuals and their derivatives by (parameters, initial states of each experiment) in units of sigma, from runs with derivatives.
+[[nodiscard]] std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vector<Segment>& runs,
+                                                      const std::vector<Signals>& experiments);
+
+/// Channels of every experiment with sigma from noise and `covariance` of (parameters, initial states of each experiment).
+void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
+                    const Eigen::MatrixXd& covariance, Fit& fit);
+
+/// RMS and Gaussian log-likelihood of estimation and validation part, from the predictions and fit.noise.
+void errors_of(const std::vector<Signals>& experiments, Fit& fit);
+
+/// Standard deviation of the known values.
+[[nodiscard]] double motion_size(const std::vector<double>& values);
+
+/// What the information matrix where the search ended cannot tell (`which`, a sentence) is said of the data only if the model follows them
+/// there: the search has converged and leaves less than half of the motion. Else it is said of that place.
+[[nodiscard]] std::string said_of_the_end(const std::string& which, bool converged, const Shooting& shooting,
+                                          const std::vector<Segment>& runs, const std::vector<Signals>& experiments);
+
+/// Says whether a deterministic model followed the motion, and marks the fit where it did not.
+void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit);
+
+}  // namespace misfit::output_error_parts

@@ -1,0 +1,165 @@
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "misfit/core/display.h"
+#include "misfit/core/text.h"
+#include "misfit/inference/identifiable.h"
+
+namespace misfit {
+namespace {
+
+/// A parameter or a curve's scale: its change is `weights` · changes of the free parameters, its value `value`.
+struct Direction {
+  std::string name, unit;
+  double value = 0.0;
+  Eigen::VectorXd weights;
+};
+
+std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& covariance) {
+  std::vector<Direction> out;
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const auto at = static_cast<Eigen::Index>(c);
+    if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
+    out.push_back({p.name, p.unit, p.value, Eigen::VectorXd::Unit(covariance.rows(), at)});
+  }
+  for (std::size_t k = 0; k < model.curves.size(); ++k) {
+    const Curve& curve = model.curves[k];
+    const auto column = std::find(free.begin(), free.end(), curve.first);
+    if (column == free.end()) continue;
+    const auto first = static_cast<Eigen::Index>(column - free.begin()), size = static_cast<Eigen::Index>(curve.spline.size());
+    Eigen::VectorXd c(size);
+    for (Eigen::Index i = 0; i < size; ++i) c[i] = model.parameters[static_cast<std::size_t>(curve.first + i)].value;
+    Eigen::MatrixXd inverse;
+    if (!invert_scaled(covariance.block(first, first, size, size), inverse)) continue;
+    const Eigen::VectorXd towards = inverse * c;
+    if (!(towards.dot(c) > 0.0)) continue;
+    Direction scale{"the scale of " + curve.name, "-", 1.0, Eigen::VectorXd::Zero(covariance.rows())};
+    scale.weights.segment(first, size) = towards / towards.dot(c);
+    out.push_back(std::move(scale));
+  }
+  return out;
+}
+
+std::string percent(double share) {
+  const double value = 100.0 * share;
+  constexpr double least = 0.05;  // what one digit shows
+  if (value < least) return "better than 0.1 %";
+  return format_value(value < 10.0 ? std::round(10.0 * value) / 10.0 : std::round(value)) + " %";
+}
+
+/// How well it is known: as a share of its value, unless that is lost in it.
+std::string known_to(const Direction& d, double sigma) {
+  return sigma < std::abs(d.value) ? percent(sigma / std::abs(d.value)) : "± " + in_display_unit(sigma, d.unit);
+}
+
+/// Two directions of sigmas a, b and their correlation, in words.
+std::string pair_in_words(const Direction& one, const Direction& other, double sigma_one, double sigma_other, double correlation) {
+  const std::string &first = one.name, &second = other.name;
+  constexpr double alike = 1.25;
+  const bool known = sigma_one < std::abs(one.value) && sigma_other < std::abs(other.value);
+  const double a = known ? sigma_one / std::abs(one.value) : 1.0, b = known ? sigma_other / std::abs(other.value) : 1.0;
+  const bool even = known && a < alike * b && b < alike * a;
+  const double together = std::sqrt(std::max(a * a + b * b - 2.0 * std::abs(correlation) * a * b, 0.0));
+  if (even) {
+    const std::string kind = correlation > 0.0 ? "ratio" : "product";
+    return first + " and " + second + " act nearly only as their " + kind + ": it is known to " + percent(together) +
+           ", they themselves only to " + percent(a) + " and " + percent(b);
+  }
+  return first + " and " + second + " make up for each other (correlation " + format_value(std::round(1000.0 * correlation) / 1000.0) +
+         "): separately they are known only to " + known_to(one, sigma_one) + " and " + known_to(other, sigma_other);
+}
+
+std::string group_in_words(const std::vector<std::string>& names) {
+  return join_words(names) + " make up for each other: these data know a combination of them much better than each";
+}
+
+void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& covariance, Fit& fit) {
+  const auto n = static_cast<Eigen::Index>(all.size());
+  if (n < 2) return;
+  Eigen::MatrixXd weights(n, covariance.rows());
+  for (Eigen::Index i = 0; i < n; ++i) weights.row(i) = all[static_cast<std::size_t>(i)].weights;
+  const Eigen::MatrixXd joint = weights * covariance * weights.transpose();
+  const Eigen::VectorXd sigma = joint.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * joint * sigma.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
+  if (solver.info() != Eigen::Success) return;
+  constexpr double collinear = 0.02, takes_part = 0.25, worth_saying = 0.05;
+  for (Eigen::Index k = 0; k < n && solver.eigenvalues()[k] < collinear; ++k) {
+    const Eigen::VectorXd v = solver.eigenvectors().col(k);
+    std::vector<std::string> names;
+    std::vector<double> relative;
+    std::vector<Eigen::Index> places;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (std::abs(v[i]) < takes_part * v.cwiseAbs().maxCoeff()) continue;
+      const Direction& d = all[static_cast<std::size_t>(i)];
+      names.push_back(d.name);
+      relative.push_back(sigma[i] / std::max(std::abs(d.value), 1e-300));
+      places.push_back(i);
+    }
+    if (names.size() < 2 || *std::max_element(relative.begin(), relative.end()) < worth_saying) continue;
+    if (names.size() > 2) {
+      fit.warnings.push_back(group_in_words(names));
+      continue;
+    }
+    const Direction &one = all[static_cast<std::size_t>(places[0])], &other = all[static_cast<std::size_t>(places[1])];
+    const double sign = one.value * other.value < 0.0 ? -1.0 : 1.0;
+    fit.warnings.push_back(pair_in_words(one, other, sigma[places[0]], sigma[places[1]], sign * correlation(places[0], places[1])));
+  }
+}
+
+/// The bound at which a parameter ended, if it did.
+std::optional<double> bound_reached(const Parameter& p) {
+  constexpr double close = 1e-6;
+  for (const double bound : {p.lower, p.upper}) {
+    if (std::isfinite(bound) && std::abs(p.value - bound) <= close * p.scale) return bound;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
+  if (covariance.rows() == 0 || !covariance.allFinite()) return;
+  tell_collinear(directions_of(model, covariance), covariance, fit);
+  const std::vector<int> free = model.free_parameters();
+  std::string prior_only;
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const auto at = static_cast<Eigen::Index>(c);
+    if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
+    const double sigma = std::sqrt(covariance(at, at));
+    constexpr double nothing_new = 0.95;
+    if (p.prior_sigma && sigma > nothing_new * *p.prior_sigma) {
+      prior_only += (prior_only.empty() ? "" : ", ") + p.name;
+    } else if (p.kind == CoefficientKind::shape && sigma > (p.lower >= 0.0 ? std::abs(p.value) : p.scale)) {
+      fit.warnings.push_back(p.name + " is hardly determined by these data: " + in_display_unit(p.value, p.unit, sigma));
+    }
+    if (const std::optional<double> bound = bound_reached(p))
+      fit.warnings.push_back(p.name + " ends at its bound, " + in_display_unit(*bound, p.unit) +
+                             ": the best value may lie beyond, and its sigma does not describe an interval there");
+  }
+  if (!prior_only.empty()) fit.facts["prior_only"] = "these data say nothing of " + prior_only + " beyond the prior";
+}
+
+void refuse_runaways(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
+  constexpr double far = 2.0, tells_little = 0.5;  // of the prior's sigma
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const double sigma = std::sqrt(std::max(covariance(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(c)), 0.0));
+    if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
+    if (std::abs(p.value - p.prior_mean) < far * *p.prior_sigma || sigma < tells_little * *p.prior_sigma) continue;
+    fit.status = FitStatus::failed;
+    fit.message = p.name + " has run to " + in_display_unit(p.value, p.unit, sigma) + ", away from its prior " +
+                  in_display_unit(p.prior_mean, p.unit, *p.prior_sigma) +
+                  ", although these data tell less of it than the prior: what is free beside it (a curve's scale) makes up for it, and the "
+                  "roughness prefers the smaller curve. Do not free it: with its sigma beside its value ([geometry] " +
+                  p.name + " = { value, sigma }) it stays what it is and widens what depends on it";
+  }
+}
+
+}  // namespace misfit

@@ -1,0 +1,283 @@
+#include "misfit/inference/coloured.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "misfit/core/text.h"
+#include "misfit/inference/short_record.h"
+#include "misfit/inference/whiteness.h"
+#include "misfit/math/spectrum.h"
+
+namespace misfit {
+namespace {
+
+constexpr Eigen::Index longest_transform = 16384, most_lags = 2048;
+
+/// A stretch of an experiment, transformed: real and imaginary part of each channel's derivatives, frequencies × columns.
+struct Stretch {
+  const std::vector<Eigen::Index>* place = nullptr;
+  std::vector<Eigen::MatrixXd> real, imaginary;
+};
+
+using Densities = std::vector<Eigen::MatrixXcd>;  // channels × channels per frequency
+
+class Sandwich {
+ public:
+  Sandwich(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels)
+      : plain_(plain), channels_(channels) {
+    Eigen::Index longest = 1, all = 0;
+    for (const auto& e : experiments) {
+      longest = std::max(longest, e.r.size() / channels);
+      all += e.r.size() / channels;
+    }
+    lags_ = std::min(most_lags, longest / 3);
+    size_ = power_of_two(std::min(longest + lags_, longest_transform));
+    products_.assign(static_cast<std::size_t>(lags_ + 1), Eigen::MatrixXd::Zero(channels, channels));
+    pairs_ = products_;
+    for (const auto& e : experiments) {
+      const Eigen::Index samples = e.r.size() / channels, most = size_ - lags_;
+      for (Eigen::Index first = 0; first < samples; first += most) take(e, first, std::min(most, samples - first));
+    }
+    const auto least = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(all))));
+    out_.lags = memory_of(products_, pairs_, least);
+    double squares = 1.0;
+    for (int k = 1; k <= 2 * out_.lags; ++k) squares += 2.0 * std::pow(flat_top(k, out_.lags), 2);
+    out_.degrees = static_cast<double>(all) / squares;
+  }
+
+  ColouredCovariance run() {
+    LagProducts deficit(static_cast<std::size_t>(2 * out_.lags + 1), Eigen::MatrixXd::Zero(channels_, channels_));
+    const std::vector<Densities> by_plain = leverage(plain_);
+    constexpr int rounds = 6;
+    for (int round = 0;; ++round) {
+      const Densities density = spectral_density(correlations(deficit), size_);
+      out_.excess = excess(density);
+      out_.covariance = plain_ + plain_ * out_.excess * plain_;
+      if (round == rounds) break;
+      deficit = taken(density, by_plain, leverage(out_.covariance));
+    }
+    return out_;
+  }
+
+ private:
+  void take(const ResidualRows& e, Eigen::Index first, Eigen::Index samples) {
+    Stretch stretch;
+    stretch.place = &e.place;
+    std::vector<Eigen::VectorXcd> residuals, masks;
+    for (Eigen::Index a = 0; a < channels_; ++a) {
+      Eigen::VectorXd r = Eigen::VectorXd::Zero(samples), mask = r;
+      Eigen::MatrixXd real(size_ / 2 + 1, e.J.cols()), imaginary(size_ / 2 + 1, e.J.cols());
+      for (Eigen::Index i = 0; i < samples; ++i) {
+        const double value = e.r[(first + i) * channels_ + a];
+        if (!std::isfinite(value)) continue;
+        r[i] = value;
+        mask[i] = 1.0;
+      }
+      Eigen::VectorXd column(samples);
+      for (Eigen::Index c = 0; c < e.J.cols(); ++c) {
+        for (Eigen::Index i = 0; i < samples; ++i) column[i] = e.J((first + i) * channels_ + a, c);
+        const Eigen::VectorXcd line = fourier(column, size_);
+        real.col(c) = line.real();
+        imaginary.col(c) = line.imag();
+      }
+      stretch.real.push_back(std::move(real));
+      stretch.imaginary.push_back(std::move(imaginary));
+      residuals.push_back(fourier(r, size_));
+      masks.push_back(fourier(mask, size_));
+    }
+    add_products(residuals, products_);
+    add_products(masks, pairs_);
+    stretches_.push_back(std::move(stretch));
+  }
+
+  /// Σ_i x_a,i x_b,i+k into `out`.
+  void add_products(const std::vector<Eigen::VectorXcd>& x, LagProducts& out) const {
+    for (Eigen::Index a = 0; a < channels_; ++a) {
+      for (Eigen::Index b = 0; b < channels_; ++b) {
+        const auto& from = x[static_cast<std::size_t>(a)];
+        const auto& to = x[static_cast<std::size_t>(b)];
+        const Eigen::VectorXd by_lag = inverse_fourier(from.conjugate().cwiseProduct(to), size_);
+        for (Eigen::Index k = 0; k <= lags_; ++k) out[static_cast<std::size_t>(k)](a, b) += by_lag[k];
+      }
+    }
+  }
+
+  /// Windowed estimates of E[v_a,i v_b,i+k].
+  LagProducts correlations(const LagProducts& deficit) {
+    LagProducts out(deficit.size(), Eigen::MatrixXd::Zero(channels_, channels_));
+    out_.largest_correlation = 0.0;
+    out_.squared_correlations = Eigen::VectorXd::Ones(channels_);
+    for (std::size_t k = 0; k < out.size() && k < products_.size(); ++k) {
+      const Eigen::MatrixXd sums = products_[k] + deficit[k];
+      for (Eigen::Index a = 0; a < channels_; ++a) {
+        for (Eigen::Index b = 0; b < channels_; ++b) {
+          constexpr double fewest = 0.5;  // pairs are counted by a transform: whole numbers but for rounding
+          if (pairs_[k](a, b) > fewest) out[k](a, b) = flat_top(static_cast<int>(k), out_.lags) * sums(a, b) / pairs_[k](a, b);
+        }
+        if (k > 0 && out[0](a, a) > 0.0) out_.squared_correlations[a] += 2.0 * std::pow(out[k](a, a) / out[0](a, a), 2);
+        if (k == 0 || std::abs(out[k](a, a)) <= std::abs(out_.largest_correlation) * out[0](a, a)) continue;
+        out_.largest_correlation = out[k](a, a) / out[0](a, a);
+        out_.largest_lag = static_cast<int>(k);
+      }
+    }
+    return out;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd local(const Eigen::MatrixXd& whole, const Stretch& stretch) const {
+    return whole(*stretch.place, *stretch.place);
+  }
+
+  /// conj(z) A zᵀ per frequency for every stretch; z: channels × columns.
+  std::vector<Densities> leverage(const Eigen::MatrixXd& A) const {
+    std::vector<Densities> out;
+    for (const Stretch& s : stretches_) {
+      const Eigen::MatrixXd here = local(A, s);
+      Densities density(static_cast<std::size_t>(size_ / 2 + 1), Eigen::MatrixXcd(channels_, channels_));
+      for (std::size_t b = 0; b < s.real.size(); ++b) {
+        const Eigen::MatrixXd real = s.real[b] * here, imaginary = s.imaginary[b] * here;
+        for (std::size_t a = 0; a < s.real.size(); ++a) {
+          const Eigen::VectorXd even =
+              s.real[a].cwiseProduct(real).rowwise().sum() + s.imaginary[a].cwiseProduct(imaginary).rowwise().sum();
+          const Eigen::VectorXd odd = s.real[a].cwiseProduct(imaginary).rowwise().sum() - s.imaginary[a].cwiseProduct(real).rowwise().sum();
+          set(density, static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b), even, odd);
+        }
+      }
+      out.push_back(std::move(density));
+    }
+    return out;
+  }
+
+  /// What the fit took out of the products by lag.
+  LagProducts taken(const Densities& density, const std::vector<Densities>& by_plain, const std::vector<Densities>& by_covariance) const {
+    const auto half = static_cast<std::size_t>(size_ / 2 + 1);
+    Densities crossed(half, Eigen::MatrixXcd::Zero(channels_, channels_)), put_in = crossed;
+    for (std::size_t s = 0; s < stretches_.size(); ++s) {
+      for (std::size_t f = 0; f < half; ++f) {
+        const Eigen::MatrixXcd one = by_plain[s][f] * density[f];
+        crossed[f] += one + one.adjoint();
+        put_in[f] += by_covariance[s][f];
+      }
+    }
+    LagProducts out(static_cast<std::size_t>(2 * out_.lags + 1), Eigen::MatrixXd::Zero(channels_, channels_));
+    const auto series = [&](const Densities& from, Eigen::Index a, Eigen::Index b) {
+      Eigen::VectorXcd line(static_cast<Eigen::Index>(half));
+      for (std::size_t f = 0; f < half; ++f) line[static_cast<Eigen::Index>(f)] = from[f](a, b);
+      return inverse_fourier(line, size_);
+    };
+    for (Eigen::Index a = 0; a < channels_; ++a) {
+      for (Eigen::Index b = 0; b < channels_; ++b) {
+        const Eigen::VectorXd out_of = series(crossed, a, b), into = series(put_in, a, b);
+        for (std::size_t k = 0; k < out.size() && k < pairs_.size(); ++k) {
+          const auto lag = static_cast<Eigen::Index>(k);
+          const double share = pairs_.front()(a, a) > 0.0 ? pairs_[k](a, b) / pairs_.front()(a, a) : 0.0;
+          out[k](a, b) = share * out_of[lag] - into[lag];
+        }
+      }
+    }
+    return out;
+  }
+
+  static void set(Densities& density, Eigen::Index a, Eigen::Index b, const Eigen::VectorXd& real, const Eigen::VectorXd& imaginary) {
+    for (Eigen::Index f = 0; f < real.size(); ++f) density[static_cast<std::size_t>(f)](a, b) = {real[f], imaginary[f]};
+  }
+
+  /// Real and imaginary part of conj(density) less 1 on the diagonal, by their share of a sum over the whole spectrum.
+  void weigh(const Densities& density, Eigen::Index a, Eigen::Index b, Eigen::VectorXd& even, Eigen::VectorXd& odd) const {
+    for (Eigen::Index f = 0; f < even.size(); ++f) {
+      const double weight = (f == 0 || f == even.size() - 1 ? 1.0 : 2.0) / static_cast<double>(size_);
+      const std::complex<double> g = std::conj(density[static_cast<std::size_t>(f)](a, b));
+      even[f] = weight * (g.real() - (a == b ? 1.0 : 0.0));
+      odd[f] = weight * g.imag();
+    }
+  }
+
+  /// Σ_ij S_iᵀ (ℛ(i − j) − 1 at equal i, j and channel) S_j over all unknowns.
+  Eigen::MatrixXd excess(const Densities& density) const {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(plain_.rows(), plain_.cols());
+    const Eigen::Index half = size_ / 2 + 1;
+    for (const Stretch& s : stretches_) {
+      Eigen::MatrixXd here = Eigen::MatrixXd::Zero(s.real.front().cols(), s.real.front().cols());
+      for (std::size_t a = 0; a < s.real.size(); ++a) {
+        Eigen::MatrixXd real = Eigen::MatrixXd::Zero(half, here.cols()), imaginary = real;
+        for (std::size_t b = 0; b < s.real.size(); ++b) {
+          Eigen::VectorXd even(half), odd(half);
+          weigh(density, static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b), even, odd);
+          real += even.asDiagonal() * s.real[b];
+          imaginary += even.asDiagonal() * s.imaginary[b];
+          if (a == b) continue;
+          real -= odd.asDiagonal() * s.imaginary[b];
+          imaginary += odd.asDiagonal() * s.real[b];
+        }
+        here += s.real[a].transpose() * real + s.imaginary[a].transpose() * imaginary;
+      }
+      out(*s.place, *s.place) += here;
+    }
+    return 0.5 * (out + out.transpose());
+  }
+
+  const Eigen::MatrixXd& plain_;
+  Eigen::Index channels_, size_ = 2, lags_ = 0;
+  LagProducts products_, pairs_;
+  std::vector<Stretch> stretches_;
+  ColouredCovariance out_;
+};
+
+}  // namespace
+
+ColouredCovariance coloured_covariance(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels) {
+  return Sandwich(experiments, plain, channels).run();
+}
+
+bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::Index channels, double unknowns) {
+  constexpr double unusual = 0.05;
+  constexpr int lags = 10;
+  for (Eigen::Index a = 0; a < channels; ++a) {
+    std::vector<std::vector<double>> series;
+    for (const ResidualRows& e : experiments) {
+      series.emplace_back();
+      for (Eigen::Index i = a; i < e.r.size(); i += channels) series.back().push_back(e.r[i]);
+    }
+    if (whiteness(joined_series(series), 1, lags, unknowns / static_cast<double>(channels)).p_value < unusual) return false;
+  }
+  return true;
+}
+
+ColouredCovariance widening_only(ColouredCovariance covariance, const Eigen::MatrixXd& plain) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(plain);
+  if (factor.info() != Eigen::Success) return covariance;
+  const Eigen::MatrixXd L = factor.matrixL();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(L.transpose() * covariance.excess * L);
+  const Eigen::MatrixXd back = L.transpose().triangularView<Eigen::Upper>().solve(eigen.eigenvectors());
+  covariance.excess = back * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * back.transpose();
+  covariance.covariance = plain + plain * covariance.excess * plain;
+  return covariance;
+}
+
+ColouredCovariance white_covariance(const Eigen::MatrixXd& plain, Eigen::Index channels) {
+  ColouredCovariance out;
+  out.covariance = plain;
+  out.excess = Eigen::MatrixXd::Zero(plain.rows(), plain.cols());
+  out.squared_correlations = Eigen::VectorXd::Ones(channels);
+  return out;
+}
+
+ColouredCovariance memory_of_residuals(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels,
+                                       double degrees) {
+  if (degrees >= kShortRecord) return coloured_covariance(experiments, plain, channels);
+  double readings = 0.0;
+  for (const ResidualRows& e : experiments) readings += static_cast<double>(e.r.array().isFinite().count());
+  if (residuals_are_white(experiments, channels, readings - degrees)) return white_covariance(plain, channels);
+  return widening_only(coloured_covariance(experiments, plain, channels), plain);
+}
+
+std::string in_words(const ColouredCovariance& covariance) {
+  if (covariance.lags == 0 && std::isinf(covariance.degrees))
+    return "the residuals of this short record show no memory: sigmas are those of white residuals, 95 % intervals by Student's t";
+  return "allows for residuals with memory (Morelli and Klein): correlations up to lag " + std::to_string(covariance.lags) +
+         " samples count, the largest is " + format_value(std::round(1000.0 * covariance.largest_correlation) / 1000.0) + " at lag " +
+         std::to_string(covariance.largest_lag) + "; plain_sigma is that of white residuals";
+}
+
+}  // namespace misfit

@@ -1,0 +1,288 @@
+#include "misfit/inference/curves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/display.h"
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+
+namespace misfit {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180.0;
+
+/// A curve as weights on columns at one place: value = weights · θ + constant (constant from coefficients that are fixed).
+struct Weights {
+  Eigen::VectorXd on_columns;
+  double value = 0.0;
+};
+
+void add_term(const Model& model, const std::vector<int>& column_of, const Curve& curve, int derivative, double factor, double x,
+              Weights& out) {
+  const CurvePoint point = curve.spline.at(x);
+  for (int j = 0; j < 4; ++j) {
+    const auto parameter = static_cast<std::size_t>(curve.first + point.first + j);
+    const double w = factor * (derivative == 0 ? point.w : point.d)[static_cast<std::size_t>(j)];
+    out.value += w * model.parameters[parameter].value;
+    if (column_of[parameter] >= 0) out.on_columns[column_of[parameter]] += w;
+  }
+}
+
+std::vector<double> grid_over(double lowest, double highest, const std::string& unit) {
+  const double range = highest - lowest;
+  const double step = unit == "rad" && range < 2.0 ? 0.1 * degree : range / 200.0;
+  const double margin = 0.1 * range;  // a little outside, drawn dashed with the widening band
+  std::vector<double> x;
+  double first = std::ceil((lowest - margin) / step) * step;
+  if (lowest >= 0.0) first = std::max(first, 0.0);
+  for (int i = 0; first + i * step <= highest + margin; ++i) x.push_back(first + i * step);
+  return x;
+}
+
+/// A curve of a parity is the same on both sides of 0: what is visited there counts on the positive one.
+double folded(double value, const Curve& curve) { return curve.spline.parity() == Parity::none ? value : std::abs(value); }
+
+std::vector<double> counts_at(const std::vector<double>& x, const RowMatrix& visited, const Curve& curve) {
+  std::vector<double> count(x.size(), 0.0);
+  if (x.size() < 2 || visited.rows() == 0) return count;
+  const double step = x[1] - x[0];
+  for (Eigen::Index i = 0; i < visited.rows(); ++i) {
+    const double cell = std::round((folded(visited(i, curve.quantity), curve) - x.front()) / step);
+    if (cell >= 0.0 && cell < static_cast<double>(x.size())) count[static_cast<std::size_t>(cell)] += 1.0;
+  }
+  return count;
+}
+
+struct Combination {
+  std::string name, of, unit;
+  std::vector<DerivedCurve::Term> terms;
+};
+
+CurveEstimate evaluate(const Model& model, const std::vector<int>& column_of, const Eigen::MatrixXd& covariance, const RowMatrix& visited,
+                       const Combination& c) {
+  CurveEstimate out;
+  out.name = c.name;
+  out.of = c.of;
+  out.unit = c.unit;
+  const Curve* lead = model.find_curve(c.terms.front().curve);
+  out.of_unit = lead->of_unit;
+  out.x = grid_over(lead->spline.lowest(), lead->spline.highest(), lead->of_unit);
+  out.count = counts_at(out.x, visited, *lead);
+  for (double x : out.x) {
+    Weights w{Eigen::VectorXd::Zero(covariance.rows()), 0.0};
+    for (const auto& term : c.terms) add_term(model, column_of, *model.find_curve(term.curve), term.derivative, term.factor(x), x, w);
+    out.value.push_back(w.value);
+    out.sigma.push_back(std::sqrt(std::max(w.on_columns.dot(covariance * w.on_columns), 0.0)));
+  }
+  return out;
+}
+
+}  // namespace
+
+RowMatrix visited_quantities(const Model& model, const Signals& signals, const ReconstructedStates& states) {
+  Evaluator evaluator(model);
+  const InputTable inputs = input_table(signals, model.inputs());
+  const auto count = static_cast<Eigen::Index>(std::count(states.ok.begin(), states.ok.end(), true));
+  RowMatrix out(count, static_cast<Eigen::Index>(model.system->spec().quantities.size()));
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < states.ok.size(); ++i) {
+    if (!states.ok[i]) continue;
+    evaluator.quantities(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs.at(i), signals.t[i], out.row(row++).data());
+  }
+  return out;
+}
+
+std::vector<double> choose_knots(std::vector<double> visited, int intervals, const std::string& curve) {
+  constexpr double samples_per_interval = 30.0;
+  constexpr double tail = 0.001;
+  std::sort(visited.begin(), visited.end());
+  if (visited.size() < 2 * static_cast<std::size_t>(samples_per_interval)) {
+    throw RunError("curve " + curve + ": only " + std::to_string(visited.size()) +
+                   " samples show its quantity; at least 60 are needed to choose knots");
+  }
+  const auto at = [&](double fraction) { return visited[static_cast<std::size_t>(fraction * static_cast<double>(visited.size() - 1))]; };
+  double low = at(tail);
+  const double high = at(1.0 - tail);
+  const double rounding = 1e-9 * std::max(std::abs(high), std::abs(low));  // a constant is computed to a few last digits
+  if (!(high - low > rounding))
+    throw RunError("curve " + curve + ": its quantity does not move, it is " + format_value(low) + " throughout");
+  const int pieces = std::clamp(static_cast<int>(static_cast<double>(visited.size()) / samples_per_interval), 2, intervals);
+  if (low >= 0.0) low = std::max(low, (high - low) / (2.0 * pieces));
+  std::vector<double> knots;
+  for (int i = 0; i <= pieces; ++i) knots.push_back(low + (high - low) * i / pieces);
+  return knots;
+}
+
+void choose_all_knots(ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments, int intervals) {
+  const auto open = curves_without_knots(request, registry);
+  if (open.empty()) return;
+  ModelRequest probe = request;  // any knots do: only quantities are evaluated
+  for (const auto& [name, of] : open) {
+    probe.curves[name].of = of;
+    probe.curves[name].knots = {1.0, 2.0};
+  }
+  const Model model = assemble(probe, registry);
+  std::map<std::string, std::vector<double>> visited;
+  for (const auto& experiment : experiments) {
+    const RowMatrix values = visited_quantities(model, experiment, reconstruct_states(model, experiment));
+    for (const auto& [name, of] : open) {
+      const Curve& curve = *model.find_curve(name);
+      for (const double value : values.col(curve.quantity)) visited[name].push_back(folded(value, curve));
+    }
+  }
+  for (const auto& [name, of] : open) {
+    request.curves[name].of = of;
+    request.curves[name].knots = choose_knots(visited[name], intervals, name);
+  }
+}
+
+void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited, Fit& fit) {
+  const std::vector<int> free = model.free_parameters();
+  std::vector<int> column_of(model.parameters.size(), -1);
+  fit.names.clear();
+  fit.covariance = covariance;
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    column_of[static_cast<std::size_t>(free[c])] = static_cast<int>(c);
+    fit.names.push_back(p.name);
+    const auto i = static_cast<Eigen::Index>(c);
+    fit.parameters[p.name] = {p.value, std::sqrt(std::max(covariance(i, i), 0.0)), p.unit};
+  }
+  fit.curves.clear();
+  for (const auto& curve : model.curves) {
+    const Combination own{curve.name, curve.of, curve.unit, {{curve.name, 0, [](double) { return 1.0; }}}};
+    fit.curves.push_back(evaluate(model, column_of, covariance, visited, own));
+  }
+  const std::vector<double> values = model.values();
+  for (const auto& derived : model.system->derived_curves(values.data())) {
+    const bool possible =
+        std::all_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return model.find_curve(term.curve) != nullptr; });
+    if (possible)
+      fit.curves.push_back(evaluate(model, column_of, covariance, visited, {derived.name, derived.of, derived.unit, derived.terms}));
+  }
+  for (auto& curve : fit.curves) {
+    curve.trimmed = curve.name == model.system->spec().static_curve;
+    if (curve.trimmed) fit.trim = stable_zero(curve);
+  }
+}
+
+void describe_both(const Model& model, const Eigen::MatrixXd& plain, const Eigen::MatrixXd& coloured, const RowMatrix& visited, Fit& fit) {
+  describe(model, plain, visited, fit);
+  for (const auto& name : fit.names) fit.plain_sigmas[name] = fit.parameters.at(name).sigma;
+  if (fit.trim) fit.plain_sigmas["trim"] = fit.trim->sigma;
+  describe(model, coloured, visited, fit);
+}
+
+namespace {
+
+/// Change of the rates by the static curve, its coefficients taken from 0 to 1, with constant `k` moved by `shift`: the largest row.
+double gain_of(const Model& model, const Curve& curve, std::size_t k, double shift, const double* x, const double* u, double t) {
+  Evaluator evaluator(model);
+  std::vector<double> values = model.values();
+  values[k] += shift;
+  std::vector<double> dx(static_cast<std::size_t>(model.states())), off = dx;
+  for (int i = 0; i < curve.spline.size(); ++i) values[static_cast<std::size_t>(curve.first + i)] = 1.0;
+  evaluator.set_parameters(values.data());
+  evaluator.rates(x, u, t, dx.data());
+  for (int i = 0; i < curve.spline.size(); ++i) values[static_cast<std::size_t>(curve.first + i)] = 0.0;
+  evaluator.set_parameters(values.data());
+  evaluator.rates(x, u, t, off.data());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < dx.size(); ++i) largest = std::max(largest, std::abs(dx[i] - off[i]));
+  return largest;
+}
+
+}  // namespace
+
+std::vector<std::string> scale_uncertainties(const Model& model, const double* x, const double* u, double t) {
+  std::vector<std::string> out;
+  const Curve* curve = model.find_curve(model.system->spec().static_curve);
+  if (curve == nullptr) return out;
+  for (std::size_t k = 0; k < model.system->spec().constants.size(); ++k) {
+    const Parameter& p = model.parameters[k];
+    if (p.free || !p.prior_sigma) continue;
+    const double nominal = gain_of(model, *curve, k, 0.0, x, u, t);
+    const double moved = gain_of(model, *curve, k, *p.prior_sigma, x, u, t);
+    constexpr double worth_saying = 1e-3;
+    const double share = std::abs(nominal / moved - 1.0);  // for the same motion the curve goes with the reciprocal
+    if (!(nominal > 0.0) || !(moved > 0.0) || share < worth_saying) continue;
+    out.push_back(curve->name + " is only known as well as its scale: " + p.name + " = " + format_value(p.value, *p.prior_sigma) + " " +
+                  p.unit + " alone makes every " + curve->name + " uncertain by " + format_value(std::round(1000.0 * share) / 10.0) +
+                  " %, which is not in its band");
+  }
+  return out;
+}
+
+void mark_not_informative(const Model& model, const std::string& curve, const std::string& why, Fit& fit) {
+  const std::vector<double> values = model.values();
+  std::vector<std::string> names{curve};
+  for (const auto& derived : model.system->derived_curves(values.data())) {
+    if (std::any_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return term.curve == curve; }))
+      names.push_back(derived.name);
+  }
+  for (auto& estimate : fit.curves) {
+    if (std::find(names.begin(), names.end(), estimate.name) == names.end()) continue;
+    estimate.informative = false;
+    estimate.why = why;
+  }
+}
+
+namespace {
+
+/// A zero with negative slope, between grid points `after` − 1 and `after`.
+struct StableZero {
+  std::size_t after = 0;
+  double count = 0.0;
+  Estimate at;
+};
+
+std::vector<StableZero> stable_zeros(const CurveEstimate& curve) {
+  std::vector<StableZero> out;
+  for (std::size_t i = 1; i < curve.x.size(); ++i) {
+    const double a = curve.value[i - 1], b = curve.value[i];
+    const double count = curve.count[i - 1] + curve.count[i];
+    if (!(a > 0.0) || !(b <= 0.0) || !(curve.x[i - 1] > 0.0) || !(count > 0.0)) continue;
+    const double step = curve.x[i] - curve.x[i - 1];
+    const double fraction = a / (a - b);
+    const double sigma = curve.sigma[i - 1] + fraction * (curve.sigma[i] - curve.sigma[i - 1]);
+    out.push_back({i, count, {curve.x[i - 1] + fraction * step, sigma / ((a - b) / step), curve.of_unit}});
+  }
+  return out;
+}
+
+/// Does the curve leave 0 between two of its stable zeros, below and then above, by more than its band?
+bool told_apart(const CurveEstimate& curve, const StableZero& a, const StableZero& b) {
+  constexpr double sigmas = 3.0;
+  bool below = false, above = false;
+  for (std::size_t i = a.after; i < b.after; ++i) {
+    below = below || curve.value[i] < -sigmas * curve.sigma[i];
+    above = above || (below && curve.value[i] > sigmas * curve.sigma[i]);
+  }
+  return below && above;
+}
+
+}  // namespace
+
+std::optional<Estimate> stable_zero(const CurveEstimate& curve) {
+  const std::vector<StableZero> zeros = stable_zeros(curve);
+  const auto most = std::max_element(zeros.begin(), zeros.end(), [](const auto& a, const auto& b) { return a.count < b.count; });
+  return most == zeros.end() ? std::nullopt : std::optional(most->at);
+}
+
+void tell_other_trims(Fit& fit) {
+  for (const auto& curve : fit.curves) {
+    if (!curve.trimmed || !curve.informative) continue;
+    std::vector<StableZero> apart;
+    for (const auto& zero : stable_zeros(curve)) {
+      if (apart.empty() || told_apart(curve, apart.back(), zero)) apart.push_back(zero);
+    }
+    if (apart.size() < 2) continue;
+    std::string where;
+    for (const auto& zero : apart) where += (where.empty() ? "" : ", ") + in_display_unit(zero.at.value, zero.at.unit, zero.at.sigma);
+    fit.warnings.push_back(curve.name + " has " + std::to_string(apart.size()) + " stable zeros among the values visited: " + where +
+                           "; the trim given is the one where the most samples were");
+  }
+}
+
+}  // namespace misfit

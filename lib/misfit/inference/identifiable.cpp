@@ -1,0 +1,95 @@
+#include "misfit/inference/identifiable.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <vector>
+
+#include "misfit/core/text.h"
+
+namespace misfit {
+namespace {
+
+constexpr double nothing = 1e-10;  // of the largest eigenvalue: rounding of the sums leaves about 1e-14
+
+struct Column {
+  const Parameter* parameter;
+  Eigen::Index at;
+};
+
+/// N of the columns, all scaled to unit diagonal, the initial states projected out.
+Eigen::MatrixXd reduced(const NormalEquations& problem, const std::vector<Column>& columns, Eigen::Index free) {
+  const auto n = static_cast<Eigen::Index>(columns.size());
+  const Eigen::Index states = problem.N.rows() - free;
+  const Eigen::VectorXd scale = problem.N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd all = scale.asDiagonal() * problem.N * scale.asDiagonal();
+  Eigen::MatrixXd N(n, n), C(n, states);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const Eigen::Index row = columns[static_cast<std::size_t>(a)].at;
+    for (Eigen::Index b = 0; b < n; ++b) N(a, b) = all(row, columns[static_cast<std::size_t>(b)].at);
+    C.row(a) = all.row(row).tail(states);
+    if (problem.prior_precision.size() > row) N(a, a) += problem.prior_precision[row] * scale[row] * scale[row];
+  }
+  if (states == 0) return N;
+  return N - C * all.bottomRightCorner(states, states).completeOrthogonalDecomposition().solve(C.transpose());
+}
+
+/// "a and b: only their product acts", from the relative changes that leave everything as it is.
+std::string in_words(const std::vector<std::string>& names, const std::vector<double>& relative) {
+  std::string out = "these data do not tell " + join_words(names) + " apart: ";
+  constexpr double alike = 0.02;
+  const bool pair = names.size() == 2 && std::isfinite(relative[0]) && std::isfinite(relative[1]) && relative[0] != 0.0;
+  const double ratio = pair ? relative[1] / relative[0] : 0.0;
+  if (std::abs(ratio + 1.0) < alike) {
+    out += "only their product acts";
+  } else if (std::abs(ratio - 1.0) < alike) {
+    out += "only their ratio acts";
+  } else {
+    out += "one of them makes up for the others";
+  }
+  return out + "; fix one of them, or give it a prior with sigma";
+}
+
+}  // namespace
+
+std::string undetermined(const Model& model, const NormalEquations& problem) {
+  const std::vector<int> free = model.free_parameters();
+  std::vector<Column> columns;
+  std::vector<std::string> idle;
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const auto at = static_cast<Eigen::Index>(c);
+    if (p.curve >= 0) continue;
+    const bool acts = problem.N(at, at) > 0.0 || (problem.prior_precision.size() > at && problem.prior_precision[at] > 0.0);
+    if (acts) columns.push_back({&p, at});
+    if (!acts) idle.push_back(p.name);
+  }
+  if (!idle.empty()) return "nothing in these data depends on " + join_words(idle) + "; fix it, or take it out of the model";
+  if (columns.size() < 2) return {};
+  const Eigen::MatrixXd N = reduced(problem, columns, static_cast<Eigen::Index>(free.size()));
+  Eigen::VectorXd size(N.rows());
+  for (Eigen::Index a = 0; a < N.rows(); ++a)
+    size[a] = 1.0 / std::sqrt(problem.N(columns[static_cast<std::size_t>(a)].at, columns[static_cast<std::size_t>(a)].at));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(N);
+  if (solver.info() != Eigen::Success || solver.eigenvalues()[0] > nothing * solver.eigenvalues().maxCoeff()) return {};
+  const Eigen::VectorXd direction = solver.eigenvectors().col(0);
+  constexpr double takes_part = 0.1;
+  std::vector<std::string> names;
+  std::vector<double> relative;
+  for (Eigen::Index a = 0; a < direction.size(); ++a) {
+    if (std::abs(direction[a]) < takes_part * direction.cwiseAbs().maxCoeff()) continue;
+    const Parameter& p = *columns[static_cast<std::size_t>(a)].parameter;
+    names.push_back(p.name);
+    relative.push_back(direction[a] * size[a] / p.value);
+  }
+  return in_words(names, relative);
+}
+
+std::string undetermined_beside_priors(const Model& model, NormalEquations problem) {
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    if (!model.parameters[static_cast<std::size_t>(free[c])].prior_sigma) problem.prior_precision[static_cast<Eigen::Index>(c)] = 0.0;
+  }
+  return undetermined(model, problem);
+}
+
+}  // namespace misfit

@@ -1,0 +1,169 @@
+#include "misfit/inference/states.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+struct LocalFit {
+  double value, slope, curvature;  // of f, f', f''
+  bool ok = false;
+};
+
+/// Points within `reach` usual steps.
+LocalFit quadratic_within(const std::vector<double>& t, const std::vector<double>& y, std::size_t i, double h, std::size_t reach) {
+  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  int points = 0;
+  bool before = false, after = false;
+  const std::size_t from = i >= reach ? i - reach : 0, to = std::min(i + reach, t.size() - 1);
+  for (std::size_t k = from; k <= to; ++k) {
+    const double s = (t[k] - t[i]) / h;
+    if (!std::isfinite(y[k]) || std::abs(s) > static_cast<double>(reach) + 1.0) continue;
+    const Eigen::Vector3d a(1.0, s, s * s);
+    N += a * a.transpose();
+    b += a * y[k];
+    ++points;
+    before = before || k < i;
+    after = after || k > i;
+  }
+  if (points < 4 || !before || !after) return {};
+  const Eigen::Vector3d c = N.ldlt().solve(b);
+  return {c[0], c[1] / h, 2.0 * c[2] / (h * h), true};
+}
+
+LocalFit local_quadratic(const std::vector<double>& t, const std::vector<double>& y, std::size_t i, double h) {
+  constexpr std::size_t usual = 2, farthest = 4;
+  for (std::size_t reach = usual; reach <= farthest; ++reach) {
+    const LocalFit fit = quadratic_within(t, y, i, h, reach);
+    if (fit.ok) return fit;
+  }
+  return {};
+}
+
+}  // namespace
+
+double usual_step(const std::vector<double>& t) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+  return steps.empty() ? 1.0 : median(steps);
+}
+
+namespace {
+
+/// Fills state and rate of one series of values.
+void add_series(const Model& model, const Signals& signals, int state, const std::vector<double>& values, double h,
+                ReconstructedStates& out) {
+  const auto& states = model.system->spec().states;
+  int rate = -1;
+  for (std::size_t j = 0; j < states.size(); ++j) {
+    if (states[j].rate_of == state) rate = static_cast<int>(j);
+  }
+  out.shown[static_cast<std::size_t>(state)] = true;
+  if (rate >= 0) out.shown[static_cast<std::size_t>(rate)] = true;
+  for (Eigen::Index i = 0; i < out.x.rows(); ++i) {
+    const LocalFit fit = local_quadratic(signals.t, values, static_cast<std::size_t>(i), h);
+    if (!fit.ok) {
+      out.ok[static_cast<std::size_t>(i)] = false;
+      continue;
+    }
+    out.x(i, state) = fit.value;
+    out.dx(i, state) = fit.slope;
+    if (rate < 0) continue;
+    out.x(i, rate) = fit.slope;
+    out.dx(i, rate) = fit.curvature;
+  }
+}
+
+/// Values of the readable states at every sample; NaN where a channel is missing or has no such state.
+std::vector<std::vector<double>> read_all(const Model& model, const Signals& signals) {
+  const auto& readable = model.system->spec().readable_states;
+  std::vector<std::vector<double>> out(readable.size(), std::vector<double>(signals.samples(), std::nan("")));
+  const std::vector<double> constants = model.values();  // the system's constants come first
+  std::array<double, kMaxOutputs> y{};
+  std::array<double, kMaxStates> x{};
+  for (std::size_t i = 0; i < signals.samples(); ++i) {
+    bool known = true;
+    for (std::size_t o = 0; o < signals.measured.size(); ++o) {
+      y[o] = signals.measured[o].values[i];
+      known = known && std::isfinite(y[o]);
+    }
+    if (!known || !model.system->read_states(y.data(), constants.data(), x.data())) continue;
+    for (std::size_t r = 0; r < readable.size(); ++r) out[r][i] = x[static_cast<std::size_t>(readable[r])];
+  }
+  return out;
+}
+
+}  // namespace
+
+double start_of(const StateSpec& state) {
+  if (std::isfinite(state.start)) return state.start;
+  if (std::isfinite(state.lower)) return std::min(state.lower + state.scale, state.upper);
+  return std::isfinite(state.upper) ? state.upper - state.scale : 0.0;
+}
+
+ReconstructedStates reconstruct_states(const Model& model, const Signals& signals) {
+  const auto& spec = model.system->spec();
+  const auto samples = static_cast<Eigen::Index>(signals.samples());
+  const double h = usual_step(signals.t);
+  ReconstructedStates out;
+  out.x = RowMatrix::Zero(samples, model.states());
+  out.dx = RowMatrix::Zero(samples, model.states());
+  out.ok.assign(signals.samples(), true);
+  out.shown.assign(static_cast<std::size_t>(model.states()), false);
+  for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
+    if (spec.outputs[o].observes >= 0 && o < signals.measured.size())
+      add_series(model, signals, spec.outputs[o].observes, signals.measured[o].values, h, out);
+  }
+  if (!spec.readable_states.empty() && signals.measured.size() == spec.outputs.size()) {
+    const std::vector<std::vector<double>> values = read_all(model, signals);
+    for (std::size_t r = 0; r < values.size(); ++r) add_series(model, signals, spec.readable_states[r], values[r], h, out);
+  }
+  for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
+    if (!out.shown[j]) out.x.col(static_cast<Eigen::Index>(j)).setConstant(start_of(model.state_specs[j]));
+  }
+  for (std::size_t z = 0; z < model.own_states.size(); ++z)
+    out.x.col(model.system_states() + static_cast<Eigen::Index>(z)).setConstant(model.own_states[z].initial);
+  return out;
+}
+
+double motion_frequency(const Model& model, const ReconstructedStates& states) {
+  double fastest = 0.0;
+  const auto& spec = model.system->spec();
+  for (std::size_t j = 0; j < spec.states.size(); ++j) {
+    const int level = spec.states[j].rate_of;
+    if (level < 0 || !states.shown[j]) continue;
+    double n = 0.0, sum = 0.0, squares = 0.0, rates = 0.0;
+    for (Eigen::Index i = 0; i < states.x.rows(); ++i) {
+      if (!states.ok[static_cast<std::size_t>(i)]) continue;
+      n += 1.0;
+      sum += states.x(i, level);
+      squares += states.x(i, level) * states.x(i, level);
+      rates += states.x(i, static_cast<Eigen::Index>(j)) * states.x(i, static_cast<Eigen::Index>(j));
+    }
+    const double variance = n > 2.0 ? squares / n - sum * sum / (n * n) : 0.0;
+    if (variance > 0.0) fastest = std::max(fastest, std::sqrt(rates / n / variance));
+  }
+  return fastest;
+}
+
+double reading_noise(const std::vector<double>& values) {
+  static constexpr std::array<double, 6> weights = {-1.0, 5.0, -10.0, 10.0, -5.0, 1.0};
+  constexpr double gain_squared = 252.0;  // sum of squares of the weights
+  std::vector<double> differences;
+  for (std::size_t i = 0; i + weights.size() <= values.size(); ++i) {
+    double d = 0.0;
+    for (std::size_t k = 0; k < weights.size(); ++k) d += weights[k] * values[i + k];
+    if (std::isfinite(d)) differences.push_back(d);
+  }
+  if (differences.size() < 10) return std::numeric_limits<double>::quiet_NaN();
+  return mad_sigma(differences) / std::sqrt(gain_squared);
+}
+
+}  // namespace misfit
