@@ -20,7 +20,7 @@ namespace {
 
 /// White noise of the readings, at least that of their rounding (Widrow: step/sqrt(12)), in `unit`.
 double noise_of(const std::vector<double>& values, const ColumnSurvey& column, const std::string& unit) {
-  const double sigma = reading_noise(values);
+  const double sigma = measurement_noise(values);
   const double rounding = convert(column.resolution, column.unit, unit) / std::sqrt(12.0);
   constexpr double least = 1e-5;  // of the range: smoothed readings seem to have no noise at all
   return std::max({std::isfinite(sigma) ? sigma : 0.0, rounding, least * convert(column.high - column.low, column.unit, unit)});

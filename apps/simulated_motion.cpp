@@ -155,7 +155,7 @@ void compare_all(const std::vector<Experiment>& experiments, SimulatedMotion& ou
   out.failed = runs - made.size();
   if (2 * made.size() < runs) {
     out.notes.push_back(
-        fmt::format("of {} simulated motions {} left the finite numbers: the fitted model does not hold outside of what was "
+        fmt::format("{1} of {0} simulated motions diverged: the fitted model does not hold outside of what was "
                     "visited, and nothing is compared",
                     runs, out.failed));
     return;

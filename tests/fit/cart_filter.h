@@ -1,6 +1,6 @@
 #pragma once
 
-// A linear system for the filter: the cart on a spring with a random force, readings of place and speed. Everything about it can be written
+// A linear system for the filter: the cart on a spring with a random force, measurements of place and speed. Everything about it can be written
 // down as one Gaussian density.
 
 #include <Eigen/Dense>
@@ -60,10 +60,10 @@ struct Cart {
   }
 };
 
-/// All states [model | jitter] of all samples and all readings as one Gaussian: means and covariances, with the filter's own Φ.
+/// All states [model | jitter] of all samples and all measurements as one Gaussian: means and covariances, with the filter's own Φ.
 struct Dense {
   Eigen::VectorXd state_mean, y, y_mean;
-  Eigen::MatrixXd states, y_covariance, cross;  ///< state × state, reading × reading, state × reading
+  Eigen::MatrixXd states, y_covariance, cross;  ///< state × state, measurement × measurement, state × measurement
   Eigen::Index n = 0;                           ///< states of one sample, jitter included
 
   Dense(const Cart& cart, const FilterTrace& trace) {

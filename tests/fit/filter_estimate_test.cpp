@@ -56,7 +56,7 @@ TEST(EstimateFilter, WildReadingsAreSetAsideAndTheRestKept) {
   for (std::size_t k : {200U, 400U, 650U}) flight.measured[0].values[k] += 60.0;
   const std::vector<Signals> flights = {flight};
   const FilterEstimate estimate = fitted(request_for(flights), flights);
-  EXPECT_EQ(estimate.outliers, 3) << "a wild reading does not take its neighbours with it";
+  EXPECT_EQ(estimate.outliers, 3) << "a wild measurement does not take its neighbours with it";
   for (std::size_t k : {200U, 400U, 650U}) EXPECT_EQ(estimate.data[0].use[2 * k], SampleRole::none) << k;
 }
 
@@ -91,7 +91,7 @@ TEST(EstimateFilter, DerivativesThatCannotBeTakenSaySoInsteadOfBeingZero) {
   for (Eigen::Index c = 0; c < theta.size(); ++c)
     theta[c] = estimate.model.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
   EXPECT_EQ(exact_derivatives(estimate, theta, 1).failure, "");
-  estimate.covariance *= 1e16;  // steps that throw the model out of the finite numbers, or off the readings, on either side
+  estimate.covariance *= 1e16;  // steps that throw the model out of the finite numbers, or off the measurements, on either side
   EXPECT_NE(exact_derivatives(estimate, theta, 1).failure, "");
   estimate.covariance.resize(0, 0);
   EXPECT_NE(exact_derivatives(estimate, theta, 1).failure, "");

@@ -8,7 +8,7 @@ namespace {
 
 using namespace testing_cart;
 
-/// The cart with an unknown offset of each reading, and nothing else unknown: linear in both, whatever the noise.
+/// The cart with an unknown offset of each measurement, and nothing else unknown: linear in both, whatever the noise.
 struct Offsets {
   Cart cart{25, 5, {effect("bias", {{"output", "position_reading"}}), effect("bias", {{"output", "speed_reading"}}, "slip")}};
   std::vector<double> logs;
@@ -30,7 +30,7 @@ struct Offsets {
     return out;
   }
 
-  /// XᵀV⁻¹X of generalised least squares with the whole covariance of the readings, V, written down.
+  /// XᵀV⁻¹X of generalised least squares with the whole covariance of the measurements, V, written down.
   Eigen::MatrixXd information(const std::vector<double>& there) {
     cart.noise = unpack(there);
     cart.model.model.parameters[static_cast<std::size_t>(cart.model.time_parameter)].value = cart.noise.force_time;

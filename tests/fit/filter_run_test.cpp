@@ -31,7 +31,7 @@ TEST(FilterRun, MissingReadingsAreLongerPredictions) {
   const FilterTrace trace = cart.run();
   EXPECT_EQ(trace.counted, 43U);
   EXPECT_NEAR(trace.loglik, dense_loglik(Dense(cart, trace)), 1e-8 * std::abs(trace.loglik));
-  EXPECT_GT(trace.y_variance[12], 2.0 * trace.y_variance[6]) << "three samples without a reading";
+  EXPECT_GT(trace.y_variance[12], 2.0 * trace.y_variance[6]) << "three samples without a measurement";
 }
 
 TEST(FilterRun, SmootherGivesTheConditionalMeanAndVariance) {

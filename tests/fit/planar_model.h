@@ -54,7 +54,7 @@ inline Signals measured(const std::vector<double>& t, const std::vector<double>&
 
 inline Table validation() { return read_csv(std::string(MISFIT_SOURCE_DIR) + "/configs/validation/alpha_history.csv"); }
 
-/// The validation's history as measured, with 0.1 deg of reading noise, or `alpha_T_true` [rad].
+/// The validation's history as measured, with 0.1 deg of measurement noise, or `alpha_T_true` [rad].
 inline Signals validation_signals(const std::string& column = "alpha_T") {
   const Table table = validation();
   return measured(table.values("t", "s"), table.values(column, "rad"));

@@ -16,7 +16,7 @@ struct Readings {
   Eigen::MatrixXd A;
 };
 
-Readings readings() {
+Readings measurements() {
   std::vector<double> knots;
   for (int i = 0; i <= 14; ++i) knots.push_back(static_cast<double>(i));
   Readings out{CubicSpline(knots), {}};
@@ -59,7 +59,7 @@ NormalEquations at_maximum(const NormalEquations& problem, const PenalisedFit& s
 }
 
 TEST(UncertainRoughness, AGivenRoughnessLeavesTheCovarianceAsItIs) {
-  const Readings r = readings();
+  const Readings r = measurements();
   const NormalEquations problem = problem_of(r, Eigen::VectorXd::LinSpaced(r.A.rows(), -3.0, 3.0));
   std::vector<Penalty> penalties{penalty_of(r, 10.0, false)};
   const PenalisedFit smoothed = estimate_smoothing(problem, penalties, 1.0);
@@ -72,7 +72,7 @@ TEST(UncertainRoughness, AGivenRoughnessLeavesTheCovarianceAsItIs) {
 /// Curves drawn from what the penalty says of them, the size of C'' uniform from nothing to what shows well: bands that take the chosen
 /// weight for known are too narrow, those that do not hold what they say.
 TEST(UncertainRoughness, BandsHoldWhatTheySay) {
-  const Readings r = readings();
+  const Readings r = measurements();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(r.spline.roughness());
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -84,7 +84,7 @@ TEST(UncertainRoughness, BandsHoldWhatTheySay) {
     Eigen::VectorXd c = Eigen::VectorXd::Zero(r.A.cols());
     for (Eigen::Index i = 2; i < c.size(); ++i) c += eigen.eigenvectors().col(i) * normal(random) * tau / std::sqrt(eigen.eigenvalues()[i]);
     Eigen::VectorXd y = r.A * c;
-    for (double& reading : y) reading += normal(random);
+    for (double& measurement : y) measurement += normal(random);
     const NormalEquations problem = problem_of(r, y);
     std::vector<Penalty> penalties{penalty_of(r, 1.0 / (tau * tau), true)};
     const PenalisedFit smoothed = estimate_smoothing(problem, penalties, 1.0);
@@ -107,7 +107,7 @@ TEST(UncertainRoughness, BandsHoldWhatTheySay) {
 
 /// Where the data show a straight line the weight runs away and the plain band is that of a line.
 TEST(UncertainRoughness, AStraightLineKeepsTheBandOfTheBendsItMayHave) {
-  const Readings r = readings();
+  const Readings r = measurements();
   // Noise turned sign by sign: nothing in it bends.
   Eigen::VectorXd y(r.A.rows());
   for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = i % 2 == 0 ? 1.0 : -1.0;
@@ -124,7 +124,7 @@ TEST(UncertainRoughness, AStraightLineKeepsTheBandOfTheBendsItMayHave) {
 /// A curve so stiff that it is a line, beside a parameter that is known a million times less well than the line and almost stands in for
 /// it: all that is known of both is what a line in its place would give, written down with two columns.
 struct StiffBesideWeak {
-  Readings r = readings();
+  Readings r = measurements();
   Eigen::MatrixXd X, line;  ///< columns of curve and parameter; of the line's two numbers and the parameter
   double lambda = 1e16;
 

@@ -13,23 +13,23 @@ namespace {
 
 using namespace testing_planar;
 
-TEST(ReadingNoise, FindsATenthOfADegreeOnTheValidationMotion) {
-  EXPECT_NEAR(reading_noise(validation_signals().measured[0].values) / degree, 0.1, 0.005);
+TEST(MeasurementNoise, FindsATenthOfADegreeOnTheValidationMotion) {
+  EXPECT_NEAR(measurement_noise(validation_signals().measured[0].values) / degree, 0.1, 0.005);
 }
 
-TEST(ReadingNoise, IsUnmovedByWildSamplesAndGaps) {
+TEST(MeasurementNoise, IsUnmovedByWildSamplesAndGaps) {
   auto values = validation_signals().measured[0].values;
   for (std::size_t i = 50; i < values.size(); i += 100) values[i] += 20.0 * degree;
   for (std::size_t i = 0; i < values.size(); i += 100) values[i] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NEAR(reading_noise(values) / degree, 0.1, 0.015);
+  EXPECT_NEAR(measurement_noise(values) / degree, 0.1, 0.015);
 }
 
-TEST(ReadingNoise, OfAFewSamplesIsNotGiven) { EXPECT_TRUE(std::isnan(reading_noise(std::vector<double>(14, 1.0)))); }
+TEST(MeasurementNoise, OfAFewSamplesIsNotGiven) { EXPECT_TRUE(std::isnan(measurement_noise(std::vector<double>(14, 1.0)))); }
 
-TEST(ReadingNoise, OfSmoothMotionIsNearlyNothing) {
+TEST(MeasurementNoise, OfSmoothMotionIsNearlyNothing) {
   std::vector<double> values;
   for (double t : even_times(2000, 1.0 / 59.94)) values.push_back(0.1 * std::sin(11.0 * t));  // ω h = 0.18
-  EXPECT_LT(reading_noise(values), 0.003 * 0.1);
+  EXPECT_LT(measurement_noise(values), 0.003 * 0.1);
 }
 
 TEST(UsualStep, IsTheMedianDifference) {

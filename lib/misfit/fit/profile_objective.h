@@ -14,7 +14,7 @@ struct FittedMethod {
   std::string method;                                       ///< "equation_error", "output_error", "filter_error"
   FittedModel fitted;                                       ///< penalties with the weights that were chosen
   std::optional<FilterNoise> noise, around;                 ///< of filter_error
-  std::optional<std::vector<std::vector<SampleRole>>> use;  ///< of filter_error: which readings count
+  std::optional<std::vector<std::vector<SampleRole>>> use;  ///< of filter_error: which measurements count
 };
 
 /// The method again from where the fit ended, on other data of the same model (knots are the model's). The roughness is held, sigmas are

@@ -66,10 +66,10 @@ std::string pair_in_words(const Direction& one, const Direction& other, double s
   const double together = std::sqrt(std::max(a * a + b * b - 2.0 * std::abs(correlation) * a * b, 0.0));
   if (even) {
     const std::string kind = correlation > 0.0 ? "ratio" : "product";
-    return first + " and " + second + " act nearly only as their " + kind + ": it is known to " + percent(together) +
-           ", they themselves only to " + percent(a) + " and " + percent(b);
+    return first + " and " + second + " are nearly collinear: their " + kind + " is known to " + percent(together) +
+           ", individually they are known only to " + percent(a) + " and " + percent(b);
   }
-  return first + " and " + second + " make up for each other (correlation " + format_value(std::round(1000.0 * correlation) / 1000.0) +
+  return first + " and " + second + " are correlated (correlation " + format_value(std::round(1000.0 * correlation) / 1000.0) +
          "): separately they are known only to " + known_to(one, sigma_one) + " and " + known_to(other, sigma_other);
 }
 
@@ -154,11 +154,12 @@ void refuse_runaways(const Model& model, const Eigen::MatrixXd& covariance, Fit&
     if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
     if (std::abs(p.value - p.prior_mean) < far * *p.prior_sigma || sigma < tells_little * *p.prior_sigma) continue;
     fit.status = FitStatus::failed;
-    fit.message = p.name + " has run to " + in_display_unit(p.value, p.unit, sigma) + ", away from its prior " +
-                  in_display_unit(p.prior_mean, p.unit, *p.prior_sigma) +
-                  ", although these data tell less of it than the prior: what is free beside it (a curve's scale) makes up for it, and the "
-                  "roughness prefers the smaller curve. Do not free it: with its sigma beside its value ([geometry] " +
-                  p.name + " = { value, sigma }) it stays what it is and widens what depends on it";
+    fit.message =
+        p.name + " has run to " + in_display_unit(p.value, p.unit, sigma) + ", away from its prior " +
+        in_display_unit(p.prior_mean, p.unit, *p.prior_sigma) +
+        ": prior and data conflict through the scale of a curve, of which the roughness prefers the smaller one. Fix it and give its "
+        "sigma ([geometry] " +
+        p.name + " = { value, sigma }), so that it is propagated instead of estimated";
   }
 }
 

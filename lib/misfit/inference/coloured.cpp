@@ -266,9 +266,9 @@ ColouredCovariance white_covariance(const Eigen::MatrixXd& plain, Eigen::Index c
 ColouredCovariance memory_of_residuals(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels,
                                        double degrees) {
   if (degrees >= kShortRecord) return coloured_covariance(experiments, plain, channels);
-  double readings = 0.0;
-  for (const ResidualRows& e : experiments) readings += static_cast<double>(e.r.array().isFinite().count());
-  if (residuals_are_white(experiments, channels, readings - degrees)) return white_covariance(plain, channels);
+  double measurements = 0.0;
+  for (const ResidualRows& e : experiments) measurements += static_cast<double>(e.r.array().isFinite().count());
+  if (residuals_are_white(experiments, channels, measurements - degrees)) return white_covariance(plain, channels);
   return widening_only(coloured_covariance(experiments, plain, channels), plain);
 }
 

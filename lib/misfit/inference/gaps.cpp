@@ -29,7 +29,7 @@ double rate_of_model(const Model& model, const Signals& signals, const Reconstru
   return fastest;
 }
 
-/// rms(x')/sd(x) of the states that a channel shows, less what the reading noise does to slopes of local parabolas.
+/// rms(x')/sd(x) of the states that a channel shows, less what the measurement noise does to slopes of local parabolas.
 double rate_of_data(const Model& model, const Signals& signals, const ReconstructedStates& states) {
   const auto& outputs = model.system->spec().outputs;
   const double step = usual_step(signals.t);
@@ -45,7 +45,7 @@ double rate_of_data(const Model& model, const Signals& signals, const Reconstruc
       squares += x * x;
       slopes += std::pow(states.dx(static_cast<Eigen::Index>(i), outputs[o].observes), 2);
     }
-    const double noise = reading_noise(signals.measured[o].values);
+    const double noise = measurement_noise(signals.measured[o].values);
     constexpr double of_a_slope = 0.1;  // sum of squares of the weights of five even samples
     const double share = std::isfinite(noise) ? of_a_slope * noise * noise / (step * step) : 0.0;
     const double variance = n > 2.0 ? squares / n - sum * sum / (n * n) : 0.0;

@@ -11,7 +11,7 @@ namespace misfit {
 /// A recording in pieces that are each one motion: cut where the time between two samples is more than 10 usual steps and more than 50
 /// times as long as the fastest motion takes for a radian, 100 sub-steps of the integrator, a tenth of the most that it makes: beyond,
 /// nothing of the state before is left, or the run cannot be trusted. Shorter gaps are bridged by the model. Fastest: the larger of the
-/// model's rate at its present parameters and of what the channels show, rms(x')/sd(x) without the reading noise's share.
+/// model's rate at its present parameters and of what the channels show, rms(x')/sd(x) without the measurement noise's share.
 /// Every piece after the first has initial states of its own (Signals::after_gap) and the name NAME_part_K; its notes say where and why it
 /// was cut. Pieces of fewer than 5 samples, which show no state, are left out and counted in the notes. One piece: the recording as it is.
 [[nodiscard]] std::vector<Signals> split_at_gaps(const Model& model, Signals signals);

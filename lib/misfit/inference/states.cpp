@@ -153,7 +153,7 @@ double motion_frequency(const Model& model, const ReconstructedStates& states) {
   return fastest;
 }
 
-double reading_noise(const std::vector<double>& values) {
+double measurement_noise(const std::vector<double>& values) {
   static constexpr std::array<double, 6> weights = {-1.0, 5.0, -10.0, 10.0, -5.0, 1.0};
   constexpr double gain_squared = 252.0;  // sum of squares of the weights
   std::vector<double> differences;

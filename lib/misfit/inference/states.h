@@ -31,8 +31,8 @@ struct ReconstructedStates {
 /// Circular frequency of the motion [rad/s]: sqrt(var(x')/var(x)) over the shown pairs of state and rate, the largest; 0 if there is none.
 [[nodiscard]] double motion_frequency(const Model& model, const ReconstructedStates& states);
 
-/// White reading noise of a channel from its fifth differences, robustly (MAD): smooth motion at ω h < 0.3 contributes less than 0.3 % of
-/// its amplitude.
-[[nodiscard]] double reading_noise(const std::vector<double>& values);
+/// White measurement noise of a channel from its fifth differences, robustly (MAD): smooth motion at ω h < 0.3 contributes less than 0.3 %
+/// of its amplitude.
+[[nodiscard]] double measurement_noise(const std::vector<double>& values);
 
 }  // namespace misfit

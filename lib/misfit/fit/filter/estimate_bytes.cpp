@@ -39,7 +39,7 @@ void fields(Bytes& bytes, Data& data) {
   bytes(inputs, values);
 }
 
-/// All but the readings.
+/// All but the measurements.
 template <class Bytes, Is<FilterData> Data>
 void fields(Bytes& bytes, Data& data) {
   auto& [signals, inputs, use, first, start, scale] = data;

@@ -5,7 +5,8 @@
 
 namespace misfit {
 
-/// An estimate to the last bit, for checkpoints: all of it but the shape of its model and the readings, which whoever reads it must have.
+/// An estimate to the last bit, for checkpoints: all of it but the shape of its model and the measurements, which whoever reads it must
+/// have.
 void write_estimate(ByteWriter& bytes, const FilterEstimate& estimate);
 
 /// `model`: the estimate's but for the parameters' values; `experiments`: those it was made of, kept by reference. RunError: the bytes are

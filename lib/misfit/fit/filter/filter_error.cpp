@@ -20,7 +20,7 @@
 namespace misfit {
 namespace {
 
-/// States after the readings of each sample were taken in; rows from the first used sample on.
+/// States after the measurements of each sample were taken in; rows from the first used sample on.
 RowMatrix filtered_states(const FilterTrace& trace, std::size_t first) {
   const auto n = static_cast<std::size_t>(trace.n);
   RowMatrix x(static_cast<Eigen::Index>(trace.samples - first), trace.n);
@@ -85,7 +85,7 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
     const std::string& unit = spec.outputs[o].unit;
     fit.noise[name] = as_estimate(2 + 4 * o, unit);
     if (!(sigmas[3 + 4 * o] > 0.0)) {
-      fit.facts["jitter of " + name] = "none: the reading noise is white";
+      fit.facts["jitter of " + name] = "none: the measurement noise is white";
       continue;
     }
     fit.noise[name + "_jitter"] = as_estimate(3 + 4 * o, unit);
@@ -223,7 +223,7 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
       fit.warnings.push_back("the innovations of " + outputs[o].name + " in '" + estimate.data[e].signals->name +
                              "' are not white (Ljung-Box p = " + format_probability(test.p_value) + ", largest autocorrelation " +
                              format_value(std::round(1000.0 * test.largest) / 1000.0) + " at lag " + std::to_string(test.largest_lag) +
-                             "): model or noise lack something, and sigmas, which take them as white, may be too small");
+                             "): the process or noise model is incomplete; standard errors assume whiteness and may be too small");
     }
   }
 }
@@ -236,23 +236,23 @@ double unknowns_beside_parameters(const FilterEstimate& estimate) {
 
 /// Readings in the likelihood, and how many of them are left when everything estimated is taken off.
 struct Degrees {
-  double readings = 0.0, unknowns = 0.0;
-  [[nodiscard]] double left() const { return readings - unknowns; }
+  double measurements = 0.0, unknowns = 0.0;
+  [[nodiscard]] double left() const { return measurements - unknowns; }
 };
 
 Degrees degrees_of(const FilterEstimate& estimate) {
   Degrees out;
-  for (const auto& trace : estimate.traces) out.readings += static_cast<double>(trace.counted);
+  for (const auto& trace : estimate.traces) out.measurements += static_cast<double>(trace.counted);
   out.unknowns = estimate.edf + unknowns_beside_parameters(estimate);
   return out;
 }
 
-/// The likelihood takes the noise for what fits best: on a short record its variances are too small by the share of readings that went into
-/// noise and initial states (those that went into parameters are put back by the restricted likelihood).
+/// The likelihood takes the noise for what fits best: on a short record its variances are too small by the share of measurements that went
+/// into noise and initial states (those that went into parameters are put back by the restricted likelihood).
 double short_record_factor(const FilterEstimate& estimate) {
   const Degrees degrees = degrees_of(estimate);
   if (degrees.left() < kFewestDegrees || degrees.left() >= kShortRecord) return 1.0;
-  return degrees.readings / (degrees.readings - unknowns_beside_parameters(estimate));
+  return degrees.measurements / (degrees.measurements - unknowns_beside_parameters(estimate));
 }
 
 /// Intervals of a short record, or that it is too short for any.
@@ -263,7 +263,7 @@ void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
     add_student_intervals(degrees.left(), fit);
     return;
   }
-  withhold_sigmas(format_value(degrees.readings) + " readings for " + format_value(std::round(10.0 * degrees.unknowns) / 10.0) +
+  withhold_sigmas(format_value(degrees.measurements) + " measurements for " + format_value(std::round(10.0 * degrees.unknowns) / 10.0) +
                       " unknowns (free parameters, initial states, noise and random force) are too few to tell how far off the values "
                       "are: no sigma is given",
                   fit);
@@ -291,13 +291,13 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
       estimate.left ? "one more Newton step on the exact likelihood would raise it by " + format_value(*estimate.left) : "not verified";
   if (!estimate.nonlinear.empty()) {
     const auto [first_at, last_at] = std::minmax_element(estimate.nonlinear.begin(), estimate.nonlinear.end());
-    fit.warnings.push_back(
-        std::to_string(estimate.nonlinear.size()) + " readings between t = " + format_value(*first_at) + " and " + format_value(*last_at) +
-        " s do not count: there a change of 0.05 sigma of a parameter throws the filter off, the model cannot be followed");
+    fit.warnings.push_back(std::to_string(estimate.nonlinear.size()) + " measurements between t = " + format_value(*first_at) + " and " +
+                           format_value(*last_at) +
+                           " s are excluded: the filter is too nonlinear there (a parameter change of 0.05 sigma)");
   }
   if (estimate.outliers > 0)
     fit.warnings.push_back(std::to_string(estimate.outliers) +
-                           " readings more than 5 sigma from their prediction were set aside as outliers");
+                           " measurements more than 5 sigma from their prediction are excluded as outliers");
   const FilterData& first = estimate.data.front();
   const std::vector<std::string> scales =
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);

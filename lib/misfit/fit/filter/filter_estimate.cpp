@@ -226,7 +226,7 @@ class Estimation {
   LearnedCurvature learned_;
   RestrictedLikelihood restricted_;
   std::vector<double> restricted_at_;  ///< the logarithms where it was taken
-  std::string unverified_ = "readings at which the model cannot be followed kept coming";
+  std::string unverified_ = "too many samples where the linearisation of the filter fails";
   LikelihoodAscent at_;
   FilterEstimate& out_ = at_.out;
 };

@@ -14,7 +14,7 @@ struct FilterOptions {
   int threads = 0;                                          ///< 0: one per core; does not change the answer
   std::optional<FilterNoise> noise;                         ///< where to start; nullopt: looked for
   std::optional<FilterNoise> around;                        ///< what sets the bounds of the noise; nullopt: the data
-  std::optional<std::vector<std::vector<SampleRole>>> use;  ///< per experiment, so that two models are compared on the same readings
+  std::optional<std::vector<std::vector<SampleRole>>> use;  ///< per experiment, so that two models are compared on the same measurements
   bool choose_roughness = true;                             ///< false: penalties as handed over
   bool verify = true;                                       ///< derivatives of the exact likelihood at the end, and steps by them
 };
@@ -39,7 +39,7 @@ struct FilterEstimate {
   bool converged = false;
   std::string message;
   int outliers = 0;
-  std::vector<double> nonlinear;  ///< times [s] of readings that move the filter but do not count: its linearisation breaks there
+  std::vector<double> nonlinear;  ///< times [s] of measurements that move the filter but do not count: its linearisation breaks there
   int linearisations = 0;
 };
 

@@ -12,7 +12,7 @@
 
 namespace misfit {
 
-/// Noise of one measured channel: white reading noise and a resonance (AR(2): second-order jitter), stationary.
+/// Noise of one measured channel: white measurement noise and a resonance (AR(2): second-order jitter), stationary.
 struct ChannelNoise {
   double white = 1.0;             ///< sigma [unit]
   double jitter = 0.0;            ///< stationary sigma of the resonance [unit]

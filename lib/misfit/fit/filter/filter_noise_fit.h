@@ -28,7 +28,7 @@ struct NoiseFit {
 [[nodiscard]] NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const FilterNoise& around, int threads,
                                  int max_iterations = 12);
 
-/// The Fisher information of fit_noise at any logarithms (pack()), counted readings only; parameters are held.
+/// The Fisher information of fit_noise at any logarithms (pack()), counted measurements only; parameters are held.
 [[nodiscard]] Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around,
                                                 int threads);
 

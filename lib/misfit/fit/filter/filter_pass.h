@@ -82,7 +82,7 @@ class FilterPass {
   [[nodiscard]] const double* output_row(int o) const { return O_.data() + static_cast<std::ptrdiff_t>(o) * kRowStride; }
   [[nodiscard]] std::size_t place(std::size_t k, int o) const { return k * static_cast<std::size_t>(ny_) + static_cast<std::size_t>(o); }
 
-  /// Outputs, their rows and their variances before any reading of the sample is taken in.
+  /// Outputs, their rows and their variances before any measurement of the sample is taken in.
   void predict_outputs(std::size_t k) {
     const auto NY_ = static_cast<std::size_t>(ny_);
     std::copy_n(x_.begin(), n_, trace_.predicted.begin() + static_cast<std::ptrdiff_t>(k * N_));
@@ -133,7 +133,7 @@ class FilterPass {
     return true;
   }
 
-  /// Keeps the list of readings set aside: those beyond the gate, unless more than kLongestWildRun of the channel follow each other.
+  /// Keeps the list of measurements set aside: those beyond the gate, unless more than kLongestWildRun of the channel follow each other.
   bool is_wild(std::size_t at, std::size_t channel, bool beyond) {
     int& run = wild_run_[channel];
     if (!beyond) run = 0;
@@ -232,8 +232,8 @@ class FilterPass {
   Slots slots_;
   std::array<double, kMaxStates> x_{}, speed_{};
   std::array<double, kMaxOutputs + 1> y_{};
-  std::array<int, kMaxOutputs> wild_run_{};   // readings beyond the gate in a row; -1: too many
-  std::array<double, kMaxOutputs> motion_{};  // of each output over time: a reading taken later sees it
+  std::array<int, kMaxOutputs> wild_run_{};   // measurements beyond the gate in a row; -1: too many
+  std::array<double, kMaxOutputs> motion_{};  // of each output over time: a measurement taken later sees it
   RowMatrix s_model_, s_jitter_, s_work_;     // ∂(state)/∂θ with the gains held
   Eigen::RowVectorXd s_row_;
 };

@@ -14,7 +14,7 @@
 
 namespace misfit {
 
-/// What a reading is used for.
+/// What a measurement is used for.
 enum class SampleRole : std::uint8_t {
   none,       ///< missing, or set aside as an outlier
   update,     ///< moves the state, is not counted (initial samples that a study excludes)
@@ -31,7 +31,7 @@ struct FilterData {
   Eigen::VectorXd start, scale;  ///< model states there and their sigmas, force states excluded (0)
 };
 [[nodiscard]] FilterData filter_data(const FilterModel& model, const Signals& signals);
-/// The same experiment for a model of the same system with further own states: readings, start and uses as in `data`.
+/// The same experiment for a model of the same system with further own states: measurements, start and uses as in `data`.
 [[nodiscard]] FilterData filter_data_like(const FilterModel& model, const FilterData& data);
 
 /// A run of the extended Kalman filter over one experiment [J], kept so that it can be run again with other noise (linear about this one),
@@ -55,14 +55,15 @@ struct FilterTrace {
   std::size_t counted = 0, validated = 0;
 };
 
-/// Whitened residuals (predicted − measured)/√S of the counted readings and their derivatives by the free parameters with the gains held.
+/// Whitened residuals (predicted − measured)/√S of the counted measurements and their derivatives by the free parameters with the gains
+/// held.
 struct FilterJacobian {
   RowMatrix J;                     ///< rows × columns
   Eigen::VectorXd r;               ///< rows
   std::vector<std::size_t> index;  ///< sample · ny + channel of each row
 };
 
-inline constexpr double kOutlierGate = 5.0;  ///< sigmas: beyond, a reading is set aside as an outlier (5.7e-7 of good ones)
+inline constexpr double kOutlierGate = 5.0;  ///< sigmas: beyond, a measurement is set aside as an outlier (5.7e-7 of good ones)
 inline constexpr int kLongestWildRun = 3;    ///< more in a row are not wild: the model has lost the motion, which is what we look for
 
 struct FilterPassOptions;  // filter_pass.h
@@ -76,10 +77,9 @@ class FilterRunner {
   void set_parameters(const std::vector<double>& values);  ///< all of FilterModel::model, force_time included
   /// Fills `trace`; `jacobian` may be null. Returns trace.finite.
   bool run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, FilterJacobian* jacobian = nullptr, bool keep_P = false);
-  /// Passes over readings more than kOutlierGate sigmas from their prediction as it comes to them, so that a wild one does not spoil the
-  /// predictions by which its neighbours are judged; while nothing is taken in, the prediction's sigma grows and with it the gate.
-  /// Runs longer than kLongestWildRun are taken in: there the model fails, not the sensor.
-  /// `rejected`: sample · ny + channel of each.
+  /// Passes over measurements more than kOutlierGate sigmas from their prediction as it comes to them, so that a wild one does not spoil
+  /// the predictions by which its neighbours are judged; while nothing is taken in, the prediction's sigma grows and with it the gate. Runs
+  /// longer than kLongestWildRun are taken in: there the model fails, not the sensor. `rejected`: sample · ny + channel of each.
   bool run_gated(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, std::vector<std::size_t>& rejected);
 
  private:
@@ -90,19 +90,20 @@ class FilterRunner {
   Stepper stepper_;
 };
 
-/// The same filter, linear about `trace`, with other noise: innovations and variances of every used reading (0 elsewhere).
+/// The same filter, linear about `trace`, with other noise: innovations and variances of every used measurement (0 elsewhere).
 /// The correlation time may be another one than in `trace`: the force then decays and acts as `noise` says.
 void run_linear(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise,
                 std::vector<double>& e, std::vector<double>& S);
 
-/// −log of the Gaussian density of counted readings.
+/// −log of the Gaussian density of counted measurements.
 [[nodiscard]] double minus_loglik(const FilterData& data, const std::vector<double>& e, const std::vector<double>& S);
 
 /// What all data, later ones included, say of the states: mean and variance of each model state at every sample [DK]. Needs trace.P.
 struct Smoothing {
   RowMatrix x, variance;  ///< samples × n
 };
-/// ∂ log-likelihood/∂(predicted state) of each sample's and all later readings, gains held, held-out readings left out: samples × n.
+/// ∂ log-likelihood/∂(predicted state) of each sample's and all later measurements, gains held, held-out measurements left out: samples ×
+/// n.
 [[nodiscard]] RowMatrix adjoint_of(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise);
 [[nodiscard]] Smoothing smooth_states(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise);
 

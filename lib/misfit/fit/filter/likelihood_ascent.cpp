@@ -218,8 +218,7 @@ std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradie
 std::string LikelihoodAscent::failure() const {
   const FilterTrace& trace = out.traces[failed_experiment_];
   const Signals& signals = *out.data[failed_experiment_].signals;
-  return "the model cannot be run: a state is no longer a number at t = " + format_value(signals.t[trace.failed_at]) +
-         " s of experiment '" + signals.name + "'";
+  return "filter diverged: non-finite state at t = " + format_value(signals.t[trace.failed_at]) + " s of experiment '" + signals.name + "'";
 }
 
 }  // namespace misfit

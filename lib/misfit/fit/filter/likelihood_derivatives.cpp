@@ -11,12 +11,12 @@
 namespace misfit {
 namespace {
 
-/// What each counted reading adds to the log-likelihood, constants left out.
+/// What each counted measurement adds to the log-likelihood, constants left out.
 double log_density(const FilterTrace& trace, std::size_t i) {
   return trace.S[i] > 0.0 ? -0.5 * (std::log(trace.S[i]) + trace.e[i] * trace.e[i] / trace.S[i]) : 0.0;
 }
 
-/// Adds to `nonlinear` the readings whose log density bends by more than `bend` between the three runs.
+/// Adds to `nonlinear` the measurements whose log density bends by more than `bend` between the three runs.
 void find_nonlinear(const FilterData& data, const FilterTrace& here, const FilterTrace& plus, const FilterTrace& minus, double bend,
                     std::vector<std::size_t>& nonlinear) {
   for (std::size_t i = 0; i < data.use.size(); ++i) {
@@ -25,7 +25,7 @@ void find_nonlinear(const FilterData& data, const FilterTrace& here, const Filte
   }
 }
 
-/// Whitened derivatives of innovations (first half) and of variances (second half) of the counted readings, all experiments in order.
+/// Whitened derivatives of innovations (first half) and of variances (second half) of the counted measurements, all experiments in order.
 void whitened(const std::vector<FilterData>& data, const std::vector<FilterTrace>& here, const std::vector<FilterTrace>& plus,
               const std::vector<FilterTrace>& minus, double per_step, Eigen::Ref<Eigen::VectorXd> column) {
   const Eigen::Index rows = column.size() / 2;
@@ -42,7 +42,7 @@ void whitened(const std::vector<FilterData>& data, const std::vector<FilterTrace
 
 struct OneDerivative {
   bool finite = false;  ///< a run beside succeeded
-  bool smooth = true;   ///< few readings are nonlinear
+  bool smooth = true;   ///< few measurements are nonlinear
   double slope = 0.0;
   std::vector<std::vector<std::size_t>> nonlinear;
 };
@@ -73,7 +73,7 @@ class Differences {
         here_(estimate.loglik),
         axes_(estimate.covariance) {}
 
-  /// A step at which a good part of all readings bends is too long, not the run nonlinear: the axis of what can hardly be told apart is
+  /// A step at which a good part of all measurements bends is too long, not the run nonlinear: the axis of what can hardly be told apart is
   /// long, and straight for a part of it only. Then a shorter one, a few times.
   OneDerivative along_axis(Eigen::Index i, const Eigen::Ref<Eigen::VectorXd>& column) const {
     constexpr double shorter = 0.2, good_part = 0.1;
@@ -177,12 +177,13 @@ std::string failure_of(const std::vector<OneDerivative>& parts) {
   const auto torn = std::count_if(parts.begin(), parts.end(), [](const OneDerivative& part) { return !part.finite; });
   const auto nonlinear = std::count_if(parts.begin(), parts.end(), [](const OneDerivative& part) { return !part.smooth; });
   const std::string of = " of " + std::to_string(parts.size()) + " directions";
-  if (torn > 0) return "in " + std::to_string(torn) + of + " the model cannot be run beside the estimate";
-  if (nonlinear > 0) return "in " + std::to_string(nonlinear) + of + " more than a tenth of the readings cannot be followed";
+  if (torn > 0) return "in " + std::to_string(torn) + of + " the filter diverges for small parameter changes";
+  if (nonlinear > 0)
+    return "in " + std::to_string(nonlinear) + of + " the filter is too nonlinear for more than a tenth of the measurements";
   return {};
 }
 
-Eigen::Index counted_readings(const FilterEstimate& estimate) {
+Eigen::Index counted_measurements(const FilterEstimate& estimate) {
   std::ptrdiff_t sum = 0;
   for (const auto& data : estimate.data) sum += std::count(data.use.begin(), data.use.end(), SampleRole::counted);
   return sum;
@@ -231,7 +232,7 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
   if (n > 0 && estimate.covariance.size() == 0) return {{}, {}, {}, "the information matrix cannot be inverted"};
   const Differences differences(estimate, theta);
   std::vector<OneDerivative> parts(n + estimate.noise_fit.logs.size());
-  Eigen::MatrixXd columns(2 * counted_readings(estimate), static_cast<Eigen::Index>(parts.size()));
+  Eigen::MatrixXd columns(2 * counted_measurements(estimate), static_cast<Eigen::Index>(parts.size()));
   run_jobs(parts.size(), threads, [&](std::size_t i) {
     auto column = columns.col(static_cast<Eigen::Index>(i));
     if (near != nullptr) {

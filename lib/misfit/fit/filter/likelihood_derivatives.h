@@ -31,20 +31,21 @@ class ExactObjective {
 /// sigma, would be no small step where others can stand in for it: these do not go along.
 struct LikelihoodDerivatives {
   Eigen::VectorXd gradient;  ///< by the free parameters, then by the logarithms of the noise
-  /// Fisher information of the counted readings over the same unknowns, nothing held: with innovations e and their variances S,
+  /// Fisher information of the counted measurements over the same unknowns, nothing held: with innovations e and their variances S,
   /// Σ ∂e ∂e/S + ½ Σ ∂S ∂S/S² [DK]. Unlike that of the Gauss–Newton steps it knows that gains and variances move with the parameters, and
   /// that curves and noise are estimated together.
   Eigen::MatrixXd information;
-  /// Per experiment, readings (sample · ny + channel, sorted) whose log density bends by more than 0.05 under such a small change along
-  /// some axis, 20 times what all readings together should (under a change shortened to a share of it: by more than that share of 0.05, as
-  /// at a kink; what is smooth bends by the square of it): there the filter's linearisation breaks, its run is as good as random, and the
-  /// likelihood has kinks that no maximum can be found on.
+  /// Per experiment, measurements (sample · ny + channel, sorted) whose log density bends by more than 0.05 under such a small change along
+  /// some axis, 20 times what all measurements together should (under a change shortened to a share of it: by more than that share of 0.05,
+  /// as at a kink; what is smooth bends by the square of it): there the filter's linearisation breaks, its run is as good as random, and
+  /// the likelihood has kinks that no maximum can be found on.
   std::vector<std::vector<std::size_t>> nonlinear;
-  std::string failure;  ///< why they do not hold: the model cannot be run beside the estimate, or a good part of all readings is nonlinear
+  std::string
+      failure;  ///< why they do not hold: the model cannot be run beside the estimate, or a good part of all measurements is nonlinear
 };
 /// With `near`, taken a short step away: half the runs, to one side only; the curvature that a difference to one side lacks is taken from
-/// near's information, and nonlinear readings are not looked for. Where the curvature differs from that information by a tenth, a slope is
-/// wrong by 0.0025 per sigma.
+/// near's information, and nonlinear measurements are not looked for. Where the curvature differs from that information by a tenth, a slope
+/// is wrong by 0.0025 per sigma.
 [[nodiscard]] LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads,
                                                       const LikelihoodDerivatives* near = nullptr);
 

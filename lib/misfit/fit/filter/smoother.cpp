@@ -6,7 +6,7 @@
 namespace misfit {
 namespace {
 
-/// Backward over [model | jitter]: r, what readings from this sample on say of the predicted state, and V, its covariance [DK].
+/// Backward over [model | jitter]: r, what measurements from this sample on say of the predicted state, and V, its covariance [DK].
 class Backward {
  public:
   Backward(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise, bool variances)
@@ -34,11 +34,11 @@ class Backward {
       r = (transition_.transpose() * r).eval();
       if (variances_) V = (transition_.transpose() * V * transition_).eval();
     }
-    for (std::size_t o = NY; o-- > 0;) reading(k * NY + o, static_cast<Eigen::Index>(o));
+    for (std::size_t o = NY; o-- > 0;) measurement(k * NY + o, static_cast<Eigen::Index>(o));
   }
 
  private:
-  void reading(std::size_t at, Eigen::Index o) {
+  void measurement(std::size_t at, Eigen::Index o) {
     if (data_.use[at] == SampleRole::none || !(trace_.S[at] > 0.0)) return;
     const auto N = static_cast<std::size_t>(n_), NY = static_cast<std::size_t>(ny_);
     gain_ << Eigen::Map<const Eigen::VectorXd>(trace_.K.data() + at * N, n_),

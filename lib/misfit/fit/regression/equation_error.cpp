@@ -192,7 +192,7 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
   out.fit.status = !smoothed.ok ? FitStatus::failed : settled ? FitStatus::converged : FitStatus::not_converged;
   out.fit.message = !smoothed.ok ? "the regression is singular: some coefficients are not determined by these data"
                     : settled    ? "regression solved"
-                              : "the regression still moves after " + std::to_string(rounds) + " rounds: a shape has no place of its own";
+                                 : "no convergence after " + std::to_string(rounds) + " iterations: a shape parameter is not identifiable";
   return smoothed.ok;
 }
 

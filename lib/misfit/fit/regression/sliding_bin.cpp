@@ -148,7 +148,7 @@ CurveEstimate curve(const BinForm& form, const std::vector<BinSolution>& bins, c
 
 std::string name_of(Stencils stencils) { return stencils == Stencils::fourth_order ? "fourth-order" : "second-order four-point"; }
 
-/// The largest difference of the two readings, in the sigmas of `a`, at equal bins.
+/// The largest difference of the two measurements, in the sigmas of `a`, at equal bins.
 std::string largest_difference(const SlidBins& a, const SlidBins& b, const std::string& name, double BinSolution::*value,
                                double BinSolution::*sigma) {
   double largest = 0.0, in_sigmas = 0.0;

@@ -232,7 +232,7 @@ class Estimator {
     Fit& fit = out.fit;
     fit.method = "output_error";
     fit.status = summary.converged && settled_ ? FitStatus::converged : FitStatus::not_converged;
-    fit.message = summary.converged && !settled_ ? "noise and roughness still change from round to round" : summary.message;
+    fit.message = summary.converged && !settled_ ? "noise variances and smoothing parameters have not converged" : summary.message;
     NormalEquations linearised;
     if (!shooting_.linearise(linearised)) return failed("");
     std::vector<Penalty> penalties = kept(penalties_);
@@ -262,7 +262,7 @@ class Estimator {
     fit.facts["effective_parameters"] = format_value(smoothed.edf);
     for (std::size_t e = 0; e < experiments_.size(); ++e) {
       if (shooting_.held_out(e))
-        fit.facts["held out: " + experiments_[e].name] = "no reading of it counts: its initial state is read from its first samples";
+        fit.facts["held out: " + experiments_[e].name] = "all its samples are held out: its initial state is taken from its first samples";
     }
     const InputTable inputs = input_table(experiments_.front(), out.model.inputs());
     const std::vector<std::string> scales =
@@ -278,7 +278,7 @@ class Estimator {
   }
 
   static std::string too_few(double count, double unknowns) {
-    return format_value(count) + " readings for " + format_value(std::round(10.0 * unknowns) / 10.0) +
+    return format_value(count) + " measurements for " + format_value(std::round(10.0 * unknowns) / 10.0) +
            " unknowns (free parameters and initial states) are too few to tell how far off the values are: no sigma is given";
   }
 

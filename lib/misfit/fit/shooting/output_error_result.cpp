@@ -188,17 +188,17 @@ void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit
   const ChannelPrediction& p = fit.predictions.front();
   const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
   const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period), unknowns);
-  const double noise = reading_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
+  const double noise = measurement_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
   fit.facts["whiteness"] = "residuals of " + p.channel + " at " + in_words(test);
   fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
-                           ", reading noise about " + in_display_unit(noise, p.unit);
+                           ", measurement noise about " + in_display_unit(noise, p.unit);
   constexpr double clearly_above_noise = 2.0;
   fit.driven = looks_driven(test) && rms > clearly_above_noise * noise;
   if (!fit.driven || rms < follows * size) {
     if (clearly_coloured(test)) {
       fit.warnings.push_back(
           "residuals are not white (" + fit.facts["whiteness"] + "; " + fit.facts["explained"] +
-          "): something is missing from the model, or the readings' own noise has memory. Sigmas allow for that memory as noise (" +
+          "): something is missing from the model, or the measurement noise is autocorrelated. Sigmas allow for autocorrelated noise (" +
           "plain_sigma: without it), not for a force that the model lacks");
     }
     return;

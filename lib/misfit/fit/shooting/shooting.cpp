@@ -114,8 +114,8 @@ bool Shooting::evaluate(Piece& piece, double defect_weight, const double* const*
 }
 
 void Shooting::note_failure(const Segment& segment, std::size_t experiment) {
-  failure_ = "the simulated motion left the finite numbers at t = " + format_value(experiments_[experiment].t[segment.failed_at]) +
-             " s of '" + experiments_[experiment].name + "'";
+  failure_ = "simulation diverged (non-finite state) at t = " + format_value(experiments_[experiment].t[segment.failed_at]) + " s of '" +
+             experiments_[experiment].name + "'";
   if (!stepper_->failure().empty()) failure_ += " (" + stepper_->failure() + ")";
 }
 

@@ -65,7 +65,7 @@ class Shooting {
   [[nodiscard]] int linearisations() const { return linearisations_; }
   [[nodiscard]] const std::string& failure() const { return failure_; }  ///< where the last run left the finite numbers, in words
   void forget_failure() { failure_.clear(); }
-  /// Does no reading of it count? Then its initial state, unless shared, is the one read from its first samples (`start_states`).
+  /// Does no measurement of it count? Then its initial state, unless shared, is the one read from its first samples (`start_states`).
   [[nodiscard]] bool held_out(std::size_t experiment) const { return held_out_[experiment]; }
   /// Is output o of sample i a residual of the estimation?
   [[nodiscard]] bool counts(std::size_t experiment, std::size_t i, std::size_t o) const;
