@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
+#include <set>
 
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/inference/curves.h"
@@ -72,6 +75,25 @@ TEST(WeakDirections, CollinearButWellKnownIsNotWorthSaying) {
   Fit fit;
   tell_weak_directions(model, 0.01 * (separate(model) + together(model, 1.0)), fit);
   EXPECT_TRUE(fit.warnings.empty());
+}
+
+/// Several directions may be weak in the same parameters: that is one thing to say.
+TEST(WeakDirections, TheSameGroupIsSaidOnce) {
+  const Model model = with_free_mass();
+  const auto n = static_cast<Eigen::Index>(model.free_parameters().size());
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::size_t groups = 0;
+  for (int k = 0; k < 50; ++k) {
+    const Eigen::VectorXd along = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
+    const Eigen::MatrixXd across = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return normal(random); });
+    Fit fit;
+    tell_weak_directions(model, along * along.transpose() + 1e-4 * across * across.transpose(), fit);
+    groups += static_cast<std::size_t>(std::count_if(fit.warnings.begin(), fit.warnings.end(),
+                                                     [](const std::string& w) { return w.find("are collinear") != std::string::npos; }));
+    EXPECT_EQ(std::set<std::string>(fit.warnings.begin(), fit.warnings.end()).size(), fit.warnings.size());
+  }
+  EXPECT_GT(groups, 10U) << "or nothing was tested";
 }
 
 TEST(WeakDirections, AParameterThatOnlyItsPriorKnowsIsAFact) {

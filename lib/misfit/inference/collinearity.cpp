@@ -74,7 +74,7 @@ std::string pair_in_words(const Direction& one, const Direction& other, double s
 }
 
 std::string group_in_words(const std::vector<std::string>& names) {
-  return join_words(names) + " make up for each other: these data know a combination of them much better than each";
+  return join_words(names) + " are collinear: a combination of them is known much better than each";
 }
 
 void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& covariance, Fit& fit) {
@@ -101,8 +101,9 @@ void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& co
       places.push_back(i);
     }
     if (names.size() < 2 || *std::max_element(relative.begin(), relative.end()) < worth_saying) continue;
-    if (names.size() > 2) {
-      fit.warnings.push_back(group_in_words(names));
+    if (names.size() > 2) {  // two directions in which the same parameters are weak are one thing to say
+      const std::string words = group_in_words(names);
+      if (std::find(fit.warnings.begin(), fit.warnings.end(), words) == fit.warnings.end()) fit.warnings.push_back(words);
       continue;
     }
     const Direction &one = all[static_cast<std::size_t>(places[0])], &other = all[static_cast<std::size_t>(places[1])];
