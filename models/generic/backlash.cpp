@@ -22,29 +22,64 @@ struct Backlash {
       "Tao and Kokotovic, Adaptive Control of Systems with Actuator and Sensor Nonlinearities (1996): play operator; here relaxed over "
       "backlash_tau";
   static constexpr const char* excludes = "impact, a free side that drifts inside the clearance, wear";
-  static constexpr Role quantities[] = {{"displacement", "*"}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { displacement };
+  static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { play_stiffness, play, backlash_tau };
   static constexpr CoefficientSpec coefficients[] = {
-      {"play_stiffness", CoefficientKind::strength, 0.0, "{port}/{displacement}", -1e12, 1e12, 1.0,
-       "force per displacement that z lies behind"},
-      scanned({"play", CoefficientKind::shape, 0.1, "{displacement}", 1e-9, 1e6, 0.1, "half of the clearance"},
-              {0.03, 0.3, 4, "|displacement|"}),
-      held(scanned({"backlash_tau", CoefficientKind::shape, 0.01, "s", 1e-6, 1e4, 0.01, "time in which z is carried along"},
-                   {2.0, 2.0, 1, "step"}))};
-  static constexpr OwnStateSpec states[] = {{"z", "{displacement}", 0.0}};
+      {.name = "play_stiffness",
+       .unit = "{port}/{displacement}",
+       .lower = -1e12,
+       .upper = 1e12,
+       .scale = 1.0,
+       .doc = "force per displacement that z lies behind"},
+      {.name = "play",
+       .kind = CoefficientKind::shape,
+       .value = 0.1,
+       .unit = "{displacement}",
+       .lower = 1e-9,
+       .upper = 1e6,
+       .scale = 0.1,
+       .doc = "half of the clearance",
+       .scan = {.from = 0.03, .to = 0.3, .count = 4, .over = "|displacement|"}},
+      {.name = "backlash_tau",
+       .kind = CoefficientKind::shape,
+       .value = 0.01,
+       .unit = "s",
+       .lower = 1e-6,
+       .upper = 1e4,
+       .scale = 0.01,
+       .doc = "time in which z is carried along",
+       .fixed = true,
+       .scan = {.from = 2.0, .to = 2.0, .count = 1, .over = "step"}},
+  };
+  enum State { z };
+  static constexpr OwnStateSpec states[] = {{.name = "z", .unit = "{displacement}"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F, T* drift) {
-    const T ahead = in.q[0] - in.z[0];
-    F[0] = -in.c[0] * ahead;
-    drift[0] = beyond(ahead, in.c[1]) / in.c[2];
+    const T ahead = in.q[displacement] - in.z[z];
+    F[port] = -in.c[play_stiffness] * ahead;
+    drift[z] = beyond(ahead, in.c[play]) / in.c[backlash_tau];
   }
 
-  static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[2]; }
+  static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[backlash_tau]; }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.5}, {10.0, 0.2, 0.05}, {0.1}, 0.0, {-4.0}, {4.0}, "ahead by 0.4, of which 0.2 beyond the play: 0.2/0.05"},
-            {{}, {-1.0}, {-3.0, 0.5, 0.1}, {-0.8}, 2.0, {-0.6}, {0.0}, "within the play z stands still: -3 x 0.2"}};
+    return {{.quantities = {0.5},
+             .coefficients = {10.0, 0.2, 0.05},
+             .states = {0.1},
+             .ports = {-4.0},
+             .drifts = {4.0},
+             .source = "ahead by 0.4, of which 0.2 beyond the play: 0.2/0.05"},
+            {.quantities = {-1.0},
+             .coefficients = {-3.0, 0.5, 0.1},
+             .states = {-0.8},
+             .t = 2.0,
+             .ports = {-0.6},
+             .drifts = {0.0},
+             .source = "within the play z stands still: -3 x 0.2"}};
   }
 };
 

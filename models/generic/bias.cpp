@@ -12,18 +12,21 @@ struct Bias {
   static constexpr const char* size = "0.1 deg on the tilt moves the trim by 0.1 deg";
   static constexpr const char* source = "JCGM 100:2008 (GUM), 3.2.3: a recognised systematic effect is corrected for";
   static constexpr const char* excludes = "drift, wrong scale";
-  static constexpr Role ports[] = {{"output", "*"}};
+  enum Port { output };
+  static constexpr Role ports[] = {{.name = "output", .unit = "*"}};
+  enum Coefficient { offset };
   static constexpr CoefficientSpec coefficients[] = {
-      {"offset", CoefficientKind::strength, 0.0, "{output}", -1e6, 1e6, 0.01, "reading where the true value is 0"}};
+      {.name = "offset", .unit = "{output}", .lower = -1e6, .upper = 1e6, .scale = 0.01, .doc = "reading where the true value is 0"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
-    y[0] = in.c[0];
+    y[output] = in.c[offset];
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {0.002}, {}, 0.0, {0.002}, {}, "the reading moves by the offset"},
-            {{}, {}, {-7.5}, {}, 3.0, {-7.5}, {}, "whatever the time"}};
+    return {{.coefficients = {0.002}, .ports = {0.002}, .source = "the reading moves by the offset"},
+            {.coefficients = {-7.5}, .t = 3.0, .ports = {-7.5}, .source = "whatever the time"}};
   }
 };
 

@@ -15,32 +15,53 @@ struct CoulombFriction {
   static constexpr const char* source =
       "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007): smooth Coulomb friction by tanh";
   static constexpr const char* excludes = "sticking, higher friction at the start of motion (Stribeck), viscous part (viscous_friction)";
-  static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}, {"rate_lateral", "*", true, false, "rate"}};
-  static constexpr Role ports[] = {{"port", "*"}, {"port_lateral", "*", true, false, "port"}};
+  enum Quantity { rate, inertia, rate_lateral };
+  static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
+                                        {.name = "inertia", .unit = "*", .optional = true},
+                                        {.name = "rate_lateral", .unit = "*", .optional = true, .completes = "rate"}};
+  enum Port { port, port_lateral };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"},
+                                   {.name = "port_lateral", .unit = "*", .optional = true, .completes = "port"}};
+  enum Coefficient { friction, width };
   static constexpr CoefficientSpec coefficients[] = {
-      {"friction", CoefficientKind::strength, 0.0, "{port}", 0.0, 1e6, 1.0, "size of the friction when moving"},
-      {"width", CoefficientKind::shape, 0.1, "{rate}", 1e-6, 1e6, 0.01, "rate at which the smoothed friction has 76 % of its size",
-       Parity::none, "", false, true}};
+      {.name = "friction", .unit = "{port}", .lower = 0.0, .upper = 1e6, .scale = 1.0, .doc = "size of the friction when moving"},
+      {.name = "width",
+       .kind = CoefficientKind::shape,
+       .value = 0.1,
+       .unit = "{rate}",
+       .lower = 1e-6,
+       .upper = 1e6,
+       .scale = 0.01,
+       .doc = "rate at which the smoothed friction has 76 % of its size",
+       .fixed = true},
+  };
   static constexpr bool dissipative = true;
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    const T along = in.q[0] / in.c[1], across = in.q[2] / in.c[1];
-    const T friction = in.c[0] * tanh_over(T(along * along + across * across));
-    F[0] = -friction * along;
-    F[1] = -friction * across;
+    const T along = in.q[rate] / in.c[width], across = in.q[rate_lateral] / in.c[width];
+    const T resistance = in.c[friction] * tanh_over(T(along * along + across * across));
+    F[port] = -resistance * along;
+    F[port_lateral] = -resistance * across;
   }
 
   /// Slope at rate 0 over the inertia; a system without the quantity `inertia` has ports that are accelerations themselves.
   static double fastest_rate(const Reads<double, double>& in) {
-    const double inertia = in.q[1] > 0.0 ? in.q[1] : 1.0;
-    return in.c[0] / (in.c[1] * inertia);
+    const double I = in.q[inertia] > 0.0 ? in.q[inertia] : 1.0;
+    return in.c[friction] / (in.c[width] * I);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.01, 5.0, 0.0}, {20.0, 0.01}, {}, 0.0, {-15.2318831, 0.0}, {}, "20 tanh(1) = 20 x 0.761594156"},
-            {{}, {-1.0, 0.0, 0.0}, {3.0, 0.02}, {}, 0.0, {3.0, 0.0}, {}, "fully sliding, against the motion"},
-            {{}, {0.3, 0.0, -0.4}, {10.0, 0.5}, {}, 0.0, {-4.56956494, 6.09275325}, {}, "|rate| = 0.5: 10 tanh(1) x (0.6, -0.8), against"}};
+    return {
+        {.quantities = {0.01, 5.0, 0.0},
+         .coefficients = {20.0, 0.01},
+         .ports = {-15.2318831, 0.0},
+         .source = "20 tanh(1) = 20 x 0.761594156"},
+        {.quantities = {-1.0, 0.0, 0.0}, .coefficients = {3.0, 0.02}, .ports = {3.0, 0.0}, .source = "fully sliding, against the motion"},
+        {.quantities = {0.3, 0.0, -0.4},
+         .coefficients = {10.0, 0.5},
+         .ports = {-4.56956494, 6.09275325},
+         .source = "|rate| = 0.5: 10 tanh(1) x (0.6, -0.8), against"}};
   }
 };
 

@@ -13,20 +13,28 @@ struct CubicStiffness {
   static constexpr const char* size = "pendulum: sin(x) = x - x^3/6, a cubic stiffness of -1/6 of the linear one per rad^2";
   static constexpr const char* source = "Duffing, Erzwungene Schwingungen bei veraenderlicher Eigenfrequenz (1918)";
   static constexpr const char* excludes = "asymmetry and higher terms (polynomial_stiffness), stops (dead_zone)";
-  static constexpr Role quantities[] = {{"displacement", "*"}};
-  static constexpr Role ports[] = {{"port", "*"}};
-  static constexpr CoefficientSpec coefficients[] = {{"cubic_stiffness", CoefficientKind::strength, 0.0,
-                                                      "{port}/{displacement}/{displacement}/{displacement}", -1e12, 1e12, 1.0,
-                                                      "force per cube of the displacement; positive hardens"}};
+  enum Quantity { displacement };
+  static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { cubic_stiffness };
+  static constexpr CoefficientSpec coefficients[] = {
+      {.name = "cubic_stiffness",
+       .unit = "{port}/{displacement}/{displacement}/{displacement}",
+       .lower = -1e12,
+       .upper = 1e12,
+       .scale = 1.0,
+       .doc = "force per cube of the displacement; positive hardens"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = -in.c[0] * in.q[0] * in.q[0] * in.q[0];
+    F[port] = -in.c[cubic_stiffness] * in.q[displacement] * in.q[displacement] * in.q[displacement];
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {2.0}, {0.75}, {}, 0.0, {-6.0}, {}, "by hand: 0.75 x 8, against the displacement"},
-            {{}, {-0.5}, {-4.0}, {}, 0.0, {-0.5}, {}, "softening: 4 x 0.125 away from zero"}};
+    return {{.quantities = {2.0}, .coefficients = {0.75}, .ports = {-6.0}, .source = "by hand: 0.75 x 8, against the displacement"},
+            {.quantities = {-0.5}, .coefficients = {-4.0}, .ports = {-0.5}, .source = "softening: 4 x 0.125 away from zero"}};
   }
 };
 

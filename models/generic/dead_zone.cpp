@@ -18,23 +18,38 @@ struct DeadZone {
   static constexpr const char* size = "a stop of 1000 N m/rad, entered by 1 deg: 17 N m";
   static constexpr const char* source = "den Hartog, Mechanical Vibrations (1956), section 8.9: springs with clearance";
   static constexpr const char* excludes = "loss in the contact, unequal sides, play with memory (backlash)";
-  static constexpr Role quantities[] = {{"displacement", "*"}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { displacement };
+  static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { stop_stiffness, half_width };
   static constexpr CoefficientSpec coefficients[] = {
-      {"stop_stiffness", CoefficientKind::strength, 0.0, "{port}/{displacement}", -1e12, 1e12, 1.0,
-       "force per displacement beyond the clearance"},
-      scanned({"half_width", CoefficientKind::shape, 0.1, "{displacement}", 0.0, 1e6, 0.1, "half of the clearance"},
-              {0.3, 0.9, 4, "|displacement|"})};
+      {.name = "stop_stiffness",
+       .unit = "{port}/{displacement}",
+       .lower = -1e12,
+       .upper = 1e12,
+       .scale = 1.0,
+       .doc = "force per displacement beyond the clearance"},
+      {.name = "half_width",
+       .kind = CoefficientKind::shape,
+       .value = 0.1,
+       .unit = "{displacement}",
+       .lower = 0.0,
+       .upper = 1e6,
+       .scale = 0.1,
+       .doc = "half of the clearance",
+       .scan = {.from = 0.3, .to = 0.9, .count = 4, .over = "|displacement|"}},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = -in.c[0] * beyond(in.q[0], in.c[1]);
+    F[port] = -in.c[stop_stiffness] * beyond(in.q[displacement], in.c[half_width]);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.5}, {100.0, 0.2}, {}, 0.0, {-30.0}, {}, "by hand: 100 x 0.3, back"},
-            {{}, {-0.6}, {-5.0, 0.4}, {}, 0.0, {-1.0}, {}, "by hand: 5 x 0.2, outward"},
-            {{}, {0.1}, {100.0, 0.2}, {}, 0.0, {0.0}, {}, "inside the clearance nothing acts"}};
+    return {{.quantities = {0.5}, .coefficients = {100.0, 0.2}, .ports = {-30.0}, .source = "by hand: 100 x 0.3, back"},
+            {.quantities = {-0.6}, .coefficients = {-5.0, 0.4}, .ports = {-1.0}, .source = "by hand: 5 x 0.2, outward"},
+            {.quantities = {0.1}, .coefficients = {100.0, 0.2}, .ports = {0.0}, .source = "inside the clearance nothing acts"}};
   }
 };
 

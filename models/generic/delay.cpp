@@ -16,27 +16,56 @@ struct Delay {
   static constexpr const char* size = "tau = 0.1 s at 1 rad/s: 10 % of the input, 90 deg after it";
   static constexpr const char* source = "Golub and Van Loan, Matrix Computations, 11.3: Pade (2, 2) of exp(-tau s)";
   static constexpr const char* excludes = "delays longer than the fastest part of the input, delays that change";
-  static constexpr Role quantities[] = {{"input", "*"}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { input };
+  static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { delayed_gain, delay };
   static constexpr CoefficientSpec coefficients[] = {
-      {"delayed_gain", CoefficientKind::strength, 0.0, "{port}/{input}", -1e12, 1e12, 0.1, "force per input that comes late"},
-      scanned({"delay", CoefficientKind::shape, 0.1, "s", 1e-6, 1e6, 0.1, "delay"}, {1.0, 20.0, 4, "step"})};
-  static constexpr OwnStateSpec states[] = {{"z", "{input}", 0.0}, {"z_rate", "{input}/s", 0.0}};
+      {.name = "delayed_gain",
+       .unit = "{port}/{input}",
+       .lower = -1e12,
+       .upper = 1e12,
+       .scale = 0.1,
+       .doc = "force per input that comes late"},
+      {.name = "delay",
+       .kind = CoefficientKind::shape,
+       .value = 0.1,
+       .unit = "s",
+       .lower = 1e-6,
+       .upper = 1e6,
+       .scale = 0.1,
+       .doc = "delay",
+       .scan = {.from = 1.0, .to = 20.0, .count = 4, .over = "step"}},
+  };
+  enum State { z, z_rate };
+  static constexpr OwnStateSpec states[] = {{.name = "z", .unit = "{input}"}, {.name = "z_rate", .unit = "{input}/s"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F, T* drift) {
-    const T& tau = in.c[1];
-    F[0] = -in.c[0] * tau * in.z[1];
-    drift[0] = in.z[1];
-    drift[1] = (12.0 * (in.q[0] - in.z[0]) / tau - 6.0 * in.z[1]) / tau;
+    const T& tau = in.c[delay];
+    F[port] = -in.c[delayed_gain] * tau * in.z[z_rate];
+    drift[z] = in.z[z_rate];
+    drift[z_rate] = (12.0 * (in.q[input] - in.z[z]) / tau - 6.0 * in.z[z_rate]) / tau;
   }
 
   /// Its poles lie at |s| = sqrt(12)/tau.
-  static double fastest_rate(const Reads<double, double>& in) { return 3.4641 / in.c[1]; }
+  static double fastest_rate(const Reads<double, double>& in) { return 3.4641 / in.c[delay]; }
 
   static std::vector<Example> examples() {
-    return {{{}, {3.0}, {2.0, 0.5}, {2.0, 1.5}, 0.0, {-1.5}, {1.5, 30.0}, "-2 x 0.5 x 1.5; 12 x 1/0.25 - 6 x 1.5/0.5"},
-            {{}, {1.0}, {-1.0, 2.0}, {4.0, -0.25}, 1.0, {-0.5}, {-0.25, -8.25}, "by hand: 12 x -3/4 + 6 x 0.25/2"}};
+    return {{.quantities = {3.0},
+             .coefficients = {2.0, 0.5},
+             .states = {2.0, 1.5},
+             .ports = {-1.5},
+             .drifts = {1.5, 30.0},
+             .source = "-2 x 0.5 x 1.5; 12 x 1/0.25 - 6 x 1.5/0.5"},
+            {.quantities = {1.0},
+             .coefficients = {-1.0, 2.0},
+             .states = {4.0, -0.25},
+             .t = 1.0,
+             .ports = {-0.5},
+             .drifts = {-0.25, -8.25},
+             .source = "by hand: 12 x -3/4 + 6 x 0.25/2"}};
   }
 };
 

@@ -17,29 +17,48 @@ struct DirectionalFriction {
   static constexpr const char* source =
       "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994), section 2: friction that depends on the direction";
   static constexpr const char* excludes = "the mean of both directions (coulomb_friction), unequal viscous parts";
-  static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { rate, inertia };
+  static constexpr Role quantities[] = {{.name = "rate", .unit = "*"}, {.name = "inertia", .unit = "*", .optional = true}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { asymmetry, width };
   static constexpr CoefficientSpec coefficients[] = {
-      {"asymmetry", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "friction forward less the mean of both directions"},
-      borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction", 0.1, 1e-6)};
+      {.name = "asymmetry",
+       .unit = "{port}",
+       .lower = -1e6,
+       .upper = 1e6,
+       .scale = 1.0,
+       .doc = "friction forward less the mean of both directions"},
+      {.name = "width",
+       .kind = CoefficientKind::shape,
+       .value = 0.1,
+       .unit = "{rate}",
+       .lower = 1e-6,
+       .upper = 1e6,
+       .doc = "smoothing of coulomb_friction",
+       .borrowed = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::tanh;
-    const T moving = tanh(T(in.q[0] / in.c[1]));
-    F[0] = -in.c[0] * moving * moving;
+    const T moving = tanh(T(in.q[rate] / in.c[width]));
+    F[port] = -in.c[asymmetry] * moving * moving;
   }
 
   /// The steepest slope of tanh² is 4/(3 sqrt(3)) = 0.77.
   static double fastest_rate(const Reads<double, double>& in) {
     constexpr double steepest = 0.77;
-    const double inertia = in.q[1] > 0.0 ? in.q[1] : 1.0;
-    return steepest * std::abs(in.c[0]) / (in.c[1] * inertia);
+    const double I = in.q[inertia] > 0.0 ? in.q[inertia] : 1.0;
+    return steepest * std::abs(in.c[asymmetry]) / (in.c[width] * I);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.1, 2.0}, {6.0, 0.1}, {}, 0.0, {-3.48015401}, {}, "6 tanh(1)^2 = 6 x 0.580025669"},
-            {{}, {-5.0, 0.0}, {-2.0, 0.1}, {}, 0.0, {2.0}, {}, "backward at full size: less friction where asymmetry is positive"}};
+    return {{.quantities = {0.1, 2.0}, .coefficients = {6.0, 0.1}, .ports = {-3.48015401}, .source = "6 tanh(1)^2 = 6 x 0.580025669"},
+            {.quantities = {-5.0, 0.0},
+             .coefficients = {-2.0, 0.1},
+             .ports = {2.0},
+             .source = "backward at full size: less friction where asymmetry is positive"}};
   }
 };
 

@@ -12,19 +12,30 @@ struct Drift {
   static constexpr const char* size = "1 N m over a minute: 0.017 N m/s";
   static constexpr const char* source = "first term of the Taylor series in time";
   static constexpr const char* excludes = "wandering in both directions, drift of a coefficient (give that coefficient a curve)";
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { drift, drift_origin };
   static constexpr CoefficientSpec coefficients[] = {
-      {"drift", CoefficientKind::strength, 0.0, "{port}/s", -1e6, 1e6, 0.01, "growth of the force"},
-      held({"drift_origin", CoefficientKind::shape, 0.0, "s", -1e9, 1e9, 1.0, "time at which it is 0"})};
+      {.name = "drift", .unit = "{port}/s", .lower = -1e6, .upper = 1e6, .scale = 0.01, .doc = "growth of the force"},
+      {.name = "drift_origin",
+       .kind = CoefficientKind::shape,
+       .value = 0.0,
+       .unit = "s",
+       .lower = -1e9,
+       .upper = 1e9,
+       .scale = 1.0,
+       .doc = "time at which it is 0",
+       .fixed = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = in.c[0] * (in.t - in.c[1]);
+    F[port] = in.c[drift] * (in.t - in.c[drift_origin]);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {0.5, 2.0}, {}, 10.0, {4.0}, {}, "by hand: 0.5 x 8"},
-            {{}, {}, {-0.1, -5.0}, {}, 15.0, {-2.0}, {}, "by hand: -0.1 x 20"}};
+    return {{.coefficients = {0.5, 2.0}, .t = 10.0, .ports = {4.0}, .source = "by hand: 0.5 x 8"},
+            {.coefficients = {-0.1, -5.0}, .t = 15.0, .ports = {-2.0}, .source = "by hand: -0.1 x 20"}};
   }
 };
 

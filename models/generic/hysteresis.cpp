@@ -23,38 +23,76 @@ struct Hysteresis {
   static constexpr const char* source =
       "Wen, Journal of the Engineering Mechanics Division ASCE 102 (1976), with n = 2 and A = 1; Ismail, Ikhouane, Rodellar (2009)";
   static constexpr const char* excludes = "slip that weakens, pinching, rate dependence";
-  static constexpr Role quantities[] = {{"rate", "*"}, {"displacement", "{rate} s"}, {"inertia", "*", true}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { rate, displacement, inertia };
+  static constexpr Role quantities[] = {
+      {.name = "rate", .unit = "*"}, {.name = "displacement", .unit = "{rate} s"}, {.name = "inertia", .unit = "*", .optional = true}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { hysteresis, yield, loop, hysteresis_width };
   static constexpr CoefficientSpec coefficients[] = {
-      {"hysteresis", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "limit of the force"},
-      scanned({"yield", CoefficientKind::shape, 0.1, "{displacement}", 1e-9, 1e6, 0.1, "motion over which the force comes to its limit"},
-              {0.06, 0.5, 4, "|displacement|"}),
-      held({"loop", CoefficientKind::shape, 0.5, "-", 0.5, 1.0, 0.1, "0.5: turning back starts with the slope of the first loading"}),
-      held(scanned({"hysteresis_width", CoefficientKind::shape, 0.05, "{rate}", 1e-9, 1e6, 0.05,
-                    "rounding of the rate about 0: a fiftieth of the largest rate"},
-                   {0.02, 0.02, 1, "|rate|"}))};
-  static constexpr OwnStateSpec states[] = {{"z", "-", 0.0}};
+      {.name = "hysteresis", .unit = "{port}", .lower = -1e6, .upper = 1e6, .scale = 1.0, .doc = "limit of the force"},
+      {.name = "yield",
+       .kind = CoefficientKind::shape,
+       .value = 0.1,
+       .unit = "{displacement}",
+       .lower = 1e-9,
+       .upper = 1e6,
+       .scale = 0.1,
+       .doc = "motion over which the force comes to its limit",
+       .scan = {.from = 0.06, .to = 0.5, .count = 4, .over = "|displacement|"}},
+      {.name = "loop",
+       .kind = CoefficientKind::shape,
+       .value = 0.5,
+       .unit = "-",
+       .lower = 0.5,
+       .upper = 1.0,
+       .scale = 0.1,
+       .doc = "0.5: turning back starts with the slope of the first loading",
+       .fixed = true},
+      {.name = "hysteresis_width",
+       .kind = CoefficientKind::shape,
+       .value = 0.05,
+       .unit = "{rate}",
+       .lower = 1e-9,
+       .upper = 1e6,
+       .scale = 0.05,
+       .doc = "rounding of the rate about 0: a fiftieth of the largest rate",
+       .fixed = true,
+       .scan = {.from = 0.02, .to = 0.02, .count = 1, .over = "|rate|"}},
+  };
+  enum State { z };
+  static constexpr OwnStateSpec states[] = {{.name = "z", .unit = "-"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F, T* drift) {
-    const T &rate = in.q[0], &z = in.z[0], &loop = in.c[2];
-    const T bend = value_of(z) < 0.0 ? T(-z) : z;
-    F[0] = -in.c[0] * z;
-    drift[0] = (rate - loop * smooth_abs(rate, in.c[3]) * bend * z - (1.0 - loop) * rate * z * z) / in.c[1];
+    const T &v = in.q[rate], &bend = in.z[z], &share = in.c[loop];
+    const T magnitude = value_of(bend) < 0.0 ? T(-bend) : bend;
+    F[port] = -in.c[hysteresis] * bend;
+    drift[z] = (v - share * smooth_abs(v, in.c[hysteresis_width]) * magnitude * bend - (1.0 - share) * v * bend * bend) / in.c[yield];
   }
 
   /// Of the elastic part, sqrt(force/(yield inertia)), and of z at the largest rate, of which the width is taken to be a fiftieth:
   /// |dz'/dz| at |z| = 1 is 2 |rate|/yield for every loop.
   static double fastest_rate(const Reads<double, double>& in) {
     constexpr double rates_per_width = 2.0 * 50.0;
-    const double inertia = in.q[2] > 0.0 ? in.q[2] : 1.0;
-    return std::max(std::sqrt(std::abs(in.c[0]) / (in.c[1] * inertia)), rates_per_width * in.c[3] / in.c[1]);
+    const double I = in.q[inertia] > 0.0 ? in.q[inertia] : 1.0;
+    return std::max(std::sqrt(std::abs(in.c[hysteresis]) / (in.c[yield] * I)), rates_per_width * in.c[hysteresis_width] / in.c[yield]);
   }
 
   static std::vector<Example> examples() {
-    return {
-        {{}, {2.0, 0.3, 4.0}, {10.0, 0.5, 0.6, 0.01}, {0.5}, 0.0, {-5.0}, {3.0}, "2 (1 - 0.6 x 0.25 - 0.4 x 0.25)/0.5"},
-        {{}, {-1.0, -0.2, 0.0}, {-3.0, 0.25, 0.5, 0.01}, {0.8}, 1.0, {2.4}, {-4.0}, "turning back: (-1 - 0.5 x 0.64 + 0.5 x 0.64)/0.25"}};
+    return {{.quantities = {2.0, 0.3, 4.0},
+             .coefficients = {10.0, 0.5, 0.6, 0.01},
+             .states = {0.5},
+             .ports = {-5.0},
+             .drifts = {3.0},
+             .source = "2 (1 - 0.6 x 0.25 - 0.4 x 0.25)/0.5"},
+            {.quantities = {-1.0, -0.2, 0.0},
+             .coefficients = {-3.0, 0.25, 0.5, 0.01},
+             .states = {0.8},
+             .t = 1.0,
+             .ports = {2.4},
+             .drifts = {-4.0},
+             .source = "turning back: (-1 - 0.5 x 0.64 + 0.5 x 0.64)/0.25"}};
   }
 };
 

@@ -12,18 +12,28 @@ struct InputGain {
   static constexpr const char* size = "a gain that is 5 % wrong: 5 % of what the input does";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "offset (input_offset), saturation, delay of the input";
-  static constexpr Role quantities[] = {{"input", "*"}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { input };
+  static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { gain_error };
   static constexpr CoefficientSpec coefficients[] = {
-      {"gain_error", CoefficientKind::strength, 0.0, "{port}/{input}", -1e12, 1e12, 0.1, "force per input beside what the model has"}};
+      {.name = "gain_error",
+       .unit = "{port}/{input}",
+       .lower = -1e12,
+       .upper = 1e12,
+       .scale = 0.1,
+       .doc = "force per input beside what the model has"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = in.c[0] * in.q[0];
+    F[port] = in.c[gain_error] * in.q[input];
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {2.5}, {0.4}, {}, 0.0, {1.0}, {}, "by hand: 0.4 x 2.5"}, {{}, {-3.0}, {0.2}, {}, 7.0, {-0.6}, {}, "by hand: 0.2 x -3"}};
+    return {{.quantities = {2.5}, .coefficients = {0.4}, .ports = {1.0}, .source = "by hand: 0.4 x 2.5"},
+            {.quantities = {-3.0}, .coefficients = {0.2}, .t = 7.0, .ports = {-0.6}, .source = "by hand: 0.2 x -3"}};
   }
 };
 

@@ -13,19 +13,28 @@ struct InputOffset {
   static constexpr const char* size = "a pump that needs 0.3 V before it delivers: -0.3 V times its gain";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "wrong gain (input_gain), drift, a dead zone of the input";
-  static constexpr Role quantities[] = {{"input", "*"}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { input };
+  static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { input_offset };
   static constexpr CoefficientSpec coefficients[] = {
-      {"input_offset", CoefficientKind::strength, 0.0, "{port}", -1e12, 1e12, 0.1, "constant beside what the recorded input does"}};
+      {.name = "input_offset",
+       .unit = "{port}",
+       .lower = -1e12,
+       .upper = 1e12,
+       .scale = 0.1,
+       .doc = "constant beside what the recorded input does"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = in.c[0];
+    F[port] = in.c[input_offset];
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {2.0}, {-0.03}, {}, 0.0, {-0.03}, {}, "the offset itself, whatever the input"},
-            {{}, {0.0}, {1.5}, {}, 4.0, {1.5}, {}, "and at any time"}};
+    return {{.quantities = {2.0}, .coefficients = {-0.03}, .ports = {-0.03}, .source = "the offset itself, whatever the input"},
+            {.quantities = {0.0}, .coefficients = {1.5}, .t = 4.0, .ports = {1.5}, .source = "and at any time"}};
   }
 };
 

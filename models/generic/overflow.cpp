@@ -16,24 +16,41 @@ struct Overflow {
   static constexpr const char* source =
       "first-order form of the weir (Bazin: q ~ h^1.5); cascaded tanks: Schoukens, Mattsson, Wigren, Noel (2016), section 2";
   static constexpr const char* excludes = "the weir power 1.5, where the water goes (overflow_into)";
-  static constexpr Role quantities[] = {{"level", "*"}};
-  static constexpr Role ports[] = {{"port", "{level}/s"}};
+  enum Quantity { level };
+  static constexpr Role quantities[] = {{.name = "level", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "{level}/s"}};
+  enum Coefficient { spill, threshold };
   static constexpr CoefficientSpec coefficients[] = {
-      {"spill", CoefficientKind::strength, 0.0, "{port}/{level}", 0.0, 100.0, 0.1, "outflow per level above the threshold"},
-      scanned({"threshold", CoefficientKind::shape, 1.0, "{level}", -1e9, 1e9, 0.1, "level of the edge"}, {0.5, 0.98, 7, "level"})};
+      {.name = "spill",
+       .unit = "{port}/{level}",
+       .lower = 0.0,
+       .upper = 100.0,
+       .scale = 0.1,
+       .doc = "outflow per level above the threshold"},
+      {.name = "threshold",
+       .kind = CoefficientKind::shape,
+       .value = 1.0,
+       .unit = "{level}",
+       .lower = -1e9,
+       .upper = 1e9,
+       .scale = 0.1,
+       .doc = "level of the edge",
+       .scan = {.from = 0.5, .to = 0.98, .count = 7, .over = "level"}},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = -in.c[0] * above(T(in.q[0] - in.c[1]));
+    F[port] = -in.c[spill] * above(T(in.q[level] - in.c[threshold]));
   }
 
   /// Asked at the start of a run: the level may come to the edge later.
-  static double fastest_rate(const Reads<double, double>& in) { return in.c[0]; }
+  static double fastest_rate(const Reads<double, double>& in) { return in.c[spill]; }
 
   static std::vector<Example> examples() {
-    return {{{}, {10.5}, {0.4, 10.0}, {}, 0.0, {-0.2}, {}, "by hand: 0.4 x 0.5"},
-            {{}, {-1.0}, {2.0, -1.5}, {}, 0.0, {-1.0}, {}, "by hand: 2 x 0.5"},
-            {{}, {9.0}, {0.4, 10.0}, {}, 0.0, {0.0}, {}, "not full"}};
+    return {{.quantities = {10.5}, .coefficients = {0.4, 10.0}, .ports = {-0.2}, .source = "by hand: 0.4 x 0.5"},
+            {.quantities = {-1.0}, .coefficients = {2.0, -1.5}, .ports = {-1.0}, .source = "by hand: 2 x 0.5"},
+            {.quantities = {9.0}, .coefficients = {0.4, 10.0}, .ports = {0.0}, .source = "not full"}};
   }
 };
 

@@ -16,20 +16,37 @@ struct OverflowInto {
   static constexpr const char* source =
       "cascaded tanks: Schoukens, Mattsson, Wigren, Noel (2016), section 2: the upper tank overflows in part into the lower one";
   static constexpr const char* excludes = "what the upper level loses (overflow), delay on the way";
-  static constexpr Role quantities[] = {{"level", "*"}};
-  static constexpr Role ports[] = {{"to_port", "*"}};
+  enum Quantity { level };
+  static constexpr Role quantities[] = {{.name = "level", .unit = "*"}};
+  enum Port { to_port };
+  static constexpr Role ports[] = {{.name = "to_port", .unit = "*"}};
+  enum Coefficient { caught, caught_threshold };
   static constexpr CoefficientSpec coefficients[] = {
-      {"caught", CoefficientKind::strength, 0.0, "{to_port}/{level}", 0.0, 1e6, 0.1, "inflow per level above the threshold"},
-      scanned({"caught_threshold", CoefficientKind::shape, 1.0, "{level}", -1e9, 1e9, 0.1, "level of the edge"}, {0.5, 0.98, 7, "level"})};
+      {.name = "caught",
+       .unit = "{to_port}/{level}",
+       .lower = 0.0,
+       .upper = 1e6,
+       .scale = 0.1,
+       .doc = "inflow per level above the threshold"},
+      {.name = "caught_threshold",
+       .kind = CoefficientKind::shape,
+       .value = 1.0,
+       .unit = "{level}",
+       .lower = -1e9,
+       .upper = 1e9,
+       .scale = 0.1,
+       .doc = "level of the edge",
+       .scan = {.from = 0.5, .to = 0.98, .count = 7, .over = "level"}},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = in.c[0] * above(T(in.q[0] - in.c[1]));
+    F[to_port] = in.c[caught] * above(T(in.q[level] - in.c[caught_threshold]));
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {10.5}, {0.4, 10.0}, {}, 0.0, {0.2}, {}, "by hand: 0.4 x 0.5"},
-            {{}, {-1.0}, {2.0, -1.5}, {}, 0.0, {1.0}, {}, "by hand: 2 x 0.5"}};
+    return {{.quantities = {10.5}, .coefficients = {0.4, 10.0}, .ports = {0.2}, .source = "by hand: 0.4 x 0.5"},
+            {.quantities = {-1.0}, .coefficients = {2.0, -1.5}, .ports = {1.0}, .source = "by hand: 2 x 0.5"}};
   }
 };
 

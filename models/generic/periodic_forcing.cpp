@@ -12,11 +12,22 @@ struct PeriodicForcing {
   static constexpr const char* size = "amplitude sqrt(cosine^2 + sine^2); a vortex street behind the strut: some N m";
   static constexpr const char* source = "Fourier; amplitudes instead of amplitude and phase keep off at a regular point";
   static constexpr const char* excludes = "drift of the frequency, bandwidth, harmonics";
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { cosine, sine, frequency };
   static constexpr CoefficientSpec coefficients[] = {
-      {"cosine", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "amplitude in phase with cos(2 pi f t)"},
-      {"sine", CoefficientKind::strength, 0.0, "{port}", -1e6, 1e6, 1.0, "amplitude in phase with sin(2 pi f t)"},
-      scanned({"frequency", CoefficientKind::shape, 1.0, "Hz", 1e-6, 1e3, 0.1, "frequency of the forcing"}, {1e-6, 1e3, -1})};
+      {.name = "cosine", .unit = "{port}", .lower = -1e6, .upper = 1e6, .scale = 1.0, .doc = "amplitude in phase with cos(2 pi f t)"},
+      {.name = "sine", .unit = "{port}", .lower = -1e6, .upper = 1e6, .scale = 1.0, .doc = "amplitude in phase with sin(2 pi f t)"},
+      {.name = "frequency",
+       .kind = CoefficientKind::shape,
+       .value = 1.0,
+       .unit = "Hz",
+       .lower = 1e-6,
+       .upper = 1e3,
+       .scale = 0.1,
+       .doc = "frequency of the forcing",
+       .scan = {.from = 1e-6, .to = 1e3, .count = -1}},
+  };
 
   static constexpr double two_pi = 6.28318530717958647692;
 
@@ -24,15 +35,15 @@ struct PeriodicForcing {
   static void add(const Reads<T, K>& in, T* F) {
     using std::cos;
     using std::sin;
-    const T angle = two_pi * in.t * in.c[2];
-    F[0] = in.c[0] * cos(angle) + in.c[1] * sin(angle);
+    const T angle = two_pi * in.t * in.c[frequency];
+    F[port] = in.c[cosine] * cos(angle) + in.c[sine] * sin(angle);
   }
 
-  static double fastest_rate(const Reads<double, double>& in) { return two_pi * in.c[2]; }
+  static double fastest_rate(const Reads<double, double>& in) { return two_pi * in.c[frequency]; }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {3.0, 5.0, 2.0}, {}, 0.125, {5.0}, {}, "a quarter of a period of 2 Hz: the sine alone"},
-            {{}, {}, {3.0, 5.0, 0.5}, {}, 1.0 / 3.0, {5.83012702}, {}, "60 deg: 3/2 + 5 x 0.866025404"}};
+    return {{.coefficients = {3.0, 5.0, 2.0}, .t = 0.125, .ports = {5.0}, .source = "a quarter of a period of 2 Hz: the sine alone"},
+            {.coefficients = {3.0, 5.0, 0.5}, .t = 1.0 / 3.0, .ports = {5.83012702}, .source = "60 deg: 3/2 + 5 x 0.866025404"}};
   }
 };
 

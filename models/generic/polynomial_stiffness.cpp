@@ -14,24 +14,35 @@ struct PolynomialStiffness {
   static constexpr const char* size = "an origin that is off by d makes 3 d cubic_stiffness of the quadratic one";
   static constexpr const char* source = "Taylor series of the restoring force; Nayfeh and Mook, Nonlinear Oscillations (1979), section 2.3";
   static constexpr const char* excludes = "the cubic term (cubic_stiffness), corners (dead_zone)";
-  static constexpr Role quantities[] = {{"displacement", "*"}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { displacement };
+  static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { quadratic_stiffness, quintic_stiffness };
   static constexpr CoefficientSpec coefficients[] = {
-      {"quadratic_stiffness", CoefficientKind::strength, 0.0, "{port}/{displacement}/{displacement}", -1e12, 1e12, 1.0,
-       "force per square of the displacement: the asymmetry"},
-      {"quintic_stiffness", CoefficientKind::strength, 0.0,
-       "{port}/{displacement}/{displacement}/{displacement}/{displacement}/{displacement}", -1e18, 1e18, 1.0,
-       "force per fifth power of the displacement"}};
+      {.name = "quadratic_stiffness",
+       .unit = "{port}/{displacement}/{displacement}",
+       .lower = -1e12,
+       .upper = 1e12,
+       .scale = 1.0,
+       .doc = "force per square of the displacement: the asymmetry"},
+      {.name = "quintic_stiffness",
+       .unit = "{port}/{displacement}/{displacement}/{displacement}/{displacement}/{displacement}",
+       .lower = -1e18,
+       .upper = 1e18,
+       .scale = 1.0,
+       .doc = "force per fifth power of the displacement"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    const T square = in.q[0] * in.q[0];
-    F[0] = -(in.c[0] + in.c[1] * in.q[0] * square) * square;
+    const T square = in.q[displacement] * in.q[displacement];
+    F[port] = -(in.c[quadratic_stiffness] + in.c[quintic_stiffness] * in.q[displacement] * square) * square;
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {2.0}, {0.5, 0.25}, {}, 0.0, {-10.0}, {}, "by hand: 0.5 x 4 + 0.25 x 32"},
-            {{}, {-1.0}, {3.0, -2.0}, {}, 0.0, {-5.0}, {}, "by hand: -(3 x 1 - 2 x -1)"}};
+    return {{.quantities = {2.0}, .coefficients = {0.5, 0.25}, .ports = {-10.0}, .source = "by hand: 0.5 x 4 + 0.25 x 32"},
+            {.quantities = {-1.0}, .coefficients = {3.0, -2.0}, .ports = {-5.0}, .source = "by hand: -(3 x 1 - 2 x -1)"}};
   }
 };
 

@@ -15,23 +15,34 @@ struct QuadraticDrag {
   static constexpr const char* source = "Newton, Principia II, prop. 33; Hoerner, Fluid-Dynamic Drag (1965)";
   static constexpr const char* excludes = "a moving medium, added mass, the linear part (viscous_friction)";
   static constexpr bool dissipative = true;
-  static constexpr Role quantities[] = {{"rate", "*"}, {"rate_lateral", "*", true, false, "rate"}};
-  static constexpr Role ports[] = {{"port", "*"}, {"port_lateral", "*", true, false, "port"}};
-  static constexpr CoefficientSpec coefficients[] = {{"drag", CoefficientKind::strength, 0.0, "{port}/{rate}/{rate}", 0.0, 1e6, 0.1,
-                                                      "force per square of the rate; positive takes energy out"}};
+  enum Quantity { rate, rate_lateral };
+  static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
+                                        {.name = "rate_lateral", .unit = "*", .optional = true, .completes = "rate"}};
+  enum Port { port, port_lateral };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"},
+                                   {.name = "port_lateral", .unit = "*", .optional = true, .completes = "port"}};
+  enum Coefficient { drag };
+  static constexpr CoefficientSpec coefficients[] = {
+      {.name = "drag",
+       .unit = "{port}/{rate}/{rate}",
+       .lower = 0.0,
+       .upper = 1e6,
+       .scale = 0.1,
+       .doc = "force per square of the rate; positive takes energy out"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::sqrt;
-    const T squared = in.q[0] * in.q[0] + in.q[1] * in.q[1];
+    const T squared = in.q[rate] * in.q[rate] + in.q[rate_lateral] * in.q[rate_lateral];
     const T fast = value_of(squared) > 0.0 ? T(sqrt(squared)) : T(0.0);  // at rest the product has slope 0, whatever the direction
-    F[0] = -in.c[0] * fast * in.q[0];
-    F[1] = -in.c[0] * fast * in.q[1];
+    F[port] = -in.c[drag] * fast * in.q[rate];
+    F[port_lateral] = -in.c[drag] * fast * in.q[rate_lateral];
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {10.0, 0.0}, {0.0022}, {}, 0.0, {-0.22, 0.0}, {}, "the ball of `size`: 0.0022 x 100"},
-            {{}, {-3.0, 4.0}, {0.005}, {}, 0.0, {0.075, -0.1}, {}, "|rate| = 5: 0.005 x 5 x (3, -4)"}};
+    return {{.quantities = {10.0, 0.0}, .coefficients = {0.0022}, .ports = {-0.22, 0.0}, .source = "the ball of `size`: 0.0022 x 100"},
+            {.quantities = {-3.0, 4.0}, .coefficients = {0.005}, .ports = {0.075, -0.1}, .source = "|rate| = 5: 0.005 x 5 x (3, -4)"}};
   }
 };
 

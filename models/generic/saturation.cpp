@@ -16,22 +16,38 @@ struct Saturation {
   static constexpr const char* source = "Khalil, Nonlinear Systems (2002), section 1.2.7";
   static constexpr const char* excludes =
       "unequal limits, integrator wind-up; a limited level is an overflow, a limited reading sensor_saturation";
-  static constexpr Role quantities[] = {{"input", "*"}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { input };
+  static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { saturated_gain, limit };
   static constexpr CoefficientSpec coefficients[] = {
-      {"saturated_gain", CoefficientKind::strength, 0.0, "{port}/{input}", -1e12, 1e12, 0.1,
-       "force per input that is lost beyond the limit"},
-      scanned({"limit", CoefficientKind::shape, 1.0, "{input}", 0.0, 1e9, 0.1, "largest input that acts"}, {0.4, 0.95, 5, "|input|"})};
+      {.name = "saturated_gain",
+       .unit = "{port}/{input}",
+       .lower = -1e12,
+       .upper = 1e12,
+       .scale = 0.1,
+       .doc = "force per input that is lost beyond the limit"},
+      {.name = "limit",
+       .kind = CoefficientKind::shape,
+       .value = 1.0,
+       .unit = "{input}",
+       .lower = 0.0,
+       .upper = 1e9,
+       .scale = 0.1,
+       .doc = "largest input that acts",
+       .scan = {.from = 0.4, .to = 0.95, .count = 5, .over = "|input|"}},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = -in.c[0] * beyond(in.q[0], in.c[1]);
+    F[port] = -in.c[saturated_gain] * beyond(in.q[input], in.c[limit]);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {12.0}, {0.5, 10.0}, {}, 0.0, {-1.0}, {}, "by hand: 0.5 x 2 too much"},
-            {{}, {-3.0}, {4.0, 2.0}, {}, 0.0, {4.0}, {}, "by hand: 4 x 1 below -2"},
-            {{}, {1.0}, {4.0, 2.0}, {}, 0.0, {0.0}, {}, "within the limits"}};
+    return {{.quantities = {12.0}, .coefficients = {0.5, 10.0}, .ports = {-1.0}, .source = "by hand: 0.5 x 2 too much"},
+            {.quantities = {-3.0}, .coefficients = {4.0, 2.0}, .ports = {4.0}, .source = "by hand: 4 x 1 below -2"},
+            {.quantities = {1.0}, .coefficients = {4.0, 2.0}, .ports = {0.0}, .source = "within the limits"}};
   }
 };
 

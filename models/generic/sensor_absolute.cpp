@@ -13,21 +13,33 @@ struct SensorAbsolute {
   static constexpr const char* size = "twice the reading wherever it is negative";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "a sign that is lost at random";
-  static constexpr Role quantities[] = {{"reading", "*"}};
-  static constexpr Role ports[] = {{"output", "{reading}"}};
+  enum Quantity { reading };
+  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Port { output };
+  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  enum Coefficient { folded, fold_width };
   static constexpr CoefficientSpec coefficients[] = {
-      {"folded", CoefficientKind::strength, 0.0, "-", 0.0, 1.0, 0.1, "share of the sign that is lost"},
-      held(scanned({"fold_width", CoefficientKind::shape, 0.05, "{output}", 1e-9, 1e9, 0.05, "rounding about 0"},
-                   {0.02, 0.02, 1, "|reading|"}))};
+      {.name = "folded", .unit = "-", .lower = 0.0, .upper = 1.0, .scale = 0.1, .doc = "share of the sign that is lost"},
+      {.name = "fold_width",
+       .kind = CoefficientKind::shape,
+       .value = 0.05,
+       .unit = "{output}",
+       .lower = 1e-9,
+       .upper = 1e9,
+       .scale = 0.05,
+       .doc = "rounding about 0",
+       .fixed = true,
+       .scan = {.from = 0.02, .to = 0.02, .count = 1, .over = "|reading|"}},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
-    y[0] = in.c[0] * (smooth_abs(in.q[0], in.c[1]) - in.q[0]);
+    y[output] = in.c[folded] * (smooth_abs(in.q[reading], in.c[fold_width]) - in.q[reading]);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {-2.0}, {1.0, 0.01}, {}, 0.0, {4.0}, {}, "reads 2 instead of -2"},
-            {{}, {0.1}, {0.5, 0.1}, {}, 0.0, {-0.0119202922}, {}, "0.5 x 0.1 (tanh(1) - 1)"}};
+    return {{.quantities = {-2.0}, .coefficients = {1.0, 0.01}, .ports = {4.0}, .source = "reads 2 instead of -2"},
+            {.quantities = {0.1}, .coefficients = {0.5, 0.1}, .ports = {-0.0119202922}, .source = "0.5 x 0.1 (tanh(1) - 1)"}};
   }
 };
 

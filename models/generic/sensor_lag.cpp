@@ -12,25 +12,43 @@ struct SensorLag {
   static constexpr const char* size = "share = 1: the whole reading lags by sensor_tau";
   static constexpr const char* source = "first-order filter: Doebelin, Measurement Systems, section 3.3";
   static constexpr const char* excludes = "pure delay (sensor_delay), filters of higher order";
-  static constexpr Role quantities[] = {{"reading", "*"}};
-  static constexpr Role ports[] = {{"output", "{reading}"}};
+  enum Quantity { reading };
+  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Port { output };
+  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  enum Coefficient { share, sensor_tau };
   static constexpr CoefficientSpec coefficients[] = {
-      {"share", CoefficientKind::strength, 0.0, "-", -2.0, 2.0, 0.1, "lagged part of the reading"},
-      scanned({"sensor_tau", CoefficientKind::shape, 0.05, "s", 1e-4, 1e5, 0.05, "time constant"}, {1.0, 20.0, 4, "step"})};
-  static constexpr OwnStateSpec states[] = {{"z", "{output}", 0.0}};
+      {.name = "share", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.1, .doc = "lagged part of the reading"},
+      {.name = "sensor_tau",
+       .kind = CoefficientKind::shape,
+       .value = 0.05,
+       .unit = "s",
+       .lower = 1e-4,
+       .upper = 1e5,
+       .scale = 0.05,
+       .doc = "time constant",
+       .scan = {.from = 1.0, .to = 20.0, .count = 4, .over = "step"}},
+  };
+  enum State { z };
+  static constexpr OwnStateSpec states[] = {{.name = "z", .unit = "{output}"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y, T* drift) {
-    const T ahead = in.q[0] - in.z[0];
-    y[0] = -in.c[0] * ahead;
-    drift[0] = ahead / in.c[1];
+    const T ahead = in.q[reading] - in.z[z];
+    y[output] = -in.c[share] * ahead;
+    drift[z] = ahead / in.c[sensor_tau];
   }
 
-  static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[1]; }
+  static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[sensor_tau]; }
 
   static std::vector<Example> examples() {
-    return {{{}, {2.0}, {0.5, 0.1}, {1.0}, 0.0, {-0.5}, {10.0}, "0.5 (1 - 2); (2 - 1)/0.1"},
-            {{}, {-1.0}, {1.0, 0.5}, {1.0}, 0.0, {2.0}, {-4.0}, "by hand"}};
+    return {{.quantities = {2.0},
+             .coefficients = {0.5, 0.1},
+             .states = {1.0},
+             .ports = {-0.5},
+             .drifts = {10.0},
+             .source = "0.5 (1 - 2); (2 - 1)/0.1"},
+            {.quantities = {-1.0}, .coefficients = {1.0, 0.5}, .states = {1.0}, .ports = {2.0}, .drifts = {-4.0}, .source = "by hand"}};
   }
 };
 

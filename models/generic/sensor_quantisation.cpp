@@ -19,12 +19,24 @@ struct SensorQuantisation {
   static constexpr const char* source =
       "B. Widrow, I. Kollar, Quantization Noise (2008), ch. 2: the rounding error as a sawtooth; its Fourier series";
   static constexpr const char* excludes = "steps that are not even, rounding down (bias), hysteresis between steps (backlash)";
-  static constexpr Role quantities[] = {{"reading", "*"}};
-  static constexpr Role ports[] = {{"output", "{reading}"}};
+  enum Quantity { reading };
+  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Port { output };
+  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  enum Coefficient { rounded, step };
   static constexpr CoefficientSpec coefficients[] = {
-      {"rounded", CoefficientKind::strength, 0.0, "-", 0.0, 1.0, 0.1, "share of the rounding"},
-      held(scanned({"step", CoefficientKind::shape, 0.1, "{output}", 1e-9, 1e9, 0.1, "smallest difference of two readings"},
-                   {0.05, 0.2, 3, "|reading|"}))};
+      {.name = "rounded", .unit = "-", .lower = 0.0, .upper = 1.0, .scale = 0.1, .doc = "share of the rounding"},
+      {.name = "step",
+       .kind = CoefficientKind::shape,
+       .value = 0.1,
+       .unit = "{output}",
+       .lower = 1e-9,
+       .upper = 1e9,
+       .scale = 0.1,
+       .doc = "smallest difference of two readings",
+       .fixed = true,
+       .scan = {.from = 0.05, .to = 0.2, .count = 3, .over = "|reading|"}},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
@@ -32,13 +44,19 @@ struct SensorQuantisation {
     constexpr int harmonics = 3;
     constexpr double pi = std::numbers::pi;
     T sum(0.0);
-    for (int k = 1; k <= harmonics; ++k) sum += T((k % 2 == 0 ? 1.0 : -1.0) / k) * sin(2.0 * pi * k * in.q[0] / in.c[1]);
-    y[0] = in.c[0] * in.c[1] / pi * sum;
+    for (int k = 1; k <= harmonics; ++k) sum += T((k % 2 == 0 ? 1.0 : -1.0) / k) * sin(2.0 * pi * k * in.q[reading] / in.c[step]);
+    y[output] = in.c[rounded] * in.c[step] / pi * sum;
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.3}, {1.0, 1.0}, {}, 0.0, {-0.3339136}, {}, "(-0.951057 - 0.587785/2 + 0.587785/3)/pi, by hand; the sawtooth: -0.3"},
-            {{}, {0.6}, {0.5, 0.5}, {}, 0.0, {-0.03670395}, {}, "0.25 (-0.951057 + 0.587785/2 + 0.587785/3)/pi, by hand"}};
+    return {{.quantities = {0.3},
+             .coefficients = {1.0, 1.0},
+             .ports = {-0.3339136},
+             .source = "(-0.951057 - 0.587785/2 + 0.587785/3)/pi, by hand; the sawtooth: -0.3"},
+            {.quantities = {0.6},
+             .coefficients = {0.5, 0.5},
+             .ports = {-0.03670395},
+             .source = "0.25 (-0.951057 + 0.587785/2 + 0.587785/3)/pi, by hand"}};
   }
 };
 

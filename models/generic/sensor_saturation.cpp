@@ -15,21 +15,46 @@ struct SensorSaturation {
   static constexpr const char* size = "readings of 10.5 V at a ceiling of 10 V are 0.5 V too high without it";
   static constexpr const char* source = "JCGM 200:2012 (VIM), 4.7: measuring interval";
   static constexpr const char* excludes = "a level that is itself limited (overflow)";
-  static constexpr Role quantities[] = {{"reading", "*"}};
-  static constexpr Role ports[] = {{"output", "{reading}"}};
+  enum Quantity { reading };
+  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Port { output };
+  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  enum Coefficient { clipped, ceiling, floor };
   static constexpr CoefficientSpec coefficients[] = {
-      {"clipped", CoefficientKind::strength, 0.0, "-", 0.0, 1.0, 0.1, "share of what lies beyond the range that is not read"},
-      scanned({"ceiling", CoefficientKind::shape, 1.0, "{output}", -1e9, 1e9, 0.1, "highest reading"}, {0.6, 0.99, 6, "reading"}),
-      held({"floor", CoefficientKind::shape, -1e9, "{output}", -1e9, 1e9, 0.1, "lowest reading; -1e9: none"})};
+      {.name = "clipped",
+       .unit = "-",
+       .lower = 0.0,
+       .upper = 1.0,
+       .scale = 0.1,
+       .doc = "share of what lies beyond the range that is not read"},
+      {.name = "ceiling",
+       .kind = CoefficientKind::shape,
+       .value = 1.0,
+       .unit = "{output}",
+       .lower = -1e9,
+       .upper = 1e9,
+       .scale = 0.1,
+       .doc = "highest reading",
+       .scan = {.from = 0.6, .to = 0.99, .count = 6, .over = "reading"}},
+      {.name = "floor",
+       .kind = CoefficientKind::shape,
+       .value = -1e9,
+       .unit = "{output}",
+       .lower = -1e9,
+       .upper = 1e9,
+       .scale = 0.1,
+       .doc = "lowest reading; -1e9: none",
+       .fixed = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
-    y[0] = in.c[0] * (above(T(in.c[2] - in.q[0])) - above(T(in.q[0] - in.c[1])));
+    y[output] = in.c[clipped] * (above(T(in.c[floor] - in.q[reading])) - above(T(in.q[reading] - in.c[ceiling])));
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {10.5}, {1.0, 10.0, 0.5}, {}, 0.0, {-0.5}, {}, "by hand: cut to 10"},
-            {{}, {-2.0}, {0.5, 3.0, -1.0}, {}, 0.0, {0.5}, {}, "by hand: half of what lies below -1"}};
+    return {{.quantities = {10.5}, .coefficients = {1.0, 10.0, 0.5}, .ports = {-0.5}, .source = "by hand: cut to 10"},
+            {.quantities = {-2.0}, .coefficients = {0.5, 3.0, -1.0}, .ports = {0.5}, .source = "by hand: half of what lies below -1"}};
   }
 };
 

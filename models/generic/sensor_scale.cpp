@@ -12,18 +12,23 @@ struct SensorScale {
   static constexpr const char* size = "1 % of the reading for 0.01";
   static constexpr const char* source = "JCGM 200:2012 (VIM), 4.12: sensitivity";
   static constexpr const char* excludes = "offset (bias), saturation";
-  static constexpr Role quantities[] = {{"reading", "*"}};
-  static constexpr Role ports[] = {{"output", "{reading}"}};
+  enum Quantity { reading };
+  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Port { output };
+  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  enum Coefficient { scale_error };
   static constexpr CoefficientSpec coefficients[] = {
-      {"scale_error", CoefficientKind::strength, 0.0, "-", -1.0, 1.0, 0.01, "relative error"}};
+      {.name = "scale_error", .unit = "-", .lower = -1.0, .upper = 1.0, .scale = 0.01, .doc = "relative error"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
-    y[0] = in.c[0] * in.q[0];
+    y[output] = in.c[scale_error] * in.q[reading];
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {3.0}, {0.02}, {}, 0.0, {0.06}, {}, "2 % of 3"}, {{}, {-5.0}, {0.1}, {}, 0.0, {-0.5}, {}, "by hand"}};
+    return {{.quantities = {3.0}, .coefficients = {0.02}, .ports = {0.06}, .source = "2 % of 3"},
+            {.quantities = {-5.0}, .coefficients = {0.1}, .ports = {-0.5}, .source = "by hand"}};
   }
 };
 

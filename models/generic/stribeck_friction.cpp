@@ -19,51 +19,67 @@ struct StribeckFriction {
       "Makkar, Dixon, Sawyer, Hu, IEEE/ASME AIM (2005): tanh(g2 v) - tanh(g3 v) as the Stribeck part of a smooth friction";
   static constexpr const char* excludes = "the sliding friction itself (coulomb_friction), sticking, memory of the contact (hysteresis)";
   static constexpr bool dissipative = true;
-  static constexpr Role quantities[] = {{"rate", "*"}, {"inertia", "*", true}, {"rate_lateral", "*", true, false, "rate"}};
-  static constexpr Role ports[] = {{"port", "*"}, {"port_lateral", "*", true, false, "port"}};
+  enum Quantity { rate, inertia, rate_lateral };
+  static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
+                                        {.name = "inertia", .unit = "*", .optional = true},
+                                        {.name = "rate_lateral", .unit = "*", .optional = true, .completes = "rate"}};
+  enum Port { port, port_lateral };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"},
+                                   {.name = "port_lateral", .unit = "*", .optional = true, .completes = "port"}};
+  enum Coefficient { breakaway, stribeck_ratio, width };
   static constexpr CoefficientSpec coefficients[] = {
-      {"breakaway", CoefficientKind::strength, 0.0, "{port}", 0.0, 1e6, 1.0,
-       "size of the excess; its peak is 0.30, 0.61, 0.82 of it at a ratio of 2, 5, 14"},
-      scanned({"stribeck_ratio", CoefficientKind::shape, 5.0, "-", 1.01, 1e3, 1.0,
-               "rate at which the excess has fallen to a quarter of `breakaway`, over the width"},
-              {2.0, 14.0, 4}),
-      borrowed_coefficient("width", "{rate}", "smoothing of coulomb_friction", 0.1, 1e-6)};
+      {.name = "breakaway",
+       .unit = "{port}",
+       .lower = 0.0,
+       .upper = 1e6,
+       .scale = 1.0,
+       .doc = "size of the excess; its peak is 0.30, 0.61, 0.82 of it at a ratio of 2, 5, 14"},
+      {.name = "stribeck_ratio",
+       .kind = CoefficientKind::shape,
+       .value = 5.0,
+       .unit = "-",
+       .lower = 1.01,
+       .upper = 1e3,
+       .scale = 1.0,
+       .doc = "rate at which the excess has fallen to a quarter of `breakaway`, over the width",
+       .scan = {.from = 2.0, .to = 14.0, .count = 4}},
+      {.name = "width",
+       .kind = CoefficientKind::shape,
+       .value = 0.1,
+       .unit = "{rate}",
+       .lower = 1e-6,
+       .upper = 1e6,
+       .doc = "smoothing of coulomb_friction",
+       .borrowed = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    const T along = in.q[0] / in.c[2], across = in.q[2] / in.c[2];
+    const T along = in.q[rate] / in.c[width], across = in.q[rate_lateral] / in.c[width];
     const T s = along * along + across * across;
-    const T slow = 1.0 / in.c[1];
+    const T slow = 1.0 / in.c[stribeck_ratio];
     // tanh a - tanh b = tanh(a - b) (1 - tanh a tanh b): of two equal numbers never the wrong sign.
     const T fading = above(T(1.0 - slow * s * tanh_over(s) * tanh_over(T(slow * slow * s))));
-    const T excess = in.c[0] * (1.0 - slow) * tanh_over(T((1.0 - slow) * (1.0 - slow) * s)) * fading;
-    F[0] = -excess * along;
-    F[1] = -excess * across;
+    const T excess = in.c[breakaway] * (1.0 - slow) * tanh_over(T((1.0 - slow) * (1.0 - slow) * s)) * fading;
+    F[port] = -excess * along;
+    F[port_lateral] = -excess * across;
   }
 
   /// Slope at rate 0 over the inertia, as for coulomb_friction.
   static double fastest_rate(const Reads<double, double>& in) {
-    const double inertia = in.q[1] > 0.0 ? in.q[1] : 1.0;
-    return in.c[0] * (1.0 - 1.0 / in.c[1]) / (in.c[2] * inertia);
+    const double I = in.q[inertia] > 0.0 ? in.q[inertia] : 1.0;
+    return in.c[breakaway] * (1.0 - 1.0 / in.c[stribeck_ratio]) / (in.c[width] * I);
   }
 
   static std::vector<Example> examples() {
-    return {{{},
-             {0.05, 5.0, 0.0},
-             {8.0, 10.0, 0.01},
-             {},
-             0.0,
-             {-4.30233652, 0.0},
-             {},
-             "8 (tanh(5) - tanh(0.5)) = 8 x (0.99990920 - 0.46211716)"},
-            {{},
-             {-0.3, 0.0, 0.4},
-             {2.0, 5.0, 0.1},
-             {},
-             0.0,
-             {0.285978336, -0.381304448},
-             {},
-             "|rate| = 0.5: 2 (tanh(5) - tanh(1)) x (-0.6, 0.8), against"}};
+    return {{.quantities = {0.05, 5.0, 0.0},
+             .coefficients = {8.0, 10.0, 0.01},
+             .ports = {-4.30233652, 0.0},
+             .source = "8 (tanh(5) - tanh(0.5)) = 8 x (0.99990920 - 0.46211716)"},
+            {.quantities = {-0.3, 0.0, 0.4},
+             .coefficients = {2.0, 5.0, 0.1},
+             .ports = {0.285978336, -0.381304448},
+             .source = "|rate| = 0.5: 2 (tanh(5) - tanh(1)) x (-0.6, 0.8), against"}};
   }
 };
 

@@ -12,17 +12,21 @@ struct TimeOffset {
   static constexpr const char* size = "20 ms at 1 rad/s: 0.02 rad";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "drift of the clock";
-  static constexpr Role ports[] = {{"sample_time", "s"}};
+  enum Port { sample_time };
+  static constexpr Role ports[] = {{.name = "sample_time", .unit = "s"}};
+  enum Coefficient { clock_offset };
   static constexpr CoefficientSpec coefficients[] = {
-      {"clock_offset", CoefficientKind::strength, 0.0, "s", -1.0, 1.0, 0.01, "offset of the clock"}};
+      {.name = "clock_offset", .unit = "s", .lower = -1.0, .upper = 1.0, .scale = 0.01, .doc = "offset of the clock"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
-    y[0] = in.c[0];
+    y[sample_time] = in.c[clock_offset];
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {0.02}, {}, 5.0, {0.02}, {}, "the offset itself"}, {{}, {}, {-0.5}, {}, 0.0, {-0.5}, {}, "early"}};
+    return {{.coefficients = {0.02}, .t = 5.0, .ports = {0.02}, .source = "the offset itself"},
+            {.coefficients = {-0.5}, .ports = {-0.5}, .source = "early"}};
   }
 };
 

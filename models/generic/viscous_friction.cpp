@@ -13,21 +13,35 @@ struct ViscousFriction {
   static constexpr const char* size = "1 N m s/rad at 1 rad/s: 1 N m; C_mq = -0.25 gives 12.8 N m there";
   static constexpr const char* source = "Rayleigh, The Theory of Sound I (1894), section 81: dissipation function F = c x'^2/2";
   static constexpr const char* excludes = "sticking (coulomb_friction), quadratic drag";
-  static constexpr Role quantities[] = {{"rate", "*"}, {"rate_lateral", "*", true, false, "rate"}};
-  static constexpr Role ports[] = {{"port", "*"}, {"port_lateral", "*", true, false, "port"}};
+  enum Quantity { rate, rate_lateral };
+  static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
+                                        {.name = "rate_lateral", .unit = "*", .optional = true, .completes = "rate"}};
+  enum Port { port, port_lateral };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"},
+                                   {.name = "port_lateral", .unit = "*", .optional = true, .completes = "port"}};
+  enum Coefficient { viscosity };
   static constexpr CoefficientSpec coefficients[] = {
-      {"viscosity", CoefficientKind::strength, 0.0, "{port}/{rate}", 0.0, 1e6, 1.0, "force per rate; positive takes energy out"}};
+      {.name = "viscosity",
+       .unit = "{port}/{rate}",
+       .lower = 0.0,
+       .upper = 1e6,
+       .scale = 1.0,
+       .doc = "force per rate; positive takes energy out"},
+  };
   static constexpr bool dissipative = true;
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = -in.c[0] * in.q[0];
-    F[1] = -in.c[0] * in.q[1];
+    F[port] = -in.c[viscosity] * in.q[rate];
+    F[port_lateral] = -in.c[viscosity] * in.q[rate_lateral];
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {2.0, 0.0}, {0.75}, {}, 0.0, {-1.5, 0.0}, {}, "by hand: 0.75 x 2, against the rate"},
-            {{}, {-0.4, 0.3}, {5.0}, {}, 0.0, {2.0, -1.5}, {}, "by hand: 5 x 0.4 and 5 x 0.3, against the rate"}};
+    return {{.quantities = {2.0, 0.0}, .coefficients = {0.75}, .ports = {-1.5, 0.0}, .source = "by hand: 0.75 x 2, against the rate"},
+            {.quantities = {-0.4, 0.3},
+             .coefficients = {5.0},
+             .ports = {2.0, -1.5},
+             .source = "by hand: 5 x 0.4 and 5 x 0.3, against the rate"}};
   }
 };
 

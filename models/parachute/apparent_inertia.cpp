@@ -13,21 +13,30 @@ struct ApparentInertia {
   static constexpr const char* source =
       "Cockrell and Doherr, AIAA 1981-1940: apparent mass of parachutes depends on the direction of the acceleration";
   static constexpr const char* excludes = "the moment dI/dt omega, apparent mass of the lateral motion alone";
-  static constexpr Role quantities[] = {{"eta", "rad"}};
-  static constexpr Role ports[] = {{"inertia", "kg m^2"}};
+  enum Quantity { eta };
+  static constexpr Role quantities[] = {{.name = "eta", .unit = "rad"}};
+  enum Port { inertia };
+  static constexpr Role ports[] = {{.name = "inertia", .unit = "kg m^2"}};
+  enum Coefficient { inertia_growth };
   static constexpr CoefficientSpec coefficients[] = {
-      {"inertia_growth", CoefficientKind::strength, 0.0, "kg m^2", -100.0, 1e4, 10.0, "inertia per squared sine of the tilt"}};
+      {.name = "inertia_growth",
+       .unit = "kg m^2",
+       .lower = -100.0,
+       .upper = 1e4,
+       .scale = 10.0,
+       .doc = "inertia per squared sine of the tilt"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
     using std::sin;
-    const T sine = sin(in.q[0]);
-    P[0] = in.c[0] * sine * sine;
+    const T sine = sin(in.q[eta]);
+    P[inertia] = in.c[inertia_growth] * sine * sine;
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.52359878}, {8.0}, {}, 0.0, {2.0}, {}, "by hand: sin 30 deg = 1/2"},
-            {{}, {-0.20943951}, {20.0}, {}, 0.0, {0.86454542}, {}, "20 x 0.20791169^2"}};
+    return {{.quantities = {0.52359878}, .coefficients = {8.0}, .ports = {2.0}, .source = "by hand: sin 30 deg = 1/2"},
+            {.quantities = {-0.20943951}, .coefficients = {20.0}, .ports = {0.86454542}, .source = "20 x 0.20791169^2"}};
   }
 };
 

@@ -13,25 +13,44 @@ struct CameraHeightError {
   static constexpr const char* size = "1 in (Table 2): 9 px, of which less than 1 px varies with the tilt up to 20 deg";
   static constexpr const char* source = "paper Eqs. 1 and 7; Table 2: h_c +-0.0254 m, read as 3 sigma";
   static constexpr const char* excludes = "a camera that looks up or down (image_centre), which it resembles";
-  static constexpr Role quantities[] = {{"image_scale", "px/m"}};
-  static constexpr Role ports[] = {{"P_y", "px"}, {"P_z", "px"}};
+  enum Quantity { image_scale };
+  static constexpr Role quantities[] = {{.name = "image_scale", .unit = "px/m"}};
+  enum Port { P_y, P_z };
+  static constexpr Role ports[] = {{.name = "P_y", .unit = "px"}, {.name = "P_z", .unit = "px"}};
+  enum Constant { camera_roll };
   static constexpr const char* constants[] = {"camera_roll"};
-  static constexpr CoefficientSpec coefficients[] = {{"h_c_error", CoefficientKind::strength, 0.0, "m", -100.0, 100.0, 0.01,
-                                                      "what is to be added to h_c", Parity::none, "", false, false, ScanSpec{}, "h_c",
-                                                      0.0254 / 3.0}};
+  enum Coefficient { h_c_error };
+  static constexpr CoefficientSpec coefficients[] = {
+      {.name = "h_c_error",
+       .unit = "m",
+       .lower = -100.0,
+       .upper = 100.0,
+       .scale = 0.01,
+       .doc = "what is to be added to h_c",
+       .calibrated_as = "h_c",
+       .prior_sigma = 0.0254 / 3.0},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
     using std::cos;
     using std::sin;
-    const T shift = in.c[0] * in.q[0];
-    P[0] = -shift * sin(in.k[0]);
-    P[1] = shift * cos(in.k[0]);
+    const T shift = in.c[h_c_error] * in.q[image_scale];
+    P[P_y] = -shift * sin(in.k[camera_roll]);
+    P[P_z] = shift * cos(in.k[camera_roll]);
   }
 
   static std::vector<Example> examples() {
-    return {{{0.52359878}, {350.0}, {0.02}, {}, 0.0, {-3.5, 6.06217783}, {}, "7 px, turned by 30 deg"},
-            {{0.052359878}, {300.0}, {-0.1}, {}, 0.0, {1.57007869, -29.9588860}, {}, "30 px, turned by 3 deg"}};
+    return {{.constants = {0.52359878},
+             .quantities = {350.0},
+             .coefficients = {0.02},
+             .ports = {-3.5, 6.06217783},
+             .source = "7 px, turned by 30 deg"},
+            {.constants = {0.052359878},
+             .quantities = {300.0},
+             .coefficients = {-0.1},
+             .ports = {1.57007869, -29.9588860},
+             .source = "30 px, turned by 3 deg"}};
   }
 };
 

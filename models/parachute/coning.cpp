@@ -12,19 +12,23 @@ struct Coning {
   static constexpr const char* size = "I = 4.96 kg m^2, phi' = 5 rad/s, eta = 12 deg: 25 N m, as large as the random moment";
   static constexpr const char* source = "spherical pendulum, eta'' = phi'^2 sin(eta) cos(eta) + M/I (Goldstein, Classical Mechanics)";
   static constexpr const char* excludes = "exchange of angular momentum with the lateral motion";
-  static constexpr Role quantities[] = {{"inertia", "kg m^2"}, {"phi_rate", "rad/s"}, {"eta", "rad"}};
-  static constexpr Role ports[] = {{"pitching_moment", "N m"}};
+  enum Quantity { inertia, phi_rate, eta };
+  static constexpr Role quantities[] = {
+      {.name = "inertia", .unit = "kg m^2"}, {.name = "phi_rate", .unit = "rad/s"}, {.name = "eta", .unit = "rad"}};
+  enum Port { pitching_moment };
+  static constexpr Role ports[] = {{.name = "pitching_moment", .unit = "N m"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::cos;
     using std::sin;
-    F[0] = in.q[0] * in.q[1] * in.q[1] * sin(in.q[2]) * cos(in.q[2]);
+    F[pitching_moment] = in.q[inertia] * in.q[phi_rate] * in.q[phi_rate] * sin(in.q[eta]) * cos(in.q[eta]);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {4.96125, 5.0, 0.20943951}, {}, {}, 0.0, {25.224027}, {}, "4.96125 x 25 x sin(24 deg)/2 = 124.03125 x 0.20336832"},
-            {{}, {2.0, 3.0, 0.78539816}, {}, {}, 0.0, {9.0}, {}, "by hand: 2 x 9 x sin 45 cos 45 = 9"}};
+    return {
+        {.quantities = {4.96125, 5.0, 0.20943951}, .ports = {25.224027}, .source = "4.96125 x 25 x sin(24 deg)/2 = 124.03125 x 0.20336832"},
+        {.quantities = {2.0, 3.0, 0.78539816}, .ports = {9.0}, .source = "by hand: 2 x 9 x sin 45 cos 45 = 9"}};
   }
 };
 

@@ -13,20 +13,35 @@ struct DynamicPressureDrift {
   static constexpr const char* source = "definition; tunnels hold q to about 1 %";
   static constexpr const char* excludes = "gusts, unsteadiness faster than the recording";
   static constexpr const char* specialises = "drift";
-  static constexpr Role ports[] = {{"dynamic_pressure", "Pa"}};
+  enum Port { dynamic_pressure };
+  static constexpr Role ports[] = {{.name = "dynamic_pressure", .unit = "Pa"}};
+  enum Coefficient { pressure_drift, t_drift };
   static constexpr CoefficientSpec coefficients[] = {
-      {"pressure_drift", CoefficientKind::strength, 0.0, "Pa/s", -1e4, 1e4, 0.5, "rate of change of the dynamic pressure"},
-      {"t_drift", CoefficientKind::shape, 0.0, "s", -1e6, 1e6, 10.0, "time at which the dynamic pressure is the nominal one", Parity::none,
-       "", false, true}};
+      {.name = "pressure_drift",
+       .unit = "Pa/s",
+       .lower = -1e4,
+       .upper = 1e4,
+       .scale = 0.5,
+       .doc = "rate of change of the dynamic pressure"},
+      {.name = "t_drift",
+       .kind = CoefficientKind::shape,
+       .value = 0.0,
+       .unit = "s",
+       .lower = -1e6,
+       .upper = 1e6,
+       .scale = 10.0,
+       .doc = "time at which the dynamic pressure is the nominal one",
+       .fixed = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
-    P[0] = in.c[0] * (in.t - in.c[1]);
+    P[dynamic_pressure] = in.c[pressure_drift] * (in.t - in.c[t_drift]);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {0.5, 10.0}, {}, 90.0, {40.0}, {}, "0.5 Pa/s for 80 s"},
-            {{}, {}, {-2.0, 4.0}, {}, 1.0, {6.0}, {}, "by hand: -2 x -3"}};
+    return {{.coefficients = {0.5, 10.0}, .t = 90.0, .ports = {40.0}, .source = "0.5 Pa/s for 80 s"},
+            {.coefficients = {-2.0, 4.0}, .t = 1.0, .ports = {6.0}, .source = "by hand: -2 x -3"}};
   }
 };
 

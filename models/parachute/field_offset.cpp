@@ -15,21 +15,32 @@ struct FieldOffset {
   static constexpr const char* size = "0.5 px where fields are taken for frames: as large as the reading noise, at half the sampling rate";
   static constexpr const char* source = "ITU-R BT.601: a field holds every second line";
   static constexpr const char* excludes = "fields that are not equally spaced in time";
-  static constexpr Role ports[] = {{"P_z", "px"}};
+  enum Port { P_z };
+  static constexpr Role ports[] = {{.name = "P_z", .unit = "px"}};
+  enum Coefficient { field_shift, field_rate };
   static constexpr CoefficientSpec coefficients[] = {
-      {"field_shift", CoefficientKind::strength, 0.0, "px", -100.0, 100.0, 0.2, "shift of the first field, downwards"},
-      {"field_rate", CoefficientKind::shape, 59.94, "Hz", 1e-3, 1e6, 1.0, "fields per second", Parity::none, "", false, true}};
+      {.name = "field_shift", .unit = "px", .lower = -100.0, .upper = 100.0, .scale = 0.2, .doc = "shift of the first field, downwards"},
+      {.name = "field_rate",
+       .kind = CoefficientKind::shape,
+       .value = 59.94,
+       .unit = "Hz",
+       .lower = 1e-3,
+       .upper = 1e6,
+       .scale = 1.0,
+       .doc = "fields per second",
+       .fixed = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
-    const double field = std::round(in.t * value_of(in.c[1]));
-    P[0] = std::fmod(std::abs(field), 2.0) == 0.0 ? T(in.c[0]) : T(-in.c[0]);
+    const double field = std::round(in.t * value_of(in.c[field_rate]));
+    P[P_z] = std::fmod(std::abs(field), 2.0) == 0.0 ? T(in.c[field_shift]) : T(-in.c[field_shift]);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {0.5, 59.94}, {}, 0.0, {0.5}, {}, "the first field"},
-            {{}, {}, {0.5, 59.94}, {}, 1001.0 / 60000.0, {-0.5}, {}, "the second"},
-            {{}, {}, {-0.3, 59.94}, {}, 79.4127458, {-0.3}, {}, "sample 4760 of a flight"}};
+    return {{.coefficients = {0.5, 59.94}, .ports = {0.5}, .source = "the first field"},
+            {.coefficients = {0.5, 59.94}, .t = 1001.0 / 60000.0, .ports = {-0.5}, .source = "the second"},
+            {.coefficients = {-0.3, 59.94}, .t = 79.4127458, .ports = {-0.3}, .source = "sample 4760 of a flight"}};
   }
 };
 

@@ -15,22 +15,35 @@ struct FlowAngularity {
   static constexpr const char* source = "geometry; AGARD-AG-184 (1975) on flow angularity of wind tunnels";
   static constexpr const char* excludes =
       "swirl and gradients; a camera whose centre is off by l_b K R tan(angle)/(l_s - R) looks the same (image_centre)";
-  static constexpr Role ports[] = {{"wind_y", "m/s"}, {"wind_z", "m/s"}};
+  enum Port { wind_y, wind_z };
+  static constexpr Role ports[] = {{.name = "wind_y", .unit = "m/s"}, {.name = "wind_z", .unit = "m/s"}};
+  enum Constant { V };
   static constexpr const char* constants[] = {"V"};
+  enum Coefficient { flow_theta, flow_psi };
   static constexpr CoefficientSpec coefficients[] = {
-      {"flow_theta", CoefficientKind::strength, 0.0, "rad", -0.5, 0.5, 0.01, "angle of the wind downwards"},
-      {"flow_psi", CoefficientKind::strength, 0.0, "rad", -0.5, 0.5, 0.01, "angle of the wind to the left, looking upstream"}};
+      {.name = "flow_theta", .unit = "rad", .lower = -0.5, .upper = 0.5, .scale = 0.01, .doc = "angle of the wind downwards"},
+      {.name = "flow_psi",
+       .unit = "rad",
+       .lower = -0.5,
+       .upper = 0.5,
+       .scale = 0.01,
+       .doc = "angle of the wind to the left, looking upstream"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
     using std::tan;
-    P[0] = in.k[0] * tan(in.c[1]);
-    P[1] = in.k[0] * tan(in.c[0]);
+    P[wind_y] = in.k[V] * tan(in.c[flow_psi]);
+    P[wind_z] = in.k[V] * tan(in.c[flow_theta]);
   }
 
   static std::vector<Example> examples() {
-    return {{{35.1}, {}, {0.031415927, -0.019198622}, {}, 0.0, {-0.67395436, 1.1030622}, {}, "35.1 tan(1.1 deg), 35.1 tan(1.8 deg)"},
-            {{10.0}, {}, {-0.46364761, 0.24497866}, {}, 0.0, {2.5, -5.0}, {}, "by hand: tangents 1/2 and 1/4"}};
+    return {
+        {.constants = {35.1},
+         .coefficients = {0.031415927, -0.019198622},
+         .ports = {-0.67395436, 1.1030622},
+         .source = "35.1 tan(1.1 deg), 35.1 tan(1.8 deg)"},
+        {.constants = {10.0}, .coefficients = {-0.46364761, 0.24497866}, .ports = {2.5, -5.0}, .source = "by hand: tangents 1/2 and 1/4"}};
   }
 };
 

@@ -14,27 +14,45 @@ struct Gust {
   static constexpr const char* size = "27 N m with 0.1 s: what drives the flights of the data";
   static constexpr const char* source = "Uhlenbeck and Ornstein, Phys. Rev. 36 (1930); Dryden's first-order spectrum of turbulence";
   static constexpr const char* excludes = "lines in the spectrum (vortex_shedding), gusts as wind instead of as moments";
-  static constexpr Role ports[] = {{"moment_y", "N m"}, {"moment_z", "N m"}};
+  enum Port { moment_y, moment_z };
+  static constexpr Role ports[] = {{.name = "moment_y", .unit = "N m"}, {.name = "moment_z", .unit = "N m"}};
+  enum Coefficient { gust_sigma, gust_tau };
   static constexpr CoefficientSpec coefficients[] = {
-      {"gust_sigma", CoefficientKind::strength, 0.0, "N m", 0.0, 1e6, 10.0, "standard deviation of the random moment, per axis"},
-      {"gust_tau", CoefficientKind::shape, 0.1, "s", 1e-3, 1e3, 0.05, "correlation time", Parity::none, "", false, false, {0.03, 1.0, 4}}};
-  static constexpr OwnStateSpec states[] = {{"g_y", "-", 0.0}, {"g_z", "-", 0.0}};
+      {.name = "gust_sigma",
+       .unit = "N m",
+       .lower = 0.0,
+       .upper = 1e6,
+       .scale = 10.0,
+       .doc = "standard deviation of the random moment, per axis"},
+      {.name = "gust_tau",
+       .kind = CoefficientKind::shape,
+       .value = 0.1,
+       .unit = "s",
+       .lower = 1e-3,
+       .upper = 1e3,
+       .scale = 0.05,
+       .doc = "correlation time",
+       .scan = {.from = 0.03, .to = 1.0, .count = 4}},
+  };
+  enum State { g_y, g_z };
+  static constexpr OwnStateSpec states[] = {{.name = "g_y", .unit = "-"}, {.name = "g_z", .unit = "-"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F, T* drift) {
-    for (int axis = 0; axis < 2; ++axis) {
-      F[axis] = in.c[0] * in.z[axis];
-      drift[axis] = -in.z[axis] / in.c[1];
-    }
+    F[moment_y] = in.c[gust_sigma] * in.z[g_y];
+    F[moment_z] = in.c[gust_sigma] * in.z[g_z];
+    drift[g_y] = -in.z[g_y] / in.c[gust_tau];
+    drift[g_z] = -in.z[g_z] / in.c[gust_tau];
   }
 
-  static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[1]; }
+  static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[gust_tau]; }
 
-  static void diffusion(const Reads<double, double>& in, double* out) { out[0] = out[1] = std::sqrt(2.0 / in.c[1]); }
+  static void diffusion(const Reads<double, double>& in, double* out) { out[g_y] = out[g_z] = std::sqrt(2.0 / in.c[gust_tau]); }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {27.0, 0.1}, {1.0, -0.5}, 0.0, {27.0, -13.5}, {-10.0, 5.0}, "by hand"},
-            {{}, {}, {10.0, 0.5}, {-0.3, 2.0}, 4.0, {-3.0, 20.0}, {0.6, -4.0}, "by hand"}};
+    return {
+        {.coefficients = {27.0, 0.1}, .states = {1.0, -0.5}, .ports = {27.0, -13.5}, .drifts = {-10.0, 5.0}, .source = "by hand"},
+        {.coefficients = {10.0, 0.5}, .states = {-0.3, 2.0}, .t = 4.0, .ports = {-3.0, 20.0}, .drifts = {0.6, -4.0}, .source = "by hand"}};
   }
 };
 

@@ -14,22 +14,37 @@ struct ImageCentre {
   static constexpr const char* excludes =
       "a camera that shakes or drifts; wind that is not along the tunnel axis looks the same (flow_angularity)";
   static constexpr const char* specialises = "bias";  // which would shift P_z without the prior that the calibration gives
-  static constexpr Role ports[] = {{"P_y", "px"}, {"P_z", "px"}};
+  enum Port { P_y, P_z };
+  static constexpr Role ports[] = {{.name = "P_y", .unit = "px"}, {.name = "P_z", .unit = "px"}};
+  enum Coefficient { centre_y_error, centre_z_error };
   static constexpr CoefficientSpec coefficients[] = {
-      {"centre_y_error", CoefficientKind::strength, 0.0, "px", -1e4, 1e4, 3.0, "shift of P_y beyond the calibration", Parity::none, "",
-       false, false, ScanSpec{}, "centre_y", 10.0 / 3.0},
-      {"centre_z_error", CoefficientKind::strength, 0.0, "px", -1e4, 1e4, 3.0, "shift of P_z beyond the calibration", Parity::none, "",
-       false, false, ScanSpec{}, "centre_z", 10.0 / 3.0}};
+      {.name = "centre_y_error",
+       .unit = "px",
+       .lower = -1e4,
+       .upper = 1e4,
+       .scale = 3.0,
+       .doc = "shift of P_y beyond the calibration",
+       .calibrated_as = "centre_y",
+       .prior_sigma = 10.0 / 3.0},
+      {.name = "centre_z_error",
+       .unit = "px",
+       .lower = -1e4,
+       .upper = 1e4,
+       .scale = 3.0,
+       .doc = "shift of P_z beyond the calibration",
+       .calibrated_as = "centre_z",
+       .prior_sigma = 10.0 / 3.0},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
-    P[0] = in.c[0];
-    P[1] = in.c[1];
+    P[P_y] = in.c[centre_y_error];
+    P[P_z] = in.c[centre_z_error];
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {}, {6.0, -4.0}, {}, 0.0, {6.0, -4.0}, {}, "the shift itself"},
-            {{}, {}, {-1.5, 2.5}, {}, 9.0, {-1.5, 2.5}, {}, "at any time"}};
+    return {{.coefficients = {6.0, -4.0}, .ports = {6.0, -4.0}, .source = "the shift itself"},
+            {.coefficients = {-1.5, 2.5}, .t = 9.0, .ports = {-1.5, 2.5}, .source = "at any time"}};
   }
 };
 

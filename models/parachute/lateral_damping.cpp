@@ -13,27 +13,47 @@ struct LateralDamping {
   static constexpr const char* size = "-0.25 at 1 rad/s: -12.8 N m at 736 Pa, 35.1 m/s, D = 1.58 m";
   static constexpr const char* source = "Tobak and Schiff, NASA TR R-456 (1976): damping in coning motion is a characteristic of its own";
   static constexpr const char* excludes = "memory of the wake (aerodynamic_lag)";
-  static constexpr Role quantities[] = {
-      {"dynamic_pressure", "Pa"}, {"wind_speed", "m/s", false, true}, {"lateral_rate", "rad/s"}, {"eta", "rad"}};
-  static constexpr Role ports[] = {{"lateral_moment", "N m"}};
+  enum Quantity { dynamic_pressure, wind_speed, lateral_rate, eta };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
+                                        {.name = "wind_speed", .unit = "m/s", .positive = true},
+                                        {.name = "lateral_rate", .unit = "rad/s"},
+                                        {.name = "eta", .unit = "rad"}};
+  enum Port { lateral_moment };
+  static constexpr Role ports[] = {{.name = "lateral_moment", .unit = "N m"}};
+  enum Constant { S, D };
   static constexpr const char* constants[] = {"S", "D"};
-  static constexpr CoefficientSpec coefficients[] = {{"C_lateral", CoefficientKind::strength, 0.0, "-", -50.0, 50.0, 0.25,
-                                                      "lateral damping coefficient besides C_mq; negative takes energy out"}};
+  enum Coefficient { C_lateral };
+  static constexpr CoefficientSpec coefficients[] = {
+      {.name = "C_lateral",
+       .unit = "-",
+       .lower = -50.0,
+       .upper = 50.0,
+       .scale = 0.25,
+       .doc = "lateral damping coefficient besides C_mq; negative takes energy out"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::sin;
     constexpr double covered = 0.02;  // sine of the tilt below which the plane of the tilt means nothing (strut_wake)
-    const T sine = sin(in.q[3]);
+    const T sine = sin(in.q[eta]);
     const T fourth = sine * sine * sine * sine;
     const T open = fourth / (fourth + covered * covered * covered * covered);
-    F[0] = in.q[0] * (in.k[0] * in.k[1] * in.k[1]) / (2.0 * in.q[1]) * in.c[0] * in.q[2] * open;
+    F[lateral_moment] =
+        in.q[dynamic_pressure] * (in.k[S] * in.k[D] * in.k[D]) / (2.0 * in.q[wind_speed]) * in.c[C_lateral] * in.q[lateral_rate] * open;
   }
 
   static std::vector<Example> examples() {
-    return {
-        {{1.9554, 1.5816}, {736.0, 35.1, 1.0, 1.57079633}, {-0.25}, {}, 0.0, {-12.8206356}, {}, "12.8206377/(1 + 0.02^4)"},
-        {{2.0, 3.0}, {100.0, 30.0, -2.0, 0.020001334}, {0.4}, {}, 0.0, {-12.0}, {}, "100 x 2 x 9/60 x 0.4 x -2, half open at sin = 0.02"}};
+    return {{.constants = {1.9554, 1.5816},
+             .quantities = {736.0, 35.1, 1.0, 1.57079633},
+             .coefficients = {-0.25},
+             .ports = {-12.8206356},
+             .source = "12.8206377/(1 + 0.02^4)"},
+            {.constants = {2.0, 3.0},
+             .quantities = {100.0, 30.0, -2.0, 0.020001334},
+             .coefficients = {0.4},
+             .ports = {-12.0},
+             .source = "100 x 2 x 9/60 x 0.4 x -2, half open at sin = 0.02"}};
   }
 };
 

@@ -14,23 +14,38 @@ struct Magnus {
   static constexpr const char* size = "0.05 at 1 rad/s: 2.6 N m at 736 Pa, 35.1 m/s, D = 1.58 m; the plane of the swing turns slowly";
   static constexpr const char* source = "Magnus force of a spinning body; gyroscope: Goldstein, Classical Mechanics, chapter 5";
   static constexpr const char* excludes = "spin that changes, the swivel's own inertia";
-  static constexpr Role quantities[] = {
-      {"dynamic_pressure", "Pa"}, {"wind_speed", "m/s", false, true}, {"pitch_rate", "rad/s"}, {"lateral_rate", "rad/s"}};
-  static constexpr Role ports[] = {{"pitching_moment", "N m"}, {"lateral_moment", "N m"}};
+  enum Quantity { dynamic_pressure, wind_speed, pitch_rate, lateral_rate };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
+                                        {.name = "wind_speed", .unit = "m/s", .positive = true},
+                                        {.name = "pitch_rate", .unit = "rad/s"},
+                                        {.name = "lateral_rate", .unit = "rad/s"}};
+  enum Port { pitching_moment, lateral_moment };
+  static constexpr Role ports[] = {{.name = "pitching_moment", .unit = "N m"}, {.name = "lateral_moment", .unit = "N m"}};
+  enum Constant { S, D };
   static constexpr const char* constants[] = {"S", "D"};
+  enum Coefficient { C_spin };
   static constexpr CoefficientSpec coefficients[] = {
-      {"C_spin", CoefficientKind::strength, 0.0, "-", -50.0, 50.0, 0.05, "coefficient of the moment across the motion"}};
+      {.name = "C_spin", .unit = "-", .lower = -50.0, .upper = 50.0, .scale = 0.05, .doc = "coefficient of the moment across the motion"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    const T moment = in.q[0] * (in.k[0] * in.k[1] * in.k[1]) / (2.0 * in.q[1]) * in.c[0];
-    F[0] = -moment * in.q[3];
-    F[1] = moment * in.q[2];
+    const T moment = in.q[dynamic_pressure] * (in.k[S] * in.k[D] * in.k[D]) / (2.0 * in.q[wind_speed]) * in.c[C_spin];
+    F[pitching_moment] = -moment * in.q[lateral_rate];
+    F[lateral_moment] = moment * in.q[pitch_rate];
   }
 
   static std::vector<Example> examples() {
-    return {{{1.9554, 1.5816}, {736.0, 35.1, 1.0, 0.0}, {0.05}, {}, 0.0, {0.0, 2.56412764}, {}, "2276.1982 x 1.5816/70.2 x 0.05"},
-            {{2.0, 3.0}, {100.0, 30.0, 0.5, -2.0}, {0.4}, {}, 0.0, {24.0, 6.0}, {}, "by hand: 12 x 2, 12 x 0.5"}};
+    return {{.constants = {1.9554, 1.5816},
+             .quantities = {736.0, 35.1, 1.0, 0.0},
+             .coefficients = {0.05},
+             .ports = {0.0, 2.56412764},
+             .source = "2276.1982 x 1.5816/70.2 x 0.05"},
+            {.constants = {2.0, 3.0},
+             .quantities = {100.0, 30.0, 0.5, -2.0},
+             .coefficients = {0.4},
+             .ports = {24.0, 6.0},
+             .source = "by hand: 12 x 2, 12 x 0.5"}};
   }
 };
 

@@ -14,9 +14,13 @@ using namespace misfit;
 struct ParachutePlanar {
   [[maybe_unused]] static constexpr int NU = 2;
   static constexpr int NX = 2, NP = 2, NF = 1, NQ = 10, NK = 7, NY = 1;
+  enum State { tilt, tilt_rate };
+  enum Input { clock_angle, clock_angle_rate };
+  enum Output { measured_tilt };
   enum Constant { D, S, R_cp, m, m_a, qbar, V };
   enum QuantityIndex { eta, pitch_rate, phi, phi_rate, gravity_direction, dynamic_pressure, wind_speed, inertia, alpha_T, wind_cross_axis };
   enum QuantityPort { pressure_port, inertia_port };
+  enum DynamicPort { in_plane };
 
   bool induced = true;
 
@@ -37,17 +41,17 @@ struct ParachutePlanar {
   void quantities(const T* x, const double* u, double /*t*/, const K* k, const T* P, std::uint64_t needed, T* q) const {
     using std::cos;
     using std::sqrt;
-    q[eta] = x[0];
-    q[pitch_rate] = x[1];
-    q[phi] = T(u[0]);
-    q[phi_rate] = T(u[1]);
+    q[eta] = x[tilt];
+    q[pitch_rate] = x[tilt_rate];
+    q[phi] = T(u[clock_angle]);
+    q[phi_rate] = T(u[clock_angle_rate]);
     q[dynamic_pressure] = k[qbar] + P[pressure_port];
     q[inertia] = moment_of_inertia(k, P);
-    if (wants(needed, gravity_direction)) q[gravity_direction] = std::cos(u[0]) * cos(x[0]);
+    if (wants(needed, gravity_direction)) q[gravity_direction] = std::cos(u[clock_angle]) * cos(x[tilt]);
     // The root only where the pressure is changed: it costs as much as everything else here.
     q[wind_speed] = vanishes(P[pressure_port]) ? T(k[V]) : T(k[V] * sqrt(T(q[dynamic_pressure] / k[qbar])));
     if (!induced) {
-      q[alpha_T] = x[0];
+      q[alpha_T] = x[tilt];
       q[wind_cross_axis] = T(1.0);  // alpha_T carries the sign: C_m enters undivided (QuantitySpec::carries_sign)
     } else if (wants(needed, alpha_T) || wants(needed, wind_cross_axis)) {
       felt_wind(x, u, k, q);
@@ -62,25 +66,25 @@ struct ParachutePlanar {
     using std::cos;
     using std::sin;
     using std::sqrt;
-    const T sine = sin(x[0]);
-    const T in_plane = q[wind_speed] * sine + k[R_cp] * x[1];
-    const T across = k[R_cp] * u[1] * sine;
-    const T along = q[wind_speed] * cos(x[0]);
-    const T cross_squared = in_plane * in_plane + across * across;
-    q[wind_cross_axis] = in_plane / sqrt(T(cross_squared + along * along));
+    const T sine = sin(x[tilt]);
+    const T in_plane_wind = q[wind_speed] * sine + k[R_cp] * x[tilt_rate];
+    const T across = k[R_cp] * u[clock_angle_rate] * sine;
+    const T along = q[wind_speed] * cos(x[tilt]);
+    const T cross_squared = in_plane_wind * in_plane_wind + across * across;
+    q[wind_cross_axis] = in_plane_wind / sqrt(T(cross_squared + along * along));
     q[alpha_T] =
         value_of(cross_squared) > 0.0 ? T(atan2(T(sqrt(cross_squared)), along)) : T(value_of(along) < 0.0 ? 3.14159265358979323846 : 0.0);
   }
 
   template <class T, class K>
   void rates(const T* x, const double* /*u*/, double /*t*/, const K* k, const T* P, const T* F, T* dx) const {
-    dx[0] = x[1];
-    dx[1] = F[0] / moment_of_inertia(k, P);
+    dx[tilt] = x[tilt_rate];
+    dx[tilt_rate] = F[in_plane] / moment_of_inertia(k, P);
   }
 
   template <class T, class K>
   void outputs(const T* x, const double* /*u*/, double /*t*/, const K* /*k*/, T* y) const {
-    y[0] = x[0];
+    y[measured_tilt] = x[tilt];
   }
 
   [[nodiscard]] SystemSpec spec() const {
@@ -89,42 +93,43 @@ struct ParachutePlanar {
     s.doc = induced ? "motion in the plane of the tilt, canopy feels V x - R_cp n'" : "the paper's Eq. 8: alpha_T is the state";
     s.formula = "I eta'' = sum of moments, I = (m + m_a) R_cp^2";
     s.source = "paper Eq. 8; lib/misfit/README.md (8) to (11)";
-    s.states = {{"eta", "rad", -1, 0.1}, {"eta_rate", "rad/s", 0, 2.0}};
+    s.states = {{.name = "eta", .unit = "rad", .scale = 0.1}, {.name = "eta_rate", .unit = "rad/s", .rate_of = tilt, .scale = 2.0}};
     s.force_ports = {"pitching_moment"};
-    s.inputs = {{"phi", "rad", "clock angle of the axis, unwrapped", Hold::first_order},
-                {"phi_rate", "rad/s", "its rate", Hold::first_order}};
-    s.quantities = {{"eta", "rad", "geometric tilt of the axis", {}, false},
-                    {"pitch_rate", "rad/s", "rotation rate in the plane of the tilt", {}, false},
-                    {"phi", "rad", "clock angle", {"phi"}, false},
-                    {"phi_rate", "rad/s", "rate of the clock angle", {"phi_rate"}, false},
-                    {"gravity_direction", "-", "cos(phi) cos(eta)", {"phi"}, false, false},
-                    {"dynamic_pressure", "Pa", "free-stream dynamic pressure", {}, false, false},
-                    {"wind_speed", "m/s", "free-stream speed", {}, false, false},
-                    {"inertia", "kg m^2", "(m + m_a) R_cp^2", {}, false, false},
-                    {"alpha_T", "rad", "total angle of attack", {}, false},
-                    {"wind_cross_axis", "-", "in-plane component of (wind direction x axis)", {}, false}};
-    s.base_quantities = 5;
+    s.inputs = {{.name = "phi", .unit = "rad", .doc = "clock angle of the axis, unwrapped", .hold = Hold::first_order},
+                {.name = "phi_rate", .unit = "rad/s", .doc = "its rate", .hold = Hold::first_order}};
+    s.quantities = {{.name = "eta", .unit = "rad", .doc = "geometric tilt of the axis"},
+                    {.name = "pitch_rate", .unit = "rad/s", .doc = "rotation rate in the plane of the tilt"},
+                    {.name = "phi", .unit = "rad", .doc = "clock angle", .inputs = {"phi"}},
+                    {.name = "phi_rate", .unit = "rad/s", .doc = "rate of the clock angle", .inputs = {"phi_rate"}},
+                    {.name = "gravity_direction", .unit = "-", .doc = "cos(phi) cos(eta)", .inputs = {"phi"}, .explains = false},
+                    {.name = "dynamic_pressure", .unit = "Pa", .doc = "free-stream dynamic pressure", .explains = false},
+                    {.name = "wind_speed", .unit = "m/s", .doc = "free-stream speed", .explains = false},
+                    {.name = "inertia", .unit = "kg m^2", .doc = "(m + m_a) R_cp^2", .explains = false},
+                    {.name = "alpha_T", .unit = "rad", .doc = "total angle of attack"},
+                    {.name = "wind_cross_axis", .unit = "-", .doc = "in-plane component of (wind direction x axis)"}};
+    s.base_quantities = dynamic_pressure;
     if (induced) {
       s.quantities[alpha_T].inputs = s.quantities[wind_cross_axis].inputs = {"phi_rate"};
     } else {
       s.quantities[alpha_T].carries_sign = true;
     }
-    s.quantity_ports = {{"dynamic_pressure", "Pa", "changes q and, as sqrt(q), V", "dynamic_pressure"},
-                        {"inertia", "kg m^2", "adds to I", "inertia"}};
-    s.dynamic_ports = {{"pitching_moment", "N m", "moment in the plane of the tilt, positive opens it", "pitch_rate"}};
+    s.quantity_ports = {{.name = "dynamic_pressure", .unit = "Pa", .doc = "changes q and, as sqrt(q), V", .conjugate = "dynamic_pressure"},
+                        {.name = "inertia", .unit = "kg m^2", .doc = "adds to I", .conjugate = "inertia"}};
+    s.dynamic_ports = {
+        {.name = "pitching_moment", .unit = "N m", .doc = "moment in the plane of the tilt, positive opens it", .conjugate = "pitch_rate"}};
     constexpr double huge = 1e6;
-    s.constants = {{"D", "m", "reference diameter", 1e-6, huge, true, 0.0},
-                   {"S", "m^2", "reference area", 1e-6, huge, true, 0.0},
-                   {"R_cp", "m", "swivel to centre of pressure", 1e-6, huge, true, 0.0},
-                   {"m", "kg", "mass of the parachute", 1e-9, huge, true, 0.0},
-                   {"m_a", "kg", "apparent mass", 0.0, huge, true, 0.0},
-                   {"qbar", "Pa", "dynamic pressure", 1e-6, 1e9, true, 0.0},
-                   {"V", "m/s", "free-stream speed", 1e-6, 1e5, true, 0.0}};
+    s.constants = {{.name = "D", .unit = "m", .doc = "reference diameter", .lower = 1e-6, .upper = huge},
+                   {.name = "S", .unit = "m^2", .doc = "reference area", .lower = 1e-6, .upper = huge},
+                   {.name = "R_cp", .unit = "m", .doc = "swivel to centre of pressure", .lower = 1e-6, .upper = huge},
+                   {.name = "m", .unit = "kg", .doc = "mass of the parachute", .lower = 1e-9, .upper = huge},
+                   {.name = "m_a", .unit = "kg", .doc = "apparent mass", .lower = 0.0, .upper = huge},
+                   {.name = "qbar", .unit = "Pa", .doc = "dynamic pressure", .lower = 1e-6, .upper = 1e9},
+                   {.name = "V", .unit = "m/s", .doc = "free-stream speed", .lower = 1e-6, .upper = 1e5}};
     constexpr double typical_noise = 2e-3;
-    s.outputs = {{induced ? "eta" : "alpha_T", "rad", 0, typical_noise}};
+    s.outputs = {{.name = induced ? "eta" : "alpha_T", .unit = "rad", .observes = tilt, .noise = typical_noise}};
     s.roles = {{"rate", "pitch_rate"}, {"level", "eta"}, {"port", "pitching_moment"}, {"output", s.outputs.front().name}};
     if (!induced) s.coefficient_names = {{"C_mq", "C_m_alphadot"}};
-    s.regression = {"parachute_planar", {{"induced_angle", false}}};
+    s.regression = {.kind = "parachute_planar", .flags = {{"induced_angle", false}}};
     s.static_curve = "C_m";
     s.damping_curve = induced ? "C_mq" : "C_m_alphadot";
     constexpr double typical_rate = 15.0;
@@ -136,11 +141,12 @@ struct ParachutePlanar {
   [[nodiscard]] std::vector<DerivedCurve> derived_curves(const double* k) const {
     if (!induced) return {};
     const double lever = 2.0 * k[R_cp] / k[D];
-    return {{"C_m_alphadot",
-             "alpha_T",
-             "-",
-             "C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T)",
-             {{"C_mq", 0, [](double) { return 1.0; }}, {"C_m", 1, [lever](double a) { return lever * std::cos(a); }}}}};
+    return {{.name = "C_m_alphadot",
+             .of = "alpha_T",
+             .unit = "-",
+             .doc = "C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T)",
+             .terms = {{.curve = "C_mq", .factor = [](double) { return 1.0; }},
+                       {.curve = "C_m", .derivative = 1, .factor = [lever](double a) { return lever * std::cos(a); }}}}};
   }
 };
 

@@ -17,7 +17,7 @@ struct ParachuteSpherical {
   [[maybe_unused]] static constexpr int NU = 0;
   static constexpr int NX = 4, NP = 4, NF = 4, NQ = 17, NK = 18, NY = 2;
   enum State { y, z, dy, dz };
-  enum Constant { D, S, R_cp, m, m_a, qbar, V, R, l_b, l_s, first_camera };
+  enum Constant { D, S, R_cp, m, m_a, qbar, V, R, l_b, l_s, first_camera, K_camera = first_camera + 1, camera_distance = first_camera + 7 };
   enum QuantityIndex {
     n_y,
     n_z,
@@ -104,8 +104,8 @@ struct ParachuteSpherical {
     if (wants(needed, phi_rate)) q[phi_rate] = tilted ? T(q[lateral_rate] / a.sine) : T(0.0);
     q[gravity_direction] = a.theta_z;
     q[gravity_direction_lateral] = a.phi_z;
-    if (wants(needed, image_scale)) q[image_scale] = T(k[l_b] * k[first_camera + 1]) / (k[l_s] + k[first_camera + 7] - k[R] * a.x);
-    q[focal_length] = T(k[l_b] * k[first_camera + 1]);
+    if (wants(needed, image_scale)) q[image_scale] = T(k[l_b] * k[K_camera]) / (k[l_s] + k[camera_distance] - k[R] * a.x);
+    q[focal_length] = T(k[l_b] * k[K_camera]);
     q[dynamic_pressure] = k[qbar] + P[pressure_port];
     q[inertia] = moment_of_inertia(k, P);
     // The root only where the pressure is changed: it costs as much as everything else here.
@@ -186,41 +186,56 @@ struct ParachuteSpherical {
   }
 
   static std::vector<QuantitySpec> quantity_list() {
-    return {{"n_y", "-", "axis, part to the left (looking upstream)", {}, true, false},
-            {"n_z", "-", "axis, part downward", {}, true, false},
-            {"eta", "rad", "geometric tilt of the axis", {}, false, false},
-            {"phi", "rad", "clock angle atan2(n_y, n_z)", {}, true},
-            {"pitch_rate", "rad/s", "rotation rate in the plane of the tilt", {}, true},
-            {"lateral_rate", "rad/s", "rotation rate across the plane of the tilt", {}, true},
-            {"phi_rate", "rad/s", "rate of the clock angle", {}, true, false},
-            {"gravity_direction", "-", "cos(phi) cos(eta)", {}, true, false},
-            {"gravity_direction_lateral", "-", "-sin(phi)", {}, true, false},
-            {"image_scale", "px/m", "pixels per metre at the apex", {}, false, false, true},
-            {"focal_length", "px", "l_b K", {}, false, false, true},
-            {"dynamic_pressure", "Pa", "free-stream dynamic pressure", {}, false, false},
-            {"wind_speed", "m/s", "free-stream speed along x", {}, false, false},
-            {"inertia", "kg m^2", "(m + m_a) R_cp^2", {}, false, false},
-            {"alpha_T", "rad", "total angle of attack, between axis and felt wind", {}, false},
-            {"wind_cross_axis", "-", "in-plane component of (wind direction x axis)", {}, true, false},
-            {"wind_cross_axis_lateral", "-", "lateral component of (wind direction x axis)", {}, true, false}};
+    return {{.name = "n_y", .unit = "-", .doc = "axis, part to the left (looking upstream)", .carries_sign = true, .explains = false},
+            {.name = "n_z", .unit = "-", .doc = "axis, part downward", .carries_sign = true, .explains = false},
+            {.name = "eta", .unit = "rad", .doc = "geometric tilt of the axis", .explains = false},
+            {.name = "phi", .unit = "rad", .doc = "clock angle atan2(n_y, n_z)", .carries_sign = true},
+            {.name = "pitch_rate", .unit = "rad/s", .doc = "rotation rate in the plane of the tilt", .carries_sign = true},
+            {.name = "lateral_rate", .unit = "rad/s", .doc = "rotation rate across the plane of the tilt", .carries_sign = true},
+            {.name = "phi_rate", .unit = "rad/s", .doc = "rate of the clock angle", .carries_sign = true, .explains = false},
+            {.name = "gravity_direction", .unit = "-", .doc = "cos(phi) cos(eta)", .carries_sign = true, .explains = false},
+            {.name = "gravity_direction_lateral", .unit = "-", .doc = "-sin(phi)", .carries_sign = true, .explains = false},
+            {.name = "image_scale", .unit = "px/m", .doc = "pixels per metre at the apex", .explains = false, .of_sensor = true},
+            {.name = "focal_length", .unit = "px", .doc = "l_b K", .explains = false, .of_sensor = true},
+            {.name = "dynamic_pressure", .unit = "Pa", .doc = "free-stream dynamic pressure", .explains = false},
+            {.name = "wind_speed", .unit = "m/s", .doc = "free-stream speed along x", .explains = false},
+            {.name = "inertia", .unit = "kg m^2", .doc = "(m + m_a) R_cp^2", .explains = false},
+            {.name = "alpha_T", .unit = "rad", .doc = "total angle of attack, between axis and felt wind"},
+            {.name = "wind_cross_axis",
+             .unit = "-",
+             .doc = "in-plane component of (wind direction x axis)",
+             .carries_sign = true,
+             .explains = false},
+            {.name = "wind_cross_axis_lateral",
+             .unit = "-",
+             .doc = "lateral component of (wind direction x axis)",
+             .carries_sign = true,
+             .explains = false}};
   }
 
   static std::vector<ConstantSpec> constant_list() {
     constexpr double huge = 1e6;
-    std::vector<ConstantSpec> list = {{"D", "m", "reference diameter", 1e-6, huge, true, 0.0},
-                                      {"S", "m^2", "reference area", 1e-6, huge, true, 0.0},
-                                      {"R_cp", "m", "swivel to centre of pressure", 1e-6, huge, true, 0.0},
-                                      {"m", "kg", "mass of the parachute", 1e-9, huge, true, 0.0},
-                                      {"m_a", "kg", "apparent mass", 0.0, huge, true, 0.0},
-                                      {"qbar", "Pa", "dynamic pressure", 1e-6, 1e9, true, 0.0},
-                                      {"V", "m/s", "free-stream speed", 1e-6, 1e5, true, 0.0},
-                                      {"R", "m", "swivel to apex", 1e-6, huge, true, 0.0, true},
-                                      {"l_b", "m", "backshell face to camera", 1e-6, huge, true, 0.0, true},
-                                      {"l_s", "m", "swivel to camera", 1e-6, huge, true, 0.0, true}};
+    std::vector<ConstantSpec> list = {
+        {.name = "D", .unit = "m", .doc = "reference diameter", .lower = 1e-6, .upper = huge},
+        {.name = "S", .unit = "m^2", .doc = "reference area", .lower = 1e-6, .upper = huge},
+        {.name = "R_cp", .unit = "m", .doc = "swivel to centre of pressure", .lower = 1e-6, .upper = huge},
+        {.name = "m", .unit = "kg", .doc = "mass of the parachute", .lower = 1e-9, .upper = huge},
+        {.name = "m_a", .unit = "kg", .doc = "apparent mass", .lower = 0.0, .upper = huge},
+        {.name = "qbar", .unit = "Pa", .doc = "dynamic pressure", .lower = 1e-6, .upper = 1e9},
+        {.name = "V", .unit = "m/s", .doc = "free-stream speed", .lower = 1e-6, .upper = 1e5},
+        {.name = "R", .unit = "m", .doc = "swivel to apex", .lower = 1e-6, .upper = huge, .of_sensor = true},
+        {.name = "l_b", .unit = "m", .doc = "backshell face to camera", .lower = 1e-6, .upper = huge, .of_sensor = true},
+        {.name = "l_s", .unit = "m", .doc = "swivel to camera", .lower = 1e-6, .upper = huge, .of_sensor = true}};
     for (std::size_t i = 0; i < camera_parameter_names.size(); ++i) {
       const bool scale = i == 1;
-      list.push_back({camera_parameter_names[i], camera_parameter_units[i], "of the camera, from its calibration", scale ? 1e-6 : -huge,
-                      huge, false, scale ? 1.0 : 0.0, true});
+      list.push_back({.name = camera_parameter_names[i],
+                      .unit = camera_parameter_units[i],
+                      .doc = "of the camera, from its calibration",
+                      .lower = scale ? 1e-6 : -huge,
+                      .upper = huge,
+                      .required = false,
+                      .value = scale ? 1.0 : 0.0,
+                      .of_sensor = true});
     }
     return list;
   }
@@ -231,27 +246,34 @@ struct ParachuteSpherical {
     s.doc = "three-dimensional motion about the swivel, in pixels of one downstream camera";
     s.formula = "n'' = (tau x n)/I - |n'|^2 n, I = (m + m_a) R_cp^2; P by the camera";
     s.source = "rigid rotation of a line without spin; lib/misfit/README.md (12), (13)";
-    s.states = {{"n_y", "-", -1, 0.1}, {"n_z", "-", -1, 0.1}, {"n_y_rate", "1/s", 0, 2.0}, {"n_z_rate", "1/s", 1, 2.0}};
+    s.states = {{.name = "n_y", .unit = "-", .scale = 0.1},
+                {.name = "n_z", .unit = "-", .scale = 0.1},
+                {.name = "n_y_rate", .unit = "1/s", .rate_of = y, .scale = 2.0},
+                {.name = "n_z_rate", .unit = "1/s", .rate_of = z, .scale = 2.0}};
     s.quantities = quantity_list();
     s.base_quantities = dynamic_pressure;
-    s.quantity_ports = {{"dynamic_pressure", "Pa", "changes q and, as sqrt(q), V", "dynamic_pressure"},
-                        {"inertia", "kg m^2", "adds to I", "inertia"},
-                        {"wind_y", "m/s", "wind to the left (looking upstream)", "wind_speed"},
-                        {"wind_z", "m/s", "wind downward", "wind_speed"}};
-    s.dynamic_ports = {{"pitching_moment", "N m", "moment in the plane of the tilt, positive opens it", "pitch_rate"},
-                       {"lateral_moment", "N m", "moment across it, positive turns the clock angle forward", "lateral_rate"},
-                       {"moment_y", "N m", "moment about the fixed y axis: positive lifts (-n_z)", ""},
-                       {"moment_z", "N m", "moment about the fixed z axis: positive moves to +y", ""}};
+    s.quantity_ports = {{.name = "dynamic_pressure", .unit = "Pa", .doc = "changes q and, as sqrt(q), V", .conjugate = "dynamic_pressure"},
+                        {.name = "inertia", .unit = "kg m^2", .doc = "adds to I", .conjugate = "inertia"},
+                        {.name = "wind_y", .unit = "m/s", .doc = "wind to the left (looking upstream)", .conjugate = "wind_speed"},
+                        {.name = "wind_z", .unit = "m/s", .doc = "wind downward", .conjugate = "wind_speed"}};
+    s.dynamic_ports = {
+        {.name = "pitching_moment", .unit = "N m", .doc = "moment in the plane of the tilt, positive opens it", .conjugate = "pitch_rate"},
+        {.name = "lateral_moment",
+         .unit = "N m",
+         .doc = "moment across it, positive turns the clock angle forward",
+         .conjugate = "lateral_rate"},
+        {.name = "moment_y", .unit = "N m", .doc = "moment about the fixed y axis: positive lifts (-n_z)"},
+        {.name = "moment_z", .unit = "N m", .doc = "moment about the fixed z axis: positive moves to +y"}};
     s.constants = constant_list();
     constexpr double typical_noise = 0.5;
-    s.outputs = {{"P_y", "px", -1, typical_noise}, {"P_z", "px", -1, typical_noise}};
+    s.outputs = {{.name = "P_y", .unit = "px", .noise = typical_noise}, {.name = "P_z", .unit = "px", .noise = typical_noise}};
     s.roles = {{"rate", "pitch_rate"},           {"level", "eta"},
                {"port", "pitching_moment"},      {"output", "P_z"},
                {"rate_lateral", "lateral_rate"}, {"port_lateral", "lateral_moment"}};
     s.force_ports = {"moment_y", "moment_z"};
     s.includes = {"coning"};
     s.readable_states = {y, z};
-    s.regression = {"parachute_planar", {{"induced_angle", false}}};
+    s.regression = {.kind = "parachute_planar", .flags = {{"induced_angle", false}}};
     s.static_curve = "C_m";
     s.damping_curve = "C_mq";
     constexpr double typical_rate = 15.0;
@@ -262,11 +284,12 @@ struct ParachuteSpherical {
   /// C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T), lib/misfit/README.md (11): the induced angle damps as well.
   [[nodiscard]] std::vector<DerivedCurve> derived_curves(const double* k) const {
     const double lever = 2.0 * k[R_cp] / k[D];
-    return {{"C_m_alphadot",
-             "alpha_T",
-             "-",
-             "C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T)",
-             {{"C_mq", 0, [](double) { return 1.0; }}, {"C_m", 1, [lever](double a) { return lever * std::cos(a); }}}}};
+    return {{.name = "C_m_alphadot",
+             .of = "alpha_T",
+             .unit = "-",
+             .doc = "C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T)",
+             .terms = {{.curve = "C_mq", .factor = [](double) { return 1.0; }},
+                       {.curve = "C_m", .derivative = 1, .factor = [lever](double a) { return lever * std::cos(a); }}}}};
   }
 };
 

@@ -14,23 +14,45 @@ struct PitchDamping {
   static constexpr const char* size = "C_mq = -0.25 at 1 rad/s: -12.8 N m at 736 Pa, 35.1 m/s, D = 1.58 m";
   static constexpr const char* source = "paper Eq. 8; lib/misfit/README.md (10), (13)";
   static constexpr const char* excludes = "memory of the wake (aerodynamic lag)";
-  static constexpr Role quantities[] = {
-      {"dynamic_pressure", "Pa"}, {"wind_speed", "m/s", false, true}, {"pitch_rate", "rad/s"}, {"lateral_rate", "rad/s", true}};
-  static constexpr Role ports[] = {{"pitching_moment", "N m"}, {"lateral_moment", "N m", true}};
+  enum Quantity { dynamic_pressure, wind_speed, pitch_rate, lateral_rate };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
+                                        {.name = "wind_speed", .unit = "m/s", .positive = true},
+                                        {.name = "pitch_rate", .unit = "rad/s"},
+                                        {.name = "lateral_rate", .unit = "rad/s", .optional = true}};
+  enum Port { pitching_moment, lateral_moment };
+  static constexpr Role ports[] = {{.name = "pitching_moment", .unit = "N m"}, {.name = "lateral_moment", .unit = "N m", .optional = true}};
+  enum Constant { S, D };
   static constexpr const char* constants[] = {"S", "D"};
-  static constexpr CoefficientSpec coefficients[] = {{"C_mq", CoefficientKind::strength, 0.0, "-", -50.0, 50.0, 0.25,
-                                                      "pitch damping coefficient; negative takes energy out", Parity::even, "alpha_T"}};
+  enum Coefficient { C_mq };
+  static constexpr CoefficientSpec coefficients[] = {
+      {.name = "C_mq",
+       .unit = "-",
+       .lower = -50.0,
+       .upper = 50.0,
+       .scale = 0.25,
+       .doc = "pitch damping coefficient; negative takes energy out",
+       .parity = Parity::even,
+       .curve_of = "alpha_T"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    const T moment = in.q[0] * (in.k[0] * in.k[1] * in.k[1]) / (2.0 * in.q[1]) * in.c[0];
-    F[0] = moment * in.q[2];
-    F[1] = moment * in.q[3];
+    const T moment = in.q[dynamic_pressure] * (in.k[S] * in.k[D] * in.k[D]) / (2.0 * in.q[wind_speed]) * in.c[C_mq];
+    F[pitching_moment] = moment * in.q[pitch_rate];
+    F[lateral_moment] = moment * in.q[lateral_rate];
   }
 
   static std::vector<Example> examples() {
-    return {{{1.9554, 1.5816}, {736.0, 35.1, 1.0, 0.0}, {-0.25}, {}, 0.0, {-12.820638, 0.0}, {}, "2276.1982 x 1.5816/70.2 x -0.25"},
-            {{2.0, 3.0}, {100.0, 30.0, 0.5, -2.0}, {0.4}, {}, 0.0, {6.0, -24.0}, {}, "by hand: 100 x 2 x 9/60 x 0.4 = 12; x 0.5, x -2"}};
+    return {{.constants = {1.9554, 1.5816},
+             .quantities = {736.0, 35.1, 1.0, 0.0},
+             .coefficients = {-0.25},
+             .ports = {-12.820638, 0.0},
+             .source = "2276.1982 x 1.5816/70.2 x -0.25"},
+            {.constants = {2.0, 3.0},
+             .quantities = {100.0, 30.0, 0.5, -2.0},
+             .coefficients = {0.4},
+             .ports = {6.0, -24.0},
+             .source = "by hand: 100 x 2 x 9/60 x 0.4 = 12; x 0.5, x -2"}};
   }
 };
 

@@ -13,21 +13,31 @@ struct PixelAspect {
   static constexpr const char* size = "2.3 % (704 for 720 columns): 3.4 px at 150 px";
   static constexpr const char* source = "ITU-R BT.601: non-square pixels of standard video";
   static constexpr const char* excludes = "skew between rows and columns";
-  static constexpr Role quantities[] = {{"P_y", "px"}};
-  static constexpr Role ports[] = {{"P_y", "px"}};
+  enum Quantity { P_y };
+  static constexpr Role quantities[] = {{.name = "P_y", .unit = "px"}};
+  enum Port { P_y_port };
+  static constexpr Role ports[] = {{.name = "P_y", .unit = "px"}};
+  enum Constant { centre_y, pixel_aspect };
   static constexpr const char* constants[] = {"centre_y", "pixel_aspect"};
-  static constexpr CoefficientSpec coefficients[] = {{"aspect_error", CoefficientKind::strength, 0.0, "-", -0.5, 0.5, 0.01,
-                                                      "what is to be added to pixel_aspect", Parity::none, "", false, false, ScanSpec{},
-                                                      "pixel_aspect"}};
+  enum Coefficient { aspect_error };
+  static constexpr CoefficientSpec coefficients[] = {
+      {.name = "aspect_error",
+       .unit = "-",
+       .lower = -0.5,
+       .upper = 0.5,
+       .scale = 0.01,
+       .doc = "what is to be added to pixel_aspect",
+       .calibrated_as = "pixel_aspect"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
-    P[0] = in.c[0] / (1.0 + in.k[1]) * (in.q[0] - in.k[0]);
+    P[P_y_port] = in.c[aspect_error] / (1.0 + in.k[pixel_aspect]) * (in.q[P_y] - in.k[centre_y]);
   }
 
   static std::vector<Example> examples() {
-    return {{{6.0, 0.25}, {106.0}, {0.05}, {}, 0.0, {4.0}, {}, "by hand: 100 x 0.05/1.25"},
-            {{0.0, 0.0}, {-150.0}, {0.023}, {}, 0.0, {-3.45}, {}, "150 x 0.023"}};
+    return {{.constants = {6.0, 0.25}, .quantities = {106.0}, .coefficients = {0.05}, .ports = {4.0}, .source = "by hand: 100 x 0.05/1.25"},
+            {.constants = {0.0, 0.0}, .quantities = {-150.0}, .coefficients = {0.023}, .ports = {-3.45}, .source = "150 x 0.023"}};
   }
 };
 

@@ -14,40 +14,53 @@ struct RelativeDynamicPressure {
   static constexpr const char* source =
       "Etkin and Reid, Dynamics of Flight (1996): coefficients refer to the relative wind; 1 is the full correction";
   static constexpr const char* excludes = "side wind in v (flow_angularity), the pressure in the damping";
-  static constexpr Role quantities[] = {{"dynamic_pressure", "Pa"},
-                                        {"wind_speed", "m/s", false, true},
-                                        {"wind_cross_axis", "-"},
-                                        {"wind_cross_axis_lateral", "-", true},
-                                        {"eta", "rad"},
-                                        {"pitch_rate", "rad/s"},
-                                        {"lateral_rate", "rad/s", true}};
-  static constexpr Role ports[] = {{"pitching_moment", "N m"}, {"lateral_moment", "N m", true}};
+  enum Quantity { dynamic_pressure, wind_speed, wind_cross_axis, wind_cross_axis_lateral, eta, pitch_rate, lateral_rate };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
+                                        {.name = "wind_speed", .unit = "m/s", .positive = true},
+                                        {.name = "wind_cross_axis", .unit = "-"},
+                                        {.name = "wind_cross_axis_lateral", .unit = "-", .optional = true},
+                                        {.name = "eta", .unit = "rad"},
+                                        {.name = "pitch_rate", .unit = "rad/s"},
+                                        {.name = "lateral_rate", .unit = "rad/s", .optional = true}};
+  enum Port { pitching_moment, lateral_moment };
+  static constexpr Role ports[] = {{.name = "pitching_moment", .unit = "N m"}, {.name = "lateral_moment", .unit = "N m", .optional = true}};
+  enum Constant { S, D, R_cp };
   static constexpr const char* constants[] = {"S", "D", "R_cp"};
+  enum Coefficient { relative_pressure, C_m };
   static constexpr CoefficientSpec coefficients[] = {
-      {"relative_pressure", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 1.0, "0: free stream; 1: felt wind"},
-      borrowed_coefficient("C_m", "-", "static moment coefficient over the sine of alpha_T")};
+      {.name = "relative_pressure", .unit = "-", .lower = -10.0, .upper = 10.0, .scale = 1.0, .doc = "0: free stream; 1: felt wind"},
+      {.name = "C_m",
+       .kind = CoefficientKind::shape,
+       .unit = "-",
+       .lower = -1e6,
+       .upper = 1e6,
+       .doc = "static moment coefficient over the sine of alpha_T",
+       .borrowed = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::sin;
-    const T lever = in.k[2] / in.q[1];
-    const T more = lever * (2.0 * sin(in.q[4]) * in.q[5] + lever * (in.q[5] * in.q[5] + in.q[6] * in.q[6]));
-    const T moment = in.q[0] * (in.k[0] * in.k[1]) * in.c[1] * in.c[0] * more;
-    F[0] = moment * in.q[2];
-    F[1] = moment * in.q[3];
+    const T lever = in.k[R_cp] / in.q[wind_speed];
+    const T more = lever * (2.0 * sin(in.q[eta]) * in.q[pitch_rate] +
+                            lever * (in.q[pitch_rate] * in.q[pitch_rate] + in.q[lateral_rate] * in.q[lateral_rate]));
+    const T moment = in.q[dynamic_pressure] * (in.k[S] * in.k[D]) * in.c[C_m] * in.c[relative_pressure] * more;
+    F[pitching_moment] = moment * in.q[wind_cross_axis];
+    F[lateral_moment] = moment * in.q[wind_cross_axis_lateral];
   }
 
   static std::vector<Example> examples() {
     // r = 3/30 = 0.1: 0.1 (2 x 0.5 x 2 + 0.1 x (4 + 9)) = 0.33; 100 x 2 x 1.5 x 0.5 x 0.33 = 49.5
-    return {{{2.0, 1.5, 3.0}, {100.0, 30.0, 0.3, -0.1, 0.52359878, 2.0, 3.0}, {1.0, 0.5}, {}, 0.0, {14.85, -4.95}, {}, "by hand: 49.5"},
-            {{2.0, 1.5, 3.0},
-             {100.0, 30.0, 0.2, 0.0, 0.52359878, -1.0, 0.0},
-             {0.5, -0.4},
-             {},
-             0.0,
-             {1.08, 0.0},
-             {},
-             "by hand: -60 x -0.09 x 0.2"}};
+    return {{.constants = {2.0, 1.5, 3.0},
+             .quantities = {100.0, 30.0, 0.3, -0.1, 0.52359878, 2.0, 3.0},
+             .coefficients = {1.0, 0.5},
+             .ports = {14.85, -4.95},
+             .source = "by hand: 49.5"},
+            {.constants = {2.0, 1.5, 3.0},
+             .quantities = {100.0, 30.0, 0.2, 0.0, 0.52359878, -1.0, 0.0},
+             .coefficients = {0.5, -0.4},
+             .ports = {1.08, 0.0},
+             .source = "by hand: -60 x -0.09 x 0.2"}};
   }
 };
 

@@ -14,25 +14,46 @@ struct SideMoment {
   static constexpr const char* size = "C_n = 0.002, a tenth of C_m off the trim: 4.6 N m at 736 Pa for D = 1.58 m, and steady coning";
   static constexpr const char* source = "Tobak and Schiff, NASA TR R-456 (1976): side moment of a body at angle of attack";
   static constexpr const char* excludes = "dependence on the rate of coning, spin of the canopy (magnus)";
-  static constexpr Role quantities[] = {{"dynamic_pressure", "Pa"}, {"wind_cross_axis", "-"}, {"wind_cross_axis_lateral", "-"}};
-  static constexpr Role ports[] = {{"pitching_moment", "N m"}, {"lateral_moment", "N m"}};
+  enum Quantity { dynamic_pressure, wind_cross_axis, wind_cross_axis_lateral };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
+                                        {.name = "wind_cross_axis", .unit = "-"},
+                                        {.name = "wind_cross_axis_lateral", .unit = "-"}};
+  enum Port { pitching_moment, lateral_moment };
+  static constexpr Role ports[] = {{.name = "pitching_moment", .unit = "N m"}, {.name = "lateral_moment", .unit = "N m"}};
+  enum Constant { S, D };
   static constexpr const char* constants[] = {"S", "D"};
-  static constexpr CoefficientSpec coefficients[] = {{"C_n", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.005,
-                                                      "side moment coefficient; positive turns the clock angle forward", Parity::odd,
-                                                      "alpha_T", true}};
+  enum Coefficient { C_n };
+  static constexpr CoefficientSpec coefficients[] = {
+      {.name = "C_n",
+       .unit = "-",
+       .lower = -10.0,
+       .upper = 10.0,
+       .scale = 0.005,
+       .doc = "side moment coefficient; positive turns the clock angle forward",
+       .parity = Parity::odd,
+       .curve_of = "alpha_T",
+       .over_sine = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    const T moment = in.q[0] * (in.k[0] * in.k[1]) * in.c[0];
-    F[0] = -moment * in.q[2];
-    F[1] = moment * in.q[1];
+    const T moment = in.q[dynamic_pressure] * (in.k[S] * in.k[D]) * in.c[C_n];
+    F[pitching_moment] = -moment * in.q[wind_cross_axis_lateral];
+    F[lateral_moment] = moment * in.q[wind_cross_axis];
   }
 
   static std::vector<Example> examples() {
     // 2276.1982 N m per unit coefficient; C_n = 0.002 at 10 deg: over the sine 0.011517541.
-    return {
-        {{1.9554, 1.5816}, {736.0, 0.17364818, 0.0}, {0.002 / 0.17364818}, {}, 0.0, {0.0, 4.5523964}, {}, "736 x 1.9554 x 1.5816 x 0.002"},
-        {{2.0, 1.5}, {100.0, 0.3, -0.1}, {0.5}, {}, 0.0, {15.0, 45.0}, {}, "by hand: 150, turned by a right angle"}};
+    return {{.constants = {1.9554, 1.5816},
+             .quantities = {736.0, 0.17364818, 0.0},
+             .coefficients = {0.002 / 0.17364818},
+             .ports = {0.0, 4.5523964},
+             .source = "736 x 1.9554 x 1.5816 x 0.002"},
+            {.constants = {2.0, 1.5},
+             .quantities = {100.0, 0.3, -0.1},
+             .coefficients = {0.5},
+             .ports = {15.0, 45.0},
+             .source = "by hand: 150, turned by a right angle"}};
   }
 };
 

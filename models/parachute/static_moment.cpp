@@ -14,24 +14,47 @@ struct StaticMoment {
   static constexpr const char* size = "C_m about +-0.02 within 3 deg of the trim: 45 N m at 736 Pa for D = 1.58 m";
   static constexpr const char* source = "paper Eq. 9; lib/misfit/README.md (10), (13)";
   static constexpr const char* excludes = "side moment, hysteresis, wake of the strut";
-  static constexpr Role quantities[] = {{"dynamic_pressure", "Pa"}, {"wind_cross_axis", "-"}, {"wind_cross_axis_lateral", "-", true}};
-  static constexpr Role ports[] = {{"pitching_moment", "N m"}, {"lateral_moment", "N m", true}};
+  enum Quantity { dynamic_pressure, wind_cross_axis, wind_cross_axis_lateral };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
+                                        {.name = "wind_cross_axis", .unit = "-"},
+                                        {.name = "wind_cross_axis_lateral", .unit = "-", .optional = true}};
+  enum Port { pitching_moment, lateral_moment };
+  static constexpr Role ports[] = {{.name = "pitching_moment", .unit = "N m"}, {.name = "lateral_moment", .unit = "N m", .optional = true}};
+  enum Constant { S, D };
   static constexpr const char* constants[] = {"S", "D"};
-  static constexpr CoefficientSpec coefficients[] = {{"C_m", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.02,
-                                                      "static pitching moment coefficient about the swivel", Parity::odd, "alpha_T", true}};
+  enum Coefficient { C_m };
+  static constexpr CoefficientSpec coefficients[] = {
+      {.name = "C_m",
+       .unit = "-",
+       .lower = -10.0,
+       .upper = 10.0,
+       .scale = 0.02,
+       .doc = "static pitching moment coefficient about the swivel",
+       .parity = Parity::odd,
+       .curve_of = "alpha_T",
+       .over_sine = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    const T moment = in.q[0] * (in.k[0] * in.k[1]) * in.c[0];
-    F[0] = moment * in.q[1];
-    F[1] = moment * in.q[2];
+    const T moment = in.q[dynamic_pressure] * (in.k[S] * in.k[D]) * in.c[C_m];
+    F[pitching_moment] = moment * in.q[wind_cross_axis];
+    F[lateral_moment] = moment * in.q[wind_cross_axis_lateral];
   }
 
   static std::vector<Example> examples() {
     // 736 Pa x 1.9554 m^2 x 1.5816 m = 2276.1982 N m per unit coefficient; at alpha_T = 10 deg: C_m = 0.0105, sin = 0.17364818, so C_m/sin
     // = 0.060467094 and in the plane of motion (v x n) = sin(10 deg): moment = 2276.1982 x 0.0105 = 23.900081 N m.
-    return {{{1.9554, 1.5816}, {736.0, 0.17364818, 0.0}, {0.0105 / 0.17364818}, {}, 0.0, {23.900081, 0.0}, {}, "paper Eq. 9, Table 1"},
-            {{2.0, 1.5}, {100.0, 0.3, -0.1}, {0.5}, {}, 0.0, {45.0, -15.0}, {}, "by hand: 100 x 2 x 1.5 x 0.5 = 150; x 0.3, x -0.1"}};
+    return {{.constants = {1.9554, 1.5816},
+             .quantities = {736.0, 0.17364818, 0.0},
+             .coefficients = {0.0105 / 0.17364818},
+             .ports = {23.900081, 0.0},
+             .source = "paper Eq. 9, Table 1"},
+            {.constants = {2.0, 1.5},
+             .quantities = {100.0, 0.3, -0.1},
+             .coefficients = {0.5},
+             .ports = {45.0, -15.0},
+             .source = "by hand: 100 x 2 x 1.5 x 0.5 = 150; x 0.3, x -0.1"}};
   }
 };
 

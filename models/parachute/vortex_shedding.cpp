@@ -16,27 +16,33 @@ struct VortexShedding {
   static constexpr const char* source = "Roshko, NACA Report 1191 (1954): Strouhal number 0.2 for a cylinder";
   static constexpr const char* excludes = "bandwidth and drift of the frequency, harmonics, dependence on where the canopy is";
   static constexpr const char* specialises = "periodic_forcing";
-  static constexpr Role quantities[] = {{"dynamic_pressure", "Pa"}};
-  static constexpr Role ports[] = {{"moment_y", "N m"}, {"moment_z", "N m"}};
+  enum Quantity { dynamic_pressure };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"}};
+  enum Port { moment_y, moment_z };
+  static constexpr Role ports[] = {{.name = "moment_y", .unit = "N m"}, {.name = "moment_z", .unit = "N m"}};
+  enum Constant { S, D };
   static constexpr const char* constants[] = {"S", "D"};
+  enum Coefficient { y_cosine, y_sine, z_cosine, z_sine, shedding_frequency };
   static constexpr CoefficientSpec coefficients[] = {
-      {"y_cosine", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.005, "moment coefficient about y in phase with cos(2 pi f t)"},
-      {"y_sine", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.005, "about y in phase with sin(2 pi f t)"},
-      {"z_cosine", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.005, "about z in phase with cos(2 pi f t)"},
-      {"z_sine", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.005, "about z in phase with sin(2 pi f t)"},
-      {"shedding_frequency",
-       CoefficientKind::shape,
-       2.0,
-       "Hz",
-       1e-3,
-       100.0,
-       0.05,
-       "frequency of the vortices",
-       Parity::none,
-       "",
-       false,
-       false,
-       {0.2, 12.0, -1}}};
+      {.name = "y_cosine",
+       .unit = "-",
+       .lower = -10.0,
+       .upper = 10.0,
+       .scale = 0.005,
+       .doc = "moment coefficient about y in phase with cos(2 pi f t)"},
+      {.name = "y_sine", .unit = "-", .lower = -10.0, .upper = 10.0, .scale = 0.005, .doc = "about y in phase with sin(2 pi f t)"},
+      {.name = "z_cosine", .unit = "-", .lower = -10.0, .upper = 10.0, .scale = 0.005, .doc = "about z in phase with cos(2 pi f t)"},
+      {.name = "z_sine", .unit = "-", .lower = -10.0, .upper = 10.0, .scale = 0.005, .doc = "about z in phase with sin(2 pi f t)"},
+      {.name = "shedding_frequency",
+       .kind = CoefficientKind::shape,
+       .value = 2.0,
+       .unit = "Hz",
+       .lower = 1e-3,
+       .upper = 100.0,
+       .scale = 0.05,
+       .doc = "frequency of the vortices",
+       .scan = {.from = 0.2, .to = 12.0, .count = -1}},
+  };
 
   static constexpr double two_pi = 6.28318530717958647692;
 
@@ -44,26 +50,28 @@ struct VortexShedding {
   static void add(const Reads<T, K>& in, T* F) {
     using std::cos;
     using std::sin;
-    const T angle = two_pi * in.t * in.c[4];
-    const T moment = in.q[0] * (in.k[0] * in.k[1]);
+    const T angle = two_pi * in.t * in.c[shedding_frequency];
+    const T moment = in.q[dynamic_pressure] * (in.k[S] * in.k[D]);
     const T cosine = moment * cos(angle), sine = moment * sin(angle);
-    F[0] = in.c[0] * cosine + in.c[1] * sine;
-    F[1] = in.c[2] * cosine + in.c[3] * sine;
+    F[moment_y] = in.c[y_cosine] * cosine + in.c[y_sine] * sine;
+    F[moment_z] = in.c[z_cosine] * cosine + in.c[z_sine] * sine;
   }
 
-  static double fastest_rate(const Reads<double, double>& in) { return two_pi * in.c[4]; }
+  static double fastest_rate(const Reads<double, double>& in) { return two_pi * in.c[shedding_frequency]; }
 
   static std::vector<Example> examples() {
-    return {
-        {{1.9554, 1.5816}, {736.0}, {0.012, 0.0, 0.02, 0.0, 2.5}, {}, 0.4, {27.314378, 45.523964}, {}, "a whole turn: the cosines alone"},
-        {{2.0, 1.5},
-         {100.0},
-         {0.1, 0.2, -0.3, 0.4, 1.0},
-         {},
-         1.0 / 3.0,
-         {36.9615242, 148.923048},
-         {},
-         "120 deg: 300 x (-0.05 + 0.2 x 0.866025404) and 300 x (0.15 + 0.4 x 0.866025404)"}};
+    return {{.constants = {1.9554, 1.5816},
+             .quantities = {736.0},
+             .coefficients = {0.012, 0.0, 0.02, 0.0, 2.5},
+             .t = 0.4,
+             .ports = {27.314378, 45.523964},
+             .source = "a whole turn: the cosines alone"},
+            {.constants = {2.0, 1.5},
+             .quantities = {100.0},
+             .coefficients = {0.1, 0.2, -0.3, 0.4, 1.0},
+             .t = 1.0 / 3.0,
+             .ports = {36.9615242, 148.923048},
+             .source = "120 deg: 300 x (-0.05 + 0.2 x 0.866025404) and 300 x (0.15 + 0.4 x 0.866025404)"}};
   }
 };
 

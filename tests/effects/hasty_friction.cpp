@@ -12,22 +12,34 @@ struct HastyFriction {
   static constexpr const char* size = "as coulomb_friction";
   static constexpr const char* source = "as coulomb_friction";
   static constexpr const char* excludes = "sub-stepping";
-  static constexpr Role quantities[] = {{"rate", "*"}};
-  static constexpr Role ports[] = {{"port", "*"}};
+  enum Quantity { rate };
+  static constexpr Role quantities[] = {{.name = "rate", .unit = "*"}};
+  enum Port { port };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  enum Coefficient { friction, width };
   static constexpr CoefficientSpec coefficients[] = {
-      {"friction", CoefficientKind::strength, 0.0, "{port}", 0.0, 1e6, 1.0, "size of the friction when moving"},
-      {"width", CoefficientKind::shape, 0.01, "{rate}", 1e-6, 1e6, 0.01, "width of the smoothing", Parity::none, "", false, true}};
+      {.name = "friction", .unit = "{port}", .lower = 0.0, .upper = 1e6, .scale = 1.0, .doc = "size of the friction when moving"},
+      {.name = "width",
+       .kind = CoefficientKind::shape,
+       .value = 0.01,
+       .unit = "{rate}",
+       .lower = 1e-6,
+       .upper = 1e6,
+       .scale = 0.01,
+       .doc = "width of the smoothing",
+       .fixed = true},
+  };
   static constexpr bool dissipative = true;
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::tanh;
-    F[0] = -in.c[0] * tanh(in.q[0] / in.c[1]);
+    F[port] = -in.c[friction] * tanh(in.q[rate] / in.c[width]);
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.01}, {20.0, 0.01}, {}, 0.0, {-15.2318831}, {}, "20 tanh(1)"},
-            {{}, {-1.0}, {3.0, 0.02}, {}, 0.0, {3.0}, {}, "fully sliding"}};
+    return {{.quantities = {0.01}, .coefficients = {20.0, 0.01}, .ports = {-15.2318831}, .source = "20 tanh(1)"},
+            {.quantities = {-1.0}, .coefficients = {3.0, 0.02}, .ports = {3.0}, .source = "fully sliding"}};
   }
 };
 

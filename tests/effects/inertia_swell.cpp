@@ -12,19 +12,25 @@ struct InertiaSwell {
   static constexpr const char* size = "swell = 1 kg at eta = 0.2, D = 1.58 m: 0.1 kg m^2";
   static constexpr const char* source = "made up for the tests";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role quantities[] = {{"eta", "rad"}};
-  static constexpr Role ports[] = {{"inertia", "kg m^2"}};
+  enum Quantity { eta };
+  static constexpr Role quantities[] = {{.name = "eta", .unit = "rad"}};
+  enum Port { inertia };
+  static constexpr Role ports[] = {{.name = "inertia", .unit = "kg m^2"}};
+  enum Constant { D };
   static constexpr const char* constants[] = {"D"};
+  enum Coefficient { swell };
   static constexpr CoefficientSpec coefficients[] = {
-      {"swell", CoefficientKind::strength, 0.0, "kg", -100.0, 100.0, 1.0, "growth of the enclosed mass"}};
+      {.name = "swell", .unit = "kg", .lower = -100.0, .upper = 100.0, .scale = 1.0, .doc = "growth of the enclosed mass"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
-    P[0] = in.c[0] * (in.k[0] * in.k[0]) * in.q[0] * in.q[0];
+    P[inertia] = in.c[swell] * (in.k[D] * in.k[D]) * in.q[eta] * in.q[eta];
   }
 
   static std::vector<Example> examples() {
-    return {{{2.0}, {0.5}, {3.0}, {}, 0.0, {3.0}, {}, "3 x 4 x 0.25"}, {{1.0}, {-2.0}, {0.5}, {}, 0.0, {2.0}, {}, "0.5 x 4"}};
+    return {{.constants = {2.0}, .quantities = {0.5}, .coefficients = {3.0}, .ports = {3.0}, .source = "3 x 4 x 0.25"},
+            {.constants = {1.0}, .quantities = {-2.0}, .coefficients = {0.5}, .ports = {2.0}, .source = "0.5 x 4"}};
   }
 };
 

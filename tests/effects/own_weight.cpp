@@ -12,20 +12,24 @@ struct OwnWeight {
   static constexpr const char* size = "9.8 N for 1 kg";
   static constexpr const char* source = "made up for the tests";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role ports[] = {{"port", "*"}, {"also", "*", true}};
+  enum Port { port, also };
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}, {.name = "also", .unit = "*", .optional = true}};
+  enum Constant { mass };
   static constexpr const char* constants[] = {"mass"};
+  enum Coefficient { share };
   static constexpr CoefficientSpec coefficients[] = {
-      {"share", CoefficientKind::strength, 0.0, "-", -2.0, 2.0, 0.5, "part of the weight that acts"}};
+      {.name = "share", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.5, .doc = "part of the weight that acts"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    F[0] = in.c[0] * (in.k[0] * 9.80665);
-    F[1] = F[0];
+    F[port] = in.c[share] * (in.k[mass] * 9.80665);
+    F[also] = F[port];
   }
 
   static std::vector<Example> examples() {
-    return {{{2.0}, {}, {0.5}, {}, 0.0, {9.80665, 9.80665}, {}, "half of 2 kg"},
-            {{1.0}, {}, {-1.0}, {}, 0.0, {-9.80665, -9.80665}, {}, "upwards"}};
+    return {{.constants = {2.0}, .coefficients = {0.5}, .ports = {9.80665, 9.80665}, .source = "half of 2 kg"},
+            {.constants = {1.0}, .coefficients = {-1.0}, .ports = {-9.80665, -9.80665}, .source = "upwards"}};
   }
 };
 

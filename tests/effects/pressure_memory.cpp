@@ -12,24 +12,42 @@ struct PressureMemory {
   static constexpr const char* size = "100 Pa at z = 0.2: 4 Pa";
   static constexpr const char* source = "made up for the tests";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role quantities[] = {{"eta", "rad"}};
-  static constexpr Role ports[] = {{"dynamic_pressure", "Pa"}};
+  enum Quantity { eta };
+  static constexpr Role quantities[] = {{.name = "eta", .unit = "rad"}};
+  enum Port { dynamic_pressure };
+  static constexpr Role ports[] = {{.name = "dynamic_pressure", .unit = "Pa"}};
+  enum Coefficient { blockage, blockage_tau };
   static constexpr CoefficientSpec coefficients[] = {
-      {"blockage", CoefficientKind::strength, 0.0, "Pa", -1e4, 1e4, 100.0, "pressure lost at z = 1"},
-      scanned({"blockage_tau", CoefficientKind::shape, 0.5, "s", 1e-3, 100.0, 0.5, "time constant"}, {0.1, 2.5, 4})};
-  static constexpr OwnStateSpec states[] = {{"z", "-", 0.0}};
+      {.name = "blockage", .unit = "Pa", .lower = -1e4, .upper = 1e4, .scale = 100.0, .doc = "pressure lost at z = 1"},
+      {.name = "blockage_tau",
+       .kind = CoefficientKind::shape,
+       .value = 0.5,
+       .unit = "s",
+       .lower = 1e-3,
+       .upper = 100.0,
+       .scale = 0.5,
+       .doc = "time constant",
+       .scan = {.from = 0.1, .to = 2.5, .count = 4}},
+  };
+  enum State { z };
+  static constexpr OwnStateSpec states[] = {{.name = "z", .unit = "-"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P, T* drift) {
-    P[0] = -in.c[0] * in.z[0] * in.z[0];
-    drift[0] = (in.q[0] - in.z[0]) / in.c[1];
+    P[dynamic_pressure] = -in.c[blockage] * in.z[z] * in.z[z];
+    drift[z] = (in.q[eta] - in.z[z]) / in.c[blockage_tau];
   }
 
-  static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[1]; }
+  static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[blockage_tau]; }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.4}, {50.0, 0.5}, {0.2}, 0.0, {-2.0}, {0.4}, "50 x 0.04; 0.2/0.5"},
-            {{}, {1.0}, {-3.0, 2.0}, {2.0}, 0.0, {12.0}, {-0.5}, "by hand"}};
+    return {{.quantities = {0.4},
+             .coefficients = {50.0, 0.5},
+             .states = {0.2},
+             .ports = {-2.0},
+             .drifts = {0.4},
+             .source = "50 x 0.04; 0.2/0.5"},
+            {.quantities = {1.0}, .coefficients = {-3.0, 2.0}, .states = {2.0}, .ports = {12.0}, .drifts = {-0.5}, .source = "by hand"}};
   }
 };
 

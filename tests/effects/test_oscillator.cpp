@@ -9,27 +9,33 @@ using namespace misfit;
 struct TestOscillator {
   [[maybe_unused]] static constexpr int NU = 1;
   static constexpr int NX = 2, NP = 1, NF = 2, NQ = 4, NK = 3, NY = 2;
+  enum State { x, v };
+  enum Input { drive };
+  enum QuantityIndex { place, speed, held_force, inertia };
+  enum QuantityPort { added_mass };
+  enum DynamicPort { force, slip };
   enum Constant { mass, stiffness, gain };
+  enum Output { position_reading, speed_reading };
 
   explicit TestOscillator(const SystemOptions& /*options*/) {}
   static std::vector<std::string> flags() { return {}; }
 
   template <class T, class K>
-  void quantities(const T* x, const double* u, double /*t*/, const K* k, const T* P, std::uint64_t /*needed*/, T* q) const {
-    q[0] = x[0];
-    q[1] = x[1];
-    q[2] = T(u[0]);
-    q[3] = k[mass] + P[0];
+  void quantities(const T* s, const double* u, double /*t*/, const K* k, const T* P, std::uint64_t /*needed*/, T* q) const {
+    q[place] = s[x];
+    q[speed] = s[v];
+    q[held_force] = T(u[drive]);
+    q[inertia] = k[mass] + P[added_mass];
   }
   template <class T, class K>
-  void rates(const T* x, const double* u, double /*t*/, const K* k, const T* P, const T* F, T* dx) const {
-    dx[0] = x[1] + F[1];
-    dx[1] = (F[0] + u[0] - k[stiffness] * x[0]) / (k[mass] + P[0]);
+  void rates(const T* s, const double* u, double /*t*/, const K* k, const T* P, const T* F, T* dx) const {
+    dx[x] = s[v] + F[slip];
+    dx[v] = (F[force] + u[drive] - k[stiffness] * s[x]) / (k[mass] + P[added_mass]);
   }
   template <class T, class K>
-  void outputs(const T* x, const double* /*u*/, double /*t*/, const K* k, T* y) const {
-    y[0] = k[gain] * x[0];
-    y[1] = x[1];
+  void outputs(const T* s, const double* /*u*/, double /*t*/, const K* k, T* y) const {
+    y[position_reading] = k[gain] * s[x];
+    y[speed_reading] = s[v];
   }
 
   [[nodiscard]] SystemSpec spec() const {
@@ -38,19 +44,22 @@ struct TestOscillator {
     s.doc = "a cart on a spring";
     s.formula = "(mass + P) v' = drive - stiffness x + force, x' = v + slip";
     s.source = "made up for the tests";
-    s.states = {{"x", "m", -1}, {"v", "m/s", 0}};
-    s.inputs = {{"drive", "N", "held force", Hold::zero_order}};
-    s.quantities = {{"x", "m", "place", {}, false},
-                    {"v", "m/s", "speed", {}, false},
-                    {"drive", "N", "held force", {"drive"}, false},
-                    {"inertia", "kg", "mass", {}, false}};
-    s.base_quantities = 3;
-    s.quantity_ports = {{"added_mass", "kg", "adds to the mass", "inertia"}};
-    s.dynamic_ports = {{"force", "N", "along x", "v"}, {"slip", "m/s", "adds to the speed", ""}};
-    s.constants = {{"mass", "kg", "mass", 1e-9, 1e6, true, 0.0},
-                   {"stiffness", "N/m", "spring", 0.0, 1e9, true, 0.0},
-                   {"gain", "1/m", "of the position sensor", -1e3, 1e3, false, 1.0}};
-    s.outputs = {{"position_reading", "-", -1, 1e-3}, {"speed_reading", "m/s", 1, 1e-3}};
+    s.states = {{.name = "x", .unit = "m"}, {.name = "v", .unit = "m/s", .rate_of = x}};
+    s.inputs = {{.name = "drive", .unit = "N", .doc = "held force", .hold = Hold::zero_order}};
+    s.quantities = {{.name = "x", .unit = "m", .doc = "place"},
+                    {.name = "v", .unit = "m/s", .doc = "speed"},
+                    {.name = "drive", .unit = "N", .doc = "held force", .inputs = {"drive"}},
+                    {.name = "inertia", .unit = "kg", .doc = "mass"}};
+    s.base_quantities = inertia;
+    s.quantity_ports = {{.name = "added_mass", .unit = "kg", .doc = "adds to the mass", .conjugate = "inertia"}};
+    s.dynamic_ports = {{.name = "force", .unit = "N", .doc = "along x", .conjugate = "v"},
+                       {.name = "slip", .unit = "m/s", .doc = "adds to the speed"}};
+    s.constants = {
+        {.name = "mass", .unit = "kg", .doc = "mass", .lower = 1e-9, .upper = 1e6},
+        {.name = "stiffness", .unit = "N/m", .doc = "spring", .lower = 0.0, .upper = 1e9},
+        {.name = "gain", .unit = "1/m", .doc = "of the position sensor", .lower = -1e3, .upper = 1e3, .required = false, .value = 1.0}};
+    s.outputs = {{.name = "position_reading", .unit = "-", .noise = 1e-3},
+                 {.name = "speed_reading", .unit = "m/s", .observes = v, .noise = 1e-3}};
     s.roles = {{"rate", "v"},         {"level", "x"},    {"port", "force"}, {"output", "position_reading"}, {"reading", "position_reading"},
                {"displacement", "x"}, {"input", "drive"}};
     s.fastest_rate = 2.0;

@@ -2,6 +2,10 @@
 
 // How to add an effect: one file models/<group>/<key>.cpp like models/parachute/pitch_damping.cpp, and one line in a study.
 //
+// The formula names what it reads and what it adds to: enums Quantity, Port, Coefficient, Constant and State list the names of the arrays
+// `quantities`, `ports`, `coefficients`, `constants` and `states` in their order, in.q[wind_speed], F[pitching_moment]. Where two arrays
+// share a name, one of the enumerators says of which it is: P_y_port. An enum that differs from its array does not compile.
+//
 // What this interface cannot express: forces that depend on accelerations (declare them as a change of `inertia`, a quantity port), jumps
 // of the state, and memory without a finite state (a pure delay: use own states that approximate it).
 
@@ -14,6 +18,7 @@
 
 #include "misfit/math/bspline.h"
 #include "misfit/math/scalar.h"
+#include "misfit/model/index_names.h"
 #include "misfit/model/limits.h"
 
 namespace misfit {
@@ -67,29 +72,9 @@ struct CoefficientSpec {
   double own_sigma = 0.0;          ///< in every fit: Gaussian about the value [unit]; 0: no prior
   /// The coefficient of this name of another effect of the model, number or curve, with that one's parameters: for effects that change what
   /// another adds (a wake that weakens the static moment). InputError where no effect of the model has it. Declared as a shape; of the rest
-  /// of this specification only name, unit and doc count.
+  /// of this specification only name, unit and doc count, and value and bounds in the worked examples and laws.
   bool borrowed = false;
 };
-
-/// `value` and `lower`: of the worked examples and laws, where no other effect lends it.
-constexpr CoefficientSpec borrowed_coefficient(const char* name, const char* unit, const char* doc, double value = 0.0,
-                                               double lower = -1e6) {
-  constexpr double huge = 1e6;
-  CoefficientSpec spec{name, CoefficientKind::shape, value, unit, lower, huge, 1.0, doc};
-  spec.borrowed = true;
-  return spec;
-}
-
-/// The same coefficient, looked for over `scan`.
-constexpr CoefficientSpec scanned(CoefficientSpec spec, const ScanSpec& scan) {
-  spec.scan = scan;
-  return spec;
-}
-/// The same coefficient, held unless a study frees it.
-constexpr CoefficientSpec held(CoefficientSpec spec) {
-  spec.fixed = true;
-  return spec;
-}
 
 /// Memory of an effect: z' = drift [unit/s], and if stochastic white noise of spectral density diffusion² is added.
 struct OwnStateSpec {
@@ -100,9 +85,9 @@ struct OwnStateSpec {
 
 /// A worked example: all inputs given, outputs computed by hand or from a source. Every coefficient is non-zero in at least one.
 struct Example {
-  std::vector<double> constants, quantities, coefficients, states;
+  std::vector<double> constants = {}, quantities = {}, coefficients = {}, states = {};
   double t = 0.0;
-  std::vector<double> ports, drifts;  ///< expected
+  std::vector<double> ports = {}, drifts = {};  ///< expected
   const char* source = "";
 };
 
@@ -147,8 +132,9 @@ class Effect {
 
 /// Turns a struct with a templated formula into an Effect. Required: `static constexpr` texts formula, symbols, valid, size, source,
 /// excludes; array `ports`; `template <class T, class K> static void add(const Reads<T, K>& in, T* F)`, or with own states `add(in, F,
-/// drift)`; `static std::vector<Example> examples()`. Optional: arrays `quantities`, `constants`, `coefficients`, `states`; `specialises`,
-/// `dissipative`; `fastest_rate(const Reads<double, double>&)`, `diffusion(const Reads<double, double>&, double*)`.
+/// drift)`; `static std::vector<Example> examples()`. Optional: arrays `quantities`, `constants`, `coefficients`, `states`; enums Quantity,
+/// Port, Coefficient, Constant, State with the names of the arrays' entries, to index with; `specialises`, `dissipative`;
+/// `fastest_rate(const Reads<double, double>&)`, `diffusion(const Reads<double, double>&, double*)`.
 template <class E>
 class EffectOf final : public Effect {
  public:
@@ -204,6 +190,11 @@ class EffectOf final : public Effect {
   static constexpr int NZ = states();
   static constexpr int NO = NP + NZ;
   static_assert(NQ + NC + NZ + NK <= kMaxWidth, "an effect reads at most kMaxWidth numbers");
+  static_assert(index_names::quantities_match<E>(), "enum Quantity must have the names of `quantities`, in their order");
+  static_assert(index_names::ports_match<E>(), "enum Port must have the names of `ports`, in their order");
+  static_assert(index_names::coefficients_match<E>(), "enum Coefficient must have the names of `coefficients`, in their order");
+  static_assert(index_names::constants_match<E>(), "enum Constant must have the names of `constants`, in their order");
+  static_assert(index_names::states_match<E>(), "enum State must have the names of `states`, in their order");
 
   template <class T, class K>
   static void call(const Reads<T, K>& in, T* out) {

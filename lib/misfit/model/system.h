@@ -38,15 +38,16 @@ struct InputSpec {
 /// A named function of state, input, time and quantity ports. The first `base_quantities` of a system do not depend on quantity ports.
 struct QuantitySpec {
   std::string name, unit, doc;
-  std::vector<std::string> inputs;  ///< inputs without which it cannot be computed
-  bool carries_sign = false;        ///< may be negative: curves of it need no division by its sine (CoefficientSpec::over_sine is ignored)
-  bool explains = true;             ///< a coordinate of the motion: maps and unknown curves are drawn over it
-  bool of_sensor = false;           ///< depends on constants of the sensor (ConstantSpec::of_sensor); all others must not
+  std::vector<std::string> inputs = {};  ///< inputs without which it cannot be computed
+  bool carries_sign = false;  ///< may be negative: curves of it need no division by its sine (CoefficientSpec::over_sine is ignored)
+  bool explains = true;       ///< a coordinate of the motion: maps and unknown curves are drawn over it
+  bool of_sensor = false;     ///< depends on constants of the sensor (ConstantSpec::of_sensor); all others must not
 };
 
 struct PortSpec {
   std::string name, unit, doc;
-  std::string conjugate;  ///< dynamic ports: quantity whose product with the port is power; quantity ports: the quantity that is changed
+  /// Dynamic ports: quantity whose product with the port is power; quantity ports: the quantity that is changed.
+  std::string conjugate = {};
 };
 
 /// A parameter of the system: geometry, mass, flow. Fixed unless a study frees it.

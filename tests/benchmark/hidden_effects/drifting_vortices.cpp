@@ -12,30 +12,54 @@ struct DriftingVortices {
   static constexpr const char* size = "as vortex_shedding";
   static constexpr const char* source = "made up for the bench";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role quantities[] = {{"dynamic_pressure", "Pa"}};
-  static constexpr Role ports[] = {{"moment_y", "N m"}, {"moment_z", "N m"}};
+  enum Quantity { dynamic_pressure };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"}};
+  enum Port { moment_y, moment_z };
+  static constexpr Role ports[] = {{.name = "moment_y", .unit = "N m"}, {.name = "moment_z", .unit = "N m"}};
+  enum Constant { S, D };
   static constexpr const char* constants[] = {"S", "D"};
+  enum Coefficient { drift_y, drift_z, drift_from, drift_rate };
   static constexpr CoefficientSpec coefficients[] = {
-      {"drift_y", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.005, "moment coefficient about y"},
-      {"drift_z", CoefficientKind::strength, 0.0, "-", -10.0, 10.0, 0.005, "moment coefficient about z"},
-      {"drift_from", CoefficientKind::shape, 2.0, "Hz", 1e-3, 100.0, 0.05, "frequency at t = 0"},
-      {"drift_rate", CoefficientKind::shape, 0.0, "1/s^2", -1.0, 1.0, 1e-3, "change of the frequency"}};
+      {.name = "drift_y", .unit = "-", .lower = -10.0, .upper = 10.0, .scale = 0.005, .doc = "moment coefficient about y"},
+      {.name = "drift_z", .unit = "-", .lower = -10.0, .upper = 10.0, .scale = 0.005, .doc = "moment coefficient about z"},
+      {.name = "drift_from",
+       .kind = CoefficientKind::shape,
+       .value = 2.0,
+       .unit = "Hz",
+       .lower = 1e-3,
+       .upper = 100.0,
+       .scale = 0.05,
+       .doc = "frequency at t = 0"},
+      {.name = "drift_rate",
+       .kind = CoefficientKind::shape,
+       .value = 0.0,
+       .unit = "1/s^2",
+       .lower = -1.0,
+       .upper = 1.0,
+       .scale = 1e-3,
+       .doc = "change of the frequency"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::cos;
     using std::sin;
     constexpr double two_pi = 6.28318530717958647692;
-    const T angle = two_pi * in.t * (in.c[2] + 0.5 * in.t * in.c[3]);
-    const T moment = in.q[0] * (in.k[0] * in.k[1]);
-    F[0] = moment * (in.c[0] * cos(angle) + in.c[1] * sin(angle));
-    F[1] = moment * (in.c[1] * cos(angle) - in.c[0] * sin(angle));
+    const T angle = two_pi * in.t * (in.c[drift_from] + 0.5 * in.t * in.c[drift_rate]);
+    const T moment = in.q[dynamic_pressure] * (in.k[S] * in.k[D]);
+    F[moment_y] = moment * (in.c[drift_y] * cos(angle) + in.c[drift_z] * sin(angle));
+    F[moment_z] = moment * (in.c[drift_z] * cos(angle) - in.c[drift_y] * sin(angle));
   }
 
-  static double fastest_rate(const Reads<double, double>& in) { return 6.28318530717958647692 * in.c[2]; }
+  static double fastest_rate(const Reads<double, double>& in) { return 6.28318530717958647692 * in.c[drift_from]; }
 
   static std::vector<Example> examples() {
-    return {{{2.0, 1.5}, {100.0}, {0.1, 0.2, 0.125, 0.125}, {}, 1.0, {105.066017, 17.573593}, {}, "3/16 of a turn: 67.5 deg"}};
+    return {{.constants = {2.0, 1.5},
+             .quantities = {100.0},
+             .coefficients = {0.1, 0.2, 0.125, 0.125},
+             .t = 1.0,
+             .ports = {105.066017, 17.573593},
+             .source = "3/16 of a turn: 67.5 deg"}};
   }
 };
 

@@ -12,18 +12,24 @@ struct FastTurning {
   static constexpr const char* size = "some N m";
   static constexpr const char* source = "made up for the bench";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role quantities[] = {{"lateral_rate", "rad/s"}};
-  static constexpr Role ports[] = {{"pitching_moment", "N m"}};
+  enum Quantity { lateral_rate };
+  static constexpr Role quantities[] = {{.name = "lateral_rate", .unit = "rad/s"}};
+  enum Port { pitching_moment };
+  static constexpr Role ports[] = {{.name = "pitching_moment", .unit = "N m"}};
+  enum Coefficient { turning };
   static constexpr CoefficientSpec coefficients[] = {
-      {"turning", CoefficientKind::strength, 0.0, "N m", -1e4, 1e4, 10.0, "size of the moment"}};
+      {.name = "turning", .unit = "N m", .lower = -1e4, .upper = 1e4, .scale = 10.0, .doc = "size of the moment"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::tanh;
-    F[0] = in.c[0] * tanh(T(in.q[0] * in.q[0]));
+    F[pitching_moment] = in.c[turning] * tanh(T(in.q[lateral_rate] * in.q[lateral_rate]));
   }
 
-  static std::vector<Example> examples() { return {{{}, {0.5}, {20.0}, {}, 0.0, {4.89837325}, {}, "20 tanh(1/4)"}}; }
+  static std::vector<Example> examples() {
+    return {{.quantities = {0.5}, .coefficients = {20.0}, .ports = {4.89837325}, .source = "20 tanh(1/4)"}};
+  }
 };
 
 }  // namespace

@@ -12,22 +12,29 @@ struct ThreeLobes {
   static constexpr const char* size = "some N m";
   static constexpr const char* source = "made up for the bench";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role quantities[] = {{"phi", "rad"}, {"eta", "rad"}};
-  static constexpr Role ports[] = {{"lateral_moment", "N m"}};
+  enum Quantity { phi, eta };
+  static constexpr Role quantities[] = {{.name = "phi", .unit = "rad"}, {.name = "eta", .unit = "rad"}};
+  enum Port { lateral_moment };
+  static constexpr Role ports[] = {{.name = "lateral_moment", .unit = "N m"}};
+  enum Coefficient { lobes };
   static constexpr CoefficientSpec coefficients[] = {
-      {"lobes", CoefficientKind::strength, 0.0, "N m", -1e4, 1e4, 10.0, "size of the moment"}};
+      {.name = "lobes", .unit = "N m", .lower = -1e4, .upper = 1e4, .scale = 10.0, .doc = "size of the moment"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::sin;
     constexpr double covered = 0.05;
-    const T sine = sin(in.q[1]);
+    const T sine = sin(in.q[eta]);
     const T fourth = sine * sine * sine * sine;
-    F[0] = in.c[0] * sin(T(3.0 * in.q[0])) * (fourth / (fourth + covered * covered * covered * covered));
+    F[lateral_moment] = in.c[lobes] * sin(T(3.0 * in.q[phi])) * (fourth / (fourth + covered * covered * covered * covered));
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.52359878, 1.57079633}, {20.0}, {}, 0.0, {19.999875}, {}, "sin 90 deg, open but for 6.25e-6"}};
+    return {{.quantities = {0.52359878, 1.57079633},
+             .coefficients = {20.0},
+             .ports = {19.999875},
+             .source = "sin 90 deg, open but for 6.25e-6"}};
   }
 };
 

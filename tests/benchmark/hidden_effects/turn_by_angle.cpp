@@ -12,21 +12,28 @@ struct TurnByAngle {
   static constexpr const char* size = "some N m";
   static constexpr const char* source = "made up for the bench";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role quantities[] = {{"alpha_T", "rad"}, {"eta", "rad"}};
-  static constexpr Role ports[] = {{"lateral_moment", "N m"}};
+  enum Quantity { alpha_T, eta };
+  static constexpr Role quantities[] = {{.name = "alpha_T", .unit = "rad"}, {.name = "eta", .unit = "rad"}};
+  enum Port { lateral_moment };
+  static constexpr Role ports[] = {{.name = "lateral_moment", .unit = "N m"}};
+  enum Coefficient { twist };
   static constexpr CoefficientSpec coefficients[] = {
-      {"twist", CoefficientKind::strength, 0.0, "N m", -1e4, 1e4, 10.0, "size of the moment"}};
+      {.name = "twist", .unit = "N m", .lower = -1e4, .upper = 1e4, .scale = 10.0, .doc = "size of the moment"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     using std::sin;
     constexpr double covered = 0.05, turns_per_rad = 45.0;  // 2 pi over 8 deg
-    const T sine = sin(in.q[1]);
-    F[0] = in.c[0] * sin(T(turns_per_rad * in.q[0])) * (sine * sine / (sine * sine + covered * covered));
+    const T sine = sin(in.q[eta]);
+    F[lateral_moment] = in.c[twist] * sin(T(turns_per_rad * in.q[alpha_T])) * (sine * sine / (sine * sine + covered * covered));
   }
 
   static std::vector<Example> examples() {
-    return {{{}, {0.034906585, 1.57079633}, {20.0}, {}, 0.0, {19.9501247}, {}, "2 deg: a quarter turn; 20/1.0025"}};
+    return {{.quantities = {0.034906585, 1.57079633},
+             .coefficients = {20.0},
+             .ports = {19.9501247},
+             .source = "2 deg: a quarter turn; 20/1.0025"}};
   }
 };
 

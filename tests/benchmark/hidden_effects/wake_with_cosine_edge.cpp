@@ -14,16 +14,44 @@ struct WakeWithCosineEdge {
   static constexpr const char* size = "as strut_wake";
   static constexpr const char* source = "made up for the bench";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role quantities[] = {
-      {"dynamic_pressure", "Pa"}, {"wind_cross_axis", "-"}, {"wind_cross_axis_lateral", "-"}, {"phi", "rad"}, {"eta", "rad"}};
-  static constexpr Role ports[] = {{"pitching_moment", "N m"}, {"lateral_moment", "N m"}};
+  enum Quantity { dynamic_pressure, wind_cross_axis, wind_cross_axis_lateral, phi, eta };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
+                                        {.name = "wind_cross_axis", .unit = "-"},
+                                        {.name = "wind_cross_axis_lateral", .unit = "-"},
+                                        {.name = "phi", .unit = "rad"},
+                                        {.name = "eta", .unit = "rad"}};
+  enum Port { pitching_moment, lateral_moment };
+  static constexpr Role ports[] = {{.name = "pitching_moment", .unit = "N m"}, {.name = "lateral_moment", .unit = "N m"}};
+  enum Constant { S, D };
   static constexpr const char* constants[] = {"S", "D"};
+  enum Coefficient { edge_depth, edge_push, edge_phi, edge_width, C_m };
   static constexpr CoefficientSpec coefficients[] = {
-      {"edge_depth", CoefficientKind::strength, 0.0, "-", -1.0, 1.0, 0.3, "part of the static moment that is taken away"},
-      {"edge_push", CoefficientKind::strength, 0.0, "-", -2.0, 2.0, 0.1, "sideways moment coefficient"},
-      {"edge_phi", CoefficientKind::shape, 0.0, "rad", -6.3, 6.3, 0.2, "clock angle of the strut"},
-      {"edge_width", CoefficientKind::shape, 0.4, "rad", 0.05, 1.5, 0.1, "half width at half height"},
-      borrowed_coefficient("C_m", "-", "static moment coefficient over the sine of alpha_T")};
+      {.name = "edge_depth", .unit = "-", .lower = -1.0, .upper = 1.0, .scale = 0.3, .doc = "part of the static moment that is taken away"},
+      {.name = "edge_push", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.1, .doc = "sideways moment coefficient"},
+      {.name = "edge_phi",
+       .kind = CoefficientKind::shape,
+       .value = 0.0,
+       .unit = "rad",
+       .lower = -6.3,
+       .upper = 6.3,
+       .scale = 0.2,
+       .doc = "clock angle of the strut"},
+      {.name = "edge_width",
+       .kind = CoefficientKind::shape,
+       .value = 0.4,
+       .unit = "rad",
+       .lower = 0.05,
+       .upper = 1.5,
+       .scale = 0.1,
+       .doc = "half width at half height"},
+      {.name = "C_m",
+       .kind = CoefficientKind::shape,
+       .unit = "-",
+       .lower = -1e6,
+       .upper = 1e6,
+       .doc = "static moment coefficient over the sine of alpha_T",
+       .borrowed = true},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
@@ -31,23 +59,26 @@ struct WakeWithCosineEdge {
     using std::cos;
     using std::sin;
     constexpr double pi = 3.14159265358979323846, covered = 0.02;
-    const T sine = sin(in.q[4]);
-    const T difference = in.q[3] - in.c[2];
+    const T sine = sin(in.q[eta]);
+    const T difference = in.q[phi] - in.c[edge_phi];
     const T delta = atan2(T(sin(difference)), T(cos(difference)));
-    const T place = delta / (2.0 * in.c[3]);
+    const T place = delta / (2.0 * in.c[edge_width]);
     const bool inside = value_of(place) > -1.0 && value_of(place) < 1.0;
     const T window = inside ? T(0.5 + 0.5 * cos(T(pi * place))) : T(0.0);
     const T slope = inside ? T(0.5 * sin(T(pi * place))) : T(0.0);
     const T fourth = sine * sine * sine * sine;
-    const T moment = in.q[0] * (in.k[0] * in.k[1]) * fourth / (fourth + covered * covered * covered * covered);
-    const T weakened = -in.c[0] * in.c[4] * moment * window;
-    F[0] = weakened * in.q[1];
-    F[1] = weakened * in.q[2] + in.c[1] * moment * sine * slope;
+    const T moment = in.q[dynamic_pressure] * (in.k[S] * in.k[D]) * fourth / (fourth + covered * covered * covered * covered);
+    const T weakened = -in.c[edge_depth] * in.c[C_m] * moment * window;
+    F[pitching_moment] = weakened * in.q[wind_cross_axis];
+    F[lateral_moment] = weakened * in.q[wind_cross_axis_lateral] + in.c[edge_push] * moment * sine * slope;
   }
 
   static std::vector<Example> examples() {
-    return {
-        {{2.0, 1.5}, {100.0, 0.3, -0.1, 0.5, 1.57079633}, {0.4, 0.2, 0.1, 0.4, 0.5}, {}, 0.0, {-4.5, 16.5}, {}, "half way out: w = 1/2"}};
+    return {{.constants = {2.0, 1.5},
+             .quantities = {100.0, 0.3, -0.1, 0.5, 1.57079633},
+             .coefficients = {0.4, 0.2, 0.1, 0.4, 0.5},
+             .ports = {-4.5, 16.5},
+             .source = "half way out: w = 1/2"}};
   }
 };
 

@@ -12,36 +12,39 @@ struct PolynomialMoment {
   static constexpr const char* size = "as static_moment and pitch_damping";
   static constexpr const char* source = "paper Eq. 8 with polynomials";
   static constexpr const char* excludes = "everything else";
-  static constexpr Role quantities[] = {{"dynamic_pressure", "Pa"},
-                                        {"wind_speed", "m/s", false, true},
-                                        {"wind_cross_axis", "-"},
-                                        {"alpha_T", "rad"},
-                                        {"pitch_rate", "rad/s"}};
-  static constexpr Role ports[] = {{"pitching_moment", "N m"}};
+  enum Quantity { dynamic_pressure, wind_speed, wind_cross_axis, alpha_T, pitch_rate };
+  static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
+                                        {.name = "wind_speed", .unit = "m/s", .positive = true},
+                                        {.name = "wind_cross_axis", .unit = "-"},
+                                        {.name = "alpha_T", .unit = "rad"},
+                                        {.name = "pitch_rate", .unit = "rad/s"}};
+  enum Port { pitching_moment };
+  static constexpr Role ports[] = {{.name = "pitching_moment", .unit = "N m"}};
+  enum Constant { S, D };
   static constexpr const char* constants[] = {"S", "D"};
+  enum Coefficient { a0, a2, a4, d0, d2 };
   static constexpr CoefficientSpec coefficients[] = {
-      {"a0", CoefficientKind::strength, 0.1, "-", -50.0, 50.0, 0.1, "static moment"},
-      {"a2", CoefficientKind::strength, -2.0, "-", -50.0, 50.0, 1.0, "static moment, square"},
-      {"a4", CoefficientKind::strength, -1.0, "-", -50.0, 50.0, 1.0, "static moment, fourth power"},
-      {"d0", CoefficientKind::strength, -0.2, "-", -50.0, 50.0, 0.1, "damping"},
-      {"d2", CoefficientKind::strength, 0.1, "-", -50.0, 50.0, 0.1, "damping, square"}};
+      {.name = "a0", .value = 0.1, .unit = "-", .lower = -50.0, .upper = 50.0, .scale = 0.1, .doc = "static moment"},
+      {.name = "a2", .value = -2.0, .unit = "-", .lower = -50.0, .upper = 50.0, .scale = 1.0, .doc = "static moment, square"},
+      {.name = "a4", .value = -1.0, .unit = "-", .lower = -50.0, .upper = 50.0, .scale = 1.0, .doc = "static moment, fourth power"},
+      {.name = "d0", .value = -0.2, .unit = "-", .lower = -50.0, .upper = 50.0, .scale = 0.1, .doc = "damping"},
+      {.name = "d2", .value = 0.1, .unit = "-", .lower = -50.0, .upper = 50.0, .scale = 0.1, .doc = "damping, square"},
+  };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    const T square = in.q[3] * in.q[3];
-    const T still = (in.c[0] + square * (in.c[1] + square * in.c[2])) * in.q[2];
-    F[0] = in.q[0] * (in.k[0] * in.k[1]) * (still + (in.k[1] * 0.5) / in.q[1] * (in.c[3] + in.c[4] * square) * in.q[4]);
+    const T square = in.q[alpha_T] * in.q[alpha_T];
+    const T still = (in.c[a0] + square * (in.c[a2] + square * in.c[a4])) * in.q[wind_cross_axis];
+    F[pitching_moment] = in.q[dynamic_pressure] * (in.k[S] * in.k[D]) *
+                         (still + (in.k[D] * 0.5) / in.q[wind_speed] * (in.c[d0] + in.c[d2] * square) * in.q[pitch_rate]);
   }
 
   static std::vector<Example> examples() {
-    return {{{2.0, 3.0},
-             {100.0, 30.0, 0.5, 0.1, 2.0},
-             {1.0, 2.0, 3.0, 4.0, 5.0},
-             {},
-             0.0,
-             {600.0 * (0.5 * 1.0203 + 0.05 * 4.05 * 2.0)},
-             {},
-             "by hand"}};
+    return {{.constants = {2.0, 3.0},
+             .quantities = {100.0, 30.0, 0.5, 0.1, 2.0},
+             .coefficients = {1.0, 2.0, 3.0, 4.0, 5.0},
+             .ports = {600.0 * (0.5 * 1.0203 + 0.05 * 4.05 * 2.0)},
+             .source = "by hand"}};
   }
 };
 

@@ -10,20 +10,33 @@ struct StrutInterference {
   static constexpr const char* size = "1 N m and more, by the strut";
   static constexpr const char* source = "made up for the test of the package";
   static constexpr const char* excludes = "sideways push";
-  static constexpr misfit::Role quantities[] = {{"phi", "rad"}};
-  static constexpr misfit::Role ports[] = {{"pitching_moment", "N m"}};
+  enum Quantity { phi };
+  static constexpr misfit::Role quantities[] = {{.name = "phi", .unit = "rad"}};
+  enum Port { pitching_moment };
+  static constexpr misfit::Role ports[] = {{.name = "pitching_moment", .unit = "N m"}};
+  enum Coefficient { M_strut, w };
   static constexpr misfit::CoefficientSpec coefficients[] = {
-      {"M_strut", misfit::CoefficientKind::strength, 0.0, "N m", -500.0, 500.0, 5.0, "moment straight behind the strut"},
-      {"w", misfit::CoefficientKind::shape, 0.5, "rad", 0.05, 3.0, 0.2, "width"}};
+      {.name = "M_strut", .unit = "N m", .lower = -500.0, .upper = 500.0, .scale = 5.0, .doc = "moment straight behind the strut"},
+      {.name = "w",
+       .kind = misfit::CoefficientKind::shape,
+       .value = 0.5,
+       .unit = "rad",
+       .lower = 0.05,
+       .upper = 3.0,
+       .scale = 0.2,
+       .doc = "width"},
+  };
 
   template <class T, class K>
   static void add(const misfit::Reads<T, K>& in, T* F) {
     using std::exp;
-    const T x = in.q[0] / in.c[1];
-    F[0] = in.c[0] * exp(-x * x);
+    const T x = in.q[phi] / in.c[w];
+    F[pitching_moment] = in.c[M_strut] * exp(-x * x);
   }
 
-  static std::vector<misfit::Example> examples() { return {{{}, {0.5}, {10.0, 0.5}, {}, 0.0, {3.6787944}, {}, "by hand: 10/e"}}; }
+  static std::vector<misfit::Example> examples() {
+    return {{.quantities = {0.5}, .coefficients = {10.0, 0.5}, .ports = {3.6787944}, .source = "by hand: 10/e"}};
+  }
 };
 
 }  // namespace
