@@ -95,6 +95,16 @@ std::string settings_of(const CameraStudy& camera) {
   return text;
 }
 
+/// assign_sweep_points() with the table of the pictures named where it fails.
+std::vector<SweepPoints> points_of(const CameraStudy& camera, const std::vector<double>& theta,
+                                   const std::vector<std::vector<PixelPoint>>& found) {
+  try {
+    return assign_sweep_points(theta, found, camera.sweep_points);
+  } catch (const RunError& error) {
+    throw RunError(camera.sweep_images->string() + ": " + error.what());
+  }
+}
+
 void make_sweep(const Session& session, const std::vector<SweepPicture>& pictures, const fs::path& file, const fs::path& sheet) {
   const Marker marker = marker_of(session.study.camera.sweep_marker);
   std::vector<Seen> seen;
@@ -111,7 +121,7 @@ void make_sweep(const Session& session, const std::vector<SweepPicture>& picture
     found.push_back(seen.back().markers);
     sweep.theta.push_back(picture.theta);
   }
-  const auto points = assign_sweep_points(sweep.theta, found, session.study.camera.sweep_points);
+  const auto points = points_of(session.study.camera, sweep.theta, found);
   std::vector<Shot> shots;
   for (std::size_t k = 0; k < points.size(); ++k) {
     for (std::size_t p = 0; p < 3; ++p) {

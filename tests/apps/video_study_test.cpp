@@ -219,4 +219,14 @@ TEST(CalibrateFromPictures, WrongTablesAreRefusedWithThePlace) {
   }
 }
 
+TEST(CalibrateFromPictures, WithoutMarkersNameTheirTable) {
+  const StudyCopy study("mpf_f111");
+  study.change("sweep = \"static_sweep.csv\"", "sweep_images = \"angles.csv\"");
+  Canvas(90, 90).write_png(study.path("black.png"));
+  study.write("angles.csv", "theta[deg],file\n0,black.png\n5,black.png\n10,black.png\n");
+  const Outcome outcome = study.run("calibrate");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("angles.csv"), HasSubstr("three markers")));
+}
+
 }  // namespace
