@@ -18,11 +18,11 @@
 namespace misfit {
 namespace {
 
-/// White noise of the readings, at least that of their rounding (Widrow: step/sqrt(12)), in `unit`.
+/// White noise of the measurements, at least that of their rounding (Widrow: step/sqrt(12)), in `unit`.
 double noise_of(const std::vector<double>& values, const ColumnSurvey& column, const std::string& unit) {
   const double sigma = reading_noise(values);
   const double rounding = convert(column.resolution, column.unit, unit) / std::sqrt(12.0);
-  constexpr double least = 1e-5;  // of the range: smoothed readings seem to have no noise at all
+  constexpr double least = 1e-5;  // of the range: smoothed measurements seem to have no noise at all
   return std::max({std::isfinite(sigma) ? sigma : 0.0, rounding, least * convert(column.high - column.low, column.unit, unit)});
 }
 

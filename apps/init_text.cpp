@@ -86,7 +86,7 @@ std::string model_text(const GuessedModel& model, const RecordingSurvey& survey)
   for (const auto& o : model.outputs) text += parameters_of(model, o);
   text += "\n[equations]                # what stands on the right is the rate of change of the state\n";
   for (const auto& o : model.outputs) text += equations_of(model, o);
-  text += "\n[outputs]                  # what the columns of the data show; noise: white reading noise, a start\n";
+  text += "\n[outputs]                  # what the columns of the data show; noise: white measurement noise, a start\n";
   for (const auto& o : model.outputs) {
     text += fmt::format("{} = {{ unit = {}, noise = {} }}   # {}\n", o.name, toml_string(o.unit), number(o.noise),
                         remark_on(column_called(survey, o.name)));

@@ -77,7 +77,7 @@ std::vector<Penalty> shared_penalties(const FilterEstimate& child, const FilterE
   return penalties;
 }
 
-/// Readings that both models have and neither has set aside: an effect may need inputs that are missing where the other model reads on.
+/// Measurements that both models use and neither has rejected: an effect may need inputs that are missing where the other model goes on.
 std::vector<std::vector<Use>> common_use(const FilterEstimate& a, const FilterEstimate& b) {
   std::vector<std::vector<Use>> use;
   for (std::size_t e = 0; e < a.data.size(); ++e) {
@@ -94,7 +94,8 @@ struct Gain {
   std::optional<double> held_out;
 };
 
-/// 2 [log L(with) − log L(without)] on the same readings and with the same weights of roughness, each at its own maximum, priors counted.
+/// 2 [log L(with) − log L(without)] on the same measurements and with the same weights of roughness, each at its own maximum, priors
+/// counted.
 Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   FilterOptions options;
   options.threads = threads;

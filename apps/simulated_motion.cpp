@@ -1,4 +1,4 @@
-// Motions that the fitted model makes, put through the same readings as the measured one (lib/misfit/README.md, 6.1).
+// Motions that the fitted model makes, put through the same measurement as the recorded one (lib/misfit/README.md, 6.1).
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ struct Wanted {
 };
 constexpr Wanted wanted[] = {{"alpha_T", false}, {"phi_rate", true}};
 
-/// From the first sample that the filter runs at, without readings that it set aside.
+/// From the first sample that the filter runs at, without the samples that it rejected.
 Signals as_filtered(const FilterData& data) {
   Signals out = *data.signals;
   const auto first = static_cast<std::ptrdiff_t>(data.first);
@@ -98,7 +98,7 @@ void note_gaps(const Signals& signals, SimulatedMotion& out) {
   const double share = static_cast<double>(missing) / static_cast<double>(std::max<std::size_t>(all, 1));
   if (share > worth_a_word) {
     out.notes.push_back(
-        fmt::format("{:.1f} % of the readings of {} are missing, and the simulated motions miss the same times; if what is "
+        fmt::format("{:.1f} % of the samples of {} are missing, and the simulated motions miss the same times; if what is "
                     "missing is the deepest excursions, the measured distribution is narrower for that",
                     100.0 * share, signals.name));
   }

@@ -54,7 +54,7 @@ std::optional<MonteCarloResult> sampled(const Session& session, const StudyChain
 std::vector<std::string> notes_of(const Session& session, const StudyChain& chain, const MonteCarloResult& runs,
                                   const Uncertainty& result) {
   std::vector<std::string> notes = chain.set_up().notes();
-  notes.emplace_back("The bands are of the set-up alone: what the reading noise adds is the nominal fit's own sigma.");
+  notes.emplace_back("The bands are of the set-up alone: what the measurement noise adds is the nominal fit's own sigma.");
   for (const std::string& note : unfinished_notes(chain.nominal(), runs)) notes.push_back(note);
   if (result.failed > 0) notes.push_back(fmt::format("{} of {} runs gave no result and are left out.", result.failed, result.runs));
   for (const SpreadNumber& n : result.numbers) {

@@ -56,7 +56,7 @@ TEST(Calibrate, EveryRecordedSweepGivesItsCamera) {
     EXPECT_LT(off(c, "h_c", world.h_c), 3.0) << world.name;
     EXPECT_LT(off(c, "K", world.K), 3.0) << world.name;
     beyond_two_sigma += (off(c, "h_c", world.h_c) > 2.0) + (off(c, "K", world.K) > 2.0);
-    EXPECT_NEAR(c.sigma_px, 0.5, 0.06) << world.name;  // reading noise 0.5 px, 150 coordinates: ± 0.03
+    EXPECT_NEAR(c.sigma_px, 0.5, 0.06) << world.name;  // measurement noise 0.5 px, 150 coordinates: ± 0.03
     EXPECT_EQ(c.outliers, 0) << world.name;
     EXPECT_EQ(c.residuals.size(), 150u);
   }
@@ -128,7 +128,7 @@ TEST(Calibrate, ExactPixelsOfAFlawedCameraReturnIt) {
   EXPECT_LT(c.rms_px, 1e-6);
 }
 
-TEST(Calibrate, CovarianceIsTheScatterOfRepeatedReadings) {
+TEST(Calibrate, CovarianceIsTheScatterOfRepeatedMeasurements) {
   const Sweep recorded = sweeps::read("calm");
   CalibrateOptions options;
   options.offer = {};

@@ -106,8 +106,8 @@ void add_trims(const Estimate& a, const Estimate& b, const Sides& sides, Compari
   c.trims.push_back({sides.a, sides.b, sides.reference, difference, sigmas, sentence("the trim", sides, difference, sigmas)});
 }
 
-/// A regression takes the noise of its differentiated readings, and what a local polynomial smooths away, into its parameters: its sigmas
-/// know nothing of that.
+/// A regression takes the noise of its differentiated measurements, and what a local polynomial smooths away, into its parameters: its
+/// sigmas know nothing of that.
 void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
   for (const auto& [name, one] : a.parameters) {
     const auto other = b.parameters.find(name);
@@ -119,7 +119,7 @@ void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
     if (d.sigmas > worth_saying) {
       d.sentence = sentence(name, {a.method, b.method}, difference, d.sigmas) + ": they cannot both be right";
       if (a.method == "equation_error" || b.method == "equation_error")
-        d.sentence += "; a regression of differentiated readings is biased by what its stencils smooth, and knows nothing of it";
+        d.sentence += "; a regression of differentiated measurements is biased by what its stencils smooth, and knows nothing of it";
     }
     c.parameters.push_back(std::move(d));
   }

@@ -50,7 +50,7 @@ class ForceColumns {
 
   /// Quantities at the filtered state of each sample, all experiments one after the other (0 before the first used sample).
   [[nodiscard]] const RowMatrix& quantities() const { return quantities_; }
-  /// Quantities at the end of the step from each sample, as predicted: a force over the step must know nothing of the next reading.
+  /// Quantities at the end of the step from each sample, as predicted: a force over the step must know nothing of the next measurement.
   [[nodiscard]] const RowMatrix& quantities_ahead() const { return ahead_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<bool>& used() const { return used_; }

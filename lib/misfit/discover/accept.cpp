@@ -80,7 +80,7 @@ bool needed_beside(const Entry& in, const Refit& both, const Entry& other, const
   return sidak(std::min(1.0, std::exp(log_p)), searched.families) < searched.options.p_accept;
 }
 
-Specimen reading_also(Specimen specimen, const std::vector<int>& quantities) {
+Specimen with_quantities(Specimen specimen, const std::vector<int>& quantities) {
   specimen.quantities.insert(specimen.quantities.end(), quantities.begin(), quantities.end());
   return specimen;
 }
@@ -99,7 +99,7 @@ const Entry* known_for(const Entry& in, const std::vector<Entry>& entries, const
   if (!needed_beside(in, both, *second.entry, searched)) return nullptr;
   // Measured against the drop of `in` alone, as what it left by itself was: the second is called in to explain just that remainder, and
   // the better it does the less may be left, not the more.
-  const Specimen reads = reading_also(*second.score.specimen, in.screened->specimen->quantities);
+  const Specimen reads = with_quantities(*second.score.specimen, in.screened->specimen->quantities);
   return what_is_left(both.estimate, reads, in.refit->drop, options) ? nullptr : second.entry;
 }
 
@@ -161,7 +161,7 @@ Choice choose(std::vector<Entry>& entries, const Searched& searched) {
     e->candidate.why = refusal(*e, searched);
     if (!e->candidate.why.empty()) continue;
     const Specimen& specimen = *e->screened->specimen;
-    const auto left = what_is_left(e->refit->estimate, reading_also(specimen, read), e->refit->drop, searched.options);
+    const auto left = what_is_left(e->refit->estimate, with_quantities(specimen, read), e->refit->drop, searched.options);
     if (!left) {
       out.at = e;
       return out;

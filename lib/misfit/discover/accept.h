@@ -25,7 +25,7 @@ struct Searched {
 };
 
 /// Step by step: lib/misfit/README.md, 6.5. Accepts at most one of those that hold out: significant, with strengths away from their bounds,
-/// at a maximum that was reached, and the held-out readings more likely. Of these the first, in the order of the list, after which no
+/// at a maximum that was reached, and the held-out measurements more likely. Of these the first, in the order of the list, after which no
 /// unknown curve remains of a quantity that it or a likeness before it reads (what_is_left): an effect that leaves one is a likeness of
 /// what is missing, be its drop the largest. If all leave something, the first with which a second known effect leaves nothing, as long as
 /// each is still needed beside the other and no strength of the two ends at a bound. It comes to the front and is grouped with every other

@@ -6,7 +6,7 @@
 
 namespace misfit {
 
-/// The model with one effect more, at its own maximum over everything, on the same readings and with the same roughness weights.
+/// The model with one effect more, at its own maximum over everything, on the same measurements and with the same roughness weights.
 struct Refit {
   bool ok = false;    ///< it could be run; whether a maximum was reached is estimate.converged
   std::string why;    ///< of failing
