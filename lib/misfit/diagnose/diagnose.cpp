@@ -53,7 +53,7 @@ std::string where_it_fails(const ForceMap& map) {
          place(map.x[best_from] - half, map.quantity_unit) + " and " + place(map.x[best_to] + half, map.quantity_unit);
 }
 
-ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features& features, const SystemSpec& spec, int port) {
+ForceMap map_of(const ScoreTest& score, const ForceSensitivity& force, const Features& features, const SystemSpec& spec, int port) {
   ForceMap map;
   map.port = spec.dynamic_ports[static_cast<std::size_t>(port)].name;
   map.port_unit = spec.dynamic_ports[static_cast<std::size_t>(port)].unit;
@@ -61,7 +61,7 @@ ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features
   map.quantity_unit = features.unit;
   map.x = features.centre;
   map.count = features.count;
-  const ScoreResult result = score.test(path.columns(port, features.f, features.ahead));
+  const ScoreResult result = score.test(force.columns(port, features.f, features.ahead));
   map.amplitude.assign(result.amplitude.data(), result.amplitude.data() + result.amplitude.size());
   map.sigma.assign(result.sigma.data(), result.sigma.data() + result.sigma.size());
   map.chi2 = result.chi2;
@@ -70,14 +70,14 @@ ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features
   return map;
 }
 
-std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
+std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
                                const std::vector<Features>& features, const DiagnoseOptions& options) {
   const SystemSpec& spec = estimate.model.system->spec();
   const std::size_t ports = spec.dynamic_ports.size();
   std::vector<ForceMap> maps(ports * features.size());
   run_jobs(
       maps.size(), options.threads,
-      [&](std::size_t k) { maps[k] = map_of(score, path, features[k / ports], spec, static_cast<int>(k % ports)); }, options.progress);
+      [&](std::size_t k) { maps[k] = map_of(score, force, features[k / ports], spec, static_cast<int>(k % ports)); }, options.progress);
   for (auto& map : maps) {
     map.p_corrected = sidak(map.p_value, static_cast<double>(maps.size()));
     if (map.p_corrected < significant) map.sentence = where_it_fails(map);
@@ -87,7 +87,7 @@ std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& 
 }
 
 /// Cells of the two quantities whose maps say most.
-std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
+std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
                                const std::vector<Features>& features, const std::vector<ForceMap>& maps) {
   std::vector<PairMap> out;
   if (maps.empty() || features.size() < 2) return out;
@@ -119,7 +119,7 @@ std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& 
   for (std::size_t p = 0; p < spec.dynamic_ports.size(); ++p) {
     if (spec.dynamic_ports[p].name == first.port) port = static_cast<int>(p);
   }
-  const ScoreResult result = score.test(path.columns(port, cells, ahead));
+  const ScoreResult result = score.test(force.columns(port, cells, ahead));
   for (Eigen::Index c = 0; c < cells.cols(); ++c) {
     const bool known = enough[static_cast<std::size_t>(c)] && result.sigma[c] > 0.0;
     map.amplitude.push_back(known ? result.amplitude[c] : std::nan(""));
@@ -174,11 +174,11 @@ Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& option
   Diagnosis out;
   out.method = "filter_error";
   const ScoreTest score(estimate);
-  const ForceColumns path(estimate);
-  const std::vector<Features> features = features_of(estimate, path);
+  const ForceSensitivity force(estimate);
+  const std::vector<Features> features = features_of(estimate, force);
   out.whiteness = whiteness_of(estimate);
-  out.maps = all_maps(estimate, score, path, features, options);
-  out.pairs = pair_maps(estimate, score, path, features, out.maps);
+  out.maps = all_maps(estimate, score, force, features, options);
+  out.pairs = pair_maps(estimate, score, force, features, out.maps);
   out.nis = nis_of(estimate);
   out.missing = missing_force_of(estimate);
   conclude(out);

@@ -22,7 +22,7 @@ bool is_sensor(const Discovery& discovery, const std::string& effect) {
                      [&](const Candidate& c) { return effect_at(c.effect, c.roles) == effect && c.family == "sensor"; });
 }
 
-void separate(const Candidate& best, bool camera, Discovery& discovery) {
+void suggest_experiment(const Candidate& best, bool camera, Discovery& discovery) {
   if (best.group.empty()) return;
   const bool sensor = std::any_of(best.group.begin(), best.group.end(), [&](const std::string& e) { return is_sensor(discovery, e); });
   std::string sentence = "these data cannot tell " + join_words(best.group) + " apart: ";
@@ -38,7 +38,7 @@ void separate(const Candidate& best, bool camera, Discovery& discovery) {
 }
 
 /// Whoever reads the drops asks why the largest is not the one accepted.
-void name_larger_drops(const Candidate& best, Discovery& discovery) {
+void note_larger_drops(const Candidate& best, Discovery& discovery) {
   for (const Candidate& other : discovery.candidates) {
     if (!other.actual_drop || !best.actual_drop || !(*other.actual_drop > *best.actual_drop)) continue;
     discovery.sentences.push_back(effect_at(other.effect, other.roles) + " has a larger drop (" + format_value(*other.actual_drop) +
@@ -47,7 +47,7 @@ void name_larger_drops(const Candidate& best, Discovery& discovery) {
 }
 
 /// What the flight asks for besides the camera's: accepted, of unknown form, or significant without being either; empty: nothing.
-std::string asked_by_flight(const Discovery& discovery, double p_accept) {
+std::string physics_evidence(const Discovery& discovery, double p_accept) {
   const auto physical = [](const Candidate& c) { return c.family != "sensor"; };
   for (const Candidate& c : discovery.candidates) {
     if (c.accepted && physical(c)) return effect_at(c.effect, c.roles);
@@ -73,8 +73,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     out.verdict = "Missing: " + effect_at(best.effect, best.roles) + " (drop " +
                   format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise p " + format_probability(best.p_value) +
                   "): " + numbers(best) + ".";
-    separate(best, camera, out);
-    name_larger_drops(best, out);
+    suggest_experiment(best, camera, out);
+    note_larger_drops(best, out);
     return;
   }
   if (unexplained) {
@@ -132,7 +132,7 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
   }
   const std::string disagreement =
       "the calibration sweep asks for " + join_words(wanted) + ", which the camera of this study does not have";
-  const std::string flight = asked_by_flight(out, p_accept);
+  const std::string flight = physics_evidence(out, p_accept);
   for (auto& c : out.candidates) {
     if (!c.accepted) continue;
     c.accepted = false;
