@@ -106,7 +106,7 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
   add_running(verb, options);
 }
 
-std::string typed(int argc, char** argv) {
+std::string command_text(int argc, char** argv) {
   std::string out = "misfit";
   for (int i = 1; i < argc; ++i) out += std::string(" ") + argv[i];
   return out;
@@ -129,7 +129,7 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
   app.set_version_flag("--version", std::string("misfit ") + version() + " (" + commit() + ")");
   app.require_subcommand(1);
   Options options;
-  options.command = typed(argc, argv);
+  options.command = command_text(argc, argv);
   std::map<const CLI::App*, Verb> calls;
   for (const auto& entry : verbs) {
     CLI::App* verb = app.add_subcommand(entry.name, entry.doc);
@@ -161,7 +161,7 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
 
 /// A wrong study is wrong on every rank: the first says so and ends them all. Another that still lives after three seconds has found
 /// something that is wrong for it alone, and must say so itself.
-void let_the_first_speak() {
+void silence_other_ranks() {
   try {
     if (ranks_started() > 1 && !ranks().first()) std::this_thread::sleep_for(std::chrono::seconds(3));
   } catch (const std::exception&) {  // without MPI each speaks for itself
@@ -177,11 +177,11 @@ int status_of(int argc, char** argv, const Registry& registry, PrintableStream& 
   } catch (const EndedElsewhere&) {
     return 1;  // the rank where it failed says why
   } catch (const InputError& error) {
-    let_the_first_speak();
+    silence_other_ranks();
     say_error(error.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    say_error("out of memory while running '" + shown(typed(argc, argv), 2 * longest_quote) +
+    say_error("out of memory while running '" + shown(command_text(argc, argv), 2 * longest_quote) +
               "': smaller data, fewer threads (--threads 1) or more memory is needed");
     return 1;
   } catch (const std::exception& error) {

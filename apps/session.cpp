@@ -195,13 +195,13 @@ std::vector<fs::path> Session::files_of_stage(const std::string& stage) const {
 }
 
 bool Session::copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs) {
-  if (below.empty()) return false;
-  const RunFolder from(below, options.command, study.seed, {}, {}, RunFolder::Access::read);
+  if (parent.empty()) return false;
+  const RunFolder from(parent, options.command, study.seed, {}, {}, RunFolder::Access::read);
   const auto known = from.stages().find(stage);
   if (known == from.stages().end() || !from.up_to_date(stage, known->second.inputs) ||
       by_file_name(known->second.inputs) != by_file_name(inputs))
     return false;
-  StageRecord record{stage, options.command + "  # copied from " + below.lexically_normal().string(), inputs};
+  StageRecord record{stage, options.command + "  # copied from " + parent.lexically_normal().string(), inputs};
   const PartFolder part(folder.path());
   for (const auto& output : known->second.outputs) {
     make_writable_folder((part.path() / output).parent_path());

@@ -27,7 +27,7 @@ std::optional<Region> region_of(const VideoStudy& study) {
   return Region{r[0], r[1], r[2], r[3]};
 }
 
-struct Learnt {
+struct MarkerSurvey {
   Appearance look;
   FieldEvidence evidence;
   std::vector<PixelPoint> still;
@@ -40,7 +40,7 @@ void check_frames(const std::filesystem::path& path, const VideoFacts& facts) {
   throw RunError(path.string() + ": the video has one frame only: a track needs at least two");
 }
 
-Learnt learn(const std::filesystem::path& path, const VideoStudy& study) {
+MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
   Video video(path);
   Survey survey({marker_of(study.marker), study.start, region_of(study)});
   while (const auto frame = video.next()) {
@@ -130,8 +130,8 @@ class Shots {
 /// Feeds the fields of all frames, in the order of time.
 class Run {
  public:
-  Run(const Learnt& learnt, const VideoStudy& study, FieldOrder order, long declared)
-      : tracker_({learnt.look, study.start, region_of(study), learnt.still}), order_(order), shots_(declared) {}
+  Run(const MarkerSurvey& survey, const VideoStudy& study, FieldOrder order, long declared)
+      : tracker_({survey.look, study.start, region_of(study), survey.still}), order_(order), shots_(declared) {}
 
   void add(Frame frame) {
     const std::size_t first = static_cast<std::size_t>(frame.number) * fields();
@@ -179,7 +179,7 @@ Track track_of(const std::vector<TrackedSample>& samples, const VideoFacts& fact
   return track;
 }
 
-TrackFacts facts_of(const Learnt& learnt, const VideoFacts& video, FieldOrder order, const std::vector<TrackedSample>& samples,
+TrackFacts facts_of(const MarkerSurvey& survey, const VideoFacts& video, FieldOrder order, const std::vector<TrackedSample>& samples,
                     const Track& track) {
   TrackFacts f;
   f.video = video.file;
@@ -191,9 +191,9 @@ TrackFacts facts_of(const Learnt& learnt, const VideoFacts& video, FieldOrder or
   f.missing = video.missing;
   f.repeated = video.repeated;
   f.fields = words(order);
-  f.fields_shown = words(learnt.evidence.order);
-  f.fields_evidence = learnt.evidence.text();
-  const Marker& marker = learnt.look.marker;
+  f.fields_shown = words(survey.evidence.order);
+  f.fields_evidence = survey.evidence.text();
+  const Marker& marker = survey.look.marker;
   f.marker = name_of(marker.kind);
   if (marker.kind != MarkerKind::picture) f.outer = marker.outer;
   if (marker.kind == MarkerKind::ring) f.inner = marker.inner;
@@ -262,11 +262,11 @@ FieldOrder choose_fields(const VideoStudy& study, const FieldEvidence& evidence,
 
 VideoTrack track_video(const std::filesystem::path& path, const VideoStudy& study,
                        const std::function<void(std::size_t, std::size_t)>& progress) {
-  const Learnt learnt = learn(path, study);
+  const MarkerSurvey survey = learn(path, study);
   std::vector<std::string> warnings;
-  const FieldOrder order = choose_fields(study, learnt.evidence, warnings);
+  const FieldOrder order = choose_fields(study, survey.evidence, warnings);
   Video video(path);
-  Run run(learnt, study, order, video.facts().declared);
+  Run run(survey, study, order, video.facts().declared);
   while (auto frame = video.next()) {
     stop_if_interrupted();
     const auto number = static_cast<std::size_t>(frame->number);
@@ -277,11 +277,11 @@ VideoTrack track_video(const std::filesystem::path& path, const VideoStudy& stud
   const double rate = video.facts().rate * static_cast<double>(run.fields());
   VideoTrack out;
   out.track = track_of(samples, video.facts(), rate);
-  out.facts = facts_of(learnt, video.facts(), order, samples, out.track);
+  out.facts = facts_of(survey, video.facts(), order, samples, out.track);
   out.facts.warnings.insert(out.facts.warnings.begin(), warnings.begin(), warnings.end());
   if (out.facts.ok == 0)
     throw RunError(path.string() + ": the marker was seen in some frames, but could not be followed through any three of them");
-  out.shots = run.shots().finish(samples, rate, std::max(learnt.look.marker.reach_x(), learnt.look.marker.reach_y()));
+  out.shots = run.shots().finish(samples, rate, std::max(survey.look.marker.reach_x(), survey.look.marker.reach_y()));
   return out;
 }
 

@@ -53,7 +53,7 @@ TEST_F(Climbing, TheErrorBeforeAndAfterIsPrintedInItsUnit) {
                             "random force", "N m", "drop:", "actual", "gain of the held-out log-likelihood", "the ladder"});
   expect_parts(spherical.out, {"rung 2: system:parachute_spherical added to parachute_planar", "32 steps ahead, P_y", "px", "no drop",
                                "effect 'coning' is left out"});
-  expect_parts(spherical.err, {"going on from rung 1"});
+  expect_parts(spherical.err, {"continuing from rung 1"});
 }
 
 TEST_F(Climbing, TheLadderHoldsEveryRungWithTheKeysOfTheContract) {
@@ -158,7 +158,7 @@ TEST(LadderOfAStudyThatChanged, IsBegunAnew) {
   study.change("R_cp = \"3.15 m\"", "R_cp = \"3.16 m\"");
   const Outcome outcome = study.add("system:parachute_spherical");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  expect_parts(outcome.err, {"begun anew"});
+  expect_parts(outcome.err, {"starting a new one"});
   EXPECT_EQ(study.result("ladder.json").size(), 2U);
 }
 

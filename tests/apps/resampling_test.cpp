@@ -13,10 +13,10 @@ using Words = std::vector<std::string>;
 /// The first seconds of configs/validation with a small forcing of known frequency: two parameters that a profile can be taken of.
 class ForcedMotion : public ShortValidation {
  public:
-  explicit ForcedMotion(const std::string& wishes) : ShortValidation(700) {
+  explicit ForcedMotion(const std::string& uncertainty) : ShortValidation(700) {
     change("pitch_damping = \\{\\}",
            "pitch_damping = {}\nperiodic_forcing = {}\n\n[parameters]\nfrequency = { free = false, value = \"1.3 Hz\" }");
-    change("perturb = .*", wishes);
+    change("perturb = .*", uncertainty);
   }
   void methods(const std::string& list) const { change("methods = .*", "methods = " + list); }
   [[nodiscard]] json bootstrap(std::size_t k) const { return result("bootstrap.json").at(k); }

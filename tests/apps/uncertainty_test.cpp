@@ -29,7 +29,7 @@ class Flight : public ShortFlight {
 
 double share_of(const json& number, const std::string& parameter) { return number.at("variance_shares").at(parameter).at("share"); }
 
-TEST(SetUpOfTheFlight, LengthMovesTheTrimAndApparentMassTheSlope) {
+TEST(RigOfTheFlight, LengthMovesTheTrimAndApparentMassTheSlope) {
   const Flight flight;
   const Outcome outcome = flight.uncertainty({"--runs", "250"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -54,7 +54,7 @@ TEST(SetUpOfTheFlight, LengthMovesTheTrimAndApparentMassTheSlope) {
   expect_parts(outcome.out, {"sliding_bin, 250 runs", "normal, 3 sigma = 0.1524 m", "share of the variance", "deg", "px/m"});
 }
 
-TEST(SetUpOfTheFlight, IsDoneOnceAndShownInTheReport) {
+TEST(RigOfTheFlight, IsDoneOnceAndShownInTheReport) {
   const Flight flight;
   flight.perturb("{ R = \"6 in\" }");
   const Outcome first = flight.uncertainty({"--runs", "30"});
@@ -73,7 +73,7 @@ TEST(SetUpOfTheFlight, IsDoneOnceAndShownInTheReport) {
   EXPECT_EQ(content(flight.out("report.html")).find("Uncertainty of the set-up"), std::string::npos) << "it is of another study";
 }
 
-TEST(SetUpOfTheFlight, ReadingsAreTaken) {
+TEST(RigOfTheFlight, ReadingsOfItsNumbersAreApplied) {
   const Flight flight;
   flight.perturb("{ R = \"0.03 m\", V = \"1 m/s\", m_a = 0.1 }", "readings = { R = \"sigma\", V = \"uniform\", m_a = \"2 sigma\" }");
   ASSERT_EQ(flight.uncertainty({"--runs", "5"}).status, 0);
@@ -86,7 +86,7 @@ TEST(SetUpOfTheFlight, ReadingsAreTaken) {
 }
 
 /// The calibration is far better than Table 2; a longer distance to the camera alone is mended by calibrating again.
-TEST(SetUpOfTheFlight, TheCalibrationsOwnCovarianceAndCalibratingAgain) {
+TEST(RigOfTheFlight, TheCalibrationsOwnCovarianceAndCalibratingAgain) {
   const Flight flight;
   flight.change("perturb = .*", "camera = \"calibration\"");
   ASSERT_EQ(flight.uncertainty({"--runs", "60"}).status, 0);
@@ -148,7 +148,7 @@ TEST(WrongPerturbations, NoSectionNoRunsAndDecliningMethodsAreAnsweredInWords) {
 }
 
 /// A camera in front of the apex is no set-up: those runs are counted with their reason.
-TEST(SetUpsThatCannotBe, AreLeftOutAndCounted) {
+TEST(RigsThatCannotBe, AreLeftOutAndCounted) {
   const Flight flight;
   flight.perturb("{ l_s = \"2.2 m\" }", "readings = \"sigma\"");
   ASSERT_EQ(flight.uncertainty({"--runs", "40"}).status, 0);

@@ -20,9 +20,9 @@
 namespace misfit {
 namespace {
 
-class Surveyor {
+class ColumnClassifier {
  public:
-  Surveyor(const std::filesystem::path& path, const std::vector<std::string>& reserved)
+  ColumnClassifier(const std::filesystem::path& path, const std::vector<std::string>& reserved)
       : table_(read_loose_csv(path)), taken_(reserved.begin(), reserved.end()) {
     taken_.insert("t");
     out_.source = table_.source;
@@ -31,7 +31,7 @@ class Surveyor {
 
   RecordingSurvey run() {
     describe_format();
-    for (const auto& column : table_.columns) out_.columns.push_back(look_at(column));
+    for (const auto& column : table_.columns) out_.columns.push_back(characterise(column));
     find_time();
     run_time();
     find_segments();
@@ -56,7 +56,7 @@ class Surveyor {
     if (table_.comments > 0) out_.format += fmt::format(", {} comment line{}", table_.comments, table_.comments == 1 ? "" : "s");
   }
 
-  ColumnSurvey look_at(const LooseColumn& column) {
+  ColumnSurvey characterise(const LooseColumn& column) {
     ColumnSurvey s;
     const NameAndUnit header = read_header(column.header);
     s.header = shown(column.header, longest_header);
@@ -282,7 +282,7 @@ std::vector<const ColumnSurvey*> RecordingSurvey::of_use(ColumnUse use) const {
 }
 
 RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved) {
-  return Surveyor(path, reserved).run();
+  return ColumnClassifier(path, reserved).run();
 }
 
 }  // namespace misfit
