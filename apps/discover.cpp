@@ -52,7 +52,7 @@ int discover_verb(const Options& options, const Registry& registry) {
   Options own = options;
   own.quiet = options.quiet || !ranks().first();
   if (options.automatic && ranks().size() > 1)
-    throw InputError("discover --auto is not for several processes: its rungs come one after the other; under mpirun there is discover");
+    throw InputError("discover --auto cannot run under mpirun: each rung depends on the one before; discover without --auto can");
   // The fit that discovery starts from is written by one rank only; the others find it done.
   std::optional<ModelLadder> ladder;
   on_first_rank([&] {

@@ -132,7 +132,7 @@ std::vector<std::string> unfinished_notes(const Fit& nominal, const MonteCarloRe
   const long unfinished = std::lround(last.mean * static_cast<double>(last.count));
   if (unfinished > 0)
     notes.push_back(std::to_string(unfinished) + " of " + std::to_string(runs.runs) +
-                    " runs had not converged; they are in mean and sigma with where they stopped.");
+                    " runs had not converged; mean and sigma include their last iterates.");
   return notes;
 }
 

@@ -64,9 +64,9 @@ Rig::Rig(Session& session, const Model& model) {
       throw InputError(uncertainty.where, "recalibrate needs a camera that is calibrated from a sweep");
     sweep_ = read_sweep(sweep_stage(session));
     calibrate_.model = nominal_.calibration->model;
-    calibrate_.offer.clear();
+    calibrate_.candidates.clear();
     for (const CameraTest& test : nominal_.calibration->tests) {
-      if (test.taken_in) calibrate_.take_in.push_back(test.name);
+      if (test.selected) calibrate_.force.push_back(test.name);
     }
   }
 }

@@ -14,7 +14,7 @@
 
 namespace misfit {
 
-/// The set-up of a study with errors in it.
+/// The rig, camera and constants of a study with errors in them.
 struct PerturbedRig {
   RigGeometry geometry;
   std::optional<Calibration> calibration;
@@ -37,7 +37,7 @@ class Rig {
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  /// A name and its nominal value; where it acts is told by the name alone.
+  /// A name and its nominal value; the name alone determines where it acts.
   struct Known {
     std::string unit;
     double value = 0.0;

@@ -95,7 +95,7 @@ void check_small_files(const Study& study) {
   }
 }
 
-/// The pictures that the table of a sweep names. A table that cannot be read is told of by the stage that needs it.
+/// The pictures that the table of a sweep names. A table that cannot be read is reported by the stage that needs it.
 void add_sweep_pictures(const Study& study, std::vector<fs::path>& files) {
   if (!study.camera.sweep_images) return;
   try {
@@ -220,7 +220,7 @@ const std::atomic<bool>& interrupted() { return interrupt_flag; }
 void watch_interrupts() { std::signal(SIGINT, on_interrupt); }
 
 void stop_if_interrupted() {
-  if (interrupt_flag) throw RunError("interrupted; what was finished is in the run folder, and the same command goes on from there");
+  if (interrupt_flag) throw RunError("interrupted; finished work is in the run folder, and the same command continues from there");
 }
 
 }  // namespace misfit

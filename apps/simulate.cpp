@@ -126,7 +126,7 @@ Table simulate(const Case& c, const Session& session) {
   } else {
     run_segment(stepper, c.signals, inputs, 0, c.signals.samples(), c.initial.data(), false, run);
   }
-  if (!run.finite) throw RunError("the simulated motion left the finite numbers at t = " + format_value(c.signals.t[run.failed_at]) + " s");
+  if (!run.finite) throw RunError("simulation diverged (non-finite state) at t = " + format_value(c.signals.t[run.failed_at]) + " s");
   Table table;
   table.add("t", "s", c.signals.t);
   for (Eigen::Index o = 0; o < run.y.cols(); ++o) {
@@ -144,7 +144,7 @@ Table simulate(const Case& c, const Session& session) {
       noisy.push_back(convert(run.y(i, o) + sigma * normal(random), output.unit, unit));
     }
     if (!std::all_of(noisy.begin(), noisy.end(), [](double v) { return std::isfinite(v); }))
-      throw RunError("output " + output.name + " with its noise of " + format_value(sigma) + " left the finite numbers");
+      throw RunError("output " + output.name + " with noise of sigma " + format_value(sigma) + " is not finite");
     if (sigma > 0.0) table.add(output.name, unit, noisy);
     table.add(sigma > 0.0 ? output.name + "_true" : output.name, unit, values);
   }

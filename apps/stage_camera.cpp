@@ -34,8 +34,8 @@ Calibration make_calibration(const Session& session, const fs::path& sweep) {
   require_rig(session.study, session.model.rig, true);
   CalibrateOptions options;
   options.model = model_of(camera);
-  options.offer = camera.offer;
-  options.take_in = camera.take_in;
+  options.candidates = camera.offer;
+  options.force = camera.take_in;
   return calibrate(read_sweep(sweep), session.model.rig, options);
 }
 

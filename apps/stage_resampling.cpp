@@ -71,7 +71,7 @@ class Work {
   Resampling run() {
     for (const std::string& method : session_.methods()) {
       if (method == "sliding_bin") {
-        note(method, "its bins are no model that could be fitted to other data, or held");
+        note(method, "it has no parametric model to resample or profile");
         continue;
       }
       resample(method);
@@ -106,7 +106,7 @@ class Work {
     });
     if (!fitted) return;
     if (s.fit.status == FitStatus::not_converged)
-      out_.notes.push_back(method + " has not converged (" + s.fit.message + "): what is resampled starts from there");
+      out_.notes.push_back(method + " has not converged (" + s.fit.message + "): resampling starts from its last iterate");
     if (uncertainty_.bootstrap > 0) add_bootstrap(s);
     if (!uncertainty_.profile.empty() && has_likelihood(method)) add_profiles(s);
     if (uncertainty_.starts > 0 && has_likelihood(method)) add_starts(s);
@@ -138,10 +138,10 @@ class Work {
     std::optional<BlockBootstrap> bootstrap;
     if (!attempt(s.from.method, [&] { bootstrap.emplace(s.fit, methods_.prepared().experiments, what, refit, options); })) return;
     Progress progress(fmt::format("bootstrap of {}, {} runs", s.from.method, uncertainty_.bootstrap), session_.options.quiet);
-    const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    const auto report_progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
     const auto results = finished(stored_runs([&](std::size_t k) { return bootstrap->run(k); },
                                               jobs("bootstrap", s.from.method, fmt::format("block {}", uncertainty_.block), options.runs),
-                                              told, &interrupted()));
+                                              report_progress, &interrupted()));
     if (ranks().first()) attempt(s.from.method, [&] { out_.bootstraps.push_back(bootstrap->summary(results)); });
   }
 
@@ -151,9 +151,10 @@ class Work {
       attempt(s.from.method, [&] { requests.push_back(request_for(s, parameter)); });
     if (requests.empty()) return;
     Progress progress("profiles of " + s.from.method, session_.options.quiet);
-    const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    for (auto& profile : finished(stored_profiles(
-             requests, jobs("profile", s.from.method, fmt::format("{}", fmt::join(uncertainty_.profile, " "))), told, &interrupted())))
+    const auto report_progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    for (auto& profile :
+         finished(stored_profiles(requests, jobs("profile", s.from.method, fmt::format("{}", fmt::join(uncertainty_.profile, " "))),
+                                  report_progress, &interrupted())))
       out_.profiles.push_back(std::move(profile));
   }
 
@@ -169,15 +170,15 @@ class Work {
     std::optional<MultiStarts> starts;
     const bool possible = attempt(s.from.method, [&] {
       const Reached best = maximum_near(s.from, experiments);
-      if (!best.objective) throw RunError("starts: it cannot be fitted again where it ended: " + best.why);
+      if (!best.objective) throw RunError("starts: the refit at the estimate failed: " + best.why);
       starts.emplace(s.fit, s.from.fitted.model, *best.objective, search, options);
     });
     if (!possible) return;
     Progress progress(fmt::format("{} random starts of {}", uncertainty_.starts, s.from.method), session_.options.quiet);
-    const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    const auto results =
-        finished(stored_runs([&](std::size_t k) { return starts->run(k); },
-                             jobs("starts", s.from.method, "from the model's typical sizes", options.runs), told, &interrupted()));
+    const auto report_progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    const auto results = finished(stored_runs([&](std::size_t k) { return starts->run(k); },
+                                              jobs("starts", s.from.method, "from the model's typical sizes", options.runs),
+                                              report_progress, &interrupted()));
     if (ranks().first()) attempt(s.from.method, [&] { out_.starts.push_back(starts->summary(results)); });
   }
 
@@ -189,8 +190,8 @@ class Work {
     const Estimate& e = s.fit.parameters.at(parameter);
     const Parameter& p = s.from.fitted.model.parameters[static_cast<std::size_t>(s.from.fitted.model.find_parameter(parameter))];
     const std::optional<double> objective = at_best(e.value);
-    if (!objective) throw RunError("profile of " + parameter + ": it cannot be fitted again where it ended");
-    if (!(e.sigma > 0.0)) throw RunError("profile of " + parameter + ": the fit gives it no sigma, so there is no step to take");
+    if (!objective) throw RunError("profile of " + parameter + ": the refit at the estimate failed");
+    if (!(e.sigma > 0.0)) throw RunError("profile of " + parameter + ": the fit gives no sigma, hence no step size");
     const auto plain = s.fit.plain_sigmas.find(parameter);
     ProfileRequest r{
         s.from.method, parameter, e.unit, e.value, *objective, e.sigma, plain == s.fit.plain_sigmas.end() ? 0.0 : plain->second,

@@ -18,7 +18,7 @@ constexpr const char* stage = "uncertainty";
 const UncertaintyStudy& uncertainty_study(const Session& session) {
   if (!session.study.uncertainty)
     throw InputError({session.study.file.string(), 0, 0},
-                     "the section [uncertainty] is missing: it says what is uncertain, as perturb = { R = \"0.1524 m\" }");
+                     "the section [uncertainty] is missing: it lists what is uncertain, as perturb = { R = \"0.1524 m\" }");
   return *session.study.uncertainty;
 }
 
@@ -54,12 +54,12 @@ std::optional<MonteCarloResult> sampled(const Session& session, const StudyChain
 std::vector<std::string> notes_of(const Session& session, const StudyChain& chain, const MonteCarloResult& runs,
                                   const Uncertainty& result) {
   std::vector<std::string> notes = chain.rig().notes();
-  notes.emplace_back("The bands are of the set-up alone: what the measurement noise adds is the nominal fit's own sigma.");
+  notes.emplace_back("The bands contain the propagated uncertainty only; the nominal fit's sigma contains the measurement noise.");
   for (const std::string& note : unfinished_notes(chain.nominal(), runs)) notes.push_back(note);
   if (result.failed > 0) notes.push_back(fmt::format("{} of {} runs gave no result and are left out.", result.failed, result.runs));
   for (const SpreadNumber& n : result.numbers) {
     if (n.count + result.failed < result.runs)
-      notes.push_back(fmt::format("{} is that of {} of {} runs; the others have none.", n.name, n.count, result.runs));
+      notes.push_back(fmt::format("{} exists in {} of {} runs only.", n.name, n.count, result.runs));
   }
   for (const SpreadCurve& c : result.curves) {
     if (!c.informative) notes.push_back(fmt::format("{} is not informative: {}.", c.name, c.why));

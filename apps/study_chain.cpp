@@ -147,7 +147,7 @@ ChainResult StudyChain::run(const std::vector<double>& errors) const {
     const Fit result = fit(model, signals(rig, model));
     if (!usable(result)) return {{}, to_string(result.status) + ": " + result.message};
     return {numbers_->evaluate(result), ""};
-  } catch (const InputError& error) {  // a set-up that cannot be, as a camera in front of the apex
+  } catch (const InputError& error) {  // an impossible rig, as a camera in front of the apex
     return {{}, error.what()};
   } catch (const RunError& error) {
     return {{}, error.what()};
@@ -164,7 +164,7 @@ std::unique_ptr<StudyChain> chain_of(Session& session) {
       why += std::string(why.empty() ? "" : "; ") + error.what();
     }
   }
-  throw RunError("no method of the study gives a result that could be perturbed: " + why);
+  throw RunError("no method of the study gives a result to perturb: " + why);
 }
 
 }  // namespace misfit

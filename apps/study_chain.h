@@ -11,7 +11,7 @@
 
 namespace misfit {
 
-/// From a perturbed set-up to the numbers of a fit: pixels (with their offset) through the perturbed camera to angles, then the study's
+/// From a perturbed rig to the numbers of a fit: pixels (with their offset) through the perturbed camera to angles, then the study's
 /// method with the perturbed constants. Knots are the nominal fit's; trajectory methods start from its parameters and keep its roughness,
 /// the filter its noise as well.
 class StudyChain {

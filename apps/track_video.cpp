@@ -63,7 +63,7 @@ MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
         "{}: in {:.0f} % of the fields looked at there are two moving things that look like the marker. If there are two, say which: "
         "[video] "
         "start = [column, row]. If there is one, the frames are blends of two fields (an interlaced video that was blurred or scaled "
-        "as a whole), and the original is needed: which of the two was first cannot be told any more",
+        "as a whole), and the original video is needed: the order of the two fields cannot be determined any more",
         path.string(), 100.0 * survey.doubled()));
   }
   return {*look, survey.evidence(), survey.still()};
@@ -239,8 +239,8 @@ FieldOrder choose_fields(const VideoStudy& study, const FieldEvidence& evidence,
   if (said == FieldOrder::unknown) {
     if (shown != FieldOrder::unknown) return shown;
     if (evidence.motion < 1.0) return FieldOrder::progressive;
-    warnings.push_back("whether the video is interlaced cannot be seen (" + evidence.text() +
-                       "): it is read as progressive; say it with [video] fields");
+    warnings.push_back("no evidence whether the video is interlaced (" + evidence.text() +
+                       "): it is read as progressive; [video] fields sets it");
     return FieldOrder::progressive;
   }
   if (shown == FieldOrder::unknown || shown == said) return said;
@@ -255,8 +255,8 @@ FieldOrder choose_fields(const VideoStudy& study, const FieldEvidence& evidence,
                     words(shown), wrong * evidence.motion));
     return shown;
   }
-  warnings.push_back(contradiction + "; the study is followed" +
-                     (study.check_fields ? ", as this is not beyond doubt" : ", as check_fields = false asks for"));
+  warnings.push_back(contradiction + "; the setting of the study is used" +
+                     (study.check_fields ? ", as the evidence is not conclusive" : ", as check_fields = false asks for"));
   return said;
 }
 

@@ -17,7 +17,7 @@ int uncertainty_verb(const Options& options, const Registry& registry) {
     if (asks_for_resampling(session.study)) check_profile_names(session);
   });
   Session session(own, registry);
-  // Bootstrap and profiles alone need no set-up that is uncertain.
+  // Bootstrap and profiles alone need no perturbed rig.
   const bool resampling = asks_for_resampling(session.study);
   const bool perturbs_rig = !resampling || !session.study.uncertainty->perturb.empty();
   Uncertainty result;

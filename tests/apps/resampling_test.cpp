@@ -57,7 +57,7 @@ TEST(Resampling, OfEveryMethodThatCanBeFittedAgain) {
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "done once";
 
   ASSERT_EQ(study.run("report").status, 0);
-  expect_parts(content(study.out("report.html")), {"Intervals by resampling and by profiles, random starts", "Block bootstrap: C_m",
+  expect_parts(content(study.out("report.html")), {"Bootstrap, profile likelihood and random starts", "Block bootstrap: C_m",
                                                    "Profile likelihood: cosine", "sliding_bin is not resampled"});
   EXPECT_EQ(study.uncertainty({}).out, outcome.out);
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "the report has drawn the figures again";

@@ -1,4 +1,4 @@
-// The Monte-Carlo over the set-up, as a user runs it: what it finds, what it refuses, and that nothing ends it for good.
+// The Monte Carlo over the rig, as a user runs it: what it finds, what it refuses, and that nothing ends it for good.
 
 #include <sched.h>
 #include <sys/resource.h>
@@ -66,11 +66,11 @@ TEST(RigOfTheFlight, IsDoneOnceAndShownInTheReport) {
   const Outcome printed = flight.uncertainty({"--runs", "30", "--json"});
   EXPECT_EQ(printed.out, content(flight.out("uncertainty.json")));
   ASSERT_EQ(flight.run("report").status, 0);
-  expect_parts(content(flight.out("report.html")), {"Uncertainty of the set-up", "repeated 30 times", "Where the variance comes from"});
+  expect_parts(content(flight.out("report.html")), {"Propagated uncertainty", "repeated 30 times", "Variance decomposition"});
   EXPECT_TRUE(fs::exists(flight.out("figures/variance_shares.svg")));
   flight.perturb("{ R = \"5 in\" }");
   ASSERT_EQ(flight.run("report").status, 0);
-  EXPECT_EQ(content(flight.out("report.html")).find("Uncertainty of the set-up"), std::string::npos) << "it is of another study";
+  EXPECT_EQ(content(flight.out("report.html")).find("Propagated uncertainty"), std::string::npos) << "it is of another study";
 }
 
 TEST(RigOfTheFlight, ReadingsOfItsNumbersAreApplied) {
@@ -147,7 +147,7 @@ TEST(WrongPerturbations, NoSectionNoRunsAndDecliningMethodsAreAnsweredInWords) {
   expect_parts(outcome.err, {"[uncertainty] is missing", "perturb"});
 }
 
-/// A camera in front of the apex is no set-up: those runs are counted with their reason.
+/// A camera in front of the apex is impossible: those runs are counted with their reason.
 TEST(RigsThatCannotBe, AreLeftOutAndCounted) {
   const Flight flight;
   flight.perturb("{ l_s = \"2.2 m\" }", "readings = \"sigma\"");

@@ -108,7 +108,7 @@ TEST(Accept, ALikenessGivesWayToWhatLeavesNothing) {
   const Candidate& alias = of(ranked, "hysteresis");
   EXPECT_FALSE(alias.accepted);
   EXPECT_GT(alias.held_out_gain.value_or(0.0), 0.0) << "it holds out, and is refused for what it leaves";
-  EXPECT_THAT(alias.why, testing::StartsWith("most of the departure remains"));
+  EXPECT_THAT(alias.why, testing::StartsWith("lack of fit remains"));
 }
 
 /// Beside the friction, which alone explains all, hysteresis is not needed: it must not be accepted on the friction's account.
@@ -128,7 +128,7 @@ TEST(Accept, OneOfTwoIsAcceptedWhereTheOtherExplainsTheRest) {
   ASSERT_TRUE(leaves_something(ranked[0], world));
   EXPECT_FALSE(world.accept(ranked).has_value());
   EXPECT_TRUE(ranked[0].candidate.accepted) << ranked[0].candidate.why;
-  EXPECT_THAT(ranked[0].candidate.why, testing::HasSubstr("what remains after it, coulomb_friction explains"));
+  EXPECT_THAT(ranked[0].candidate.why, testing::HasSubstr("coulomb_friction explains what remains"));
 }
 
 /// hasty_friction is the same formula: whichever stands first, no one can tell them apart; what stands before them and is refused does not
@@ -141,7 +141,7 @@ TEST(Accept, TheOneChosenIsTestedForInseparableOnes) {
   EXPECT_EQ(chosen.effect, "coulomb_friction");
   EXPECT_TRUE(chosen.accepted) << chosen.why;
   EXPECT_THAT(chosen.group, testing::ElementsAre("coulomb_friction", "hasty_friction"));
-  EXPECT_EQ(of(ranked, "hasty_friction").why, "these data cannot tell it from coulomb_friction");
+  EXPECT_EQ(of(ranked, "hasty_friction").why, "these data cannot distinguish it from coulomb_friction");
   EXPECT_THAT(of(ranked, "quadratic_drag").group, testing::IsEmpty());
 }
 

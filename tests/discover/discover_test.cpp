@@ -23,7 +23,7 @@ struct Flight {
 
 TEST(Discover, IsSilentWhereNothingIsMissing) {
   const Discovery found = Flight(fly(15.0, 31)).discover();
-  EXPECT_THAT(found.verdict, testing::StartsWith("Nothing is missing"));
+  EXPECT_THAT(found.verdict, testing::StartsWith("No missing effect detected"));
   EXPECT_TRUE(found.unexplained_quantity.empty());
   for (const auto& c : found.candidates) EXPECT_FALSE(c.accepted) << c.effect;
 }
@@ -107,8 +107,8 @@ TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
   Discovery d = accepting("camera_roll", "sensor");
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
-  EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("calibrate with them offered"));
-  EXPECT_THAT(d.verdict, testing::StartsWith("The camera, not the physics"));
+  EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("recalibrate with them enabled"));
+  EXPECT_THAT(d.verdict, testing::StartsWith("The camera model is incomplete"));
   EXPECT_THAT(d.sweep_asks, testing::ElementsAre("camera_roll"));
 }
 
@@ -148,7 +148,7 @@ TEST(Verdict, SignificantPhysicsThatWasRefusedIsNotTheCamerasAlone) {
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
   EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for unknown:moment(phi) (family-wise p 0.005)"));
   add_camera_remarks(&calibration, 0.01, weaker);
-  EXPECT_THAT(weaker.verdict, testing::StartsWith("The camera, not the physics"));
+  EXPECT_THAT(weaker.verdict, testing::StartsWith("The camera model is incomplete"));
 }
 
 TEST(Verdict, ALargerDropThatIsRefusedIsNamed) {

@@ -284,7 +284,7 @@ TEST(DiscoveryReport, AnEmptyDiagnosisStillGivesAPage) {
   input.diagnosis.emplace();
   input.discovery.emplace();
   const std::string page = read_file(write_report(folder.path(), input));
-  expect_parts(page, {"Where the model fails", "What could be missing"});
+  expect_parts(page, {"Residual diagnostics", "Candidate effects"});
 }
 
 }  // namespace

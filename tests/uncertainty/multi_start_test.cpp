@@ -75,7 +75,7 @@ TEST(MultiStarts, AHigherMaximumIsSaidWithItsPlace) {
   EXPECT_EQ(s.numbers.front().name, "cosine");
   EXPECT_EQ(s.numbers.front().best, 3.0);
   EXPECT_EQ(s.numbers.front().sigma, 0.1);
-  EXPECT_THAT(s.words.front(), HasSubstr("not at the highest maximum"));
+  EXPECT_THAT(s.words.front(), HasSubstr("not at the global maximum"));
   EXPECT_THAT(s.words.front(), HasSubstr("the best by 14 in 2 log L, at cosine = "));
 }
 

@@ -24,7 +24,7 @@ Calibration camera_from_study(CameraModel model, const std::map<std::string, con
     if (sigma < 0.0)
       throw InputError(found->second.where, std::string(name) + ": sigma is " + format_value(sigma) + ", it cannot be negative");
     if (sigma == 0.0) {
-      calibration.notes.push_back(std::string(name) + " is given without sigma and taken as exact");
+      calibration.notes.push_back(std::string(name) + " is given without sigma and treated as exact");
       continue;
     }
     calibration.names.emplace_back(name);

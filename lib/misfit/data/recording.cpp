@@ -175,13 +175,13 @@ class ColumnClassifier {
       ColumnSurvey& c = out_.columns[i];
       if (open.size() > 1 && is_called_input(c.name)) {
         c.use = ColumnUse::input;
-        c.why = "called like an input";
+        c.why = "named like an input";
       } else if (open.size() > 1 && c.held > stands) {
         c.use = ColumnUse::input;
         c.why = fmt::format("stands still between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
         c.use = ColumnUse::output;
-        c.why = open.size() == 1 ? "the only column that was measured" : "not called like an input, and it moves";
+        c.why = open.size() == 1 ? "the only column that was measured" : "not named like an input, and it moves";
         for (auto& remark : limit_remarks(c.header, values(i))) out_.remarks.push_back(std::move(remark));
       }
     }
@@ -207,7 +207,7 @@ class ColumnClassifier {
     }
   }
 
-  /// What is said of a column whose header gives no unit, or none that is known, where the numbers tell it.
+  /// The remark on a column whose header gives no unit, or none that is known, where the numbers show it.
   std::string unit_found(std::size_t i, const std::string& found) {
     const std::string unknown = std::exchange(not_understood_[i], "");
     const std::string column = "column '" + out_.columns[i].header + "'";

@@ -11,7 +11,7 @@
 namespace misfit {
 namespace {
 
-constexpr double tie = 6.0;  // refitted drops nearer than this do not tell two effects apart
+constexpr double tie = 6.0;  // refitted drops nearer than this do not distinguish two effects
 
 std::string label(const Candidate& c) { return effect_at(c.effect, c.roles); }
 
@@ -99,7 +99,7 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   const std::vector<int>&strengths = in.screening->candidate_model->strengths, &others = second.score.candidate_model->strengths;
   if (ends_at_bound(model, strengths) || ends_at_bound(model, others)) return nullptr;
   if (!needed_given(in, both, *second.entry, context)) return nullptr;
-  // Measured against the drop of `in` alone, as what it left by itself was: the second is called in to explain just that remainder, and
+  // Measured against the drop of `in` alone, as what it left by itself was: the second is added to explain just that remainder, and
   // the better it does the less may be left, not the more.
   const CandidateModel reads = with_quantities(*second.score.candidate_model, in.screening->candidate_model->quantities);
   return remaining_lack_of_fit(both.estimate, reads, in.refit->drop, options) ? nullptr : second.entry;
@@ -115,7 +115,7 @@ std::string refusal(RankedCandidate& e, const SearchContext& context) {
   return *c.held_out_gain > 0.0 ? "" : "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
 }
 
-/// Groups the front with what cannot be told from it.
+/// Groups the front with what these data cannot distinguish from it.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   if (ranked.empty() || !ranked.front().refit) return;
   RankedCandidate& best = ranked.front();
@@ -134,7 +134,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   for (RankedCandidate* e : members) e->candidate.group = group;
 }
 
-/// Words for those that were refitted and are not accepted, the accepted one in front.
+/// Reasons for those that were refitted and are not accepted, the accepted one in front.
 void explain_others(std::vector<RankedCandidate>& ranked) {
   const Candidate& best = ranked.front().candidate;
   for (std::size_t k = 1; k < ranked.size(); ++k) {
@@ -142,9 +142,9 @@ void explain_others(std::vector<RankedCandidate>& ranked) {
     if (!other.why.empty() || !ranked[k].refit) continue;
     const bool alike = std::find(other.group.begin(), other.group.end(), label(best)) != other.group.end();
     const bool more = ranked[k].refit->drop > ranked.front().refit->drop;
-    other.why = alike  ? "these data cannot tell it from " + label(best)
-                : more ? "with all that it frees less significant than " + label(best) + "; screened again once that is in"
-                       : "explains less than " + label(best) + "; screened again once that is in";
+    other.why = alike  ? "these data cannot distinguish it from " + label(best)
+                : more ? "less significant than " + label(best) + " for its number of parameters; tested again with that in the model"
+                       : "explains less than " + label(best) + "; tested again with that in the model";
   }
 }
 
@@ -168,7 +168,7 @@ Selection select(std::vector<RankedCandidate>& ranked, const SearchContext& cont
       out.at = e;
       return out;
     }
-    e->candidate.why = "most of the departure remains: after it an unknown " + left->port + "(" + left->quantity + ") still has p " +
+    e->candidate.why = "lack of fit remains: with it in the model an unknown " + left->port + "(" + left->quantity + ") still has p " +
                        format_probability(left->p_value);
     if (aliases.empty()) out.remaining = left;
     aliases.push_back(e);
@@ -197,7 +197,7 @@ std::optional<UnknownCurve> accept_best(std::vector<RankedCandidate>& ranked, co
   Candidate& c = selection.at->candidate;
   c.accepted = true;
   c.why = "family-wise p " + format_probability(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
-  if (selection.next != nullptr) c.why += "; what remains after it, " + label(selection.next->candidate) + " explains";
+  if (selection.next != nullptr) c.why += "; " + label(selection.next->candidate) + " explains what remains";
   std::rotate(ranked.begin(), selection.at, selection.at + 1);
   find_groups(ranked, context);
   explain_others(ranked);

@@ -38,7 +38,7 @@ Candidate named_candidate(const ScreeningResult& s, double families) {
     const Parameter& p = candidate_model.model.parameters[static_cast<std::size_t>(shape)];
     c.parameters[p.name] = {s.cell[i], 0.0, p.unit};
   }
-  if (c.described) c.why = "already described by the model: the free parameters imitate it to better than 99 %";
+  if (c.described) c.why = "already described by the free parameters (R² above 0.99)";
   return c;
 }
 
@@ -51,7 +51,7 @@ std::string what_was_tried(const ScreeningResult& s) {
   const double last = scanned.at(scanned.count - 1);
   out += ", " + format_value(scanned.first) + " to " + format_value(last) + " Hz";
   if (last + 2.0 * scanned.step < scanned.wanted)
-    out += ", not up to " + format_value(scanned.wanted) + " Hz: the samples are not evenly spaced, and these are too many";
+    out += ", not up to " + format_value(scanned.wanted) + " Hz: too many unevenly spaced samples";
   return out;
 }
 

@@ -90,7 +90,7 @@ void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::
     if (freed > 0.0) sigma = freed;
     for (const auto& test : calibration->tests) {
       for (std::size_t k = 0; k < test.parameters.size() && !(freed > 0.0); ++k) {
-        if (test.parameters[k] != name || test.taken_in || !(test.sigmas[k] > 0.0)) continue;
+        if (test.parameters[k] != name || test.selected || !(test.sigmas[k] > 0.0)) continue;
         sigma = test.sigmas[k];
         mean = test.values[k] - calibration->value(name);  // what the sweep would have it be
       }

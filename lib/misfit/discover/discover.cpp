@@ -146,7 +146,7 @@ class Search {
       const std::string p = "family-wise p " + format_probability(e.candidate.p_value);
       if (e.candidate.why.empty()) {
         e.candidate.why = e.candidate.p_value < options_.p_accept
-                              ? p + ", but less than half of the best's predicted drop: screened again once that is in"
+                              ? p + ", but less than half of the best predicted drop: tested again with the best in the model"
                               : "not significant: " + p;
       }
       out_.candidates.push_back(e.candidate);
@@ -173,7 +173,7 @@ class Search {
 
   /// What depends on a quantity in a way that no named effect has.
   std::optional<Unexplained> unexplained() const {
-    // What an alias leaves is told by its own quantities; a curve that explains more than the alias does tells better.
+    // What an alias leaves is described by its own quantities; a curve that explains more than the alias does is the better description.
     const bool alias_better = !unknown_.empty() && !ranked_.empty() && ranked_.front().log_p < unknown_.front().log_p;
     if (remaining_ && (unknown_.empty() || alias_better)) return Unexplained{remaining_->port, remaining_->quantity, remaining_->p_value};
     if (!out_.candidates.empty() && out_.candidates.front().accepted) return std::nullopt;
