@@ -93,7 +93,7 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
     model.input_units.push_back(si_unit(c->unit));
     const bool steps = c->held > 0.2;
     model.hold_reasons.emplace_back(
-        steps ? "" : "; what a computer puts out stands until the next sample, \"first_order\" if it was measured between");
+        steps ? "" : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
     data.inputs.push_back(table.values(c->name, model.input_units.back()));
   }
   say_left_out("inputs", left_out, fmt::format("a system has at most {} inputs", kMaxInputs), model.remarks);

@@ -136,7 +136,7 @@ std::string not_predicted(const Effect& effect, const std::optional<Candidate>& 
                                     [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.borrowed; });
   const std::string name = effect.spec().key;
   if (!strength) return "no drop is predicted for " + name + ": it has no coefficient that switches it off, so no score test exists";
-  if (!from) return "no drop is predicted for " + name + ": it is driven by noise, or another effect stands for it";
+  if (!from) return "no drop is predicted for " + name + ": it is driven by noise, or a more specific effect replaces it";
   return "no drop is predicted for " + name + ": " + (from->why.empty() ? "its score is 0" : from->why);
 }
 
@@ -173,7 +173,7 @@ Session& ModelLadder::last() {
     const Rung& rung = ladder_.rungs.back();
     const fs::path study = root_.folder.file(rung.study);
     if (!fs::exists(study))
-      throw RunError("rung " + std::to_string(rung.id) + " of the ladder is gone: " + study.string() + " — remove " +
+      throw RunError("rung " + std::to_string(rung.id) + " of the ladder is missing: " + study.string() + " — remove " +
                      root_.folder.file(ladder_name).string() + " to start a new one");
     root_.say(fmt::format("continuing from rung {} of the ladder, {}", rung.id, study.parent_path().lexically_normal().string()));
     last_ = std::make_unique<Session>(options_for(options_, study), registry_);

@@ -54,13 +54,13 @@ MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
     const std::string what = study.marker.picture ? "the marker of " + study.marker.picture->filename().string()
                                                   : "a " + study.marker.kind + " marker of 8 to 30 px";
     throw RunError(
-        fmt::format("{}: {} was found in none of the {} frames looked at; is [video] marker right (ring, bright, dark, or a PNG cut from a "
-                    "frame)? start = [column, row] or region = [left, top, right, bottom] can say where it is",
+        fmt::format("{}: {} was found in none of the {} frames searched; is [video] marker right (ring, bright, dark, or a PNG cut from a "
+                    "frame)? start = [column, row] or region = [left, top, right, bottom] gives its place",
                     path.string(), what, survey.frames()));
   }
   if (!study.start && !study.region && survey.doubled() > most_doubled) {
     throw RunError(fmt::format(
-        "{}: in {:.0f} % of the fields looked at there are two moving things that look like the marker. If there are two, say which: "
+        "{}: in {:.0f} % of the fields searched two moving objects resemble the marker. If there are two, choose one: "
         "[video] "
         "start = [column, row]. If there is one, the frames are blends of two fields (an interlaced video that was blurred or scaled "
         "as a whole), and the original video is needed: the order of the two fields cannot be determined any more",

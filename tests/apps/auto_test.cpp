@@ -36,7 +36,7 @@ TEST(DiscoverAuto, AddsWhatIsAcceptedAndLooksAgain) {
   const fs::path last = study.out(ladder.back().at("study").get<std::string>()).parent_path() / "out";
   for (const auto& candidate : json::parse(content(last / "candidates.json")))
     EXPECT_FALSE(candidate.at("accepted")) << candidate.at("effect");
-  expect_parts(content(study.out("report.html")), {"Candidate effects", "What could still be missing after rung"});
+  expect_parts(content(study.out("report.html")), {"Candidate effects", "Candidate effects after rung"});
 }
 
 /// The planar model lacks a degree of freedom, which no effect describes: whatever follows some of it is not to be taken for it.

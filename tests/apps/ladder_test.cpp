@@ -113,11 +113,11 @@ TEST(AddAfterAWholeSearch, TakesItsPredictionAndTheReportKeepsWhatWasFound) {
     if (candidate.at("effect") == "strut_wake") predicted = candidate.at("predicted_drop").get<double>();
   }
   EXPECT_EQ(study.result("ladder.json").at(1).at("predicted_drop").get<double>(), predicted);
-  expect_parts(content(study.out("report.html")), {"<h2>Where the model fails", "<h2>What could be missing", "(rung 0)"});
+  expect_parts(content(study.out("report.html")), {"<h2>Residual diagnostics", "<h2>Candidate effects", "(rung 0)"});
   fs::remove(study.out("report.html"));
   const Outcome from_elsewhere = program::run({"report", fs::relative(study.path("study.toml")).string()});
   ASSERT_EQ(from_elsewhere.status, 0) << from_elsewhere.err;
-  expect_parts(content(study.out("report.html")), {"<h2>Where the model fails", "<h2>What could be missing"});
+  expect_parts(content(study.out("report.html")), {"<h2>Residual diagnostics", "<h2>Candidate effects"});
 }
 
 struct Refusal {

@@ -262,7 +262,7 @@ TEST_F(SameBitsUnderMpi, AWrongStudyIsRefusedByOneRankAndEndsAll) {
   expect_parts(outcome.err, {"'m_b'", "did you mean 'm_a'"});
   const Outcome other = on_ranks(2, {"fit", study_.path("study.toml").string()});
   EXPECT_NE(other.status, 0);
-  expect_parts(other.err, {"'fit' is not for several processes"});
+  expect_parts(other.err, {"'fit' cannot run under mpirun"});
 }
 
 }  // namespace

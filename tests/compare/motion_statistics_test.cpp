@@ -107,7 +107,8 @@ TEST(CompareMotion, LargerMotionIsNamed) {
   EXPECT_GT(group(motion.series[0], "autocorrelation").p_value, 0.01) << "of the same shape";
   conclude_motion(motion);
   EXPECT_DOUBLE_EQ(motion.p_value, 0.01);
-  EXPECT_THAT(motion.sentences.front(), testing::StartsWith("the fitted model does not make motion like the measured one: p 0.01"));
+  EXPECT_THAT(motion.sentences.front(),
+              testing::StartsWith("the fitted model does not reproduce the statistics of the measured motion: p 0.01"));
   EXPECT_THAT(motion.sentences, testing::Contains(testing::StartsWith("the distribution of x (flight): p 0.01")));
 }
 

@@ -47,7 +47,7 @@ Calibration example() {
               1.0,
               false}};
   c.residuals = {{3, 'y', -0.1, 1.5, 1.25, true}, {1, 'z', 0.2, -30.0, 300.0 / 7.0, false}};
-  c.notes = {"2 of 75 points were set aside as outliers"};
+  c.notes = {"2 of 75 points were rejected as outliers"};
   return c;
 }
 

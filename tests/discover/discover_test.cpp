@@ -118,7 +118,7 @@ TEST(Verdict, PhysicsSeenThroughACameraThatItsSweepDoubtsIsNotAccepted) {
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
-  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for strut_wake"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight gives evidence of strut_wake"));
 }
 
 TEST(Verdict, AForceThatNothingExplainsIsNotTheCamerasAlone) {
@@ -128,7 +128,7 @@ TEST(Verdict, AForceThatNothingExplainsIsNotTheCamerasAlone) {
   d.unexplained_quantity = "alpha_T";
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
-  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for a force on moment that depends on alpha_T"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight gives evidence of a force on moment that depends on alpha_T"));
   EXPECT_FALSE(d.candidates[0].accepted);
 }
 
@@ -146,7 +146,7 @@ TEST(Verdict, SignificantPhysicsThatWasRefusedIsNotTheCamerasAlone) {
   weaker.candidates[1].p_value = 0.05;
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
-  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for unknown:moment(phi) (family-wise p 0.005)"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight gives evidence of unknown:moment(phi) (family-wise p 0.005)"));
   add_camera_remarks(&calibration, 0.01, weaker);
   EXPECT_THAT(weaker.verdict, testing::StartsWith("The camera model is incomplete"));
 }
@@ -230,7 +230,7 @@ TEST(Screen, SaysWhichFrequenciesItLookedAt) {
   s.frequencies = {0.2, 0.01, 1001, 10.2};
   EXPECT_EQ(what_was_tried(s), "vortex_shedding (physics): 8 cells, 500 effective, 0.2 to 10.2 Hz");
   s.frequencies.wanted = 22.5;
-  EXPECT_THAT(what_was_tried(s), testing::HasSubstr("0.2 to 10.2 Hz, not up to 22.5 Hz: the samples are not evenly spaced"));
+  EXPECT_THAT(what_was_tried(s), testing::HasSubstr("0.2 to 10.2 Hz, not up to 22.5 Hz: too many unevenly spaced samples"));
 }
 
 /// The model turns with a rolled camera: held gains would call the roll known nine times better than it is.

@@ -49,7 +49,7 @@ LikelihoodProfile profile() {
   p.lower = -1.71;
   p.upper = -1.32;
   p.lower_found = p.upper_found = true;
-  p.words = {"the residuals have memory: drops count 0.25 times"};
+  p.words = {"autocorrelated residuals: drops are multiplied by 0.25"};
   return p;
 }
 

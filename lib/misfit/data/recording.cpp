@@ -169,7 +169,7 @@ class ColumnClassifier {
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       if (out_.columns[i].use == ColumnUse::unused) open.push_back(i);
     }
-    if (open.empty()) fail(0, "beside time no column changes: nothing was measured");
+    if (open.empty()) fail(0, "no column but time changes: nothing was measured");
     constexpr double stands = 0.5;
     for (const std::size_t i : open) {
       ColumnSurvey& c = out_.columns[i];
@@ -178,10 +178,10 @@ class ColumnClassifier {
         c.why = "named like an input";
       } else if (open.size() > 1 && c.held > stands) {
         c.use = ColumnUse::input;
-        c.why = fmt::format("stands still between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
+        c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
         c.use = ColumnUse::output;
-        c.why = open.size() == 1 ? "the only column that was measured" : "not named like an input, and it moves";
+        c.why = open.size() == 1 ? "the only column that was measured" : "not named like an input, and it varies";
         for (auto& remark : limit_remarks(c.header, values(i))) out_.remarks.push_back(std::move(remark));
       }
     }

@@ -37,7 +37,7 @@ void suggest_experiment(const Candidate& best, bool camera, Discovery& discovery
   discovery.sentences.push_back(sentence);
 }
 
-/// Whoever reads the drops asks why the largest is not the one accepted.
+/// Why the largest drop is not the one accepted.
 void note_larger_drops(const Candidate& best, Discovery& discovery) {
   for (const Candidate& other : discovery.candidates) {
     if (!other.actual_drop || !best.actual_drop || !(*other.actual_drop > *best.actual_drop)) continue;
@@ -46,7 +46,7 @@ void note_larger_drops(const Candidate& best, Discovery& discovery) {
   }
 }
 
-/// What the flight asks for besides the camera's: accepted, of unknown form, or significant without being either; empty: nothing.
+/// What the flight gives evidence of besides the camera: accepted, of unknown form, or significant without being either; empty: nothing.
 std::string physics_evidence(const Discovery& discovery, double p_accept) {
   const auto physical = [](const Candidate& c) { return c.family != "sensor"; };
   for (const Candidate& c : discovery.candidates) {
@@ -140,7 +140,7 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
   if (flight.empty()) {
     out.verdict = "The camera model is incomplete: " + disagreement + ". Recalibrate with them enabled, then rerun discover.";
   } else {
-    out.verdict = "Sweep and flight disagree: " + disagreement + ", and the flight asks for " + flight +
+    out.verdict = "Sweep and flight disagree: " + disagreement + ", and the flight gives evidence of " + flight +
                   ". Recalibrate with them enabled, then rerun discover: a wrong camera can look like physics.";
   }
 }

@@ -42,7 +42,7 @@ void bootstraps(const Resampling& r, Page& page) {
 
 void profiles(const Resampling& r, Page& page) {
   if (r.profiles.empty()) return;
-  Cells rows{{"profile of", "method", "fit ± its sigma", "95 % from", "95 % to", "what to know"}};
+  Cells rows{{"profile of", "method", "fit ± its sigma", "95 % from", "95 % to", "remarks"}};
   for (const LikelihoodProfile& p : r.profiles) {
     rows.push_back({p.parameter, p.method, in_display_unit(p.best, p.unit, p.sigma), end_of(p.lower_found, p.lower, p.sigma, p.unit),
                     end_of(p.upper_found, p.upper, p.sigma, p.unit), fmt::format("{}", fmt::join(p.words, "; "))});
