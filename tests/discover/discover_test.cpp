@@ -66,7 +66,7 @@ TEST(Verdict, AStrengthAtItsBoundIsNamedAndOneAtZeroIsNot) {
   set(model, "friction", 0.0);
   const auto found = ends_at_bound(model, {friction, depth});
   ASSERT_TRUE(found.has_value());
-  EXPECT_EQ(*found, "its strength wake_depth ends at the bound 1: not believable");
+  EXPECT_EQ(*found, "its strength wake_depth ends at its bound 1");
   set(model, "wake_depth", 0.98);
   EXPECT_FALSE(ends_at_bound(model, {friction, depth}).has_value());
 }
@@ -81,7 +81,7 @@ TEST(Discover, DoesNotAcceptWhatEndsAtItsBound) {
       std::find_if(found.candidates.begin(), found.candidates.end(), [](const Candidate& c) { return c.effect == "coulomb_friction"; });
   ASSERT_NE(friction, found.candidates.end());
   EXPECT_FALSE(friction->accepted);
-  EXPECT_THAT(friction->why, testing::HasSubstr("friction ends at the bound 10 N m: not believable")) << found.verdict;
+  EXPECT_THAT(friction->why, testing::HasSubstr("friction ends at its bound 10 N m")) << found.verdict;
 }
 
 Calibration asking_for_roll() {
