@@ -27,16 +27,16 @@ std::optional<Candidate> candidate_of(Session& session, const std::string& effec
 }  // namespace
 
 int add_verb(const Options& options, const Registry& registry) {
-  Climb ladder(options, registry);
-  const std::optional<Candidate> candidate = candidate_of(ladder.top(), options.effect);
+  ModelLadder ladder(options, registry);
+  const std::optional<Candidate> candidate = candidate_of(ladder.last(), options.effect);
   const Rung& rung = ladder.add(options.effect, candidate);
   report_ladder(ladder);
   if (options.json) {
-    print_file(ladder.original().folder.file("ladder.json"));
+    print_file(ladder.root().folder.file("ladder.json"));
     return 0;
   }
-  std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.top_fit()) << '\n' << ladder_text(ladder.ladder());
-  std::cout << "\nstudy of this rung: " << ladder.original().folder.file(rung.study).lexically_normal().string() << '\n';
+  std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.last_fit()) << '\n' << ladder_text(ladder.ladder());
+  std::cout << "\nstudy of this rung: " << ladder.root().folder.file(rung.study).lexically_normal().string() << '\n';
   return 0;
 }
 

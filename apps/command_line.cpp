@@ -30,22 +30,23 @@ struct VerbEntry {
 };
 
 constexpr VerbEntry verbs[] = {
-    {"run", "do everything the study asks for and write the report; stages whose inputs have not changed are skipped", run_verb, true},
-    {"track", "follow the marker through the video: track.csv, contact sheet, what was lost and why", track_verb, true},
-    {"calibrate", "camera height, scale and what else the static sweep supports", calibrate_verb, true},
-    {"attitude", "angles of the axis from the track", attitude_verb, true},
+    {"run", "run all stages of the study and write the report; stages whose inputs have not changed are skipped", run_verb, true},
+    {"track", "follow the marker through the video: track.csv, contact sheet, lost samples and their reasons", track_verb, true},
+    {"calibrate", "estimate camera height, scale and the further parameters that the static sweep supports", calibrate_verb, true},
+    {"attitude", "compute the angles of the axis from the track", attitude_verb, true},
     {"fit", "estimate the model's curves and parameters", fit_verb, true},
-    {"diagnose", "where the model fails: missing force by place, time and quantity, whiteness", diagnose_verb, true},
-    {"discover", "which effect the model lacks, ranked; goes on from the last rung of the study's ladder", discover_verb, true},
-    {"add", "add an effect (or system:KIND) to the last rung: a new study, fitted, and the error before and after", add_verb, true},
-    {"compare", "methods side by side and against reference curves", compare_verb, true},
-    {"uncertainty", "what errors of the set-up do to the results: the study's [uncertainty] as a Monte-Carlo, on threads or under mpirun",
+    {"diagnose", "residual diagnostics: unexplained force against states, inputs and time; whiteness tests", diagnose_verb, true},
+    {"discover", "rank the effects the model may be missing; continues from the last model of the ladder", discover_verb, true},
+    {"add", "add an effect (or system:KIND) to the last rung: writes and fits a new study, prints the error before and after", add_verb,
+     true},
+    {"compare", "compare methods with each other and with reference curves, simulated with measured motion", compare_verb, true},
+    {"uncertainty", "propagate geometry, camera and mass uncertainty to the results (Monte Carlo, on threads or under mpirun)",
      uncertainty_verb, true},
-    {"report", "figures and one self-contained page", report_verb, true},
-    {"simulate", "run the model: as [simulate] says, or as fitted", simulate_verb, true},
-    {"batch", "fit many studies as one job, on threads or under mpirun: one table of how their results vary", batch_verb, true},
-    {"init", "look at a file of columns and write a study to start from: data, linear model, figures", init_verb, true},
-    {"effects", "the effects this program knows, or those of a study: formula, roles, ports, coefficients, source", effects_verb, false},
+    {"report", "write the figures and one self-contained page", report_verb, true},
+    {"simulate", "simulate the model as described in [simulate], or as fitted", simulate_verb, true},
+    {"batch", "fit many studies as one job, on threads or under mpirun; tabulate how their results vary", batch_verb, true},
+    {"init", "write a first study for a CSV file: column roles, linear model, figures", init_verb, true},
+    {"effects", "list the effects of the program, or of a study: formula, roles, ports, coefficients, source", effects_verb, false},
 };
 
 void add_method(CLI::App& verb, Options& options) {
@@ -71,15 +72,16 @@ void add_running(CLI::App& verb, Options& options) {
       ->type_name("N")
       ->check(CLI::Range(0, 1024));
   verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N")->check(whole_number_check());
-  verb.add_flag("--quiet", options.quiet, "no progress and no remarks on stderr");
+  verb.add_flag("--quiet", options.quiet, "print no progress and no notes to stderr");
   verb.add_flag("--json", options.json, "print the result as JSON");
 }
 
 void add_options(CLI::App& verb, Options& options, bool study_required) {
   if (verb.get_name() == "init") {
-    verb.add_option("data", options.study, "file of columns under a line of names")->type_name("DATA.csv")->required();
-    verb.add_flag("--force", options.force, "write over files that are there (never over the data)");
-    verb.add_option("--out", options.out, "folder of the study (default: called like the data, in the present folder)")->type_name("DIR");
+    verb.add_option("data", options.study, "CSV file with a header line")->type_name("DATA.csv")->required();
+    verb.add_flag("--force", options.force, "overwrite an existing study (never the data)");
+    verb.add_option("--out", options.out, "folder of the study (default: named after the data file, in the current directory)")
+        ->type_name("DIR");
     verb.add_flag("--json", options.json, "print what was found as JSON");
     return;
   }
@@ -88,7 +90,7 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
         ->type_name("LIST|FOLDER…")
         ->required();
     verb.add_option("--out", options.out, "folder of the results (default: batch/ beside the list or in the folder)")->type_name("DIR");
-    verb.add_flag("--force", options.force, "write over files that misfit did not make (never over data, never through links)");
+    verb.add_flag("--force", options.force, "overwrite files that misfit did not write (never data, never through links)");
     add_method(verb, options);
     add_running(verb, options);
     return;
@@ -99,14 +101,15 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
     verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
   if (verb.get_name() == "uncertainty")
     verb.add_option("--runs", options.runs, "overrides the study's number of runs")->type_name("N")->check(CLI::Range(1, 100'000'000));
-  if (verb.get_name() == "discover") verb.add_flag("--auto", options.automatic, "add what is accepted and look again, until nothing is");
+  if (verb.get_name() == "discover")
+    verb.add_flag("--auto", options.automatic, "add the accepted effect and search again, until none is accepted");
   verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
-  verb.add_flag("--force", options.force, "write over files that misfit did not make (never over data, never through links)");
+  verb.add_flag("--force", options.force, "overwrite files that misfit did not write (never data, never through links)");
   add_method(verb, options);
   add_running(verb, options);
 }
 
-std::string typed(int argc, char** argv) {
+std::string command_text(int argc, char** argv) {
   std::string out = "misfit";
   for (int i = 1; i < argc; ++i) out += std::string(" ") + argv[i];
   return out;
@@ -121,7 +124,7 @@ std::vector<std::string> verb_names() {
 /// Verbs that are one job would do it several times over, in one folder.
 void refuse_ranks(const std::string& verb) {
   if (ranks_started() > 1 && verb != "uncertainty" && verb != "batch" && verb != "discover")
-    throw InputError("'" + verb + "' is not for several processes: under mpirun there are uncertainty, batch and discover");
+    throw InputError("'" + verb + "' cannot run under mpirun; only uncertainty, batch and discover can");
 }
 
 int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out) {
@@ -129,7 +132,7 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
   app.set_version_flag("--version", std::string("misfit ") + version() + " (" + commit() + ")");
   app.require_subcommand(1);
   Options options;
-  options.command = typed(argc, argv);
+  options.command = command_text(argc, argv);
   std::map<const CLI::App*, Verb> calls;
   for (const auto& entry : verbs) {
     CLI::App* verb = app.add_subcommand(entry.name, entry.doc);
@@ -148,7 +151,7 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    throw InputError(shortened(error.what(), longest_message / 2) + "; misfit --help and misfit VERB --help tell what is possible");
+    throw InputError(shortened(error.what(), longest_message / 2) + "; see misfit --help and misfit VERB --help");
   }
   const CLI::App* chosen = app.get_subcommands().front();
   const CLI::Option* seed = chosen->get_option_no_throw("--seed");
@@ -159,12 +162,12 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
   return calls.at(chosen)(options, registry);
 }
 
-/// A wrong study is wrong on every rank: the first says so and ends them all. Another that still lives after three seconds has found
-/// something that is wrong for it alone, and must say so itself.
-void let_the_first_speak() {
+/// An error in the study occurs on every rank: the first reports it and ends them all. A rank still alive after three seconds has an
+/// error of its own, and reports it.
+void silence_other_ranks() {
   try {
     if (ranks_started() > 1 && !ranks().first()) std::this_thread::sleep_for(std::chrono::seconds(3));
-  } catch (const std::exception&) {  // without MPI each speaks for itself
+  } catch (const std::exception&) {  // without MPI each reports its own
     return;
   }
 }
@@ -177,11 +180,11 @@ int status_of(int argc, char** argv, const Registry& registry, PrintableStream& 
   } catch (const EndedElsewhere&) {
     return 1;  // the rank where it failed says why
   } catch (const InputError& error) {
-    let_the_first_speak();
+    silence_other_ranks();
     say_error(error.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    say_error("out of memory while running '" + shown(typed(argc, argv), 2 * longest_quote) +
+    say_error("out of memory while running '" + shown(command_text(argc, argv), 2 * longest_quote) +
               "': smaller data, fewer threads (--threads 1) or more memory is needed");
     return 1;
   } catch (const std::exception& error) {

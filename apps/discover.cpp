@@ -26,20 +26,20 @@ std::optional<Candidate> next_step(const Discovery& discovery, const Registry& r
   return std::nullopt;
 }
 
-int climb(Climb& ladder, const Registry& registry, bool json) {
+int extend_ladder(ModelLadder& ladder, const Registry& registry, bool json) {
   constexpr int most_rungs = 12;
   for (int k = 0; k < most_rungs; ++k) {
-    const Discovery discovery = discovered(ladder.top());
+    const Discovery discovery = discovered(ladder.last());
     if (!json) std::cout << discovery_text(discovery) << '\n' << std::flush;
     const std::optional<Candidate> next = next_step(discovery, registry);
     if (!next) break;
     const Rung& rung = ladder.add(next->effect, next);
-    if (!json) std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.top_fit()) << '\n' << std::flush;
+    if (!json) std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.last_fit()) << '\n' << std::flush;
   }
-  static_cast<void>(ladder.top_rung());
+  static_cast<void>(ladder.last_rung());
   report_ladder(ladder);
   if (json) {
-    print_file(ladder.original().folder.file("ladder.json"));
+    print_file(ladder.root().folder.file("ladder.json"));
   } else {
     std::cout << ladder_text(ladder.ladder());
   }
@@ -52,17 +52,17 @@ int discover_verb(const Options& options, const Registry& registry) {
   Options own = options;
   own.quiet = options.quiet || !ranks().first();
   if (options.automatic && ranks().size() > 1)
-    throw InputError("discover --auto is not for several processes: its rungs come one after the other; under mpirun there is discover");
+    throw InputError("discover --auto cannot run under mpirun: each rung depends on the one before; discover without --auto can");
   // The fit that discovery starts from is written by one rank only; the others find it done.
-  std::optional<Climb> ladder;
+  std::optional<ModelLadder> ladder;
   on_first_rank([&] {
     ladder.emplace(own, registry);
-    if (filter_declined(ladder->top())) refuse_declined(ladder->top());
+    if (filter_declined(ladder->last())) refuse_declined(ladder->last());
   });
   if (own.threads == 0) own.threads = threads_of_rank();
   if (!ladder) ladder.emplace(own, registry);
-  if (options.automatic) return climb(*ladder, registry, options.json);
-  Session& session = ladder->top();
+  if (options.automatic) return extend_ladder(*ladder, registry, options.json);
+  Session& session = ladder->last();
   session.options.threads = own.threads;
   const Discovery discovery = discovered(session);
   if (!ranks().first()) return 0;

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 /// On disk but of another fit: said, since a section would otherwise be missing without a word.
 void add_stale(const Session& session, const char* file, const char* verb, bool known, std::vector<std::string>& notes) {
   if (known || !fs::exists(session.folder.file(file))) return;
-  notes.push_back(fmt::format("{} belongs to another fit than the one shown here and is left out; misfit {} makes it anew.",
+  notes.push_back(fmt::format("{} belongs to another fit and is omitted; misfit {} makes it again.",
                               session.folder.file(file).lexically_normal().string(), verb));
 }
 

@@ -18,11 +18,11 @@
 namespace misfit {
 namespace {
 
-/// White noise of the readings, at least that of their rounding (Widrow: step/sqrt(12)), in `unit`.
+/// White noise of the measurements, at least that of their rounding (Widrow: step/sqrt(12)), in `unit`.
 double noise_of(const std::vector<double>& values, const ColumnSurvey& column, const std::string& unit) {
   const double sigma = measurement_noise(values);
   const double rounding = convert(column.resolution, column.unit, unit) / std::sqrt(12.0);
-  constexpr double least = 1e-5;  // of the range: smoothed readings seem to have no noise at all
+  constexpr double least = 1e-5;  // of the range: smoothed measurements seem to have no noise at all
   return std::max({std::isfinite(sigma) ? sigma : 0.0, rounding, least * convert(column.high - column.low, column.unit, unit)});
 }
 
@@ -93,7 +93,7 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
     model.input_units.push_back(si_unit(c->unit));
     const bool steps = c->held > 0.2;
     model.hold_reasons.emplace_back(
-        steps ? "" : "; what a computer puts out stands until the next sample, \"first_order\" if it was measured between");
+        steps ? "" : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
     data.inputs.push_back(table.values(c->name, model.input_units.back()));
   }
   say_left_out("inputs", left_out, fmt::format("a system has at most {} inputs", kMaxInputs), model.remarks);

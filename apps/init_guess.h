@@ -15,7 +15,7 @@ struct GuessedOutput {
   std::string rate_state;                     ///< order 2: the state that is its rate
   std::string stiffness, damping, tau, rest;  ///< parameters of its equation
   std::vector<std::string> gains;             ///< one per input
-  double noise = 0.0, rate_noise = 0.0;       ///< reading noise [unit]
+  double noise = 0.0, rate_noise = 0.0;       ///< measurement noise [unit]
   LinearGuess guess;
 };
 

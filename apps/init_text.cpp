@@ -45,9 +45,9 @@ std::string parameters_of(const GuessedModel& model, const GuessedOutput& output
     text += parameter(output.tau, "s", g.tau, positive_bounds(g.tau), "time constant");
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    text += parameter(output.gains[i], ratio(output.unit, model.input_units[i]), g.gain[i], "", "static answer to " + model.inputs[i]);
+    text += parameter(output.gains[i], ratio(output.unit, model.input_units[i]), g.gain[i], "", "static gain of " + model.inputs[i]);
   }
-  return text + parameter(output.rest, output.unit, g.rest, "", model.inputs.empty() ? "where it comes to rest" : "answer to no input");
+  return text + parameter(output.rest, output.unit, g.rest, "", model.inputs.empty() ? "equilibrium" : "output without input");
 }
 
 std::string equations_of(const GuessedModel& model, const GuessedOutput& output) {
@@ -69,7 +69,7 @@ std::string model_text(const GuessedModel& model, const RecordingSurvey& survey)
       "# A linear model to start from, one equation per state. Names, units and formulas are yours to change: misfit checks that they fit\n"
       "# together. `free = true` is estimated by misfit fit; the values are where it starts.\n"
       "[system]\n"
-      "doc = \"linear model, read off the recording by misfit init\"\n"
+      "doc = \"linear model, estimated from the recording by misfit init\"\n"
       "source = \"Ljung, System Identification (1999), 4.2\"\n\n[states]\n";
   for (const auto& o : model.outputs) {
     text += fmt::format("{} = {{ unit = {}, initial = \"free\" }}\n", o.name, toml_string(o.unit));
@@ -84,9 +84,9 @@ std::string model_text(const GuessedModel& model, const RecordingSurvey& survey)
   }
   text += "\n[parameters]\n";
   for (const auto& o : model.outputs) text += parameters_of(model, o);
-  text += "\n[equations]                # what stands on the right is the rate of change of the state\n";
+  text += "\n[equations]                # right-hand side: rate of change of the state\n";
   for (const auto& o : model.outputs) text += equations_of(model, o);
-  text += "\n[outputs]                  # what the columns of the data show; noise: white reading noise, a start\n";
+  text += "\n[outputs]                  # the measured columns; noise: sigma of the white measurement noise, a start\n";
   for (const auto& o : model.outputs) {
     text += fmt::format("{} = {{ unit = {}, noise = {} }}   # {}\n", o.name, toml_string(o.unit), number(o.noise),
                         remark_on(column_called(survey, o.name)));

@@ -28,7 +28,7 @@ std::shared_ptr<const FilterWork> fitted(Session& session) {
   return filter_work(session);
 }
 
-void also(std::string& note, const std::string& words) {
+void append_note(std::string& note, const std::string& words) {
   if (!words.empty()) note += (note.empty() ? "" : "; ") + words;
 }
 
@@ -77,7 +77,7 @@ std::vector<Penalty> shared_penalties(const FilterEstimate& child, const FilterE
   return penalties;
 }
 
-/// Readings that both models have and neither has set aside: an effect may need inputs that are missing where the other model reads on.
+/// Measurements that both models use and neither has rejected: an effect may need inputs that are missing where the other model goes on.
 std::vector<std::vector<SampleRole>> common_use(const FilterEstimate& a, const FilterEstimate& b) {
   std::vector<std::vector<SampleRole>> use;
   for (std::size_t e = 0; e < a.data.size(); ++e) {
@@ -94,7 +94,8 @@ struct Gain {
   std::optional<double> held_out;
 };
 
-/// 2 [log L(with) − log L(without)] on the same readings and with the same weights of roughness, each at its own maximum, priors counted.
+/// 2 [log L(with) − log L(without)] on the same measurements and with the same weights of roughness, each at its own maximum, priors
+/// counted.
 Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   FilterOptions options;
   options.threads = threads;
@@ -134,8 +135,8 @@ std::string not_predicted(const Effect& effect, const std::optional<Candidate>& 
   const bool strength = std::any_of(coefficients.begin(), coefficients.end(),
                                     [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.borrowed; });
   const std::string name = effect.spec().key;
-  if (!strength) return "no drop is predicted for " + name + ": it has no strength that could be 0, it is in the model or not";
-  if (!from) return "no drop is predicted for " + name + ": it is driven by noise, or another effect stands for it";
+  if (!strength) return "no drop is predicted for " + name + ": it has no coefficient that switches it off, so no score test exists";
+  if (!from) return "no drop is predicted for " + name + ": it is driven by noise, or a more specific effect replaces it";
   return "no drop is predicted for " + name + ": " + (from->why.empty() ? "its score is 0" : from->why);
 }
 
@@ -156,96 +157,98 @@ std::optional<Ladder> known_ladder(const Session& session) {
   return read_ladder(session.folder.file(ladder_name));
 }
 
-Climb::Climb(const Options& options, const Registry& registry) : options_(options), registry_(registry), original_(options, registry) {
-  if (auto known = known_ladder(original_)) {
+ModelLadder::ModelLadder(const Options& options, const Registry& registry)
+    : options_(options), registry_(registry), root_(options, registry) {
+  if (auto known = known_ladder(root_)) {
     ladder_ = std::move(*known);
-  } else if (fs::exists(original_.folder.file(ladder_name))) {
-    original_.say("the study, its data or " + original_.folder.file(ladder_name).string() +
-                  " have changed since the ladder was climbed: it is begun anew");
+  } else if (fs::exists(root_.folder.file(ladder_name))) {
+    root_.say("the study, its data or " + root_.folder.file(ladder_name).string() +
+              " have changed since the ladder was made: starting a new one");
   }
 }
 
-Session& Climb::top() {
-  if (ladder_.rungs.size() < 2) return original_;
-  if (!top_) {
-    const Rung& last = ladder_.rungs.back();
-    const fs::path study = original_.folder.file(last.study);
+Session& ModelLadder::last() {
+  if (ladder_.rungs.size() < 2) return root_;
+  if (!last_) {
+    const Rung& rung = ladder_.rungs.back();
+    const fs::path study = root_.folder.file(rung.study);
     if (!fs::exists(study))
-      throw RunError("rung " + std::to_string(last.id) + " of the ladder is gone: " + study.string() + " — remove " +
-                     original_.folder.file(ladder_name).string() + " to begin anew");
-    original_.say(fmt::format("going on from rung {} of the ladder, {}", last.id, study.parent_path().lexically_normal().string()));
-    top_ = std::make_unique<Session>(options_for(options_, study), registry_);
+      throw RunError("rung " + std::to_string(rung.id) + " of the ladder is missing: " + study.string() + " — remove " +
+                     root_.folder.file(ladder_name).string() + " to start a new one");
+    root_.say(fmt::format("continuing from rung {} of the ladder, {}", rung.id, study.parent_path().lexically_normal().string()));
+    last_ = std::make_unique<Session>(options_for(options_, study), registry_);
   }
-  return *top_;
+  return *last_;
 }
 
-const Rung& Climb::top_rung() {
+const Rung& ModelLadder::last_rung() {
   if (ladder_.rungs.empty()) {
-    const auto work = fitted(original_);
-    Rung first = rung_of(original_, *work);
-    first.study = relative_study(original_);
+    const auto work = fitted(root_);
+    Rung first = rung_of(root_, *work);
+    first.study = relative_study(root_);
     append(std::move(first));
   }
   return ladder_.rungs.back();
 }
 
-const Fit& Climb::top_fit() { return filter_work(top())->fit; }
+const Fit& ModelLadder::last_fit() { return filter_work(last())->fit; }
 
-std::string Climb::relative_study(const Session& session) const {
-  const fs::path from = fs::absolute(original_.folder.path()).lexically_normal();
+std::string ModelLadder::relative_study(const Session& session) const {
+  const fs::path from = fs::absolute(root_.folder.path()).lexically_normal();
   return fs::absolute(session.study.file).lexically_normal().lexically_relative(from).generic_string();
 }
 
-void Climb::append(Rung rung) {
+void ModelLadder::append(Rung rung) {
   ladder_.rungs.push_back(std::move(rung));
-  original_.redo_stage("ladder", inputs_of_ladder(original_), {ladder_name},
-                       [&](const fs::path& dir) { write_ladder(dir / ladder_name, ladder_); });
-  ladder_ = read_ladder(original_.folder.file(ladder_name));
+  root_.redo_stage("ladder", inputs_of_ladder(root_), {ladder_name},
+                   [&](const fs::path& dir) { write_ladder(dir / ladder_name, ladder_); });
+  ladder_ = read_ladder(root_.folder.file(ladder_name));
 }
 
-const Rung& Climb::add(const std::string& effect, const std::optional<Candidate>& from) {
-  Session& below = top();
+const Rung& ModelLadder::add(const std::string& effect, const std::optional<Candidate>& from) {
+  Session& parent_session = last();
   const int id = static_cast<int>(std::max<std::size_t>(ladder_.rungs.size(), 1));
   const bool system = effect.starts_with(system_prefix);
   const std::string name = system ? effect.substr(std::string(system_prefix).size()) : effect;
   const std::string place = fmt::format("rungs/{:02}_{}", id, file_name_for(name));
-  const fs::path folder = original_.folder.file(place);
+  const fs::path folder = root_.folder.file(place);
   std::vector<std::string> left_out;
-  const std::string text = system ? study_with_system(below, name, folder, left_out) : study_with_effect(below, effect, from, folder);
-  const Rung parent = top_rung();  // a study that cannot be climbed is refused by now: fit what is below
-  const auto below_work = fitted(below);
-  original_.do_stage("rung/" + std::to_string(id), {{"settings", hash_text(text)}}, {place + "/study.toml"}, [&](const fs::path& dir) {
+  const std::string text =
+      system ? study_with_system(parent_session, name, folder, left_out) : study_with_effect(parent_session, effect, from, folder);
+  const Rung parent = last_rung();  // a study that no rung can be added to is refused by now: fit the parent
+  const auto parent_work = fitted(parent_session);
+  root_.do_stage("rung/" + std::to_string(id), {{"settings", hash_text(text)}}, {place + "/study.toml"}, [&](const fs::path& dir) {
     make_writable_folder(dir / place);
     write_atomically(dir / place / "study.toml", text);
   });
-  auto above = std::make_unique<Session>(options_for(options_, folder / "study.toml"), registry_);
-  above->below = below.folder.path();
-  const auto work = fitted(*above);
-  Rung rung = rung_of(*above, *work);
+  auto child = std::make_unique<Session>(options_for(options_, folder / "study.toml"), registry_);
+  child->parent = parent_session.folder.path();
+  const auto work = fitted(*child);
+  Rung rung = rung_of(*child, *work);
   rung.id = id;
   rung.parent = parent.id;
-  rung.study = relative_study(*above);
+  rung.study = relative_study(*child);
   rung.added = effect;
   if (system) {
-    also(rung.note, "a change of system has no drop: its channels and states are others; compare k-step errors and the force");
-    for (const auto& left : left_out) also(rung.note, "effect '" + left + "' is left out: it does not suit " + name);
+    append_note(rung.note, "a change of system has no drop: its channels and states are others; compare k-step errors and the force");
+    for (const auto& left : left_out) append_note(rung.note, "effect '" + left + "' is left out: it does not suit " + name);
   } else {
-    rung.parameters = new_parameters(*work, *below_work);
+    rung.parameters = new_parameters(*work, *parent_work);
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
-    if (!rung.predicted_drop) also(rung.note, not_predicted(registry_.effect(effect), from));
-    if (same_channels(work->estimate->model, below_work->estimate->model)) {
-      const Gain gain = gain_of(*work, *below_work, options_.threads);
+    if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
+    if (same_channels(work->estimate->model, parent_work->estimate->model)) {
+      const Gain gain = gain_of(*work, *parent_work, options_.threads);
       rung.actual_drop = gain.drop;
       rung.held_out_gain = gain.held_out;
     }
   }
   append(std::move(rung));
-  top_ = std::move(above);
+  last_ = std::move(child);
   return ladder_.rungs.back();
 }
 
-void report_ladder(Climb& climb) {
-  Session& session = climb.original();
+void report_ladder(ModelLadder& ladder) {
+  Session& session = ladder.root();
   try {
     session.say("report: " + report_stage(session, fit_stage(session)).lexically_normal().string());
   } catch (const RunError& error) {

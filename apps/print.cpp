@@ -81,12 +81,12 @@ std::string calibration_text(const Calibration& c) {
   }
   if (!c.residuals.empty()) {
     rows.push_back({"residual RMS", format_value(c.rms_px) + " px"});
-    rows.push_back({"points set aside", std::to_string(c.outliers) + " of " + std::to_string(c.residuals.size()) + " coordinates"});
+    rows.push_back({"outliers", std::to_string(c.outliers) + " of " + std::to_string(c.residuals.size()) + " coordinates"});
   }
   std::string out = "calibration  —  " + c.message + "\n" + align_columns(rows);
   if (!c.tests.empty()) {
-    std::vector<std::vector<std::string>> tests{{"offered", "drop", "p (corrected)", "taken in"}};
-    for (const auto& t : c.tests) tests.push_back({t.name, format_value(t.drop), format_probability(t.p_value), t.taken_in ? "yes" : "no"});
+    std::vector<std::vector<std::string>> tests{{"tested", "drop", "p (corrected)", "selected"}};
+    for (const auto& t : c.tests) tests.push_back({t.name, format_value(t.drop), format_probability(t.p_value), t.selected ? "yes" : "no"});
     out += align_columns(tests);
   }
   for (const auto& note : c.notes) out += wrap_text("! " + note, 110, "  ") + "\n";

@@ -51,7 +51,7 @@ std::string studies_table(const Batch& batch) {
 
 std::string summary_table(const Batch& batch) {
   if (batch.summary.empty()) return "";
-  Rows rows{{"over the studies", "method", "studies", "mean", "scatter", "own sigma", "p of one value"}};
+  Rows rows{{"result", "method", "studies", "mean", "std. dev.", "mean sigma", "p (homogeneity)"}};
   const auto plain = [](double v, const std::string& unit) { return v > 0.0 && std::isfinite(v) ? shown(v, 0.0, unit) : std::string("–"); };
   std::vector<BatchSummary> order = batch.summary;
   std::stable_partition(order.begin(), order.end(), [](const BatchSummary& s) { return s.name == "trim"; });
@@ -71,7 +71,7 @@ std::string left_out_text(const Batch& batch) {
   }
   std::string out;
   for (const auto& [method, names] : studies) {
-    const std::string who = fmt::format("{} has not converged in {}: left out of mean, scatter and p", method, fmt::join(names, ", "));
+    const std::string who = fmt::format("{} has not converged in {}: excluded from mean, std. dev. and p", method, fmt::join(names, ", "));
     out += wrap_text("! " + who, 110, "  ") + "\n";
   }
   return out;

@@ -104,7 +104,7 @@ std::string drop_text(const Rung& rung) {
       fmt::format("  drop: {} predicted, {:.1f} actual", rung.predicted_drop ? number(rung.predicted_drop) : "none", *rung.actual_drop);
   out += fmt::format(" for {} parameter{}", rung.parameters.size(), rung.parameters.size() == 1 ? "" : "s");
   out += rung.held_out_gain ? fmt::format("; gain of the held-out log-likelihood {:+.1f}\n", *rung.held_out_gain)
-                            : "; nothing is held out in this study (validation = \"last 25 %\" would do it)\n";
+                            : "; no validation data: set validation = \"last 25 %\"\n";
   if (*rung.actual_drop < 1.0) out += "  ! the added effect explains nothing in these data\n";
   return out + note;
 }
@@ -112,29 +112,30 @@ std::string drop_text(const Rung& rung) {
 }  // namespace
 
 std::string diagnosis_text(const Diagnosis& d) {
-  std::string out = fmt::format("where {} fails  ({:.1f} s)\n", d.method, d.seconds);
+  std::string out = fmt::format("residual diagnostics of {}  ({:.1f} s)\n", d.method, d.seconds);
   out += sentences_text(d.sentences);
-  Cells maps{{"force on", "by", "p (corrected)", "chi2", "places", "largest"}};
+  Cells maps{{"force on", "against", "p (corrected)", "chi2", "dof", "largest"}};
   for (const auto& map : d.maps) {
     maps.push_back({map.port, map.quantity, format_probability(map.p_corrected), fmt::format("{:.1f}", map.chi2), std::to_string(map.dof),
                     largest(map)});
   }
-  if (maps.size() > 1) out += "\nwhere a force is missing (a right model: p spread evenly between 0 and 1)\n" + align_columns(maps);
-  Cells pairs{{"force on", "by", "and", "p (corrected)", "chi2", "cells"}};
+  if (maps.size() > 1) out += "\nunexplained force (for a correct model p is uniform on [0, 1])\n" + align_columns(maps);
+  Cells pairs{{"force on", "against", "and", "p (corrected)", "chi2", "dof"}};
   for (const auto& pair : d.pairs) {
     pairs.push_back({pair.port, pair.quantity_x, pair.quantity_y, format_probability(pair.p_corrected), fmt::format("{:.1f}", pair.chi2),
                      std::to_string(pair.dof)});
   }
   if (pairs.size() > 1) out += "\n" + align_columns(pairs);
-  Cells white{{"innovations", "Ljung-Box p", "lags", "periodogram p", "highest line", "p of the line"}};
+  Cells white{{"innovations", "Ljung-Box p", "lags", "periodogram p", "largest spectral line", "p of the line"}};
   for (const auto& w : d.whiteness) {
     white.push_back({w.experiment + " " + w.channel, format_probability(w.ljung_box_p), std::to_string(w.lags),
                      format_probability(w.periodogram_p), fmt::format("{:.3f} Hz, {:.1f} times white", w.peak_frequency, w.peak_power),
                      format_probability(w.peak_p)});
   }
-  if (white.size() > 1) out += "\nare the innovations white?\n" + align_columns(white);
+  if (white.size() > 1) out += "\nwhiteness of the innovations\n" + align_columns(white);
   for (const auto& n : d.nis)
-    out += fmt::format("  {}: normalised innovations leave their 95 % band in {:.1f} % of the windows\n", n.experiment, 100.0 * n.outside);
+    out +=
+        fmt::format("  {}: {:.1f} % of the windows have normalised innovations outside the 95 % band\n", n.experiment, 100.0 * n.outside);
   return out;
 }
 
@@ -159,7 +160,7 @@ std::string discovery_text(const Discovery& d) {
   }
   if (!why.empty()) out += "\n" + why;
   if (!d.force.empty()) out += "\n  random force of this model: " + force_text(d.force) + "\n";
-  return out + fmt::format("  {} families were looked at, see discovery.json  ({:.1f} s)\n", d.tried.size(), d.seconds);
+  return out + fmt::format("  {} effect families were tested, see discovery.json  ({:.1f} s)\n", d.tried.size(), d.seconds);
 }
 
 std::string rung_text(const Ladder& ladder, const Rung& rung) {

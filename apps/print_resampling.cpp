@@ -33,8 +33,9 @@ std::string profile_text(const LikelihoodProfile& p) {
 }
 
 std::string starts_text(const MultiStart& s) {
-  std::string out = fmt::format("\nrandom starts of {}: {} of {} end at the fit's maximum, {} lower, {} higher, {} nowhere\n", s.method,
-                                s.same, s.runs, s.lower, s.higher, s.failed);
+  std::string out =
+      fmt::format("\nrandom starts of {}: {} of {} reach the reported maximum, {} a lower, {} a higher one, {} did not converge\n",
+                  s.method, s.same, s.runs, s.lower, s.higher, s.failed);
   for (const auto& words : s.words) out += wrap_text((s.higher > 0 ? "! " : "") + words, 110, "  ") + "\n";
   for (const auto& [reason, runs] : s.failures)
     out += wrap_text(fmt::format("{} of {} starts: {}", runs, s.runs, reason), 110, "  ") + "\n";

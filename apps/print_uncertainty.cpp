@@ -29,14 +29,14 @@ std::string sigma_of(double sigma, const std::string& unit) {
 }
 
 std::string perturbed_table(const Uncertainty& u) {
-  Rows rows{{"perturbed", "nominal", "sigma", "read as"}};
+  Rows rows{{"perturbed", "nominal", "sigma", "distribution"}};
   for (const PerturbedParameter& p : u.perturbed)
     rows.push_back({p.name, in_display_unit(p.value, p.unit), sigma_of(p.sigma, p.unit), p.reading});
   return align_columns(rows);
 }
 
 std::string numbers_table(const Uncertainty& u) {
-  Rows rows{{"result", "nominal, noise alone", "mean", "sigma, set-up alone", "3-sigma band", "runs"}};
+  Rows rows{{"result", "nominal ± sigma (noise)", "mean", "propagated sigma", "3-sigma band", "runs"}};
   for (const SpreadNumber& n : u.numbers) {
     const std::string band = std::isfinite(n.sigma)
                                  ? plain(n.mean - 3.0 * n.sigma, n.sigma, n.unit) + " … " + plain(n.mean + 3.0 * n.sigma, n.sigma, n.unit)
@@ -68,7 +68,7 @@ std::string shares_table(const Uncertainty& u) {
       rows.back().push_back(std::isfinite(s.effect) ? (s.effect > 0.0 ? "+" : "") + sigma_of(s.effect, n->unit) : "–");
     }
   }
-  rows.push_back({"together"});
+  rows.push_back({"interactions"});
   for (const SpreadNumber* n : numbers) {
     rows.back().push_back(fmt::format("{:.1f} %", 100.0 * n->rest));
     rows.back().emplace_back("");
@@ -79,7 +79,7 @@ std::string shares_table(const Uncertainty& u) {
 }  // namespace
 
 std::string uncertainty_text(const Uncertainty& u) {
-  std::string out = fmt::format("uncertainty of the set-up  —  {}, {} runs, seed {}\n", u.method, u.runs, u.seed);
+  std::string out = fmt::format("propagated uncertainty  —  {}, {} runs, seed {}\n", u.method, u.runs, u.seed);
   out += perturbed_table(u) + "\n" + numbers_table(u) + shares_table(u);
   for (const std::string& note : u.notes) out += wrap_text("! " + note, 110, "  ") + "\n";
   for (const auto& [why, count] : u.failures) out += wrap_text(fmt::format("! {} runs failed: {}", count, why), 110, "  ") + "\n";

@@ -143,7 +143,7 @@ void add_curve(const Session& session, const Curve& curve, std::string& text) {
   text += fmt::format(" }}  # knots in {}\n", angle ? "deg" : toml_comment(curve.of_unit));
 }
 
-/// The wish of the study where there is one: it holds for a curve as a whole.
+/// The request of the study where there is one: it holds for a curve as a whole.
 void add_curve_parameter(const Session& session, const std::string& curve, std::string& text) {
   const auto found = session.model.request.parameters.find(curve);
   if (found == session.model.request.parameters.end()) return;

@@ -95,7 +95,7 @@ void check_small_files(const Study& study) {
   }
 }
 
-/// The pictures that the table of a sweep names. A table that cannot be read is told of by the stage that needs it.
+/// The pictures that the table of a sweep names. A table that cannot be read is reported by the stage that needs it.
 void add_sweep_pictures(const Study& study, std::vector<fs::path>& files) {
   if (!study.camera.sweep_images) return;
   try {
@@ -195,13 +195,13 @@ std::vector<fs::path> Session::files_of_stage(const std::string& stage) const {
 }
 
 bool Session::copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs) {
-  if (below.empty()) return false;
-  const RunFolder from(below, options.command, study.seed, {}, {}, RunFolder::Access::read);
+  if (parent.empty()) return false;
+  const RunFolder from(parent, options.command, study.seed, {}, {}, RunFolder::Access::read);
   const auto known = from.stages().find(stage);
   if (known == from.stages().end() || !from.up_to_date(stage, known->second.inputs) ||
       by_file_name(known->second.inputs) != by_file_name(inputs))
     return false;
-  StageRecord record{stage, options.command + "  # copied from " + below.lexically_normal().string(), inputs};
+  StageRecord record{stage, options.command + "  # copied from " + parent.lexically_normal().string(), inputs};
   const PartFolder part(folder.path());
   for (const auto& output : known->second.outputs) {
     make_writable_folder((part.path() / output).parent_path());
@@ -220,7 +220,7 @@ const std::atomic<bool>& interrupted() { return interrupt_flag; }
 void watch_interrupts() { std::signal(SIGINT, on_interrupt); }
 
 void stop_if_interrupted() {
-  if (interrupt_flag) throw RunError("interrupted; what was finished is in the run folder, and the same command goes on from there");
+  if (interrupt_flag) throw RunError("interrupted; finished work is in the run folder, and the same command continues from there");
 }
 
 }  // namespace misfit

@@ -48,8 +48,8 @@ struct Session {
   const Registry& registry;                  ///< the same
   StudyModel model;
   RunFolder folder;
-  std::string program;                       ///< hash of the running program: another build does everything again
-  std::filesystem::path below = {};          ///< run folder of the rung below: what it read from videos and pictures need not be read again
+  std::string program;                ///< hash of the running program: another build does everything again
+  std::filesystem::path parent = {};  ///< run folder of the parent rung: what it read from videos and pictures need not be read again
   std::shared_ptr<const FilterWork> filter;  ///< filter_error as estimated in this run of the program, for the stages after it (stages.h)
 
   [[nodiscard]] std::vector<std::string> methods() const { return options.methods.empty() ? study.methods : options.methods; }
@@ -67,7 +67,7 @@ struct Session {
                   const std::function<void(const std::filesystem::path&)>& make);
   /// Where a stage's files lie; none if it was not done.
   [[nodiscard]] std::vector<std::filesystem::path> files_of_stage(const std::string& stage) const;
-  /// True if this stage was done from the same inputs in the run folder of the rung below: its files are then copied from there, and
+  /// True if this stage was done from the same inputs in the run folder of the parent rung: its files are then copied from there, and
   /// run.json says so with their hashes.
   [[nodiscard]] bool copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs);
   /// A line on stderr unless quiet.

@@ -144,7 +144,7 @@ Table simulate(const Case& c, const Session& session) {
       noisy.push_back(convert(run.y(i, o) + sigma * normal(random), output.unit, unit));
     }
     if (!std::all_of(noisy.begin(), noisy.end(), [](double v) { return std::isfinite(v); }))
-      throw RunError("output " + output.name + " with its noise of " + format_value(sigma) + " is not finite");
+      throw RunError("output " + output.name + " with noise of sigma " + format_value(sigma) + " is not finite");
     if (sigma > 0.0) table.add(output.name, unit, noisy);
     table.add(sigma > 0.0 ? output.name + "_true" : output.name, unit, values);
   }

@@ -1,4 +1,4 @@
-// Motions that the fitted model makes, put through the same readings as the measured one (lib/misfit/README.md, 6.1).
+// Motions that the fitted model makes, put through the same measurement as the recorded one (lib/misfit/README.md, 6.1).
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ struct Wanted {
 };
 constexpr Wanted wanted[] = {{"alpha_T", false}, {"phi_rate", true}};
 
-/// From the first sample that the filter runs at, without readings that it set aside.
+/// From the first sample that the filter runs at, without the samples that it rejected.
 Signals as_filtered(const FilterData& data) {
   Signals out = *data.signals;
   const auto first = static_cast<std::ptrdiff_t>(data.first);
@@ -98,8 +98,8 @@ void note_gaps(const Signals& signals, SimulatedMotion& out) {
   const double share = static_cast<double>(missing) / static_cast<double>(std::max<std::size_t>(all, 1));
   if (share > worth_a_word) {
     out.notes.push_back(
-        fmt::format("{:.1f} % of the readings of {} are missing, and the simulated motions miss the same times; if what is "
-                    "missing is the deepest excursions, the measured distribution is narrower for that",
+        fmt::format("{:.1f} % of the samples of {} are missing, and the simulated motions miss the same times; if the "
+                    "missing samples are the largest excursions, the measured distribution is too narrow",
                     100.0 * share, signals.name));
   }
 }
@@ -155,8 +155,8 @@ void compare_all(const std::vector<Experiment>& experiments, SimulatedMotion& ou
   out.failed = runs - made.size();
   if (2 * made.size() < runs) {
     out.notes.push_back(
-        fmt::format("{1} of {0} simulated motions diverged: the fitted model does not hold outside of what was "
-                    "visited, and nothing is compared",
+        fmt::format("of {} simulated motions {} diverged: the fitted model does not hold outside the operating range, and "
+                    "nothing is compared",
                     runs, out.failed));
     return;
   }
@@ -189,7 +189,7 @@ SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int
   for (const auto& e : experiments) note_gaps(e.measured, out);
   compare_all(experiments, out);
   conclude_motion(out);
-  out.notes.emplace_back("the parameters are held at their estimates: the bands do not hold their uncertainty");
+  out.notes.emplace_back("the bands do not include the uncertainty of the parameters, which are fixed at their estimates");
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }

@@ -3,7 +3,7 @@
 #include "apps/stages.h"
 #include "misfit/attitude/attitude.h"
 #include "misfit/calibrate/calibrate.h"
-#include "misfit/calibrate/given.h"
+#include "misfit/calibrate/camera_from_study.h"
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
@@ -30,12 +30,12 @@ std::string settings_of(const Session& session) {
 
 Calibration make_calibration(const Session& session, const fs::path& sweep) {
   const CameraStudy& camera = session.study.camera;
-  if (!camera.from_sweep()) return camera_as_given(model_of(camera), camera.given);
+  if (!camera.from_sweep()) return camera_from_study(model_of(camera), camera.given);
   require_rig(session.study, session.model.rig, true);
   CalibrateOptions options;
   options.model = model_of(camera);
-  options.offer = camera.offer;
-  options.take_in = camera.take_in;
+  options.candidates = camera.offer;
+  options.force = camera.take_in;
   return calibrate(read_sweep(sweep), session.model.rig, options);
 }
 

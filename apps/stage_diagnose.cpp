@@ -21,7 +21,7 @@ bool filter_declined(Session& session) {
 
 void refuse_declined(Session& session) {
   const Fit fit = fit_stage(session, {method}).front();
-  throw RunError(fit.method + " " + to_string(fit.status) + ", so there are no innovations to look at: " + fit.message);
+  throw RunError(fit.method + " " + to_string(fit.status) + ", so there are no innovations to test: " + fit.message);
 }
 
 std::optional<Diagnosis> known_diagnosis(const Session& session) {

@@ -41,7 +41,7 @@ std::map<std::string, std::string> inputs_of_fit(const Session& session, const s
 
 std::shared_ptr<const FilterWork> filter_work(Session& session) {
   if (!session.filter) {
-    session.say("estimating filter_error again for what follows");
+    session.say("re-running filter_error (needed by the next stage)");
     session.filter = Methods(session).run_filter_error();
   }
   if (!session.filter->estimate)

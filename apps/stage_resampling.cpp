@@ -52,13 +52,13 @@ Started started(Methods& methods, const std::string& method) {
 }
 
 Inputs inputs_of(const Session& session) {
-  const UncertaintyStudy& wishes = *session.study.uncertainty;
+  const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   Inputs inputs = inputs_of_fit(session, stage);
   inputs["methods"] = fmt::format("{}", fmt::join(session.methods(), " "));
   inputs["seed"] = std::to_string(session.study.seed);
-  inputs["bootstrap"] = fmt::format("{} runs, block {}", wishes.bootstrap, wishes.block);
-  inputs["starts"] = std::to_string(wishes.starts);
-  inputs["profile"] = fmt::format("{}", fmt::join(wishes.profile, " "));
+  inputs["bootstrap"] = fmt::format("{} runs, block {}", uncertainty.bootstrap, uncertainty.block);
+  inputs["starts"] = std::to_string(uncertainty.starts);
+  inputs["profile"] = fmt::format("{}", fmt::join(uncertainty.profile, " "));
   return inputs;
 }
 
@@ -66,12 +66,12 @@ Inputs inputs_of(const Session& session) {
 /// program ends.
 class Work {
  public:
-  explicit Work(Session& session) : session_(session), wishes_(*session.study.uncertainty), methods_(session) {}
+  explicit Work(Session& session) : session_(session), uncertainty_(*session.study.uncertainty), methods_(session) {}
 
   Resampling run() {
     for (const std::string& method : session_.methods()) {
       if (method == "sliding_bin") {
-        note(method, "its bins are no model that could be fitted to other data, or held");
+        note(method, "it has no parametric model to resample or profile");
         continue;
       }
       resample(method);
@@ -106,17 +106,18 @@ class Work {
     });
     if (!fitted) return;
     if (s.fit.status == FitStatus::not_converged)
-      out_.notes.push_back(method + " has not converged (" + s.fit.message + "): what is resampled starts from there");
-    if (wishes_.bootstrap > 0) add_bootstrap(s);
-    if (!wishes_.profile.empty() && has_likelihood(method)) add_profiles(s);
-    if (wishes_.starts > 0 && has_likelihood(method)) add_starts(s);
+      out_.notes.push_back(method + " has not converged (" + s.fit.message + "): resampling starts from its last iterate");
+    if (uncertainty_.bootstrap > 0) add_bootstrap(s);
+    if (!uncertainty_.profile.empty() && has_likelihood(method)) add_profiles(s);
+    if (uncertainty_.starts > 0 && has_likelihood(method)) add_starts(s);
   }
 
-  /// `wish`: what of [uncertainty] a job's result depends on. Other methods do not matter to it, nor how many runs there are.
-  [[nodiscard]] StoredJobs jobs(const std::string& what, const std::string& method, const std::string& wish, std::size_t count = 0) const {
+  /// `settings`: what of [uncertainty] a job's result depends on. Other methods do not matter to it, nor how many runs there are.
+  [[nodiscard]] StoredJobs jobs(const std::string& what, const std::string& method, const std::string& settings,
+                                std::size_t count = 0) const {
     Inputs inputs = inputs_of_jobs(session_, stage, {"uncertainty"});
     inputs["methods"] = method;
-    inputs["wish"] = wish;
+    inputs["settings"] = settings;
     return {session_.folder.file(what + "_" + method), digest_of(inputs), count, session_.options.threads};
   }
 
@@ -129,35 +130,37 @@ class Work {
 
   void add_bootstrap(const Started& s) {
     BootstrapOptions options;
-    options.runs = static_cast<std::size_t>(wishes_.bootstrap);
+    options.runs = static_cast<std::size_t>(uncertainty_.bootstrap);
     options.seed = static_cast<unsigned long long>(session_.study.seed);
-    options.block = {static_cast<int>(wishes_.block), s.from.fitted.equation_residuals};
+    options.block = {static_cast<int>(uncertainty_.block), s.from.fitted.equation_residuals};
     const Resampled what = s.from.method == "output_error" ? Resampled::residuals : Resampled::rows;
     const FitReplica refit = [&](const std::vector<Signals>& replica) { return fit_again(s.from, replica); };
     std::optional<BlockBootstrap> bootstrap;
     if (!attempt(s.from.method, [&] { bootstrap.emplace(s.fit, methods_.prepared().experiments, what, refit, options); })) return;
-    Progress progress(fmt::format("bootstrap of {}, {} runs", s.from.method, wishes_.bootstrap), session_.options.quiet);
-    const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    const auto results =
-        finished(stored_runs([&](std::size_t k) { return bootstrap->run(k); },
-                             jobs("bootstrap", s.from.method, fmt::format("block {}", wishes_.block), options.runs), told, &interrupted()));
+    Progress progress(fmt::format("bootstrap of {}, {} runs", s.from.method, uncertainty_.bootstrap), session_.options.quiet);
+    const auto report_progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    const auto results = finished(stored_runs([&](std::size_t k) { return bootstrap->run(k); },
+                                              jobs("bootstrap", s.from.method, fmt::format("block {}", uncertainty_.block), options.runs),
+                                              report_progress, &interrupted()));
     if (ranks().first()) attempt(s.from.method, [&] { out_.bootstraps.push_back(bootstrap->summary(results)); });
   }
 
   void add_profiles(const Started& s) {
     std::vector<ProfileRequest> requests;
-    for (const std::string& parameter : wishes_.profile) attempt(s.from.method, [&] { requests.push_back(request_for(s, parameter)); });
+    for (const std::string& parameter : uncertainty_.profile)
+      attempt(s.from.method, [&] { requests.push_back(request_for(s, parameter)); });
     if (requests.empty()) return;
     Progress progress("profiles of " + s.from.method, session_.options.quiet);
-    const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    for (auto& profile : finished(stored_profiles(
-             requests, jobs("profile", s.from.method, fmt::format("{}", fmt::join(wishes_.profile, " "))), told, &interrupted())))
+    const auto report_progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    for (auto& profile :
+         finished(stored_profiles(requests, jobs("profile", s.from.method, fmt::format("{}", fmt::join(uncertainty_.profile, " "))),
+                                  report_progress, &interrupted())))
       out_.profiles.push_back(std::move(profile));
   }
 
   void add_starts(const Started& s) {
     MultiStartOptions options;
-    options.runs = static_cast<std::size_t>(wishes_.starts);
+    options.runs = static_cast<std::size_t>(uncertainty_.starts);
     options.seed = static_cast<unsigned long long>(session_.study.seed);
     const std::vector<Signals>& experiments = methods_.prepared().experiments;
     const SearchFrom search = [&](const std::vector<double>& values) {
@@ -167,15 +170,15 @@ class Work {
     std::optional<MultiStarts> starts;
     const bool possible = attempt(s.from.method, [&] {
       const Maximisation best = maximise_near(s.from, experiments);
-      if (!best.objective) throw RunError("starts: it cannot be fitted again where it ended: " + best.why);
+      if (!best.objective) throw RunError("starts: the refit at the estimate failed: " + best.why);
       starts.emplace(s.fit, s.from.fitted.model, *best.objective, search, options);
     });
     if (!possible) return;
-    Progress progress(fmt::format("{} random starts of {}", wishes_.starts, s.from.method), session_.options.quiet);
-    const auto told = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    const auto results =
-        finished(stored_runs([&](std::size_t k) { return starts->run(k); },
-                             jobs("starts", s.from.method, "from the model's typical sizes", options.runs), told, &interrupted()));
+    Progress progress(fmt::format("{} random starts of {}", uncertainty_.starts, s.from.method), session_.options.quiet);
+    const auto report_progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    const auto results = finished(stored_runs([&](std::size_t k) { return starts->run(k); },
+                                              jobs("starts", s.from.method, "from the model's typical sizes", options.runs),
+                                              report_progress, &interrupted()));
     if (ranks().first()) attempt(s.from.method, [&] { out_.starts.push_back(starts->summary(results)); });
   }
 
@@ -187,8 +190,8 @@ class Work {
     const Estimate& e = s.fit.parameters.at(parameter);
     const Parameter& p = s.from.fitted.model.parameters[static_cast<std::size_t>(s.from.fitted.model.find_parameter(parameter))];
     const std::optional<double> objective = at_best(e.value);
-    if (!objective) throw RunError("profile of " + parameter + ": it cannot be fitted again where it ended");
-    if (!(e.sigma > 0.0)) throw RunError("profile of " + parameter + ": the fit gives it no sigma, so there is no step to take");
+    if (!objective) throw RunError("profile of " + parameter + ": the refit at the estimate failed");
+    if (!(e.sigma > 0.0)) throw RunError("profile of " + parameter + ": the fit gives no sigma, hence no step size");
     const auto plain = s.fit.plain_sigmas.find(parameter);
     ProfileRequest r{
         s.from.method, parameter, e.unit, e.value, *objective, e.sigma, plain == s.fit.plain_sigmas.end() ? 0.0 : plain->second,
@@ -201,47 +204,48 @@ class Work {
   }
 
   Session& session_;
-  const UncertaintyStudy& wishes_;
+  const UncertaintyStudy& uncertainty_;
   Methods methods_;
   Resampling out_;
 };
 
 void write(const Session& session, const std::filesystem::path& dir, const Resampling& r) {
-  const UncertaintyStudy& wishes = *session.study.uncertainty;
+  const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   write_resampling_notes(dir, r.notes);
-  if (wishes.bootstrap > 0) write_bootstrap(dir, r.bootstraps);
-  if (!wishes.profile.empty()) write_profiles(dir, r.profiles);
-  if (wishes.starts > 0) write_multi_starts(dir, r.starts);
+  if (uncertainty.bootstrap > 0) write_bootstrap(dir, r.bootstraps);
+  if (!uncertainty.profile.empty()) write_profiles(dir, r.profiles);
+  if (uncertainty.starts > 0) write_multi_starts(dir, r.starts);
   static_cast<void>(report::write_interval_figures(dir / "figures", r));
 }
 
 Resampling read(const Session& session) {
   const std::filesystem::path dir = session.folder.path();
-  const UncertaintyStudy& wishes = *session.study.uncertainty;
-  return {wishes.bootstrap > 0 ? read_bootstrap(dir) : std::vector<Bootstrap>{},
-          wishes.profile.empty() ? std::vector<LikelihoodProfile>{} : read_profiles(dir), read_resampling_notes(dir),
-          wishes.starts > 0 ? read_multi_starts(dir) : std::vector<MultiStart>{}};
+  const UncertaintyStudy& uncertainty = *session.study.uncertainty;
+  return {uncertainty.bootstrap > 0 ? read_bootstrap(dir) : std::vector<Bootstrap>{},
+          uncertainty.profile.empty() ? std::vector<LikelihoodProfile>{} : read_profiles(dir), read_resampling_notes(dir),
+          uncertainty.starts > 0 ? read_multi_starts(dir) : std::vector<MultiStart>{}};
 }
 
 }  // namespace
 
 bool asks_for_resampling(const Study& study) {
   if (!study.uncertainty) return false;
-  const UncertaintyStudy& wishes = *study.uncertainty;
-  return wishes.bootstrap > 0 || !wishes.profile.empty() || wishes.starts > 0;
+  const UncertaintyStudy& uncertainty = *study.uncertainty;
+  return uncertainty.bootstrap > 0 || !uncertainty.profile.empty() || uncertainty.starts > 0;
 }
 
 void check_profile_names(Session& session) {
-  const UncertaintyStudy& wishes = *session.study.uncertainty;
-  if (wishes.profile.empty()) return;
+  const UncertaintyStudy& uncertainty = *session.study.uncertainty;
+  if (uncertainty.profile.empty()) return;
   const std::vector<std::string> asked = session.methods();
   if (std::none_of(asked.begin(), asked.end(), has_likelihood))
-    throw InputError(wishes.where_profile, fmt::format("profile: {} has no likelihood of the motion; output_error and filter_error have",
-                                                       fmt::join(asked, ", ")));
+    throw InputError(
+        uncertainty.where_profile,
+        fmt::format("profile: {} has no likelihood of the motion; output_error and filter_error have", fmt::join(asked, ", ")));
   const Model model = prepare(session).model;
-  for (const std::string& name : wishes.profile) {
+  for (const std::string& name : uncertainty.profile) {
     if (const std::string why = why_no_profile(model, name); !why.empty())
-      throw InputError(wishes.where_profile, "profile: '" + name + "' " + why);
+      throw InputError(uncertainty.where_profile, "profile: '" + name + "' " + why);
   }
 }
 

@@ -23,32 +23,32 @@ constexpr double standing_still = 3.0;   // [px] within which a marker stays whi
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// A picture with the markers in it.
-struct Seen {
+struct MarkerDetections {
   Image image;
   std::vector<PixelPoint> markers;  ///< best first
   double radius = 0.0;
 };
 
-void look_at(const Image& image, const Marker& marker, Seen& seen) {
-  seen.image = image;
-  seen.markers.clear();
+void detect_markers(const Image& image, const Marker& marker, MarkerDetections& detections) {
+  detections.image = image;
+  detections.markers.clear();
   for (const Location& l : find_markers({image, 0, 1}, marker, most_markers)) {
-    seen.markers.push_back(l.at);
-    seen.radius = std::max({seen.radius, l.outer, 5.0});
+    detections.markers.push_back(l.at);
+    detections.radius = std::max({detections.radius, l.outer, 5.0});
   }
 }
 
 /// Mean places over the frames of a part of a video in which the rig stands.
-Seen seen_in_video(const SweepPicture& picture, const Marker& marker) {
+MarkerDetections detections_in_video(const SweepPicture& picture, const Marker& marker) {
   Video video(picture.file);
-  Seen out;
+  MarkerDetections out;
   std::vector<double> count;
   while (const auto frame = video.next()) {
     const double t = static_cast<double>(frame->number) / video.facts().rate;
     if (picture.from && t < *picture.from) continue;
     if (picture.to && t > *picture.to) break;
-    Seen now;
-    look_at(frame->image, marker, now);
+    MarkerDetections now;
+    detect_markers(frame->image, marker, now);
     if (count.empty()) {
       out = now;
       count.assign(now.markers.size(), 1.0);
@@ -74,18 +74,18 @@ bool is_image(const fs::path& file) {
   return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
-Shot shot_of(const SweepPicture& picture, Seen seen, const SweepPoints& points) {
+Shot shot_of(const SweepPicture& picture, MarkerDetections detections, const SweepPoints& points) {
   Shot shot;
   std::size_t missing_points = 0;
   for (const auto& point : points) {
     if (point) shot.at.push_back(*point);
     if (!point) ++missing_points;
   }
-  shot.field = {std::move(seen.image), 0, 1};
+  shot.field = {std::move(detections.image), 0, 1};
   shot.label = fmt::format("{:.2f} deg", picture.theta * 180.0 / 3.14159265358979323846);
   if (missing_points > 0) shot.lost = fmt::format("{} of 3 points not found", missing_points);
   if (!shot.at.empty()) shot.zoom_at = shot.at.front();
-  shot.radius = seen.radius;
+  shot.radius = detections.radius;
   return shot;
 }
 
@@ -107,28 +107,28 @@ std::vector<SweepPoints> points_of(const CameraStudy& camera, const std::vector<
 
 void make_sweep(const Session& session, const std::vector<SweepPicture>& pictures, const fs::path& file, const fs::path& sheet) {
   const Marker marker = marker_of(session.study.camera.sweep_marker);
-  std::vector<Seen> seen;
+  std::vector<MarkerDetections> detections;
   std::vector<std::vector<PixelPoint>> found;
   Sweep sweep;
   for (const SweepPicture& picture : pictures) {
     stop_if_interrupted();
-    seen.emplace_back();
+    detections.emplace_back();
     if (is_image(picture.file)) {
-      look_at(read_image(picture.file), marker, seen.back());
+      detect_markers(read_image(picture.file), marker, detections.back());
     } else {
-      seen.back() = seen_in_video(picture, marker);
+      detections.back() = detections_in_video(picture, marker);
     }
-    found.push_back(seen.back().markers);
+    found.push_back(detections.back().markers);
     sweep.theta.push_back(picture.theta);
   }
   const auto points = points_of(session.study.camera, sweep.theta, found);
   std::vector<Shot> shots;
   for (std::size_t k = 0; k < points.size(); ++k) {
     for (std::size_t p = 0; p < 3; ++p) {
-      sweep.P_y[p].push_back(points[k][p] ? 0.5 * seen[k].image.width - points[k][p]->column : missing);
-      sweep.P_z[p].push_back(points[k][p] ? points[k][p]->row - 0.5 * seen[k].image.height : missing);
+      sweep.P_y[p].push_back(points[k][p] ? 0.5 * detections[k].image.width - points[k][p]->column : missing);
+      sweep.P_z[p].push_back(points[k][p] ? points[k][p]->row - 0.5 * detections[k].image.height : missing);
     }
-    shots.push_back(shot_of(pictures[k], std::move(seen[k]), points[k]));
+    shots.push_back(shot_of(pictures[k], std::move(detections[k]), points[k]));
   }
   write_sweep(file, sweep);
   make_writable_folder(sheet.parent_path());

@@ -15,10 +15,10 @@ using Inputs = std::map<std::string, std::string>;
 
 constexpr const char* stage = "uncertainty";
 
-const UncertaintyStudy& wishes_of(const Session& session) {
+const UncertaintyStudy& uncertainty_study(const Session& session) {
   if (!session.study.uncertainty)
     throw InputError({session.study.file.string(), 0, 0},
-                     "the section [uncertainty] is missing: it says what is uncertain, as perturb = { R = \"0.1524 m\" }");
+                     "the section [uncertainty] is missing: it lists what is uncertain, as perturb = { R = \"0.1524 m\" }");
   return *session.study.uncertainty;
 }
 
@@ -44,7 +44,7 @@ std::optional<MonteCarloResult> sampled(const Session& session, const StudyChain
   Progress progress(fmt::format("{}, {} runs", chain.nominal().method, runs_of(session)), session.options.quiet);
   MonteCarloOptions options;
   options.jobs = {session.folder.file("uncertainty"), digest_of(inputs_of_run(session)), runs_of(session), session.options.threads};
-  options.shared = chain.numbers().single();
+  options.shared = chain.numbers().scalars();
   options.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
   options.stop = &interrupted();
   return monte_carlo(
@@ -53,13 +53,13 @@ std::optional<MonteCarloResult> sampled(const Session& session, const StudyChain
 
 std::vector<std::string> notes_of(const Session& session, const StudyChain& chain, const MonteCarloResult& runs,
                                   const Uncertainty& result) {
-  std::vector<std::string> notes = chain.set_up().notes();
-  notes.emplace_back("The bands are of the set-up alone: what the reading noise adds is the nominal fit's own sigma.");
+  std::vector<std::string> notes = chain.rig().notes();
+  notes.emplace_back("The bands contain the propagated uncertainty only; the nominal fit's sigma contains the measurement noise.");
   for (const std::string& note : unfinished_notes(chain.nominal(), runs)) notes.push_back(note);
   if (result.failed > 0) notes.push_back(fmt::format("{} of {} runs gave no result and are left out.", result.failed, result.runs));
   for (const SpreadNumber& n : result.numbers) {
     if (n.count + result.failed < result.runs)
-      notes.push_back(fmt::format("{} is that of {} of {} runs; the others have none.", n.name, n.count, result.runs));
+      notes.push_back(fmt::format("{} exists in {} of {} runs only.", n.name, n.count, result.runs));
   }
   for (const SpreadCurve& c : result.curves) {
     if (!c.informative) notes.push_back(fmt::format("{} is not informative: {}.", c.name, c.why));
@@ -76,7 +76,7 @@ Uncertainty result_of(const Session& session, const StudyChain& chain, const Sam
   out.failed = runs.failed;
   out.failures = runs.failures;
   out.seed = session.study.seed;
-  out.perturbed = chain.set_up().described();
+  out.perturbed = chain.rig().described();
   chain.numbers().fill(runs, sampler.term_names(), out);
   out.notes = notes_of(session, chain, runs, out);
   return out;
@@ -105,11 +105,11 @@ std::string digest_of(const Inputs& inputs) {
 }
 
 Uncertainty uncertainty_stage(Session& session) {
-  static_cast<void>(wishes_of(session));
+  static_cast<void>(uncertainty_study(session));
   static_cast<void>(attitude_stage(session));
   if (session.folder.up_to_date(stage, inputs_of(session))) return read_uncertainty(session.folder.path());
   const std::unique_ptr<StudyChain> chain = chain_of(session);
-  const Sampler sampler(chain->set_up().perturbations(), session.study.seed);
+  const Sampler sampler(chain->rig().perturbations(), session.study.seed);
   if (!ranks().first()) {
     static_cast<void>(finished(sampled(session, *chain, sampler)));
     return {};

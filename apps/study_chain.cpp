@@ -41,8 +41,8 @@ StudyChain::StudyChain(Session& session, const std::string& method) : method_(me
   prepare_method(session, method);
   if (!usable(nominal_)) throw RunError(method + " " + to_string(nominal_.status) + ": " + nominal_.message);
   read_recordings(session);
-  set_up_.emplace(session, prepared_.model);
-  const PerturbedSetUp as_it_is = set_up_->at(std::vector<double>(set_up_->perturbations().names().size(), 0.0));
+  rig_.emplace(session, prepared_.model);
+  const PerturbedRig as_it_is = rig_->at(std::vector<double>(rig_->perturbations().names().size(), 0.0));
   numbers_.emplace(nominal_, fit(start_, signals(as_it_is, start_)), prepared_.model.system->spec().static_curve);
 }
 
@@ -91,29 +91,29 @@ void StudyChain::read_recordings(Session& session) {
   }
 }
 
-Model StudyChain::perturbed(const PerturbedSetUp& set_up) const {
+Model StudyChain::perturbed(const PerturbedRig& rig) const {
   Model model = start_;
   for (Parameter& p : model.parameters) {
     if (p.free || p.curve >= 0) continue;
-    if (const auto found = set_up.constants.find(p.name); found != set_up.constants.end()) p.value = found->second;
+    if (const auto found = rig.constants.find(p.name); found != rig.constants.end()) p.value = found->second;
   }
   return model;
 }
 
-std::vector<Signals> StudyChain::signals(const PerturbedSetUp& set_up, const Model& model) const {
+std::vector<Signals> StudyChain::signals(const PerturbedRig& rig, const Model& model) const {
   std::vector<Signals> out;
   AttitudeOptions values_only;
   values_only.sigmas = false;
   for (const Recording& recording : recordings_) {
     if (recording.track && !pixels_) {
-      const Track track = shifted(*recording.track, set_up.offset_y, set_up.offset_z);
-      const Attitude angles = attitude(track, *set_up.calibration, set_up.rig, values_only);
+      const Track track = shifted(*recording.track, rig.offset_y, rig.offset_z);
+      const Attitude angles = attitude(track, *rig.calibration, rig.geometry, values_only);
       out.push_back(signals_from(attitude_table(angles), model, recording.study));
       continue;
     }
     out.push_back(recording.nominal);
     for (Signal& channel : out.back().measured) {
-      const double offset = channel.name == "P_y" ? set_up.offset_y : channel.name == "P_z" ? set_up.offset_z : 0.0;
+      const double offset = channel.name == "P_y" ? rig.offset_y : channel.name == "P_z" ? rig.offset_z : 0.0;
       if (!recording.track || offset == 0.0) continue;
       for (double& v : channel.values) v += offset;
     }
@@ -142,12 +142,12 @@ Fit StudyChain::fit(const Model& model, const std::vector<Signals>& experiments)
 
 ChainResult StudyChain::run(const std::vector<double>& errors) const {
   try {
-    const PerturbedSetUp set_up = set_up_->at(errors);
-    const Model model = perturbed(set_up);
-    const Fit result = fit(model, signals(set_up, model));
+    const PerturbedRig rig = rig_->at(errors);
+    const Model model = perturbed(rig);
+    const Fit result = fit(model, signals(rig, model));
     if (!usable(result)) return {{}, to_string(result.status) + ": " + result.message};
-    return {numbers_->of(result), ""};
-  } catch (const InputError& error) {  // a set-up that cannot be, as a camera in front of the apex
+    return {numbers_->evaluate(result), ""};
+  } catch (const InputError& error) {  // an impossible rig, as a camera in front of the apex
     return {{}, error.what()};
   } catch (const RunError& error) {
     return {{}, error.what()};
@@ -164,7 +164,7 @@ std::unique_ptr<StudyChain> chain_of(Session& session) {
       why += std::string(why.empty() ? "" : "; ") + error.what();
     }
   }
-  throw RunError("no method of the study gives a result that could be perturbed: " + why);
+  throw RunError("no method of the study gives a result to perturb: " + why);
 }
 
 }  // namespace misfit

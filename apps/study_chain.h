@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "apps/followed_numbers.h"
 #include "apps/methods.h"
-#include "apps/set_up.h"
+#include "apps/quantities_of_interest.h"
+#include "apps/rig.h"
 #include "misfit/uncertainty/monte_carlo.h"
 
 namespace misfit {
 
-/// From a perturbed set-up to the numbers of a fit: pixels (with their offset) through the perturbed camera to angles, then the study's
+/// From a perturbed rig to the numbers of a fit: pixels (with their offset) through the perturbed camera to angles, then the study's
 /// method with the perturbed constants. Knots are the nominal fit's; trajectory methods start from its parameters and keep its roughness,
 /// the filter its noise as well.
 class StudyChain {
@@ -22,9 +22,9 @@ class StudyChain {
   StudyChain(const StudyChain&) = delete;
   StudyChain& operator=(const StudyChain&) = delete;
 
-  [[nodiscard]] const SetUp& set_up() const { return *set_up_; }
+  [[nodiscard]] const Rig& rig() const { return *rig_; }
   [[nodiscard]] const Fit& nominal() const { return nominal_; }
-  [[nodiscard]] const FollowedNumbers& numbers() const { return *numbers_; }
+  [[nodiscard]] const QuantitiesOfInterest& numbers() const { return *numbers_; }
   /// One run; thread-safe. What cannot be computed is a failure with its reason, not an exception.
   [[nodiscard]] ChainResult run(const std::vector<double>& errors) const;
 
@@ -32,8 +32,8 @@ class StudyChain {
   struct Recording;
   void prepare_method(Session& session, const std::string& method);
   void read_recordings(Session& session);
-  [[nodiscard]] Model perturbed(const PerturbedSetUp& set_up) const;
-  [[nodiscard]] std::vector<Signals> signals(const PerturbedSetUp& set_up, const Model& model) const;
+  [[nodiscard]] Model perturbed(const PerturbedRig& rig) const;
+  [[nodiscard]] std::vector<Signals> signals(const PerturbedRig& rig, const Model& model) const;
   [[nodiscard]] Fit fit(const Model& model, const std::vector<Signals>& experiments) const;
 
   std::string method_;
@@ -45,8 +45,8 @@ class StudyChain {
   bool pixels_ = false;  ///< the system predicts the image: angles are not needed
   std::vector<Recording> recordings_;
   Fit nominal_;
-  std::optional<SetUp> set_up_;
-  std::optional<FollowedNumbers> numbers_;
+  std::optional<Rig> rig_;
+  std::optional<QuantitiesOfInterest> numbers_;
 };
 
 /// The first of the study's methods (or of those asked for) that gives a result, with its chain.

@@ -27,7 +27,7 @@ std::optional<Region> region_of(const VideoStudy& study) {
   return Region{r[0], r[1], r[2], r[3]};
 }
 
-struct Learnt {
+struct MarkerSurvey {
   Appearance look;
   FieldEvidence evidence;
   std::vector<PixelPoint> still;
@@ -40,7 +40,7 @@ void check_frames(const std::filesystem::path& path, const VideoFacts& facts) {
   throw RunError(path.string() + ": the video has one frame only: a track needs at least two");
 }
 
-Learnt learn(const std::filesystem::path& path, const VideoStudy& study) {
+MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
   Video video(path);
   Survey survey({marker_of(study.marker), study.start, region_of(study)});
   while (const auto frame = video.next()) {
@@ -54,16 +54,16 @@ Learnt learn(const std::filesystem::path& path, const VideoStudy& study) {
     const std::string what = study.marker.picture ? "the marker of " + study.marker.picture->filename().string()
                                                   : "a " + study.marker.kind + " marker of 8 to 30 px";
     throw RunError(
-        fmt::format("{}: {} was found in none of the {} frames looked at; is [video] marker right (ring, bright, dark, or a PNG cut from a "
-                    "frame)? start = [column, row] or region = [left, top, right, bottom] can say where it is",
+        fmt::format("{}: {} was found in none of the {} frames searched; is [video] marker right (ring, bright, dark, or a PNG cut from a "
+                    "frame)? start = [column, row] or region = [left, top, right, bottom] gives its place",
                     path.string(), what, survey.frames()));
   }
   if (!study.start && !study.region && survey.doubled() > most_doubled) {
     throw RunError(fmt::format(
-        "{}: in {:.0f} % of the fields looked at there are two moving things that look like the marker. If there are two, say which: "
+        "{}: in {:.0f} % of the fields searched two moving objects resemble the marker. If there are two, choose one: "
         "[video] "
         "start = [column, row]. If there is one, the frames are blends of two fields (an interlaced video that was blurred or scaled "
-        "as a whole), and the original is needed: which of the two was first cannot be told any more",
+        "as a whole), and the original video is needed: the order of the two fields cannot be determined any more",
         path.string(), 100.0 * survey.doubled()));
   }
   return {*look, survey.evidence(), survey.still()};
@@ -130,8 +130,8 @@ class Shots {
 /// Feeds the fields of all frames, in the order of time.
 class Run {
  public:
-  Run(const Learnt& learnt, const VideoStudy& study, FieldOrder order, long declared)
-      : tracker_({learnt.look, study.start, region_of(study), learnt.still}), order_(order), shots_(declared) {}
+  Run(const MarkerSurvey& survey, const VideoStudy& study, FieldOrder order, long declared)
+      : tracker_({survey.look, study.start, region_of(study), survey.still}), order_(order), shots_(declared) {}
 
   void add(Frame frame) {
     const std::size_t first = static_cast<std::size_t>(frame.number) * fields();
@@ -179,7 +179,7 @@ Track track_of(const std::vector<TrackedSample>& samples, const VideoFacts& fact
   return track;
 }
 
-TrackFacts facts_of(const Learnt& learnt, const VideoFacts& video, FieldOrder order, const std::vector<TrackedSample>& samples,
+TrackFacts facts_of(const MarkerSurvey& survey, const VideoFacts& video, FieldOrder order, const std::vector<TrackedSample>& samples,
                     const Track& track) {
   TrackFacts f;
   f.video = video.file;
@@ -191,9 +191,9 @@ TrackFacts facts_of(const Learnt& learnt, const VideoFacts& video, FieldOrder or
   f.missing = video.missing;
   f.repeated = video.repeated;
   f.fields = words(order);
-  f.fields_shown = words(learnt.evidence.order);
-  f.fields_evidence = learnt.evidence.text();
-  const Marker& marker = learnt.look.marker;
+  f.fields_shown = words(survey.evidence.order);
+  f.fields_evidence = survey.evidence.text();
+  const Marker& marker = survey.look.marker;
   f.marker = name_of(marker.kind);
   if (marker.kind != MarkerKind::picture) f.outer = marker.outer;
   if (marker.kind == MarkerKind::ring) f.inner = marker.inner;
@@ -239,8 +239,8 @@ FieldOrder choose_fields(const VideoStudy& study, const FieldEvidence& evidence,
   if (said == FieldOrder::unknown) {
     if (shown != FieldOrder::unknown) return shown;
     if (evidence.motion < 1.0) return FieldOrder::progressive;
-    warnings.push_back("whether the video is interlaced cannot be seen (" + evidence.text() +
-                       "): it is read as progressive; say it with [video] fields");
+    warnings.push_back("no evidence whether the video is interlaced (" + evidence.text() +
+                       "): it is read as progressive; [video] fields sets it");
     return FieldOrder::progressive;
   }
   if (shown == FieldOrder::unknown || shown == said) return said;
@@ -255,18 +255,18 @@ FieldOrder choose_fields(const VideoStudy& study, const FieldEvidence& evidence,
                     words(shown), wrong * evidence.motion));
     return shown;
   }
-  warnings.push_back(contradiction + "; the study is followed" +
-                     (study.check_fields ? ", as this is not beyond doubt" : ", as check_fields = false asks for"));
+  warnings.push_back(contradiction + "; the setting of the study is used" +
+                     (study.check_fields ? ", as the evidence is not conclusive" : ", as check_fields = false asks for"));
   return said;
 }
 
 VideoTrack track_video(const std::filesystem::path& path, const VideoStudy& study,
                        const std::function<void(std::size_t, std::size_t)>& progress) {
-  const Learnt learnt = learn(path, study);
+  const MarkerSurvey survey = learn(path, study);
   std::vector<std::string> warnings;
-  const FieldOrder order = choose_fields(study, learnt.evidence, warnings);
+  const FieldOrder order = choose_fields(study, survey.evidence, warnings);
   Video video(path);
-  Run run(learnt, study, order, video.facts().declared);
+  Run run(survey, study, order, video.facts().declared);
   while (auto frame = video.next()) {
     stop_if_interrupted();
     const auto number = static_cast<std::size_t>(frame->number);
@@ -277,11 +277,11 @@ VideoTrack track_video(const std::filesystem::path& path, const VideoStudy& stud
   const double rate = video.facts().rate * static_cast<double>(run.fields());
   VideoTrack out;
   out.track = track_of(samples, video.facts(), rate);
-  out.facts = facts_of(learnt, video.facts(), order, samples, out.track);
+  out.facts = facts_of(survey, video.facts(), order, samples, out.track);
   out.facts.warnings.insert(out.facts.warnings.begin(), warnings.begin(), warnings.end());
   if (out.facts.ok == 0)
     throw RunError(path.string() + ": the marker was seen in some frames, but could not be followed through any three of them");
-  out.shots = run.shots().finish(samples, rate, std::max(learnt.look.marker.reach_x(), learnt.look.marker.reach_y()));
+  out.shots = run.shots().finish(samples, rate, std::max(survey.look.marker.reach_x(), survey.look.marker.reach_y()));
   return out;
 }
 

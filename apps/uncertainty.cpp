@@ -17,21 +17,21 @@ int uncertainty_verb(const Options& options, const Registry& registry) {
     if (asks_for_resampling(session.study)) check_profile_names(session);
   });
   Session session(own, registry);
-  // Bootstrap and profiles alone need no set-up that is uncertain.
+  // Bootstrap and profiles alone need no perturbed rig.
   const bool resampling = asks_for_resampling(session.study);
-  const bool set_up = !resampling || !session.study.uncertainty->perturb.empty();
+  const bool perturbs_rig = !resampling || !session.study.uncertainty->perturb.empty();
   Uncertainty result;
-  if (set_up) result = uncertainty_stage(session);
+  if (perturbs_rig) result = uncertainty_stage(session);
   Resampling again;
   if (resampling) again = resampling_stage(session);
   if (!ranks().first()) return 0;
   if (options.json) {
-    print_file(session.folder.file(set_up                      ? "uncertainty.json"
+    print_file(session.folder.file(perturbs_rig                ? "uncertainty.json"
                                    : !again.bootstraps.empty() ? "bootstrap.json"
                                    : !again.profiles.empty()   ? "profile.json"
                                                                : "starts.json"));
   } else {
-    if (set_up) std::cout << uncertainty_text(result);
+    if (perturbs_rig) std::cout << uncertainty_text(result);
     std::cout << resampling_text(again);
   }
   return 0;

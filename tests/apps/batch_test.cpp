@@ -37,7 +37,7 @@ class ThreeTests : public testing::Test {
 TEST_F(ThreeTests, AFolderIsSearchedAndOneThatFailsIsARow) {
   const Outcome outcome = program::run({"batch", folder_.path().string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  expect_parts(outcome.out, {"test1", "test2", "failed", "test3", "over the studies", "trim", "deg", "'alfa_T[deg]'"});
+  expect_parts(outcome.out, {"test1", "test2", "failed", "test3", "p (homogeneity)", "trim", "deg", "'alfa_T[deg]'"});
   const json batch = json::parse(content(path("batch/batch.json")));
   ASSERT_EQ(batch.at("studies").size(), 3U);
   EXPECT_EQ(batch.at("studies")[1].at("status"), "failed");

@@ -121,7 +121,7 @@ std::vector<std::vector<double>> rows_of(const fs::path& file) {
 
 /// The study's own motion, made again from its curves: alpha_history.csv came from other code, with the damping stepping at 11 and 13 deg
 /// sharp, which the ramps of this table have as their middles. The static table (0.5 deg apart, interpolated linearly) is 0.06 deg off as
-/// well; the bound is the study's reading noise.
+/// well; the bound is the study's measurement noise.
 TEST(Simulate, AsTheSectionSaysGivesTheMotionThatWasMadeElsewhere) {
   const StudyCopy study("validation");
   study.change("C_m = \\{ of = \"alpha_T\" \\}", "C_m = { of = \"alpha_T\", table = \"figure5.csv\" }");

@@ -51,7 +51,7 @@ TEST_F(DiscoverJobsUnderMpi, ALadderIsNotClimbedBySeveral) {
   words.emplace_back("--auto");
   const Outcome outcome = on_ranks(2, words);
   EXPECT_NE(outcome.status, 0);
-  expect_parts(outcome.err, {"--auto is not for several processes"});
+  expect_parts(outcome.err, {"--auto cannot run under mpirun"});
   EXPECT_FALSE(fs::exists(study_.path("ladder") / "ladder.json"));
 }
 

@@ -130,7 +130,7 @@ TEST(HoledData, AHoleInTheTrackIsCarriedToTheAttitude) {
   expect_parts(outcome.out, {"samples read", std::to_string(rows - empty).c_str()});
 }
 
-TEST(Outliers, ManyWildReadingsAreAnswered) {
+TEST(Outliers, ManyWildMeasurementsAreAnswered) {
   const StudyCopy study("validation");
   study.change_rows("alpha_history.csv", [](std::size_t row, const Cells& c) {
     return c[0] + "," + (row % 97 == 0 ? std::to_string(std::stod(c[1]) + 40.0) : c[1]) + "," + c[2];

@@ -46,7 +46,7 @@ void study_is_built(const fs::path& data, const fs::path& folder) {
     for (const auto& experiment : study.experiments) {
       try {
         EXPECT_GT(signals_from(read_csv(*experiment.data), assembled, experiment).samples(), 0U);
-      } catch (const RunError&) {  // a part without a reading of something
+      } catch (const RunError&) {  // a part without a measurement of something
       }
     }
   } catch (const InputError& error) {

@@ -53,7 +53,7 @@ TEST_F(Climbing, TheErrorBeforeAndAfterIsPrintedInItsUnit) {
                             "random force", "N m", "drop:", "actual", "gain of the held-out log-likelihood", "the ladder"});
   expect_parts(spherical.out, {"rung 2: system:parachute_spherical added to parachute_planar", "32 steps ahead, P_y", "px", "no drop",
                                "effect 'coning' is left out"});
-  expect_parts(spherical.err, {"going on from rung 1"});
+  expect_parts(spherical.err, {"continuing from rung 1"});
 }
 
 TEST_F(Climbing, TheLadderHoldsEveryRungWithTheKeysOfTheContract) {
@@ -113,11 +113,11 @@ TEST(AddAfterAWholeSearch, TakesItsPredictionAndTheReportKeepsWhatWasFound) {
     if (candidate.at("effect") == "strut_wake") predicted = candidate.at("predicted_drop").get<double>();
   }
   EXPECT_EQ(study.result("ladder.json").at(1).at("predicted_drop").get<double>(), predicted);
-  expect_parts(content(study.out("report.html")), {"<h2>Where the model fails", "<h2>What could be missing", "(rung 0)"});
+  expect_parts(content(study.out("report.html")), {"<h2>Residual diagnostics", "<h2>Candidate effects", "(rung 0)"});
   fs::remove(study.out("report.html"));
   const Outcome from_elsewhere = program::run({"report", fs::relative(study.path("study.toml")).string()});
   ASSERT_EQ(from_elsewhere.status, 0) << from_elsewhere.err;
-  expect_parts(content(study.out("report.html")), {"<h2>Where the model fails", "<h2>What could be missing"});
+  expect_parts(content(study.out("report.html")), {"<h2>Residual diagnostics", "<h2>Candidate effects"});
 }
 
 struct Refusal {
@@ -158,7 +158,7 @@ TEST(LadderOfAStudyThatChanged, IsBegunAnew) {
   study.change("R_cp = \"3.15 m\"", "R_cp = \"3.16 m\"");
   const Outcome outcome = study.add("system:parachute_spherical");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  expect_parts(outcome.err, {"begun anew"});
+  expect_parts(outcome.err, {"starting a new one"});
   EXPECT_EQ(study.result("ladder.json").size(), 2U);
 }
 

@@ -13,10 +13,10 @@ using Words = std::vector<std::string>;
 /// The first seconds of configs/validation with a small forcing of known frequency: two parameters that a profile can be taken of.
 class ForcedMotion : public ShortValidation {
  public:
-  explicit ForcedMotion(const std::string& wishes) : ShortValidation(700) {
+  explicit ForcedMotion(const std::string& uncertainty) : ShortValidation(700) {
     change("pitch_damping = \\{\\}",
            "pitch_damping = {}\nperiodic_forcing = {}\n\n[parameters]\nfrequency = { free = false, value = \"1.3 Hz\" }");
-    change("perturb = .*", wishes);
+    change("perturb = .*", uncertainty);
   }
   void methods(const std::string& list) const { change("methods = .*", "methods = " + list); }
   [[nodiscard]] json bootstrap(std::size_t k) const { return result("bootstrap.json").at(k); }
@@ -57,7 +57,7 @@ TEST(Resampling, OfEveryMethodThatCanBeFittedAgain) {
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "done once";
 
   ASSERT_EQ(study.run("report").status, 0);
-  expect_parts(content(study.out("report.html")), {"Intervals by resampling and by profiles, random starts", "Block bootstrap: C_m",
+  expect_parts(content(study.out("report.html")), {"Bootstrap, profile likelihood and random starts", "Block bootstrap: C_m",
                                                    "Profile likelihood: cosine", "sliding_bin is not resampled"});
   EXPECT_EQ(study.uncertainty({}).out, outcome.out);
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "the report has drawn the figures again";
@@ -100,7 +100,8 @@ TEST(Resampling, RandomStartsEndWhereTheFitDid) {
   const ForcedMotion study("starts = 6");
   const Outcome outcome = study.uncertainty({});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  expect_parts(outcome.out, {"random starts of output_error: 6 of 6 end at the fit's maximum, 0 lower, 0 higher, 0 nowhere"});
+  expect_parts(outcome.out,
+               {"random starts of output_error: 6 of 6 reach the reported maximum, 0 a lower, 0 a higher one, 0 did not converge"});
   const json starts = study.result("starts.json").at(0);
   EXPECT_EQ(starts.at("drop").size(), 6U);
   for (const json& number : starts.at("numbers"))

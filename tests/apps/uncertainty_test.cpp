@@ -1,4 +1,4 @@
-// The Monte-Carlo over the set-up, as a user runs it: what it finds, what it refuses, and that nothing ends it for good.
+// The Monte Carlo over the rig, as a user runs it: what it finds, what it refuses, and that nothing ends it for good.
 
 #include <sched.h>
 #include <sys/resource.h>
@@ -29,7 +29,7 @@ class Flight : public ShortFlight {
 
 double share_of(const json& number, const std::string& parameter) { return number.at("variance_shares").at(parameter).at("share"); }
 
-TEST(SetUpOfTheFlight, LengthMovesTheTrimAndApparentMassTheSlope) {
+TEST(RigOfTheFlight, LengthMovesTheTrimAndApparentMassTheSlope) {
   const Flight flight;
   const Outcome outcome = flight.uncertainty({"--runs", "250"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -54,7 +54,7 @@ TEST(SetUpOfTheFlight, LengthMovesTheTrimAndApparentMassTheSlope) {
   expect_parts(outcome.out, {"sliding_bin, 250 runs", "normal, 3 sigma = 0.1524 m", "share of the variance", "deg", "px/m"});
 }
 
-TEST(SetUpOfTheFlight, IsDoneOnceAndShownInTheReport) {
+TEST(RigOfTheFlight, IsDoneOnceAndShownInTheReport) {
   const Flight flight;
   flight.perturb("{ R = \"6 in\" }");
   const Outcome first = flight.uncertainty({"--runs", "30"});
@@ -66,14 +66,14 @@ TEST(SetUpOfTheFlight, IsDoneOnceAndShownInTheReport) {
   const Outcome printed = flight.uncertainty({"--runs", "30", "--json"});
   EXPECT_EQ(printed.out, content(flight.out("uncertainty.json")));
   ASSERT_EQ(flight.run("report").status, 0);
-  expect_parts(content(flight.out("report.html")), {"Uncertainty of the set-up", "repeated 30 times", "Where the variance comes from"});
+  expect_parts(content(flight.out("report.html")), {"Propagated uncertainty", "repeated 30 times", "Variance decomposition"});
   EXPECT_TRUE(fs::exists(flight.out("figures/variance_shares.svg")));
   flight.perturb("{ R = \"5 in\" }");
   ASSERT_EQ(flight.run("report").status, 0);
-  EXPECT_EQ(content(flight.out("report.html")).find("Uncertainty of the set-up"), std::string::npos) << "it is of another study";
+  EXPECT_EQ(content(flight.out("report.html")).find("Propagated uncertainty"), std::string::npos) << "it is of another study";
 }
 
-TEST(SetUpOfTheFlight, ReadingsAreTaken) {
+TEST(RigOfTheFlight, ReadingsOfItsNumbersAreApplied) {
   const Flight flight;
   flight.perturb("{ R = \"0.03 m\", V = \"1 m/s\", m_a = 0.1 }", "readings = { R = \"sigma\", V = \"uniform\", m_a = \"2 sigma\" }");
   ASSERT_EQ(flight.uncertainty({"--runs", "5"}).status, 0);
@@ -86,7 +86,7 @@ TEST(SetUpOfTheFlight, ReadingsAreTaken) {
 }
 
 /// The calibration is far better than Table 2; a longer distance to the camera alone is mended by calibrating again.
-TEST(SetUpOfTheFlight, TheCalibrationsOwnCovarianceAndCalibratingAgain) {
+TEST(RigOfTheFlight, TheCalibrationsOwnCovarianceAndCalibratingAgain) {
   const Flight flight;
   flight.change("perturb = .*", "camera = \"calibration\"");
   ASSERT_EQ(flight.uncertainty({"--runs", "60"}).status, 0);
@@ -147,8 +147,8 @@ TEST(WrongPerturbations, NoSectionNoRunsAndDecliningMethodsAreAnsweredInWords) {
   expect_parts(outcome.err, {"[uncertainty] is missing", "perturb"});
 }
 
-/// A camera in front of the apex is no set-up: those runs are counted with their reason.
-TEST(SetUpsThatCannotBe, AreLeftOutAndCounted) {
+/// A camera in front of the apex is impossible: those runs are counted with their reason.
+TEST(RigsThatCannotBe, AreLeftOutAndCounted) {
   const Flight flight;
   flight.perturb("{ l_s = \"2.2 m\" }", "readings = \"sigma\"");
   ASSERT_EQ(flight.uncertainty({"--runs", "40"}).status, 0);
@@ -262,7 +262,7 @@ TEST_F(SameBitsUnderMpi, AWrongStudyIsRefusedByOneRankAndEndsAll) {
   expect_parts(outcome.err, {"'m_b'", "did you mean 'm_a'"});
   const Outcome other = on_ranks(2, {"fit", study_.path("study.toml").string()});
   EXPECT_NE(other.status, 0);
-  expect_parts(other.err, {"'fit' is not for several processes"});
+  expect_parts(other.err, {"'fit' cannot run under mpirun"});
 }
 
 }  // namespace

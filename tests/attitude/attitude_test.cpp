@@ -213,7 +213,7 @@ TEST(Attitude, ShortRecordHasAnglesButNoWindAngles) {
   EXPECT_EQ(missing_in(six.alpha_T), 6u);
 }
 
-// Scatter of one sample's values over repeated readings [rad]: reading noise `pixel`, and calibration errors where `with_camera`.
+// Scatter of one sample's values over repeated measurements [rad]: measurement noise `pixel`, and calibration errors where `with_camera`.
 struct Scatter {
   double theta, phi, alpha_T;
 };
@@ -243,7 +243,7 @@ Scatter scatter(double pixel, bool with_camera, std::size_t at) {
   return {sigma[0], sigma[1], sigma[2]};
 }
 
-TEST(Attitude, SigmasAreTheScatterOfRepeatedReadings) {
+TEST(Attitude, SigmasAreTheScatterOfRepeatedMeasurements) {
   const std::size_t at = 6;
   const double tolerance = 3.0 / std::sqrt(2.0 * 2000.0);  // three times the sampling error of a standard deviation
   for (const bool with_camera : {false, true}) {
@@ -258,7 +258,7 @@ TEST(Attitude, SigmasAreTheScatterOfRepeatedReadings) {
   }
 }
 
-TEST(Attitude, UnknownReadingNoiseIsEstimatedAndSaid) {
+TEST(Attitude, UnknownMeasurementNoiseIsEstimatedAndSaid) {
   const Track track = read_track(std::string(MISFIT_SOURCE_DIR) + "/tests/data/tracks/calm_head.csv");  // white noise of 0.5 px
   const Attitude a = attitude(track, camera(), rig());
   Track known = track;

@@ -28,19 +28,19 @@ std::string joined(const std::vector<std::string>& words) {
 double drop_of(const World& world, const Hidden& hidden, const FilterEstimate& without, const ModelRequest& request, const Registry& truth,
                int threads) {
   const Calibration* calibration = world.calibrated ? &world.calibration : nullptr;
-  std::vector<Specimen> all = specimens(without, request, truth, calibration);
-  const auto at = std::find_if(all.begin(), all.end(), [&](const Specimen& s) { return s.effect == hidden.effect; });
-  if (at == all.end()) throw RunError("no specimen of " + hidden.effect);
-  Screened screened;
-  screened.specimen = &*at;
+  std::vector<CandidateModel> all = candidate_models(without, request, truth, calibration);
+  const auto at = std::find_if(all.begin(), all.end(), [&](const CandidateModel& s) { return s.effect == hidden.effect; });
+  if (at == all.end()) throw RunError("no candidate model of " + hidden.effect);
+  ScreeningResult screening;
+  screening.candidate_model = &*at;
   Eigen::VectorXd strengths(static_cast<Eigen::Index>(at->strengths.size()));
   for (std::size_t i = 0; i < at->strengths.size(); ++i)
     strengths[static_cast<Eigen::Index>(i)] = hidden.values.at(at->model.parameters[static_cast<std::size_t>(at->strengths[i])].name);
   for (const auto& [name, value] : hidden.values) at->request.parameters[name].value = value;
   // Beside curves that were fitted without it the whole effect may be too much to start with.
   for (const double share : {1.0, 0.5, 0.25}) {
-    screened.result.amplitude = share * strengths;
-    const Refit refitted = refit(without, world.experiments, screened, truth, threads);
+    screening.result.amplitude = share * strengths;
+    const Refit refitted = refit(without, world.experiments, screening, truth, threads);
     if (refitted.ok) return refitted.drop;
   }
   return 0.0;

@@ -56,7 +56,7 @@ TEST(Calibrate, EveryRecordedSweepGivesItsCamera) {
     EXPECT_LT(off(c, "h_c", world.h_c), 3.0) << world.name;
     EXPECT_LT(off(c, "K", world.K), 3.0) << world.name;
     beyond_two_sigma += (off(c, "h_c", world.h_c) > 2.0) + (off(c, "K", world.K) > 2.0);
-    EXPECT_NEAR(c.sigma_px, 0.5, 0.06) << world.name;  // reading noise 0.5 px, 150 coordinates: ± 0.03
+    EXPECT_NEAR(c.sigma_px, 0.5, 0.06) << world.name;  // measurement noise 0.5 px, 150 coordinates: ± 0.03
     EXPECT_EQ(c.outliers, 0) << world.name;
     EXPECT_EQ(c.residuals.size(), 150u);
   }
@@ -69,7 +69,7 @@ TEST(Calibrate, StraightCamerasTakeInNothingTheRolledOneItsRollAndCentre) {
     const bool rolled = std::string(world.name) == "camera_roll";
     EXPECT_EQ(c.tests.size(), 5u);
     for (const CameraTest& test : c.tests) {
-      EXPECT_EQ(test.taken_in, rolled && (test.name == "camera_roll" || test.name == "image_centre")) << world.name << ", " << test.name;
+      EXPECT_EQ(test.selected, rolled && (test.name == "camera_roll" || test.name == "image_centre")) << world.name << ", " << test.name;
     }
     if (!rolled) continue;
     EXPECT_NEAR(c.value("camera_roll"), 3.0 * deg, 0.1 * deg);
@@ -89,8 +89,8 @@ TEST(Calibrate, ATenthOfThePointsDisplacedIsSetAsideAndChangesNothing) {
       EXPECT_EQ(c.outliers, 8) << world.name << ", seed " << seed;
       EXPECT_LT(off(c, "h_c", world.h_c), 3.0) << world.name << ", seed " << seed;
       EXPECT_LT(off(c, "K", world.K), 3.0) << world.name << ", seed " << seed;
-      EXPECT_EQ(test_of(c, "camera_roll").taken_in, std::string(world.name) == "camera_roll");
-      EXPECT_THAT(c.notes, Contains(HasSubstr("8 of 75 points were set aside")));
+      EXPECT_EQ(test_of(c, "camera_roll").selected, std::string(world.name) == "camera_roll");
+      EXPECT_THAT(c.notes, Contains(HasSubstr("8 of 75 points were rejected")));
     }
   }
 }
@@ -120,7 +120,7 @@ TEST(Calibrate, ExactPixelsOfAFlawedCameraReturnIt) {
     }
   }
   CalibrateOptions options;
-  options.take_in = {"camera_roll", "image_centre", "lens_k1", "camera_distance"};
+  options.force = {"camera_roll", "image_centre", "lens_k1", "camera_distance"};
   const Calibration c = calibrate(sweep, rig, options);
   const auto expected = camera_values(truth);
   for (std::size_t i = 0; i < expected.size(); ++i)
@@ -128,10 +128,10 @@ TEST(Calibrate, ExactPixelsOfAFlawedCameraReturnIt) {
   EXPECT_LT(c.rms_px, 1e-6);
 }
 
-TEST(Calibrate, CovarianceIsTheScatterOfRepeatedReadings) {
+TEST(Calibrate, CovarianceIsTheScatterOfRepeatedMeasurements) {
   const Sweep recorded = sweeps::read("calm");
   CalibrateOptions options;
-  options.offer = {};
+  options.candidates = {};
   const Calibration base = calibrate(recorded, sweeps::rig(), options);
   std::mt19937 generator(3);
   std::normal_distribution<double> noise(0.0, 0.5);
@@ -160,37 +160,37 @@ TEST(Calibrate, VerticalPixelsAloneOfferNoRoll) {
   EXPECT_LT(off(c, "K", 133.86), 3.0);
   EXPECT_EQ(c.tests.size(), 3u);
   EXPECT_THAT(test_of(c, "image_centre").parameters, testing::ElementsAre("centre_z"));
-  EXPECT_THAT(c.notes, Contains(HasSubstr("camera_roll was not offered")));
-  EXPECT_THAT(c.notes, Contains(HasSubstr("of image_centre only centre_z was offered")));
+  EXPECT_THAT(c.notes, Contains(HasSubstr("camera_roll was not tested")));
+  EXPECT_THAT(c.notes, Contains(HasSubstr("of image_centre only centre_z was tested")));
   EXPECT_EQ(c.residuals.size(), 75u);
 }
 
 TEST(Calibrate, WhatTheRigCannotShowIsSaid) {
   const Calibration c = calibrate(sweeps::read("camera_roll"), sweeps::rig());
   const CameraTest& aspect = test_of(c, "pixel_aspect");
-  EXPECT_FALSE(aspect.taken_in);
+  EXPECT_FALSE(aspect.selected);
   EXPECT_TRUE(std::isnan(aspect.values[0]));
   EXPECT_EQ(aspect.p_value, 1.0);
-  EXPECT_THAT(c.notes, Contains(HasSubstr("pixel_aspect cannot be told from the other free parameters")));
+  EXPECT_THAT(c.notes, Contains(HasSubstr("cannot distinguish pixel_aspect from the other free parameters")));
   CalibrateOptions options;
-  options.take_in = {"pixel_aspect"};
+  options.force = {"pixel_aspect"};
   EXPECT_THAT(message_of([&] { (void)calibrate(sweeps::read("null"), sweeps::rig(), options); }),
-              HasSubstr("cannot tell these apart: h_c, K, pixel_aspect"));
+              HasSubstr("cannot distinguish these parameters: h_c, K, pixel_aspect"));
 }
 
 TEST(Calibrate, ParameterTakenInByHandIsFreeAndNamedWhereWeaklySeparated) {
   CalibrateOptions options;
-  options.take_in = {"image_centre", "camera_distance"};
-  options.offer = {};
+  options.force = {"image_centre", "camera_distance"};
+  options.candidates = {};
   const Calibration c = calibrate(first_angles(sweeps::read("null"), 6), sweeps::rig(), options);
   EXPECT_THAT(c.names, testing::ElementsAre("h_c", "K", "centre_y", "centre_z", "camera_distance"));
   EXPECT_GT(c.sigma("camera_distance"), 0.0);
-  EXPECT_THAT(c.notes, Contains(HasSubstr("weakly separated")));
+  EXPECT_THAT(c.notes, Contains(HasSubstr("nearly collinear")));
 }
 
 TEST(Calibrate, FixedParametersStayWhereTheyAre) {
   CalibrateOptions options;
-  options.offer = {};
+  options.candidates = {};
   options.fixed = {{"camera_roll", 3.0 * deg}, {"centre_y", 6.0}, {"centre_z", -4.0}};
   const Calibration c = calibrate(sweeps::read("camera_roll"), sweeps::rig(), options);
   EXPECT_EQ(c.value("centre_y"), 6.0);
@@ -217,7 +217,7 @@ TEST(Calibrate, TooFewAnglesAreRefusedInWords) {
   three.P_z[1].assign(3, std::numeric_limits<double>::quiet_NaN());
   three.P_z[2] = three.P_z[1];
   CalibrateOptions options;
-  options.take_in = {"lens_k1", "camera_distance"};
+  options.force = {"lens_k1", "camera_distance"};
   EXPECT_THAT(message_of([&] { (void)calibrate(three, sweeps::rig(), options); }), HasSubstr("3 usable coordinates for 4 unknowns"));
 }
 
@@ -258,7 +258,7 @@ TEST(Calibrate, ThreeAnglesAreEnough) {
 
 TEST(Calibrate, WrongNamesAndImpossibleGeometryAreInputErrors) {
   CalibrateOptions options;
-  options.take_in = {"camera_rol"};
+  options.force = {"camera_rol"};
   EXPECT_THROW((void)calibrate(sweeps::read("null"), sweeps::rig(), options), InputError);
   EXPECT_THAT(message_of([&] { (void)calibrate(sweeps::read("null"), sweeps::rig(), options); }), HasSubstr("camera_roll"));
   options = {};

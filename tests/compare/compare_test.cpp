@@ -115,7 +115,7 @@ TEST(Compare, RangesThatDoNotMeetAreListedNotCompared) {
   const Comparison c = compare({a, b}, {});
   EXPECT_TRUE(c.curves.empty());
   ASSERT_EQ(c.not_compared.size(), 1U);
-  expect_parts(c.not_compared[0].what + c.not_compared[0].why, {"C_m of a and b", "no common visited range"});
+  expect_parts(c.not_compared[0].what + c.not_compared[0].why, {"C_m of a and b", "no common operating range"});
 }
 
 TEST(Compare, OnlyLikeWithLike) {

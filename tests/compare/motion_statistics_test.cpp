@@ -107,7 +107,8 @@ TEST(CompareMotion, LargerMotionIsNamed) {
   EXPECT_GT(group(motion.series[0], "autocorrelation").p_value, 0.01) << "of the same shape";
   conclude_motion(motion);
   EXPECT_DOUBLE_EQ(motion.p_value, 0.01);
-  EXPECT_THAT(motion.sentences.front(), testing::StartsWith("the fitted model does not make motion like the measured one: p 0.01"));
+  EXPECT_THAT(motion.sentences.front(),
+              testing::StartsWith("the fitted model does not reproduce the statistics of the measured motion: p 0.01"));
   EXPECT_THAT(motion.sentences, testing::Contains(testing::StartsWith("the distribution of x (flight): p 0.01")));
 }
 
@@ -156,7 +157,7 @@ TEST(CompareMotion, OneOfTwoExperimentsThatDepartsIsNamed) {
 TEST(CompareMotion, TwoExperimentsOfTheSameKindHaveOneVerdict) {
   const SimulatedMotion motion = two_experiments(900, 1.0, 99, 1500);
   EXPECT_GT(motion.p_value, 0.01);
-  EXPECT_THAT(motion.sentences.front(), testing::StartsWith("the fitted model makes motion like the measured one"));
+  EXPECT_THAT(motion.sentences.front(), testing::StartsWith("the fitted model reproduces the statistics of the measured motion"));
 }
 
 /// As for one experiment: of 150 trials 15 are expected at or below 0.1; the smaller of two p-values by themselves would give some 28.

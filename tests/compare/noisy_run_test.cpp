@@ -36,8 +36,8 @@ Model gusty(double sigma) {
   return m;
 }
 
-/// Without a force both runs are the same motion: their difference is the noise of the readings.
-TEST(NoisyRun, ReadingsHaveTheWhiteNoiseAndTheResonanceTheyAreGiven) {
+/// Without a force both runs are the same motion: their difference is the measurement noise.
+TEST(NoisyRun, MeasurementsHaveTheWhiteNoiseAndTheResonanceTheyAreGiven) {
   Model still = assemble(spherical(), registry());
   set_parachute_curves(still);
   const Signals like = clock(20000);

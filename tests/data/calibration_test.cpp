@@ -47,7 +47,7 @@ Calibration example() {
               1.0,
               false}};
   c.residuals = {{3, 'y', -0.1, 1.5, 1.25, true}, {1, 'z', 0.2, -30.0, 300.0 / 7.0, false}};
-  c.notes = {"2 of 75 points were set aside as outliers"};
+  c.notes = {"2 of 75 points were rejected as outliers"};
   return c;
 }
 
@@ -69,7 +69,7 @@ TEST_F(CalibrationFile, ReadsBackExactly) {
   EXPECT_EQ(b.tests[0].name, "image_centre");  // the order is kept
   EXPECT_EQ(b.tests[0].values, a.tests[0].values);
   EXPECT_EQ(b.tests[0].p_value, 1e-130);
-  EXPECT_TRUE(b.tests[0].taken_in);
+  EXPECT_TRUE(b.tests[0].selected);
   EXPECT_TRUE(std::isnan(b.tests[1].values[0]));
   ASSERT_EQ(b.residuals.size(), 2u);
   EXPECT_EQ(b.residuals[1].point, 1);

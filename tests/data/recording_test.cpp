@@ -135,10 +135,10 @@ TEST(Recording, TheStepOfADigitisedColumnIsFound) {
   EXPECT_NE(column(s, "z").resolution, 0.005);
 }
 
-TEST(Recording, AReadingThatStandsAtItsLimitIsSaid) {
+TEST(Recording, AMeasurementThatStandsAtItsLimitIsSaid) {
   const RecordingSurvey s =
       survey(rows("t_s,u,y", 300, [](int k) { return fmt::format("{},{},{}", k, std::cos(0.07 * k), std::min(0.8, std::sin(0.05 * k))); }));
-  EXPECT_THAT(s.remarks, Contains(HasSubstr("'y' stands at its highest value, 0.8")));
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("'y' stays at its highest value, 0.8")));
   EXPECT_EQ(s.remarks.size(), 1U);
 }
 

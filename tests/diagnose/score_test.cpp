@@ -57,7 +57,7 @@ TEST(ScoreTest, IsTheLeastSquaresAnswerForWhatIsAdded) {
   EXPECT_NEAR(result.amplitude[0], best[1], 1e-6);
   EXPECT_NEAR(result.amplitude[1], best[2], 1e-6);
   EXPECT_NEAR(result.chi2, (r + column * alone).squaredNorm() - (r + all * best).squaredNorm(), 1e-4);
-  EXPECT_NEAR(score.step_beside(C, result.amplitude)[0], best[0], 1e-5);
+  EXPECT_NEAR(score.adjusted_step(C, result.amplitude)[0], best[0], 1e-5);
   const Eigen::MatrixXd inverse = (all.transpose() * all).inverse();
   EXPECT_NEAR(result.sigma[0], std::sqrt(inverse(1, 1)), 1e-6);
   EXPECT_LT((column.transpose() * score.projected(C)).norm(), 1e-3);
@@ -81,7 +81,7 @@ TEST(ScoreTest, PriorsPullTheAmplitude) {
 }
 
 /// A force of one unit over every step is what a constant effect adds.
-TEST(ForceColumns, OfAConstantIsTheColumnOfAConstantForce) {
+TEST(ForceSensitivity, OfAConstantIsTheColumnOfAConstantForce) {
   Cart cart(80, 5, {effect("own_weight")});
   for (auto& p : cart.model.model.parameters) p.free = p.name == "share";
   FilterJacobian jacobian;
@@ -92,14 +92,14 @@ TEST(ForceColumns, OfAConstantIsTheColumnOfAConstantForce) {
   estimate.noise = cart.noise;
   estimate.data = {cart.data};
   estimate.jacobians = {jacobian};
-  const ForceColumns path(estimate);
+  const ForceSensitivity force(estimate);
   const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(80, 1);
-  const Eigen::MatrixXd columns = path.columns(0, ones, ones);
+  const Eigen::MatrixXd columns = force.columns(0, ones, ones);
   ASSERT_EQ(columns.rows(), jacobian.J.rows());
   const double weight = 2.0 * 9.80665;
   EXPECT_LT((weight * columns - jacobian.J).norm(), 1e-8 * jacobian.J.norm());
   // The score of single steps adds up to that of the constant force.
-  EXPECT_NEAR(path.score_of_steps(0).sum(), -columns.col(0).dot(jacobian.r), 1e-6 * columns.norm() * jacobian.r.norm());
+  EXPECT_NEAR(force.score_of_steps(0).sum(), -columns.col(0).dot(jacobian.r), 1e-6 * columns.norm() * jacobian.r.norm());
 }
 
 }  // namespace

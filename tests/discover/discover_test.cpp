@@ -23,7 +23,7 @@ struct Flight {
 
 TEST(Discover, IsSilentWhereNothingIsMissing) {
   const Discovery found = Flight(fly(15.0, 31)).discover();
-  EXPECT_THAT(found.verdict, testing::StartsWith("Nothing is missing"));
+  EXPECT_THAT(found.verdict, testing::StartsWith("No missing effect detected"));
   EXPECT_TRUE(found.unexplained_quantity.empty());
   for (const auto& c : found.candidates) EXPECT_FALSE(c.accepted) << c.effect;
 }
@@ -66,7 +66,7 @@ TEST(Verdict, AStrengthAtItsBoundIsNamedAndOneAtZeroIsNot) {
   set(model, "friction", 0.0);
   const auto found = ends_at_bound(model, {friction, depth});
   ASSERT_TRUE(found.has_value());
-  EXPECT_EQ(*found, "its strength wake_depth ends at the bound 1: not believable");
+  EXPECT_EQ(*found, "its strength wake_depth ends at its bound 1");
   set(model, "wake_depth", 0.98);
   EXPECT_FALSE(ends_at_bound(model, {friction, depth}).has_value());
 }
@@ -81,7 +81,7 @@ TEST(Discover, DoesNotAcceptWhatEndsAtItsBound) {
       std::find_if(found.candidates.begin(), found.candidates.end(), [](const Candidate& c) { return c.effect == "coulomb_friction"; });
   ASSERT_NE(friction, found.candidates.end());
   EXPECT_FALSE(friction->accepted);
-  EXPECT_THAT(friction->why, testing::HasSubstr("friction ends at the bound 10 N m: not believable")) << found.verdict;
+  EXPECT_THAT(friction->why, testing::HasSubstr("friction ends at its bound 10 N m")) << found.verdict;
 }
 
 Calibration asking_for_roll() {
@@ -107,8 +107,8 @@ TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
   Discovery d = accepting("camera_roll", "sensor");
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
-  EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("calibrate with them offered"));
-  EXPECT_THAT(d.verdict, testing::StartsWith("The camera, not the physics"));
+  EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("recalibrate with them enabled"));
+  EXPECT_THAT(d.verdict, testing::StartsWith("The camera model is incomplete"));
   EXPECT_THAT(d.sweep_asks, testing::ElementsAre("camera_roll"));
 }
 
@@ -118,7 +118,7 @@ TEST(Verdict, PhysicsSeenThroughACameraThatItsSweepDoubtsIsNotAccepted) {
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
-  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for strut_wake"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight gives evidence of strut_wake"));
 }
 
 TEST(Verdict, AForceThatNothingExplainsIsNotTheCamerasAlone) {
@@ -128,7 +128,7 @@ TEST(Verdict, AForceThatNothingExplainsIsNotTheCamerasAlone) {
   d.unexplained_quantity = "alpha_T";
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
-  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for a force on moment that depends on alpha_T"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight gives evidence of a force on moment that depends on alpha_T"));
   EXPECT_FALSE(d.candidates[0].accepted);
 }
 
@@ -146,9 +146,9 @@ TEST(Verdict, SignificantPhysicsThatWasRefusedIsNotTheCamerasAlone) {
   weaker.candidates[1].p_value = 0.05;
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
-  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight asks for unknown:moment(phi) (family-wise p 0.005)"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight gives evidence of unknown:moment(phi) (family-wise p 0.005)"));
   add_camera_remarks(&calibration, 0.01, weaker);
-  EXPECT_THAT(weaker.verdict, testing::StartsWith("The camera, not the physics"));
+  EXPECT_THAT(weaker.verdict, testing::StartsWith("The camera model is incomplete"));
 }
 
 TEST(Verdict, ALargerDropThatIsRefusedIsNamed) {
@@ -168,16 +168,16 @@ TEST(Verdict, ALargerDropThatIsRefusedIsNamed) {
 
 TEST(Screen, AStrengthThatCannotBeNegativeIsNot) {
   const Flight flight(fly(15.0, 33, {effect("viscous_friction")}, {{"viscosity", -12.0}}));
-  const std::vector<Specimen> list = specimens(flight.estimate, flight.request, registry(), nullptr);
+  const std::vector<CandidateModel> list = candidate_models(flight.estimate, flight.request, registry(), nullptr);
   const ScoreTest score(flight.estimate);
-  const ForceColumns path(flight.estimate);
+  const ForceSensitivity force(flight.estimate);
   int one_sided = 0;
-  for (const auto& s : screen(flight.estimate, score, path, list, 0)) {
-    if (s.specimen->strengths.size() != 1 || !s.specimen->one_sided.front() || !s.runs) continue;
+  for (const auto& s : screen(flight.estimate, score, force, list, 0)) {
+    if (s.candidate_model->strengths.size() != 1 || !s.candidate_model->one_sided.front() || !s.runs) continue;
     ++one_sided;
-    EXPECT_GE(s.result.amplitude[0], 0.0) << s.specimen->effect;
+    EXPECT_GE(s.result.amplitude[0], 0.0) << s.candidate_model->effect;
     if (s.result.amplitude[0] == 0.0) {
-      EXPECT_EQ(s.result.chi2, 0.0) << s.specimen->effect;
+      EXPECT_EQ(s.result.chi2, 0.0) << s.candidate_model->effect;
     }
   }
   EXPECT_GE(one_sided, 1);
@@ -185,32 +185,32 @@ TEST(Screen, AStrengthThatCannotBeNegativeIsNot) {
 
 TEST(Screen, FindsTheFrequencyOfALine) {
   const Flight flight(fly(15.0, 34, {effect("vortex_shedding")}, {{"y_cosine", 0.006}, {"z_sine", 0.004}, {"shedding_frequency", 2.7}}));
-  const std::vector<Specimen> all = specimens(flight.estimate, flight.request, registry(), nullptr);
-  std::vector<Specimen> list;
+  const std::vector<CandidateModel> all = candidate_models(flight.estimate, flight.request, registry(), nullptr);
+  std::vector<CandidateModel> list;
   for (const auto& s : all) {
     if (s.effect == "vortex_shedding") list.push_back(s);
   }
   ASSERT_EQ(list.size(), 1U);
   const ScoreTest score(flight.estimate);
-  const ForceColumns path(flight.estimate);
-  const std::vector<Screened> found = screen(flight.estimate, score, path, list, 0);
+  const ForceSensitivity force(flight.estimate);
+  const std::vector<ScreeningResult> found = screen(flight.estimate, score, force, list, 0);
   EXPECT_NEAR(found[0].cell.back(), 2.7, 1.0 / (4.0 * 15.0));
   EXPECT_LT(found[0].p_value, 1e-4);
 }
 
-TEST(Specimens, LeaveOutWhatDoesNotSuit) {
+TEST(CandidateModels, LeaveOutWhatDoesNotSuit) {
   const Flight flight(fly(5.0, 35));
   std::vector<std::string> names;
-  for (const auto& s : specimens(flight.estimate, flight.request, registry(), nullptr)) names.push_back(s.effect);
+  for (const auto& s : candidate_models(flight.estimate, flight.request, registry(), nullptr)) names.push_back(s.effect);
   EXPECT_THAT(names, testing::IsSupersetOf({"strut_wake", "vortex_shedding", "coulomb_friction", "camera_roll"}));
   for (const char* other : {"static_moment", "gravity", "gust", "apex_jitter", "coning", "periodic_forcing", "lag"})
     EXPECT_THAT(names, testing::Not(testing::Contains(other))) << "in the model, driven by noise, of another system, or specialised";
 }
 
-TEST(Specimens, WhatRunsWithTheClockReadsTheTime) {
+TEST(CandidateModels, WhatRunsWithTheClockReadsTheTime) {
   const Flight flight(fly(5.0, 35));
   int seen = 0;
-  for (const auto& s : specimens(flight.estimate, flight.request, registry(), nullptr)) {
+  for (const auto& s : candidate_models(flight.estimate, flight.request, registry(), nullptr)) {
     const bool reads = std::find(s.quantities.begin(), s.quantities.end(), kTime) != s.quantities.end();
     if (s.effect != "dynamic_pressure_drift" && s.effect != "vortex_shedding" && s.effect != "strut_wake") continue;
     ++seen;
@@ -220,32 +220,32 @@ TEST(Specimens, WhatRunsWithTheClockReadsTheTime) {
 }
 
 TEST(Screen, SaysWhichFrequenciesItLookedAt) {
-  Specimen specimen;
-  specimen.effect = "vortex_shedding";
-  specimen.family = "physics";
-  Screened s;
-  s.specimen = &specimen;
+  CandidateModel candidate_model;
+  candidate_model.effect = "vortex_shedding";
+  candidate_model.family = "physics";
+  ScreeningResult s;
+  s.candidate_model = &candidate_model;
   s.cells = 8;
   s.cells_effective = 500.0;
   s.frequencies = {0.2, 0.01, 1001, 10.2};
   EXPECT_EQ(what_was_tried(s), "vortex_shedding (physics): 8 cells, 500 effective, 0.2 to 10.2 Hz");
   s.frequencies.wanted = 22.5;
-  EXPECT_THAT(what_was_tried(s), testing::HasSubstr("0.2 to 10.2 Hz, not up to 22.5 Hz: the samples are not evenly spaced"));
+  EXPECT_THAT(what_was_tried(s), testing::HasSubstr("0.2 to 10.2 Hz, not up to 22.5 Hz: too many unevenly spaced samples"));
 }
 
 /// The model turns with a rolled camera: held gains would call the roll known nine times better than it is.
-TEST(Specimens, ARolledCameraIsHardlySeenInTheMotion) {
+TEST(CandidateModels, ARolledCameraIsHardlySeenInTheMotion) {
   const Flight flight(fly(15.0, 36));
-  for (const auto& s : specimens(flight.estimate, flight.request, registry(), nullptr)) {
+  for (const auto& s : candidate_models(flight.estimate, flight.request, registry(), nullptr)) {
     if (s.effect != "camera_roll") continue;
-    const ScoreResult result = ScoreTest(flight.estimate).test(specimen_columns(flight.estimate, s, {}));
+    const ScoreResult result = ScoreTest(flight.estimate).test(sensitivity_columns(flight.estimate, s, {}));
     EXPECT_GT(result.sigma[0], 1.0 * degree) << "only the camera's height tells up from down";
   }
 }
 
 /// χ² with one degree of freedom above 2.706: 0.1000; of one side half of it.
 TEST(LogScoreTail, OneSidedStrengthsHaveHalfTheChance) {
-  Specimen s;
+  CandidateModel s;
   s.strengths = {0};
   s.one_sided = {false};
   EXPECT_NEAR(std::exp(log_score_tail(s, 2.70554)), 0.1, 1e-6);

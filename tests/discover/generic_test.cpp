@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "misfit/discover/candidate_model.h"
 #include "misfit/discover/discover.h"
-#include "misfit/discover/specimen.h"
 #include "tests/discover/record.h"
 
 namespace misfit {
@@ -70,7 +70,7 @@ TEST(DiscoverGeneric, ASecondOfAKindIsLookedForAtItsOwnPlace) {
   const std::vector<Signals> signals = {recorded};
   const FilterEstimate estimate = estimate_filter(assemble(model, registry()), {}, signals);
   std::vector<std::string> where;
-  for (const auto& s : specimens(estimate, model, registry(), nullptr)) {
+  for (const auto& s : candidate_models(estimate, model, registry(), nullptr)) {
     if (s.effect != "overflow") continue;
     where.push_back(s.roles.at("level"));
     const int old = s.model.find_parameter("overflow.threshold");

@@ -6,8 +6,8 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/discover/candidate_model.h"
 #include "misfit/discover/discover.h"
-#include "misfit/discover/specimen.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/discover/record.h"
 
@@ -22,18 +22,18 @@ class RefitJobs : public testing::Test {
     request_.parameters["stiffness"].free = true;
     estimate_ = estimate_filter(assemble(request_, registry()), {}, signals_);
     score_.emplace(estimate_);
-    list_ = specimens(estimate_, request_, registry(), nullptr);
-    screened_ = screen(estimate_, *score_, ForceColumns(estimate_), list_, 0);
+    list_ = candidate_models(estimate_, request_, registry(), nullptr);
+    screening_ = screen(estimate_, *score_, ForceSensitivity(estimate_), list_, 0);
   }
 
-  [[nodiscard]] const Screened& effect(const std::string& key) const {
-    for (const auto& s : screened_) {
-      if (s.specimen->effect == key) return s;
+  [[nodiscard]] const ScreeningResult& effect(const std::string& key) const {
+    for (const auto& s : screening_) {
+      if (s.candidate_model->effect == key) return s;
     }
     throw std::runtime_error(key + " is not offered");
   }
   [[nodiscard]] RefitWork work() const { return {estimate_, *score_, signals_, registry()}; }
-  [[nodiscard]] std::vector<const Screened*> three() const {
+  [[nodiscard]] std::vector<const ScreeningResult*> three() const {
     return {&effect("coulomb_friction"), &effect("quadratic_drag"), &effect("cubic_stiffness")};
   }
   [[nodiscard]] std::vector<std::string> packed(const std::optional<std::vector<SteppedRefit>>& refits) const {
@@ -46,8 +46,8 @@ class RefitJobs : public testing::Test {
   ModelRequest request_ = cart({testing_models::effect("viscous_friction")});
   FilterEstimate estimate_;
   std::optional<ScoreTest> score_;
-  std::vector<Specimen> list_;
-  std::vector<Screened> screened_;
+  std::vector<CandidateModel> list_;
+  std::vector<ScreeningResult> screening_;
 };
 
 TEST_F(RefitJobs, AreTheSameInMemoryOnDiskAndOnAnyThreads) {
@@ -59,7 +59,7 @@ TEST_F(RefitJobs, AreTheSameInMemoryOnDiskAndOnAnyThreads) {
 }
 
 TEST_F(RefitJobs, WhatComesBackCanBeGoneOnWith) {
-  const Screened& friction = effect("coulomb_friction");
+  const ScreeningResult& friction = effect("coulomb_friction");
   const auto made = refit_all(work(), {&friction}, 0, std::nullopt);
   ASSERT_TRUE(made && made->front().refit.ok);
   const Refit& before = made->front().refit;
@@ -69,10 +69,11 @@ TEST_F(RefitJobs, WhatComesBackCanBeGoneOnWith) {
   EXPECT_EQ(after.estimate.model.free_parameters(), before.estimate.model.free_parameters());
   EXPECT_EQ(after.parameters.at("friction").value, before.parameters.at("friction").value);
   EXPECT_EQ(held_out_gain(estimate_, after.estimate, signals_, 0), held_out_gain(estimate_, before.estimate, signals_, 0));
-  const Screened& other = effect("quadratic_drag");
+  const ScreeningResult& other = effect("quadratic_drag");
   const auto score_in = [&](const Refit& in) {
-    const std::vector<Specimen> list = specimens(in.estimate, in.request, registry(), nullptr);
-    const auto found = std::find_if(list.begin(), list.end(), [&](const Specimen& s) { return s.effect == other.specimen->effect; });
+    const std::vector<CandidateModel> list = candidate_models(in.estimate, in.request, registry(), nullptr);
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const CandidateModel& s) { return s.effect == other.candidate_model->effect; });
     return score_cell(in.estimate, ScoreTest(in.estimate), *found, other.cell).result.chi2;
   };
   EXPECT_EQ(score_in(after), score_in(before));
@@ -91,7 +92,7 @@ TEST_F(RefitJobs, AreNotMadeAgain) {
 }
 
 TEST_F(RefitJobs, OfAnotherEffectOrCutOffAreRefused) {
-  const Screened &friction = effect("coulomb_friction"), &drag = effect("quadratic_drag");
+  const ScreeningResult &friction = effect("coulomb_friction"), &drag = effect("quadratic_drag");
   const std::string bytes = pack(refit_all(work(), {&friction}, 0, std::nullopt)->front(), friction);
   EXPECT_THROW(static_cast<void>(unpack_refit(bytes, work(), drag)), RunError);
   EXPECT_THROW(static_cast<void>(unpack_refit(bytes.substr(0, bytes.size() - 1), work(), friction)), RunError);
@@ -99,7 +100,7 @@ TEST_F(RefitJobs, OfAnotherEffectOrCutOffAreRefused) {
 }
 
 TEST_F(RefitJobs, ThatFailedSayWhy) {
-  const Screened& friction = effect("coulomb_friction");
+  const ScreeningResult& friction = effect("coulomb_friction");
   SteppedRefit failed;
   failed.predicted_drop = 4.0;
   failed.refit.why = "it cannot be run";

@@ -17,16 +17,16 @@ struct Screening {
   std::vector<Signals> signals;
   ModelRequest request = cart({effect("viscous_friction")});
   FilterEstimate estimate;
-  std::vector<Specimen> list;
-  std::vector<Screened> found;
+  std::vector<CandidateModel> list;
+  std::vector<ScreeningResult> found;
 
   Screening(std::vector<Signals> recorded, const std::string& key) : signals(std::move(recorded)) {
     request.parameters["stiffness"].free = true;
     estimate = estimate_filter(assemble(request, registry()), {}, signals);
-    for (auto& s : specimens(estimate, request, registry(), nullptr)) {
+    for (auto& s : candidate_models(estimate, request, registry(), nullptr)) {
       if (s.effect == key) list.push_back(std::move(s));
     }
-    found = screen(estimate, ScoreTest(estimate), ForceColumns(estimate), list, 0);
+    found = screen(estimate, ScoreTest(estimate), ForceSensitivity(estimate), list, 0);
   }
 };
 

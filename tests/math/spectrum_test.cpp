@@ -12,13 +12,13 @@ struct Correlogram {
   LagProducts products, pairs;
 };
 
-/// Of first-order noise of correlation `phi` from one reading to the next, read at every `every`-th of the samples only.
-Correlogram first_order(int readings, int every, double phi, int lags) {
+/// Of first-order noise of correlation `phi` from one measurement to the next, read at every `every`-th of the samples only.
+Correlogram first_order(int measurements, int every, double phi, int lags) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
-  std::vector<double> v(static_cast<std::size_t>(readings * every), std::nan(""));
+  std::vector<double> v(static_cast<std::size_t>(measurements * every), std::nan(""));
   double at = normal(random);
-  for (int i = 0; i < readings; ++i) {
+  for (int i = 0; i < measurements; ++i) {
     v[static_cast<std::size_t>(i * every)] = at;
     at = phi * at + std::sqrt(1.0 - phi * phi) * normal(random);
   }
@@ -37,7 +37,7 @@ Correlogram first_order(int readings, int every, double phi, int lags) {
   return out;
 }
 
-TEST(MemoryOf, WhiteReadingsIsTheLeast) {
+TEST(MemoryOf, WhiteMeasurementsIsTheLeast) {
   const Correlogram white = first_order(2000, 1, 0.0, 400);
   EXPECT_EQ(memory_of(white.products, white.pairs, 13), 13);
 }
@@ -48,10 +48,10 @@ TEST(MemoryOf, FirstOrderNoiseIsAsLongAsItsCorrelationStandsOut) {
   EXPECT_NEAR(memory_of(one.products, one.pairs, 5), 14, 5);
 }
 
-TEST(MemoryOf, ReadingsFarApartIsThatOfTheReadingsInSamples) {
+TEST(MemoryOf, MeasurementsFarApartIsThatOfTheMeasurementsInSamples) {
   const Correlogram each = first_order(600, 1, 0.9, 100), far = first_order(600, 50, 0.9, 5000);
-  const int readings = memory_of(each.products, each.pairs, 9);
-  EXPECT_EQ(memory_of(far.products, far.pairs, 9), 50 * readings);
+  const int measurements = memory_of(each.products, each.pairs, 9);
+  EXPECT_EQ(memory_of(far.products, far.pairs, 9), 50 * measurements);
 }
 
 }  // namespace

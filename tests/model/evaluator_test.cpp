@@ -16,15 +16,15 @@ class AssembledModel : public testing::TestWithParam<Case> {
   const Model model_ = GetParam().model();
   Evaluator evaluator_{model_};
   const std::vector<int> free_ = model_.free_parameters();
-  const int n_ = model_.states(), columns_ = static_cast<int>(free_.size()), readings_ = model_.outputs() + 1;
+  const int n_ = model_.states(), columns_ = static_cast<int>(free_.size()), outputs_ = model_.outputs() + 1;
 
   Eigen::VectorXd rates(const Sample& at) {
     Eigen::VectorXd dx(n_);
     evaluator_.rates(at.x.data(), at.u.data(), at.t, dx.data());
     return dx;
   }
-  Eigen::VectorXd readings(const Sample& at) {
-    Eigen::VectorXd y(readings_);
+  Eigen::VectorXd outputs(const Sample& at) {
+    Eigen::VectorXd y(outputs_);
     evaluator_.predict(at.x.data(), at.u.data(), at.t, y.data());
     return y;
   }
@@ -41,12 +41,12 @@ class AssembledModel : public testing::TestWithParam<Case> {
     l.D = dense(rows, n, n, slots, evaluator.columns());
     return l;
   }
-  static Linear linear_readings(Evaluator& evaluator, const Sample& at, Slots& slots) {
-    const int readings = evaluator.outputs() + 1;
-    std::vector<double> rows(static_cast<std::size_t>(readings) * kRowStride, std::nan(""));
-    Linear l{Eigen::VectorXd(readings), {}};
+  static Linear linear_outputs(Evaluator& evaluator, const Sample& at, Slots& slots) {
+    const int outputs = evaluator.outputs() + 1;
+    std::vector<double> rows(static_cast<std::size_t>(outputs) * kRowStride, std::nan(""));
+    Linear l{Eigen::VectorXd(outputs), {}};
     evaluator.linearise_outputs(at.x.data(), at.u.data(), at.t, slots, l.value.data(), rows.data());
-    l.D = dense(rows, readings, evaluator.states(), slots, evaluator.columns());
+    l.D = dense(rows, outputs, evaluator.states(), slots, evaluator.columns());
     return l;
   }
 
@@ -99,20 +99,20 @@ TEST_P(AssembledModel, DerivativesOfRatesAreCentralDifferencesInStatesAndAllFree
   }
 }
 
-TEST_P(AssembledModel, DerivativesOfReadingsAreCentralDifferencesInStatesAndAllFreeParameters) {
+TEST_P(AssembledModel, DerivativesOfOutputsAreCentralDifferencesInStatesAndAllFreeParameters) {
   for (const Sample& at : samples_of(model_, 6)) {
     Slots slots;
-    const Linear linear = linear_readings(evaluator_, at, slots);
-    expect_equal(linear, differences(at, [&](const Sample& s) { return readings(s); }), readings(at), "t = " + std::to_string(at.t));
+    const Linear linear = linear_outputs(evaluator_, at, slots);
+    expect_equal(linear, differences(at, [&](const Sample& s) { return outputs(s); }), outputs(at), "t = " + std::to_string(at.t));
   }
 }
 
-TEST_P(AssembledModel, EveryFreeParameterMovesARateOrAReading) {
+TEST_P(AssembledModel, EveryFreeParameterMovesARateOrAnOutput) {
   Eigen::VectorXd effect = Eigen::VectorXd::Zero(columns_);
   for (const Sample& at : samples_of(model_, 60)) {
     Slots slots;
     effect += linear_rates(evaluator_, at, slots).D.rightCols(columns_).cwiseAbs().colwise().sum().transpose();
-    effect += linear_readings(evaluator_, at, slots).D.rightCols(columns_).cwiseAbs().colwise().sum().transpose();
+    effect += linear_outputs(evaluator_, at, slots).D.rightCols(columns_).cwiseAbs().colwise().sum().transpose();
   }
   for (int c = 0; c < columns_; ++c)
     EXPECT_GT(effect[c], 0.0) << model_.parameters[static_cast<std::size_t>(free_[static_cast<std::size_t>(c)])].name;
@@ -123,7 +123,7 @@ TEST_P(AssembledModel, AUsedEvaluatorGivesTheSameBitsAsAFreshOne) {
   Slots kept;  // not cleared: as over the stages of one step
   for (const Sample& warm : samples) {
     static_cast<void>(linear_rates(evaluator_, warm, kept));
-    static_cast<void>(linear_readings(evaluator_, warm, kept));
+    static_cast<void>(linear_outputs(evaluator_, warm, kept));
   }
   for (const Sample& at : samples) {
     Evaluator fresh(model_);
@@ -131,8 +131,8 @@ TEST_P(AssembledModel, AUsedEvaluatorGivesTheSameBitsAsAFreshOne) {
     const Linear used = linear_rates(evaluator_, at, kept), first = linear_rates(fresh, at, own);
     EXPECT_EQ(used.value, first.value);
     EXPECT_EQ(used.D, first.D);
-    Slots own_readings;
-    const Linear used_y = linear_readings(evaluator_, at, kept), first_y = linear_readings(fresh, at, own_readings);
+    Slots own_outputs;
+    const Linear used_y = linear_outputs(evaluator_, at, kept), first_y = linear_outputs(fresh, at, own_outputs);
     EXPECT_EQ(used_y.value, first_y.value);
     EXPECT_EQ(used_y.D, first_y.D);
   }
@@ -143,7 +143,7 @@ TEST_P(AssembledModel, RestAtZeroIsFiniteWithFiniteDerivatives) {
   Slots slots;
   EXPECT_TRUE(rates(rest).allFinite());
   EXPECT_TRUE(linear_rates(evaluator_, rest, slots).D.allFinite());
-  EXPECT_TRUE(linear_readings(evaluator_, rest, slots).D.allFinite());
+  EXPECT_TRUE(linear_outputs(evaluator_, rest, slots).D.allFinite());
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, AssembledModel, testing::ValuesIn(cases()), [](const auto& c) { return c.param.name; });

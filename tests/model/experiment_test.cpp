@@ -97,7 +97,7 @@ TEST(SignalsFrom, IsolatedWildSamplesAreSetAsideAndSaid) {
   for (std::size_t i = 50; i < 400; i += 97) EXPECT_TRUE(std::isnan(s.measured.front().values[i])) << i;
   EXPECT_EQ(std::count_if(s.measured.front().values.begin(), s.measured.front().values.end(), [](double v) { return std::isnan(v); }), 4);
   bool said = false;
-  for (const auto& note : s.notes) said = said || note.find("4 isolated wild samples") != std::string::npos;
+  for (const auto& note : s.notes) said = said || note.find("4 isolated outliers") != std::string::npos;
   EXPECT_TRUE(said);
 }
 

@@ -273,7 +273,7 @@ TEST(DiscoveryReport, ARungsFindingsStandUnderItsName) {
   input.rung = RungInput{2, "strut_wake", std::nullopt, input.discovery};
   input.rung->discovery->verdict = "nothing more";
   const std::string page = read_file(write_report(folder.path(), input));
-  expect_parts(page, {"Of the study", "(rung 0)", "What could still be missing after rung 2, strut_wake added", "nothing more"});
+  expect_parts(page, {"Of the study", "(rung 0)", "Candidate effects after rung 2, strut_wake added", "nothing more"});
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures/rung_02_candidates.svg"));
 }
 
@@ -284,7 +284,7 @@ TEST(DiscoveryReport, AnEmptyDiagnosisStillGivesAPage) {
   input.diagnosis.emplace();
   input.discovery.emplace();
   const std::string page = read_file(write_report(folder.path(), input));
-  expect_parts(page, {"Where the model fails", "What could be missing"});
+  expect_parts(page, {"Residual diagnostics", "Candidate effects"});
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ LikelihoodProfile profile() {
   p.lower = -1.71;
   p.upper = -1.32;
   p.lower_found = p.upper_found = true;
-  p.words = {"the residuals have memory: drops count 0.25 times"};
+  p.words = {"autocorrelated residuals: drops are multiplied by 0.25"};
   return p;
 }
 
@@ -82,7 +82,7 @@ MultiStart starts() {
           2,
           1,
           {{"wake_phi", "rad", -1.5, 0.1, -1.2}},
-          {"the fit is not at the highest maximum there is"}};
+          {"the fit is not at the global maximum"}};
 }
 
 TEST(IntervalFigures, StartsThatEndElsewhereStandApart) {
@@ -116,10 +116,10 @@ TEST(IntervalsInTheReport, EndsOfIntervalsHaveNoSigmaAndWhatFailedIsNamed) {
   r.bootstraps[0].notes = {"blocks are cut"};
   r.profiles[0].upper_found = false;
   const std::string page = read_file(write_report(folder.path(), input));
-  expect_parts(page,
-               {"Intervals by resampling", "12.00 ± 0.10 deg", "12.01 ± 0.20 deg", ">11.60", ">12.40", "not reached", "blocks are cut",
-                "2 runs: failed: no state", "sliding_bin is not resampled", "Block bootstrap: C_m", "Profile likelihood: wake_phi",
-                "Random starts: output_error", "output_error: 1 starts: failed: no state", "not at the highest maximum"});
+  expect_parts(page, {"Bootstrap, profile likelihood and random starts", "12.00 ± 0.10 deg", "12.01 ± 0.20 deg", ">11.60", ">12.40",
+                      "not reached", "blocks are cut", "2 runs: failed: no state", "sliding_bin is not resampled", "Block bootstrap: C_m",
+                      "Profile likelihood: wake_phi", "Random starts: output_error", "output_error: 1 starts: failed: no state",
+                      "not at the global maximum"});
   EXPECT_EQ(page.find("11.60 ±"), std::string::npos);
 }
 

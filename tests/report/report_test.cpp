@@ -84,7 +84,7 @@ TEST(Report, EveryFigureIsOnThePageAndOnDisk) {
 TEST(Report, AnEmptyStudyStillGivesAPage) {
   const TemporaryFolder folder;
   const std::string page = read_file(write_report(folder.path(), {}));
-  expect_parts(page, {"<h1>Report</h1>", "Nothing was dropped", "Provenance"});
+  expect_parts(page, {"<h1>Report</h1>", "No sample was dropped or rejected", "Provenance"});
   EXPECT_EQ(page.find("<figure>"), std::string::npos);
 }
 

@@ -47,15 +47,15 @@ class SegmentOf : public testing::TestWithParam<Case> {
     EXPECT_TRUE(out.finite);
     return out;
   }
-  /// All readings, sample-major, then the end state.
-  Eigen::VectorXd readings_and_end(const std::vector<double>& x0) {
+  /// All outputs, sample-major, then the end state.
+  Eigen::VectorXd outputs_and_end(const std::vector<double>& x0) {
     const Segment s = run(x0, false);
     Eigen::VectorXd all(s.y.size() + s.end.size());
     all << Eigen::Map<const Eigen::VectorXd>(s.y.data(), s.y.size()), s.end;
     return all;
   }
   static void expect_column(const Eigen::VectorXd& linear, const Eigen::VectorXd& difference, const std::string& name) {
-    // How readings move with the clock is taken from the rate of the motion, not from the step map: equal to the accuracy of a step
+    // How outputs move with the clock is taken from the rate of the motion, not from the step map: equal to the accuracy of a step
     // (sim/trajectory.cpp).
     const double relative = name == "clock_offset" ? 1e-4 : 1e-5;
     for (Eigen::Index i = 0; i < linear.size(); ++i)
@@ -67,9 +67,9 @@ class SegmentOf : public testing::TestWithParam<Case> {
 TEST_P(SegmentOf, DerivativesAreCentralDifferencesInTheStartAndAllFreeParameters) {
   const std::vector<double> x0 = start_of(model_);
   const Segment s = run(x0, true);
-  const auto stacked = [](const auto& readings, const auto& end) {
-    Eigen::VectorXd all(readings.size() + end.size());
-    all << readings, end;
+  const auto stacked = [](const auto& outputs, const auto& end) {
+    Eigen::VectorXd all(outputs.size() + end.size());
+    all << outputs, end;
     return all;
   };
   const auto columns = static_cast<Eigen::Index>(free_.size());
@@ -77,7 +77,7 @@ TEST_P(SegmentOf, DerivativesAreCentralDifferencesInTheStartAndAllFreeParameters
     const auto moved = [&](double value) {
       std::vector<double> from = x0;
       from[static_cast<std::size_t>(j)] = value;
-      return readings_and_end(from);
+      return outputs_and_end(from);
     };
     expect_column(stacked(s.y_rows.col(columns + j), s.end_rows.col(columns + j)),
                   central_difference(moved, x0[static_cast<std::size_t>(j)]), "start " + std::to_string(j));
@@ -89,7 +89,7 @@ TEST_P(SegmentOf, DerivativesAreCentralDifferencesInTheStartAndAllFreeParameters
     const auto moved = [&](double to) {
       value = to;
       stepper_.evaluator().set_parameters(p.data());
-      return readings_and_end(x0);
+      return outputs_and_end(x0);
     };
     const auto column = static_cast<Eigen::Index>(c);
     expect_column(stacked(s.y_rows.col(column), s.end_rows.col(column)), central_difference(moved, nominal),
@@ -99,7 +99,7 @@ TEST_P(SegmentOf, DerivativesAreCentralDifferencesInTheStartAndAllFreeParameters
   }
 }
 
-TEST_P(SegmentOf, GivesTheSameReadingsWithAndWithoutDerivatives) {
+TEST_P(SegmentOf, GivesTheSameOutputsWithAndWithoutDerivatives) {
   const std::vector<double> x0 = start_of(model_);
   const Segment plain = run(x0, false), linear = run(x0, true);
   EXPECT_LE((plain.y - linear.y).norm(), 1e-12);

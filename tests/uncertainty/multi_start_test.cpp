@@ -62,7 +62,7 @@ TEST(MultiStarts, ALowerMaximumIsCountedAndNamed) {
   EXPECT_EQ(s.higher, 0U);
   EXPECT_TRUE(std::is_sorted(s.drop.begin(), s.drop.end()));
   EXPECT_EQ(s.drop.back(), 14.0);
-  EXPECT_THAT(s.words, Contains(HasSubstr("at a lower maximum, the nearest by 14 in 2 log L")));
+  EXPECT_THAT(s.words, Contains(HasSubstr("reach a lower maximum, the nearest by 14 in 2 log L")));
   ASSERT_EQ(s.failures.size(), 1U) << "one reason, whenever it was";
   EXPECT_EQ(s.failures.begin()->first, "a state is no longer a number");
 }
@@ -75,7 +75,7 @@ TEST(MultiStarts, AHigherMaximumIsSaidWithItsPlace) {
   EXPECT_EQ(s.numbers.front().name, "cosine");
   EXPECT_EQ(s.numbers.front().best, 3.0);
   EXPECT_EQ(s.numbers.front().sigma, 0.1);
-  EXPECT_THAT(s.words.front(), HasSubstr("not at the highest maximum"));
+  EXPECT_THAT(s.words.front(), HasSubstr("not at the global maximum"));
   EXPECT_THAT(s.words.front(), HasSubstr("the best by 14 in 2 log L, at cosine = "));
 }
 

@@ -59,7 +59,7 @@ TEST(Profile, OfALopsidedLikelihoodIsLopsided) {
   EXPECT_NEAR(drop(p.upper), 3.8415, 0.01);
   EXPECT_GT(p.upper - 9.0, 1.3 * (9.0 - p.lower));
   ASSERT_EQ(p.words.size(), 1U);
-  EXPECT_THAT(p.words.front(), testing::HasSubstr("lopsided"));
+  EXPECT_THAT(p.words.front(), testing::HasSubstr("asymmetric"));
 }
 
 TEST(Profile, ABoundAFailureAndAFlatSideAreSaid) {
@@ -108,7 +108,7 @@ TEST(Profile, AJumpIsNoCrossing) {
   EXPECT_FALSE(p.upper_found);
   EXPECT_GE(p.upper, 0.0);
   EXPECT_LE(p.upper, 0.3);
-  EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("the likelihood jumps")));
+  EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("the profile is discontinuous")));
 }
 
 TEST(Profile, ALikelihoodThatOnlyRisesHasNoEnd) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "misfit/attitude/angles.h"
-#include "misfit/attitude/axis_reading.h"
+#include "misfit/attitude/axis_sample.h"
 #include "misfit/attitude/propagation.h"
 #include "misfit/attitude/stencil.h"
 #include "misfit/core/error.h"
@@ -32,25 +32,25 @@ std::string count_of(std::size_t count, std::size_t of, const std::string& what)
 }
 
 // What was lost on the way from pixels to angles.
-void note_losses(Attitude& a, const AxisReadings& readings, const std::vector<bool>& even) {
+void note_losses(Attitude& a, const AxisSamples& axes, const std::vector<bool>& even) {
   const std::size_t n = a.t.size();
-  if (readings.lost > 0) a.notes.push_back(count_of(readings.lost, n, "are lost in the track"));
-  if (readings.unexplained > 0) a.notes.push_back(count_of(readings.unexplained, n, "are lost because no angle explains their pixels"));
+  if (axes.lost > 0) a.notes.push_back(count_of(axes.lost, n, "are lost in the track"));
+  if (axes.unexplained > 0) a.notes.push_back(count_of(axes.unexplained, n, "are lost because no angle explains their pixels"));
   const auto gaps = std::count(even.begin(), even.end(), false);
   if (gaps > 0) a.notes.push_back(std::to_string(gaps) + " steps differ from the usual one and count as gaps");
   const auto without = static_cast<std::size_t>(std::count_if(a.alpha_T.begin(), a.alpha_T.end(), [](double v) { return std::isnan(v); }));
   a.notes.push_back(count_of(without, n, "have no alpha_T, which needs seven in a row"));
 }
 
-// Reading noise per sample: the track's where it knows it, else the estimate.
+// Measurement noise per sample: the track's where it knows it, else the estimate.
 std::vector<double> noise_per_sample(const Track& track, const std::vector<bool>& even, std::vector<std::string>& notes) {
   std::vector<double> sigma = track.sigma;
   sigma.resize(track.t.size(), missing);
   if (std::all_of(sigma.begin(), sigma.end(), [](double s) { return std::isfinite(s); })) return sigma;
   const auto unknown = static_cast<std::size_t>(std::count_if(sigma.begin(), sigma.end(), [](double s) { return !std::isfinite(s); }));
-  const auto estimate = reading_noise(track, even);
+  const auto estimate = pixel_noise(track, even);
   notes.push_back(count_of(unknown, sigma.size(), "have no sigma in the track: ") +
-                  (estimate ? "reading noise there is " + format_value(*estimate) + " px, estimated from sixth differences"
+                  (estimate ? "measurement noise there is " + format_value(*estimate) + " px, estimated from sixth differences"
                             : "too few samples in a row to estimate it, so sigmas are missing there"));
   for (double& s : sigma) {
     if (!std::isfinite(s)) s = estimate.value_or(missing);
@@ -58,13 +58,13 @@ std::vector<double> noise_per_sample(const Track& track, const std::vector<bool>
   return sigma;
 }
 
-Attitude from_readings(const Track& track, const AxisReadings& readings, const std::vector<bool>& even, double lag) {
+Attitude from_axis_samples(const Track& track, const AxisSamples& axes, const std::vector<bool>& even, double lag) {
   const std::size_t n = track.t.size();
   Attitude a;
   a.t = track.t;
   for (auto* column : {&a.theta, &a.psi, &a.alpha, &a.beta, &a.alpha_T, &a.phi, &a.eta}) column->assign(n, missing);
   for (std::size_t i = 0; i < n; ++i) {
-    const AxisReading& sample = readings.samples[i];
+    const AxisSample& sample = axes.samples[i];
     if (!sample.ok) continue;
     a.theta[i] = sample.theta;
     a.psi[i] = sample.psi;
@@ -94,17 +94,16 @@ Attitude attitude(const Track& track, const Calibration& calibration, const RigG
   check_geometry(geometry);
   const double lag = geometry.R_cp / geometry.V;
   const std::vector<bool> even = even_steps(track.t, options.even);
-  const AxisReadings readings = read_axes(track, calibration, geometry, options.sigmas);
-  if (readings.lost + readings.unexplained == track.t.size()) {
-    throw RunError("no sample of the track can be read as an angle: " + count_of(readings.lost, track.t.size(), "are lost, of the other ") +
-                   std::to_string(readings.unexplained) +
-                   " no angle explains the pixels (camera and geometry do not belong to this track?)");
+  const AxisSamples axes = read_axes(track, calibration, geometry, options.sigmas);
+  if (axes.lost + axes.unexplained == track.t.size()) {
+    throw RunError("no sample of the track can be read as an angle: " + count_of(axes.lost, track.t.size(), "are lost, of the other ") +
+                   std::to_string(axes.unexplained) + " no angle explains the pixels (camera and geometry do not belong to this track?)");
   }
-  Attitude result = from_readings(track, readings, even, lag);
-  note_losses(result, readings, even);
+  Attitude result = from_axis_samples(track, axes, even, lag);
+  note_losses(result, axes, even);
   if (!options.sigmas) return without_sigmas(std::move(result));
   const std::vector<double> sigma = noise_per_sample(track, even, result.notes);
-  result.notes.push_back(add_sigmas(result, {readings.samples, sigma, calibration.covariance}, lag));
+  result.notes.push_back(add_sigmas(result, {axes.samples, sigma, calibration.covariance}, lag));
   return result;
 }
 

@@ -24,9 +24,9 @@ struct AttitudeOptions {
 /// the last as 2 atan2(sqrt(s), sqrt(1 − s)), s = a + b − 2ab, a = sin²(alpha/2), b = sin²(beta/2): exact near zero, where acos is not.
 /// A value is NaN wherever one of the samples it needs is lost or across a gap: alpha needs seven in a row.
 ///
-/// Sigmas are first-order and combine two sources: reading noise, independent between samples and equal in P_y and P_z (Track::sigma; where
-/// that is NaN, estimated by reading_noise() and said), and the calibration's covariance, common to all samples. A note gives the share of
-/// each. sigma_theta and sigma_psi are of the angles as read, sigma_phi of the averages, at most pi/sqrt(3) (nothing known: the axis at
+/// Sigmas are first-order and combine two sources: measurement noise, independent between samples and equal in P_y and P_z (Track::sigma;
+/// where that is NaN, estimated by pixel_noise() and said), and the calibration's covariance, common to all samples. A note gives the share
+/// of each. sigma_theta and sigma_psi are of the angles as read, sigma_phi of the averages, at most pi/sqrt(3) (nothing known: the axis at
 /// zero tilt); sigma_alpha_T, whose direction is undefined at alpha_T = 0, is there the root mean square of those of alpha and beta. R,
 /// R_cp, V and l_s count as exact; errors of the model of the canopy (jitter of disc against band) are not in it. Throws InputError for a
 /// geometry that cannot be (R, V, l_b not positive, l_s not beyond R), RunError if no sample can be read at all.

@@ -27,8 +27,8 @@ Linear zero() {
 }
 
 struct Variance {
-  double reading = 0.0, camera = 0.0;
-  [[nodiscard]] double sigma() const { return std::sqrt(reading + camera); }
+  double measurement = 0.0, camera = 0.0;
+  [[nodiscard]] double sigma() const { return std::sqrt(measurement + camera); }
 };
 
 Variance variance(const UncertaintySources& from, std::size_t i, const Linear& linear) {
@@ -36,9 +36,9 @@ Variance variance(const UncertaintySources& from, std::size_t i, const Linear& l
   Eigen::RowVectorXd by_camera = Eigen::RowVectorXd::Zero(from.camera.rows());
   for (std::size_t k = 0; k < window; ++k) {
     if (linear[k].isZero(0.0)) continue;
-    const AxisReading& sample = from.samples[i + k - reach];
+    const AxisSample& sample = from.samples[i + k - reach];
     const double sigma = from.sigma_px[i + k - reach];
-    v.reading += sigma * sigma * (linear[k] * sample.by_pixel).squaredNorm();
+    v.measurement += sigma * sigma * (linear[k] * sample.by_pixel).squaredNorm();
     by_camera += linear[k] * sample.by_camera;
   }
   v.camera = by_camera.dot(by_camera * from.camera);
@@ -71,7 +71,7 @@ Variance total_angle_variance(const Attitude& a, const UncertaintySources& from,
   if (sine > 0.0) return variance(from, i, total);
   const Variance one = variance(from, i, alpha);
   const Variance other = variance(from, i, beta);
-  return {(one.reading + other.reading) / 2.0, (one.camera + other.camera) / 2.0};
+  return {(one.measurement + other.measurement) / 2.0, (one.camera + other.camera) / 2.0};
 }
 
 // phi = atan2(tan psi, tan theta) of the averages.
@@ -92,7 +92,7 @@ double clock_angle_sigma(const Attitude& a, const UncertaintySources& from, std:
 std::string add_sigmas(Attitude& a, const UncertaintySources& from, double lag) {
   constexpr double deg = std::numbers::pi / 180.0;
   for (auto* column : {&a.sigma_theta, &a.sigma_psi, &a.sigma_alpha_T, &a.sigma_phi}) column->assign(a.t.size(), missing);
-  std::vector<double> reading, camera;
+  std::vector<double> measurement, camera;
   for (std::size_t i = 0; i < a.t.size(); ++i) {
     if (!from.samples[i].ok) continue;
     Linear theta = zero(), psi = zero();
@@ -104,10 +104,10 @@ std::string add_sigmas(Attitude& a, const UncertaintySources& from, double lag) 
     if (!std::isfinite(a.alpha_T[i])) continue;
     const Variance total = total_angle_variance(a, from, i, lag);
     a.sigma_alpha_T[i] = total.sigma();
-    reading.push_back(std::sqrt(total.reading));
+    measurement.push_back(std::sqrt(total.measurement));
     camera.push_back(std::sqrt(total.camera));
   }
-  return "sigma of alpha_T (median): " + format_value(median(reading) / deg) + " deg from reading noise, " +
+  return "sigma of alpha_T (median): " + format_value(median(measurement) / deg) + " deg from measurement noise, " +
          format_value(median(camera) / deg) + " deg from the calibration";
 }
 

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "misfit/attitude/axis_reading.h"
+#include "misfit/attitude/axis_sample.h"
 #include "misfit/data/attitude.h"
 
 namespace misfit {
 
-/// Reading noise and calibration behind the sigmas of an attitude.
+/// Measurement noise and calibration behind the sigmas of an attitude.
 struct UncertaintySources {
-  const std::vector<AxisReading>& samples;
+  const std::vector<AxisSample>& samples;
   const std::vector<double>& sigma_px;  ///< per sample, of one coordinate [px]; NaN: not known
   Eigen::MatrixXd camera;               ///< covariance of the calibration
 };

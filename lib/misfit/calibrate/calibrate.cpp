@@ -15,7 +15,7 @@ namespace {
 
 struct Plan {
   SweepModel base;
-  std::vector<CameraGroup> offered;
+  std::vector<CameraGroup> candidates;
   std::vector<std::string> notes;
 };
 
@@ -30,19 +30,19 @@ Plan make_plan(const CalibrateOptions& options, bool with_y) {
   plan.base.free = {camera_parameter("h_c"), camera_parameter("K")};
   plan.base.start.K = 1.0;
   for (const auto& [name, value] : options.fixed) camera_entry(plan.base.start, camera_parameter(name)) = value;
-  for (const std::string& name : options.take_in) {
+  for (const std::string& name : options.force) {
     const CameraGroup group = camera_group(name, with_y);
-    if (group.parameters.empty()) throw RunError("the sweep gives no P_y, so " + name + " cannot be taken in");
+    if (group.parameters.empty()) throw RunError("the sweep gives no P_y, so " + name + " cannot be freed");
     free_group(plan.base, group);
   }
-  for (const std::string& name : options.offer) {
+  for (const std::string& name : options.candidates) {
     const CameraGroup group = camera_group(name, with_y);
-    if (std::count(options.take_in.begin(), options.take_in.end(), name) > 0) continue;
+    if (std::count(options.force.begin(), options.force.end(), name) > 0) continue;
     if (group.parameters.size() < camera_group(name, true).parameters.size()) {
       plan.notes.push_back("the sweep gives no P_y: " +
-                           (group.parameters.empty() ? name + " was not offered" : "of " + name + " only centre_z was offered"));
+                           (group.parameters.empty() ? name + " was not tested" : "of " + name + " only centre_z was tested"));
     }
-    if (!group.parameters.empty()) plan.offered.push_back(group);
+    if (!group.parameters.empty()) plan.candidates.push_back(group);
   }
   return plan;
 }
@@ -54,10 +54,10 @@ std::size_t coordinates(const std::vector<SweepPoint>& points) {
   return count;
 }
 
-// The first judgement of which points to keep: under everything offered where the data can carry it, else under the base model.
+// The first judgement of which points to keep: with all candidates free where the data allow it, else under the base model.
 std::vector<bool> first_keep(const std::vector<SweepPoint>& points, double l_b, const Plan& plan, double limit) {
   SweepModel largest = plan.base;
-  for (const CameraGroup& group : plan.offered) free_group(largest, group);
+  for (const CameraGroup& group : plan.candidates) free_group(largest, group);
   const SweepModel& model = coordinates(points) >= 3 * largest.free.size() ? largest : plan.base;
   return points_within(points, l_b, robust_fit(points, l_b, model).camera, model.free.size(), limit);
 }
@@ -79,12 +79,12 @@ Selection select_and_clean(const std::vector<SweepPoint>& points, std::vector<bo
                            const CalibrateOptions& options) {
   for (int round = 0;; ++round) {
     plan.base.start = start_camera(points, l_b, plan.base.start);
-    Selection selection = select_parameters({points, keep, l_b, plan.base, plan.offered, options.threshold});
+    Selection selection = select_parameters({points, keep, l_b, plan.base, plan.candidates, options.threshold});
     check_enough(selection.fit.data, selection.fit.free);
     std::vector<bool> next = points_within(points, l_b, selection.fit.camera, selection.fit.free.size(), options.outlier_limit);
     if (next == keep) return selection;
     if (round == 10) {
-      plan.notes.emplace_back("which points to set aside did not settle after 10 rounds; those of the last round are used");
+      plan.notes.emplace_back("outlier rejection did not converge in 10 rounds; that of the last round is used");
       return selection;
     }
     keep = std::move(next);
@@ -107,8 +107,8 @@ void note_separability(Calibration& calibration) {
       const double correlation = C(i, j) / std::sqrt(C(i, i) * C(j, j));
       if (std::abs(correlation) <= 0.98) continue;
       calibration.notes.push_back(calibration.names[static_cast<std::size_t>(i)] + " and " +
-                                  calibration.names[static_cast<std::size_t>(j)] + " are weakly separated by this sweep (correlation " +
-                                  format_value(correlation) + "): believe their common effect, not each alone");
+                                  calibration.names[static_cast<std::size_t>(j)] + " are nearly collinear in this sweep (correlation " +
+                                  format_value(correlation) + "): only their combined effect is well determined");
     }
   }
 }
@@ -116,15 +116,14 @@ void note_separability(Calibration& calibration) {
 void note_tests(Calibration& calibration) {
   for (const CameraTest& test : calibration.tests) {
     const bool seen = std::all_of(test.sigmas.begin(), test.sigmas.end(), [](double s) { return std::isfinite(s); });
-    if (seen || test.taken_in) continue;
-    calibration.notes.push_back(test.name + " cannot be told from the other free parameters by this sweep");
+    if (seen || test.selected) continue;
+    calibration.notes.push_back("this sweep cannot distinguish " + test.name + " from the other free parameters");
   }
 }
 
 void note_outliers(Calibration& calibration, std::size_t points) {
   if (calibration.outliers == 0) return;
-  calibration.notes.push_back(std::to_string(calibration.outliers) + " of " + std::to_string(points) +
-                              " points were set aside as outliers");
+  calibration.notes.push_back(std::to_string(calibration.outliers) + " of " + std::to_string(points) + " points were rejected as outliers");
   if (3 * static_cast<std::size_t>(calibration.outliers) > points) {
     calibration.notes.emplace_back("that is more than a third: check that points, angles and geometry belong together");
   }
@@ -137,7 +136,7 @@ void check_scale(const SweepFit& fit) {
   const double K = camera_entry(fit.camera, scale), sigma = fit.sigma(scale);
   if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > std::max(least, sigmas * sigma)) return;
   throw RunError("the points do not follow the angles: the scale K = " + format_value(K, sigma) +
-                 " px/m cannot be told from zero; check that points, angles and geometry belong together");
+                 " px/m does not differ significantly from zero; check that points, angles and geometry belong together");
 }
 
 Calibration calibrate_once(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options) {
@@ -147,7 +146,7 @@ Calibration calibrate_once(const Sweep& sweep, const RigGeometry& geometry, cons
   check_enough(coordinates(points), plan.base.free);
   std::vector<bool> keep = first_keep(points, l_b, plan, options.outlier_limit);
   const Selection selection = select_and_clean(points, keep, l_b, plan, options);
-  if (!selection.fit.determined) throw RunError("the sweep cannot tell these apart: " + names_of(selection.fit.free));
+  if (!selection.fit.determined) throw RunError("the sweep cannot distinguish these parameters: " + names_of(selection.fit.free));
   check_scale(selection.fit);
 
   Calibration calibration;
@@ -166,24 +165,25 @@ Calibration calibrate_once(const Sweep& sweep, const RigGeometry& geometry, cons
   note_outliers(calibration, points.size());
   note_tests(calibration);
   note_separability(calibration);
-  if (!selection.fit.inside)
-    calibration.notes.emplace_back("a parameter ended at the edge of what is physical: do not believe this calibration");
+  if (!selection.fit.inside) calibration.notes.emplace_back("a parameter ended at its physical bound: the calibration is not valid");
   return calibration;
 }
 
-/// What was not offered and the sweep asks for all the same: in the tests, not in the camera.
-void add_what_was_not_offered(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options, Calibration& calibration) {
+/// What was no candidate and the sweep asks for all the same: in the tests, not in the camera.
+void test_disabled_parameters(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options, Calibration& calibration) {
   CalibrateOptions everything = options;
-  everything.offer = optional_camera_parameters();
-  const auto offered = [&](const std::string& name) {
-    return std::count(options.offer.begin(), options.offer.end(), name) + std::count(options.take_in.begin(), options.take_in.end(), name) >
+  everything.candidates = optional_camera_parameters();
+  const auto enabled = [&](const std::string& name) {
+    return std::count(options.candidates.begin(), options.candidates.end(), name) +
+               std::count(options.force.begin(), options.force.end(), name) >
            0;
   };
-  if (std::all_of(everything.offer.begin(), everything.offer.end(), offered)) return;
+  if (std::all_of(everything.candidates.begin(), everything.candidates.end(), enabled)) return;
   for (CameraTest test : calibrate_once(sweep, geometry, everything).tests) {
-    if (!test.taken_in || offered(test.name)) continue;
-    test.taken_in = false;
-    calibration.notes.push_back("the sweep asks for " + test.name + " (drop " + format_value(test.drop) + "), which was not offered");
+    if (!test.selected || enabled(test.name)) continue;
+    test.selected = false;
+    calibration.notes.push_back("the sweep asks for " + test.name + " (drop " + format_value(test.drop) +
+                                "), which is not enabled by [camera] offer");
     calibration.tests.push_back(std::move(test));
   }
 }
@@ -193,7 +193,7 @@ void add_what_was_not_offered(const Sweep& sweep, const RigGeometry& geometry, c
 Calibration calibrate(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options) {
   try {
     Calibration calibration = calibrate_once(sweep, geometry, options);
-    add_what_was_not_offered(sweep, geometry, options, calibration);
+    test_disabled_parameters(sweep, geometry, options, calibration);
     return calibration;
   } catch (const RunError& error) {
     if (sweep.source.empty()) throw;

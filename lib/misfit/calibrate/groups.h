@@ -5,7 +5,7 @@
 
 namespace misfit {
 
-/// An optional part of the camera: what is offered and decided as one.
+/// An optional part of the camera: its parameters are tested and selected together.
 struct CameraGroup {
   std::string name;                     ///< "image_centre"
   std::vector<std::size_t> parameters;  ///< indices into camera_parameter_names

@@ -32,7 +32,7 @@ double robust_sigma(const std::vector<double>& residuals, std::size_t free) {
 
 std::vector<bool> points_within(const std::vector<SweepPoint>& points, double l_b, const CameraParameters<double>& camera, std::size_t free,
                                 double limit) {
-  // Exact data have a robust sigma of rounding errors only; 1e-6 px is far below any reading.
+  // Exact data have a robust sigma of rounding errors only; 1e-6 px is far below any measurement.
   const double width = limit * std::max(1e-6, robust_sigma(all_residuals(points, l_b, camera), free));
   std::vector<bool> keep;
   for (const SweepPoint& p : points) {

@@ -9,12 +9,12 @@
 namespace misfit {
 namespace {
 
-using Members = std::vector<bool>;  // one per offered group: is it in the model?
+using Members = std::vector<bool>;  // one per candidate group: is it in the model?
 
 SweepFit fit_with(const SelectionTask& task, const Members& in) {
   SweepModel model = task.base;
   for (std::size_t g = 0; g < in.size(); ++g) {
-    if (in[g]) model.free.insert(model.free.end(), task.offered[g].parameters.begin(), task.offered[g].parameters.end());
+    if (in[g]) model.free.insert(model.free.end(), task.candidates[g].parameters.begin(), task.candidates[g].parameters.end());
   }
   std::sort(model.free.begin(), model.free.end());
   return fit_sweep(task.points, task.keep, task.l_b, model);
@@ -52,7 +52,7 @@ bool take_in_best(const SelectionTask& task, Members& in, Selection& selection) 
     Members trial = in;
     trial[g] = true;
     const SweepFit with = fit_with(task, trial);
-    selection.tests[g] = compare(task.offered[g], selection.fit, with, in.size());
+    selection.tests[g] = compare(task.candidates[g], selection.fit, with, in.size());
     if (!acceptable(task, selection.tests[g], with)) continue;
     if (best < in.size() && selection.tests[g].drop <= selection.tests[best].drop) continue;
     best = g;
@@ -60,7 +60,7 @@ bool take_in_best(const SelectionTask& task, Members& in, Selection& selection) 
   }
   if (best == in.size()) return false;
   in[best] = true;
-  selection.tests[best].taken_in = true;
+  selection.tests[best].selected = true;
   selection.fit = best_fit;
   return true;
 }
@@ -76,9 +76,9 @@ void prune(const SelectionTask& task, Members& in, Selection& selection) {
       Members trial = in;
       trial[g] = false;
       const SweepFit without = fit_with(task, trial);
-      const CameraTest final_test = compare(task.offered[g], without, selection.fit, in.size());
+      const CameraTest final_test = compare(task.candidates[g], without, selection.fit, in.size());
       selection.tests[g] = final_test;
-      selection.tests[g].taken_in = true;
+      selection.tests[g].selected = true;
       if (final_test.p_value < worst_p) continue;
       worst = g;
       worst_p = final_test.p_value;
@@ -86,7 +86,7 @@ void prune(const SelectionTask& task, Members& in, Selection& selection) {
     }
     if (worst == in.size()) return;
     in[worst] = false;
-    selection.tests[worst].taken_in = false;
+    selection.tests[worst].selected = false;
     selection.fit = worst_fit;
   }
 }
@@ -94,8 +94,8 @@ void prune(const SelectionTask& task, Members& in, Selection& selection) {
 }  // namespace
 
 Selection select_parameters(const SelectionTask& task) {
-  Members in(task.offered.size(), false);
-  Selection selection{fit_with(task, in), std::vector<CameraTest>(task.offered.size())};
+  Members in(task.candidates.size(), false);
+  Selection selection{fit_with(task, in), std::vector<CameraTest>(task.candidates.size())};
   while (take_in_best(task, in, selection)) {
   }
   prune(task, in, selection);

@@ -24,7 +24,7 @@ struct SweepFit {
   double rss = 0.0;            ///< Σ residual² over them [px²]
   double sigma_px = 0.0;       ///< sqrt(rss / (data − free)) [px]
   Eigen::MatrixXd covariance;  ///< of the free ones, SI; sigma_px² (J'J)⁻¹; empty if not determined
-  bool determined = false;     ///< J has full rank: the data can tell the free parameters apart
+  bool determined = false;     ///< J has full rank: the data distinguish the free parameters
   bool inside = false;         ///< no free parameter ended at its bounds
   bool converged = false;
   std::string message;

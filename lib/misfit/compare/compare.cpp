@@ -63,7 +63,8 @@ struct Sides {
 void add_difference(const CurveEstimate& curve, const std::vector<CurvePoint>& points, const Sides& sides, Comparison& c) {
   std::optional<CurveDifference> d = difference(curve, points);
   if (!d) {
-    c.not_compared.push_back({fmt::format("{} of {} and {}", curve.name, sides.a, sides.b), "no common visited range with uncertainties"});
+    c.not_compared.push_back(
+        {fmt::format("{} of {} and {}", curve.name, sides.a, sides.b), "no common operating range with uncertainties"});
     return;
   }
   d->a = sides.a;
@@ -93,8 +94,8 @@ void compare_reference(const Fit& fit, const Reference& reference, Comparison& c
 std::string sentence(const std::string& what, const Sides& sides, const Estimate& difference, double sigmas) {
   const std::string size = in_display_unit(std::abs(difference.value), difference.unit, difference.sigma);
   const std::string where = difference.value < 0.0 ? "below" : "above";
-  const std::string told = std::isfinite(sigmas) ? fmt::format(" ({:.1f} sigma)", sigmas) : " (no uncertainty known)";
-  return fmt::format("{} of {} is {} {} that of {}{}", what, sides.a, size, where, sides.b, told);
+  const std::string significance = std::isfinite(sigmas) ? fmt::format(" ({:.1f} sigma)", sigmas) : " (no uncertainty known)";
+  return fmt::format("{} of {} is {} {} that of {}{}", what, sides.a, size, where, sides.b, significance);
 }
 
 void add_trims(const Estimate& a, const Estimate& b, const Sides& sides, Comparison& c) {
@@ -106,8 +107,8 @@ void add_trims(const Estimate& a, const Estimate& b, const Sides& sides, Compari
   c.trims.push_back({sides.a, sides.b, sides.reference, difference, sigmas, sentence("the trim", sides, difference, sigmas)});
 }
 
-/// A regression takes the noise of its differentiated readings, and what a local polynomial smooths away, into its parameters: its sigmas
-/// know nothing of that.
+/// A regression takes the noise of its differentiated measurements, and what a local polynomial smooths away, into its parameters: its
+/// sigmas know nothing of that.
 void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
   for (const auto& [name, one] : a.parameters) {
     const auto other = b.parameters.find(name);
@@ -119,7 +120,7 @@ void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
     if (d.sigmas > worth_saying) {
       d.sentence = sentence(name, {a.method, b.method}, difference, d.sigmas) + ": they cannot both be right";
       if (a.method == "equation_error" || b.method == "equation_error")
-        d.sentence += "; a regression of differentiated readings is biased by what its stencils smooth, and knows nothing of it";
+        d.sentence += "; equation_error is biased by numerical differentiation, which its sigma does not cover";
     }
     c.parameters.push_back(std::move(d));
   }

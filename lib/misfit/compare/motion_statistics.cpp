@@ -258,13 +258,15 @@ void conclude_motion(SimulatedMotion& motion) {
   }
   if (groups == 0) return;
   if (motion.p_value <= clear) {
-    motion.sentences.push_back(fmt::format(
-        "the fitted model does not make motion like the measured one: p {:.2g} over {} groups of statistics of {} simulated motions",
-        motion.p_value, groups, motion.runs));
+    motion.sentences.push_back(
+        fmt::format("the fitted model does not reproduce the statistics of the measured motion: p {:.2g} over {} groups of statistics of "
+                    "{} simulated motions",
+                    motion.p_value, groups, motion.runs));
     motion.sentences.insert(motion.sentences.end(), departing.begin(), departing.end());
   } else {
     motion.sentences.push_back(
-        fmt::format("the fitted model makes motion like the measured one: p {:.2g} over {} groups of statistics", motion.p_value, groups));
+        fmt::format("the fitted model reproduces the statistics of the measured motion: p {:.2g} over {} groups of statistics",
+                    motion.p_value, groups));
   }
   motion.sentences.push_back(
       fmt::format("{} of {} statistics lie outside the 95 % band of the simulated motions; about {:.0f} would by chance", outside, numbers,

@@ -14,7 +14,7 @@ namespace {
 /// (j, j'/ω), exactly sampled: with the stationary covariance σ² I the noise of a step is σ² (I − φ φᵀ).
 class Jitter {
  public:
-  Jitter(const ReadingNoise& noise, std::mt19937_64& random)
+  Jitter(const MeasurementNoise& noise, std::mt19937_64& random)
       : noise_(noise), state_{noise.jitter * normal_(random), noise.jitter * normal_(random)} {}
 
   [[nodiscard]] double value() const { return state_[0]; }
@@ -44,7 +44,7 @@ class Jitter {
     root_ = {a, b, std::sqrt(std::max(q11 - b * b, 0.0))};
   }
 
-  ReadingNoise noise_;
+  MeasurementNoise noise_;
   std::normal_distribution<double> normal_;
   std::array<double, 2> state_;
   double h_ = -1.0;
@@ -71,9 +71,9 @@ std::optional<Signals> noisy_run(const StochasticModel& model, const Signals& li
     std::vector<double>& values = out.measured[c].values;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (i > 0) jitter.step(like.t[i] - like.t[i - 1], random);
-      const double reading =
+      const double measured =
           run.y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) + jitter.value() + model.noise[c].white * normal(random);
-      if (std::isfinite(values[i])) values[i] = reading;
+      if (std::isfinite(values[i])) values[i] = measured;
     }
   }
   return out;

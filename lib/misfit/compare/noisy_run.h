@@ -9,8 +9,8 @@
 
 namespace misfit {
 
-/// Noise of one reading: white, and a resonance j'' + 2 ζ ω j' + ω² j = noise of stationary sigma `jitter`.
-struct ReadingNoise {
+/// Noise of one measurement: white, and a resonance j'' + 2 ζ ω j' + ω² j = noise of stationary sigma `jitter`.
+struct MeasurementNoise {
   double white = 0.0;             ///< sigma [unit]
   double jitter = 0.0;            ///< stationary sigma [unit]
   double jitter_frequency = 1.0;  ///< ω/2π [Hz]
@@ -19,13 +19,13 @@ struct ReadingNoise {
 
 /// A fitted model with all that is random about it.
 struct StochasticModel {
-  const Model* model = nullptr;     ///< random forces are own states of it
-  std::vector<double> intensity;    ///< of each own state's noise, beside what its effect declares [unit/sqrt(s)]
-  std::vector<double> start_sigma;  ///< of each own state at the start [unit]; 0: starts where x0 says
-  std::vector<ReadingNoise> noise;  ///< per output
+  const Model* model = nullptr;         ///< random forces are own states of it
+  std::vector<double> intensity;        ///< of each own state's noise, beside what its effect declares [unit/sqrt(s)]
+  std::vector<double> start_sigma;      ///< of each own state at the start [unit]; 0: starts where x0 says
+  std::vector<MeasurementNoise> noise;  ///< per output
 };
 
-/// One realisation of what would have been measured: `like` with other readings, at the same times, driven by the same inputs, missing
+/// One realisation of what would have been measured: `like` with other measurements, at the same times, driven by the same inputs, missing
 /// where `like` misses. Starts at x0 (model states) plus start_sigma. nullopt if a state left the finite numbers.
 [[nodiscard]] std::optional<Signals> noisy_run(const StochasticModel& model, const Signals& like, const std::vector<double>& x0,
                                                std::uint64_t seed);

@@ -83,7 +83,8 @@ std::string motion_text(const SimulatedMotion& motion) {
     experiment = s.experiment;
     for (const MotionGroup& g : s.groups) add_group(s, g, rows);
   }
-  out = fmt::format("\nmotion as the fitted model makes it ({} runs) against the measured one  ({:.1f} s)\n", motion.runs, motion.seconds);
+  out = fmt::format("\nsimulated motion of the fitted model ({} runs) against the measured motion  ({:.1f} s)\n", motion.runs,
+                    motion.seconds);
   if (rows.size() > 1) out += align_columns(rows);
   for (const auto& sentence : motion.sentences) out += wrap_text(sentence, 100, "  ") + "\n";
   for (const auto& note : motion.notes) out += wrap_text("! " + note, 100, "  ") + "\n";

@@ -59,7 +59,7 @@ Eigen::MatrixXd covariance_from_json(const Json& rows, std::size_t size) {
 
 Json test_to_json(const CameraTest& test) {
   return {{"parameters", test.parameters},     {"values", numbers_to_json(test.values)},  {"sigmas", numbers_to_json(test.sigmas)},
-          {"drop", number_or_null(test.drop)}, {"p_value", number_or_null(test.p_value)}, {"taken_in", test.taken_in}};
+          {"drop", number_or_null(test.drop)}, {"p_value", number_or_null(test.p_value)}, {"taken_in", test.selected}};
 }
 
 CameraTest test_from_json(const std::string& name, const Json& json) {
@@ -70,7 +70,7 @@ CameraTest test_from_json(const std::string& name, const Json& json) {
   test.sigmas = numbers_from_json(json.at("sigmas"));
   test.drop = to_number(json.at("drop"));
   test.p_value = to_number(json.at("p_value"));
-  test.taken_in = json.at("taken_in").get<bool>();
+  test.selected = json.at("taken_in").get<bool>();
   return test;
 }
 

@@ -14,11 +14,11 @@ namespace misfit {
 struct CameraTest {
   std::string name;                     ///< "camera_roll", "image_centre", "pixel_aspect", "lens_k1", "camera_distance"
   std::vector<std::string> parameters;  ///< members of camera_parameter_names
-  std::vector<double> values;           ///< estimate when freed (beside those taken in), SI
+  std::vector<double> values;           ///< estimate when freed (given those selected), SI
   std::vector<double> sigmas;
-  double drop = 0.0;     ///< 2 Δ log L for freeing it beside those taken in before
+  double drop = 0.0;     ///< 2 Δ log L for freeing it, given those selected before
   double p_value = 1.0;  ///< corrected for the number of candidates
-  bool taken_in = false;
+  bool selected = false;
 };
 
 /// One reference point at one angle.

@@ -23,7 +23,7 @@ struct Candidate {
   std::optional<double> actual_drop;    ///< after refitting; missing: not refitted
   std::optional<double> held_out_gain;  ///< of the held-out log-likelihood
   double p_value = 1.0;                 ///< corrected for cells scanned and families
-  std::vector<std::string> group;       ///< effects that these data cannot tell from this one, itself included; empty: alone
+  std::vector<std::string> group;       ///< effects that these data cannot distinguish from this one, itself included; empty: alone
   bool described = false;               ///< the model already has a column like it (1 − R² < 0.01)
   bool accepted = false;
   std::string why;                             ///< of being accepted or not, in words

@@ -101,9 +101,8 @@ std::vector<std::string> limit_remarks(const std::string& header, const std::vec
     const Stands stands = longest_stands(values, upper ? *high : *low);
     constexpr std::size_t long_stand = 10;
     if (stands.at < long_stand || stands.at < 2 * stands.elsewhere) continue;
-    out.push_back(fmt::format("column '{}' stands at its {} value, {}, for up to {} samples: something is full, or the sensor reads no {}",
-                              header, upper ? "highest" : "lowest", format_value(upper ? *high : *low), stands.at,
-                              upper ? "higher" : "lower"));
+    out.push_back(fmt::format("column '{}' stays at its {} value, {}, for up to {} samples: the signal saturates", header,
+                              upper ? "highest" : "lowest", format_value(upper ? *high : *low), stands.at));
   }
   return out;
 }

@@ -52,7 +52,7 @@ struct Fit {
   std::map<std::string, Estimate> parameters;  ///< free parameters (curve coefficients as NAME[i]) and derived numbers, SI
   std::vector<std::string> names;              ///< order of `covariance`
   Eigen::MatrixXd covariance;
-  std::map<std::string, double> plain_sigmas;  ///< by parameter, and "trim": sigma had the residuals been white; empty: not told apart
+  std::map<std::string, double> plain_sigmas;  ///< by parameter, and "trim": sigma had the residuals been white; empty: not distinguished
   std::map<std::string, Estimate> noise, force;
   std::optional<double> loglik, validation_loglik;
   std::optional<Estimate> trim;                         ///< [rad]

@@ -20,9 +20,9 @@
 namespace misfit {
 namespace {
 
-class Surveyor {
+class ColumnClassifier {
  public:
-  Surveyor(const std::filesystem::path& path, const std::vector<std::string>& reserved)
+  ColumnClassifier(const std::filesystem::path& path, const std::vector<std::string>& reserved)
       : table_(read_loose_csv(path)), taken_(reserved.begin(), reserved.end()) {
     taken_.insert("t");
     out_.source = table_.source;
@@ -31,7 +31,7 @@ class Surveyor {
 
   RecordingSurvey run() {
     describe_format();
-    for (const auto& column : table_.columns) out_.columns.push_back(look_at(column));
+    for (const auto& column : table_.columns) out_.columns.push_back(characterise(column));
     find_time();
     run_time();
     find_segments();
@@ -56,7 +56,7 @@ class Surveyor {
     if (table_.comments > 0) out_.format += fmt::format(", {} comment line{}", table_.comments, table_.comments == 1 ? "" : "s");
   }
 
-  ColumnSurvey look_at(const LooseColumn& column) {
+  ColumnSurvey characterise(const LooseColumn& column) {
     ColumnSurvey s;
     const NameAndUnit header = read_header(column.header);
     s.header = shown(column.header, longest_header);
@@ -169,19 +169,19 @@ class Surveyor {
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       if (out_.columns[i].use == ColumnUse::unused) open.push_back(i);
     }
-    if (open.empty()) fail(0, "beside time no column changes: nothing was measured");
+    if (open.empty()) fail(0, "no column but time changes: nothing was measured");
     constexpr double stands = 0.5;
     for (const std::size_t i : open) {
       ColumnSurvey& c = out_.columns[i];
       if (open.size() > 1 && is_called_input(c.name)) {
         c.use = ColumnUse::input;
-        c.why = "called like an input";
+        c.why = "named like an input";
       } else if (open.size() > 1 && c.held > stands) {
         c.use = ColumnUse::input;
-        c.why = fmt::format("stands still between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
+        c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
         c.use = ColumnUse::output;
-        c.why = open.size() == 1 ? "the only column that was measured" : "not called like an input, and it moves";
+        c.why = open.size() == 1 ? "the only column that was measured" : "not named like an input, and it varies";
         for (auto& remark : limit_remarks(c.header, values(i))) out_.remarks.push_back(std::move(remark));
       }
     }
@@ -207,7 +207,7 @@ class Surveyor {
     }
   }
 
-  /// What is said of a column whose header gives no unit, or none that is known, where the numbers tell it.
+  /// The remark on a column whose header gives no unit, or none that is known, where the numbers show it.
   std::string unit_found(std::size_t i, const std::string& found) {
     const std::string unknown = std::exchange(not_understood_[i], "");
     const std::string column = "column '" + out_.columns[i].header + "'";
@@ -282,7 +282,7 @@ std::vector<const ColumnSurvey*> RecordingSurvey::of_use(ColumnUse use) const {
 }
 
 RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved) {
-  return Surveyor(path, reserved).run();
+  return ColumnClassifier(path, reserved).run();
 }
 
 }  // namespace misfit

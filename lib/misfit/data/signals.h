@@ -11,7 +11,7 @@ struct Signal {
   std::string name;            ///< the system's name for it: "alpha_T"
   std::string unit;            ///< SI unit: "rad"
   std::vector<double> values;  ///< NaN = missing
-  double sigma = 0.0;          ///< white reading noise where known, else 0 [unit]
+  double sigma = 0.0;          ///< white measurement noise where known, else 0 [unit]
 };
 
 /// One experiment as the fits see it: measured channels in the order of the system's outputs, inputs in the order of its inputs.

@@ -25,10 +25,10 @@ struct CameraStudy {
   std::optional<std::filesystem::path> sweep;         ///< calibrate from it …
   std::optional<std::filesystem::path> sweep_images;  ///< … or from pictures: a table of angles and image or video files (data/sweep.h)
   MarkerStudy sweep_marker;                           ///< of the three points in them; default that of [video]
-  std::vector<PixelPoint> sweep_points;               ///< about where points 1, 2, 3 are in the first picture; empty: told by the geometry
+  std::vector<PixelPoint> sweep_points;               ///< about where points 1, 2, 3 are in the first picture; empty: from the geometry
   std::string model = "pinhole";                      ///< "pinhole" or "plane_by_plane"
   std::map<std::string, config::Number> given;        ///< … or h_c, K and any other camera parameter, with sigma where known
-  std::vector<std::string> offer;                     ///< optional parameters that calibrate may take in; default all
+  std::vector<std::string> offer;                     ///< optional parameters that calibrate may select; default all
   std::vector<std::string> take_in;                   ///< optional parameters that calibrate must free whatever the test says
 
   [[nodiscard]] bool from_sweep() const { return sweep || sweep_images; }
@@ -59,7 +59,7 @@ struct ExperimentStudy {
 struct FormulaStudy {
   std::string formula, port;
   Source where;                               ///< of the formula's first character
-  std::vector<std::string> strengths;         ///< coefficients that switch it off; empty: told by the formula
+  std::vector<std::string> strengths;         ///< coefficients that switch it off; empty: from the formula
   std::optional<config::Section> parameters;  ///< NAME = { unit, value, bounds, … }: its coefficients
 };
 

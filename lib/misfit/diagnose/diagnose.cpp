@@ -53,7 +53,7 @@ std::string where_it_fails(const ForceMap& map) {
          place(map.x[best_from] - half, map.quantity_unit) + " and " + place(map.x[best_to] + half, map.quantity_unit);
 }
 
-ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features& features, const SystemSpec& spec, int port) {
+ForceMap map_of(const ScoreTest& score, const ForceSensitivity& force, const Features& features, const SystemSpec& spec, int port) {
   ForceMap map;
   map.port = spec.dynamic_ports[static_cast<std::size_t>(port)].name;
   map.port_unit = spec.dynamic_ports[static_cast<std::size_t>(port)].unit;
@@ -61,7 +61,7 @@ ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features
   map.quantity_unit = features.unit;
   map.x = features.centre;
   map.count = features.count;
-  const ScoreResult result = score.test(path.columns(port, features.f, features.ahead));
+  const ScoreResult result = score.test(force.columns(port, features.f, features.ahead));
   map.amplitude.assign(result.amplitude.data(), result.amplitude.data() + result.amplitude.size());
   map.sigma.assign(result.sigma.data(), result.sigma.data() + result.sigma.size());
   map.chi2 = result.chi2;
@@ -70,14 +70,14 @@ ForceMap map_of(const ScoreTest& score, const ForceColumns& path, const Features
   return map;
 }
 
-std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
+std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
                                const std::vector<Features>& features, const DiagnoseOptions& options) {
   const SystemSpec& spec = estimate.model.system->spec();
   const std::size_t ports = spec.dynamic_ports.size();
   std::vector<ForceMap> maps(ports * features.size());
   run_jobs(
       maps.size(), options.threads,
-      [&](std::size_t k) { maps[k] = map_of(score, path, features[k / ports], spec, static_cast<int>(k % ports)); }, options.progress);
+      [&](std::size_t k) { maps[k] = map_of(score, force, features[k / ports], spec, static_cast<int>(k % ports)); }, options.progress);
   for (auto& map : maps) {
     map.p_corrected = sidak(map.p_value, static_cast<double>(maps.size()));
     if (map.p_corrected < significant) map.sentence = where_it_fails(map);
@@ -87,7 +87,7 @@ std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& 
 }
 
 /// Cells of the two quantities whose maps say most.
-std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
+std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
                                const std::vector<Features>& features, const std::vector<ForceMap>& maps) {
   std::vector<PairMap> out;
   if (maps.empty() || features.size() < 2) return out;
@@ -119,7 +119,7 @@ std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& 
   for (std::size_t p = 0; p < spec.dynamic_ports.size(); ++p) {
     if (spec.dynamic_ports[p].name == first.port) port = static_cast<int>(p);
   }
-  const ScoreResult result = score.test(path.columns(port, cells, ahead));
+  const ScoreResult result = score.test(force.columns(port, cells, ahead));
   for (Eigen::Index c = 0; c < cells.cols(); ++c) {
     const bool known = enough[static_cast<std::size_t>(c)] && result.sigma[c] > 0.0;
     map.amplitude.push_back(known ? result.amplitude[c] : std::nan(""));
@@ -140,24 +140,25 @@ void conclude(Diagnosis& out) {
     const bool repeated = std::find(quantities.begin(), quantities.end(), map.port + map.quantity) != quantities.end();
     if (map.sentence.empty() || said >= 3 || repeated) continue;
     quantities.push_back(map.port + map.quantity);
-    out.sentences.push_back(map.sentence + "; the map of " + map.port + " over " + map.quantity + " as a whole departs from zero with p " +
+    out.sentences.push_back(map.sentence + "; the map of " + map.port + " over " + map.quantity + " as a whole differs from zero with p " +
                             format_probability(map.p_corrected));
     ++said;
   }
   if (said == 0) {
-    const std::string best = out.maps.empty() ? ""
-                                              : ": the most telling map, " + out.maps.front().port + " over " + out.maps.front().quantity +
-                                                    ", has p " + format_probability(out.maps.front().p_corrected);
-    out.sentences.push_back("nowhere: no map of the missing force over any quantity departs from zero" + best);
+    const std::string best = out.maps.empty()
+                                 ? ""
+                                 : ": the most significant map, " + out.maps.front().port + " over " + out.maps.front().quantity +
+                                       ", has p " + format_probability(out.maps.front().p_corrected);
+    out.sentences.push_back("no map of the missing force differs significantly from zero" + best);
   }
   const auto time = std::find_if(out.maps.begin(), out.maps.end(), [](const ForceMap& map) { return map.quantity == "time"; });
   if (said > 0 && time != out.maps.end() && time->p_corrected > significant)
-    out.sentences.push_back("time explains nothing of it: the map over time has p " + format_probability(time->p_corrected));
+    out.sentences.push_back("no dependence on time: the map over time has p " + format_probability(time->p_corrected));
   for (const auto& report : out.whiteness) {
     const double count = 3.0 * static_cast<double>(out.whiteness.size());
     if (sidak(report.peak_p, count) < significant) {
-      out.sentences.push_back("the innovations of " + report.channel + " hold a line at " + format_value(report.peak_frequency) + " Hz (" +
-                              format_value(report.peak_power) + " times the power of white noise)");
+      out.sentences.push_back("the innovations of " + report.channel + " have a spectral line at " + format_value(report.peak_frequency) +
+                              " Hz (" + format_value(report.peak_power) + " times the power of white noise)");
     }
     if (sidak(std::min(report.ljung_box_p, report.periodogram_p), count) < significant) {
       out.sentences.push_back("the innovations of " + report.channel + " are not white: Ljung-Box p " +
@@ -174,11 +175,11 @@ Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& option
   Diagnosis out;
   out.method = "filter_error";
   const ScoreTest score(estimate);
-  const ForceColumns path(estimate);
-  const std::vector<Features> features = features_of(estimate, path);
+  const ForceSensitivity force(estimate);
+  const std::vector<Features> features = features_of(estimate, force);
   out.whiteness = whiteness_of(estimate);
-  out.maps = all_maps(estimate, score, path, features, options);
-  out.pairs = pair_maps(estimate, score, path, features, out.maps);
+  out.maps = all_maps(estimate, score, force, features, options);
+  out.pairs = pair_maps(estimate, score, force, features, out.maps);
   out.nis = nis_of(estimate);
   out.missing = missing_force_of(estimate);
   conclude(out);

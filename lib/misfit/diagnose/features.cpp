@@ -72,7 +72,7 @@ Features hats(const std::string& name, const std::string& unit, int index, const
 
 }  // namespace
 
-std::vector<Features> features_of(const FilterEstimate& estimate, const ForceColumns& path, int most) {
+std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most) {
   std::vector<Features> out;
   const auto& specs = estimate.model.system->spec().quantities;
   const auto take = [&](Features features) {
@@ -80,14 +80,14 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceCol
   };
   for (std::size_t q = 0; q < specs.size(); ++q) {
     if (!specs[q].explains) continue;
-    std::vector<double> values(path.used().size()), ahead = values;
+    std::vector<double> values(force.used().size()), ahead = values;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      values[k] = path.quantities()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(q));
-      ahead[k] = path.quantities_ahead()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(q));
+      values[k] = force.quantities()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(q));
+      ahead[k] = force.quantities_ahead()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(q));
     }
-    take(hats(specs[q].name, specs[q].unit, static_cast<int>(q), values, ahead, path.used(), most));
+    take(hats(specs[q].name, specs[q].unit, static_cast<int>(q), values, ahead, force.used(), most));
   }
-  take(hats("time", "s", -1, path.times(), path.times(), path.used(), most));
+  take(hats("time", "s", -1, force.times(), force.times(), force.used(), most));
   return out;
 }
 

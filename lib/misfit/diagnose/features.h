@@ -18,6 +18,6 @@ struct Features {
 
 /// Quantities that maps are drawn over: those of the system that `explains` and vary, then time. `most` hats each, equally spaced over 0.5
 /// % to 99.5 % of the visited values (ends extended); hats with fewer than 25 samples under them are left out.
-[[nodiscard]] std::vector<Features> features_of(const FilterEstimate& estimate, const ForceColumns& path, int most = 10);
+[[nodiscard]] std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most = 10);
 
 }  // namespace misfit

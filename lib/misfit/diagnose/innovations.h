@@ -11,13 +11,13 @@
 namespace misfit {
 
 /// Autocorrelation with its band, Ljung–Box over 40 lags [LB], periodogram with Fisher's g [F] and the cumulative periodogram [B] of each
-/// channel's standardised innovations; missing readings count as 0.
+/// channel's standardised innovations; missing measurements count as 0.
 [[nodiscard]] std::vector<WhitenessReport> whiteness_of(const FilterEstimate& estimate);
 
 /// Normalised innovation squared per channel and sample, averaged over windows of about 1/80 of the recording.
 [[nodiscard]] std::vector<NisSeries> nis_of(const FilterEstimate& estimate);
 
-/// The random force from all readings, earlier and later, with every quantity at the same samples.
+/// The random force from all measurements, earlier and later, with every quantity at the same samples.
 [[nodiscard]] std::vector<MissingForce> missing_force_of(const FilterEstimate& estimate);
 
 }  // namespace misfit

@@ -78,7 +78,7 @@ ScoreTest::ScoreTest(const FilterEstimate& estimate) {
   information_.compute(information);
 }
 
-Eigen::VectorXd ScoreTest::step_beside(const Eigen::MatrixXd& C, const Eigen::VectorXd& amplitude) const {
+Eigen::VectorXd ScoreTest::adjusted_step(const Eigen::MatrixXd& C, const Eigen::VectorXd& amplitude) const {
   if (!any_) return {};
   return information_.solve(gradient_ - J_.transpose() * (C * amplitude));
 }
@@ -149,7 +149,7 @@ ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors
   return out;
 }
 
-ForceColumns::ForceColumns(const FilterEstimate& estimate) : estimate_(estimate) {
+ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(estimate) {
   const Model model = probed(estimate);
   Stepper stepper(model);
   Evaluator values(estimate.forced.model);
@@ -189,7 +189,7 @@ ForceColumns::ForceColumns(const FilterEstimate& estimate) : estimate_(estimate)
   }
 }
 
-Eigen::MatrixXd ForceColumns::columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
+Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
   const Eigen::Index m = f.cols();
   Eigen::Index rows = 0;
   for (const auto& jacobian : estimate_.jacobians) rows += jacobian.r.size();
@@ -241,7 +241,7 @@ Eigen::MatrixXd ForceColumns::columns(int port, const Eigen::MatrixXd& f, const 
   return out;
 }
 
-Eigen::VectorXd ForceColumns::score_of_steps(int port) const {
+Eigen::VectorXd ForceSensitivity::score_of_steps(int port) const {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(times_.size()));
   std::size_t offset = 0;
   for (std::size_t e = 0; e < estimate_.traces.size(); ++e) {

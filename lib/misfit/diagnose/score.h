@@ -32,7 +32,7 @@ class ScoreTest {
   /// C: rows × columns, ∂(predicted − measured)/√S by each added coefficient at its off value.
   [[nodiscard]] ScoreResult test(const Eigen::MatrixXd& C, const ColumnPriors* priors = nullptr) const;
   /// What one Gauss–Newton step over all of them moves the free parameters by, the added coefficients going to `amplitude`.
-  [[nodiscard]] Eigen::VectorXd step_beside(const Eigen::MatrixXd& C, const Eigen::VectorXd& amplitude) const;
+  [[nodiscard]] Eigen::VectorXd adjusted_step(const Eigen::MatrixXd& C, const Eigen::VectorXd& amplitude) const;
   /// C − J I22⁻¹ Jᵀ C …: what of the columns the free parameters cannot imitate (for correlations between candidates).
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& C) const;
 
@@ -44,13 +44,13 @@ class ScoreTest {
 };
 
 /// Columns for forces on dynamic ports that are given functions of the filter's own path.
-class ForceColumns {
+class ForceSensitivity {
  public:
-  explicit ForceColumns(const FilterEstimate& estimate);
+  explicit ForceSensitivity(const FilterEstimate& estimate);
 
   /// Quantities at the filtered state of each sample, all experiments one after the other (0 before the first used sample).
   [[nodiscard]] const RowMatrix& quantities() const { return quantities_; }
-  /// Quantities at the end of the step from each sample, as predicted: a force over the step must know nothing of the next reading.
+  /// Quantities at the end of the step from each sample, as predicted: a force over the step must know nothing of the next measurement.
   [[nodiscard]] const RowMatrix& quantities_ahead() const { return ahead_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<bool>& used() const { return used_; }

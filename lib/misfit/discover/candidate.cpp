@@ -8,16 +8,16 @@
 
 namespace misfit {
 
-Candidate named_candidate(const Screened& s, double families) {
+Candidate named_candidate(const ScreeningResult& s, double families) {
   constexpr double imitated = 0.01;  // 1 − R² of the columns with those of the free parameters
   constexpr double same = 1e-6;      // what is left of the columns then is rounding
   constexpr double beyond_doubt = 1e-4;
-  const Specimen& specimen = *s.specimen;
+  const CandidateModel& candidate_model = *s.candidate_model;
   Candidate c;
-  c.effect = specimen.effect;
-  c.roles = specimen.roles;
-  c.family = specimen.family;
-  c.ports = specimen.port_names;
+  c.effect = candidate_model.effect;
+  c.roles = candidate_model.roles;
+  c.family = candidate_model.family;
+  c.ports = candidate_model.port_names;
   c.score = c.predicted_drop = s.result.chi2;
   c.dof = s.result.dof;
   if (!s.runs) {
@@ -27,30 +27,31 @@ Candidate named_candidate(const Screened& s, double families) {
   c.p_value = sidak(s.p_value, families);
   // A little of a strong effect can be more than the data can miss: that is no imitation.
   const bool hidden_in_it = s.result.independent < same || !(c.p_value < beyond_doubt);
-  c.described = s.result.independent < imitated && hidden_in_it && !specimen.has_priors;
-  for (std::size_t i = 0; i < specimen.strengths.size(); ++i) {
-    const Parameter& p = specimen.model.parameters[static_cast<std::size_t>(specimen.strengths[i])];
+  c.described = s.result.independent < imitated && hidden_in_it && !candidate_model.has_priors;
+  for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i) {
+    const Parameter& p = candidate_model.model.parameters[static_cast<std::size_t>(candidate_model.strengths[i])];
     const auto k = static_cast<Eigen::Index>(i);
     c.parameters[p.name] = {s.result.amplitude[k], s.result.sigma[k], p.unit};
   }
   for (std::size_t i = 0; i < s.cell.size(); ++i) {
-    const int shape = i < specimen.shapes.size() ? specimen.shapes[i] : specimen.frequency;
-    const Parameter& p = specimen.model.parameters[static_cast<std::size_t>(shape)];
+    const int shape = i < candidate_model.shapes.size() ? candidate_model.shapes[i] : candidate_model.frequency;
+    const Parameter& p = candidate_model.model.parameters[static_cast<std::size_t>(shape)];
     c.parameters[p.name] = {s.cell[i], 0.0, p.unit};
   }
-  if (c.described) c.why = "already described by the model: the free parameters imitate it to better than 99 %";
+  if (c.described) c.why = "already described by the free parameters (R² above 0.99)";
   return c;
 }
 
-std::string what_was_tried(const Screened& s) {
-  std::string out = effect_at(s.specimen->effect, s.specimen->roles) + " (" + s.specimen->family + "): " + std::to_string(s.cells) +
-                    (s.cells == 1 ? " cell" : " cells") + ", " + format_value(std::round(s.cells_effective)) + " effective";
-  const LineGrid& scanned = s.frequencies;
+std::string what_was_tried(const ScreeningResult& s) {
+  std::string out = effect_at(s.candidate_model->effect, s.candidate_model->roles) + " (" + s.candidate_model->family +
+                    "): " + std::to_string(s.cells) + (s.cells == 1 ? " cell" : " cells") + ", " +
+                    format_value(std::round(s.cells_effective)) + " effective";
+  const FrequencyGrid& scanned = s.frequencies;
   if (scanned.count == 0) return out;
   const double last = scanned.at(scanned.count - 1);
   out += ", " + format_value(scanned.first) + " to " + format_value(last) + " Hz";
   if (last + 2.0 * scanned.step < scanned.wanted)
-    out += ", not up to " + format_value(scanned.wanted) + " Hz: the samples are not evenly spaced, and these are too many";
+    out += ", not up to " + format_value(scanned.wanted) + " Hz: too many unevenly spaced samples";
   return out;
 }
 

@@ -6,10 +6,10 @@ namespace misfit {
 
 /// What the screen says of an effect, as a candidate among so many families: score, p-value, strengths after one step, and the shapes of
 /// its best cell (without sigma), where a refit would start.
-[[nodiscard]] Candidate named_candidate(const Screened& screened, double families);
+[[nodiscard]] Candidate named_candidate(const ScreeningResult& screening, double families);
 
 /// "vortex_shedding (physics): 8 cells, 700 effective, 0.2 to 12 Hz", and above which frequency it was not looked for where that is so.
-[[nodiscard]] std::string what_was_tried(const Screened& screened);
+[[nodiscard]] std::string what_was_tried(const ScreeningResult& screening);
 
 /// The same of an unknown curve.
 [[nodiscard]] Candidate unknown_candidate(const UnknownCurve& curve, double families, double p_accept);

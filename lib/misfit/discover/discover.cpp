@@ -10,8 +10,8 @@
 #include "misfit/core/units.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/discover/accept.h"
+#include "misfit/discover/alias.h"
 #include "misfit/discover/candidate.h"
-#include "misfit/discover/likeness.h"
 #include "misfit/discover/refit_jobs.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/math/statistics.h"
@@ -27,18 +27,18 @@ class Search {
         experiments_(experiments),
         registry_(registry),
         options_(options),
-        specimens_(specimens(estimate, request, registry, options.calibration)),
+        candidate_models_(candidate_models(estimate, request, registry, options.calibration)),
         score_(estimate),
-        path_(estimate) {}
+        force_(estimate) {}
 
   Discovery run() {
-    screened_ = screen(estimate_, score_, path_, specimens_, options_.threads, part(0.0, end_of_screen));
-    unknown_ = unknown_curves(estimate_, score_, path_, options_.threads, part(end_of_screen, end_of_curves));
-    families_ = static_cast<double>(screened_.size() + unknown_.size());
+    screening_ = screen(estimate_, score_, force_, candidate_models_, options_.threads, part(0.0, end_of_screen));
+    unknown_ = unknown_curves(estimate_, score_, force_, options_.threads, part(end_of_screen, end_of_curves));
+    families_ = static_cast<double>(screening_.size() + unknown_.size());
     rank();
     refit_best();
     if (options_.refits && !ranks().first()) return {};
-    left_ = accept_best(entries_, {estimate_, registry_, experiments_, options_, families_});
+    remaining_ = accept_best(ranked_, {estimate_, registry_, experiments_, options_, families_});
     list_unknown();
     describe_search();
     return std::move(out_);
@@ -47,14 +47,14 @@ class Search {
   /// Only the effect of the options, with the drop of one step, as a candidate among all families.
   Discovery predict() {
     const std::size_t curves =
-        features_of(estimate_, path_, hats_of_unknown_curves).size() * estimate_.model.system->spec().dynamic_ports.size();
-    families_ = static_cast<double>(specimens_.size() + curves);
-    std::erase_if(specimens_, [&](const Specimen& s) { return s.effect != options_.only; });
-    screened_ = screen(estimate_, score_, path_, specimens_, options_.threads, part(0.0, 1.0));
+        features_of(estimate_, force_, hats_of_unknown_curves).size() * estimate_.model.system->spec().dynamic_ports.size();
+    families_ = static_cast<double>(candidate_models_.size() + curves);
+    std::erase_if(candidate_models_, [&](const CandidateModel& s) { return s.effect != options_.only; });
+    screening_ = screen(estimate_, score_, force_, candidate_models_, options_.threads, part(0.0, 1.0));
     rank();
-    for (auto& e : entries_) {
-      if (e.screened->runs && !e.candidate.described)
-        e.candidate.predicted_drop = one_step(estimate_, score_, *e.screened, registry_, options_.threads).drop;
+    for (auto& e : ranked_) {
+      if (e.screening->runs && !e.candidate.described)
+        e.candidate.predicted_drop = one_step(estimate_, score_, *e.screening, registry_, options_.threads).drop;
       out_.candidates.push_back(e.candidate);
     }
     return std::move(out_);
@@ -75,18 +75,18 @@ class Search {
   }
 
   void rank() {
-    for (const auto& s : screened_) {
-      Entry entry;
-      entry.screened = &s;
+    for (const auto& s : screening_) {
+      RankedCandidate entry;
+      entry.screening = &s;
       entry.log_p = s.log_p;
       entry.candidate = named_candidate(s, families_);
-      entries_.push_back(std::move(entry));
+      ranked_.push_back(std::move(entry));
     }
-    sort_entries();
+    sort_ranked();
   }
 
-  void sort_entries() {
-    std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+  void sort_ranked() {
+    std::stable_sort(ranked_.begin(), ranked_.end(), [](const RankedCandidate& a, const RankedCandidate& b) {
       if (a.candidate.described != b.candidate.described) return b.candidate.described;
       if (a.refit.has_value() != b.refit.has_value()) return a.refit.has_value();
       return a.log_p < b.log_p;
@@ -96,22 +96,22 @@ class Search {
   /// All whose predicted drop is above half the best, if the screen says that there is anything.
   void refit_best() {
     double best = 0.0;
-    for (const auto& e : entries_) {
+    for (const auto& e : ranked_) {
       if (!e.candidate.described && e.candidate.p_value < 5.0 * options_.p_accept) best = std::max(best, e.candidate.predicted_drop);
     }
     if (!(best > 0.0)) return;
-    const auto worth_it = [&](const Entry& e) {
+    const auto worth_it = [&](const RankedCandidate& e) {
       return !e.candidate.described && e.candidate.p_value <= 5.0 * options_.p_accept && e.candidate.predicted_drop >= 0.5 * best;
     };
     const auto most = static_cast<std::size_t>(options_.most_refits);
-    const std::size_t count = std::min(most, static_cast<std::size_t>(std::count_if(entries_.begin(), entries_.end(), worth_it)));
-    std::vector<Entry*> chosen;
-    std::vector<const Screened*> effects;
-    for (auto& e : entries_) {
+    const std::size_t count = std::min(most, static_cast<std::size_t>(std::count_if(ranked_.begin(), ranked_.end(), worth_it)));
+    std::vector<RankedCandidate*> chosen;
+    std::vector<const ScreeningResult*> effects;
+    for (auto& e : ranked_) {
       if (chosen.size() >= count) break;
       if (!worth_it(e)) continue;
       chosen.push_back(&e);
-      effects.push_back(e.screened);
+      effects.push_back(e.screening);
     }
     auto refits = refit_all({estimate_, score_, experiments_, registry_}, effects, options_.threads, options_.refits,
                             part(end_of_curves, end_of_refits), options_.stop);
@@ -119,12 +119,12 @@ class Search {
     for (std::size_t k = 0; k < refits->size(); ++k) {  // none on ranks other than the first
       chosen[k]->candidate.predicted_drop = (*refits)[k].predicted_drop;
       chosen[k]->refit = std::move((*refits)[k].refit);
-      take_refit(*chosen[k]);
+      store_refit(*chosen[k]);
     }
-    sort_entries();
+    sort_ranked();
   }
 
-  void take_refit(Entry& e) const {
+  void store_refit(RankedCandidate& e) const {
     Candidate& c = e.candidate;
     if (!e.refit->ok) {
       c.why = e.refit->why;
@@ -132,21 +132,21 @@ class Search {
       return;
     }
     c.actual_drop = e.refit->drop;
-    e.log_p = log_score_tail(*e.screened->specimen, e.refit->drop) + std::log(e.screened->cells_effective);
+    e.log_p = log_score_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
     c.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families_);
     c.parameters = e.refit->parameters;
     for (int port : e.refit->estimate.forced.force_ports) {
-      const PortSpec& named = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
-      c.force[named.name] = {e.refit->estimate.noise.force, 0.0, named.unit};
+      const PortSpec& spec = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
+      c.force[spec.name] = {e.refit->estimate.noise.force, 0.0, spec.unit};
     }
   }
 
   void list_unknown() {
-    for (auto& e : entries_) {
+    for (auto& e : ranked_) {
       const std::string p = "family-wise p " + format_probability(e.candidate.p_value);
       if (e.candidate.why.empty()) {
         e.candidate.why = e.candidate.p_value < options_.p_accept
-                              ? p + ", but less than half of the best's predicted drop: screened again once that is in"
+                              ? p + ", but less than half of the best predicted drop: tested again with the best in the model"
                               : "not significant: " + p;
       }
       out_.candidates.push_back(e.candidate);
@@ -158,30 +158,30 @@ class Search {
 
   void describe_search() {
     for (int port : estimate_.forced.force_ports) {
-      const PortSpec& named = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
-      out_.force[named.name] = {estimate_.noise.force, 0.0, named.unit};
+      const PortSpec& spec = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
+      out_.force[spec.name] = {estimate_.noise.force, 0.0, spec.unit};
     }
-    for (const auto& s : screened_) out_.tried.push_back(what_was_tried(s));
+    for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
     std::string curves = "unknown curves:";
     for (const auto& curve : unknown_) curves += " " + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
     const std::optional<Unexplained> open = unexplained();
     write_verdict(out_, open, options_.p_accept, options_.calibration != nullptr);
-    add_likenesses(screened_, score_, out_);
+    report_sensor_aliases(screening_, score_, out_);
     add_camera_remarks(options_.calibration, options_.p_accept, out_);
   }
 
   /// What depends on a quantity in a way that no named effect has.
   std::optional<Unexplained> unexplained() const {
-    // What a likeness leaves is told by its own quantities; a curve that explains more than the likeness does tells better.
-    const bool likeness_better = !unknown_.empty() && !entries_.empty() && entries_.front().log_p < unknown_.front().log_p;
-    if (left_ && (unknown_.empty() || likeness_better)) return Unexplained{left_->port, left_->quantity, left_->p_value};
+    // What an alias leaves is described by its own quantities; a curve that explains more than the alias does is the better description.
+    const bool alias_better = !unknown_.empty() && !ranked_.empty() && ranked_.front().log_p < unknown_.front().log_p;
+    if (remaining_ && (unknown_.empty() || alias_better)) return Unexplained{remaining_->port, remaining_->quantity, remaining_->p_value};
     if (!out_.candidates.empty() && out_.candidates.front().accepted) return std::nullopt;
     if (unknown_.empty()) return std::nullopt;
     const UnknownCurve& best = unknown_.front();
     const double p = sidak(best.p_value, families_);
     if (!(p < options_.p_accept)) return std::nullopt;
-    const bool named_better = !entries_.empty() && entries_.front().refit && entries_.front().log_p < best.log_p;
+    const bool named_better = !ranked_.empty() && ranked_.front().refit && ranked_.front().log_p < best.log_p;
     if (named_better) return std::nullopt;  // what a known effect explains better is not unknown, though it is not accepted
     return Unexplained{best.port, best.quantity, p};
   }
@@ -190,13 +190,13 @@ class Search {
   const std::vector<Signals>& experiments_;
   const Registry& registry_;
   DiscoverOptions options_;
-  std::vector<Specimen> specimens_;
+  std::vector<CandidateModel> candidate_models_;
   ScoreTest score_;
-  ForceColumns path_;
-  std::vector<Screened> screened_;
+  ForceSensitivity force_;
+  std::vector<ScreeningResult> screening_;
   std::vector<UnknownCurve> unknown_;
-  std::vector<Entry> entries_;
-  std::optional<UnknownCurve> left_;
+  std::vector<RankedCandidate> ranked_;
+  std::optional<UnknownCurve> remaining_;
   double families_ = 1.0;
   Discovery out_;
 };

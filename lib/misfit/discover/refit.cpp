@@ -25,10 +25,10 @@ std::vector<Penalty> same_roughness(const Model& model, const FilterEstimate& fr
 }
 
 /// log prior of the effect being off: its strengths at 0.
-double prior_of_off(const Specimen& specimen) {
+double prior_of_off(const CandidateModel& candidate_model) {
   double sum = 0.0;
-  for (Eigen::Index i = 0; i < specimen.priors.precision.size(); ++i)
-    sum -= 0.5 * specimen.priors.precision[i] * specimen.priors.mean[i] * specimen.priors.mean[i];
+  for (Eigen::Index i = 0; i < candidate_model.priors.precision.size(); ++i)
+    sum -= 0.5 * candidate_model.priors.precision[i] * candidate_model.priors.mean[i] * candidate_model.priors.mean[i];
   return sum;
 }
 
@@ -64,33 +64,34 @@ std::vector<std::vector<SampleRole>> without_last_quarter(const FilterEstimate& 
 
 }  // namespace
 
-Model start_model(const FilterEstimate& without, const Screened& screened, const Registry& registry) {
-  const Specimen& specimen = *screened.specimen;
-  Model model = assemble(specimen.request, registry);
+Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry) {
+  const CandidateModel& candidate_model = *screening.candidate_model;
+  Model model = assemble(candidate_model.request, registry);
   for (std::size_t i = 0; i < without.model.parameters.size(); ++i) {  // the effect's own follow behind; names may have changed
     model.parameters[i].value = without.model.parameters[i].value;
     model.parameters[i].free = without.model.parameters[i].free;
   }
-  for (std::size_t i = 0; i < specimen.strengths.size(); ++i) {
-    Parameter& p = model.parameters[static_cast<std::size_t>(specimen.strengths[i])];
+  for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i) {
+    Parameter& p = model.parameters[static_cast<std::size_t>(candidate_model.strengths[i])];
     const auto k = static_cast<Eigen::Index>(i);
-    p.value = std::clamp(screened.result.amplitude[k], p.lower, p.upper);
+    p.value = std::clamp(screening.result.amplitude[k], p.lower, p.upper);
     p.free = true;
-    if (specimen.priors.precision[k] > 0.0) {
-      p.prior_sigma = 1.0 / std::sqrt(specimen.priors.precision[k]);
-      p.prior_mean = specimen.priors.mean[k];
+    if (candidate_model.priors.precision[k] > 0.0) {
+      p.prior_sigma = 1.0 / std::sqrt(candidate_model.priors.precision[k]);
+      p.prior_mean = candidate_model.priors.mean[k];
     }
   }
-  for (std::size_t i = 0; i < screened.cell.size(); ++i) {
-    const int shape = i < specimen.shapes.size() ? specimen.shapes[i] : specimen.frequency;
-    model.parameters[static_cast<std::size_t>(shape)].value = screened.cell[i];
+  for (std::size_t i = 0; i < screening.cell.size(); ++i) {
+    const int shape = i < candidate_model.shapes.size() ? candidate_model.shapes[i] : candidate_model.frequency;
+    model.parameters[static_cast<std::size_t>(shape)].value = screening.cell[i];
   }
   return model;
 }
 
-OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Screened& screened, const Registry& registry, int threads) {
-  Model model = start_model(without, screened, registry);
-  const Eigen::VectorXd step = score.step_beside(screened.columns, screened.result.amplitude);
+OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const ScreeningResult& screening, const Registry& registry,
+                 int threads) {
+  Model model = start_model(without, screening, registry);
+  const Eigen::VectorXd step = score.adjusted_step(screening.columns, screening.result.amplitude);
   const std::vector<int> free = without.model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c) {
     Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
@@ -104,21 +105,21 @@ OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Sc
   std::vector<FilterTrace> traces(without.data.size());
   for (std::size_t e = 0; e < without.data.size(); ++e) {
     data.push_back(filter_data_like(forced, without.data[e]));
-    if (!runner.run(data[e], without.noise, traces[e])) return {screened.result.chi2, std::nullopt, {}};
+    if (!runner.run(data[e], without.noise, traces[e])) return {screening.result.chi2, std::nullopt, {}};
   }
   constexpr int steps_of_noise = 3;
   const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, without.around, threads, steps_of_noise);
   const double objective = -noise.minus_loglik + log_prior(model, same_roughness(model, without));
-  const double drop = 2.0 * (objective - without.objective - prior_of_off(*screened.specimen));
-  OneStep out{std::max(drop, screened.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing
+  const double drop = 2.0 * (objective - without.objective - prior_of_off(*screening.candidate_model));
+  OneStep out{std::max(drop, screening.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing
   if (drop > 0.0) out.model = std::move(model);
   return out;
 }
 
-Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened, const Registry& registry,
-            int threads, const OneStep& from) {
+Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const ScreeningResult& screening,
+            const Registry& registry, int threads, const OneStep& from) {
   Refit out;
-  out.request = screened.specimen->request;
+  out.request = screening.candidate_model->request;
   const auto climb = [&](const Model& start, const FilterNoise& noise) {
     FilterOptions options = like(without, threads);
     options.noise = noise;
@@ -131,10 +132,10 @@ Refit refit(const FilterEstimate& without, const std::vector<Signals>& experimen
     }
   };
   if (from.model) climb(*from.model, from.noise);
-  if (!out.ok || !out.estimate.converged) climb(start_model(without, screened, registry), without.noise);
+  if (!out.ok || !out.estimate.converged) climb(start_model(without, screening, registry), without.noise);
   if (!out.ok) return out;
   out.drop = 2.0 * (out.estimate.objective + still_to_gain(out.estimate) - without.objective - still_to_gain(without) -
-                    prior_of_off(*screened.specimen));
+                    prior_of_off(*screening.candidate_model));
   const std::vector<int> free = out.estimate.model.free_parameters();
   const BoundEffect& bound = out.estimate.model.effects.back();
   for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
@@ -144,10 +145,10 @@ Refit refit(const FilterEstimate& without, const std::vector<Signals>& experimen
     const auto column = std::find(free.begin(), free.end(), at) - free.begin();
     const bool known = column < static_cast<std::ptrdiff_t>(free.size()) && out.estimate.covariance.size() > 0;
     double sigma = known ? std::sqrt(std::max(out.estimate.covariance(column, column), 0.0)) : 0.0;
-    // With the gains held the covariance believes too much of a sensor effect (specimen_columns): the screen's is from whole runs.
-    const auto strength = std::find(screened.specimen->strengths.begin(), screened.specimen->strengths.end(), at);
-    const auto place = strength - screened.specimen->strengths.begin();
-    if (screened.specimen->family == "sensor" && place < screened.result.sigma.size()) sigma = screened.result.sigma[place];
+    // With the gains held the covariance believes too much of a sensor effect (sensitivity_columns): the screen's is from whole runs.
+    const auto strength = std::find(screening.candidate_model->strengths.begin(), screening.candidate_model->strengths.end(), at);
+    const auto place = strength - screening.candidate_model->strengths.begin();
+    if (screening.candidate_model->family == "sensor" && place < screening.result.sigma.size()) sigma = screening.result.sigma[place];
     out.parameters[p.name] = {p.value, sigma, p.unit};
   }
   return out;

@@ -6,7 +6,7 @@
 
 namespace misfit {
 
-/// The model with one effect more, at its own maximum over everything, on the same readings and with the same roughness weights.
+/// The model with one effect more, at its own maximum over everything, on the same measurements and with the same roughness weights.
 struct Refit {
   bool ok = false;    ///< it could be run; whether a maximum was reached is estimate.converged
   std::string why;    ///< of failing
@@ -17,7 +17,7 @@ struct Refit {
 };
 
 /// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
-[[nodiscard]] Model start_model(const FilterEstimate& without, const Screened& screened, const Registry& registry);
+[[nodiscard]] Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry);
 
 /// One Gauss–Newton step of all parameters from the estimate with the effect at its screened strength: the model is run there once and the
 /// noise fitted about that run, since what is explained leaves the random force.
@@ -26,12 +26,12 @@ struct OneStep {
   std::optional<Model> model;  ///< where it ended; nullopt: it could not be run, or is no better than the estimate
   FilterNoise noise;           ///< there
 };
-[[nodiscard]] OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Screened& screened, const Registry& registry,
-                               int threads);
+[[nodiscard]] OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const ScreeningResult& screening,
+                               const Registry& registry, int threads);
 
 /// `from`: where to start, if it ended anywhere. Where no maximum is reached from there, and without it: from the estimate with the effect
 /// added to it, which an effect that the other parameters must make room for can throw out of the finite numbers.
-[[nodiscard]] Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const Screened& screened,
+[[nodiscard]] Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const ScreeningResult& screening,
                           const Registry& registry, int threads, const OneStep& from = {});
 
 /// Gain of the held-out log-likelihood. Where the study holds nothing out, both models are fitted again without the last quarter of every

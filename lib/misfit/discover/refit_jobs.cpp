@@ -16,37 +16,37 @@ void fields(Bytes& bytes, Data& estimate) {
 
 namespace {
 
-SteppedRefit stepped(const RefitWork& work, const Screened& effect, int threads) {
+SteppedRefit stepped(const RefitWork& work, const ScreeningResult& effect, int threads) {
   const OneStep step = one_step(work.without, work.score, effect, work.registry, threads);
   return {step.drop, refit(work.without, work.experiments, effect, work.registry, threads, step)};
 }
 
 }  // namespace
 
-std::string pack(const SteppedRefit& result, const Screened& effect) {
+std::string pack(const SteppedRefit& result, const ScreeningResult& effect) {
   const auto& [ok, why, drop, estimate, request, parameters] = result.refit;
-  static_cast<void>(request);  // the specimen's
+  static_cast<void>(request);  // the candidate model's
   ByteWriter bytes;
-  bytes(effect.specimen->effect, effect.specimen->roles, result.predicted_drop, ok, why, drop, parameters);
+  bytes(effect.candidate_model->effect, effect.candidate_model->roles, result.predicted_drop, ok, why, drop, parameters);
   if (ok) write_estimate(bytes, estimate);
   return bytes.take();
 }
 
-SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const Screened& effect) {
+SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const ScreeningResult& effect) {
   ByteReader reader(bytes);
   SteppedRefit out;
   std::string name;
   std::map<std::string, std::string> roles;
   reader(name, roles, out.predicted_drop, out.refit.ok, out.refit.why, out.refit.drop, out.refit.parameters);
-  if (name != effect.specimen->effect || roles != effect.specimen->roles)
-    throw RunError("a stored refit is of '" + name + "' and not of '" + effect.specimen->effect + "'");
-  out.refit.request = effect.specimen->request;
+  if (name != effect.candidate_model->effect || roles != effect.candidate_model->roles)
+    throw RunError("a stored refit is of '" + name + "' and not of '" + effect.candidate_model->effect + "'");
+  out.refit.request = effect.candidate_model->request;
   if (out.refit.ok) out.refit.estimate = read_estimate(reader, start_model(work.without, effect, work.registry), work.experiments);
   if (!reader.at_end()) throw RunError("a stored refit of '" + name + "' is too long");
   return out;
 }
 
-std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const std::vector<const Screened*>& effects, int threads,
+std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const std::vector<const ScreeningResult*>& effects, int threads,
                                                    const std::optional<StoredJobs>& stored, const ProgressFn& progress,
                                                    const std::atomic<bool>* stop) {
   const int within = effects.size() > 1 || ranks_started() > 1 ? 1 : threads;

@@ -25,14 +25,14 @@ struct RefitWork {
 
 /// A job each, in the order of `effects`; the answer does not depend on threads and ranks.
 ///
-/// With `stored` (its `count` is told by the effects) each is on disk when it ends and the ranks share them (run_stored_jobs()): a search
+/// With `stored` (its `count` follows from the effects) each is on disk when it ends and the ranks share them (run_stored_jobs()): a search
 /// begun again goes on; on ranks other than the first the answer is empty. nullopt if `stop` became true before all were done.
-[[nodiscard]] std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const std::vector<const Screened*>& effects,
+[[nodiscard]] std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const std::vector<const ScreeningResult*>& effects,
                                                                  int threads, const std::optional<StoredJobs>& stored,
                                                                  const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
 
 /// To the last bit, and back beside what it was made of. RunError: the bytes are of another refit.
-[[nodiscard]] std::string pack(const SteppedRefit& result, const Screened& effect);
-[[nodiscard]] SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const Screened& effect);
+[[nodiscard]] std::string pack(const SteppedRefit& result, const ScreeningResult& effect);
+[[nodiscard]] SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const ScreeningResult& effect);
 
 }  // namespace misfit

@@ -10,18 +10,19 @@
 
 namespace misfit {
 
-double log_score_tail(const Specimen& specimen, double chi2) {
+double log_score_tail(const CandidateModel& candidate_model, double chi2) {
   if (!(chi2 > 0.0)) return 0.0;
-  const bool one_side = specimen.strengths.size() == 1 && specimen.one_sided.front();
-  return log_chi_square_tail(chi2, static_cast<double>(specimen.strengths.size())) + (one_side ? std::log(0.5) : 0.0);
+  const bool one_side = candidate_model.strengths.size() == 1 && candidate_model.one_sided.front();
+  return log_chi_square_tail(chi2, static_cast<double>(candidate_model.strengths.size())) + (one_side ? std::log(0.5) : 0.0);
 }
 
-CellScore score_cell(const FilterEstimate& estimate, const ScoreTest& score, const Specimen& specimen, const std::vector<double>& at) {
+CellScore score_cell(const FilterEstimate& estimate, const ScoreTest& score, const CandidateModel& candidate_model,
+                     const std::vector<double>& at) {
   CellScore cell;
-  cell.columns = specimen_columns(estimate, specimen, at);
+  cell.columns = sensitivity_columns(estimate, candidate_model, at);
   if (cell.columns.size() == 0) return cell;
-  cell.result = score.test(cell.columns, specimen.has_priors ? &specimen.priors : nullptr);
-  if (specimen.strengths.size() == 1 && specimen.one_sided.front() && cell.result.amplitude[0] < 0.0) {
+  cell.result = score.test(cell.columns, candidate_model.has_priors ? &candidate_model.priors : nullptr);
+  if (candidate_model.strengths.size() == 1 && candidate_model.one_sided.front() && cell.result.amplitude[0] < 0.0) {
     cell.result.chi2 = 0.0;
     cell.result.amplitude.setZero();
   }
@@ -47,9 +48,9 @@ double novelty(const ScoreTest& score, const Eigen::MatrixXd& a, const Eigen::Ma
 }
 
 /// The nearest scanned value on one side of `from`; `from` if there is none.
-double neighbour(const Specimen& specimen, std::size_t shape, double from, double side) {
+double neighbour(const CandidateModel& candidate_model, std::size_t shape, double from, double side) {
   double best = from;
-  for (const auto& cell : specimen.cells) {
+  for (const auto& cell : candidate_model.cells) {
     const bool beyond = side * (cell[shape] - from) > 0.0;
     if (beyond && (best == from || std::abs(cell[shape] - from) < std::abs(best - from))) best = cell[shape];
   }
@@ -58,20 +59,20 @@ double neighbour(const Specimen& specimen, std::size_t shape, double from, doubl
 
 /// Looks between the best cell and its neighbours, twice as finely each time: a shape between two cells would otherwise seem weaker than
 /// it is.
-void look_closer(const FilterEstimate& estimate, const ScoreTest& score, Screened& best) {
-  const Specimen& specimen = *best.specimen;
+void refine_cell(const FilterEstimate& estimate, const ScoreTest& score, ScreeningResult& best) {
+  const CandidateModel& candidate_model = *best.candidate_model;
   const std::vector<double> grid = best.cell;
   constexpr double fractions[] = {0.5, 0.25};
   for (const double fraction : fractions) {
-    for (std::size_t i = 0; i < specimen.shapes.size(); ++i) {
-      const Parameter& p = specimen.model.parameters[static_cast<std::size_t>(specimen.shapes[i])];
+    for (std::size_t i = 0; i < candidate_model.shapes.size(); ++i) {
+      const Parameter& p = candidate_model.model.parameters[static_cast<std::size_t>(candidate_model.shapes[i])];
       const std::vector<double> middle = best.cell;
-      const double between[] = {neighbour(specimen, i, grid[i], -1.0), neighbour(specimen, i, grid[i], 1.0)};
+      const double between[] = {neighbour(candidate_model, i, grid[i], -1.0), neighbour(candidate_model, i, grid[i], 1.0)};
       for (const double to : between) {
         std::vector<double> at = middle;
         at[i] = std::clamp(at[i] + fraction * (to - grid[i]), p.lower, p.upper);
         if (at[i] == middle[i]) continue;
-        CellScore cell = score_cell(estimate, score, specimen, at);
+        CellScore cell = score_cell(estimate, score, candidate_model, at);
         if (cell.columns.size() == 0 || !(cell.result.chi2 > best.result.chi2)) continue;
         best.result = cell.result;
         best.columns = std::move(cell.columns);
@@ -82,7 +83,7 @@ void look_closer(const FilterEstimate& estimate, const ScoreTest& score, Screene
 }
 
 /// The strongest of the lines, as frequencies.
-std::vector<double> peaks(const LineGrid& grid, const std::vector<double>& power) {
+std::vector<double> peaks(const FrequencyGrid& grid, const std::vector<double>& power) {
   constexpr std::size_t most = 8;
   std::vector<std::size_t> order(grid.count);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -95,25 +96,26 @@ std::vector<double> peaks(const LineGrid& grid, const std::vector<double>& power
 }
 
 /// Frequencies whose line in the score of the force steps stands out most.
-std::vector<double> frequency_peaks(const FilterEstimate& estimate, const Specimen& specimen, const ForceColumns& path, LineGrid& grid) {
+std::vector<double> frequency_peaks(const FilterEstimate& estimate, const CandidateModel& candidate_model, const ForceSensitivity& force,
+                                    FrequencyGrid& grid) {
   SampleTimes times;
   for (std::size_t e = 0, from = 0; e < estimate.traces.size(); from += estimate.traces[e++].samples) {
-    const auto first = path.times().begin() + static_cast<std::ptrdiff_t>(from);
+    const auto first = force.times().begin() + static_cast<std::ptrdiff_t>(from);
     times.emplace_back(first, first + static_cast<std::ptrdiff_t>(estimate.traces[e].samples));
   }
-  grid = line_grid(times, specimen.frequency_from, specimen.frequency_to, specimen.ports.size());
+  grid = frequency_grid(times, candidate_model.frequency_from, candidate_model.frequency_to, candidate_model.ports.size());
   std::vector<double> power(grid.count, 0.0);
-  for (int port : specimen.ports) add_over_background(line_power(path.score_of_steps(port), times, grid), power);
+  for (int port : candidate_model.ports) add_over_background(periodogram(force.score_of_steps(port), times, grid), power);
   return peaks(grid, power);
 }
 
-/// The cells of a specimen; one with a frequency has each of its other cells at every peak.
-std::vector<std::vector<double>> cells_of(const FilterEstimate& estimate, const Specimen& specimen, const ForceColumns& path,
-                                          LineGrid& frequencies) {
-  if (specimen.frequency < 0) return specimen.cells;
+/// The cells of a candidate model; one with a frequency has each of its other cells at every peak.
+std::vector<std::vector<double>> cells_of(const FilterEstimate& estimate, const CandidateModel& candidate_model,
+                                          const ForceSensitivity& force, FrequencyGrid& frequencies) {
+  if (candidate_model.frequency < 0) return candidate_model.cells;
   std::vector<std::vector<double>> out;
-  for (double f : frequency_peaks(estimate, specimen, path, frequencies)) {
-    for (auto cell : specimen.cells) {
+  for (double f : frequency_peaks(estimate, candidate_model, force, frequencies)) {
+    for (auto cell : candidate_model.cells) {
       cell.push_back(f);
       out.push_back(std::move(cell));
     }
@@ -130,14 +132,14 @@ double log_chi_square_tail(double x, double dof) {
   return (0.5 * dof - 1.0) * std::log(0.5 * x) - 0.5 * x - std::lgamma(0.5 * dof);
 }
 
-std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
-                             const std::vector<Specimen>& specimens, int threads, const ProgressFn& progress) {
-  std::vector<Screened> out(specimens.size());
-  std::vector<std::vector<std::vector<double>>> cells(specimens.size());
-  std::vector<LineGrid> frequencies(specimens.size());
-  std::vector<std::pair<std::size_t, std::size_t>> jobs;  // specimen, cell
-  for (std::size_t s = 0; s < specimens.size(); ++s) {
-    cells[s] = cells_of(estimate, specimens[s], path, frequencies[s]);
+std::vector<ScreeningResult> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
+                                    const std::vector<CandidateModel>& candidate_models, int threads, const ProgressFn& progress) {
+  std::vector<ScreeningResult> out(candidate_models.size());
+  std::vector<std::vector<std::vector<double>>> cells(candidate_models.size());
+  std::vector<FrequencyGrid> frequencies(candidate_models.size());
+  std::vector<std::pair<std::size_t, std::size_t>> jobs;  // candidate model, cell
+  for (std::size_t s = 0; s < candidate_models.size(); ++s) {
+    cells[s] = cells_of(estimate, candidate_models[s], force, frequencies[s]);
     for (std::size_t c = 0; c < cells[s].size(); ++c) jobs.emplace_back(s, c);
   }
   std::vector<std::vector<CellScore>> results;
@@ -146,12 +148,12 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
       jobs.size(), threads,
       [&](std::size_t j) {
         const auto [s, c] = jobs[j];
-        results[s][c] = score_cell(estimate, score, specimens[s], cells[s][c]);
+        results[s][c] = score_cell(estimate, score, candidate_models[s], cells[s][c]);
       },
       progress);
-  run_jobs(specimens.size(), threads, [&](std::size_t s) {
-    Screened& best = out[s];
-    best.specimen = &specimens[s];
+  run_jobs(candidate_models.size(), threads, [&](std::size_t s) {
+    ScreeningResult& best = out[s];
+    best.candidate_model = &candidate_models[s];
     best.runs = false;
     best.cells = cells[s].size();
     for (std::size_t c = 0; c < cells[s].size(); ++c) {
@@ -163,27 +165,27 @@ std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& sc
         best.columns = cell.columns;
       }
       best.runs = true;
-      if (c > 0 && specimens[s].frequency < 0) best.cells_effective += novelty(score, results[s][c - 1].columns, cell.columns);
+      if (c > 0 && candidate_models[s].frequency < 0) best.cells_effective += novelty(score, results[s][c - 1].columns, cell.columns);
     }
-    if (specimens[s].frequency >= 0) {
+    if (candidate_models[s].frequency >= 0) {
       best.frequencies = frequencies[s];
       best.cells_effective = std::max(0.5 * static_cast<double>(frequencies[s].count), 1.0);  // two steps of a half width each are one line
     }
     if (!best.runs || best.result.dof == 0) return;
-    constexpr double worth_a_closer_look = 0.1;
-    if (!specimens[s].shapes.empty() &&
-        sidak(chi_square_tail(best.result.chi2, best.result.dof), best.cells_effective) < worth_a_closer_look)
-      look_closer(estimate, score, best);
-    best.log_p = log_score_tail(specimens[s], best.result.chi2);
+    constexpr double worth_refining = 0.1;
+    if (!candidate_models[s].shapes.empty() &&
+        sidak(chi_square_tail(best.result.chi2, best.result.dof), best.cells_effective) < worth_refining)
+      refine_cell(estimate, score, best);
+    best.log_p = log_score_tail(candidate_models[s], best.result.chi2);
     best.p_value = sidak(std::exp(best.log_p), best.cells_effective);
     best.log_p += std::log(best.cells_effective);
   });
   return out;
 }
 
-std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path, int threads,
+std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force, int threads,
                                          const ProgressFn& progress) {
-  const std::vector<Features> features = features_of(estimate, path, hats_of_unknown_curves);
+  const std::vector<Features> features = features_of(estimate, force, hats_of_unknown_curves);
   const auto& ports = estimate.model.system->spec().dynamic_ports;
   std::vector<UnknownCurve> out(features.size() * ports.size());
   const auto test = [&](std::size_t k) {
@@ -193,7 +195,7 @@ std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const S
     curve.port = ports[k % ports.size()].name;
     curve.quantity = f.quantity;
     curve.quantity_index = f.index;
-    curve.result = score.test(path.columns(curve.port_index, f.f, f.ahead));
+    curve.result = score.test(force.columns(curve.port_index, f.f, f.ahead));
     if (curve.result.dof == 0) return;
     curve.log_p = log_chi_square_tail(curve.result.chi2, curve.result.dof);
     curve.p_value = std::exp(curve.log_p);

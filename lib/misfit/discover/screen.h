@@ -2,23 +2,23 @@
 
 #include "misfit/core/work_queue.h"
 #include "misfit/diagnose/features.h"
-#include "misfit/discover/lines.h"
-#include "misfit/discover/specimen.h"
+#include "misfit/discover/candidate_model.h"
+#include "misfit/discover/frequency_scan.h"
 
 namespace misfit {
 
-/// Score of a specimen's strengths at a cell. One strength that cannot be negative and would have to be: nothing there, chi² 0. Columns are
-/// empty where the model cannot be run so.
+/// Score of a candidate model's strengths at a cell. One strength that cannot be negative and would have to be: nothing there, chi² 0.
+/// Columns are empty where the model cannot be run so.
 struct CellScore {
   ScoreResult result;
   Eigen::MatrixXd columns;
 };
-[[nodiscard]] CellScore score_cell(const FilterEstimate& estimate, const ScoreTest& score, const Specimen& specimen,
+[[nodiscard]] CellScore score_cell(const FilterEstimate& estimate, const ScoreTest& score, const CandidateModel& candidate_model,
                                    const std::vector<double>& at);
 
-/// What the score test says of a specimen, at its best cell.
-struct Screened {
-  const Specimen* specimen = nullptr;
+/// What the score test says of a candidate model, at its best cell.
+struct ScreeningResult {
+  const CandidateModel* candidate_model = nullptr;
   std::vector<double> cell;  ///< shapes, then the frequency if it has one
   ScoreResult result;
   Eigen::MatrixXd columns;       ///< at the best cell
@@ -27,20 +27,21 @@ struct Screened {
   double log_p = 0.0;            ///< natural logarithm of the p-value of the best cell: ranks what is below 1e-300
   bool runs = true;              ///< false: the model cannot be run with it
   std::size_t cells = 0;
-  LineGrid frequencies;  ///< that were scanned; none where it has no frequency
+  FrequencyGrid frequencies;  ///< that were scanned; none where it has no frequency
 };
 
-/// Score tests of all cells of all specimens. Frequencies are scanned in steps of 1/(4T) by their line in the score of the force steps
-/// (line_grid), and the strongest are then tested exactly. Independent of the number of threads.
-[[nodiscard]] std::vector<Screened> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
-                                           const std::vector<Specimen>& specimens, int threads, const ProgressFn& progress = {});
+/// Score tests of all cells of all candidate models. Frequencies are scanned in steps of 1/(4T) by their line in the score of the force
+/// steps (frequency_grid), and the strongest are then tested exactly. Independent of the number of threads.
+[[nodiscard]] std::vector<ScreeningResult> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
+                                                  const std::vector<CandidateModel>& candidate_models, int threads,
+                                                  const ProgressFn& progress = {});
 
 /// Hats per quantity of the unknown curves.
 inline constexpr int hats_of_unknown_curves = 8;
 
-/// log p-value of a specimen's chi² by chance, in a score as in a refit: of a single strength that cannot be negative only one side counts;
-/// 1 where there is nothing.
-[[nodiscard]] double log_score_tail(const Specimen& specimen, double chi2);
+/// log p-value of a candidate model's chi² by chance, in a score as in a refit: of a single strength that cannot be negative only one side
+/// counts; 1 where there is nothing.
+[[nodiscard]] double log_score_tail(const CandidateModel& candidate_model, double chi2);
 
 /// Unknown curves: hat functions of every quantity on every dynamic port.
 struct UnknownCurve {
@@ -49,8 +50,8 @@ struct UnknownCurve {
   ScoreResult result;
   double log_p = 0.0, p_value = 1.0;
 };
-[[nodiscard]] std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score, const ForceColumns& path,
-                                                       int threads, const ProgressFn& progress = {});
+[[nodiscard]] std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score,
+                                                       const ForceSensitivity& force, int threads, const ProgressFn& progress = {});
 
 /// log P(chi² > x), accurate where the probability underflows.
 [[nodiscard]] double log_chi_square_tail(double x, double dof);

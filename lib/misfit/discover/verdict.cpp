@@ -22,10 +22,10 @@ bool is_sensor(const Discovery& discovery, const std::string& effect) {
                      [&](const Candidate& c) { return effect_at(c.effect, c.roles) == effect && c.family == "sensor"; });
 }
 
-void separate(const Candidate& best, bool camera, Discovery& discovery) {
+void suggest_experiment(const Candidate& best, bool camera, Discovery& discovery) {
   if (best.group.empty()) return;
   const bool sensor = std::any_of(best.group.begin(), best.group.end(), [&](const std::string& e) { return is_sensor(discovery, e); });
-  std::string sentence = "these data cannot tell " + join_words(best.group) + " apart: ";
+  std::string sentence = "these data cannot distinguish " + join_words(best.group) + ": ";
   if (camera && sensor) {
     sentence += "a calibration sweep that measures roll, image centre and scale with both image coordinates would";
   } else if (camera) {
@@ -37,8 +37,8 @@ void separate(const Candidate& best, bool camera, Discovery& discovery) {
   discovery.sentences.push_back(sentence);
 }
 
-/// Whoever reads the drops asks why the largest is not the one accepted.
-void name_larger_drops(const Candidate& best, Discovery& discovery) {
+/// Why the largest drop is not the one accepted.
+void note_larger_drops(const Candidate& best, Discovery& discovery) {
   for (const Candidate& other : discovery.candidates) {
     if (!other.actual_drop || !best.actual_drop || !(*other.actual_drop > *best.actual_drop)) continue;
     discovery.sentences.push_back(effect_at(other.effect, other.roles) + " has a larger drop (" + format_value(*other.actual_drop) +
@@ -46,8 +46,8 @@ void name_larger_drops(const Candidate& best, Discovery& discovery) {
   }
 }
 
-/// What the flight asks for besides the camera's: accepted, of unknown form, or significant without being either; empty: nothing.
-std::string asked_by_flight(const Discovery& discovery, double p_accept) {
+/// What the flight gives evidence of besides the camera: accepted, of unknown form, or significant without being either; empty: nothing.
+std::string physics_evidence(const Discovery& discovery, double p_accept) {
   const auto physical = [](const Candidate& c) { return c.family != "sensor"; };
   for (const Candidate& c : discovery.candidates) {
     if (c.accepted && physical(c)) return effect_at(c.effect, c.roles);
@@ -65,7 +65,7 @@ std::string asked_by_flight(const Discovery& discovery, double p_accept) {
 
 void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept, bool camera) {
   if (out.candidates.empty()) {
-    out.verdict = "No effect of the library suits this system: nothing could be tried.";
+    out.verdict = "No effect of the library suits this system: none was tested.";
     return;
   }
   const Candidate& best = out.candidates.front();
@@ -73,24 +73,23 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     out.verdict = "Missing: " + effect_at(best.effect, best.roles) + " (drop " +
                   format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise p " + format_probability(best.p_value) +
                   "): " + numbers(best) + ".";
-    separate(best, camera, out);
-    name_larger_drops(best, out);
+    suggest_experiment(best, camera, out);
+    note_larger_drops(best, out);
     return;
   }
   if (unexplained) {
     out.unexplained_port = unexplained->port;
     out.unexplained_quantity = unexplained->quantity;
     out.verdict = "Something is missing that depends on " + unexplained->quantity + " (a force on " + unexplained->port + ", p " +
-                  format_probability(unexplained->p_value) + "), and none of the effects I know explains it.";
+                  format_probability(unexplained->p_value) + "), and no effect of the library explains it.";
     if (best.actual_drop)
-      out.sentences.push_back("the nearest named effect is " + effect_at(best.effect, best.roles) + " (drop " +
+      out.sentences.push_back("the best candidate of the library is " + effect_at(best.effect, best.roles) + " (drop " +
                               format_value(*best.actual_drop) + "): " + best.why);
     return;
   }
   if (best.actual_drop && best.p_value < p_accept) {
-    out.verdict = "Nothing can be accepted: " + effect_at(best.effect, best.roles) + " comes nearest (drop " +
-                  format_value(*best.actual_drop) + ", family-wise p " + format_probability(best.p_value) + "), but " + best.why +
-                  ". More data would decide.";
+    out.verdict = "No effect accepted; best candidate " + effect_at(best.effect, best.roles) + " (drop " + format_value(*best.actual_drop) +
+                  ", family-wise p " + format_probability(best.p_value) + "), rejected: " + best.why + ".";
     return;
   }
   double least = 1.0;
@@ -101,9 +100,9 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
       nearest = effect_at(c.effect, c.roles);
     }
   }
-  const std::string closest = nearest.empty() ? "" : "; the nearest is " + nearest + " with p " + format_probability(least);
-  out.verdict = "Nothing is missing that these data can show: of " + std::to_string(out.candidates.size()) +
-                " candidates none reaches a family-wise p of " + format_value(p_accept) + " with a held-out gain" + closest + ".";
+  const std::string closest = nearest.empty() ? "" : "; the best is " + nearest + " with p " + format_probability(least);
+  out.verdict = "No missing effect detected: none of " + std::to_string(out.candidates.size()) + " candidates reaches a family-wise p of " +
+                format_value(p_accept) + " with a held-out gain" + closest + ".";
 }
 
 std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths) {
@@ -112,7 +111,7 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
     const Parameter& p = model.parameters[static_cast<std::size_t>(index)];
     for (const double bound : {p.lower, p.upper}) {
       if (bound == 0.0 || !std::isfinite(bound) || std::abs(p.value - bound) > close * p.scale) continue;
-      return "its strength " + p.name + " ends at the bound " + in_display_unit(bound, p.unit) + ": not believable";
+      return "its strength " + p.name + " ends at its bound " + in_display_unit(bound, p.unit);
     }
   }
   return std::nullopt;
@@ -123,7 +122,7 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
   std::vector<std::string> wanted;
   for (const auto& test : calibration->tests) {
     constexpr double clear = 1e-3;
-    if (!test.taken_in && test.p_value < clear) wanted.push_back(test.name);
+    if (!test.selected && test.p_value < clear) wanted.push_back(test.name);
   }
   if (wanted.empty()) return;
   out.sweep_asks = wanted;
@@ -132,17 +131,17 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
   }
   const std::string disagreement =
       "the calibration sweep asks for " + join_words(wanted) + ", which the camera of this study does not have";
-  const std::string flight = asked_by_flight(out, p_accept);
+  const std::string flight = physics_evidence(out, p_accept);
   for (auto& c : out.candidates) {
     if (!c.accepted) continue;
     c.accepted = false;
-    c.why = "the calibration sweep asks for " + join_words(wanted) + ": calibrate with them offered, then ask again (" + c.why + ")";
+    c.why = "the calibration sweep asks for " + join_words(wanted) + ": recalibrate with them enabled, then rerun discover (" + c.why + ")";
   }
   if (flight.empty()) {
-    out.verdict = "The camera, not the physics: " + disagreement + ". Calibrate with them offered, then ask again.";
+    out.verdict = "The camera model is incomplete: " + disagreement + ". Recalibrate with them enabled, then rerun discover.";
   } else {
-    out.verdict = "Sweep and flight disagree: " + disagreement + ", and the flight asks for " + flight +
-                  ". Calibrate with them offered, then ask again: a camera that is wrong can look like physics.";
+    out.verdict = "Sweep and flight disagree: " + disagreement + ", and the flight gives evidence of " + flight +
+                  ". Recalibrate with them enabled, then rerun discover: a wrong camera can look like physics.";
   }
 }
 

@@ -12,7 +12,7 @@ struct Unexplained {
   double p_value = 1.0;
 };
 
-/// The verdict in one sentence, and what would separate a group; `camera`: the readings are those of a calibrated one.
+/// The verdict in one sentence, and what would separate a group; `camera`: the measurements are those of a calibrated one.
 void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept, bool camera);
 
 /// "its strength friction ends at the bound 40 N m: not believable" for the first of these parameters that lies within a thousandth of its

@@ -60,17 +60,17 @@ int memory_of(const LagProducts& products, const LagProducts& pairs, int least) 
   constexpr int in_a_row = 20;
   const auto lags = static_cast<int>(products.size()) - 1;
   Eigen::MatrixXd spread = Eigen::MatrixXd::Ones(products.front().rows(), products.front().cols());
-  int last = 0, quiet = 0, told = 0;
-  for (int lag = 1; lag <= lags && (quiet < in_a_row || told < least); ++lag) {
+  int last = 0, quiet = 0, known = 0;
+  for (int lag = 1; lag <= lags && (quiet < in_a_row || known < least); ++lag) {
     const auto k = static_cast<std::size_t>(lag);
     if (!(pairs[k].maxCoeff() > 1.0)) continue;
     ++quiet;
-    ++told;
+    ++known;
     if (stands_out(products, pairs, k, spread)) {
       last = lag;
       quiet = 0;
     }
-    if (told == least) last = std::max(last, lag);
+    if (known == least) last = std::max(last, lag);
   }
   return std::min(std::max(last, least), std::max(lags / 2, 0));
 }

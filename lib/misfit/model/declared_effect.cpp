@@ -61,9 +61,9 @@ class FormulaEffect final : public Effect {
   }
 };
 
-class Maker {
+class FormulaEffectBuilder {
  public:
-  Maker(const EffectStudy& study, const SystemSpec& system) : study_(study), declared_(*study.declared), system_(system) {}
+  FormulaEffectBuilder(const EffectStudy& study, const SystemSpec& system) : study_(study), declared_(*study.declared), system_(system) {}
 
   std::unique_ptr<Effect> run() {
     const formula::Measure port = port_measure();
@@ -290,6 +290,8 @@ class Maker {
 
 }  // namespace
 
-std::unique_ptr<Effect> declared_effect(const EffectStudy& study, const SystemSpec& system) { return Maker(study, system).run(); }
+std::unique_ptr<Effect> declared_effect(const EffectStudy& study, const SystemSpec& system) {
+  return FormulaEffectBuilder(study, system).run();
+}
 
 }  // namespace misfit

@@ -99,7 +99,7 @@ class Reader {
       out_.measured.push_back({output.name, output.unit, kept(table_.values(header(output.name), output.unit)), 0.0});
     for (auto& channel : out_.measured) {
       const std::size_t wild = set_spikes_aside(channel.values);
-      if (wild > 0) out_.notes.push_back("channel " + channel.name + ": " + std::to_string(wild) + " isolated wild samples set aside");
+      if (wild > 0) out_.notes.push_back("channel " + channel.name + ": " + std::to_string(wild) + " isolated outliers rejected");
     }
     const std::vector<std::string> needed = model_.needed_inputs();
     for (const auto& input : spec.inputs) {

@@ -66,7 +66,7 @@ struct ConstantSpec {
 struct OutputSpec {
   std::string name, unit;
   int observes = -1;   ///< index of the state it is; −1: a function
-  double noise = 0.0;  ///< typical white reading noise [unit], a start only
+  double noise = 0.0;  ///< typical white measurement noise [unit], a start only
 };
 
 /// A curve that is a combination of the model's own: Σ factor(x) · d^order curve / dx^order.

@@ -35,12 +35,12 @@ void tests_table(const Calibration& c, Page& page) {
       estimate += (k == 0 ? "" : "; ") + row.what + " " + row.shown_number() + " " + row.shown_unit();
     }
     rows.push_back({test.name, estimate, fmt::format("{:.1f}", test.drop), fmt::format("{:.2g}", test.p_value),
-                    test.taken_in ? "taken in" : "left at its nominal value"});
+                    test.selected ? "selected" : "fixed at its nominal value"});
   }
   if (rows.size() > 1) {
     page.subsection("Does the camera need more parameters?");
     page.paragraph(
-        "Drop: 2 Δ log L for freeing the parameter beside those taken in before; p-values are corrected for the number of candidates.");
+        "Drop: 2 Δ log L for freeing the parameter, given those selected before; p-values are corrected for the number of candidates.");
   }
   page.table(rows);
 }
@@ -54,8 +54,8 @@ void calibration_section(const ReportInput& input, Page& page, const Draw& draw)
   page.paragraph(fmt::format("Camera model: {}. {} {}", c.model == CameraModel::pinhole ? "pinhole" : "plane by plane (the paper's Eq. 1)",
                              c.converged ? "The fit converged." : "The fit did not converge: " + c.message + ".",
                              c.outliers == 0
-                                 ? "No point was set aside."
-                                 : fmt::format("{} {} set aside as outliers.", c.outliers, c.outliers == 1 ? "point was" : "points were")));
+                                 ? "No point was rejected."
+                                 : fmt::format("{} {} rejected as outliers.", c.outliers, c.outliers == 1 ? "point was" : "points were")));
   page.html(rows_html(camera_rows(c)));
   tests_table(c, page);
   if (c.residuals.empty()) return;

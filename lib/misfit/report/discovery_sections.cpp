@@ -75,7 +75,7 @@ std::size_t maps_to_draw(const std::vector<ForceMap>& maps) {
 }
 
 void maps_table(const Diagnosis& d, Page& page) {
-  Cells rows{{"force on", "by", "p, corrected for all maps", "p, this map alone", "chi²", "places"}};
+  Cells rows{{"force on", "against", "p, corrected for all maps", "p, this map alone", "chi²", "dof"}};
   for (const ForceMap& m : d.maps) {
     rows.push_back({m.port, m.quantity, format_probability(m.p_corrected), format_probability(m.p_value), fmt::format("{:.1f}", m.chi2),
                     std::to_string(m.dof)});
@@ -139,7 +139,7 @@ void show_discovery(const Discovery& d, Page& page, const Put& draw) {
   for (const auto& sentence : d.sentences) page.paragraph(sentence);
   if (d.candidates.empty()) return;
   draw(candidates_figure(d.candidates));
-  Cells rows{{"rank", "effect", "predicted drop", "actual drop", "held-out gain", "p", "not to be told from", "accepted", "why"}};
+  Cells rows{{"rank", "effect", "predicted drop", "actual drop", "held-out gain", "p", "indistinguishable from", "accepted", "why"}};
   for (const Candidate& c : d.candidates) {
     std::string group;
     for (const auto& name : c.group) {
@@ -149,7 +149,7 @@ void show_discovery(const Discovery& d, Page& page, const Put& draw) {
                     number(c.held_out_gain), format_probability(c.p_value), group.empty() ? "–" : group, c.accepted ? "yes" : "no", c.why});
   }
   page.table(rows);
-  if (!d.tried.empty()) page.subsection("What was looked at");
+  if (!d.tried.empty()) page.subsection("Effect families tested");
   page.list(d.tried);
 }
 
@@ -157,23 +157,23 @@ void show_discovery(const Discovery& d, Page& page, const Put& draw) {
 
 void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (input.diagnosis) {
-    page.section("Where the model fails");
+    page.section("Residual diagnostics");
     say_which(input, own_model, page);
     show_diagnosis(*input.diagnosis, page, put_for(draw, ""));
   }
   if (!input.rung || !input.rung->diagnosis) return;
-  page.section("Where the model of " + name_of(*input.rung) + ", fails");
+  page.section("Residual diagnostics of " + name_of(*input.rung));
   show_diagnosis(*input.rung->diagnosis, page, put_for(draw, prefix_of(*input.rung)));
 }
 
 void discovery_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (input.discovery) {
-    page.section("What could be missing");
+    page.section("Candidate effects");
     say_which(input, own_model, page);
     show_discovery(*input.discovery, page, put_for(draw, ""));
   }
   if (!input.rung || !input.rung->discovery) return;
-  page.section("What could still be missing after " + name_of(*input.rung));
+  page.section("Candidate effects after " + name_of(*input.rung));
   show_discovery(*input.rung->discovery, page, put_for(draw, prefix_of(*input.rung)));
 }
 

@@ -37,7 +37,7 @@ Panel panel_of(const Batch& batch, const BatchSummary& summary, const std::vecto
   }
   const double mean = shown({summary.mean}, summary.unit).front(), sigma = shown({summary.mean_sigma}, summary.unit).front();
   const std::vector<double> ends{0.5, static_cast<double>(studies.size()) + 0.5};
-  const std::string p = summary.p_value ? ", p of being one value: " + format_probability(*summary.p_value) : "";
+  const std::string p = summary.p_value ? ", p (homogeneity): " + format_probability(*summary.p_value) : "";
   const std::string legend = fmt::format("{}: mean {}{}{}", summary.name, format_value(mean, sigma), unit == "-" ? "" : " " + unit, p);
   panel.series = {values, {"mean", legend, Style::dashed, grey, ends, {mean, mean}, {}, {}, 1.4}};
   return panel;

@@ -90,7 +90,7 @@ Figure calibration_residual_figure(const Calibration& calibration) {
       fill(s, calibration, {point, coordinate}, used, difference);
       panel.series.push_back(std::move(s));
     }
-    Series outliers{fmt::format("outliers_{}", coordinate), "set aside", Style::markers, grey, {}, {}, {}, {}};
+    Series outliers{fmt::format("outliers_{}", coordinate), "rejected", Style::markers, grey, {}, {}, {}, {}};
     fill(outliers, calibration, {0, coordinate}, set_aside, difference);
     if (!outliers.x.empty()) panel.series.push_back(std::move(outliers));
     figure.panels.push_back(std::move(panel));

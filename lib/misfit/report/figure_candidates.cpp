@@ -61,11 +61,11 @@ Panel evidence_panel(const std::vector<Candidate>& candidates, std::size_t count
 Figure candidates_figure(const std::vector<Candidate>& candidates, std::size_t most) {
   Figure figure;
   figure.name = "candidates";
-  figure.title = "What the model could lack";
+  figure.title = "Candidate effects";
   figure.caption =
-      "Left, drop = 2 (log-likelihood with the effect − without), each at its maximum. Predicted: by one step from the model as it is; "
-      "actual: after fitting everything again. Larger explains more of the data. Right, how improbable that is by chance, corrected for "
-      "everything that was looked at: only what passes the dashed line can be accepted.";
+      "Left, drop = 2 (log-likelihood with the effect − without), each at its maximum. Predicted: by one Gauss–Newton step; "
+      "actual: after refitting all parameters. Right, p-value corrected for all families tested: only candidates beyond the dashed line "
+      "can be accepted.";
   figure.x_label = "drop";
   const std::size_t count = std::min(most, candidates.size());
   figure.panels = {drop_panel(candidates, count), evidence_panel(candidates, count)};

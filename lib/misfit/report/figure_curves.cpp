@@ -58,7 +58,7 @@ void add_informative(const Fit& fit, const Drawn& d, const std::string& colour, 
   panel.series.push_back({key, fit.method + ", ± 1 sigma", Style::line, colour, d.x, part(d.value, d, true), {}, {}});
   const std::vector<double> outside = part(d.value, d, false);
   if (any_finite(outside) && std::find(d.visited.begin(), d.visited.end(), false) != d.visited.end()) {
-    const std::string legend = has_outside(panel) ? "" : "dashed: not visited";
+    const std::string legend = has_outside(panel) ? "" : "dashed: outside the operating range";
     panel.series.push_back({key + "_band_outside", "", Style::pale_band, colour, d.x, {}, part(d.lo, d, false), part(d.hi, d, false)});
     panel.series.push_back({key + "_outside", legend, Style::dashed, colour, d.x, outside, {}, {}, 1.4});
   }
@@ -132,7 +132,7 @@ Figure curve_figure(const std::string& curve, const std::string& of, const std::
   Figure figure;
   figure.name = "curve_" + as_key(curve) + (of == first_quantity(curve, fits, references) ? "" : "_of_" + as_key(of));
   figure.title = curve + " against " + of;
-  figure.caption = curve + " as each method finds it, with bands of one standard deviation. Dashed: angles that the motion did not visit.";
+  figure.caption = curve + " as estimated by each method, with bands of one standard deviation. Dashed: outside the operating range.";
   figure.x_label = of;
   Panel panel;
   panel.y_label = curve;

@@ -51,12 +51,10 @@ std::size_t quantity_index(const MissingForce& missing, const std::string& quant
 Figure map_figure(const ForceMap& map) {
   Figure figure;
   figure.name = "map_" + as_key(map.port) + "_by_" + as_key(map.quantity);
-  figure.title = fmt::format("Missing {} by {} (p {})", map.port, map.quantity, probability(map.p_corrected));
-  figure.caption = fmt::format(
-      "The {} that the data ask for on top of the model where {} is near each place, with all free parameters allowed to follow, ± 1 "
-      "sigma. "
-      "{}",
-      map.port, map.quantity, map.sentence.empty() ? "Nothing stands out here." : "Here " + map.sentence + ".");
+  figure.title = fmt::format("Missing {} against {} (p {})", map.port, map.quantity, probability(map.p_corrected));
+  figure.caption =
+      fmt::format("Estimated unmodelled {} as a function of {} (free parameters re-adjusted), ± 1 sigma. {}", map.port, map.quantity,
+                  map.sentence.empty() ? "No value differs significantly from zero." : "Here " + map.sentence + ".");
   figure.x_label = map.quantity;
   figure.x_unit = display_unit(map.quantity_unit);
   Panel panel{map.port, display_unit(map.port_unit), {}, std::nullopt, 0.0, 230.0, true, {}};
@@ -80,10 +78,9 @@ Figure map_figure(const ForceMap& map) {
 Figure pair_figure(const PairMap& map) {
   Figure figure;
   figure.name = "map_" + as_key(map.port) + "_by_" + as_key(map.quantity_x) + "_and_" + as_key(map.quantity_y);
-  figure.title = fmt::format("Missing {} by {} and {} (p {})", map.port, map.quantity_x, map.quantity_y, probability(map.p_corrected));
+  figure.title = fmt::format("Missing {} against {} and {} (p {})", map.port, map.quantity_x, map.quantity_y, probability(map.p_corrected));
   figure.caption =
-      "The colour is the force that the data ask for on top of the model, in units of its own sigma: beyond 3 is unlikely by chance. White "
-      "also where there are too few samples.";
+      "Estimated unmodelled force in units of its sigma: beyond 3 is unlikely by chance. White also where there are too few samples.";
   figure.x_label = map.quantity_x;
   figure.x_unit = display_unit(map.unit_x);
   figure.z_label = "force over its sigma";
@@ -113,7 +110,7 @@ Figure innovation_figure(const std::vector<WhitenessReport>& whiteness) {
   Figure figure;
   figure.name = "innovations_autocorrelation";
   figure.title = "Innovations: autocorrelation";
-  figure.caption = "Of a right model they are independent of each other: 95 % of the lags stay inside the band.";
+  figure.caption = "For a correct model they are independent: 95 % of the lags stay inside the band.";
   figure.x_label = "lag";
   figure.x_unit = "samples";
   for (const WhitenessReport& w : whiteness) {
@@ -145,7 +142,7 @@ Figure periodogram_figure(const std::vector<WhitenessReport>& whiteness) {
   figure.title = "Innovations: cumulative periodogram";
   figure.caption =
       "The share of the variance below each frequency. White innovations follow the diagonal inside the band (Kolmogorov–Smirnov, 95 %); a "
-      "jump is a line in the spectrum, a bend a missing memory.";
+      "jump is a spectral line, a smooth departure coloured innovations.";
   figure.x_label = "frequency";
   figure.x_unit = "Hz";
   Panel panel{"cumulative power", "-", {}, std::array<double, 2>{0.0, 1.0}, 0.25, 320.0, false, {}};
@@ -180,7 +177,7 @@ Figure nis_figure(const NisSeries& series) {
   figure.name = "nis_" + file_name_for(series.experiment);
   figure.title = fmt::format("Normalised innovations squared, {}", series.experiment);
   figure.caption = fmt::format(
-      "Innovations over their predicted sigma, squared and averaged over windows: 1 for a right model, inside the band in 95 % of the "
+      "Innovations over their predicted sigma, squared and averaged over windows: 1 for a correct model, inside the band in 95 % of the "
       "windows. {:.1f} % lie outside.",
       100.0 * series.outside);
   figure.x_label = "time";
@@ -189,7 +186,7 @@ Figure nis_figure(const NisSeries& series) {
   if (!series.t.empty()) {
     const std::vector<double> ends = {series.t.front(), series.t.back()};
     panel.series.push_back(
-        {"band", "95 % band of a right model", Style::band, grey, ends, {}, {series.lower, series.lower}, {series.upper, series.upper}});
+        {"band", "95 % band of a correct model", Style::band, grey, ends, {}, {series.lower, series.lower}, {series.upper, series.upper}});
   }
   panel.series.push_back({"nis", "mean over a window", Style::line, palette(0), series.t, series.nis, {}, {}, 1.4});
   figure.panels = {panel};
@@ -201,8 +198,8 @@ Figure missing_force_figure(const MissingForce& missing, const std::optional<Int
   figure.name = "missing_force_" + file_name_for(missing.experiment) + (zoom ? "_zoom" : "");
   figure.title = fmt::format("Missing force over time, {}{}", missing.experiment, zoom ? " (part)" : "");
   figure.caption =
-      "The force that the filter needs on top of the model, from all data (smoothed), ± 1 sigma. That it goes with the motion is expected "
-      "even where nothing is missing: the force causes the motion.";
+      "Smoothed random force (from all data), ± 1 sigma. Correlation with the motion is expected even for a correct model: the force "
+      "causes the motion.";
   figure.x_label = "time";
   figure.x_unit = std::string("s");
   std::size_t from = 0, to = missing.t.size();
@@ -235,8 +232,8 @@ Figure missing_force_by_figure(const MissingForce& missing, const std::string& q
   figure.name = "missing_force_" + file_name_for(missing.experiment) + "_by_" + as_key(quantity);
   figure.title = fmt::format("Missing force against {}, {}", quantity, missing.experiment);
   figure.caption =
-      "Every sample of the smoothed missing force. For looking only: a dependence on the motion is expected even where nothing is missing; "
-      "the maps above are the test.";
+      "Every sample of the smoothed missing force. Correlation with the motion is expected even for a correct model: the maps above are "
+      "the test.";
   const std::size_t q = quantity_index(missing, quantity);
   figure.x_label = quantity;
   const std::string unit = q < missing.quantities.size() ? missing.quantity_units[q] : "-";

@@ -59,7 +59,7 @@ Figure bootstrap_figure(const std::string& curve, const std::vector<Bootstrap>& 
   Figure figure;
   figure.name = "bootstrap_" + as_key(curve);
   figure.title = "Block bootstrap: " + curve;
-  figure.caption = "The curve over replicas of the data that keep the memory of the residuals; dotted: what the fit itself says.";
+  figure.caption = "The curve over replicas of the data (blocks keep the residual autocorrelation); dotted: the interval of the fit.";
   figure.panels.emplace_back();
   std::size_t colour = 0;
   for (const auto& bootstrap : bootstraps) {
@@ -80,7 +80,7 @@ Figure profile_figure(const LikelihoodProfile& p) {
   Figure figure;
   figure.name = "profile_" + as_key(p.method) + "_" + as_key(p.parameter);
   figure.title = "Profile likelihood: " + p.parameter + ", " + p.method;
-  figure.caption = "How far the likelihood drops when the parameter is held and everything else is estimated again.";
+  figure.caption = "Drop of the likelihood when the parameter is held and all others are re-estimated.";
   figure.x_label = p.parameter;
   figure.x_unit = display_unit(p.unit);
   Panel panel;
@@ -96,7 +96,7 @@ Figure profile_figure(const LikelihoodProfile& p) {
     fine.push_back(*least + (*most - *least) * i / points);
     parabola.push_back(std::pow((fine.back() - p.best) / p.sigma, 2));
   }
-  panel.series.push_back({"profile", "everything else estimated again", Style::line, palette(0), x, drop, {}, {}});
+  panel.series.push_back({"profile", "all others re-estimated", Style::line, palette(0), x, drop, {}, {}});
   panel.series.push_back({"points", "", Style::markers, palette(0), x, drop, {}, {}});
   panel.series.push_back({"parabola", "sigma of the fit", Style::dotted, black, shown(fine, p.unit), parabola, {}, {}});
   const std::vector<double> ends = shown({p.lower, p.best, p.upper}, p.unit);
@@ -120,8 +120,8 @@ Figure starts_figure(const MultiStart& s) {
   figure.name = "starts_" + as_key(s.method);
   figure.title = "Random starts: " + s.method;
   figure.caption =
-      "Where searches from random values end: how far the likelihood stays below that of the fit. All on the line of 0: one "
-      "maximum, and the fit is at it. Below that line: the fit is not the best there is.";
+      "Maxima reached from random starting values, as the drop of the likelihood below that of the fit. All at 0: one maximum, "
+      "which the fit has reached. Below 0: the fit is not at the global maximum.";
   figure.x_label = "start, best first";
   figure.x_unit = "-";
   const auto drawn = [](double drop) { return std::copysign(std::log10(1.0 + std::abs(drop)), drop); };
@@ -129,7 +129,7 @@ Figure starts_figure(const MultiStart& s) {
   panel.y_label = "drop";
   panel.y_unit = "-";
   panel.zero_line = true;
-  Series same{"same", "end where the fit did", Style::markers, palette(0), {}, {}, {}, {}}, other = same;
+  Series same{"same", "reach the reported maximum", Style::markers, palette(0), {}, {}, {}, {}}, other = same;
   other.key = "other";
   other.legend = "end elsewhere";
   other.colour = palette(1);
@@ -152,7 +152,7 @@ Figure starts_figure(const MultiStart& s) {
   figure.panels.push_back(std::move(panel));
   figure.x_range = {0.0, static_cast<double>(s.drop.size() + 1)};
   figure.notes = s.words;
-  if (s.failed > 0) figure.notes.push_back(fmt::format("{} of {} starts ended nowhere and are not drawn.", s.failed, s.runs));
+  if (s.failed > 0) figure.notes.push_back(fmt::format("{} of {} starts did not converge and are omitted.", s.failed, s.runs));
   return figure;
 }
 

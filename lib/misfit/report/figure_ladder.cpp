@@ -69,7 +69,7 @@ void add_force(const Rung& rung, std::vector<Panel>& panels) {
   const double factor = convert(1.0, e->unit, unit);
   constexpr double width = 0.5;
   Panel& panel = panel_for(panels, "random force", unit);
-  add_box(series_for(panel, "force", "random force that is left, ± 1 sigma", Style::boxes, palette(1)), rung.id, e->value * factor, width);
+  add_box(series_for(panel, "force", "remaining random force, ± 1 sigma", Style::boxes, palette(1)), rung.id, e->value * factor, width);
   add_point(series_for(panel, "force_sigma", "", Style::error_bars, black), rung.id, e->value * factor, e->sigma * factor);
 }
 
@@ -81,8 +81,8 @@ void add_drop(const Rung& rung, std::vector<Panel>& panels) {
   const auto add = [&](const char* key, const char* legend, const std::string& colour, double side, double drop) {
     add_box(series_for(panel, key, legend, Style::boxes, colour), rung.id + 0.5 * side * width, drop, 0.9 * width);
   };
-  if (rung.predicted_drop) add("predicted_drop", "drop, predicted before", grey, -1.0, *rung.predicted_drop);
-  if (rung.actual_drop) add("actual_drop", "drop, after fitting again", palette(2), 1.0, *rung.actual_drop);
+  if (rung.predicted_drop) add("predicted_drop", "drop, predicted", grey, -1.0, *rung.predicted_drop);
+  if (rung.actual_drop) add("actual_drop", "drop, after refitting", palette(2), 1.0, *rung.actual_drop);
 }
 
 /// How the errors of a ladder are drawn.
@@ -180,15 +180,15 @@ Figure ladder_figure(const Ladder& ladder) {
   figure.name = "ladder";
   figure.title = "The ladder: what each model leaves unexplained";
   figure.caption =
-      "From left to right one effect more. Drop = 2 (log-likelihood with the effect − without); a change of system has none. The random "
-      "force is what the filter needs on top of the model to explain the motion; errors are of predictions from the filtered state.";
+      "From left to right one more effect. Drop = 2 (log-likelihood with the effect − without); a change of system has none. The random "
+      "force is the part of the excitation that the model does not explain; errors are of predictions from the filtered state.";
   figure.x_label = "model";
   std::vector<Panel> drop, force, near, far, trim;
   Errors errors;
   errors.relative = channels_change(ladder);
   if (errors.relative)
     figure.caption +=
-        " Its systems predict other channels, in other units: each error is drawn over that of the first rung that predicts the channel.";
+        " Its systems predict different channels: each error is relative to that of the first rung that predicts the channel.";
   for (const Rung& rung : ladder.rungs) {
     figure.x_marks.push_back({static_cast<double>(rung.id), added_to(rung)});
     add_drop(rung, drop);

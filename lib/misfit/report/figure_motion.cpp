@@ -158,7 +158,7 @@ Figure autocorrelation_figure(const std::string& method, const ChannelPrediction
   Figure figure;
   figure.name = "autocorrelation_" + as_key(method) + "_" + file_name_for(channel.experiment) + "_" + file_name_for(channel.channel);
   figure.title = fmt::format("Residuals of {} ({}, {}): autocorrelation", channel.channel, method, channel.experiment);
-  figure.caption = "If the model says all there is to say, the residuals are white: 95 % of the lags stay inside the band.";
+  figure.caption = "For a correct model the residuals are white: 95 % of the lags stay inside the band.";
   figure.x_label = "lag";
   figure.x_unit = "samples";
   Panel panel{"autocorrelation", "-", {}, std::nullopt, 0.0, 220.0, true};

@@ -16,10 +16,9 @@ struct Look {
   const char* x_label;
   const char* x_unit;
 };
-constexpr Look looks[] = {
-    {"distribution", "Distribution of the motion", "Value below which the motion is for that share of the time.", "share of the time", "-"},
-    {"autocorrelation", "Autocorrelation of the motion", "How much the motion still knows of what it was that long before.", "lag", "s"},
-    {"spectrum", "Spectrum of the motion", "Power per frequency; 10 dB are a factor of ten.", "frequency", "Hz"}};
+constexpr Look looks[] = {{"distribution", "Distribution of the motion", "Quantiles of the motion.", "share of the time", "-"},
+                          {"autocorrelation", "Autocorrelation of the motion", "Autocorrelation of the motion.", "lag", "s"},
+                          {"spectrum", "Spectrum of the motion", "Power per frequency; 10 dB are a factor of ten.", "frequency", "Hz"}};
 
 Series empty(const std::string& key, const std::string& legend, Style style, const std::string& colour) {
   return {key, legend, style, colour, {}, {}, {}, {}};
@@ -58,7 +57,7 @@ Figure simulated_figure(const SimulatedMotion& motion, const std::string& experi
     if (group != look.group) continue;
     figure.title = fmt::format("{}: {}", look.title, experiment);
     figure.caption =
-        fmt::format("{} The band holds 95 % of {} motions that the model fitted by {} makes with its random force and its noise.",
+        fmt::format("{} The band holds 95 % of {} motions simulated with the model fitted by {}, with its random force and noise.",
                     look.caption, motion.runs, motion.method);
     figure.x_label = look.x_label;
     figure.x_unit = look.x_unit;

@@ -109,10 +109,10 @@ Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::
   const auto first = std::find_if(u.curves.begin(), u.curves.end(), [&](const SpreadCurve& c) { return c.name == curve.name; });
   const bool another = first != u.curves.end() && first->of != curve.of;  // of the same name, drawn already
   figure.name = "uncertainty_" + as_key(curve.name) + (another ? "_" + as_key(curve.of) : "");
-  figure.title = fmt::format("{} over {} perturbed set-ups, {}", curve.name, u.runs - u.failed, u.method);
+  figure.title = fmt::format("{} over {} perturbed runs, {}", curve.name, u.runs - u.failed, u.method);
   figure.caption =
-      "Mean over the runs with its band of three standard deviations, and the fit of the study as it is. The band is what errors of the "
-      "set-up do; noise and what the model lacks are not in it.";
+      "Mean over the runs with its band of three standard deviations, and the fit of the study as it is. The band contains "
+      "the propagated uncertainty only, neither measurement noise nor model error.";
   figure.x_label = curve.of;
   figure.x_unit = display_unit(curve.of_unit);
   Panel panel;
@@ -151,11 +151,11 @@ Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::
 Figure shares_figure(const Uncertainty& u) {
   Figure figure;
   figure.name = "variance_shares";
-  figure.title = "Where the variance comes from";
+  figure.title = "Variance decomposition";
   figure.caption =
-      "First-order shares of the variance over the runs: what would vanish if this parameter were known exactly (to first order). "
-      "Together: "
-      "parameters acting together, and the noise of a finite number of runs. Signs and sigmas are in uncertainty.json.";
+      "First-order shares of the variance over the runs: what would vanish if this parameter were known exactly. "
+      "Interactions: parameters acting jointly, and the sampling error of a finite number of runs. Signs and sigmas are in "
+      "uncertainty.json.";
   const std::vector<const SpreadNumber*> numbers = shared_numbers(u);
   constexpr double most = 105.0;
   figure.x_range = {0.0, most};

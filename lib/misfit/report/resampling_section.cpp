@@ -42,7 +42,7 @@ void bootstraps(const Resampling& r, Page& page) {
 
 void profiles(const Resampling& r, Page& page) {
   if (r.profiles.empty()) return;
-  Cells rows{{"profile of", "method", "fit ± its sigma", "95 % from", "95 % to", "what to know"}};
+  Cells rows{{"profile of", "method", "fit ± its sigma", "95 % from", "95 % to", "remarks"}};
   for (const LikelihoodProfile& p : r.profiles) {
     rows.push_back({p.parameter, p.method, in_display_unit(p.best, p.unit, p.sigma), end_of(p.lower_found, p.lower, p.sigma, p.unit),
                     end_of(p.upper_found, p.upper, p.sigma, p.unit), fmt::format("{}", fmt::join(p.words, "; "))});
@@ -52,7 +52,7 @@ void profiles(const Resampling& r, Page& page) {
 
 void starts(const Resampling& r, Page& page) {
   if (r.starts.empty()) return;
-  Cells rows{{"random starts of", "starts", "end at the fit's maximum", "lower", "higher", "nowhere", "what to know"}};
+  Cells rows{{"random starts of", "starts", "reach the reported maximum", "lower", "higher", "not converged", "remarks"}};
   std::vector<std::string> words;
   for (const MultiStart& s : r.starts) {
     rows.push_back({s.method, std::to_string(s.runs), std::to_string(s.same), std::to_string(s.lower), std::to_string(s.higher),
@@ -68,10 +68,9 @@ void starts(const Resampling& r, Page& page) {
 void resampling_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (!input.resampling) return;
   const Resampling& r = *input.resampling;
-  page.section("Intervals by resampling and by profiles, random starts");
+  page.section("Bootstrap, profile likelihood and random starts");
   page.paragraph(
-      "Beside the sigmas of the fits: how the result scatters over replicas of the data that keep the memory of the residuals, where the "
-      "likelihood itself has dropped by as much as a 95 % interval allows, and whether searches from elsewhere end where the fit did.");
+      "Three checks of the standard errors: block bootstrap (keeps the residual autocorrelation), profile likelihood, random starts.");
   for (const Figure& figure : interval_figures(r)) draw(figure);
   bootstraps(r, page);
   profiles(r, page);

@@ -96,9 +96,8 @@ void simulated_section(const ReportInput& input, Page& page, const Draw& draw) {
   const SimulatedMotion& motion = *input.comparison->motion;
   page.section("Simulated against measured motion");
   page.paragraph(
-      "Random motion cannot be matched sample by sample: what a right model must make is motion of the same kind. A group of statistics "
-      "with a "
-      "small p is one that the fitted model does not make.");
+      "Random motion cannot be matched sample by sample: a correct model must reproduce its statistics. Small p: the fitted model does "
+      "not reproduce that group of statistics.");
   page.list(motion.sentences);
   page.list(motion.notes);
   std::vector<std::string> experiments;
@@ -130,7 +129,7 @@ void notes_section(const ReportInput& input, Page& page) {
   if (input.calibration) add("calibration", input.calibration->notes);
   for (const Reference& reference : input.references) add("", reference.notes);
   page.section("Data notes");
-  if (notes.empty()) page.paragraph("Nothing was dropped or set aside.");
+  if (notes.empty()) page.paragraph("No sample was dropped or rejected.");
   page.list(notes);
 }
 

@@ -47,7 +47,7 @@ std::vector<std::string> findings(const ReportInput& input) {
     } else if (fit.trim) {
       sentences.push_back(fmt::format("{} finds the {} deg.", fit.method, "trim at " + Row("trim", *fit.trim).shown_number()));
     }
-    if (fit.driven) sentences.push_back(fit.method + ": the motion is driven by something the model does not have.");
+    if (fit.driven) sentences.push_back(fit.method + ": residuals are not white: an unmodelled input drives the motion.");
   }
   for (const Fit& fit : input.fits) {
     for (const CurveEstimate& curve : fit.curves) {
@@ -98,7 +98,7 @@ void summary_section(const ReportInput& input, Page& page) {
   if (input.fits.empty()) return;
   page.subsection("Methods");
   page.html(
-      "<div class=\"wide\"><table><thead><tr><th>method</th><th>status</th><th>why it stopped, and what to know before believing it</th>"
+      "<div class=\"wide\"><table><thead><tr><th>method</th><th>status</th><th>termination and caveats</th>"
       "<th class=\"number\">time [s]</th><th class=\"number\">linearisations</th></tr></thead><tbody>\n");
   for (const Fit& fit : input.fits) page.html(status_html(fit));
   page.html("</tbody></table></div>\n");

@@ -19,7 +19,7 @@ Cells perturbed_rows(const Uncertainty& u) {
 }
 
 Cells number_rows(const Uncertainty& u) {
-  Cells rows{{"result", "nominal, noise alone", "over the runs, set-up alone", "runs"}};
+  Cells rows{{"result", "nominal ± sigma (noise)", "mean ± propagated sigma", "runs"}};
   for (const SpreadNumber& n : u.numbers)
     rows.push_back(
         {n.name, in_display_unit(n.nominal, n.unit, n.nominal_sigma), in_display_unit(n.mean, n.unit, n.sigma), std::to_string(n.count)});
@@ -44,10 +44,9 @@ Cells share_rows(const Uncertainty& u) {
 void uncertainty_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (!input.uncertainty) return;
   const Uncertainty& u = *input.uncertainty;
-  page.section("Uncertainty of the set-up");
-  page.paragraph(fmt::format(
-      "The data reduction ({}) repeated {} times with errors drawn for what the set-up is uncertain in; {} runs gave no result.", u.method,
-      u.runs, u.failed));
+  page.section("Propagated uncertainty");
+  page.paragraph(fmt::format("Monte Carlo: the data reduction ({}) is repeated {} times with perturbed inputs; {} runs gave no result.",
+                             u.method, u.runs, u.failed));
   page.table(perturbed_rows(u));
   for (const Figure& figure : uncertainty_figures(u, input.references)) draw(figure);
   page.table(number_rows(u));

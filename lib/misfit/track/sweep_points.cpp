@@ -99,7 +99,7 @@ std::vector<SweepPoints> assign_sweep_points(const std::vector<double>& theta, c
       if (found[k].size() >= 3 && (anchor == theta.size() || std::abs(theta[k]) > std::abs(theta[anchor]))) anchor = k;
     }
     if (anchor == theta.size())
-      throw RunError("no picture of the sweep shows three markers: which is which point of the rig cannot be told");
+      throw RunError("no picture of the sweep shows three markers: the three points of the rig cannot be identified");
     out[anchor] = by_geometry(theta[anchor], found[anchor]);
   }
   std::vector<std::size_t> order(theta.size());

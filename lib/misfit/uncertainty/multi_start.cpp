@@ -21,16 +21,16 @@ std::vector<std::string> words_of(const MultiStart& s) {
     std::string there;
     for (const auto& n : s.numbers) there += (there.empty() ? "" : ", ") + n.name + " = " + in_display_unit(n.best, n.unit, 0.0);
     words.push_back(
-        fmt::format("the fit is not at the highest maximum there is: {} of {} starts end higher, the best by {} in 2 log L{}. Begin there: "
-                    "these values under [parameters]",
+        fmt::format("the fit is not at the global maximum: {} of {} starts reach a higher one, the best by {} in 2 log L{}. Start from "
+                    "these values in [parameters]",
                     s.higher, s.runs, format_value(-s.drop.front()), there.empty() ? "" : ", at " + there));
   }
   if (s.lower > 0) {
     const double nearest = s.drop[s.drop.size() - s.lower];
-    words.push_back(fmt::format("{} of {} starts end at a lower maximum, the nearest by {} in 2 log L: a fit begun there would stay there",
+    words.push_back(fmt::format("{} of {} starts reach a lower maximum, the nearest by {} in 2 log L: a fit started there would stay there",
                                 s.lower, s.runs, format_value(nearest)));
   }
-  if (s.same == 0) words.emplace_back("no random start ends where the fit did");
+  if (s.same == 0) words.emplace_back("no random start reaches the reported maximum");
   return words;
 }
 
@@ -71,7 +71,7 @@ ChainResult MultiStarts::run(std::size_t k) const {
   std::mt19937_64 random(seeds);
   const Maximum end = search_(random_start(best_, random));
   if (!end.objective || !std::isfinite(*end.objective))  // when it ended is each start's own
-    return {{}, end.why.empty() ? "its likelihood is no number" : end.why.substr(0, end.why.find(" at t ="))};
+    return {{}, end.why.empty() ? "its likelihood is not finite" : end.why.substr(0, end.why.find(" at t ="))};
   ChainResult out{{2.0 * (objective_ - *end.objective)}, ""};
   for (const int i : shown_) out.numbers.push_back(end.values[static_cast<std::size_t>(i)]);
   return out;

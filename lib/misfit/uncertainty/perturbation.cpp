@@ -26,7 +26,7 @@ Eigen::MatrixXd root_of(const CorrelatedPerturbation& group) {
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(correlation);
   constexpr double rounding = 1e-9;
   if (n != group.covariance.cols() || ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > -rounding))
-    throw InputError((group.source.empty() ? "" : group.source + ": ") + "the covariance of " + group.label + " is none: it is not " +
+    throw InputError((group.source.empty() ? "" : group.source + ": ") + "the covariance of " + group.label + " is invalid: it is not " +
                      "positive semi-definite");
   Eigen::MatrixXd root = ldlt.matrixL();
   root *= ldlt.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal();

@@ -35,7 +35,7 @@ class Search {
     double step = 0.5 * request_.sigma;
     for (int k = 0; k < most_steps; ++k) {
       const double next = kept_inside(inside + direction_ * step);
-      if (next == inside) return ended(inside, "the bound of " + request_.parameter + " comes first");
+      if (next == inside) return ended(inside, "the bound of " + request_.parameter + " is reached first");
       const std::optional<double> root = root_at(next);
       if (!root) return ended(inside, "at " + format_value(next) + " the model cannot be estimated");
       if (*root >= std::sqrt(limit_)) {  // a rise of the likelihood, below 0, is no crossing however large
@@ -90,7 +90,7 @@ class Search {
     side_.found = off < far;
     if (!side_.found)
       static_cast<void>(ended(inside, "between " + format_value(inside) + " and " + format_value(outside) +
-                                          " the likelihood jumps, or cannot be had: refits end in different maxima"));
+                                          " the profile is discontinuous or failed: refits reach different maxima"));
   }
 
   const ProfileRequest& request_;
@@ -105,14 +105,14 @@ void add_words(LikelihoodProfile& p, const Side& below, const Side& above) {
   const double least = p.drop.empty() ? 0.0 : *std::min_element(p.drop.begin(), p.drop.end());
   constexpr double worth_saying = 0.2;
   if (least < -worth_saying)
-    p.words.push_back("the likelihood is higher beside the estimate than at it (drop " + format_value(least) +
+    p.words.push_back("the likelihood is higher near the estimate than at it (drop " + format_value(least) +
                       "): the fit had not reached its maximum");
   if (std::abs(p.scale - 1.0) > worth_saying)
-    p.words.push_back("the residuals have memory: drops count " + format_value(1.0 / p.scale) + " times");
+    p.words.push_back("autocorrelated residuals: drops are multiplied by " + format_value(1.0 / p.scale));
   if (!below.found || !above.found) return;
   const double left = p.best - p.lower, right = p.upper - p.best;
   if (std::abs(left - right) > worth_saying * 0.5 * (left + right))
-    p.words.push_back("lopsided: -" + in_display_unit(left, p.unit) + ", +" + in_display_unit(right, p.unit) +
+    p.words.push_back("asymmetric: -" + in_display_unit(left, p.unit) + ", +" + in_display_unit(right, p.unit) +
                       "; a sigma does not describe it");
 }
 

@@ -36,8 +36,8 @@ struct ProfileRequest {
 [[nodiscard]] std::vector<LikelihoodProfile> profile_likelihood(const std::vector<ProfileRequest>& requests, int threads,
                                                                 const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
 
-/// The same over threads and ranks, each side on disk when it ends (run_stored_jobs(); `jobs.count` is told by the requests). nullopt if it
-/// was stopped; on ranks other than the first the result is empty.
+/// The same over threads and ranks, each side on disk when it ends (run_stored_jobs(); `jobs.count` follows from the requests). nullopt if
+/// it was stopped; on ranks other than the first the result is empty.
 [[nodiscard]] std::optional<std::vector<LikelihoodProfile>> stored_profiles(const std::vector<ProfileRequest>& requests,
                                                                             const StoredJobs& jobs, const ProgressFn& progress = {},
                                                                             const std::atomic<bool>* stop = nullptr);

@@ -9,7 +9,7 @@
 namespace misfit {
 namespace {
 
-constexpr std::size_t fewest = 16;  // samples that can tell of a memory, or be drawn from
+constexpr std::size_t fewest = 16;  // samples: fewer show no autocorrelation and cannot be resampled
 
 bool counts(const Signals& s, std::size_t i) {
   if (i < s.exclude || s.held_out(i)) return false;
@@ -74,7 +74,7 @@ void Resampler::choose_length(const BlockLength& length) {
   }
   block_ = std::min(wanted, std::max(1, static_cast<int>(counted_ / 8)));
   if (block_ == wanted) return;
-  note_ = (length.samples > 0 ? "the study asks for blocks of " : "the memory of the residuals asks for blocks of ") +
+  note_ = (length.samples > 0 ? "the study asks for blocks of " : "the residual autocorrelation asks for blocks of ") +
           std::to_string(wanted) + " samples; they are cut to " + std::to_string(block_) + ", an eighth of the " +
           std::to_string(counted_) + " that count: with longer ones too few differ" +
           (length.samples > 0 ? "" : ", and with these the scatter may come out too small");

@@ -13,7 +13,7 @@ namespace misfit {
 
 /// Which part of the variance of one number comes from each term of a sampler, at first order.
 struct VarianceShares {
-  std::vector<double> share;   ///< per term: between 0 and 1 but for noise; empty: too few runs to tell
+  std::vector<double> share;   ///< per term: between 0 and 1 but for noise; empty: too few runs
   std::vector<double> sigma;   ///< of the share
   std::vector<double> effect;  ///< change of the number per one sigma of the term's parameter [unit of the number]; NaN for groups
   double rest = 0.0;           ///< residual variance: what acts together or beyond the polynomials; shares and rest add up to 1

@@ -297,7 +297,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   }
   if (estimate.outliers > 0)
     fit.warnings.push_back(std::to_string(estimate.outliers) +
-                           " measurements more than 5 sigma from their prediction are excluded as outliers");
+                           " measurements more than 5 sigma from their prediction are rejected as outliers");
   const FilterData& first = estimate.data.front();
   const std::vector<std::string> scales =
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);

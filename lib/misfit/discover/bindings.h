@@ -20,12 +20,12 @@ using Roles = std::map<std::string, std::string>;
 /// of as `displacement` and `level`; or, where it is the rate of nothing, as `level`. `to_port` is each other such port. `input` is each
 /// input and `output` each output (`reading` follows it), if the system has a default for `input`, or for `reading`: its way of saying
 /// that generic effects make sense there. Units are not looked at: assemble() refuses what does not suit.
-[[nodiscard]] std::vector<Roles> places_of(const EffectSpec& effect, const SystemSpec& system);
+[[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
 /// What a recording visits: sizes for the shapes of effects that take any unit.
-class Visited {
+class OperatingRange {
  public:
-  explicit Visited(const FilterEstimate& estimate);
+  explicit OperatingRange(const FilterEstimate& estimate);
 
   struct Range {
     double low = 0.0, high = 0.0;

@@ -1,4 +1,4 @@
-#include "misfit/calibrate/given.h"
+#include "misfit/calibrate/camera_from_study.h"
 
 #include "misfit/calibrate/groups.h"
 #include "misfit/core/error.h"
@@ -6,7 +6,7 @@
 
 namespace misfit {
 
-Calibration camera_as_given(CameraModel model, const std::map<std::string, config::Number>& given) {
+Calibration camera_from_study(CameraModel model, const std::map<std::string, config::Number>& given) {
   for (const char* name : {"h_c", "K"}) {
     if (!given.contains(name)) throw InputError(std::string("[camera] gives no sweep, so it must give ") + name);
   }
@@ -24,7 +24,7 @@ Calibration camera_as_given(CameraModel model, const std::map<std::string, confi
     if (sigma < 0.0)
       throw InputError(found->second.where, std::string(name) + ": sigma is " + format_value(sigma) + ", it cannot be negative");
     if (sigma == 0.0) {
-      calibration.notes.push_back(std::string(name) + " is given without sigma and taken as exact");
+      calibration.notes.push_back(std::string(name) + " is given without sigma and treated as exact");
       continue;
     }
     calibration.names.emplace_back(name);

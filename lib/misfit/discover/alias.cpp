@@ -1,4 +1,4 @@
-#include "misfit/discover/likeness.h"
+#include "misfit/discover/alias.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,35 +9,35 @@
 
 namespace misfit {
 
-void add_likenesses(const std::vector<Screened>& screened, const ScoreTest& score, Discovery& out) {
+void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const ScoreTest& score, Discovery& out) {
   if (out.candidates.empty() || !out.candidates.front().accepted || out.candidates.front().family == "sensor") return;
-  for (const auto& s : screened) {
-    if (s.specimen->family != "sensor" || !s.specimen->has_priors || !s.runs) continue;
+  for (const auto& s : screening) {
+    if (s.candidate_model->family != "sensor" || !s.candidate_model->has_priors || !s.runs) continue;
     const ScoreResult free = score.test(s.columns);
     constexpr double good_part = 0.4;
     if (free.chi2 < good_part * out.candidates.front().score) continue;
     std::string numbers, allowed;
-    for (std::size_t i = 0; i < s.specimen->strengths.size(); ++i) {
-      const Parameter& p = s.specimen->model.parameters[static_cast<std::size_t>(s.specimen->strengths[i])];
+    for (std::size_t i = 0; i < s.candidate_model->strengths.size(); ++i) {
+      const Parameter& p = s.candidate_model->model.parameters[static_cast<std::size_t>(s.candidate_model->strengths[i])];
       const auto k = static_cast<Eigen::Index>(i);
       numbers += (i == 0 ? "" : ", ") + p.name + " = " + in_display_unit(free.amplitude[k], p.unit, free.sigma[k]);
-      if (s.specimen->priors.precision[k] > 0.0)
-        allowed += (allowed.empty() ? "" : ", ") + in_display_unit(1.0 / std::sqrt(s.specimen->priors.precision[k]), p.unit);
+      if (s.candidate_model->priors.precision[k] > 0.0)
+        allowed += (allowed.empty() ? "" : ", ") + in_display_unit(1.0 / std::sqrt(s.candidate_model->priors.precision[k]), p.unit);
     }
-    out.sentences.push_back(s.specimen->effect + " with " + numbers + " would imitate part of it (predicted drop " +
+    out.sentences.push_back(s.candidate_model->effect + " with " + numbers + " would imitate part of it (predicted drop " +
                             format_value(free.chi2) + "), but the calibration allows only sigmas of " + allowed);
   }
 }
 
-std::optional<UnknownCurve> what_is_left(const FilterEstimate& with, const Specimen& specimen, double drop,
-                                         const DiscoverOptions& options) {
+std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model, double drop,
+                                                  const DiscoverOptions& options) {
   const ScoreTest score(with);
-  const ForceColumns path(with);
-  std::vector<UnknownCurve> after = unknown_curves(with, score, path, options.threads);
+  const ForceSensitivity force(with);
+  std::vector<UnknownCurve> after = unknown_curves(with, score, force, options.threads);
   std::optional<UnknownCurve> worst;
   for (auto& curve : after) {
     curve.p_value = sidak(curve.p_value, static_cast<double>(after.size()));
-    const auto& read = specimen.quantities;
+    const auto& read = candidate_model.quantities;
     const bool reads = std::find(read.begin(), read.end(), curve.quantity_index) != read.end();
     constexpr double good_part = 0.2;
     if (!reads || curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < good_part * drop) continue;

@@ -7,7 +7,7 @@
 namespace misfit {
 
 /// Frequencies first + f step, f = 0 … count − 1 [Hz].
-struct LineGrid {
+struct FrequencyGrid {
   double first = 0.0, step = 0.0;
   std::size_t count = 0;
   double wanted = 0.0;  ///< the highest that was asked for: above the last one where the scan is cut short [Hz]
@@ -20,12 +20,12 @@ using SampleTimes = std::vector<std::vector<double>>;
 /// Frequencies from `from` to `to` in steps of half the width of a line in the longest experiment, no lower than half a period in it, no
 /// higher than 0.45 of its sampling rate. Fewer where samples that are not evenly spaced make more than some 10 s of work for `series`
 /// series: then only the lower ones.
-[[nodiscard]] LineGrid line_grid(const SampleTimes& times, double from, double to, std::size_t series);
+[[nodiscard]] FrequencyGrid frequency_grid(const SampleTimes& times, double from, double to, std::size_t series);
 
 /// |Σ_k λ_k exp(2πi f t_k)|² at the frequencies of the grid: by fast transforms over each experiment that is evenly sampled, be it with
 /// gaps, and sample by sample over the others. Times off the even ones by less than a hundredth of a radian at the highest frequency (those
 /// printed with few digits) count as even.
-[[nodiscard]] std::vector<double> line_power(const Eigen::VectorXd& lambda, const SampleTimes& times, const LineGrid& grid);
+[[nodiscard]] std::vector<double> periodogram(const Eigen::VectorXd& lambda, const SampleTimes& times, const FrequencyGrid& grid);
 
 /// Adds to `power` each line over its background, the running median over 1/20 of the band: lines stand out of it.
 void add_over_background(const std::vector<double>& line, std::vector<double>& power);

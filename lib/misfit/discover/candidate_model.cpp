@@ -1,11 +1,11 @@
-#include "misfit/discover/specimen.h"
+#include "misfit/discover/candidate_model.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "misfit/core/error.h"
-#include "misfit/discover/places.h"
+#include "misfit/discover/bindings.h"
 
 namespace misfit {
 namespace {
@@ -82,7 +82,7 @@ ModelRequest with_effect(const ModelRequest& request, const Effect& effect, cons
 }
 
 /// Prior of a strength: the calibration's own sigma where it freed or tested the parameter, else the effect's.
-void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::Index i, Specimen& out) {
+void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::Index i, CandidateModel& out) {
   const std::string name = c.calibrated_as;
   double sigma = c.prior_sigma, mean = 0.0;
   if (calibration != nullptr && !name.empty()) {
@@ -90,7 +90,7 @@ void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::
     if (freed > 0.0) sigma = freed;
     for (const auto& test : calibration->tests) {
       for (std::size_t k = 0; k < test.parameters.size() && !(freed > 0.0); ++k) {
-        if (test.parameters[k] != name || test.taken_in || !(test.sigmas[k] > 0.0)) continue;
+        if (test.parameters[k] != name || test.selected || !(test.sigmas[k] > 0.0)) continue;
         sigma = test.sigmas[k];
         mean = test.values[k] - calibration->value(name);  // what the sweep would have it be
       }
@@ -102,7 +102,7 @@ void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::
   out.priors.mean[i] = mean;
 }
 
-void fill(const Effect& effect, const Calibration* calibration, const Visited& visited, Specimen& out) {
+void fill(const Effect& effect, const Calibration* calibration, const OperatingRange& operating_range, CandidateModel& out) {
   const BoundEffect& bound = out.model.effects.back();
   const auto& coefficients = effect.spec().coefficients;
   std::vector<std::vector<double>> axes;
@@ -119,7 +119,7 @@ void fill(const Effect& effect, const Calibration* calibration, const Visited& v
       strength_specs.push_back(&coefficients[c]);
     } else if (coefficients[c].scan.count > 0) {
       out.shapes.push_back(parameter);
-      axes.push_back(visited.grid(bound, c));
+      axes.push_back(operating_range.grid(bound, c));
     } else if (coefficients[c].scan.count < 0) {
       out.frequency = parameter;
       out.frequency_from = coefficients[c].scan.from;
@@ -170,10 +170,10 @@ Eigen::Index counted_rows(const FilterEstimate& estimate) {
   return rows;
 }
 
-Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const Specimen& specimen, const FilterModel& forced) {
+Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
   FilterRunner runner(forced, true);
   runner.set_parameters(forced.model.values());
-  Eigen::MatrixXd out(counted_rows(estimate), static_cast<Eigen::Index>(specimen.strengths.size()));
+  Eigen::MatrixXd out(counted_rows(estimate), static_cast<Eigen::Index>(candidate_model.strengths.size()));
   Eigen::Index at = 0;
   FilterTrace trace;
   FilterJacobian jacobian;
@@ -189,13 +189,13 @@ Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const Sp
 /// A sensor effect turns or shifts what the states mean, and the gains with them: held gains would take their mismatch for information (a
 /// camera that rolls looked nine times better known than it is, lens distortion three times). Differences of whole runs, the gains free to
 /// follow.
-Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Specimen& specimen, const FilterModel& forced) {
+Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
   FilterRunner runner(forced, false);
   std::vector<double> values = forced.model.values();
-  Eigen::MatrixXd out(counted_rows(estimate), static_cast<Eigen::Index>(specimen.strengths.size()));
+  Eigen::MatrixXd out(counted_rows(estimate), static_cast<Eigen::Index>(candidate_model.strengths.size()));
   std::array<FilterTrace, 2> sides;
-  for (std::size_t c = 0; c < specimen.strengths.size(); ++c) {
-    const auto parameter = static_cast<std::size_t>(specimen.strengths[c]);
+  for (std::size_t c = 0; c < candidate_model.strengths.size(); ++c) {
+    const auto parameter = static_cast<std::size_t>(candidate_model.strengths[c]);
     constexpr double share_of_scale = 1e-2;
     const double h = share_of_scale * forced.model.parameters[parameter].scale;
     Eigen::Index row = 0;
@@ -215,9 +215,9 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Spec
 }
 
 /// The model with the effect there, all held at the estimate; nullopt where the effect does not suit.
-std::optional<Specimen> specimen_at(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                    const Effect& effect, const Roles& roles) {
-  Specimen out;
+std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                                 const Effect& effect, const Roles& roles) {
+  CandidateModel out;
   out.effect = effect.spec().key;
   out.roles = roles;
   out.request = with_effect(request, effect, roles);
@@ -235,44 +235,47 @@ std::optional<Specimen> specimen_at(const FilterEstimate& estimate, const ModelR
 }
 
 /// In the model, or among those listed: a default role may be the very place that the system suggests.
-bool stands_already(const Specimen& specimen, const std::vector<Specimen>& listed) {
-  const auto& effects = specimen.model.effects;
+bool already_listed(const CandidateModel& candidate_model, const std::vector<CandidateModel>& listed) {
+  const auto& effects = candidate_model.model.effects;
   return std::any_of(effects.begin(), effects.end() - 1, [&](const BoundEffect& e) { return same_place(e, effects.back()); }) ||
-         std::any_of(listed.begin(), listed.end(), [&](const Specimen& s) { return same_place(s.model.effects.back(), effects.back()); });
+         std::any_of(listed.begin(), listed.end(),
+                     [&](const CandidateModel& s) { return same_place(s.model.effects.back(), effects.back()); });
 }
 
 }  // namespace
 
-std::vector<Specimen> specimens(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                const Calibration* calibration) {
-  std::vector<Specimen> out;
+std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                             const Calibration* calibration) {
+  std::vector<CandidateModel> out;
   std::vector<std::string> suiting;
-  const Visited visited(estimate);
+  const OperatingRange operating_range(estimate);
   const SystemSpec& system = estimate.model.system->spec();
   for (const std::string& key : registry.effect_keys()) {
     const Effect& effect = registry.effect(key);
     if (!has_strength(effect.spec()) || driven_by_noise(effect)) continue;
-    for (const Roles& roles : places_of(effect.spec(), system)) {
+    for (const Roles& roles : enumerate_bindings(effect.spec(), system)) {
       if (roles.empty() && in_model(request, key)) continue;
-      std::optional<Specimen> specimen = specimen_at(estimate, request, registry, effect, roles);
-      if (!specimen || stands_already(*specimen, out)) continue;
-      fill(effect, calibration, visited, *specimen);
+      std::optional<CandidateModel> candidate_model = candidate_model_at(estimate, request, registry, effect, roles);
+      if (!candidate_model || already_listed(*candidate_model, out)) continue;
+      fill(effect, calibration, operating_range, *candidate_model);
       if (std::find(suiting.begin(), suiting.end(), key) == suiting.end()) suiting.push_back(key);
-      out.push_back(std::move(*specimen));
+      out.push_back(std::move(*candidate_model));
     }
   }
-  std::erase_if(out, [&](const Specimen& s) { return specialised(registry, suiting, s.effect); });
+  std::erase_if(out, [&](const CandidateModel& s) { return specialised(registry, suiting, s.effect); });
   return out;
 }
 
-Eigen::MatrixXd specimen_columns(const FilterEstimate& estimate, const Specimen& specimen, const std::vector<double>& cell) {
-  FilterModel forced = with_random_force(specimen.model);
+Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const CandidateModel& candidate_model,
+                                    const std::vector<double>& cell) {
+  FilterModel forced = with_random_force(candidate_model.model);
   forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = estimate.noise.force_time;
-  for (std::size_t i = 0; i < specimen.shapes.size(); ++i)
-    forced.model.parameters[static_cast<std::size_t>(specimen.shapes[i])].value = cell[i];
-  if (cell.size() > specimen.shapes.size()) forced.model.parameters[static_cast<std::size_t>(specimen.frequency)].value = cell.back();
-  return specimen.family == "sensor" ? columns_of_whole_runs(estimate, specimen, forced)
-                                     : columns_with_gains_held(estimate, specimen, forced);
+  for (std::size_t i = 0; i < candidate_model.shapes.size(); ++i)
+    forced.model.parameters[static_cast<std::size_t>(candidate_model.shapes[i])].value = cell[i];
+  if (cell.size() > candidate_model.shapes.size())
+    forced.model.parameters[static_cast<std::size_t>(candidate_model.frequency)].value = cell.back();
+  return candidate_model.family == "sensor" ? columns_of_whole_runs(estimate, candidate_model, forced)
+                                            : columns_with_gains_held(estimate, candidate_model, forced);
 }
 
 }  // namespace misfit

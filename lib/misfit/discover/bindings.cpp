@@ -1,4 +1,4 @@
-#include "misfit/discover/places.h"
+#include "misfit/discover/bindings.h"
 
 #include <algorithm>
 #include <array>
@@ -76,12 +76,12 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-std::optional<Visited::Range> range_of(std::vector<double> values) {
+std::optional<OperatingRange::Range> range_of(std::vector<double> values) {
   std::erase_if(values, [](double v) { return !std::isfinite(v); });
   if (values.size() < 2) return std::nullopt;
   std::sort(values.begin(), values.end());
   const std::size_t cut = values.size() / 200;
-  const Visited::Range range{values[cut], values[values.size() - 1 - cut]};
+  const OperatingRange::Range range{values[cut], values[values.size() - 1 - cut]};
   if (!(range.high > range.low)) return std::nullopt;
   return range;
 }
@@ -92,7 +92,7 @@ bool is_generic(const EffectSpec& effect) {
   return std::any_of(effect.ports.begin(), effect.ports.end(), [](const Role& r) { return r.unit[0] == '*' || r.unit[0] == '{'; });
 }
 
-std::vector<Roles> places_of(const EffectSpec& effect, const SystemSpec& system) {
+std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system) {
   std::vector<Roles> out = {{}};
   if (!is_generic(effect)) return out;
   std::vector<Roles> places = {{}};
@@ -113,7 +113,7 @@ std::vector<Roles> places_of(const EffectSpec& effect, const SystemSpec& system)
   return out;
 }
 
-Visited::Visited(const FilterEstimate& estimate) {
+OperatingRange::OperatingRange(const FilterEstimate& estimate) {
   const SystemSpec& system = estimate.model.system->spec();
   Evaluator evaluator(estimate.forced.model);
   const std::size_t count = system.quantities.size();
@@ -144,12 +144,12 @@ Visited::Visited(const FilterEstimate& estimate) {
   step_ = *middle;
 }
 
-std::optional<Visited::Range> Visited::range(int quantity) const {
+std::optional<OperatingRange::Range> OperatingRange::range(int quantity) const {
   const auto i = static_cast<std::size_t>(quantity);
   return quantity < 0 || i >= ranges_.size() ? std::nullopt : ranges_[i];
 }
 
-std::vector<double> Visited::grid(const BoundEffect& effect, std::size_t coefficient) const {
+std::vector<double> OperatingRange::grid(const BoundEffect& effect, std::size_t coefficient) const {
   const EffectSpec& spec = effect.effect->spec();
   const CoefficientSpec& c = spec.coefficients[coefficient];
   const std::string_view over = c.scan.over;

@@ -1,4 +1,4 @@
-#include "apps/set_up.h"
+#include "apps/rig.h"
 
 #include <fmt/format.h>
 
@@ -30,14 +30,14 @@ double divisor_of(const std::string& reading) {
   return reading == "uniform" ? std::sqrt(3.0) : 1.0;
 }
 
-std::string reading_text(const PerturbStudy& wish, const std::string& unit) {
-  const std::string size = in_display_unit(wish.number.value, unit);
-  return wish.reading == "uniform" ? "uniform within ± " + size : "normal, " + wish.reading + " = " + size;
+std::string reading_text(const PerturbStudy& request, const std::string& unit) {
+  const std::string size = in_display_unit(request.number.value, unit);
+  return request.reading == "uniform" ? "uniform within ± " + size : "normal, " + request.reading + " = " + size;
 }
 
-void move_rig(RigGeometry& rig, const std::string& name, double error) {
+void move_rig(RigGeometry& geometry, const std::string& name, double error) {
   for (const RigEntry& entry : rig_entries()) {
-    if (name == entry.name) rig.*entry.field += error;
+    if (name == entry.name) geometry.*entry.field += error;
   }
 }
 
@@ -50,29 +50,29 @@ bool is_free(const Model& model, const std::string& name) {
 
 }  // namespace
 
-SetUp::SetUp(Session& session, const Model& model) {
-  const UncertaintyStudy& wishes = *session.study.uncertainty;
+Rig::Rig(Session& session, const Model& model) {
+  const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   list_known(session, model);
-  for (const PerturbStudy& wish : wishes.perturb) add(wish, model);
-  if (wishes.calibrated_camera) add_calibration(session);
+  for (const PerturbStudy& request : uncertainty.perturb) add(request, model);
+  if (uncertainty.calibrated_camera) add_calibration(session);
   if (perturbations_.names().empty())
-    throw InputError(wishes.where, "nothing is perturbed: perturb = { R = \"0.1524 m\", … } says what, and how far");
+    throw InputError(uncertainty.where, "nothing is perturbed: perturb = { R = \"0.1524 m\", … } says what, and how far");
   note_held_camera(model);
   const bool from_image = nominal_.calibration.has_value();
-  if (wishes.recalibrate) {
+  if (uncertainty.recalibrate) {
     if (!from_image || !session.study.camera.from_sweep())
-      throw InputError(wishes.where, "recalibrate needs a camera that is calibrated from a sweep");
+      throw InputError(uncertainty.where, "recalibrate needs a camera that is calibrated from a sweep");
     sweep_ = read_sweep(sweep_stage(session));
     calibrate_.model = nominal_.calibration->model;
-    calibrate_.offer.clear();
+    calibrate_.candidates.clear();
     for (const CameraTest& test : nominal_.calibration->tests) {
-      if (test.taken_in) calibrate_.take_in.push_back(test.name);
+      if (test.selected) calibrate_.force.push_back(test.name);
     }
   }
 }
 
 /// Where the system predicts the image, the calibrated camera is estimated by the study's own fits.
-void SetUp::note_held_camera(const Model& model) {
+void Rig::note_held_camera(const Model& model) {
   for (const std::string& name : perturbations_.names()) {
     if (!is_camera(name) || model.find_parameter(name) < 0) continue;
     notes_.emplace_back(
@@ -82,8 +82,8 @@ void SetUp::note_held_camera(const Model& model) {
   }
 }
 
-void SetUp::list_known(Session& session, const Model& model) {
-  nominal_.rig = session.model.rig;
+void Rig::list_known(Session& session, const Model& model) {
+  nominal_.geometry = session.model.rig;
   for (const Parameter& p : model.parameters) {
     if (p.curve < 0) known_[p.name] = {p.unit, p.value};
     if (p.curve < 0) nominal_.constants[p.name] = p.value;
@@ -92,7 +92,7 @@ void SetUp::list_known(Session& session, const Model& model) {
   nominal_.calibration = calibrate_stage(session);
   for (const RigEntry& entry : rig_entries()) {
     const bool used = !of_sweep(entry.name) || session.study.uncertainty->recalibrate;
-    if (used && nominal_.rig.*entry.field > 0.0) known_[entry.name] = {entry.unit, nominal_.rig.*entry.field};
+    if (used && nominal_.geometry.*entry.field > 0.0) known_[entry.name] = {entry.unit, nominal_.geometry.*entry.field};
   }
   known_["P_y"] = known_["P_z"] = {"px", 0.0};
   if (!nominal_.calibration) return;
@@ -100,32 +100,32 @@ void SetUp::list_known(Session& session, const Model& model) {
     known_[camera_parameter_names[i]] = {camera_parameter_units[i], nominal_.calibration->value(camera_parameter_names[i])};
 }
 
-void SetUp::add(const PerturbStudy& wish, const Model& model) {
-  const Source& where = wish.number.where;
-  if (of_sweep(wish.name) && !known_.contains(wish.name))
-    throw InputError(where, wish.name + " acts through the calibration alone: recalibrate = true calibrates again in every run");
-  if (is_free(model, wish.name)) {
-    throw InputError(where, "'" + wish.name +
+void Rig::add(const PerturbStudy& request, const Model& model) {
+  const Source& where = request.number.where;
+  if (of_sweep(request.name) && !known_.contains(request.name))
+    throw InputError(where, request.name + " acts through the calibration alone: recalibrate = true calibrates again in every run");
+  if (is_free(model, request.name)) {
+    throw InputError(where, "'" + request.name +
                                 "' is estimated by this study: only what is held can be perturbed (hold it in [parameters], or "
                                 "leave it out here)");
   }
-  const auto known = known_.find(wish.name);
+  const auto known = known_.find(request.name);
   if (known == known_.end()) {
     std::vector<std::string> valid;
     for (const auto& [name, entry] : known_) {
       if (!is_free(model, name)) valid.push_back(name);
     }
-    throw InputError(where, "nothing that is held in this study is called '" + shown(wish.name) + "'" + suggest(wish.name, valid));
+    throw InputError(where, "nothing that is held in this study is called '" + shown(request.name) + "'" + suggest(request.name, valid));
   }
   const auto& [unit, value] = known->second;
-  if (!wish.number.unit.empty() && !parse_unit(wish.number.unit).same_dimension(parse_unit(unit)))
-    throw InputError(where, wish.name + " needs [" + unit + "], not [" + wish.number.unit + "]");
-  const double sigma = wish.number.value / divisor_of(wish.reading);
-  perturbations_.single.push_back({wish.name, unit, sigma, wish.reading == "uniform"});
-  described_.push_back({wish.name, unit, value, sigma, reading_text(wish, unit), ""});
+  if (!request.number.unit.empty() && !parse_unit(request.number.unit).same_dimension(parse_unit(unit)))
+    throw InputError(where, request.name + " needs [" + unit + "], not [" + request.number.unit + "]");
+  const double sigma = request.number.value / divisor_of(request.reading);
+  perturbations_.single.push_back({request.name, unit, sigma, request.reading == "uniform"});
+  described_.push_back({request.name, unit, value, sigma, reading_text(request, unit), ""});
 }
 
-void SetUp::add_calibration(const Session& session) {
+void Rig::add_calibration(const Session& session) {
   const Source& where = session.study.uncertainty->where_camera;
   if (!nominal_.calibration || nominal_.calibration->names.empty())
     throw InputError(where, "camera = \"calibration\" needs a calibrated camera, or one given with sigmas, and a track");
@@ -143,31 +143,31 @@ void SetUp::add_calibration(const Session& session) {
   perturbations_.groups.push_back(std::move(group));
 }
 
-void SetUp::set(PerturbedSetUp& set_up, const std::string& name, double error) const {
-  move_rig(set_up.rig, name, error);
-  if (name == "P_y") set_up.offset_y += error;
-  if (name == "P_z") set_up.offset_z += error;
-  if (const auto constant = set_up.constants.find(name); constant != set_up.constants.end()) constant->second += error;
-  if (!set_up.calibration || !is_camera(name)) return;
-  const auto entries = camera_entries(set_up.calibration->camera);
+void Rig::set(PerturbedRig& rig, const std::string& name, double error) const {
+  move_rig(rig.geometry, name, error);
+  if (name == "P_y") rig.offset_y += error;
+  if (name == "P_z") rig.offset_z += error;
+  if (const auto constant = rig.constants.find(name); constant != rig.constants.end()) constant->second += error;
+  if (!rig.calibration || !is_camera(name)) return;
+  const auto entries = camera_entries(rig.calibration->camera);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (name == camera_parameter_names[i]) *entries[i] += error;
   }
 }
 
 /// The camera that the sweep gives when the rig is as these errors make it.
-void SetUp::calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedSetUp& set_up) const {
-  RigGeometry rig = nominal_.rig;
-  for (std::size_t i = 0; i < names.size(); ++i) move_rig(rig, names[i], errors[i]);
-  set_up.calibration = calibrate(*sweep_, rig, calibrate_);
+void Rig::calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedRig& rig) const {
+  RigGeometry geometry = nominal_.geometry;
+  for (std::size_t i = 0; i < names.size(); ++i) move_rig(geometry, names[i], errors[i]);
+  rig.calibration = calibrate(*sweep_, geometry, calibrate_);
   for (const char* name : camera_parameter_names) {
-    const auto constant = set_up.constants.find(name);
-    if (constant != set_up.constants.end()) constant->second = set_up.calibration->value(name);
+    const auto constant = rig.constants.find(name);
+    if (constant != rig.constants.end()) constant->second = rig.calibration->value(name);
   }
 }
 
-PerturbedSetUp SetUp::at(const std::vector<double>& errors) const {
-  PerturbedSetUp out = nominal_;
+PerturbedRig Rig::at(const std::vector<double>& errors) const {
+  PerturbedRig out = nominal_;
   const std::vector<std::string> names = perturbations_.names();
   if (sweep_) calibrate_again(names, errors, out);
   for (std::size_t i = 0; i < names.size(); ++i) set(out, names[i], errors[i]);
@@ -175,7 +175,7 @@ PerturbedSetUp SetUp::at(const std::vector<double>& errors) const {
 }
 
 void hold_perturbed_camera(Session& session) {
-  const UncertaintyStudy& wishes = *session.study.uncertainty;
+  const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   const auto hold = [&](const std::string& name) {
     auto& parameters = session.model.request.parameters;
     if (is_camera(name) && !parameters.contains(name)) parameters[name].free = false;
@@ -183,8 +183,9 @@ void hold_perturbed_camera(Session& session) {
   const SystemType& type = session.registry.system(session.model.request.system, session.model.request.system_where);
   const auto system = type.make(session.model.request.options);
   for (const ConstantSpec& constant : system->spec().constants) {
-    const bool named = std::any_of(wishes.perturb.begin(), wishes.perturb.end(), [&](const auto& p) { return p.name == constant.name; });
-    if (named || wishes.calibrated_camera || wishes.recalibrate) hold(constant.name);
+    const bool named =
+        std::any_of(uncertainty.perturb.begin(), uncertainty.perturb.end(), [&](const auto& p) { return p.name == constant.name; });
+    if (named || uncertainty.calibrated_camera || uncertainty.recalibrate) hold(constant.name);
   }
 }
 

@@ -14,9 +14,9 @@
 
 namespace misfit {
 
-/// The set-up of a study with errors in it.
-struct PerturbedSetUp {
-  RigGeometry rig;
+/// The rig, camera and constants of a study with errors in them.
+struct PerturbedRig {
+  RigGeometry geometry;
   std::optional<Calibration> calibration;
   double offset_y = 0.0, offset_z = 0.0;    ///< added to every P_y, P_z [px]
   std::map<std::string, double> constants;  ///< of the model: name → value, SI
@@ -24,32 +24,32 @@ struct PerturbedSetUp {
 
 /// What [uncertainty] perturb of a study means: which lengths, camera parameters, image offsets and constants of the model it names, in
 /// which units.
-class SetUp {
+class Rig {
  public:
   /// `model`: the one the method works with. InputError with the place in the study: a name that nothing depends on (with the nearest), one
   /// that is estimated, a wrong unit, one given twice.
-  SetUp(Session& session, const Model& model);
+  Rig(Session& session, const Model& model);
 
   [[nodiscard]] const Perturbations& perturbations() const { return perturbations_; }
   [[nodiscard]] std::vector<PerturbedParameter> described() const { return described_; }
   /// `errors`: order of perturbations().names(). Calibrates again where the study says so. Thread-safe.
-  [[nodiscard]] PerturbedSetUp at(const std::vector<double>& errors) const;
+  [[nodiscard]] PerturbedRig at(const std::vector<double>& errors) const;
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  /// A name and its nominal value; where it acts is told by the name alone.
+  /// A name and its nominal value; the name alone determines where it acts.
   struct Known {
     std::string unit;
     double value = 0.0;
   };
   void list_known(Session& session, const Model& model);
-  void add(const PerturbStudy& wish, const Model& model);
+  void add(const PerturbStudy& request, const Model& model);
   void add_calibration(const Session& session);
   void note_held_camera(const Model& model);
-  void calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedSetUp& set_up) const;
-  void set(PerturbedSetUp& set_up, const std::string& name, double error) const;
+  void calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedRig& rig) const;
+  void set(PerturbedRig& rig, const std::string& name, double error) const;
 
-  PerturbedSetUp nominal_;
+  PerturbedRig nominal_;
   std::map<std::string, Known> known_;
   Perturbations perturbations_;
   std::vector<PerturbedParameter> described_;

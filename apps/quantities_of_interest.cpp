@@ -1,4 +1,4 @@
-#include "apps/followed_numbers.h"
+#include "apps/quantities_of_interest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ std::vector<double> values_at(const CurveEstimate* curve, const std::vector<doub
   return out;
 }
 
-SpreadCurve followed(const CurveEstimate& curve) {
+SpreadCurve spread_curve(const CurveEstimate& curve) {
   const auto seen = [](double count) { return count > 0.0; };
   const auto first = std::find_if(curve.count.begin(), curve.count.end(), seen) - curve.count.begin();
   const auto behind = curve.count.rend() - std::find_if(curve.count.rbegin(), curve.count.rend(), seen);
@@ -60,7 +60,8 @@ SpreadCurve followed(const CurveEstimate& curve) {
 
 }  // namespace
 
-FollowedNumbers::FollowedNumbers(const Fit& nominal, const Fit& run, std::string static_curve) : static_curve_(std::move(static_curve)) {
+QuantitiesOfInterest::QuantitiesOfInterest(const Fit& nominal, const Fit& run, std::string static_curve)
+    : static_curve_(std::move(static_curve)) {
   const auto add = [&](const std::string& name, const Estimate& e) {
     SpreadNumber number;
     number.name = name;
@@ -72,14 +73,14 @@ FollowedNumbers::FollowedNumbers(const Fit& nominal, const Fit& run, std::string
   if (nominal.trim) add("trim", *nominal.trim);
   for (const CurveEstimate& curve : nominal.curves) {
     if (const auto value = at_trim(curve, nominal, static_curve_)) add(name_at_trim(curve.name, static_curve_), *value);
-    curves_.push_back(followed(curve));
+    curves_.push_back(spread_curve(curve));
   }
   for (const auto& [name, estimate] : nominal.parameters) {
     if (!is_curve_coefficient(name) && run.parameters.contains(name)) add(name, estimate);
   }
 }
 
-std::vector<double> FollowedNumbers::single_of(const Fit& fit) const {
+std::vector<double> QuantitiesOfInterest::scalars_of(const Fit& fit) const {
   std::map<std::string, double> values;
   if (fit.trim) values["trim"] = fit.trim->value;
   for (const CurveEstimate& curve : fit.curves) {
@@ -91,8 +92,8 @@ std::vector<double> FollowedNumbers::single_of(const Fit& fit) const {
   return out;
 }
 
-std::vector<double> FollowedNumbers::of(const Fit& fit) const {
-  std::vector<double> out = single_of(fit);
+std::vector<double> QuantitiesOfInterest::evaluate(const Fit& fit) const {
+  std::vector<double> out = scalars_of(fit);
   for (const SpreadCurve& curve : curves_) {
     const std::vector<double> values = values_at(find_curve(fit, curve.name), curve.x);
     out.insert(out.end(), values.begin(), values.end());
@@ -101,7 +102,7 @@ std::vector<double> FollowedNumbers::of(const Fit& fit) const {
   return out;
 }
 
-void FollowedNumbers::fill(const MonteCarloResult& result, const std::vector<std::string>& terms, Uncertainty& out) const {
+void QuantitiesOfInterest::fill(const MonteCarloResult& result, const std::vector<std::string>& terms, Uncertainty& out) const {
   out.numbers = numbers_;
   out.curves = curves_;
   for (std::size_t i = 0; i < out.numbers.size(); ++i) {
@@ -131,7 +132,7 @@ std::vector<std::string> unfinished_notes(const Fit& nominal, const MonteCarloRe
   const long unfinished = std::lround(last.mean * static_cast<double>(last.count));
   if (unfinished > 0)
     notes.push_back(std::to_string(unfinished) + " of " + std::to_string(runs.runs) +
-                    " runs had not converged; they are in mean and sigma with where they stopped.");
+                    " runs had not converged; mean and sigma include their last iterates.");
   return notes;
 }
 

@@ -1,4 +1,4 @@
-#include "misfit/attitude/axis_reading.h"
+#include "misfit/attitude/axis_sample.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t parameters = camera_parameter_names.size();
 constexpr int width = 2 + static_cast<int>(parameters);  // P_y, P_z, then the camera
-using ReadingJet = Jet<width>;
+using PixelJet = Jet<width>;
 
 std::vector<Eigen::Index> free_columns(const Calibration& calibration) {
   std::vector<Eigen::Index> columns;
@@ -23,11 +23,11 @@ std::vector<Eigen::Index> free_columns(const Calibration& calibration) {
   return columns;
 }
 
-CameraParameters<ReadingJet> jet_camera(const CameraParameters<double>& camera) {
-  CameraParameters<ReadingJet> jets;
+CameraParameters<PixelJet> jet_camera(const CameraParameters<double>& camera) {
+  CameraParameters<PixelJet> jets;
   const auto to = camera_entries(jets);
   const auto values = camera_values(camera);
-  for (std::size_t i = 0; i < parameters; ++i) *to[i] = ReadingJet(values[i], 2 + static_cast<int>(i));
+  for (std::size_t i = 0; i < parameters; ++i) *to[i] = PixelJet(values[i], 2 + static_cast<int>(i));
   return jets;
 }
 
@@ -42,10 +42,10 @@ class Reader {
         derivatives_(derivatives) {}
 
   /// False if no angle explains the pixel.
-  bool read(double P_y, double P_z, AxisReading& sample) const { return derivatives_ ? with(P_y, P_z, sample) : without(P_y, P_z, sample); }
+  bool read(double P_y, double P_z, AxisSample& sample) const { return derivatives_ ? with(P_y, P_z, sample) : without(P_y, P_z, sample); }
 
  private:
-  bool without(double P_y, double P_z, AxisReading& sample) const {
+  bool without(double P_y, double P_z, AxisSample& sample) const {
     const auto read = read_axis(model_, plain_, axis_, P_y, P_z);
     if (!read) return false;
     sample.ok = true;
@@ -54,8 +54,8 @@ class Reader {
     return true;
   }
 
-  bool with(double P_y, double P_z, AxisReading& sample) const {
-    const auto read = read_axis(model_, camera_, axis_, ReadingJet(P_y, 0), ReadingJet(P_z, 1));
+  bool with(double P_y, double P_z, AxisSample& sample) const {
+    const auto read = read_axis(model_, camera_, axis_, PixelJet(P_y, 0), PixelJet(P_z, 1));
     if (!read) return false;
     sample.ok = true;
     sample.theta = (*read)[0].a;
@@ -72,29 +72,29 @@ class Reader {
   CameraModel model_;
   AxisGeometry axis_;
   CameraParameters<double> plain_;
-  CameraParameters<ReadingJet> camera_;
+  CameraParameters<PixelJet> camera_;
   std::vector<Eigen::Index> columns_;
   bool derivatives_;
 };
 
 }  // namespace
 
-AxisReadings read_axes(const Track& track, const Calibration& calibration, const RigGeometry& geometry, bool derivatives) {
+AxisSamples read_axes(const Track& track, const Calibration& calibration, const RigGeometry& geometry, bool derivatives) {
   const Reader reader(calibration, geometry, derivatives);
-  AxisReadings readings;
-  readings.samples.resize(track.t.size());
+  AxisSamples axes;
+  axes.samples.resize(track.t.size());
   for (std::size_t i = 0; i < track.t.size(); ++i) {
     const bool there = track.ok[i] && std::isfinite(track.P_y[i]) && std::isfinite(track.P_z[i]);
     if (!there) {
-      ++readings.lost;
-    } else if (!reader.read(track.P_y[i], track.P_z[i], readings.samples[i])) {
-      ++readings.unexplained;
+      ++axes.lost;
+    } else if (!reader.read(track.P_y[i], track.P_z[i], axes.samples[i])) {
+      ++axes.unexplained;
     }
   }
-  return readings;
+  return axes;
 }
 
-std::optional<double> reading_noise(const Track& track, const std::vector<bool>& even_step) {
+std::optional<double> pixel_noise(const Track& track, const std::vector<bool>& even_step) {
   constexpr std::array<double, 7> difference = {1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0};  // sum of squares 924
   constexpr std::size_t order = difference.size() - 1;
   std::vector<double> differences;

@@ -1,4 +1,4 @@
-#include "apps/followed_numbers.h"
+#include "apps/quantities_of_interest.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ TEST(FitsThatHaveNotConverged, AreCountedAndNamed) {
   stuck = good;
   stuck.status = FitStatus::not_converged;
   stuck.message = "iteration limit";
-  const FollowedNumbers numbers(good, good, "C_m");
+  const QuantitiesOfInterest numbers(good, good, "C_m");
   const TemporaryFolder folder;
   MonteCarloOptions options;
   options.jobs = {folder.path() / "jobs", "digest", 40, 1};
@@ -24,7 +24,7 @@ TEST(FitsThatHaveNotConverged, AreCountedAndNamed) {
       sampler,
       [&](const std::vector<double>& errors) {
         expected += errors[0] > 0.0 ? 1 : 0;
-        return ChainResult{numbers.of(errors[0] > 0.0 ? stuck : good), ""};
+        return ChainResult{numbers.evaluate(errors[0] > 0.0 ? stuck : good), ""};
       },
       options);
   ASSERT_TRUE(runs);

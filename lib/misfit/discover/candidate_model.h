@@ -10,7 +10,7 @@
 namespace misfit {
 
 /// An effect put to the model as a question: its strengths are free and 0, everything else is held; shapes stand at one of the cells.
-struct Specimen {
+struct CandidateModel {
   std::string effect, family;                ///< family: "physics", "generic", "sensor"
   std::map<std::string, std::string> roles;  ///< as a study would bind them; empty: the defaults
   ModelRequest request;                      ///< the model's, with the effect as a number everywhere
@@ -32,11 +32,12 @@ struct Specimen {
 inline constexpr int kTime = -1;
 
 /// Every effect of the registry that suits the model's system, is not in it, and has a strength; generic ones at each place that the system
-/// suggests (places.h). Left out: effects driven by noise (the filter has them), and generic ones that a system's own effect specialises.
-[[nodiscard]] std::vector<Specimen> specimens(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                              const Calibration* calibration);
+/// suggests (bindings.h). Left out: effects driven by noise (the filter has them), and generic ones that a system's own effect specialises.
+[[nodiscard]] std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request,
+                                                           const Registry& registry, const Calibration* calibration);
 
-/// Columns of a specimen's strengths at a cell: rows of the estimate × strengths. Empty where the model cannot be run so.
-[[nodiscard]] Eigen::MatrixXd specimen_columns(const FilterEstimate& estimate, const Specimen& specimen, const std::vector<double>& cell);
+/// Columns of a candidate model's strengths at a cell: rows of the estimate × strengths. Empty where the model cannot be run so.
+[[nodiscard]] Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const CandidateModel& candidate_model,
+                                                  const std::vector<double>& cell);
 
 }  // namespace misfit

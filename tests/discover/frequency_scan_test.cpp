@@ -1,4 +1,4 @@
-#include "misfit/discover/lines.h"
+#include "misfit/discover/frequency_scan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,9 +34,9 @@ void expect_as_defined(const SampleTimes& t, double share) {
   std::size_t samples = 0;
   for (const auto& experiment : t) samples += experiment.size();
   const Eigen::VectorXd x = noise(samples, 7);
-  const LineGrid grid = line_grid(t, 0.2, 12.0, 1);
+  const FrequencyGrid grid = frequency_grid(t, 0.2, 12.0, 1);
   ASSERT_GT(grid.count, 100U);
-  const std::vector<double> power = line_power(x, t, grid);
+  const std::vector<double> power = periodogram(x, t, grid);
   ASSERT_EQ(power.size(), grid.count);
   double most = 0.0;  // against what a line of noise has on average: sums may cancel
   for (std::size_t f = 0; f < grid.count; ++f)
@@ -50,16 +50,16 @@ std::vector<double> even(double from, double rate, int samples) {
   return t;
 }
 
-TEST(Lines, OfEvenSamplesAreTheSum) { expect_as_defined({even(3.0, 59.94, 1500)}, 1e-9); }
+TEST(FrequencyScan, OfEvenSamplesAreTheSum) { expect_as_defined({even(3.0, 59.94, 1500)}, 1e-9); }
 
-TEST(Lines, OfEvenSamplesWithGapsAreTheSum) {
+TEST(FrequencyScan, OfEvenSamplesWithGapsAreTheSum) {
   std::vector<double> t = even(0.0, 59.94, 1500);
   t.erase(t.begin() + 300, t.begin() + 700);
   for (std::size_t k = 2; k < t.size(); k += 3) t.erase(t.begin() + static_cast<std::ptrdiff_t>(k));
   expect_as_defined({t}, 1e-9);
 }
 
-TEST(Lines, OfUnevenSamplesAreTheSum) {
+TEST(FrequencyScan, OfUnevenSamplesAreTheSum) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> step(0.01, 0.03);
   std::vector<double> t = {0.0};
@@ -68,55 +68,55 @@ TEST(Lines, OfUnevenSamplesAreTheSum) {
 }
 
 /// Times of a file with four digits: phases are wrong by up to a hundredth of a radian, which moves |sum|² by as much of |sum| sqrt(Σ λ²).
-TEST(Lines, OfTimesPrintedWithFewDigitsAreNearlyTheSum) {
+TEST(FrequencyScan, OfTimesPrintedWithFewDigitsAreNearlyTheSum) {
   std::vector<double> t = even(0.0, 59.94, 1500);
   for (double& v : t) v = std::round(v * 1e4) / 1e4;
   expect_as_defined({t}, 0.01);
 }
 
 /// An even one, an uneven one and one at another rate, each with its own origin of time, the last later than all before.
-TEST(Lines, OfSeveralExperimentsAreTheSumOverAll) {
+TEST(FrequencyScan, OfSeveralExperimentsAreTheSumOverAll) {
   SampleTimes times = {even(0.0, 59.94, 1500), {0.0}, even(100.0, 25.0, 400)};
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> step(0.01, 0.03);
   for (int k = 0; k < 300; ++k) times[1].push_back(times[1].back() + step(random));
-  EXPECT_NEAR(line_grid(times, 0.2, 12.0, 1).step, 59.94 / (4.0 * 1499.0), 1e-12) << "half the width of a line in the longest";
+  EXPECT_NEAR(frequency_grid(times, 0.2, 12.0, 1).step, 59.94 / (4.0 * 1499.0), 1e-12) << "half the width of a line in the longest";
   expect_as_defined(times, 1e-9);
 }
 
-TEST(Lines, StandOutOfTheirBackground) {
+TEST(FrequencyScan, StandOutOfTheirBackground) {
   const SampleTimes t = {even(0.0, 50.0, 4000)};
   Eigen::VectorXd x = noise(t[0].size(), 8);
   for (std::size_t k = 0; k < t[0].size(); ++k) x[static_cast<Eigen::Index>(k)] += 0.3 * std::sin(two_pi * 4.321 * t[0][k]);
-  const LineGrid grid = line_grid(t, 0.2, 30.0, 1);
+  const FrequencyGrid grid = frequency_grid(t, 0.2, 30.0, 1);
   std::vector<double> power(grid.count, 0.0);
-  add_over_background(line_power(x, t, grid), power);
+  add_over_background(periodogram(x, t, grid), power);
   const auto best = static_cast<std::size_t>(std::max_element(power.begin(), power.end()) - power.begin());
   EXPECT_NEAR(grid.at(best), 4.321, grid.step);
   EXPECT_NEAR(grid.at(grid.count - 1), 22.5, 0.01) << "0.45 of the sampling rate";
 }
 
 /// The whole band of a record of an hour and a half at 50 Hz: a sum over all samples at each frequency would be 1.3e11 turns.
-TEST(Lines, OfALongRecordAreScannedOverTheWholeBand) {
+TEST(FrequencyScan, OfALongRecordAreScannedOverTheWholeBand) {
   const SampleTimes t = {even(0.0, 50.0, 262144)};
   Eigen::VectorXd x = noise(t[0].size(), 9);
   for (std::size_t k = 0; k < t[0].size(); ++k) x[static_cast<Eigen::Index>(k)] += 0.1 * std::sin(two_pi * 19.0 * t[0][k]);
-  const LineGrid grid = line_grid(t, 1e-6, 1e3, 3);
+  const FrequencyGrid grid = frequency_grid(t, 1e-6, 1e3, 3);
   EXPECT_NEAR(grid.at(grid.count), 22.5, 0.01);
   std::vector<double> power(grid.count, 0.0);
-  const std::vector<double> line = line_power(x, t, grid);
+  const std::vector<double> line = periodogram(x, t, grid);
   add_over_background(line, power);
   const auto best = static_cast<std::size_t>(std::max_element(power.begin(), power.end()) - power.begin());
   EXPECT_NEAR(grid.at(best), 19.0, grid.step);
   EXPECT_NEAR(line[best], by_definition(x, t, grid.at(best)), 1e-6 * line[best]);
 }
 
-TEST(Lines, ThatTooManyUnevenSamplesForbidAreSaid) {
+TEST(FrequencyScan, ThatTooManyUnevenSamplesForbidAreSaid) {
   std::vector<double> t = {0.0};
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> step(0.01, 0.03);
   for (int k = 0; k < 300000; ++k) t.push_back(t.back() + step(random));
-  const LineGrid grid = line_grid({t}, 0.2, 12.0, 1);
+  const FrequencyGrid grid = frequency_grid({t}, 0.2, 12.0, 1);
   EXPECT_LT(grid.at(grid.count), 0.9 * grid.wanted);
   EXPECT_DOUBLE_EQ(grid.wanted, 12.0);
 }

@@ -9,11 +9,11 @@ namespace misfit {
 
 /// Sensor effects that would imitate an accepted physical one if the calibration did not forbid it: how far off they would have to be, as
 /// sentences.
-void add_likenesses(const std::vector<Screened>& screened, const ScoreTest& score, Discovery& out);
+void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const ScoreTest& score, Discovery& out);
 
 /// An unknown curve of a quantity that the effect reads, significant after it and worth a good part of its drop: then the effect is only a
-/// likeness of what is missing. `with`: the refitted model that holds it.
-[[nodiscard]] std::optional<UnknownCurve> what_is_left(const FilterEstimate& with, const Specimen& specimen, double drop,
-                                                       const DiscoverOptions& options);
+/// alias of what is missing. `with`: the refitted model that holds it.
+[[nodiscard]] std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model,
+                                                                double drop, const DiscoverOptions& options);
 
 }  // namespace misfit

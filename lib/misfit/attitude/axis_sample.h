@@ -11,7 +11,7 @@
 namespace misfit {
 
 /// One sample read through the camera.
-struct AxisReading {
+struct AxisSample {
   bool ok = false;
   double theta = 0.0, psi = 0.0;                       ///< [rad]
   Eigen::Matrix2d by_pixel;                            ///< ∂(theta, psi)/∂(P_y, P_z) [rad/px]
@@ -19,16 +19,16 @@ struct AxisReading {
 };
 
 /// All samples, with derivatives where asked; `unexplained` counts those present in the track that no angle explains.
-struct AxisReadings {
-  std::vector<AxisReading> samples;
+struct AxisSamples {
+  std::vector<AxisSample> samples;
   std::size_t lost = 0, unexplained = 0;
 };
-[[nodiscard]] AxisReadings read_axes(const Track& track, const Calibration& calibration, const RigGeometry& geometry,
-                                     bool derivatives = true);
+[[nodiscard]] AxisSamples read_axes(const Track& track, const Calibration& calibration, const RigGeometry& geometry,
+                                    bool derivatives = true);
 
 /// White noise of one coordinate [px] from sixth differences of P_y and P_z over runs of seven samples without gap: their MAD over
 /// sqrt(924). Smooth motion does not enter (a line at 0.15 of the sampling rate is weakened 50 times against white noise); an offset that
 /// alternates does. nullopt with fewer than 20 such runs.
-[[nodiscard]] std::optional<double> reading_noise(const Track& track, const std::vector<bool>& even_step);
+[[nodiscard]] std::optional<double> pixel_noise(const Track& track, const std::vector<bool>& even_step);
 
 }  // namespace misfit

@@ -1,4 +1,4 @@
-#include "misfit/discover/lines.h"
+#include "misfit/discover/frequency_scan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +49,7 @@ Even even_places(const std::vector<double>& t, double highest) {
 
 using Series = Eigen::Ref<const Eigen::VectorXd>;
 
-void add_by_transform(const Series& lambda, double start, const Even& even, const LineGrid& grid, Eigen::VectorXcd& sum) {
+void add_by_transform(const Series& lambda, double start, const Even& even, const FrequencyGrid& grid, Eigen::VectorXcd& sum) {
   Eigen::VectorXd series = Eigen::VectorXd::Zero(even.place.back() + 1);
   for (Eigen::Index k = 0; k < lambda.size(); ++k) series[even.place[static_cast<std::size_t>(k)]] = lambda[k];
   const Eigen::VectorXcd line = chirp_transform(series, grid.first * even.step, grid.step * even.step, sum.size());
@@ -76,8 +76,8 @@ std::complex<double> direct_sum(const Series& lambda, const std::vector<double>&
 
 }  // namespace
 
-LineGrid line_grid(const SampleTimes& times, double from, double to, std::size_t series) {
-  LineGrid grid;
+FrequencyGrid frequency_grid(const SampleTimes& times, double from, double to, std::size_t series) {
+  FrequencyGrid grid;
   const auto longest =
       std::max_element(times.begin(), times.end(), [](const auto& a, const auto& b) { return length_of(a) < length_of(b); });
   if (longest == times.end() || !(length_of(*longest) > 0.0)) return grid;
@@ -94,7 +94,7 @@ LineGrid line_grid(const SampleTimes& times, double from, double to, std::size_t
   return grid;
 }
 
-std::vector<double> line_power(const Eigen::VectorXd& lambda, const SampleTimes& times, const LineGrid& grid) {
+std::vector<double> periodogram(const Eigen::VectorXd& lambda, const SampleTimes& times, const FrequencyGrid& grid) {
   Eigen::VectorXcd sum = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(grid.count));
   Eigen::Index from = 0;
   for (const auto& t : times) {

@@ -1,4 +1,4 @@
-#include "misfit/calibrate/given.h"
+#include "misfit/calibrate/camera_from_study.h"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ config::Number number(double value, double sigma) {
 }
 
 TEST(CameraAsGiven, SigmasBecomeADiagonalCovariance) {
-  const Calibration c =
-      camera_as_given(CameraModel::pinhole, {{"K", number(133.86, 1.969)}, {"h_c", number(0.1524, 0.0254)}, {"camera_roll", number(0.01)}});
+  const Calibration c = camera_from_study(CameraModel::pinhole,
+                                          {{"K", number(133.86, 1.969)}, {"h_c", number(0.1524, 0.0254)}, {"camera_roll", number(0.01)}});
   EXPECT_EQ(c.value("K"), 133.86);
   EXPECT_NEAR(c.sigma("K"), 1.969, 1e-12);
   EXPECT_NEAR(c.sigma("h_c"), 0.0254, 1e-12);
@@ -32,10 +32,10 @@ TEST(CameraAsGiven, SigmasBecomeADiagonalCovariance) {
 }
 
 TEST(CameraAsGiven, WhatIsMissingOrImpossibleIsAnInputError) {
-  EXPECT_THROW((void)camera_as_given(CameraModel::pinhole, {{"K", number(130.0)}}), InputError);
-  EXPECT_THROW((void)camera_as_given(CameraModel::pinhole, {{"K", number(-1.0)}, {"h_c", number(0.1)}}), InputError);
-  EXPECT_THROW((void)camera_as_given(CameraModel::pinhole, {{"K", number(130.0, -1.0)}, {"h_c", number(0.1)}}), InputError);
-  EXPECT_THROW((void)camera_as_given(CameraModel::pinhole, {{"K", number(130.0)}, {"h_c", number(0.1)}, {"roll", number(0.1)}}),
+  EXPECT_THROW((void)camera_from_study(CameraModel::pinhole, {{"K", number(130.0)}}), InputError);
+  EXPECT_THROW((void)camera_from_study(CameraModel::pinhole, {{"K", number(-1.0)}, {"h_c", number(0.1)}}), InputError);
+  EXPECT_THROW((void)camera_from_study(CameraModel::pinhole, {{"K", number(130.0, -1.0)}, {"h_c", number(0.1)}}), InputError);
+  EXPECT_THROW((void)camera_from_study(CameraModel::pinhole, {{"K", number(130.0)}, {"h_c", number(0.1)}, {"roll", number(0.1)}}),
                InputError);
 }
 

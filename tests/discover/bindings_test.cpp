@@ -1,0 +1,46 @@
+#include "misfit/discover/bindings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/model/requests.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_models;
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
+std::vector<Roles> bindings(const std::string& effect, const std::string& system) {
+  return enumerate_bindings(registry().effect(effect).spec(), registry().system(system).make({})->spec());
+}
+
+TEST(Bindings, ALevelEffectHasOnePerPortThatALevelDrives) {
+  EXPECT_THAT(bindings("overflow", "test_tanks"),
+              ElementsAre(Roles{}, Roles{{"level", "x1"}, {"port", "dx1/dt"}}, Roles{{"level", "x2"}, {"port", "dx2/dt"}}));
+}
+
+TEST(Bindings, WhatSpillsGoesToEachOtherPort) {
+  EXPECT_THAT(bindings("overflow_into", "test_tanks"),
+              ElementsAre(Roles{}, Roles{{"level", "x1"}, {"to_port", "dx2/dt"}}, Roles{{"level", "x2"}, {"to_port", "dx1/dt"}}));
+}
+
+TEST(Bindings, AMotionHasItsRateAndWhatThatIsTheRateOf) {
+  EXPECT_THAT(bindings("quadratic_drag", "test_oscillator"), ElementsAre(Roles{}, Roles{{"port", "force"}, {"rate", "v"}}));
+  EXPECT_THAT(bindings("cubic_stiffness", "test_oscillator"), ElementsAre(Roles{}, Roles{{"displacement", "x"}, {"port", "force"}}));
+  EXPECT_THAT(bindings("cubic_stiffness", "test_tanks"), ElementsAre(Roles{})) << "a tank has no displacement";
+}
+
+TEST(Bindings, SensorsAndInputsAreTriedWhereTheSystemHasADefaultForThem) {
+  EXPECT_THAT(bindings("sensor_scale", "test_tanks"), ElementsAre(Roles{}, Roles{{"output", "y1"}}, Roles{{"output", "y2"}}));
+  EXPECT_THAT(bindings("input_gain", "test_tanks"),
+              ElementsAre(Roles{}, Roles{{"input", "u"}, {"port", "dx1/dt"}}, Roles{{"input", "u"}, {"port", "dx2/dt"}}));
+  EXPECT_THAT(bindings("sensor_scale", "parachute_spherical"), ElementsAre(Roles{}));
+  EXPECT_THAT(bindings("quadratic_drag", "parachute_spherical"), ElementsAre(Roles{})) << "its own default stays the only one";
+}
+
+TEST(Bindings, ASystemsOwnEffectHasItsOwnPlaceAlone) { EXPECT_THAT(bindings("strut_wake", "parachute_spherical"), ElementsAre(Roles{})); }
+
+}  // namespace
+}  // namespace misfit
