@@ -22,6 +22,7 @@ struct Backlash {
       "Tao and Kokotovic, Adaptive Control of Systems with Actuator and Sensor Nonlinearities (1996): play operator; here relaxed over "
       "backlash_tau";
   static constexpr const char* excludes = "impact, a free side that drifts inside the clearance, wear";
+
   enum Quantity { displacement };
   static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
   enum Port { port };

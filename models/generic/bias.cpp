@@ -12,6 +12,7 @@ struct Bias {
   static constexpr const char* size = "0.1 deg on the tilt moves the trim by 0.1 deg";
   static constexpr const char* source = "JCGM 100:2008 (GUM), 3.2.3: a recognised systematic effect is corrected for";
   static constexpr const char* excludes = "drift, wrong scale";
+
   enum Port { output };
   static constexpr Role ports[] = {{.name = "output", .unit = "*"}};
   enum Coefficient { offset };

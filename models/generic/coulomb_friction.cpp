@@ -15,6 +15,7 @@ struct CoulombFriction {
   static constexpr const char* source =
       "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007): smooth Coulomb friction by tanh";
   static constexpr const char* excludes = "sticking, higher friction at the start of motion (Stribeck), viscous part (viscous_friction)";
+
   enum Quantity { rate, inertia, rate_lateral };
   static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
                                         {.name = "inertia", .unit = "*", .optional = true},

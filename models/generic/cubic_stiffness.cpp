@@ -13,6 +13,7 @@ struct CubicStiffness {
   static constexpr const char* size = "pendulum: sin(x) = x - x^3/6, a cubic stiffness of -1/6 of the linear one per rad^2";
   static constexpr const char* source = "Duffing, Erzwungene Schwingungen bei veraenderlicher Eigenfrequenz (1918)";
   static constexpr const char* excludes = "asymmetry and higher terms (polynomial_stiffness), stops (dead_zone)";
+
   enum Quantity { displacement };
   static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
   enum Port { port };

@@ -18,6 +18,7 @@ struct DeadZone {
   static constexpr const char* size = "a stop of 1000 N m/rad, entered by 1 deg: 17 N m";
   static constexpr const char* source = "den Hartog, Mechanical Vibrations (1956), section 8.9: springs with clearance";
   static constexpr const char* excludes = "loss in the contact, unequal sides, play with memory (backlash)";
+
   enum Quantity { displacement };
   static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
   enum Port { port };

@@ -16,6 +16,7 @@ struct Delay {
   static constexpr const char* size = "tau = 0.1 s at 1 rad/s: 10 % of the input, 90 deg after it";
   static constexpr const char* source = "Golub and Van Loan, Matrix Computations, 11.3: Pade (2, 2) of exp(-tau s)";
   static constexpr const char* excludes = "delays longer than the fastest part of the input, delays that change";
+
   enum Quantity { input };
   static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};
   enum Port { port };

@@ -17,6 +17,7 @@ struct DirectionalFriction {
   static constexpr const char* source =
       "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994), section 2: friction that depends on the direction";
   static constexpr const char* excludes = "the mean of both directions (coulomb_friction), unequal viscous parts";
+
   enum Quantity { rate, inertia };
   static constexpr Role quantities[] = {{.name = "rate", .unit = "*"}, {.name = "inertia", .unit = "*", .optional = true}};
   enum Port { port };

@@ -12,6 +12,7 @@ struct Drift {
   static constexpr const char* size = "1 N m over a minute: 0.017 N m/s";
   static constexpr const char* source = "first term of the Taylor series in time";
   static constexpr const char* excludes = "wandering in both directions, drift of a coefficient (give that coefficient a curve)";
+
   enum Port { port };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { drift, drift_origin };

@@ -23,6 +23,7 @@ struct Hysteresis {
   static constexpr const char* source =
       "Wen, Journal of the Engineering Mechanics Division ASCE 102 (1976), with n = 2 and A = 1; Ismail, Ikhouane, Rodellar (2009)";
   static constexpr const char* excludes = "slip that weakens, pinching, rate dependence";
+
   enum Quantity { rate, displacement, inertia };
   static constexpr Role quantities[] = {
       {.name = "rate", .unit = "*"}, {.name = "displacement", .unit = "{rate} s"}, {.name = "inertia", .unit = "*", .optional = true}};

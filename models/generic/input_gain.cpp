@@ -12,6 +12,7 @@ struct InputGain {
   static constexpr const char* size = "a gain that is 5 % wrong: 5 % of what the input does";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "offset (input_offset), saturation, delay of the input";
+
   enum Quantity { input };
   static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};
   enum Port { port };

@@ -13,6 +13,7 @@ struct InputOffset {
   static constexpr const char* size = "a pump that needs 0.3 V before it delivers: -0.3 V times its gain";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "wrong gain (input_gain), drift, a dead zone of the input";
+
   enum Quantity { input };
   static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};
   enum Port { port };

@@ -13,6 +13,7 @@ struct Lag {
       "for slow motion F = -k tau x': a lag of 0.1 s with k = 100 N m/rad looks like a damping of 10 N m s/rad";
   static constexpr const char* source = "first-order lag (Tobak and Schiff, NASA TR R-456, 1976: memory of aerodynamic moments)";
   static constexpr const char* excludes = "pure delay, several time constants";
+
   enum Quantity { level };
   static constexpr Role quantities[] = {{.name = "level", .unit = "*"}};
   enum Port { port };

@@ -16,6 +16,7 @@ struct Overflow {
   static constexpr const char* source =
       "first-order form of the weir (Bazin: q ~ h^1.5); cascaded tanks: Schoukens, Mattsson, Wigren, Noel (2016), section 2";
   static constexpr const char* excludes = "the weir power 1.5, where the water goes (overflow_into)";
+
   enum Quantity { level };
   static constexpr Role quantities[] = {{.name = "level", .unit = "*"}};
   enum Port { port };

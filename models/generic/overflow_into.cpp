@@ -16,6 +16,7 @@ struct OverflowInto {
   static constexpr const char* source =
       "cascaded tanks: Schoukens, Mattsson, Wigren, Noel (2016), section 2: the upper tank overflows in part into the lower one";
   static constexpr const char* excludes = "what the upper level loses (overflow), delay on the way";
+
   enum Quantity { level };
   static constexpr Role quantities[] = {{.name = "level", .unit = "*"}};
   enum Port { to_port };

@@ -12,6 +12,7 @@ struct PeriodicForcing {
   static constexpr const char* size = "amplitude sqrt(cosine^2 + sine^2); a vortex street behind the strut: some N m";
   static constexpr const char* source = "Fourier; amplitudes instead of amplitude and phase keep off at a regular point";
   static constexpr const char* excludes = "drift of the frequency, bandwidth, harmonics";
+
   enum Port { port };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { cosine, sine, frequency };

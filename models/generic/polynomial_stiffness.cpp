@@ -14,6 +14,7 @@ struct PolynomialStiffness {
   static constexpr const char* size = "an origin that is off by d makes 3 d cubic_stiffness of the quadratic one";
   static constexpr const char* source = "Taylor series of the restoring force; Nayfeh and Mook, Nonlinear Oscillations (1979), section 2.3";
   static constexpr const char* excludes = "the cubic term (cubic_stiffness), corners (dead_zone)";
+
   enum Quantity { displacement };
   static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
   enum Port { port };

@@ -15,6 +15,7 @@ struct QuadraticDrag {
   static constexpr const char* source = "Newton, Principia II, prop. 33; Hoerner, Fluid-Dynamic Drag (1965)";
   static constexpr const char* excludes = "a moving medium, added mass, the linear part (viscous_friction)";
   static constexpr bool dissipative = true;
+
   enum Quantity { rate, rate_lateral };
   static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
                                         {.name = "rate_lateral", .unit = "*", .optional = true, .completes = "rate"}};

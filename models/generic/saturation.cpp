@@ -16,6 +16,7 @@ struct Saturation {
   static constexpr const char* source = "Khalil, Nonlinear Systems (2002), section 1.2.7";
   static constexpr const char* excludes =
       "unequal limits, integrator wind-up; a limited level is an overflow, a limited reading sensor_saturation";
+
   enum Quantity { input };
   static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};
   enum Port { port };

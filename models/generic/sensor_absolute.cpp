@@ -13,6 +13,7 @@ struct SensorAbsolute {
   static constexpr const char* size = "twice the reading wherever it is negative";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "a sign that is lost at random";
+
   enum Quantity { reading };
   static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
   enum Port { output };

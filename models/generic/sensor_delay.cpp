@@ -15,6 +15,7 @@ struct SensorDelay {
   static constexpr const char* size = "20 ms at 1 rad/s: 2 % of the amplitude, 90 deg after it";
   static constexpr const char* source = "Golub and Van Loan, Matrix Computations, 11.3: Pade (2, 2) of exp(-tau s)";
   static constexpr const char* excludes = "a clock that is off for all channels (time_offset), delays that change";
+
   enum Quantity { reading };
   static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
   enum Port { output };

@@ -12,6 +12,7 @@ struct SensorLag {
   static constexpr const char* size = "share = 1: the whole reading lags by sensor_tau";
   static constexpr const char* source = "first-order filter: Doebelin, Measurement Systems, section 3.3";
   static constexpr const char* excludes = "pure delay (sensor_delay), filters of higher order";
+
   enum Quantity { reading };
   static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
   enum Port { output };

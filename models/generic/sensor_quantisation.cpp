@@ -19,6 +19,7 @@ struct SensorQuantisation {
   static constexpr const char* source =
       "B. Widrow, I. Kollar, Quantization Noise (2008), ch. 2: the rounding error as a sawtooth; its Fourier series";
   static constexpr const char* excludes = "steps that are not even, rounding down (bias), hysteresis between steps (backlash)";
+
   enum Quantity { reading };
   static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
   enum Port { output };

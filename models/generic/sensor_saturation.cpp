@@ -15,6 +15,7 @@ struct SensorSaturation {
   static constexpr const char* size = "readings of 10.5 V at a ceiling of 10 V are 0.5 V too high without it";
   static constexpr const char* source = "JCGM 200:2012 (VIM), 4.7: measuring interval";
   static constexpr const char* excludes = "a level that is itself limited (overflow)";
+
   enum Quantity { reading };
   static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
   enum Port { output };

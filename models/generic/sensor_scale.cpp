@@ -12,6 +12,7 @@ struct SensorScale {
   static constexpr const char* size = "1 % of the reading for 0.01";
   static constexpr const char* source = "JCGM 200:2012 (VIM), 4.12: sensitivity";
   static constexpr const char* excludes = "offset (bias), saturation";
+
   enum Quantity { reading };
   static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
   enum Port { output };

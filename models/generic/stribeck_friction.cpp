@@ -19,6 +19,7 @@ struct StribeckFriction {
       "Makkar, Dixon, Sawyer, Hu, IEEE/ASME AIM (2005): tanh(g2 v) - tanh(g3 v) as the Stribeck part of a smooth friction";
   static constexpr const char* excludes = "the sliding friction itself (coulomb_friction), sticking, memory of the contact (hysteresis)";
   static constexpr bool dissipative = true;
+
   enum Quantity { rate, inertia, rate_lateral };
   static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
                                         {.name = "inertia", .unit = "*", .optional = true},

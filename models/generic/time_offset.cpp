@@ -12,6 +12,7 @@ struct TimeOffset {
   static constexpr const char* size = "20 ms at 1 rad/s: 0.02 rad";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "drift of the clock";
+
   enum Port { sample_time };
   static constexpr Role ports[] = {{.name = "sample_time", .unit = "s"}};
   enum Coefficient { clock_offset };

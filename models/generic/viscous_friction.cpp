@@ -13,6 +13,7 @@ struct ViscousFriction {
   static constexpr const char* size = "1 N m s/rad at 1 rad/s: 1 N m; C_mq = -0.25 gives 12.8 N m there";
   static constexpr const char* source = "Rayleigh, The Theory of Sound I (1894), section 81: dissipation function F = c x'^2/2";
   static constexpr const char* excludes = "sticking (coulomb_friction), quadratic drag";
+
   enum Quantity { rate, rate_lateral };
   static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
                                         {.name = "rate_lateral", .unit = "*", .optional = true, .completes = "rate"}};

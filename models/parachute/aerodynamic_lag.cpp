@@ -19,6 +19,7 @@ struct AerodynamicLag {
       "Tobak and Schiff, NASA TR R-456 (1976); Theodorsen's lag as one exponential (R. T. Jones, NACA 681)";
   static constexpr const char* excludes = "pure delay, several time constants, lag of the damping";
   static constexpr const char* specialises = "lag";
+
   enum Quantity { dynamic_pressure, n_y, n_z };
   static constexpr Role quantities[] = {
       {.name = "dynamic_pressure", .unit = "Pa"}, {.name = "n_y", .unit = "-"}, {.name = "n_z", .unit = "-"}};

@@ -16,6 +16,7 @@ struct ApexJitter {
   static constexpr const char* source =
       "paper, Parachute Attitude Measurements: motion of the disk relative to the band; var e = D^2/(4 zeta w^3) = 1 (Lyapunov equation)";
   static constexpr const char* excludes = "the moment of the ring on the canopy";
+
   enum Port { P_y, P_z };
   static constexpr Role ports[] = {{.name = "P_y", .unit = "px"}, {.name = "P_z", .unit = "px"}};
   enum Coefficient { jitter, jitter_frequency, jitter_damping };

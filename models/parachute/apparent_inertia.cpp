@@ -13,6 +13,7 @@ struct ApparentInertia {
   static constexpr const char* source =
       "Cockrell and Doherr, AIAA 1981-1940: apparent mass of parachutes depends on the direction of the acceleration";
   static constexpr const char* excludes = "the moment dI/dt omega, apparent mass of the lateral motion alone";
+
   enum Quantity { eta };
   static constexpr Role quantities[] = {{.name = "eta", .unit = "rad"}};
   enum Port { inertia };

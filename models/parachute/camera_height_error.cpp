@@ -13,6 +13,7 @@ struct CameraHeightError {
   static constexpr const char* size = "1 in (Table 2): 9 px, of which less than 1 px varies with the tilt up to 20 deg";
   static constexpr const char* source = "paper Eqs. 1 and 7; Table 2: h_c +-0.0254 m, read as 3 sigma";
   static constexpr const char* excludes = "a camera that looks up or down (image_centre), which it resembles";
+
   enum Quantity { image_scale };
   static constexpr Role quantities[] = {{.name = "image_scale", .unit = "px/m"}};
   enum Port { P_y, P_z };

@@ -13,6 +13,7 @@ struct CameraRoll {
   static constexpr const char* size = "1 deg at 150 px from the centre: 2.6 px across";
   static constexpr const char* source = "rotation of the image plane; order as in math/camera.h";
   static constexpr const char* excludes = "tilt of the optical axis: to first order a shift (image_centre)";
+
   enum Quantity { P_y, P_z };
   static constexpr Role quantities[] = {{.name = "P_y", .unit = "px"}, {.name = "P_z", .unit = "px"}};
   enum Port { P_y_port, P_z_port };

@@ -12,6 +12,7 @@ struct Coning {
   static constexpr const char* size = "I = 4.96 kg m^2, phi' = 5 rad/s, eta = 12 deg: 25 N m, as large as the random moment";
   static constexpr const char* source = "spherical pendulum, eta'' = phi'^2 sin(eta) cos(eta) + M/I (Goldstein, Classical Mechanics)";
   static constexpr const char* excludes = "exchange of angular momentum with the lateral motion";
+
   enum Quantity { inertia, phi_rate, eta };
   static constexpr Role quantities[] = {
       {.name = "inertia", .unit = "kg m^2"}, {.name = "phi_rate", .unit = "rad/s"}, {.name = "eta", .unit = "rad"}};

@@ -13,6 +13,7 @@ struct DynamicPressureDrift {
   static constexpr const char* source = "definition; tunnels hold q to about 1 %";
   static constexpr const char* excludes = "gusts, unsteadiness faster than the recording";
   static constexpr const char* specialises = "drift";
+
   enum Port { dynamic_pressure };
   static constexpr Role ports[] = {{.name = "dynamic_pressure", .unit = "Pa"}};
   enum Coefficient { pressure_drift, t_drift };

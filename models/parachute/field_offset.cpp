@@ -15,6 +15,7 @@ struct FieldOffset {
   static constexpr const char* size = "0.5 px where fields are taken for frames: as large as the reading noise, at half the sampling rate";
   static constexpr const char* source = "ITU-R BT.601: a field holds every second line";
   static constexpr const char* excludes = "fields that are not equally spaced in time";
+
   enum Port { P_z };
   static constexpr Role ports[] = {{.name = "P_z", .unit = "px"}};
   enum Coefficient { field_shift, field_rate };

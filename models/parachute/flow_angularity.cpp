@@ -15,6 +15,7 @@ struct FlowAngularity {
   static constexpr const char* source = "geometry; AGARD-AG-184 (1975) on flow angularity of wind tunnels";
   static constexpr const char* excludes =
       "swirl and gradients; a camera whose centre is off by l_b K R tan(angle)/(l_s - R) looks the same (image_centre)";
+
   enum Port { wind_y, wind_z };
   static constexpr Role ports[] = {{.name = "wind_y", .unit = "m/s"}, {.name = "wind_z", .unit = "m/s"}};
   enum Constant { V };

@@ -12,6 +12,7 @@ struct Gravity {
   static constexpr const char* size = "6.4 N m for m = 0.206 kg, R_cp = 3.15 m: a fifth of the random moment";
   static constexpr const char* source = "paper Eq. 8, last term; g: CGPM 1901";
   static constexpr const char* excludes = "weight of lines and swivel";
+
   enum Quantity { gravity_direction, gravity_direction_lateral };
   static constexpr Role quantities[] = {{.name = "gravity_direction", .unit = "-"},
                                         {.name = "gravity_direction_lateral", .unit = "-", .optional = true}};

@@ -14,6 +14,7 @@ struct Gust {
   static constexpr const char* size = "27 N m with 0.1 s: what drives the flights of the data";
   static constexpr const char* source = "Uhlenbeck and Ornstein, Phys. Rev. 36 (1930); Dryden's first-order spectrum of turbulence";
   static constexpr const char* excludes = "lines in the spectrum (vortex_shedding), gusts as wind instead of as moments";
+
   enum Port { moment_y, moment_z };
   static constexpr Role ports[] = {{.name = "moment_y", .unit = "N m"}, {.name = "moment_z", .unit = "N m"}};
   enum Coefficient { gust_sigma, gust_tau };

@@ -14,6 +14,7 @@ struct ImageCentre {
   static constexpr const char* excludes =
       "a camera that shakes or drifts; wind that is not along the tunnel axis looks the same (flow_angularity)";
   static constexpr const char* specialises = "bias";  // which would shift P_z without the prior that the calibration gives
+
   enum Port { P_y, P_z };
   static constexpr Role ports[] = {{.name = "P_y", .unit = "px"}, {.name = "P_z", .unit = "px"}};
   enum Coefficient { centre_y_error, centre_z_error };

@@ -13,6 +13,7 @@ struct LateralDamping {
   static constexpr const char* size = "-0.25 at 1 rad/s: -12.8 N m at 736 Pa, 35.1 m/s, D = 1.58 m";
   static constexpr const char* source = "Tobak and Schiff, NASA TR R-456 (1976): damping in coning motion is a characteristic of its own";
   static constexpr const char* excludes = "memory of the wake (aerodynamic_lag)";
+
   enum Quantity { dynamic_pressure, wind_speed, lateral_rate, eta };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
                                         {.name = "wind_speed", .unit = "m/s", .positive = true},

@@ -13,6 +13,7 @@ struct LensDistortion {
   static constexpr const char* size = "k1 = -0.1: 0.6 px at 150 px, 5 px at 300 px";
   static constexpr const char* source = "Brown, Close-range camera calibration, Photogrammetric Engineering 37 (1971)";
   static constexpr const char* excludes = "higher orders, tangential distortion";
+
   enum Quantity { P_y, P_z, focal_length };
   static constexpr Role quantities[] = {
       {.name = "P_y", .unit = "px"}, {.name = "P_z", .unit = "px"}, {.name = "focal_length", .unit = "px", .positive = true}};

@@ -14,6 +14,7 @@ struct Magnus {
   static constexpr const char* size = "0.05 at 1 rad/s: 2.6 N m at 736 Pa, 35.1 m/s, D = 1.58 m; the plane of the swing turns slowly";
   static constexpr const char* source = "Magnus force of a spinning body; gyroscope: Goldstein, Classical Mechanics, chapter 5";
   static constexpr const char* excludes = "spin that changes, the swivel's own inertia";
+
   enum Quantity { dynamic_pressure, wind_speed, pitch_rate, lateral_rate };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
                                         {.name = "wind_speed", .unit = "m/s", .positive = true},

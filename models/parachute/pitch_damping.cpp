@@ -14,6 +14,7 @@ struct PitchDamping {
   static constexpr const char* size = "C_mq = -0.25 at 1 rad/s: -12.8 N m at 736 Pa, 35.1 m/s, D = 1.58 m";
   static constexpr const char* source = "paper Eq. 8; lib/misfit/README.md (10), (13)";
   static constexpr const char* excludes = "memory of the wake (aerodynamic lag)";
+
   enum Quantity { dynamic_pressure, wind_speed, pitch_rate, lateral_rate };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
                                         {.name = "wind_speed", .unit = "m/s", .positive = true},

@@ -13,6 +13,7 @@ struct PixelAspect {
   static constexpr const char* size = "2.3 % (704 for 720 columns): 3.4 px at 150 px";
   static constexpr const char* source = "ITU-R BT.601: non-square pixels of standard video";
   static constexpr const char* excludes = "skew between rows and columns";
+
   enum Quantity { P_y };
   static constexpr Role quantities[] = {{.name = "P_y", .unit = "px"}};
   enum Port { P_y_port };

@@ -14,6 +14,7 @@ struct RelativeDynamicPressure {
   static constexpr const char* source =
       "Etkin and Reid, Dynamics of Flight (1996): coefficients refer to the relative wind; 1 is the full correction";
   static constexpr const char* excludes = "side wind in v (flow_angularity), the pressure in the damping";
+
   enum Quantity { dynamic_pressure, wind_speed, wind_cross_axis, wind_cross_axis_lateral, eta, pitch_rate, lateral_rate };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
                                         {.name = "wind_speed", .unit = "m/s", .positive = true},

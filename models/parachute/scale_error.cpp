@@ -12,6 +12,7 @@ struct ScaleError {
   static constexpr const char* size = "1.97 px/m (Table 2) of 134 px/m: 1.5 %, 0.2 deg at 12 deg of tilt";
   static constexpr const char* source = "paper Table 2: K +-1.969 px/m, read as 3 sigma";
   static constexpr const char* excludes = "a wrong distance between rig and camera: a scale that depends on the tilt";
+
   enum Quantity { P_y, P_z };
   static constexpr Role quantities[] = {{.name = "P_y", .unit = "px"}, {.name = "P_z", .unit = "px"}};
   enum Port { P_y_port, P_z_port };

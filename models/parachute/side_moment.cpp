@@ -14,6 +14,7 @@ struct SideMoment {
   static constexpr const char* size = "C_n = 0.002, a tenth of C_m off the trim: 4.6 N m at 736 Pa for D = 1.58 m, and steady coning";
   static constexpr const char* source = "Tobak and Schiff, NASA TR R-456 (1976): side moment of a body at angle of attack";
   static constexpr const char* excludes = "dependence on the rate of coning, spin of the canopy (magnus)";
+
   enum Quantity { dynamic_pressure, wind_cross_axis, wind_cross_axis_lateral };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
                                         {.name = "wind_cross_axis", .unit = "-"},

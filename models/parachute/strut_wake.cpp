@@ -20,6 +20,7 @@ struct StrutWake {
   static constexpr const char* source =
       "paper, Parachute Attitude Measurements: the parachute tends not to travel through the wake of the strut; the form is ours";
   static constexpr const char* excludes = "unsteadiness of the wake (vortex_shedding), its end in radius, weaker damping inside it";
+
   enum Quantity { dynamic_pressure, wind_cross_axis, wind_cross_axis_lateral, phi, eta };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
                                         {.name = "wind_cross_axis", .unit = "-"},

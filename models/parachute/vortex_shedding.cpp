@@ -16,6 +16,7 @@ struct VortexShedding {
   static constexpr const char* source = "Roshko, NACA Report 1191 (1954): Strouhal number 0.2 for a cylinder";
   static constexpr const char* excludes = "bandwidth and drift of the frequency, harmonics, dependence on where the canopy is";
   static constexpr const char* specialises = "periodic_forcing";
+
   enum Quantity { dynamic_pressure };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"}};
   enum Port { moment_y, moment_z };

@@ -12,6 +12,7 @@ struct HastyFriction {
   static constexpr const char* size = "as coulomb_friction";
   static constexpr const char* source = "as coulomb_friction";
   static constexpr const char* excludes = "sub-stepping";
+
   enum Quantity { rate };
   static constexpr Role quantities[] = {{.name = "rate", .unit = "*"}};
   enum Port { port };

@@ -12,6 +12,7 @@ struct InertiaSwell {
   static constexpr const char* size = "swell = 1 kg at eta = 0.2, D = 1.58 m: 0.1 kg m^2";
   static constexpr const char* source = "made up for the tests";
   static constexpr const char* excludes = "everything else";
+
   enum Quantity { eta };
   static constexpr Role quantities[] = {{.name = "eta", .unit = "rad"}};
   enum Port { inertia };

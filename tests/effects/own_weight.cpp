@@ -12,6 +12,7 @@ struct OwnWeight {
   static constexpr const char* size = "9.8 N for 1 kg";
   static constexpr const char* source = "made up for the tests";
   static constexpr const char* excludes = "everything else";
+
   enum Port { port, also };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}, {.name = "also", .unit = "*", .optional = true}};
   enum Constant { mass };

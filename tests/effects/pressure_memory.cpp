@@ -12,6 +12,7 @@ struct PressureMemory {
   static constexpr const char* size = "100 Pa at z = 0.2: 4 Pa";
   static constexpr const char* source = "made up for the tests";
   static constexpr const char* excludes = "everything else";
+
   enum Quantity { eta };
   static constexpr Role quantities[] = {{.name = "eta", .unit = "rad"}};
   enum Port { dynamic_pressure };

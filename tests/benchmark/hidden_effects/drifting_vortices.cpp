@@ -12,6 +12,7 @@ struct DriftingVortices {
   static constexpr const char* size = "as vortex_shedding";
   static constexpr const char* source = "made up for the bench";
   static constexpr const char* excludes = "everything else";
+
   enum Quantity { dynamic_pressure };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"}};
   enum Port { moment_y, moment_z };

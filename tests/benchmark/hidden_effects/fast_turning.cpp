@@ -12,6 +12,7 @@ struct FastTurning {
   static constexpr const char* size = "some N m";
   static constexpr const char* source = "made up for the bench";
   static constexpr const char* excludes = "everything else";
+
   enum Quantity { lateral_rate };
   static constexpr Role quantities[] = {{.name = "lateral_rate", .unit = "rad/s"}};
   enum Port { pitching_moment };

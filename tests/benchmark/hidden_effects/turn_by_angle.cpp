@@ -12,6 +12,7 @@ struct TurnByAngle {
   static constexpr const char* size = "some N m";
   static constexpr const char* source = "made up for the bench";
   static constexpr const char* excludes = "everything else";
+
   enum Quantity { alpha_T, eta };
   static constexpr Role quantities[] = {{.name = "alpha_T", .unit = "rad"}, {.name = "eta", .unit = "rad"}};
   enum Port { lateral_moment };

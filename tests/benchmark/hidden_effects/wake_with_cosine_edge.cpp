@@ -14,6 +14,7 @@ struct WakeWithCosineEdge {
   static constexpr const char* size = "as strut_wake";
   static constexpr const char* source = "made up for the bench";
   static constexpr const char* excludes = "everything else";
+
   enum Quantity { dynamic_pressure, wind_cross_axis, wind_cross_axis_lateral, phi, eta };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
                                         {.name = "wind_cross_axis", .unit = "-"},

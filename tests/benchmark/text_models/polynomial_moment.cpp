@@ -12,6 +12,7 @@ struct PolynomialMoment {
   static constexpr const char* size = "as static_moment and pitch_damping";
   static constexpr const char* source = "paper Eq. 8 with polynomials";
   static constexpr const char* excludes = "everything else";
+
   enum Quantity { dynamic_pressure, wind_speed, wind_cross_axis, alpha_T, pitch_rate };
   static constexpr Role quantities[] = {{.name = "dynamic_pressure", .unit = "Pa"},
                                         {.name = "wind_speed", .unit = "m/s", .positive = true},

@@ -10,6 +10,7 @@ struct StrutInterference {
   static constexpr const char* size = "1 N m and more, by the strut";
   static constexpr const char* source = "made up for the test of the package";
   static constexpr const char* excludes = "sideways push";
+
   enum Quantity { phi };
   static constexpr misfit::Role quantities[] = {{.name = "phi", .unit = "rad"}};
   enum Port { pitching_moment };
