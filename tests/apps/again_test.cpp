@@ -176,7 +176,7 @@ TEST(Interruption, LeavesAFolderFromWhichTheNextRunGoesOn) {
   ::kill(child, SIGINT);
   const Outcome interrupted = finish(captured.path(), child);
   EXPECT_EQ(interrupted.status, 1);
-  expect_parts(interrupted.err, {"interrupted", "the same command goes on"});
+  expect_parts(interrupted.err, {"interrupted", "the same command continues"});
   EXPECT_FALSE(fs::exists(study.out("report.html")));
   const double seconds = seconds_of(study).at("fit/sliding_bin");
   const Outcome next = study.run();

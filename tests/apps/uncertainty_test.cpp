@@ -213,7 +213,7 @@ TEST_F(SameBits, AfterAFullDisk) {
   });
   EXPECT_EQ(full.status, 1) << full.out << full.err;
   EXPECT_EQ(full.out, "");
-  expect_parts(full.err, {"checkpoint_0.bin cannot be written: File too large", "the same command goes on"});
+  expect_parts(full.err, {"checkpoint_0.bin cannot be written: File too large", "the same command continues"});
   ASSERT_EQ(study_.uncertainty(words).status, 0);
   expect_same("whole", "full");
 }
@@ -231,7 +231,7 @@ TEST_F(SameBits, AfterCtrlC) {
   ::kill(child, SIGINT);
   const Outcome stopped = finish(captured.path(), child);
   EXPECT_EQ(stopped.status, 1) << stopped.out;
-  expect_parts(stopped.err, {"interrupted", "the same command goes on"});
+  expect_parts(stopped.err, {"interrupted", "the same command continues"});
   ASSERT_EQ(study_.uncertainty(options(out("stopped"))).status, 0);
   expect_same("whole", "stopped");
 }

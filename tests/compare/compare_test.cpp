@@ -54,7 +54,7 @@ TEST(Compare, ParametersThatCannotBothBeRightAreSaidToBe) {
   EXPECT_EQ(c.parameters[0].sentence, "");
   EXPECT_NEAR(c.parameters[1].sigmas, 0.0734 / std::hypot(0.0024, 0.0003), 1e-9);
   expect_parts(c.parameters[1].sentence,
-               {"k of equation_error is 0.0734 ± 0.0024 1/s below that of output_error (30.3 sigma)", "regression"});
+               {"k of equation_error is 0.0734 ± 0.0024 1/s below that of output_error (30.3 sigma)", "numerical differentiation"});
   expect_parts(comparison_text(c), {"! k of equation_error is 0.0734", "0.9265 ± 0.0024"});
   const TemporaryFolder folder;
   write_comparison(folder.path() / "compare.json", c);

@@ -77,7 +77,7 @@ TEST(Recording, WhatStandsStillBetweenJumpsIsAnInputWhateverItIsCalled) {
   const RecordingSurvey s =
       survey(rows("time[s],a,b", 200, [](int k) { return fmt::format("{},{},{}", 0.1 * k, (k / 20 * 7) % 5, std::cos(0.3 * k)); }));
   EXPECT_EQ(column(s, "a").use, ColumnUse::input);
-  EXPECT_THAT(column(s, "a").why, HasSubstr("stands still"));
+  EXPECT_THAT(column(s, "a").why, HasSubstr("constant between jumps"));
   EXPECT_EQ(column(s, "b").use, ColumnUse::output);
 }
 

@@ -132,7 +132,7 @@ void CheckpointWriter::write_whole(std::string_view bytes) {
       const std::string why = reason(n == 0 ? ENOSPC : errno);
       static_cast<void>(::ftruncate(file_, static_cast<off_t>(length_)) == 0);  // if not, the checksum finds it
       throw WriteError(path_.string() + " cannot be written: " + why +
-                       "; what was finished before is in it, and the same command goes on from there");
+                       "; what was finished before is in it, and the same command continues from there");
     }
     done += static_cast<std::size_t>(n);
   }
