@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "misfit/fit/regression/equation_error.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "tests/model/declared_texts.h"
 

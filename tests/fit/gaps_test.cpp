@@ -8,6 +8,7 @@
 #include <random>
 
 #include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/regression/equation_error.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/trajectory_start.h"
 #include "tests/model/declared_texts.h"

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "misfit/fit/regression/equation_error.h"
 #include "misfit/fit/regression/sliding_bin.h"
 #include "misfit/inference/curves.h"
 #include "tests/fit/planar_model.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/regression/equation_error.h"
 #include "misfit/inference/curves.h"
 #include "tests/fit/flight.h"
 #include "tests/fit/planar_model.h"

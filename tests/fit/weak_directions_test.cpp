@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "misfit/fit/regression/equation_error.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
