@@ -80,11 +80,11 @@ TEST_F(Climbing, AnotherSystemLeavesOutWhatDoesNotSuitItAsAComment) {
 }
 
 TEST_F(Climbing, AnEffectWithoutStrengthIsAddedWithoutAPredictionAndThatIsSaid) {
-  expect_parts(coning.out, {"no drop is predicted for coning: it has no strength", "rung 1: no drop is predicted"});
+  expect_parts(coning.out, {"no drop is predicted for coning: it has no coefficient that switches it off", "rung 1: no drop is predicted"});
   EXPECT_FALSE(fs::exists(study->out("candidates.json"))) << "nothing was searched";
   const json rung = study->result("ladder.json").at(1);
   EXPECT_TRUE(rung.at("predicted_drop").is_null());
-  expect_parts(rung.at("note").get<std::string>(), {"it has no strength"});
+  expect_parts(rung.at("note").get<std::string>(), {"it has no coefficient that switches it off"});
 }
 
 TEST_F(Climbing, AddWritesTheReportAndItBeginsWithTheLadder) {

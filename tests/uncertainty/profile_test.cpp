@@ -47,7 +47,7 @@ TEST(Profile, DropsOfColouredResidualsAreScaled) {
   EXPECT_NEAR(p.scale, 4.0, 1e-12);
   EXPECT_NEAR(p.upper, two_sided * 0.2, 1e-9);
   ASSERT_EQ(p.words.size(), 1U);
-  EXPECT_THAT(p.words.front(), testing::HasSubstr("memory"));
+  EXPECT_THAT(p.words.front(), testing::HasSubstr("autocorrelated residuals"));
 }
 
 TEST(Profile, OfALopsidedLikelihoodIsLopsided) {
