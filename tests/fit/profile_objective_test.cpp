@@ -1,3 +1,5 @@
+#include "misfit/fit/profile_objective.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +9,6 @@
 
 #include "misfit/core/error.h"
 #include "misfit/fit/filter/filter_error.h"
-#include "misfit/fit/profile_objective.h"
 #include "misfit/fit/regression/equation_error.h"
 #include "misfit/inference/curves.h"
 #include "tests/fit/cart_filter.h"
