@@ -1,7 +1,7 @@
 #pragma once
 
-// A linear system for the filter: the cart on a spring with a random force, measurements of place and speed. Everything about it can be written
-// down as one Gaussian density.
+// A linear system for the filter: the cart on a spring with a random force, measurements of place and speed. Everything about it can be
+// written down as one Gaussian density.
 
 #include <Eigen/Dense>
 #include <cmath>
