@@ -8,6 +8,7 @@
 #include "apps/track_video.h"
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/shown.h"
 #include "misfit/data/sweep.h"
 #include "misfit/track/survey.h"
 #include "misfit/track/sweep_points.h"
@@ -95,13 +96,15 @@ std::string settings_of(const CameraStudy& camera) {
   return text;
 }
 
-/// assign_sweep_points() with the table of the pictures named where it fails.
-std::vector<SweepPoints> points_of(const CameraStudy& camera, const std::vector<double>& theta,
+/// assign_sweep_points() with the pictures and their table named where it fails.
+std::vector<SweepPoints> points_of(const CameraStudy& camera, const std::vector<SweepPicture>& pictures, const std::vector<double>& theta,
                                    const std::vector<std::vector<PixelPoint>>& found) {
   try {
     return assign_sweep_points(theta, found, camera.sweep_points);
   } catch (const RunError& error) {
-    throw RunError(camera.sweep_images->string() + ": " + error.what());
+    std::vector<std::string> names;
+    for (const SweepPicture& picture : pictures) names.push_back(picture.file.filename().string());
+    throw RunError(fmt::format("{} ({}): {}", camera.sweep_images->string(), some_names("", names), error.what()));
   }
 }
 
@@ -121,7 +124,7 @@ void make_sweep(const Session& session, const std::vector<SweepPicture>& picture
     found.push_back(detections.back().markers);
     sweep.theta.push_back(picture.theta);
   }
-  const auto points = points_of(session.study.camera, sweep.theta, found);
+  const auto points = points_of(session.study.camera, pictures, sweep.theta, found);
   std::vector<Shot> shots;
   for (std::size_t k = 0; k < points.size(); ++k) {
     for (std::size_t p = 0; p < 3; ++p) {

@@ -68,7 +68,7 @@ TEST(CascadedTanks, WithFourFreeParametersAreToldThatThreeActTogether) {
   const StudyCopy study("cascaded_tanks");
   study.append("[parameters]\nk2 = { free = true }\n");
   const Outcome outcome = study.run("fit");
-  EXPECT_NE(outcome.out.find("do not distinguish k1, k2 and k4"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("do not determine k1, k2 and k4 separately"), std::string::npos) << outcome.out;
 }
 
 TEST(CascadedTanks, WithAWrongFormulaAreRefusedAtItsPlace) {

@@ -226,7 +226,7 @@ TEST(CalibrateFromPictures, WithoutMarkersNameTheirTable) {
   study.write("angles.csv", "theta[deg],file\n0,black.png\n5,black.png\n10,black.png\n");
   const Outcome outcome = study.run("calibrate");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
-  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("angles.csv"), HasSubstr("three markers")));
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("angles.csv (black.png"), HasSubstr("three markers")));
 }
 
 }  // namespace

@@ -183,7 +183,7 @@ TEST(DeclaredModels, TwoParametersThatOccurOnlyAsAProductAreNamed) {
   request.parameters["gain"].free = true;
   const FittedModel fitted = fit(assemble(request, *known), {oscillation(true)});
   EXPECT_EQ(fitted.fit.status, FitStatus::failed);
-  EXPECT_THAT(fitted.fit.message, HasSubstr("lever and gain: only their product acts"));
+  EXPECT_THAT(fitted.fit.message, HasSubstr("lever and gain separately: only their product acts"));
 }
 
 TEST(DeclaredModels, AParameterThatTheDataDoNotTouchIsNamed) {

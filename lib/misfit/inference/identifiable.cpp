@@ -35,7 +35,7 @@ Eigen::MatrixXd reduced(const NormalEquations& problem, const std::vector<Column
 
 /// "a and b: only their product acts", from the relative changes that leave everything as it is.
 std::string in_words(const std::vector<std::string>& names, const std::vector<double>& relative) {
-  std::string out = "these data do not distinguish " + join_words(names) + ": ";
+  std::string out = "these data do not determine " + join_words(names) + " separately: ";
   constexpr double alike = 0.02;
   const bool pair = names.size() == 2 && std::isfinite(relative[0]) && std::isfinite(relative[1]) && relative[0] != 0.0;
   const double ratio = pair ? relative[1] / relative[0] : 0.0;
