@@ -238,10 +238,11 @@ void check_profile_names(Session& session) {
   const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   if (uncertainty.profile.empty()) return;
   const std::vector<std::string> asked = session.methods();
-  if (std::none_of(asked.begin(), asked.end(), has_likelihood))
+  if (std::none_of(asked.begin(), asked.end(), has_likelihood)) {
     throw InputError(
         uncertainty.where_profile,
         fmt::format("profile: {} has no likelihood of the motion; output_error and filter_error have", fmt::join(asked, ", ")));
+  }
   const Model model = prepare(session).model;
   for (const std::string& name : uncertainty.profile) {
     if (const std::string why = why_no_profile(model, name); !why.empty())
