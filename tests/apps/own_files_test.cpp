@@ -19,7 +19,7 @@ struct Attack {
   std::string mine;        ///< file of the user, relative to the study, with the content "mine"
   std::string link;        ///< a link to it (or to its folder, if that ends in /), if not empty
   bool goes = true;        ///< the verb does its work all the same
-  std::string words = "";  ///< of the refusal
+  std::string words = {};  ///< of the refusal
 };
 
 void PrintTo(const Attack& attack, std::ostream* out) { *out << attack.name; }

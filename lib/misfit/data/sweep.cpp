@@ -30,10 +30,11 @@ std::vector<double> positions(const Table& table, const std::string& name) {
   constexpr double farthest = 1e5;  // [px] beyond any image
   std::vector<double> values = table.values(name, "px");
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::abs(values[i]) > farthest)
+    if (std::abs(values[i]) > farthest) {
       throw InputError(
           {table.source, table.line[i], 0},
           fmt::format("{} = {} px is beyond any image: at most {:.0f} px from its centre are possible", name, values[i], farthest));
+    }
   }
   return values;
 }
@@ -43,11 +44,12 @@ std::vector<double> positions(const Table& table, const std::string& name) {
 Sweep read_sweep(const std::filesystem::path& path) {
   const Table table = read_csv(path);
   constexpr std::size_t most_rows = 5000;
-  if (table.rows() > most_rows)
+  if (table.rows() > most_rows) {
     throw InputError({table.source, 0, 0},
                      fmt::format("{} rows; at most {} are possible: a sweep has one row for each angle at which the rig "
                                  "stood still",
                                  table.rows(), most_rows));
+  }
   Sweep sweep;
   sweep.source = path.string();
   sweep.theta = table.values("theta", "rad");
