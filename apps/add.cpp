@@ -1,9 +1,9 @@
 #include <iostream>
 
-#include "apps/ladder.h"
 #include "apps/print.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
+#include "misfit/workflow/ladder.h"
 
 namespace misfit {
 namespace {

@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <iostream>
 
-#include "apps/batch_list.h"
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
-#include "misfit/core/job_queue.h"
 #include "misfit/core/progress.h"
-#include "misfit/core/ranks.h"
 #include "misfit/data/curve_coefficient.h"
+#include "misfit/jobs/job_queue.h"
+#include "misfit/jobs/ranks.h"
 #include "misfit/report/figure_batch.h"
 #include "misfit/uncertainty/scatter.h"
+#include "misfit/workflow/batch_list.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 namespace {

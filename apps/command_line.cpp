@@ -13,9 +13,9 @@
 #include "apps/terminal.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
-#include "misfit/core/ranks.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/version.h"
+#include "misfit/jobs/ranks.h"
 
 namespace misfit {
 namespace {

@@ -1,8 +1,8 @@
 #include <iostream>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 

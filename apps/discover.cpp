@@ -2,11 +2,11 @@
 #include <iostream>
 #include <optional>
 
-#include "apps/ladder.h"
 #include "apps/print.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
-#include "misfit/core/ranks.h"
+#include "misfit/jobs/ranks.h"
+#include "misfit/workflow/ladder.h"
 
 namespace misfit {
 namespace {

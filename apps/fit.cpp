@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
 #include "misfit/core/files.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 

@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "apps/init_names.h"
-#include "apps/init_text.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/core/text.h"
 #include "misfit/core/written_files.h"
 #include "misfit/report/recording_figure.h"
+#include "misfit/workflow/init/names.h"
+#include "misfit/workflow/init/text.h"
 
 namespace misfit {
 namespace {

@@ -1,8 +1,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "apps/stages.h"
 #include "apps/verbs.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 

@@ -2,9 +2,9 @@
 #include <iostream>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
 #include "misfit/compare/compare.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 

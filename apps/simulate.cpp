@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "apps/stages.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
@@ -17,6 +16,7 @@
 #include "misfit/inference/states.h"
 #include "misfit/model/curve_table.h"
 #include "misfit/sim/random_run.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 namespace {

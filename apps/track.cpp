@@ -2,11 +2,11 @@
 #include <iostream>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
 #include "misfit/core/progress.h"
 #include "misfit/video/check_video.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 namespace {

@@ -1,9 +1,9 @@
 #include <iostream>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
-#include "misfit/core/ranks.h"
+#include "misfit/jobs/ranks.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 

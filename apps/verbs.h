@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/session.h"
+#include "misfit/workflow/session.h"
 
 namespace misfit {
 

@@ -1,0 +1,57 @@
+#include "misfit/core/error.h"
+#include "misfit/core/progress.h"
+#include "misfit/discover/discover.h"
+#include "misfit/jobs/job_queue.h"
+#include "misfit/jobs/ranks.h"
+#include "misfit/workflow/stages.h"
+
+namespace misfit {
+namespace {
+
+constexpr const char* refits = "discover_refits";
+
+/// The search itself, with its progress on a terminal; `only`: of one effect, without refits.
+Discovery search(Session& session, const std::string& only) {
+  const std::optional<Calibration> calibration = calibrate_stage(session);
+  const auto work = filter_work(session);
+  Progress progress("discover", session.options.quiet);
+  DiscoverOptions options;
+  options.threads = session.options.threads;
+  options.calibration = calibration ? &*calibration : nullptr;
+  options.only = only;
+  options.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+  if (only.empty()) options.refits = {session.folder.file(refits), digest_of(inputs_of_discovery(session)), 0, session.options.threads};
+  options.stop = &interrupted();
+  try {
+    return discover(*work->estimate, work->prepared.request, session.registry, work->prepared.experiments, options);
+  } catch (const RunError&) {
+    stop_if_interrupted();
+    throw;
+  }
+}
+
+}  // namespace
+
+std::optional<Candidate> predict_effect(Session& session, const std::string& effect) {
+  if (filter_declined(session)) refuse_declined(session);
+  stop_if_interrupted();
+  const auto known = known_discovery(session);
+  const Discovery discovery = known ? *known : search(session, effect);
+  for (const auto& candidate : discovery.candidates) {
+    if (candidate.effect == effect) return candidate;
+  }
+  return std::nullopt;
+}
+
+std::optional<Discovery> discover_stage(Session& session) {
+  if (filter_declined(session)) return std::nullopt;
+  stop_if_interrupted();
+  if (auto known = known_discovery(session)) return known;
+  if (!ranks().first()) return search(session, "");
+  session.do_stage("discover", inputs_of_discovery(session), {"candidates.json", "discovery.json"},
+                   [&](const std::filesystem::path& dir) { write_discovery(dir, search(session, "")); });
+  remove_stored_jobs(session.folder.file(refits));  // megabytes each, and all said
+  return read_discovery(session.folder.path());
+}
+
+}  // namespace misfit
