@@ -9,7 +9,7 @@
 namespace misfit {
 
 int attitude_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const auto attitudes = attitude_stage(session);
   bool any = false;
   nlohmann::ordered_json all = nlohmann::ordered_json::object();

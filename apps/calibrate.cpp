@@ -8,7 +8,7 @@
 namespace misfit {
 
 int calibrate_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const auto calibration = calibrate_stage(session);
   if (!calibration) throw InputError({session.study.file.string(), 0, 0}, "the study has no [camera]: there is nothing to calibrate");
   if (options.json) {

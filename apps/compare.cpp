@@ -9,7 +9,7 @@
 namespace misfit {
 
 int compare_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const Comparison comparison = compare_stage(session, fit_stage(session));
   if (options.json) {
     print_file(session.folder.file("compare.json"));

@@ -7,7 +7,7 @@
 namespace misfit {
 
 int diagnose_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const std::optional<Diagnosis> diagnosis = diagnose_stage(session);
   if (!diagnosis) refuse_declined(session);
   if (options.json) {

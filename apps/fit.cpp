@@ -9,7 +9,7 @@
 namespace misfit {
 
 int fit_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const std::vector<Fit> fits = fit_stage(session);
   if (options.json) {
     nlohmann::ordered_json all = nlohmann::ordered_json::object();  // method → its fit.json

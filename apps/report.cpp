@@ -7,7 +7,7 @@
 namespace misfit {
 
 int report_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const std::string page = report_stage(session, fit_stage(session)).string();
   std::cout << (options.json ? nlohmann::json{{"report", page}}.dump(1) : page) << '\n';
   return 0;

@@ -142,8 +142,8 @@ std::string not_predicted(const Effect& effect, const std::optional<Candidate>& 
 
 }  // namespace
 
-Options options_for(const Options& options, const fs::path& study) {
-  Options other = options;
+SessionOptions options_for(const SessionOptions& options, const fs::path& study) {
+  SessionOptions other = options;
   other.study = study.string();
   other.out.clear();
   return other;
@@ -157,13 +157,13 @@ std::optional<Ladder> known_ladder(const Session& session) {
   return read_ladder(session.folder.file(ladder_name));
 }
 
-ModelLadder::ModelLadder(const Options& options, const Registry& registry)
+ModelLadder::ModelLadder(const SessionOptions& options, const Registry& registry)
     : options_(options), registry_(registry), root_(options, registry) {
   if (auto known = known_ladder(root_)) {
     ladder_ = std::move(*known);
   } else if (fs::exists(root_.folder.file(ladder_name))) {
-    root_.say("the study, its data or " + root_.folder.file(ladder_name).string() +
-              " have changed since the ladder was made: starting a new one");
+    root_.note("the study, its data or " + root_.folder.file(ladder_name).string() +
+               " have changed since the ladder was made: starting a new one");
   }
 }
 
@@ -175,7 +175,7 @@ Session& ModelLadder::last() {
     if (!fs::exists(study))
       throw RunError("rung " + std::to_string(rung.id) + " of the ladder is missing: " + study.string() + " — remove " +
                      root_.folder.file(ladder_name).string() + " to start a new one");
-    root_.say(fmt::format("continuing from rung {} of the ladder, {}", rung.id, study.parent_path().lexically_normal().string()));
+    root_.note(fmt::format("continuing from rung {} of the ladder, {}", rung.id, study.parent_path().lexically_normal().string()));
     last_ = std::make_unique<Session>(options_for(options_, study), registry_);
   }
   return *last_;
@@ -250,10 +250,46 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
 void report_ladder(ModelLadder& ladder) {
   Session& session = ladder.root();
   try {
-    session.say("report: " + report_stage(session, fit_stage(session)).lexically_normal().string());
+    session.note("report: " + report_stage(session, fit_stage(session)).lexically_normal().string());
   } catch (const RunError& error) {
-    session.say(std::string("no report: ") + error.what());  // the rung stands without it
+    session.note(std::string("no report: ") + error.what());  // the rung stands without it
   }
+}
+
+std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect) {
+  if (effect.starts_with(system_prefix)) return std::nullopt;
+  Session& session = ladder.last();
+  static_cast<void>(session.registry.effect(effect));  // InputError with the nearest name
+  try {
+    static_cast<void>(study_with_effect(session, effect, std::nullopt, session.folder.path()));  // refuses what cannot be added
+  } catch (const InputError&) {
+    // Not where it would go by default, or it is there already: discovery may know another place.
+    auto elsewhere = predict_effect(session, effect);
+    if (!elsewhere || elsewhere->roles.empty()) throw;
+    return elsewhere;
+  }
+  return predict_effect(session, effect);
+}
+
+std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Registry& registry) {
+  const std::vector<std::string> known = registry.effect_keys();
+  for (const auto& candidate : discovery.candidates) {
+    if (candidate.accepted && std::find(known.begin(), known.end(), candidate.effect) != known.end()) return candidate;
+  }
+  return std::nullopt;
+}
+
+void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderListener& listener) {
+  constexpr int most_rungs = 12;
+  for (int k = 0; k < most_rungs; ++k) {
+    const Discovery discovery = discovered(ladder.last());
+    if (listener.discovered) listener.discovered(discovery);
+    const std::optional<Candidate> next = accepted_candidate(discovery, registry);
+    if (!next) break;
+    const Rung& rung = ladder.add(next->effect, next);
+    if (listener.added) listener.added(rung);
+  }
+  static_cast<void>(ladder.last_rung());
 }
 
 }  // namespace misfit

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,12 +13,12 @@ namespace misfit {
 /// out/ beside it.
 class ModelLadder {
  public:
-  /// Opens the study and its ladder. A ladder of a study or data that have changed since is replaced by a new one; reported on stderr.
-  ModelLadder(const Options& options, const Registry& registry);
+  /// Opens the study and its ladder. A ladder of a study or data that have changed since is replaced by a new one; a note says so.
+  ModelLadder(const SessionOptions& options, const Registry& registry);
 
   [[nodiscard]] Session& root() { return root_; }
   [[nodiscard]] const Ladder& ladder() const { return ladder_; }
-  /// The study of the last rung (the root study where there is none), opened. Reported on stderr when it is not the root study.
+  /// The study of the last rung (the root study where there is none), opened. A note says so when it is not the root study.
   [[nodiscard]] Session& last();
   /// The fit of the last rung added here.
   [[nodiscard]] const Fit& last_fit();
@@ -33,17 +34,33 @@ class ModelLadder {
   [[nodiscard]] std::string relative_study(const Session& session) const;
   void append(Rung rung);
 
-  Options options_;
+  SessionOptions options_;
   const Registry& registry_;
   Session root_;
   std::unique_ptr<Session> last_;
   Ladder ladder_;
 };
 
-/// The options of the command for another study, its results in the out/ beside it.
-[[nodiscard]] Options options_for(const Options& options, const std::filesystem::path& study);
+/// What discovery says of the effect for the last rung: roles, where to start, the drop it predicts. Asked before the effect is added, so
+/// that the prediction is one. nullopt for a change of system, which no discovery ranks. InputError as ModelLadder::add.
+[[nodiscard]] std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect);
 
-/// The report of the study, written anew after its ladder has grown: its path, or on stderr why there is none.
+/// The best accepted candidate that a study can take in one line.
+[[nodiscard]] std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Registry& registry);
+
+/// What happens while a ladder is extended. Empty functions: nobody listens.
+struct LadderListener {
+  std::function<void(const Discovery&)> discovered;
+  std::function<void(const Rung&)> added;
+};
+
+/// discover --auto: adds the accepted effect and searches again, until none is accepted or 12 rungs were added (lib/misfit/README.md, 6.5).
+void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderListener& listener = {});
+
+/// The same options for another study, its results in the out/ beside it.
+[[nodiscard]] SessionOptions options_for(const SessionOptions& options, const std::filesystem::path& study);
+
+/// The report of the study, written anew after its ladder has grown: a note has its path, or why there is none.
 void report_ladder(ModelLadder& ladder);
 
 /// The study's text with the effect added, for `folder`. InputError as ModelLadder::add.

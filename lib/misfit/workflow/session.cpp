@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
-#include <iostream>
 #include <set>
 #include <stdexcept>
 
@@ -23,24 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::atomic<bool> interrupt_flag{false};  // the one thing a signal handler may touch
-
-extern "C" void on_interrupt(int) {
-  interrupt_flag = true;
-  std::signal(SIGINT, SIG_DFL);
-}
-
-Study open_study(const Options& options) {
+Study open_study(const SessionOptions& options) {
   Study study = read_study(options.study);
-  if (options.has_seed) study.seed = options.seed;
+  if (options.seed) study.seed = *options.seed;
   return study;
 }
 
-fs::path folder_of(const Options& options, const Study& study) {
+fs::path folder_of(const SessionOptions& options, const Study& study) {
   return options.out.empty() ? study.folder / "out" : fs::path(options.out);
 }
 
-RunFolder open_folder(const Options& options, const Study& study, RunFolder::Access access) {
+RunFolder open_folder(const SessionOptions& options, const Study& study, RunFolder::Access access) {
   RunFolder folder(folder_of(options, study), options.command, study.seed, study.file, {files_of_study(study), options.force}, access);
   if (const auto other = folder.other_study())
     throw InputError("the run folder " + folder.path().string() + " holds the results of another study, " + other->string() +
@@ -129,7 +120,7 @@ std::vector<fs::path> files_of_study(const Study& study) {
 
 RunFolder::Access access_of_rank() { return ranks().first() ? RunFolder::Access::write : RunFolder::Access::read; }
 
-Session::Session(const Options& o, const Registry& r, RunFolder::Access access)
+Session::Session(const SessionOptions& o, const Registry& r, RunFolder::Access access)
     : options(o),
       study(open_study(o)),
       declared(study_registry(study, r)),
@@ -137,6 +128,7 @@ Session::Session(const Options& o, const Registry& r, RunFolder::Access access)
       model(read_model(study, registry)),
       folder(open_folder(o, study, access)),
       program(hash_of_program()) {
+  if (!folder.lost_record().empty()) note(folder.lost_record());
   if (access == RunFolder::Access::read) return;
   for (const char* below_it : {"fit", "figures", "rungs"}) check_folder(folder.file(below_it));
   check_small_files(study);
@@ -156,8 +148,8 @@ void Session::do_stage(const std::string& stage, const std::map<std::string, std
   const auto before = folder.stages().find(stage);
   const std::vector<std::string> damaged = folder.damaged(stage);
   if (before != folder.stages().end() && before->second.inputs == inputs && !damaged.empty())
-    say(fmt::format("{}{}: not as misfit wrote {}: made again", folder.file(damaged.front()).string(),
-                    damaged.size() > 1 ? fmt::format(" and {} more", damaged.size() - 1) : "", damaged.size() > 1 ? "them" : "it"));
+    note(fmt::format("{}{}: not as misfit wrote {}: made again", folder.file(damaged.front()).string(),
+                     damaged.size() > 1 ? fmt::format(" and {} more", damaged.size() - 1) : "", damaged.size() > 1 ? "them" : "it"));
   redo_stage(stage, inputs, files, make);
 }
 
@@ -212,15 +204,13 @@ bool Session::copied_from_below(const std::string& stage, const std::map<std::st
   return true;
 }
 
-void Session::say(const std::string& line) const {
-  if (!options.quiet) std::cerr << line << '\n';
+void Session::note(const std::string& line) const {
+  if (options.listener.note) options.listener.note(line);
 }
 
-const std::atomic<bool>& interrupted() { return interrupt_flag; }
-void watch_interrupts() { std::signal(SIGINT, on_interrupt); }
-
-void stop_if_interrupted() {
-  if (interrupt_flag) throw RunError("interrupted; finished work is in the run folder, and the same command continues from there");
+ProgressFn Session::progress(const std::string& name) const {
+  if (options.listener.progress) return options.listener.progress(name);
+  return [](std::size_t, std::size_t) {};
 }
 
 }  // namespace misfit

@@ -1,34 +1,37 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "misfit/core/run_folder.h"
 #include "misfit/data/study.h"
+#include "misfit/jobs/work_queue.h"
 #include "misfit/model/request.h"
 
 namespace misfit {
 
-/// Options of the command line that verbs share.
-struct Options {
-  std::string study;                 ///< path of study.toml
-  std::string out;                   ///< empty: out/ beside the study
-  std::vector<std::string> methods;  ///< empty: those of the study
-  int threads = 0;                   ///< 0: one per core
-  bool has_seed = false;
-  unsigned long seed = 1;
-  bool quiet = false, json = false;
-  long runs = 0;                     ///< of `uncertainty`; 0: as the study says
-  std::vector<std::string> studies;  ///< of `batch`: lists, folders, studies
-  std::string effect;                ///< of `add`
-  bool automatic = false;            ///< discover --auto
-  bool force = false;                ///< write over files that misfit did not make
-  std::string check_video;           ///< track: write the video with the track drawn to this file
-  std::string command;               ///< the command line as typed, for run.json
+/// Hears of long work while it goes on. An empty function: nobody listens.
+struct Listener {
+  std::function<void(const std::string& line)> note;  ///< what is made again, and why; where work continues
+  /// Work of this name begins; what is returned is called with (done, total) as it goes on, and destroyed when it has ended.
+  std::function<ProgressFn(const std::string& name)> progress;
+};
+
+/// A study and how to work on it.
+struct SessionOptions {
+  std::string study;                       ///< path of study.toml, or of the folder that holds it
+  std::string out = {};                    ///< the run folder; empty: out/ beside the study
+  std::vector<std::string> methods = {};   ///< empty: those of the study
+  int threads = 0;                         ///< 0: one per core
+  std::optional<unsigned long> seed = {};  ///< instead of the study's
+  long runs = 0;                           ///< of the Monte Carlo; 0: as the study says
+  bool force = false;                      ///< write over files that misfit did not make
+  std::string command = {};                ///< what run.json names as the command that made a result
+  Listener listener = {};
 };
 
 struct FilterWork;
@@ -40,9 +43,9 @@ struct FilterWork;
 /// folder holds the results of another study, or one of the small files that the study names (references, tables of curves; sweep and data
 /// where a video is to be tracked first) is not as it must be.
 struct Session {
-  Session(const Options& options, const Registry& registry, RunFolder::Access access = access_of_rank());
+  Session(const SessionOptions& options, const Registry& registry, RunFolder::Access access = access_of_rank());
 
-  Options options;
+  SessionOptions options;
   Study study;
   std::shared_ptr<const Registry> declared;  ///< what the program knows and what the study declares
   const Registry& registry;                  ///< the same
@@ -56,7 +59,7 @@ struct Session {
   /// {"program", "settings"} and the files, hashed: the inputs of a stage.
   [[nodiscard]] std::map<std::string, std::string> inputs(const std::string& settings,
                                                           const std::vector<std::filesystem::path>& files) const;
-  /// Does a stage unless it was done from the same inputs and its files are as they were written (those that are not are said on stderr):
+  /// Does a stage unless it was done from the same inputs and its files are as they were written (those that are not: a note):
   /// `make` writes them into the folder that it is given, as they are to lie in the run folder, and they come to their places when all are
   /// whole (RunFolder). `files`: those that are known beforehand, so that what must not be written over is refused before the work. What
   /// follows reads the results from the run folder: so it is the same whether the stage was done now or before.
@@ -70,19 +73,15 @@ struct Session {
   /// True if this stage was done from the same inputs in the run folder of the parent rung: its files are then copied from there, and
   /// run.json says so with their hashes.
   [[nodiscard]] bool copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs);
-  /// A line on stderr unless quiet.
-  void say(const std::string& line) const;
+  /// A line for the listener.
+  void note(const std::string& line) const;
+  /// To be called with (done, total) of work that begins now, as long as it goes on.
+  [[nodiscard]] ProgressFn progress(const std::string& name) const;
 };
 
 /// Of the running program: computed once.
 [[nodiscard]] const std::string& hash_of_program();
 /// Every file that a study names, itself first.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_study(const Study& study);
-
-/// True after Ctrl-C: stages finish what they are at, write, and stop. The second Ctrl-C ends the program at once.
-[[nodiscard]] const std::atomic<bool>& interrupted();
-void watch_interrupts();
-/// RunError "interrupted; …" if Ctrl-C was pressed: called between stages, when everything done so far is on disk.
-void stop_if_interrupted();
 
 }  // namespace misfit

@@ -6,6 +6,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/stages.h"
 
 namespace misfit {

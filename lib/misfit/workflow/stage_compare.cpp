@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "misfit/compare/compare.h"
-#include "misfit/core/progress.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/stages.h"
 
 namespace misfit {
@@ -43,9 +43,7 @@ Comparison compare_stage(Session& session, const std::vector<Fit>& fits) {
     Comparison comparison = compare(fits, references(session));
     if (can_be_simulated(fits)) {
       const auto work = filter_work(session);
-      Progress progress("compare", session.options.quiet);
-      comparison.motion = simulated_motion(*work, session.study.seed, session.options.threads,
-                                           [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+      comparison.motion = simulated_motion(*work, session.study.seed, session.options.threads, session.progress("compare"));
     }
     write_comparison(dir / "compare.json", comparison);
   });

@@ -1,6 +1,6 @@
 #include "misfit/core/error.h"
-#include "misfit/core/progress.h"
 #include "misfit/diagnose/diagnose.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/stages.h"
 
 namespace misfit {
@@ -47,9 +47,7 @@ std::optional<Diagnosis> diagnose_stage(Session& session) {
   const auto inputs = session.inputs("diagnose", files_of_filter(session));
   session.do_stage("diagnose", inputs, {"diagnosis.json", "missing_force.csv"}, [&](const fs::path& dir) {
     const auto work = filter_work(session);
-    Progress progress("diagnose", session.options.quiet);
-    write_diagnosis(dir, diagnose(*work->estimate,
-                                  {session.options.threads, [&](std::size_t done, std::size_t total) { progress.update(done, total); }}));
+    write_diagnosis(dir, diagnose(*work->estimate, {session.options.threads, session.progress("diagnose")}));
   });
   return read_diagnosis(session.folder.path());
 }

@@ -1,6 +1,6 @@
 #include "misfit/core/error.h"
-#include "misfit/core/progress.h"
 #include "misfit/discover/discover.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/job_queue.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/workflow/stages.h"
@@ -10,16 +10,15 @@ namespace {
 
 constexpr const char* refits = "discover_refits";
 
-/// The search itself, with its progress on a terminal; `only`: of one effect, without refits.
+/// The search itself; `only`: of one effect, without refits.
 Discovery search(Session& session, const std::string& only) {
   const std::optional<Calibration> calibration = calibrate_stage(session);
   const auto work = filter_work(session);
-  Progress progress("discover", session.options.quiet);
   DiscoverOptions options;
   options.threads = session.options.threads;
   options.calibration = calibration ? &*calibration : nullptr;
   options.only = only;
-  options.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+  options.progress = session.progress("discover");
   if (only.empty()) options.refits = {session.folder.file(refits), digest_of(inputs_of_discovery(session)), 0, session.options.threads};
   options.stop = &interrupted();
   try {
@@ -52,6 +51,12 @@ std::optional<Discovery> discover_stage(Session& session) {
                    [&](const std::filesystem::path& dir) { write_discovery(dir, search(session, "")); });
   remove_stored_jobs(session.folder.file(refits));  // megabytes each, and all said
   return read_discovery(session.folder.path());
+}
+
+Discovery discovered(Session& session) {
+  const std::optional<Discovery> discovery = discover_stage(session);
+  if (!discovery) refuse_declined(session);
+  return *discovery;
 }
 
 }  // namespace misfit

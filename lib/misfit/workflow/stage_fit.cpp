@@ -4,7 +4,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
-#include "misfit/core/progress.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/methods.h"
 
 namespace misfit {
@@ -41,7 +41,7 @@ std::map<std::string, std::string> inputs_of_fit(const Session& session, const s
 
 std::shared_ptr<const FilterWork> filter_work(Session& session) {
   if (!session.filter) {
-    session.say("re-running filter_error (needed by the next stage)");
+    session.note("re-running filter_error (needed by the next stage)");
     session.filter = Methods(session).run_filter_error();
   }
   if (!session.filter->estimate)
@@ -56,14 +56,14 @@ std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& nam
   std::vector<Fit> fits;
   Methods methods(session);
   resolved_stage(session, methods);
-  Progress progress("fit", session.options.quiet);
+  const ProgressFn progress = session.progress("fit");
   for (std::size_t k = 0; k < names.size(); ++k) {
     stop_if_interrupted();
     const std::string stage = "fit/" + names[k];
     session.do_stage(stage, inputs_of_fit(session, names[k]), {stage + "/fit.json"},
                      [&](const fs::path& dir) { write_fit(dir / stage, methods.run(names[k])); });
     fits.push_back(read_fit(session.folder.file(stage)));
-    progress.update(k + 1, names.size());
+    progress(k + 1, names.size());
   }
   return fits;
 }

@@ -3,6 +3,7 @@
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/core/version.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/report/report.h"
 #include "misfit/workflow/stages.h"
 

@@ -7,9 +7,9 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
-#include "misfit/core/progress.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/profile_objective.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/report/figures_intervals.h"
 #include "misfit/uncertainty/bootstrap.h"
@@ -137,11 +137,10 @@ class Work {
     const FitReplica refit = [&](const std::vector<Signals>& replica) { return fit_again(s.from, replica); };
     std::optional<BlockBootstrap> bootstrap;
     if (!attempt(s.from.method, [&] { bootstrap.emplace(s.fit, methods_.prepared().experiments, what, refit, options); })) return;
-    Progress progress(fmt::format("bootstrap of {}, {} runs", s.from.method, uncertainty_.bootstrap), session_.options.quiet);
-    const auto report_progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+    const ProgressFn progress = session_.progress(fmt::format("bootstrap of {}, {} runs", s.from.method, uncertainty_.bootstrap));
     const auto results = finished(stored_runs([&](std::size_t k) { return bootstrap->run(k); },
                                               jobs("bootstrap", s.from.method, fmt::format("block {}", uncertainty_.block), options.runs),
-                                              report_progress, &interrupted()));
+                                              progress, &interrupted()));
     if (ranks().first()) attempt(s.from.method, [&] { out_.bootstraps.push_back(bootstrap->summary(results)); });
   }
 
@@ -150,11 +149,9 @@ class Work {
     for (const std::string& parameter : uncertainty_.profile)
       attempt(s.from.method, [&] { requests.push_back(request_for(s, parameter)); });
     if (requests.empty()) return;
-    Progress progress("profiles of " + s.from.method, session_.options.quiet);
-    const auto report_progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    for (auto& profile :
-         finished(stored_profiles(requests, jobs("profile", s.from.method, fmt::format("{}", fmt::join(uncertainty_.profile, " "))),
-                                  report_progress, &interrupted())))
+    const ProgressFn progress = session_.progress("profiles of " + s.from.method);
+    for (auto& profile : finished(stored_profiles(
+             requests, jobs("profile", s.from.method, fmt::format("{}", fmt::join(uncertainty_.profile, " "))), progress, &interrupted())))
       out_.profiles.push_back(std::move(profile));
   }
 
@@ -174,11 +171,10 @@ class Work {
       starts.emplace(s.fit, s.from.fitted.model, *best.objective, search, options);
     });
     if (!possible) return;
-    Progress progress(fmt::format("{} random starts of {}", uncertainty_.starts, s.from.method), session_.options.quiet);
-    const auto report_progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
-    const auto results = finished(stored_runs([&](std::size_t k) { return starts->run(k); },
-                                              jobs("starts", s.from.method, "from the model's typical sizes", options.runs),
-                                              report_progress, &interrupted()));
+    const ProgressFn progress = session_.progress(fmt::format("{} random starts of {}", uncertainty_.starts, s.from.method));
+    const auto results =
+        finished(stored_runs([&](std::size_t k) { return starts->run(k); },
+                             jobs("starts", s.from.method, "from the model's typical sizes", options.runs), progress, &interrupted()));
     if (ranks().first()) attempt(s.from.method, [&] { out_.starts.push_back(starts->summary(results)); });
   }
 

@@ -8,6 +8,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/shown.h"
 #include "misfit/data/sweep.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/track/survey.h"
 #include "misfit/track/sweep_points.h"
 #include "misfit/video/video.h"

@@ -1,6 +1,9 @@
+#include <algorithm>
+
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
-#include "misfit/core/progress.h"
+#include "misfit/jobs/interrupt.h"
+#include "misfit/video/check_video.h"
 #include "misfit/workflow/stages.h"
 #include "misfit/workflow/track_video.h"
 
@@ -20,9 +23,7 @@ std::string settings_of(const VideoStudy& video) {
 }
 
 void make_track(Session& session, std::size_t e, const TrackFiles& files) {
-  Progress progress("track", session.options.quiet);
-  const VideoTrack result = track_video(*session.study.experiments[e].video, session.study.video,
-                                        [&](std::size_t done, std::size_t total) { progress.update(done, total); });
+  const VideoTrack result = track_video(*session.study.experiments[e].video, session.study.video, session.progress("track"));
   write_track(files.track, result.track);
   write_track_facts(files.facts, result.facts);
   make_writable_folder(files.sheet.parent_path());
@@ -66,6 +67,19 @@ std::vector<std::optional<TrackFacts>> track_stage(Session& session) {
     out.emplace_back(read_track_facts(files.facts));
   }
   return out;
+}
+
+WriteRules write_rules(const Session& session) { return {files_of_study(session.study), session.options.force}; }
+
+void write_check_video(const Session& session, const std::vector<std::optional<TrackFacts>>& facts, const fs::path& to) {
+  const auto tracked = std::find_if(facts.begin(), facts.end(), [](const auto& f) { return f.has_value(); });
+  const std::size_t e = static_cast<std::size_t>(tracked - facts.begin());
+  const TrackFacts& f = **tracked;
+  const Track track = read_track(track_files(session, e).track);
+  write_files(to.has_parent_path() ? to.parent_path() : ".", write_rules(session), {to.filename().string()}, [&](const fs::path& dir) {
+    write_check_video(*session.study.experiments[e].video, dir / to.filename(), track, f.fields == "progressive" ? 1 : 2,
+                      f.fields == "bottom_first" ? 1 : 0, std::max(f.outer, 8.0), session.progress("check video"));
+  });
 }
 
 }  // namespace misfit

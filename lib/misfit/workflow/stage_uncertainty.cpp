@@ -2,7 +2,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
-#include "misfit/core/progress.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/report/figures_uncertainty.h"
 #include "misfit/workflow/stages.h"
@@ -41,11 +41,10 @@ Inputs inputs_of(const Session& session) {
 }
 
 std::optional<MonteCarloResult> sampled(const Session& session, const StudyChain& chain, const Sampler& sampler) {
-  Progress progress(fmt::format("{}, {} runs", chain.nominal().method, runs_of(session)), session.options.quiet);
   MonteCarloOptions options;
   options.jobs = {session.folder.file("uncertainty"), digest_of(inputs_of_run(session)), runs_of(session), session.options.threads};
   options.shared = chain.numbers().scalars();
-  options.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+  options.progress = session.progress(fmt::format("{}, {} runs", chain.nominal().method, runs_of(session)));
   options.stop = &interrupted();
   return monte_carlo(
       sampler, [&](const std::vector<double>& errors) { return chain.run(errors); }, options);

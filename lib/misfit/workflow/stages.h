@@ -35,6 +35,10 @@ struct TrackFiles {
 /// track.csv, track.json and figures/contact_sheet.png of every experiment that starts from a video (track_NAME… for further ones); nullopt
 /// for others.
 [[nodiscard]] std::vector<std::optional<TrackFacts>> track_stage(Session& session);
+/// The first video of the study with its track drawn on it, to the file `to`. `facts`: what track_stage() gave. WriteError: write_rules().
+void write_check_video(const Session& session, const std::vector<std::optional<TrackFacts>>& facts, const std::filesystem::path& to);
+/// Files that are never written over.
+[[nodiscard]] WriteRules write_rules(const Session& session);
 /// The table of the sweep: the study's own, or sweep.csv made from its pictures (with figures/sweep_sheet.png).
 [[nodiscard]] std::filesystem::path sweep_stage(Session& session);
 /// camera.json; nullopt if the study has no camera.
@@ -112,6 +116,8 @@ void check_profile_names(Session& session);
 [[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);
 /// candidates.json and discovery.json; nullopt if filter_error declined.
 [[nodiscard]] std::optional<Discovery> discover_stage(Session& session);
+/// The same; RunError in the fit's words if filter_error declined.
+[[nodiscard]] Discovery discovered(Session& session);
 /// What discovery says of one effect: from the whole search where that is on disk, else it alone is screened. nullopt if it cannot be
 /// screened (it has no strength, or is driven by noise, or stands for another).
 [[nodiscard]] std::optional<Candidate> predict_effect(Session& session, const std::string& effect);

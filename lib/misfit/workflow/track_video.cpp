@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "misfit/core/error.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/math/statistics.h"
 #include "misfit/track/survey.h"
 #include "misfit/track/tracker.h"
 #include "misfit/video/video.h"
-#include "misfit/workflow/session.h"
 
 namespace misfit {
 namespace {

@@ -1,9 +1,11 @@
-#include "misfit/core/progress.h"
+#include "apps/progress.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <iostream>
+#include <memory>
 
 #include "misfit/core/shown.h"
 
@@ -22,8 +24,8 @@ std::string time_left(double seconds) {
 
 }  // namespace
 
-Progress::Progress(const std::string& what, bool quiet)
-    : what_(printable(what)), visible_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_ - between_lines) {}
+Progress::Progress(const std::string& what)
+    : what_(printable(what)), visible_(::isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_ - between_lines) {}
 
 Progress::~Progress() {
   if (visible_) fmt::print(stderr, "{}", clear_line);
@@ -41,6 +43,13 @@ void Progress::update(std::size_t done, std::size_t total) {
   const std::string left = done == *before_ ? "" : "  " + time_left(elapsed * to_do / now_done);
   fmt::print(stderr, "{}{}  {:.0f} %{}", clear_line, what_, std::floor(100.0 * part), left);
   std::fflush(stderr);
+}
+
+Listener terminal_listener() {
+  return {[](const std::string& line) { std::cerr << line << '\n'; },
+          [](const std::string& name) -> ProgressFn {
+            return [line = std::make_shared<Progress>(name)](std::size_t done, std::size_t total) { line->update(done, total); };
+          }};
 }
 
 }  // namespace misfit

@@ -5,12 +5,14 @@
 #include <optional>
 #include <string>
 
+#include "misfit/workflow/session.h"
+
 namespace misfit {
 
-/// One line on stderr, "fit  43 %  12 s left", rewritten at most five times a second; silent when stderr is not a terminal or when quiet.
+/// One line on stderr, "fit  43 %  12 s left", rewritten at most five times a second; silent when stderr is not a terminal.
 class Progress {
  public:
-  Progress(const std::string& what, bool quiet);
+  explicit Progress(const std::string& what);
   ~Progress();  ///< clears the line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -25,5 +27,8 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point last_;
 };
+
+/// Notes as lines on stderr, progress as a line that is rewritten there.
+[[nodiscard]] Listener terminal_listener();
 
 }  // namespace misfit

@@ -1,4 +1,4 @@
-#include "misfit/core/progress.h"
+#include "apps/progress.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ class ProgressOnATerminal : public testing::Test {
 
 TEST_F(ProgressOnATerminal, ShowsPartAndTimeLeftAndClearsTheLine) {
   {
-    Progress progress("fit", false);
+    Progress progress("fit");
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     progress.update(1, 4);
   }
@@ -74,7 +74,7 @@ TEST_F(ProgressOnATerminal, ShowsPartAndTimeLeftAndClearsTheLine) {
 }
 
 TEST_F(ProgressOnATerminal, WhatAnEarlierRunHadDoneDoesNotShortenTheTimeLeft) {
-  Progress progress("fit", false);
+  Progress progress("fit");
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   progress.update(901, 1000);
   const std::string text = terminal.shown();
@@ -84,7 +84,7 @@ TEST_F(ProgressOnATerminal, WhatAnEarlierRunHadDoneDoesNotShortenTheTimeLeft) {
 
 TEST_F(ProgressOnATerminal, WritesAtMostFiveTimesASecond) {
   const auto start = std::chrono::steady_clock::now();
-  Progress progress("fit", false);
+  Progress progress("fit");
   for (std::size_t i = 1; i < 1000; ++i) progress.update(i, 1000);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::size_t lines = count(terminal.shown(), "fit");
@@ -92,14 +92,14 @@ TEST_F(ProgressOnATerminal, WritesAtMostFiveTimesASecond) {
   EXPECT_LE(static_cast<double>(lines), 1.0 + 5.0 * seconds);
 }
 
-TEST_F(ProgressOnATerminal, QuietIsSilent) {
-  { Progress("fit", true).update(1, 4); }
-  EXPECT_EQ(terminal.shown(), "");
+TEST_F(ProgressOnATerminal, TheListenerClearsTheLineWhenTheWorkHasEnded) {
+  { terminal_listener().progress("fit")(4, 4); }
+  EXPECT_EQ(terminal.shown(), "\r\033[Kfit  100 %  0 s left\r\033[K");
 }
 
 TEST(Progress, IsSilentWhereThereIsNoTerminal) {
   ::testing::internal::CaptureStderr();
-  { Progress("fit", false).update(1, 4); }
+  { Progress("fit").update(1, 4); }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
