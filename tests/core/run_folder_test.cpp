@@ -101,9 +101,9 @@ TEST_F(RanBefore, ATornRunJsonCountsAsAbsentAndIsSaid) {
   for (const std::string& torn :
        {std::string(), whole.substr(0, whole.size() / 2), std::string("[1, 2]"), std::string("{\"stages\": {\"calibrate\": 3}}")}) {
     folder_.write("out/run.json", torn);
-    ::testing::internal::CaptureStderr();
-    EXPECT_FALSE(up_to_date(inputs)) << torn;
-    EXPECT_NE(::testing::internal::GetCapturedStderr().find("run.json"), std::string::npos) << torn;
+    const RunFolder run(out(), "", 7);
+    EXPECT_FALSE(run.up_to_date("calibrate", inputs)) << torn;
+    EXPECT_NE(run.lost_record().find("run.json"), std::string::npos) << torn;
   }
 }
 

@@ -74,7 +74,7 @@ TEST_F(IdentificationOfAnOscillator, ListenerHearsTheNotesAndTheProgress) {
   EXPECT_THAT(works, testing::Contains("fit"));
   EXPECT_GT(calls, 0U);
   EXPECT_THAT(notes, IsEmpty());
-  fs::resize_file(out("out/fit/output_error/curves.csv"), 3);
+  fs::resize_file(out("out/fit/output_error/prediction.csv"), 3);
   static_cast<void>(Identification(options, registry_).fit());
   EXPECT_THAT(notes, testing::ElementsAre(HasSubstr("not as misfit wrote it: made again")));
 }
