@@ -45,7 +45,7 @@ done
 # broken NAME: a copy of the project under WORK/NAME, to be spoilt.
 broken() {
   mkdir "$work/$1"
-  cp -r "$here/CMakeLists.txt" "$here/effects" "$work/$1/"
+  cp -r "$here/CMakeLists.txt" "$here/identify.cpp" "$here/effects" "$work/$1/"
 }
 configure_broken() { cmake -S "$work/$1" -B "$work/$1/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" "${@:2}" > "$work/$1/log" 2>&1; }
 
