@@ -101,7 +101,7 @@ std::string track_text(const std::string& experiment, const TrackFacts& facts) {
 }
 
 std::string attitude_text(const std::string& experiment, const Attitude& a) {
-  const auto known = static_cast<std::size_t>(std::count_if(a.eta.begin(), a.eta.end(), [](double v) { return std::isfinite(v); }));
+  const auto known = std::count_if(a.eta.begin(), a.eta.end(), [](double v) { return std::isfinite(v); });
   double sum = 0.0, squares = 0.0, n = 0.0;
   for (double v : a.alpha_T) {
     if (std::isfinite(v)) sum += v, squares += v * v, n += 1.0;
@@ -125,7 +125,7 @@ std::string fits_text(const std::vector<Fit>& fits) {
 }
 
 int status_of(const std::vector<Fit>& fits) {
-  const auto done = [](const Fit& fit) { return fit.status == FitStatus::converged || fit.status == FitStatus::not_converged; };
+  const auto done = [](const Fit& fit) { return fit.usable(); };
   return fits.empty() || std::any_of(fits.begin(), fits.end(), done) ? 0 : 1;
 }
 

@@ -32,7 +32,7 @@ class PrintableStream::Buffer : public std::streambuf {
   }
 
   std::streamsize xsputn(const char* text, std::streamsize size) override {
-    pending_.append(text, static_cast<std::size_t>(size));
+    pending_.append(text, size);
     return hand_on(pending_.size() - unfinished_bytes(pending_)) ? size : 0;
   }
 

@@ -6,6 +6,8 @@ add_library(misfit::options ALIAS misfit_options)
 target_compile_features(misfit_options INTERFACE cxx_std_20)
 target_compile_options(misfit_options INTERFACE
   $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
+  # As g++ has it: from an integer to an unsigned one of its width or more is no surprise.
+  $<$<CXX_COMPILER_ID:Clang>:$<BUILD_INTERFACE:-Wno-sign-conversion>>
   $<$<BOOL:${MISFIT_WERROR}>:$<BUILD_INTERFACE:-Werror>>
   # With precompiled headers g++ 12 forgets which code is the standard library's, and shows what it wrongly sees in std::string concatenation
   # (gcc bugs 105651, 105329). Without them these warnings are on.

@@ -9,7 +9,7 @@ namespace misfit {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   if (std::max(a.size(), b.size()) > longest_name_compared) return std::max(a.size(), b.size());
-  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  const auto lower = [](unsigned char c) { return std::tolower(c); };
   std::vector<std::size_t> row(b.size() + 1);  // of the table of distances, one at a time
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {

@@ -22,4 +22,6 @@ std::string file_name_for(std::string_view name) {
   return out + "." + hash_text(name);
 }
 
+std::string file_suffix(std::size_t number, std::string_view name) { return number == 0 ? "" : "_" + file_name_for(name); }
+
 }  // namespace misfit

@@ -76,7 +76,7 @@ int write_all(int descriptor, std::string_view content) {
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return errno;
     if (n == 0) return ENOSPC;
-    content.remove_prefix(static_cast<std::size_t>(n));
+    content.remove_prefix(n);
   }
   return 0;
 }
@@ -120,14 +120,14 @@ std::string read_file(const fs::path& path) {
   struct stat status {};
   if (::fstat(file.number(), &status) == 0 && S_ISDIR(status.st_mode)) throw InputError(path.string() + ": is a folder, a file is needed");
   std::string content;
-  if (status.st_size > 0) content.reserve(static_cast<std::size_t>(status.st_size));
+  if (status.st_size > 0) content.reserve(status.st_size);
   std::vector<char> buffer(1 << 16);
   for (;;) {
     const ssize_t n = ::read(file.number(), buffer.data(), buffer.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) refuse_reading(path, errno);
     if (n == 0) return content;
-    content.append(buffer.data(), static_cast<std::size_t>(n));
+    content.append(buffer.data(), n);
   }
 }
 

@@ -87,15 +87,13 @@ RunFolder::Made::~Made() {
   if (!dir_.empty()) fs::remove(dir_, error);
 }
 
-RunFolder::RunFolder(fs::path dir, std::string command, unsigned long seed, fs::path study, WriteRules rules, Access access)
+RunFolder::RunFolder(fs::path dir, RunOrigin origin, Access access)
     : dir_(std::move(dir)),
       access_(access),
       made_(dir_, access),
       lock_(access == Access::write ? std::make_unique<FolderLock>(dir_) : nullptr),
-      command_(std::move(command)),
-      seed_(seed),
-      study_(study.empty() ? std::move(study) : fs::absolute(study).lexically_normal()),
-      rules_(std::move(rules)) {
+      origin_(std::move(origin)) {
+  if (!origin_.study.empty()) origin_.study = fs::absolute(origin_.study).lexically_normal();
   if (access == Access::write) PartFolder::sweep(dir_);
   read();
 }
@@ -118,16 +116,16 @@ void RunFolder::read() {
   if (content) files_ = std::move(content->files);
   if (why.empty() && !content) return;  // nothing was here before
   if (access_ == Access::read) return;
-  if (!content && !rules_.force)
+  if (!content && !origin_.rules.force)
     throw InputError(fmt::format("{}: {}: is it a file of yours? --force writes over it, --out DIR writes elsewhere", path.string(), why));
   lost_record_ = fmt::format("{}: {}, so all stages run again", path.string(), why.empty() ? "is gone" : why);
 }
 
 std::optional<fs::path> RunFolder::other_study() const {
-  if (study_.empty() || study_before_.empty()) return std::nullopt;
+  if (origin_.study.empty() || study_before_.empty()) return std::nullopt;
   const fs::path before = (fs::absolute(dir_) / study_before_).lexically_normal();
   std::error_code error;
-  if (!fs::exists(before, error) || fs::equivalent(before, study_, error)) return std::nullopt;
+  if (!fs::exists(before, error) || fs::equivalent(before, origin_.study, error)) return std::nullopt;
   return before;
 }
 
@@ -160,13 +158,13 @@ bool RunFolder::up_to_date(const std::string& stage, const std::map<std::string,
 }
 
 void RunFolder::check_places(const std::vector<std::string>& names) const {
-  for (const std::string& name : names) check_place(dir_, name, rules_, files_.contains(name));
+  for (const std::string& name : names) check_place(dir_, name, origin_.rules, files_.contains(name));
 }
 
 void RunFolder::commit(const PartFolder& part, StageRecord record) {
   const std::vector<std::string> names = part.files();
   check_places(names);
-  for (const char* name : {run_name, copy_name}) check_place(dir_, name, rules_, true);  // read() knows them for ours
+  for (const char* name : {run_name, copy_name}) check_place(dir_, name, origin_.rules, true);  // read() knows them for ours
   const auto before = stages_.find(record.stage);
   if (before != stages_.end()) remove_dropped(before->second, names);
   for (const std::string& name : names) files_[name] = hash_file(part.path() / name);
@@ -193,8 +191,12 @@ void RunFolder::remove_dropped(const StageRecord& before, const std::vector<std:
 }
 
 void RunFolder::write() const {
-  json run = {{"version", version()}, {"commit", misfit::commit()}, {"seed", seed_}, {"command", command_}, {"stages", json::object()}};
-  if (!study_.empty()) run["study"] = study_.lexically_relative(fs::absolute(dir_).lexically_normal()).generic_string();
+  json run = {{"version", version()},
+              {"commit", misfit::commit()},
+              {"seed", origin_.seed},
+              {"command", origin_.command},
+              {"stages", json::object()}};
+  if (!origin_.study.empty()) run["study"] = origin_.study.lexically_relative(fs::absolute(dir_).lexically_normal()).generic_string();
   for (const auto& [stage, record] : stages_) run["stages"][stage] = to_json(record);
   run["files"] = files_;
   const std::string text = run.dump(2, ' ', false, json::error_handler_t::replace) + "\n";

@@ -22,6 +22,14 @@ struct StageRecord {
   std::string version = {}, commit = {};  ///< of the program that made it: filled by RunFolder::commit
 };
 
+/// What makes the results of a run folder, for run.json.
+struct RunOrigin {
+  std::string command;  ///< command line
+  unsigned long seed = 1;
+  std::filesystem::path study = {};  ///< the file whose results these are; run.json names it relative to the folder
+  WriteRules rules = {};
+};
+
 /// The output folder of a study, and what misfit made in it. run.json has one entry per stage, and every file that misfit made with the
 /// hash of what was put there ("files"): only these are ever written over or removed, and a stage whose files are missing or were changed
 /// is done again. A copy, .run.json, keeps that list where run.json was damaged.
@@ -35,10 +43,9 @@ class RunFolder {
   /// `read`: looks only; others may be at work in it, and it need not be there.
   enum class Access { write, read };
 
-  /// `study`: the file whose results these are; run.json names it relative to the folder. Where run.json cannot be read, all stages count
+  /// Where run.json cannot be read, all stages count
   /// as not done (lost_record()).
-  RunFolder(std::filesystem::path dir, std::string command, unsigned long seed, std::filesystem::path study = {}, WriteRules rules = {},
-            Access access = Access::write);
+  RunFolder(std::filesystem::path dir, RunOrigin origin, Access access = Access::write);
 
   [[nodiscard]] const std::filesystem::path& path() const { return dir_; }
   [[nodiscard]] std::filesystem::path file(const std::string& name) const { return dir_ / name; }
@@ -89,10 +96,8 @@ class RunFolder {
   Access access_;
   Made made_;
   std::unique_ptr<FolderLock> lock_;
-  std::string command_;
-  unsigned long seed_;
-  std::filesystem::path study_, study_before_;  ///< as given, absolute; as run.json has it
-  WriteRules rules_;
+  RunOrigin origin_;                    ///< its study absolute
+  std::filesystem::path study_before_;  ///< as run.json has it
   std::string lost_record_;
   std::map<std::string, StageRecord> stages_;
   std::map<std::string, std::string>

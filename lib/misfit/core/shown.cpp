@@ -42,8 +42,7 @@ std::size_t place_of(std::string_view text, std::size_t count) {
 }
 
 std::size_t characters_of(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return !continues(static_cast<unsigned char>(c)); }));
+  return std::count_if(text.begin(), text.end(), [](unsigned char c) { return !continues(c); });
 }
 
 /// The nearest name first and the others by their distance, if one is near; else the order stays.

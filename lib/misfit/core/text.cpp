@@ -11,8 +11,7 @@ namespace {
 
 /// Code points of a UTF-8 text: the bytes that do not continue another.
 std::size_t code_points(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+  return std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; });
 }
 
 /// Decimal exponent of the first digit of |x| > 0 once it is rounded to `digits` digits: 0.0996 with two digits is 0.10, so -1.

@@ -20,7 +20,7 @@ std::string toml_key(std::string_view name) {
 std::string toml_comment(std::string_view text) {
   std::string out = valid_utf8(text);
   std::replace_if(
-      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }, ' ');
+      out.begin(), out.end(), [](unsigned char c) { return c < 0x20U || c == 0x7fU; }, ' ');
   return out;
 }
 

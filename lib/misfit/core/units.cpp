@@ -166,7 +166,7 @@ class UnitReader {
     const auto [end, error] = std::from_chars(rest_.data(), last, value, std::chars_format::fixed);
     constexpr double most = 12.0;
     if (error != std::errc() || !(std::abs(value) <= most)) refuse("a power must be a number from -12 to 12");
-    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    rest_.remove_prefix(end - rest_.data());
     return value;
   }
 
@@ -217,7 +217,7 @@ Quantity parse_quantity(std::string_view text) {
   if (error == std::errc::result_out_of_range) throw InputError(quoted + ": the number is out of range");
   if (error != std::errc()) throw InputError(quoted + " is not a number with a unit, as in '24 in'");
   if (!std::isfinite(value)) throw InputError(quoted + ": a finite number is needed");
-  const std::string_view unit = trim(rest.substr(static_cast<std::size_t>(end - rest.data())));
+  const std::string_view unit = trim(rest.substr(end - rest.data()));
   if (unit.empty()) return {value, ""};
   const Unit parsed = parse_unit(unit);
   return {value * parsed.to_si, std::string(unit)};

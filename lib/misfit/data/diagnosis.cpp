@@ -125,7 +125,7 @@ NisSeries nis_from(const Json& object) {
 }
 
 std::string file_of_missing(const Diagnosis& diagnosis, std::size_t k) {
-  return k == 0 ? "missing_force.csv" : "missing_force_" + file_name_for(diagnosis.missing[k].experiment) + ".csv";
+  return "missing_force" + file_suffix(k, diagnosis.missing[k].experiment) + ".csv";
 }
 
 Json to_json(const MissingForce& m, const std::string& file) {

@@ -63,6 +63,9 @@ struct Fit {
   bool driven = false;                       ///< the motion is driven by something the model does not have
   double seconds = 0.0;
   int linearisations = 0;
+
+  /// Has it a result, if not at its maximum?
+  [[nodiscard]] bool usable() const { return status == FitStatus::converged || status == FitStatus::not_converged; }
 };
 
 /// Writes fit.json, curves.csv and one prediction.csv into `dir`; several experiments: prediction_NAME.csv beside.

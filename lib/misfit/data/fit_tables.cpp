@@ -132,7 +132,7 @@ std::vector<PredictionFile> prediction_files(const std::vector<ChannelPrediction
     const std::string& experiment = predictions[k].experiment;
     const auto found = std::find_if(files.begin(), files.end(), [&](const PredictionFile& file) { return file.experiment == experiment; });
     if (found == files.end()) {
-      files.push_back({files.empty() ? "prediction.csv" : "prediction_" + file_name_for(experiment) + ".csv", experiment, {k}});
+      files.push_back({"prediction" + file_suffix(files.size(), experiment) + ".csv", experiment, {k}});
     } else {
       found->channels.push_back(k);
     }

@@ -1,10 +1,10 @@
 #include "misfit/diagnose/diagnose.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "misfit/core/display.h"
+#include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/diagnose/features.h"
@@ -171,7 +171,7 @@ void conclude(Diagnosis& out) {
 }  // namespace
 
 Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   Diagnosis out;
   out.method = "filter_error";
   const ScoreTest score(estimate);
@@ -183,7 +183,7 @@ Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& option
   out.nis = nis_of(estimate);
   out.missing = missing_force_of(estimate);
   conclude(out);
-  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  out.seconds = clock.seconds();
   return out;
 }
 

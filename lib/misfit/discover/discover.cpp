@@ -1,10 +1,10 @@
 #include "misfit/discover/discover.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/diagnose/features.h"
@@ -205,10 +205,10 @@ class Search {
 
 Discovery discover(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                    const std::vector<Signals>& experiments, const DiscoverOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   Search search(estimate, request, registry, experiments, options);
   Discovery out = options.only.empty() ? search.run() : search.predict();
-  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  out.seconds = clock.seconds();
   return out;
 }
 

@@ -80,9 +80,9 @@ class ByteWriter {
   }
   template <int R, int C, int O>
   void put(const Eigen::Matrix<double, R, C, O>& m) {
-    put_size(static_cast<std::size_t>(m.rows()));
-    put_size(static_cast<std::size_t>(m.cols()));
-    raw(m.data(), static_cast<std::size_t>(m.size()) * sizeof(double));
+    put_size(m.rows());
+    put_size(m.cols());
+    raw(m.data(), m.size() * sizeof(double));
   }
 
   std::string bytes_;
@@ -178,7 +178,7 @@ class ByteReader {
     const std::uint64_t most = (bytes_.size() - at_) / sizeof(double);
     if (rows > most || columns > most || rows * columns > most) throw RunError("a stored result ends too early");
     m.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-    raw(m.data(), static_cast<std::size_t>(m.size()) * sizeof(double));
+    raw(m.data(), m.size() * sizeof(double));
   }
 
   std::string_view bytes_;

@@ -37,7 +37,7 @@ std::uint64_t number_of(const Word& word) {
 
 std::uint64_t checksum(std::string_view bytes, std::uint64_t hash = fnv_start) {
   constexpr std::uint64_t prime = 1099511628211ULL;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * prime;
+  for (const unsigned char c : bytes) hash = (hash ^ c) * prime;
   return hash;
 }
 
@@ -71,7 +71,7 @@ bool begins_as_ours(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::string start(head_start.size(), '\0');
   in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(in.gcount()));
+  start.resize(in.gcount());
   return head_start.starts_with(start);
 }
 
@@ -134,7 +134,7 @@ void CheckpointWriter::write_whole(std::string_view bytes) {
       throw WriteError(path_.string() + " cannot be written: " + why +
                        "; what was finished before is in it, and the same command continues from there");
     }
-    done += static_cast<std::size_t>(n);
+    done += n;
   }
   length_ += bytes.size();
 }

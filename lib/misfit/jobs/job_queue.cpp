@@ -37,7 +37,7 @@ std::vector<std::size_t> left_to_do(const StoredJobs& jobs) {
     }
   }
   std::vector<std::size_t> left;
-  const auto rank = static_cast<std::size_t>(ranks().rank()), size = static_cast<std::size_t>(ranks().size());
+  const std::size_t rank = ranks().rank(), size = ranks().size();
   for (std::size_t k = rank; k < jobs.count; k += size) {
     if (!done[k]) left.push_back(k);
   }
@@ -63,7 +63,7 @@ JobResults stored_results(const StoredJobs& jobs) {
 std::string JobResults::result(std::size_t job) const {
   const Place& place = places_.at(job);
   if (place.file < 0) throw RunError("the result of job " + std::to_string(job) + " is not in " + files_.front().parent_path().string());
-  return read_checkpoint_entry(files_[static_cast<std::size_t>(place.file)], {job, place.offset, place.size});
+  return read_checkpoint_entry(files_[place.file], {job, place.offset, place.size});
 }
 
 std::optional<JobResults> run_stored_jobs(const StoredJobs& jobs, const std::function<std::string(std::size_t)>& job,
@@ -71,16 +71,16 @@ std::optional<JobResults> run_stored_jobs(const StoredJobs& jobs, const std::fun
   check_folder(jobs.folder);
   make_writable_folder(jobs.folder);
   const std::vector<std::size_t> left = left_to_do(jobs);
-  const auto rank = static_cast<std::size_t>(ranks().rank()), size = static_cast<std::size_t>(ranks().size());
+  const std::size_t rank = ranks().rank(), size = ranks().size();
   const std::size_t own = jobs.count > rank ? (jobs.count - rank - 1) / size + 1 : 0, before = own - left.size();
   bool finished = true;
   if (!left.empty() || rank == 0) {
     CheckpointWriter writer(jobs.folder / (std::string(prefix) + std::to_string(rank) + ".bin"), jobs.digest);
     const auto one = [&](std::size_t i) { writer.append(left[i], job(left[i])); };
-    const auto told = [&](std::size_t done, std::size_t) {
+    const auto report_progress = [&](std::size_t done, std::size_t) {
       if (progress) progress(before + done, own);
     };
-    finished = run_jobs(left.size(), jobs.threads > 0 ? jobs.threads : threads_of_rank(), one, told, stop);
+    finished = run_jobs(left.size(), jobs.threads > 0 ? jobs.threads : threads_of_rank(), one, report_progress, stop);
     writer.sync();
   }
   if (!ranks().agree(finished)) return std::nullopt;

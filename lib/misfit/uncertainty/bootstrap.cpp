@@ -16,7 +16,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 double value_at(const CurveEstimate& curve, double x) {
   const auto next = std::lower_bound(curve.x.begin(), curve.x.end(), x);
   if (next == curve.x.end()) return nan;
-  const auto i = static_cast<std::size_t>(next - curve.x.begin());
+  const std::size_t i = next - curve.x.begin();
   if (curve.x[i] == x) return curve.value[i];
   if (i == 0) return nan;
   const double share = (x - curve.x[i - 1]) / (curve.x[i] - curve.x[i - 1]);

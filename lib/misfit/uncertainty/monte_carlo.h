@@ -13,7 +13,7 @@
 
 namespace misfit {
 
-/// From errors of the set-up (order of Perturbations::names()) to numbers. Called from several threads at once; depends on nothing but the
+/// From errors of the rig (order of Perturbations::names()) to numbers. Called from several threads at once; depends on nothing but the
 /// errors.
 using Chain = std::function<ChainResult(const std::vector<double>& errors)>;
 

@@ -44,7 +44,7 @@ std::vector<double> random_start(const Model& model, std::mt19937_64& random) {
     const double level = curve.scale * normal(random), rise = curve.scale * normal(random);
     const Eigen::VectorXd line = curve.spline.line(middle, level, rise / half);
     for (Eigen::Index i = 0; i < line.size(); ++i) {
-      const auto at = static_cast<std::size_t>(curve.first + i);
+      const Eigen::Index at = curve.first + i;
       if (model.parameters[at].free) values[at] = inside(model.parameters[at], values[at] + line[i]);
     }
   }
@@ -61,8 +61,7 @@ MultiStarts::MultiStarts(const Fit& fit, const Model& best, double objective, Se
   if (options.runs == 0) throw InputError("starts: 0 of them; at least 1 is needed");
   const std::vector<int> free = best.free_parameters();
   if (free.empty()) throw RunError("starts: every parameter is fixed, so every start is the same");
-  std::copy_if(free.begin(), free.end(), std::back_inserter(shown_),
-               [&](int i) { return best.parameters[static_cast<std::size_t>(i)].curve < 0; });
+  std::copy_if(free.begin(), free.end(), std::back_inserter(shown_), [&](int i) { return best.parameters[i].curve < 0; });
 }
 
 ChainResult MultiStarts::run(std::size_t k) const {
@@ -73,7 +72,7 @@ ChainResult MultiStarts::run(std::size_t k) const {
   if (!end.objective || !std::isfinite(*end.objective))  // when it ended is each start's own
     return {{}, end.why.empty() ? "its likelihood is not finite" : end.why.substr(0, end.why.find(" at t ="))};
   ChainResult out{{2.0 * (objective_ - *end.objective)}, ""};
-  for (const int i : shown_) out.numbers.push_back(end.values[static_cast<std::size_t>(i)]);
+  for (const int i : shown_) out.numbers.push_back(end.values[i]);
   return out;
 }
 
@@ -96,7 +95,7 @@ MultiStart MultiStarts::summary(const std::vector<ChainResult>& results) const {
   std::sort(out.drop.begin(), out.drop.end());
   for (const double drop : out.drop) ++(drop < -kSameMaximum ? out.higher : drop > kSameMaximum ? out.lower : out.same);
   for (std::size_t i = 0; i < shown_.size(); ++i) {
-    const Parameter& p = best_.parameters[static_cast<std::size_t>(shown_[i])];
+    const Parameter& p = best_.parameters[shown_[i]];
     const auto known = fit_.parameters.find(p.name);
     out.numbers.push_back({p.name, p.unit, p.value, known == fit_.parameters.end() ? 0.0 : known->second.sigma, best->numbers[i + 1]});
   }

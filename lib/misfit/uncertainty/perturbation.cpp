@@ -13,7 +13,7 @@ namespace {
 
 std::uint64_t address_of(std::string_view name) {
   std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  for (const unsigned char c : name) hash = (hash ^ c) * 1099511628211ULL;
   return hash;
 }
 
@@ -62,7 +62,7 @@ Draw Sampler::draw(std::size_t run) const {
   for (std::size_t g = 0; g < roots_.size(); ++g) {
     const auto& names = perturbations_.groups[g].names;
     Eigen::VectorXd z(static_cast<Eigen::Index>(names.size()));
-    for (Eigen::Index i = 0; i < z.size(); ++i) z[i] = random_normal(seed_, run, address_of(names[static_cast<std::size_t>(i)]));
+    for (Eigen::Index i = 0; i < z.size(); ++i) z[i] = random_normal(seed_, run, address_of(names[i]));
     const Eigen::VectorXd errors = roots_[g] * z;
     out.factors.insert(out.factors.end(), z.begin(), z.end());
     out.errors.insert(out.errors.end(), errors.begin(), errors.end());

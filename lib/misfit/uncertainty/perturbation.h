@@ -7,7 +7,7 @@
 
 namespace misfit {
 
-/// One parameter of the set-up with its uncertainty, independent of the others.
+/// One parameter of the rig with its uncertainty, independent of the others.
 struct Perturbation {
   std::string name;      ///< as the study writes it: "R", "K", "m_a", "P_y"
   std::string unit;      ///< SI; px of the image

@@ -42,10 +42,10 @@ class Search {
         refine(inside, inside_root, next, *root);
         return side_;
       }
-      // Flat so far: longer steps.
+      // Flat so rough_crossing: growth steps.
       constexpr int usual_steps = 6;
-      constexpr double longer = 1.5;
-      if (k >= usual_steps) step *= longer;
+      constexpr double growth = 1.5;
+      if (k >= usual_steps) step *= growth;
       inside = next;
       inside_root = *root;
     }
@@ -75,9 +75,9 @@ class Search {
   void refine(double inside, double inside_root, double outside, double outside_root) {
     const double wanted = std::sqrt(limit_);
     constexpr int most = 8;
-    constexpr double near = 2e-3, far = 0.05;
+    constexpr double good_crossing = 2e-3, rough_crossing = 0.05;
     double off = infinite;
-    for (int k = 0; k < most && off > near; ++k) {
+    for (int k = 0; k < most && off > good_crossing; ++k) {
       const double share = (wanted - inside_root) / (outside_root - inside_root);
       const double middle = inside + share * (outside - inside);
       const std::optional<double> root = root_at(middle);
@@ -87,7 +87,7 @@ class Search {
       off = std::abs(*root / wanted - 1.0);
     }
     side_.end = inside + (wanted - inside_root) / (outside_root - inside_root) * (outside - inside);
-    side_.found = off < far;
+    side_.found = off < rough_crossing;
     if (!side_.found)
       static_cast<void>(ended(inside, "between " + format_value(inside) + " and " + format_value(outside) +
                                           " the profile is discontinuous or failed: refits reach different maxima"));
@@ -103,15 +103,15 @@ void add_words(LikelihoodProfile& p, const Side& below, const Side& above) {
   if (!below.found) p.words.push_back("no lower end: " + below.why + ", the search ended at " + in_display_unit(p.lower, p.unit));
   if (!above.found) p.words.push_back("no upper end: " + above.why + ", the search ended at " + in_display_unit(p.upper, p.unit));
   const double least = p.drop.empty() ? 0.0 : *std::min_element(p.drop.begin(), p.drop.end());
-  constexpr double worth_saying = 0.2;
-  if (least < -worth_saying)
+  constexpr double notable_departure = 0.2;
+  if (least < -notable_departure)
     p.words.push_back("the likelihood is higher near the estimate than at it (drop " + format_value(least) +
                       "): the fit had not reached its maximum");
-  if (std::abs(p.scale - 1.0) > worth_saying)
+  if (std::abs(p.scale - 1.0) > notable_departure)
     p.words.push_back("autocorrelated residuals: drops are multiplied by " + format_value(1.0 / p.scale));
   if (!below.found || !above.found) return;
   const double left = p.best - p.lower, right = p.upper - p.best;
-  if (std::abs(left - right) > worth_saying * 0.5 * (left + right))
+  if (std::abs(left - right) > notable_departure * 0.5 * (left + right))
     p.words.push_back("asymmetric: -" + in_display_unit(left, p.unit) + ", +" + in_display_unit(right, p.unit) +
                       "; a sigma does not describe it");
 }

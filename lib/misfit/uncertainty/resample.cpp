@@ -9,7 +9,7 @@
 namespace misfit {
 namespace {
 
-constexpr std::size_t fewest = 16;  // samples: fewer show no autocorrelation and cannot be resampled
+constexpr std::size_t min_samples = 16;  // samples: fewer show no autocorrelation and cannot be resampled
 
 bool counts(const Signals& s, std::size_t i) {
   if (i < s.exclude || s.held_out(i)) return false;
@@ -25,21 +25,18 @@ const ChannelPrediction& prediction_of(const Fit& fit, const Signals& experiment
 
 /// Lag up to which series in a pool remember; `pool`: sample → value per channel.
 int memory_in(const std::vector<std::vector<double>>& pool) {
-  const auto n = static_cast<std::ptrdiff_t>(pool.size());
-  const auto channels = static_cast<Eigen::Index>(pool.front().size());
-  constexpr std::ptrdiff_t most = 400;
-  const std::ptrdiff_t lags = std::min<std::ptrdiff_t>(most, n / 3);
-  LagProducts products(static_cast<std::size_t>(lags + 1), Eigen::MatrixXd::Zero(channels, channels)), pairs = products;
+  const std::ptrdiff_t n = std::ssize(pool), channels = std::ssize(pool.front());
+  constexpr std::ptrdiff_t max_lag = 400;
+  const std::ptrdiff_t lags = std::min(max_lag, n / 3);
+  LagProducts products(lags + 1, Eigen::MatrixXd::Zero(channels, channels)), pairs = products;
   for (std::ptrdiff_t k = 0; k <= lags; ++k) {
-    auto& sums = products[static_cast<std::size_t>(k)];
+    auto& sums = products[k];
     for (std::ptrdiff_t i = 0; i + k < n; ++i) {
       for (Eigen::Index a = 0; a < channels; ++a) {
-        for (Eigen::Index b = 0; b < channels; ++b)
-          sums(a, b) += pool[static_cast<std::size_t>(i)][static_cast<std::size_t>(a)] *
-                        pool[static_cast<std::size_t>(i + k)][static_cast<std::size_t>(b)];
+        for (Eigen::Index b = 0; b < channels; ++b) sums(a, b) += pool[i][a] * pool[i + k][b];
       }
     }
-    pairs[static_cast<std::size_t>(k)].setConstant(static_cast<double>(n - k));
+    pairs[k].setConstant(static_cast<double>(n - k));
   }
   return memory_of(products, pairs, 1);
 }
@@ -53,8 +50,9 @@ Resampler::Resampler(Resampled what, const Fit& fit, const std::vector<Signals>&
   for (const auto& e : experiments) {
     for (std::size_t i = 0; i < e.samples(); ++i) counted_ += counts(e, i) ? 1 : 0;
   }
-  if (counted_ < fewest)
-    throw RunError("bootstrap: only " + std::to_string(counted_) + " samples count; at least " + std::to_string(fewest) + " are needed");
+  if (counted_ < min_samples)
+    throw RunError("bootstrap: only " + std::to_string(counted_) + " samples count; at least " + std::to_string(min_samples) +
+                   " are needed");
   if (what_ == Resampled::residuals || !fit.predictions.empty()) {
     collect_residuals(fit);
   } else {
@@ -68,9 +66,9 @@ void Resampler::choose_length(const BlockLength& length) {
   const auto root = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(counted_))));
   int wanted = length.samples;
   if (wanted == 0) {
-    constexpr int memories = 5, more_for_rows = 50;
-    wanted = std::max(pool_.size() < fewest ? root : memories * memory_in(pool_), root);
-    if (what_ == Resampled::rows) wanted += more_for_rows;
+    constexpr int memories = 5, extra_for_rows = 50;
+    wanted = std::max(pool_.size() < min_samples ? root : memories * memory_in(pool_), root);
+    if (what_ == Resampled::rows) wanted += extra_for_rows;
   }
   block_ = std::min(wanted, std::max(1, static_cast<int>(counted_ / 8)));
   if (block_ == wanted) return;
@@ -108,21 +106,21 @@ void Resampler::collect_residuals(const Fit& fit) {
   for (std::size_t o = 0; o < channels; ++o) {
     const auto noise = fit.noise.find(experiments_.front().measured[o].name), rms = fit.rms.find(experiments_.front().measured[o].name);
     const bool known = noise != fit.noise.end() && rms != fit.rms.end() && rms->second.value > 0.0;
-    constexpr double most = 1.5;
-    const double factor = known ? std::clamp(noise->second.value / rms->second.value, 1.0, most) : 1.0;
+    constexpr double max_factor = 1.5;
+    const double factor = known ? std::clamp(noise->second.value / rms->second.value, 1.0, max_factor) : 1.0;
     for (auto& residual : pool_) residual[o] = factor * (residual[o] - mean[o]);
   }
 }
 
 void Resampler::collect_rows() {
-  const auto length = static_cast<std::size_t>(block_);
+  const std::size_t length = block_;
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     const Signals& s = experiments_[e];
-    std::size_t free = 0, some = 0;  // up to sample i: in a row not held out; since the last that counts
+    std::size_t free = 0, idle = 0;  // up to sample i: in a row not held out; since the last that counts
     for (std::size_t i = s.exclude; i < s.samples(); ++i) {
       free = s.held_out(i) ? 0 : free + 1;
-      some = counts(s, i) ? 0 : some + 1;
-      if (free >= length && some < length) starts_.push_back({e, i + 1 - length});
+      idle = counts(s, i) ? 0 : idle + 1;
+      if (free >= length && idle < length) starts_.push_back({e, i + 1 - length});
     }
   }
   if (starts_.empty())
@@ -174,14 +172,14 @@ Signals Resampler::part(const Signals& whole, std::size_t first, std::size_t las
 std::vector<Signals> Resampler::draw_rows(std::mt19937_64& random) const {
   std::vector<Signals> out;
   std::uniform_int_distribution<std::size_t> place(0, starts_.size() - 1);
-  const auto length = static_cast<std::size_t>(block_);
+  const std::size_t length = block_;
   for (std::size_t left = counted_; left > 0;) {
     const std::size_t wanted = left >= 2 * length ? length : left > length ? (left + 1) / 2 : left;
     const auto [experiment, first] = starts_[place(random)];
     const Signals& whole = experiments_[experiment];
-    std::size_t last = first, taken = 0;
-    for (; last < first + length && taken < wanted; ++last) taken += counts(whole, last) ? 1 : 0;
-    left -= taken;
+    std::size_t last = first, drawn = 0;
+    for (; last < first + length && drawn < wanted; ++last) drawn += counts(whole, last) ? 1 : 0;
+    left -= drawn;
     out.push_back(part(whole, first, last));
     out.back().name += " block " + std::to_string(out.size());
   }

@@ -60,7 +60,7 @@ VarianceShares ShareRegression::solve(Eigen::Index unknowns) const {
   out.effect.assign(terms_, 0.0);
   std::vector<int> members(terms_, 0);
   for (Eigen::Index i = 1; i < unknowns; ++i) {
-    const std::size_t term = term_of_factor_[static_cast<std::size_t>((i - 1) % factors_)];
+    const std::size_t term = term_of_factor_[(i - 1) % factors_];
     const double own = left * inverse(i, i);
     out.share[term] += square(i) / variance;
     out.sigma[term] += (4.0 * c[i] * c[i] * own + 2.0 * own * own) / (variance * variance);

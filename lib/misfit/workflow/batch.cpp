@@ -29,7 +29,7 @@ BatchRow row_of(const BatchRow& study, const Fit& fit) {
   row.method = fit.method;
   row.status = to_string(fit.status);
   row.message = fit.message;
-  if (fit.status == FitStatus::declined || fit.status == FitStatus::failed) return row;
+  if (!fit.usable()) return row;
   if (fit.trim) row.values["trim"] = *fit.trim;
   take("", fit.parameters, row);
   take("noise of ", fit.noise, row);
@@ -140,7 +140,7 @@ std::optional<FittedBatch> fit_batch(const SessionOptions& options, const std::v
   const BatchJob job(options, studies, registry);
   std::optional<RunFolder> folder;
   on_first_rank([&] {
-    folder.emplace(job.folder(), options.command, options.seed.value_or(1), fs::path(), WriteRules{job.studies(), options.force});
+    folder.emplace(job.folder(), RunOrigin{options.command, options.seed.value_or(1), {}, {job.studies(), options.force}});
     if (options.listener.note && !folder->lost_record().empty()) options.listener.note(folder->lost_record());
   });
   const StoredJobs jobs{job.folder() / "checkpoints", job.digest(), job.size(), options.threads};

@@ -9,9 +9,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// On disk but of another fit: said, since a section would otherwise be missing without a word.
-void add_stale(const Session& session, const char* file, const char* verb, bool known, std::vector<std::string>& notes) {
-  if (known || !fs::exists(session.folder.file(file))) return;
+/// On disk but of another fit: a note, since a section would otherwise be missing without a word.
+void note_stale(const Session& session, const char* file, const char* verb, std::vector<std::string>& notes) {
+  if (!fs::exists(session.folder.file(file))) return;
   notes.push_back(fmt::format("{} belongs to another fit and is omitted; misfit {} makes it again.",
                               session.folder.file(file).lexically_normal().string(), verb));
 }
@@ -22,8 +22,8 @@ Findings findings_of(const Session& session, std::vector<std::string>& notes) {
   Findings out;
   out.diagnosis = known_diagnosis(session);
   out.discovery = known_discovery(session);
-  add_stale(session, "diagnosis.json", "diagnose", out.diagnosis.has_value(), notes);
-  add_stale(session, "discovery.json", "discover", out.discovery.has_value(), notes);
+  if (!out.diagnosis) note_stale(session, "diagnosis.json", "diagnose", notes);
+  if (!out.discovery) note_stale(session, "discovery.json", "discover", notes);
   if (out.diagnosis) out.files.insert(out.files.end(), {session.folder.file("diagnosis.json"), session.folder.file("missing_force.csv")});
   if (out.discovery) out.files.insert(out.files.end(), {session.folder.file("candidates.json"), session.folder.file("discovery.json")});
   return out;

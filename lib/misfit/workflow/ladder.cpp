@@ -19,12 +19,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* ladder_name = "ladder.json";
 constexpr const char* method = "filter_error";
-constexpr const char* system_prefix = "system:";
+constexpr std::string_view system_prefix = "system:";
 
 /// filter_error's fit and estimate; RunError in its words if it declined.
 std::shared_ptr<const FilterWork> fitted(Session& session) {
-  const Fit fit = fit_stage(session, {method}).front();
-  if (fit.status == FitStatus::declined || fit.status == FitStatus::failed) refuse_declined(session);
+  if (filter_declined(session)) refuse_declined(session);
   return filter_work(session);
 }
 
@@ -69,9 +68,9 @@ bool same_channels(const Model& a, const Model& b) {
 std::vector<Penalty> shared_penalties(const FilterEstimate& child, const FilterEstimate& parent) {
   std::vector<Penalty> penalties = child.penalties;
   for (auto& own : penalties) {
-    const std::string& name = child.model.curves[static_cast<std::size_t>(own.curve)].name;
+    const std::string& name = child.model.curves[own.curve].name;
     for (const auto& other : parent.penalties) {
-      if (parent.model.curves[static_cast<std::size_t>(other.curve)].name == name) own.lambda = other.lambda;
+      if (parent.model.curves[other.curve].name == name) own.lambda = other.lambda;
     }
   }
   return penalties;
@@ -111,6 +110,15 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   Gain gain{2.0 * (with.objective - without.objective), std::nullopt};
   if (parent.fit.validation_loglik) gain.held_out = with.validation_loglik - without.validation_loglik;
   return gain;
+}
+
+/// What the child's model brings.
+void compare_with_parent(const FilterWork& child, const FilterWork& parent, int threads, Rung& rung) {
+  rung.parameters = new_parameters(child, parent);
+  if (!same_channels(child.estimate->model, parent.estimate->model)) return;
+  const Gain gain = gain_of(child, parent, threads);
+  rung.actual_drop = gain.drop;
+  rung.held_out_gain = gain.held_out;
 }
 
 std::map<std::string, std::string> inputs_of_ladder(const Session& session) {
@@ -205,42 +213,47 @@ void ModelLadder::append(Rung rung) {
   ladder_ = read_ladder(root_.folder.file(ladder_name));
 }
 
+ModelLadder::NewStudy ModelLadder::new_study(const std::string& effect, const std::optional<Candidate>& from) {
+  NewStudy out;
+  out.id = ladder_.rungs.empty() ? 1 : ladder_.rungs.back().id + 1;
+  out.system = effect.starts_with(system_prefix);
+  out.name = out.system ? effect.substr(system_prefix.size()) : effect;
+  out.place = fmt::format("rungs/{:02}_{}", out.id, file_name_for(out.name));
+  const fs::path folder = root_.folder.file(out.place);
+  out.text = out.system ? study_with_system(last(), out.name, folder, out.left_out) : study_with_effect(last(), effect, from, folder);
+  return out;
+}
+
+std::unique_ptr<Session> ModelLadder::open(const NewStudy& study, const fs::path& parent) {
+  root_.do_stage("rung/" + std::to_string(study.id), {{"settings", hash_text(study.text)}}, {study.place + "/study.toml"},
+                 [&](const fs::path& dir) {
+                   make_writable_folder(dir / study.place);
+                   write_atomically(dir / study.place / "study.toml", study.text);
+                 });
+  auto child = std::make_unique<Session>(options_for(options_, root_.folder.file(study.place) / "study.toml"), registry_);
+  child->parent = parent;
+  return child;
+}
+
 const Rung& ModelLadder::add(const std::string& effect, const std::optional<Candidate>& from) {
   Session& parent_session = last();
-  const int id = static_cast<int>(std::max<std::size_t>(ladder_.rungs.size(), 1));
-  const bool system = effect.starts_with(system_prefix);
-  const std::string name = system ? effect.substr(std::string(system_prefix).size()) : effect;
-  const std::string place = fmt::format("rungs/{:02}_{}", id, file_name_for(name));
-  const fs::path folder = root_.folder.file(place);
-  std::vector<std::string> left_out;
-  const std::string text =
-      system ? study_with_system(parent_session, name, folder, left_out) : study_with_effect(parent_session, effect, from, folder);
+  const NewStudy study = new_study(effect, from);
   const Rung parent = last_rung();  // a study that no rung can be added to is refused by now: fit the parent
   const auto parent_work = fitted(parent_session);
-  root_.do_stage("rung/" + std::to_string(id), {{"settings", hash_text(text)}}, {place + "/study.toml"}, [&](const fs::path& dir) {
-    make_writable_folder(dir / place);
-    write_atomically(dir / place / "study.toml", text);
-  });
-  auto child = std::make_unique<Session>(options_for(options_, folder / "study.toml"), registry_);
-  child->parent = parent_session.folder.path();
+  auto child = open(study, parent_session.folder.path());
   const auto work = fitted(*child);
   Rung rung = rung_of(*child, *work);
-  rung.id = id;
+  rung.id = study.id;
   rung.parent = parent.id;
   rung.study = relative_study(*child);
   rung.added = effect;
-  if (system) {
+  if (study.system) {
     append_note(rung.note, "a change of system has no drop: its channels and states are others; compare k-step errors and the force");
-    for (const auto& left : left_out) append_note(rung.note, "effect '" + left + "' is left out: it does not suit " + name);
+    for (const auto& left : study.left_out) append_note(rung.note, "effect '" + left + "' is left out: it does not suit " + study.name);
   } else {
-    rung.parameters = new_parameters(*work, *parent_work);
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
-    if (same_channels(work->estimate->model, parent_work->estimate->model)) {
-      const Gain gain = gain_of(*work, *parent_work, options_.threads);
-      rung.actual_drop = gain.drop;
-      rung.held_out_gain = gain.held_out;
-    }
+    compare_with_parent(*work, *parent_work, options_.threads, rung);
   }
   append(std::move(rung));
   last_ = std::move(child);

@@ -32,6 +32,17 @@ class ModelLadder {
 
  private:
   [[nodiscard]] std::string relative_study(const Session& session) const;
+  /// The study of a rung that is to be added.
+  struct NewStudy {
+    int id = 0;
+    bool system = false;  ///< it has another system instead of one more effect
+    std::string name;     ///< of the effect or the system
+    std::string place;    ///< its folder in the run folder
+    std::string text;
+    std::vector<std::string> left_out;  ///< effects that do not suit its system
+  };
+  [[nodiscard]] NewStudy new_study(const std::string& effect, const std::optional<Candidate>& from);
+  [[nodiscard]] std::unique_ptr<Session> open(const NewStudy& study, const std::filesystem::path& parent);
   void append(Rung rung);
 
   SessionOptions options_;

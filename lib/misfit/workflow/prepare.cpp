@@ -24,11 +24,6 @@ Model provisional(ModelRequest request, const Registry& registry) {
   return assemble(request, registry);
 }
 
-/// Does the system predict the image itself? Then it reads the track; every other system reads the attitude.
-bool predicts_pixels(const SystemSpec& spec) {
-  return std::any_of(spec.outputs.begin(), spec.outputs.end(), [](const OutputSpec& o) { return o.name == "P_y" || o.name == "P_z"; });
-}
-
 std::vector<double> where_ok(std::vector<double> values, const std::vector<bool>& ok) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!ok[i]) values[i] = std::nan("");
@@ -103,6 +98,10 @@ Prepared prepare_request(Session& session, ModelRequest request, Gaps gaps) {
 }
 
 }  // namespace
+
+bool predicts_pixels(const SystemSpec& spec) {
+  return std::any_of(spec.outputs.begin(), spec.outputs.end(), [](const OutputSpec& o) { return o.name == "P_y" || o.name == "P_z"; });
+}
 
 void add_camera(Session& session, ModelRequest& request) {
   const SystemType& type = session.registry.system(request.system, request.system_where);

@@ -52,8 +52,8 @@ SpreadCurve spread_curve(const CurveEstimate& curve) {
   const auto behind = curve.count.rend() - std::find_if(curve.count.rbegin(), curve.count.rend(), seen);
   SpreadCurve out{curve.name, curve.of, curve.of_unit, curve.unit, {}, {}, {}, {}, {}, curve.informative, curve.why, curve.trimmed};
   for (auto i = first; i < behind; ++i) {
-    out.x.push_back(curve.x[static_cast<std::size_t>(i)]);
-    out.nominal.push_back(curve.value[static_cast<std::size_t>(i)]);
+    out.x.push_back(curve.x[i]);
+    out.nominal.push_back(curve.value[i]);
   }
   return out;
 }

@@ -45,7 +45,7 @@ void move_rig(RigGeometry& geometry, const std::string& name, double error) {
 bool is_free(const Model& model, const std::string& name) {
   if (model.find_curve(name) != nullptr) return true;
   const int i = model.find_parameter(name);
-  return i >= 0 && model.parameters[static_cast<std::size_t>(i)].free;
+  return i >= 0 && model.parameters[i].free;
 }
 
 }  // namespace

@@ -63,6 +63,40 @@ std::map<std::string, std::string> renamed_coefficients(const SystemSpec& from, 
   return out;
 }
 
+/// The model with another system and neither parameters nor curves: their names may be others there.
+ModelRequest with_system_only(const ModelRequest& model, const std::string& kind, const SystemOptions& options, const SystemType& type) {
+  ModelRequest with = model;
+  with.system = kind;
+  with.options = options;
+  with.constants.clear();  // the new system may ask for others; assemble() of the new study says so
+  for (const auto& constant : type.make(options)->spec().constants) {
+    const auto given = model.constants.find(constant.name);
+    with.constants[constant.name] = given != model.constants.end() ? given->second : std::max(constant.value, constant.lower);
+  }
+  with.parameters.clear();
+  with.curves.clear();
+  return with;
+}
+
+/// Names of effects that cannot be assembled into the model.
+std::vector<std::string> unsuited_effects(const Session& session, const ModelRequest& model) {
+  std::vector<std::string> names;
+  for (const auto& effect : model.effects) {
+    const auto& coefficients = session.registry.effect(effect.kind).spec().coefficients;
+    if (std::any_of(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& c) { return c.borrowed; }) &&
+        model.effects.size() > 1)
+      continue;  // it needs the others, and is judged with them when the new study is read
+    ModelRequest alone = model;
+    alone.effects = {effect};
+    try {
+      try_assemble(std::move(alone), session.registry);
+    } catch (const InputError&) {
+      names.push_back(effect.name);
+    }
+  }
+  return names;
+}
+
 /// An edit that is refused names the study.
 template <class Edit>
 std::string edited(const Session& session, const Edit& edit) {
@@ -103,44 +137,24 @@ std::string study_with_system(const Session& session, const std::string& kind, c
   if (kind == model.system) throw InputError("the model's system is already '" + kind + "'");
   const SystemType& type = session.registry.system(kind);  // InputError with the nearest name
   std::string text = text_for_folder(session.study, folder);
-  text = edited(session, [&] { return with_system(text, kind); });
+  const auto edit = [&](const auto& change) { text = edited(session, change); };
+  edit([&] { return with_system(text, kind); });
   SystemOptions options;
   for (const auto& [flag, value] : model.options.flags) {
     if (std::find(type.flags.begin(), type.flags.end(), flag) != type.flags.end()) {
       options.flags[flag] = value;
     } else {
-      text = edited(session, [&] { return without_entry(text, "system", flag, "of " + model.system); });
+      edit([&, name = flag] { return without_entry(text, "system", name, "of " + model.system); });
     }
+  }
+  for (const std::string& effect : unsuited_effects(session, with_system_only(model, kind, options, type))) {
+    left_out.push_back(effect);
+    edit([&] { return without_entry(text, "effects", effect, "does not suit " + kind); });
   }
   const SystemSpec from = session.registry.system(model.system).make(model.options)->spec();
-  const SystemSpec to = type.make(options)->spec();
-  ModelRequest with = model;
-  with.system = kind;
-  with.options = options;
-  with.constants.clear();  // the new system may ask for others; assemble() of the new study says so
-  for (const auto& constant : to.constants) {
-    const auto given = model.constants.find(constant.name);
-    with.constants[constant.name] = given != model.constants.end() ? given->second : std::max(constant.value, constant.lower);
-  }
-  with.parameters.clear();
-  with.curves.clear();
-  for (const auto& effect : model.effects) {
-    with.effects = {effect};
-    const auto& coefficients = session.registry.effect(effect.kind).spec().coefficients;
-    if (std::any_of(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& c) { return c.borrowed; }))
-      with.effects = model.effects;  // it needs the others: judged together with them
-    try {
-      try_assemble(with, session.registry);
-    } catch (const InputError& error) {
-      if (with.effects.size() > 1) continue;
-      left_out.push_back(effect.name);
-      text = edited(session, [&] { return without_entry(text, "effects", effect.name, "does not suit " + kind); });
-    }
-  }
-  for (const auto& [old_name, new_name] : renamed_coefficients(from, to)) {
+  for (const auto& [old_name, new_name] : renamed_coefficients(from, type.make(options)->spec())) {
     for (const char* section : {"curves", "parameters"})
-      text =
-          edited(session, [&, from_name = old_name, to_name = new_name] { return with_renamed_entry(text, section, from_name, to_name); });
+      edit([&, from_name = old_name, to_name = new_name] { return with_renamed_entry(text, section, from_name, to_name); });
   }
   return text;
 }

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 #include <stdexcept>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/stopwatch.h"
 #include "misfit/core/table.h"
 #include "misfit/data/reference.h"
 #include "misfit/data/sweep.h"
@@ -32,7 +32,7 @@ fs::path folder_of(const SessionOptions& options, const Study& study) {
 }
 
 RunFolder open_folder(const SessionOptions& options, const Study& study, RunFolder::Access access) {
-  RunFolder folder(folder_of(options, study), options.command, study.seed, study.file, {files_of_study(study), options.force}, access);
+  RunFolder folder(folder_of(options, study), {options.command, study.seed, study.file, {files_of_study(study), options.force}}, access);
   if (const auto other = folder.other_study())
     throw InputError("the run folder " + folder.path().string() + " holds the results of another study, " + other->string() +
                      ": give this one a folder of its own (--out out-" + study.file.stem().string() + ", say), or remove that one");
@@ -157,7 +157,7 @@ void Session::redo_stage(const std::string& stage, const std::map<std::string, s
                          const std::function<void(const fs::path&)>& make) {
   if (folder.access() == RunFolder::Access::read) throw std::logic_error("stage '" + stage + "' is to be done by the first rank");
   folder.check_places(files);
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   const PartFolder part(folder.path());
   const auto in_place = [&](std::string message) {
     const std::string made = part.path().string();
@@ -174,8 +174,7 @@ void Session::redo_stage(const std::string& stage, const std::map<std::string, s
   } catch (const RunError& error) {
     throw RunError(in_place(error.what()));
   }
-  folder.commit(part,
-                {stage, options.command, inputs, {}, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()});
+  folder.commit(part, {stage, options.command, inputs, {}, clock.seconds()});
 }
 
 std::vector<fs::path> Session::files_of_stage(const std::string& stage) const {
@@ -188,7 +187,7 @@ std::vector<fs::path> Session::files_of_stage(const std::string& stage) const {
 
 bool Session::copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs) {
   if (parent.empty()) return false;
-  const RunFolder from(parent, options.command, study.seed, {}, {}, RunFolder::Access::read);
+  const RunFolder from(parent, {options.command, study.seed}, RunFolder::Access::read);
   const auto known = from.stages().find(stage);
   if (known == from.stages().end() || !from.up_to_date(stage, known->second.inputs) ||
       by_file_name(known->second.inputs) != by_file_name(inputs))

@@ -84,13 +84,13 @@ Case from_section(Session& session) {
   out.initial = Eigen::VectorXd::Zero(out.model.states());
   std::vector<std::string> names;
   for (const auto& state : states) names.push_back(state.name);
-  for (std::size_t z = 0; z < out.model.own_states.size(); ++z)
-    out.initial[static_cast<Eigen::Index>(states.size() + z)] = out.model.own_states[z].initial;
+  Eigen::Index own = std::ssize(states);
+  for (const auto& state : out.model.own_states) out.initial[own++] = state.initial;
   for (const auto& [name, number] : ask.initial) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end())
       throw InputError(number.where, "[simulate] initial: the system has no state '" + shown(name) + "'" + suggest(name, names));
-    out.initial[found - names.begin()] = in_unit(number, name, states[static_cast<std::size_t>(found - names.begin())].unit);
+    out.initial[found - names.begin()] = in_unit(number, name, states[found - names.begin()].unit);
   }
   return out;
 }
@@ -127,7 +127,7 @@ Table simulate(const Case& c, const Session& session) {
   Table table;
   table.add("t", "s", c.signals.t);
   for (Eigen::Index o = 0; o < run.y.cols(); ++o) {
-    const OutputSpec& output = c.model.system->spec().outputs[static_cast<std::size_t>(o)];
+    const OutputSpec& output = c.model.system->spec().outputs[o];
     const std::string unit = display_unit(output.unit);
     std::vector<double> values, noisy;
     double sigma = 0.0;

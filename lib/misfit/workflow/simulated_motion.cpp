@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "misfit/compare/motion_statistics.h"
 #include "misfit/compare/noisy_run.h"
+#include "misfit/core/stopwatch.h"
 #include "misfit/inference/states.h"
 #include "misfit/workflow/stages.h"
 
@@ -56,7 +56,7 @@ std::vector<MotionPath> paths_of(const Model& model, const Signals& signals) {
         std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const QuantitySpec& q) { return w.name == std::string(q.name); });
     const bool channel = std::any_of(out.begin(), out.end(), [&](const MotionPath& p) { return p.name == w.name; });
     if (found == spec.quantities.end() || channel || is_input(spec, w.name)) continue;
-    places.push_back(static_cast<std::size_t>(found - spec.quantities.begin()));
+    places.push_back(found - spec.quantities.begin());
     out.push_back({w.name, found->unit, std::vector<double>(signals.samples(), std::nan("")), w.spread_only});
   }
   if (places.empty()) return out;
@@ -75,11 +75,11 @@ std::vector<MotionPath> paths_of(const Model& model, const Signals& signals) {
 StochasticModel stochastic_model(const FilterEstimate& estimate, const Model& model) {
   StochasticModel out;
   out.model = &model;
-  const auto own = static_cast<std::size_t>(model.states() - model.system_states());
+  const int own = model.states() - model.system_states();
   out.intensity.assign(own, 0.0);
   out.start_sigma.assign(own, 0.0);
   for (int state : estimate.forced.force_states) {
-    const auto place = static_cast<std::size_t>(state - model.system_states());
+    const int place = state - model.system_states();
     out.intensity[place] = estimate.noise.force * std::sqrt(2.0 / estimate.noise.force_time);
     out.start_sigma[place] = estimate.noise.force;
   }
@@ -91,12 +91,11 @@ void note_gaps(const Signals& signals, SimulatedMotion& out) {
   std::size_t missing = 0, all = 0;
   for (const auto& channel : signals.measured) {
     all += channel.values.size();
-    missing +=
-        static_cast<std::size_t>(std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isfinite(v); }));
+    missing += std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isfinite(v); });
   }
-  constexpr double worth_a_word = 0.01;
+  constexpr double min_share_to_report = 0.01;
   const double share = static_cast<double>(missing) / static_cast<double>(std::max<std::size_t>(all, 1));
-  if (share > worth_a_word) {
+  if (share > min_share_to_report) {
     out.notes.push_back(
         fmt::format("{:.1f} % of the samples of {} are missing, and the simulated motions miss the same times; if the "
                     "missing samples are the largest excursions, the measured distribution is too narrow",
@@ -116,18 +115,21 @@ Experiment experiment_of(const FilterWork& work, const FilterData& data) {
   Experiment e;
   e.measured = as_filtered(data);
   e.start.assign(data.start.data(), data.start.data() + data.start.size());
-  e.start.resize(static_cast<std::size_t>(work.estimate->forced.model.states()), 0.0);
+  e.start.resize(work.estimate->forced.model.states(), 0.0);
   e.paths = paths_of(work.estimate->model, e.measured);
   for (const auto& path : e.paths) e.scales.push_back(scales_of(path, usual_step(e.measured.t)));
   e.simulated.resize(runs);
   return e;
 }
 
-void simulate(const FilterWork& work, const StochasticModel& model, std::uint64_t seed, std::size_t run, Experiment& e) {
+std::vector<MotionNumbers> simulated_numbers(const FilterWork& work, const StochasticModel& model, std::uint64_t seed,
+                                             const Experiment& e) {
+  std::vector<MotionNumbers> out;
   const std::optional<Signals> made = noisy_run(model, e.measured, e.start, seed);
-  if (!made) return;
+  if (!made) return out;
   const std::vector<MotionPath> paths = paths_of(work.estimate->model, *made);
-  for (std::size_t p = 0; p < paths.size(); ++p) e.simulated[run].push_back(motion_numbers(paths[p], e.scales[p]));
+  for (std::size_t p = 0; p < paths.size(); ++p) out.push_back(motion_numbers(paths[p], e.scales[p]));
+  return out;
 }
 
 /// Runs that stayed among the finite numbers in every experiment: run j of all experiments is one motion.
@@ -168,29 +170,29 @@ void compare_all(const std::vector<Experiment>& experiments, SimulatedMotion& ou
 }  // namespace
 
 SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int threads, const ProgressFn& progress) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   SimulatedMotion out;
   out.method = work.fit.method;
   out.runs = runs;
   const FilterEstimate& estimate = *work.estimate;
   Model model = all_fixed(estimate.forced.model);
-  for (const auto& p : estimate.model.parameters) model.parameters[static_cast<std::size_t>(model.find_parameter(p.name))].value = p.value;
-  model.parameters[static_cast<std::size_t>(estimate.forced.time_parameter)].value = estimate.noise.force_time;
+  for (const auto& p : estimate.model.parameters) model.parameters[model.find_parameter(p.name)].value = p.value;
+  model.parameters[estimate.forced.time_parameter].value = estimate.noise.force_time;
   const StochasticModel stochastic = stochastic_model(estimate, model);
   std::vector<Experiment> experiments;
   for (const auto& data : estimate.data) experiments.push_back(experiment_of(work, data));
   run_jobs(
       runs * experiments.size(), threads,
       [&](std::size_t job) {
-        const std::size_t e = job / runs, run = job % runs;
-        simulate(work, stochastic, (static_cast<std::uint64_t>(seed) << 32U) + job, run, experiments[e]);
+        Experiment& e = experiments[job / runs];
+        e.simulated[job % runs] = simulated_numbers(work, stochastic, (std::uint64_t{seed} << 32U) + job, e);
       },
       progress);
   for (const auto& e : experiments) note_gaps(e.measured, out);
   compare_all(experiments, out);
   conclude_motion(out);
   out.notes.emplace_back("the bands do not include the uncertainty of the parameters, which are fixed at their estimates");
-  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  out.seconds = clock.seconds();
   return out;
 }
 

@@ -40,10 +40,6 @@ Calibration make_calibration(const Session& session, const fs::path& sweep) {
   return calibrate(read_sweep(sweep), session.model.rig, options);
 }
 
-fs::path attitude_file(const Session& session, std::size_t e) {
-  return session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + file_name_for(session.study.experiments[e].name) + ".csv");
-}
-
 std::vector<std::string> lines_of(const fs::path& path) {
   std::vector<std::string> lines;
   if (!fs::exists(path)) return lines;
@@ -75,6 +71,19 @@ std::optional<Calibration> calibrate_stage(Session& session) {
     write_calibration(dir / "camera.json", make_calibration(session, files.empty() ? fs::path() : files.front()));
   });
   return read_calibration(file);
+}
+
+fs::path attitude_file(const Session& session, std::size_t e) {
+  return session.folder.file("attitude" + file_suffix(e, session.study.experiments[e].name) + ".csv");
+}
+
+std::vector<fs::path> files_of_attitude(const Session& session) {
+  std::vector<fs::path> files;
+  if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
+  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
+    if (has_track(session.study.experiments[e])) files.insert(files.end(), {track_files(session, e).track, attitude_file(session, e)});
+  }
+  return files;
 }
 
 std::vector<std::optional<Attitude>> attitude_stage(Session& session) {

@@ -14,10 +14,7 @@ constexpr const char* method = "filter_error";
 
 std::vector<fs::path> files_of_filter(const Session& session) { return session.files_of_stage(std::string("fit/") + method); }
 
-bool filter_declined(Session& session) {
-  const Fit fit = fit_stage(session, {method}).front();
-  return fit.status == FitStatus::declined || fit.status == FitStatus::failed;
-}
+bool filter_declined(Session& session) { return !fit_stage(session, {method}).front().usable(); }
 
 void refuse_declined(Session& session) {
   const Fit fit = fit_stage(session, {method}).front();

@@ -2,7 +2,6 @@
 
 #include "misfit/core/config.h"
 #include "misfit/core/error.h"
-#include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/methods.h"
@@ -23,16 +22,11 @@ void resolved_stage(Session& session, Methods& methods) {
 
 std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method,
                                                  const std::vector<std::string>& without) {
-  std::vector<fs::path> files;
+  std::vector<fs::path> files = files_of_attitude(session);
   if (session.study.system_file) files.push_back(*session.study.system_file);
-  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
-    const ExperimentStudy& experiment = session.study.experiments[e];
+  for (const ExperimentStudy& experiment : session.study.experiments) {
     if (experiment.data) files.push_back(*experiment.data);
-    if (!has_track(experiment)) continue;
-    files.push_back(track_files(session, e).track);
-    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + file_name_for(experiment.name) + ".csv"));
   }
-  if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
   for (const auto& [name, curve] : session.study.curves) {
     if (curve.table) files.push_back(*curve.table);
   }

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/core/version.h"
 #include "misfit/jobs/interrupt.h"
@@ -52,13 +51,8 @@ std::vector<fs::path> files_of_report(const Session& session, const std::vector<
   files.push_back(session.folder.file("compare.json"));
   if (fs::exists(session.folder.file("ladder.json"))) files.push_back(session.folder.file("ladder.json"));
   for (const auto& [curve, file] : session.study.reference) files.push_back(file);
-  if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
-  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
-    const ExperimentStudy& experiment = session.study.experiments[e];
-    if (!has_track(experiment)) continue;
-    files.push_back(track_files(session, e).track);
-    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + file_name_for(experiment.name) + ".csv"));
-  }
+  const std::vector<fs::path> angles = files_of_attitude(session);
+  files.insert(files.end(), angles.begin(), angles.end());
   return files;
 }
 

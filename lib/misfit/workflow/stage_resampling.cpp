@@ -101,8 +101,7 @@ class Work {
     Started s;
     const bool fitted = attempt(method, [&] {
       s = started(methods_, method);
-      const bool usable = s.fit.status == FitStatus::converged || s.fit.status == FitStatus::not_converged;
-      if (!usable) throw RunError(to_string(s.fit.status) + ": " + s.fit.message);
+      if (!s.fit.usable()) throw RunError(to_string(s.fit.status) + ": " + s.fit.message);
     });
     if (!fitted) return;
     if (s.fit.status == FitStatus::not_converged)
@@ -130,8 +129,8 @@ class Work {
 
   void add_bootstrap(const Started& s) {
     BootstrapOptions options;
-    options.runs = static_cast<std::size_t>(uncertainty_.bootstrap);
-    options.seed = static_cast<unsigned long long>(session_.study.seed);
+    options.runs = uncertainty_.bootstrap;
+    options.seed = session_.study.seed;
     options.block = {static_cast<int>(uncertainty_.block), s.from.fitted.equation_residuals};
     const Resampled what = s.from.method == "output_error" ? Resampled::residuals : Resampled::rows;
     const FitReplica refit = [&](const std::vector<Signals>& replica) { return fit_again(s.from, replica); };
@@ -157,8 +156,8 @@ class Work {
 
   void add_starts(const Started& s) {
     MultiStartOptions options;
-    options.runs = static_cast<std::size_t>(uncertainty_.starts);
-    options.seed = static_cast<unsigned long long>(session_.study.seed);
+    options.runs = uncertainty_.starts;
+    options.seed = session_.study.seed;
     const std::vector<Signals>& experiments = methods_.prepared().experiments;
     const SearchFrom search = [&](const std::vector<double>& values) {
       const Maximisation end = maximise_from(s.from, values, experiments);
@@ -184,7 +183,7 @@ class Work {
     if (found == s.fit.names.end()) throw RunError("profile of " + parameter + ": it is not free in this fit");
     ProfileObjective at_best(s.from, experiments, parameter);
     const Estimate& e = s.fit.parameters.at(parameter);
-    const Parameter& p = s.from.fitted.model.parameters[static_cast<std::size_t>(s.from.fitted.model.find_parameter(parameter))];
+    const Parameter& p = s.from.fitted.model.parameters[s.from.fitted.model.find_parameter(parameter)];
     const std::optional<double> objective = at_best(e.value);
     if (!objective) throw RunError("profile of " + parameter + ": the refit at the estimate failed");
     if (!(e.sigma > 0.0)) throw RunError("profile of " + parameter + ": the fit gives no sigma, hence no step size");

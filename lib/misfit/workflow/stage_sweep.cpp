@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_markers = 8;  // per picture: the three points and things alike
-constexpr double standing_still = 3.0;   // [px] within which a marker stays while the rig stands
+constexpr double max_drift = 3.0;        // [px] within which a marker stays while the rig stands
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// A picture with the markers in it.
@@ -59,7 +59,7 @@ MarkerDetections detections_in_video(const SweepPicture& picture, const Marker& 
     for (const PixelPoint& p : now.markers) {
       for (std::size_t k = 0; k < count.size(); ++k) {
         PixelPoint& mean = out.markers[k];
-        if (std::hypot(mean.column - p.column, mean.row - p.row) > standing_still) continue;
+        if (std::hypot(mean.column - p.column, mean.row - p.row) > max_drift) continue;
         count[k] += 1.0;
         mean.column += (p.column - mean.column) / count[k];
         mean.row += (p.row - mean.row) / count[k];

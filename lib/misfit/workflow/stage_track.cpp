@@ -12,8 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string suffix(const Session& session, std::size_t e) { return e == 0 ? "" : "_" + file_name_for(session.study.experiments[e].name); }
-
 std::string settings_of(const VideoStudy& video) {
   std::string text = video.fields + (video.check_fields ? " checked " : " insisted ") + video.marker.kind;
   if (video.start) text += " start " + std::to_string(video.start->column) + " " + std::to_string(video.start->row);
@@ -42,7 +40,7 @@ bool has_track(const ExperimentStudy& experiment) { return experiment.track || e
 TrackFiles track_files(const Session& session, std::size_t e) {
   const ExperimentStudy& experiment = session.study.experiments[e];
   if (experiment.track) return {*experiment.track, {}, {}};
-  return made_files(session.folder.path(), suffix(session, e));
+  return made_files(session.folder.path(), file_suffix(e, session.study.experiments[e].name));
 }
 
 std::vector<std::optional<TrackFacts>> track_stage(Session& session) {
@@ -60,7 +58,7 @@ std::vector<std::optional<TrackFacts>> track_stage(Session& session) {
     const auto inputs = session.inputs(settings_of(session.study.video), read);
     const std::string stage = "track/" + experiment.name;
     if (!session.folder.up_to_date(stage, inputs) && !session.copied_from_below(stage, inputs)) {
-      const std::string end = suffix(session, e);
+      const std::string end = file_suffix(e, session.study.experiments[e].name);
       session.do_stage(stage, inputs, {"track" + end + ".csv", "track" + end + ".json"},
                        [&](const fs::path& dir) { make_track(session, e, made_files(dir, end)); });
     }
@@ -73,7 +71,7 @@ WriteRules write_rules(const Session& session) { return {files_of_study(session.
 
 void write_check_video(const Session& session, const std::vector<std::optional<TrackFacts>>& facts, const fs::path& to) {
   const auto tracked = std::find_if(facts.begin(), facts.end(), [](const auto& f) { return f.has_value(); });
-  const std::size_t e = static_cast<std::size_t>(tracked - facts.begin());
+  const std::size_t e = tracked - facts.begin();
   const TrackFacts& f = **tracked;
   const Track track = read_track(track_files(session, e).track);
   write_files(to.has_parent_path() ? to.parent_path() : ".", write_rules(session), {to.filename().string()}, [&](const fs::path& dir) {

@@ -22,9 +22,7 @@ const UncertaintyStudy& uncertainty_study(const Session& session) {
   return *session.study.uncertainty;
 }
 
-std::size_t runs_of(const Session& session) {
-  return static_cast<std::size_t>(session.options.runs > 0 ? session.options.runs : session.study.uncertainty->runs);
-}
+std::size_t runs_of(const Session& session) { return session.options.runs > 0 ? session.options.runs : session.study.uncertainty->runs; }
 
 /// All that a run depends on but its number: not how many there are, what else is asked for, or what the study is called.
 Inputs inputs_of_run(const Session& session) {

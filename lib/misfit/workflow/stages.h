@@ -45,6 +45,10 @@ void write_check_video(const Session& session, const std::vector<std::optional<T
 [[nodiscard]] std::optional<Calibration> calibrate_stage(Session& session);
 /// attitude.csv (attitude_NAME.csv for further experiments); empty for experiments without a track.
 [[nodiscard]] std::vector<std::optional<Attitude>> attitude_stage(Session& session);
+/// attitude.csv or, of further experiments, attitude_NAME.csv.
+[[nodiscard]] std::filesystem::path attitude_file(const Session& session, std::size_t experiment);
+/// camera.json, and of every experiment that starts from pixels the track and the attitude.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_attitude(const Session& session);
 
 /// The model with knots chosen, and the recordings as it sees them.
 struct Prepared {
@@ -52,6 +56,8 @@ struct Prepared {
   Model model;
   std::vector<Signals> experiments;
 };
+/// Does the system predict the image itself? Then it reads the track; every other system reads the attitude.
+[[nodiscard]] bool predicts_pixels(const SystemSpec& spec);
 /// A system that predicts the image sees it through the study's camera: values and sigmas of the calibration, and its projection.
 void add_camera(Session& session, ModelRequest& request);
 /// For the study's own system.

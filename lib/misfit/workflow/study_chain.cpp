@@ -12,17 +12,10 @@
 namespace misfit {
 namespace {
 
-bool usable(const Fit& fit) { return fit.status == FitStatus::converged || fit.status == FitStatus::not_converged; }
-
 Track shifted(Track track, double y, double z) {
   for (double& v : track.P_y) v += y;
   for (double& v : track.P_z) v += z;
   return track;
-}
-
-bool predicts_pixels(const Model& model) {
-  const auto& outputs = model.system->spec().outputs;
-  return std::any_of(outputs.begin(), outputs.end(), [](const OutputSpec& o) { return o.name == "P_y" || o.name == "P_z"; });
 }
 
 }  // namespace
@@ -39,7 +32,7 @@ StudyChain::~StudyChain() = default;
 StudyChain::StudyChain(Session& session, const std::string& method) : method_(method) {
   hold_perturbed_camera(session);
   prepare_method(session, method);
-  if (!usable(nominal_)) throw RunError(method + " " + to_string(nominal_.status) + ": " + nominal_.message);
+  if (!nominal_.usable()) throw RunError(method + " " + to_string(nominal_.status) + ": " + nominal_.message);
   read_recordings(session);
   rig_.emplace(session, prepared_.model);
   const PerturbedRig as_it_is = rig_->at(std::vector<double>(rig_->perturbations().names().size(), 0.0));
@@ -80,7 +73,7 @@ void StudyChain::prepare_method(Session& session, const std::string& method) {
 }
 
 void StudyChain::read_recordings(Session& session) {
-  pixels_ = predicts_pixels(prepared_.model);
+  pixels_ = predicts_pixels(prepared_.model.system->spec());
   std::size_t e = 0;
   for (const Signals& part : prepared_.experiments) {
     while (!is_part_of(part, session.study.experiments.at(e).name)) ++e;
@@ -145,7 +138,7 @@ ChainResult StudyChain::run(const std::vector<double>& errors) const {
     const PerturbedRig rig = rig_->at(errors);
     const Model model = perturbed(rig);
     const Fit result = fit(model, signals(rig, model));
-    if (!usable(result)) return {{}, to_string(result.status) + ": " + result.message};
+    if (!result.usable()) return {{}, to_string(result.status) + ": " + result.message};
     return {numbers_->evaluate(result), ""};
   } catch (const InputError& error) {  // an impossible rig, as a camera in front of the apex
     return {{}, error.what()};

@@ -17,8 +17,8 @@ namespace misfit {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double most_doubled = 0.15;
-constexpr long even_shots = 15;
+constexpr double max_doubled_share = 0.15;
+constexpr long regular_shots = 15;
 constexpr std::size_t lost_shots = 5, trail_length = 40;
 
 std::optional<Region> region_of(const VideoStudy& study) {
@@ -58,7 +58,7 @@ MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
                     "frame)? start = [column, row] or region = [left, top, right, bottom] gives its place",
                     path.string(), what, survey.frames()));
   }
-  if (!study.start && !study.region && survey.doubled() > most_doubled) {
+  if (!study.start && !study.region && survey.doubled() > max_doubled_share) {
     throw RunError(fmt::format(
         "{}: in {:.0f} % of the fields searched two moving objects resemble the marker. If there are two, choose one: "
         "[video] "
@@ -72,7 +72,7 @@ MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
 /// Collects what the contact sheet will show.
 class Shots {
  public:
-  explicit Shots(long declared) : every_(declared / even_shots + 1) {}
+  explicit Shots(long declared) : every_(declared / regular_shots + 1) {}
 
   void offer(const Frame& frame, const Field& field, std::size_t sample, const TrackedSample& found) {
     const bool lost = found.loss != Loss::none;
@@ -85,11 +85,15 @@ class Shots {
     if (begins && !due) ++lost_;
     shots_.push_back({field, 0.0, {}, {}, 0.0, {}, {}, {}});
     samples_.push_back(sample);
-    if (shots_.size() > 4 * static_cast<std::size_t>(even_shots)) halve();  // the container did not declare how many there are
+    if (std::ssize(shots_) > 4 * regular_shots) halve();  // the container did not declare how many there are
   }
 
   std::vector<Shot> finish(const std::vector<TrackedSample>& track, double rate, double radius) {
-    for (std::size_t k = 0; k < shots_.size(); ++k) complete(shots_[k], track, samples_[k], rate, radius);
+    for (std::size_t k = 0; k < shots_.size(); ++k) {
+      shots_[k].t = static_cast<double>(samples_[k]) / rate;
+      shots_[k].radius = radius;
+      complete(shots_[k], track, samples_[k]);
+    }
     return std::move(shots_);
   }
 
@@ -105,10 +109,8 @@ class Shots {
     samples_.resize(kept);
   }
 
-  static void complete(Shot& shot, const std::vector<TrackedSample>& track, std::size_t sample, double rate, double radius) {
-    shot.t = static_cast<double>(sample) / rate;
+  static void complete(Shot& shot, const std::vector<TrackedSample>& track, std::size_t sample) {
     shot.label = fmt::format("{:.2f} s", shot.t);
-    shot.radius = radius;
     for (std::size_t k = sample > trail_length ? sample - trail_length : 0; k <= sample; ++k) {
       if (track[k].loss == Loss::none) shot.trail.push_back(track[k].at);
     }
@@ -134,7 +136,7 @@ class Run {
       : tracker_({survey.look, study.start, region_of(study), survey.still}), order_(order), shots_(declared) {}
 
   void add(Frame frame) {
-    const std::size_t first = static_cast<std::size_t>(frame.number) * fields();
+    const std::size_t first = frame.number * fields();
     while (samples_ < first) {
       tracker_.add_missing();
       ++samples_;
@@ -179,8 +181,7 @@ Track track_of(const std::vector<TrackedSample>& samples, const VideoFacts& fact
   return track;
 }
 
-TrackFacts facts_of(const MarkerSurvey& survey, const VideoFacts& video, FieldOrder order, const std::vector<TrackedSample>& samples,
-                    const Track& track) {
+TrackFacts facts_of(const MarkerSurvey& survey, const VideoFacts& video, FieldOrder order, const std::vector<TrackedSample>& samples) {
   TrackFacts f;
   f.video = video.file;
   f.width = video.width;
@@ -205,7 +206,6 @@ TrackFacts facts_of(const MarkerSurvey& survey, const VideoFacts& video, FieldOr
       ++f.lost[words(s.loss)];
     }
   }
-  f.sigma = median(track.sigma);
   const auto notes = notes_of(video);
   f.warnings.insert(f.warnings.end(), notes.begin(), notes.end());
   return f;
@@ -269,15 +269,16 @@ VideoTrack track_video(const std::filesystem::path& path, const VideoStudy& stud
   Run run(survey, study, order, video.facts().declared);
   while (auto frame = video.next()) {
     stop_if_interrupted();
-    const auto number = static_cast<std::size_t>(frame->number);
+    const std::size_t number = frame->number;
     run.add(std::move(*frame));
-    if (progress) progress(number, static_cast<std::size_t>(std::max(video.facts().declared, 1L)));
+    if (progress) progress(number, std::max(video.facts().declared, 1L));
   }
   const std::vector<TrackedSample> samples = run.finish();
   const double rate = video.facts().rate * static_cast<double>(run.fields());
   VideoTrack out;
   out.track = track_of(samples, video.facts(), rate);
-  out.facts = facts_of(survey, video.facts(), order, samples, out.track);
+  out.facts = facts_of(survey, video.facts(), order, samples);
+  out.facts.sigma = median(out.track.sigma);
   out.facts.warnings.insert(out.facts.warnings.begin(), warnings.begin(), warnings.end());
   if (out.facts.ok == 0)
     throw RunError(path.string() + ": the marker was seen in some frames, but could not be followed through any three of them");

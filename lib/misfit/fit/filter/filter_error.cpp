@@ -3,10 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/data/ladder.h"
@@ -311,7 +311,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
 }
 
 FilterError filter_error(const FittedModel& start, const std::vector<Signals>& experiments, const FilterOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   FilterError out;
   try {
     out.estimate = estimate_filter(start.model, curve_penalties(start.model), experiments, options);
@@ -321,7 +321,7 @@ FilterError filter_error(const FittedModel& start, const std::vector<Signals>& e
     out.fit.status = FitStatus::declined;
     out.fit.message = error.what();
   }
-  out.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  out.fit.seconds = clock.seconds();
   return out;
 }
 

@@ -1,10 +1,10 @@
 #include "misfit/fit/regression/equation_error.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/inference/coloured.h"
@@ -259,7 +259,7 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
 }  // namespace
 
 FittedModel equation_error(const Model& model, const std::vector<Signals>& experiments) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   FittedModel out{{}, model, curve_penalties(model), {}};
   out.fit.method = "equation_error";
   const Regressor regressor(model, experiments);
@@ -285,7 +285,7 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
     mark_not_informative(out.model, model.system->spec().damping_curve, "driven motion: the sum of acceleration times rate telescopes",
                          out.fit);
   }
-  out.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  out.fit.seconds = clock.seconds();
   return out;
 }
 

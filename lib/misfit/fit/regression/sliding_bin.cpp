@@ -1,12 +1,12 @@
 #include "misfit/fit/regression/sliding_bin.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
+#include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/fit/regression/bin_equations.h"
@@ -242,7 +242,7 @@ std::string why_no_bins(const BinForm& form, const SlidingBinOptions& options, c
 }  // namespace
 
 Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   check(options);
   std::string why;
   const std::optional<BinForm> form = bin_form(model, signals, why);
@@ -270,7 +270,7 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
     for (const auto& name : form->taken_as_known) names += (names.empty() ? "" : ", ") + name;
     fit.warnings.push_back("taken as known at their present values: " + names);
   }
-  fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  fit.seconds = clock.seconds();
   return fit;
 }
 

@@ -1,9 +1,9 @@
 #include "misfit/fit/shooting/output_error.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/fit/shooting/output_error_result.h"
 #include "misfit/inference/curves.h"
@@ -318,9 +318,9 @@ class Estimator {
 }  // namespace
 
 FittedModel output_error(const FittedModel& start, const std::vector<Signals>& experiments, const OutputErrorStart& options) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   FittedModel out = Estimator(start, experiments, options).run();
-  out.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  out.fit.seconds = clock.seconds();
   return out;
 }
 

@@ -59,7 +59,7 @@ struct Room {
   }
 };
 
-void say_left_out(const char* what, const std::vector<std::string>& names, const std::string& limit, std::vector<std::string>& remarks) {
+void note_left_out(const char* what, const std::vector<std::string>& names, const std::string& limit, std::vector<std::string>& remarks) {
   if (names.empty()) return;
   constexpr std::size_t shown = 6;
   const std::size_t more = names.size() - std::min(names.size(), shown);
@@ -85,7 +85,7 @@ void name_parts(const GuessedModel& model, std::set<std::string>& taken, Guessed
 void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedModel& model, GuessData& data) {
   std::vector<std::string> left_out;
   for (const ColumnSurvey* c : survey.of_use(ColumnUse::input)) {
-    if (model.inputs.size() == static_cast<std::size_t>(kMaxInputs)) {
+    if (std::ssize(model.inputs) == kMaxInputs) {
       left_out.push_back(c->name);
       continue;
     }
@@ -96,7 +96,7 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
         steps ? "" : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
     data.inputs.push_back(table.values(c->name, model.input_units.back()));
   }
-  say_left_out("inputs", left_out, fmt::format("a system has at most {} inputs", kMaxInputs), model.remarks);
+  note_left_out("inputs", left_out, fmt::format("a system has at most {} inputs", kMaxInputs), model.remarks);
 }
 
 GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, const ColumnSurvey& c, GuessData& data) {
@@ -170,9 +170,9 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
     name_parts(model, taken, output);
     model.outputs.push_back(std::move(output));
   }
-  say_left_out("outputs", left_out,
-               fmt::format("a system has at most {} outputs, {} states and {} parameters", kMaxOutputs, kMaxStates, kMaxConstants),
-               model.remarks);
+  note_left_out("outputs", left_out,
+                fmt::format("a system has at most {} outputs, {} states and {} parameters", kMaxOutputs, kMaxStates, kMaxConstants),
+                model.remarks);
   return model;
 }
 
