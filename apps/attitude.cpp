@@ -2,14 +2,14 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 
 int attitude_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const auto attitudes = attitude_stage(session);
   bool any = false;
   nlohmann::ordered_json all = nlohmann::ordered_json::object();

@@ -4,21 +4,30 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <csignal>
 #include <iostream>
 #include <limits>
 #include <map>
 #include <new>
 #include <thread>
 
+#include "apps/progress.h"
 #include "apps/terminal.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
-#include "misfit/core/ranks.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/version.h"
+#include "misfit/jobs/interrupt.h"
+#include "misfit/jobs/ranks.h"
 
 namespace misfit {
 namespace {
+
+/// The first Ctrl-C asks the stages to stop, the second ends the program at once.
+extern "C" void on_interrupt(int) {
+  interrupted() = true;
+  std::signal(SIGINT, SIG_DFL);
+}
 
 using Verb = int (*)(const Options&, const Registry&);
 
@@ -50,7 +59,7 @@ constexpr VerbEntry verbs[] = {
 };
 
 void add_method(CLI::App& verb, Options& options) {
-  verb.add_option("--method", options.methods, "only these methods")
+  verb.add_option("--method", options.session.methods, "only these methods")
       ->type_name("NAME")
       ->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
 }
@@ -68,19 +77,19 @@ CLI::Validator whole_number_check() {
 }
 
 void add_running(CLI::App& verb, Options& options) {
-  verb.add_option("--threads", options.threads, "threads for parallel jobs (default: one per core)")
+  verb.add_option("--threads", options.session.threads, "threads for parallel jobs (default: one per core)")
       ->type_name("N")
       ->check(CLI::Range(0, 1024));
-  verb.add_option("--seed", options.seed, "overrides the study's seed")->type_name("N")->check(whole_number_check());
+  verb.add_option("--seed", options.session.seed, "overrides the study's seed")->type_name("N")->check(whole_number_check());
   verb.add_flag("--quiet", options.quiet, "print no progress and no notes to stderr");
   verb.add_flag("--json", options.json, "print the result as JSON");
 }
 
 void add_options(CLI::App& verb, Options& options, bool study_required) {
   if (verb.get_name() == "init") {
-    verb.add_option("data", options.study, "CSV file with a header line")->type_name("DATA.csv")->required();
-    verb.add_flag("--force", options.force, "overwrite an existing study (never the data)");
-    verb.add_option("--out", options.out, "folder of the study (default: named after the data file, in the current directory)")
+    verb.add_option("data", options.session.study, "CSV file with a header line")->type_name("DATA.csv")->required();
+    verb.add_flag("--force", options.session.force, "overwrite an existing study (never the data)");
+    verb.add_option("--out", options.session.out, "folder of the study (default: named after the data file, in the current directory)")
         ->type_name("DIR");
     verb.add_flag("--json", options.json, "print what was found as JSON");
     return;
@@ -89,22 +98,25 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
     verb.add_option("studies", options.studies, "lists with one study per line, folders to search for study.toml, studies")
         ->type_name("LIST|FOLDER…")
         ->required();
-    verb.add_option("--out", options.out, "folder of the results (default: batch/ beside the list or in the folder)")->type_name("DIR");
-    verb.add_flag("--force", options.force, "overwrite files that misfit did not write (never data, never through links)");
+    verb.add_option("--out", options.session.out, "folder of the results (default: batch/ beside the list or in the folder)")
+        ->type_name("DIR");
+    verb.add_flag("--force", options.session.force, "overwrite files that misfit did not write (never data, never through links)");
     add_method(verb, options);
     add_running(verb, options);
     return;
   }
-  auto* study = verb.add_option("study", options.study, "study.toml, or the folder that holds it")->type_name("STUDY");
+  auto* study = verb.add_option("study", options.session.study, "study.toml, or the folder that holds it")->type_name("STUDY");
   if (study_required) study->required();
   if (verb.get_name() == "add")
     verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
   if (verb.get_name() == "uncertainty")
-    verb.add_option("--runs", options.runs, "overrides the study's number of runs")->type_name("N")->check(CLI::Range(1, 100'000'000));
+    verb.add_option("--runs", options.session.runs, "overrides the study's number of runs")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100'000'000));
   if (verb.get_name() == "discover")
     verb.add_flag("--auto", options.automatic, "add the accepted effect and search again, until none is accepted");
-  verb.add_option("--out", options.out, "run folder (default: out/ beside the study)")->type_name("DIR");
-  verb.add_flag("--force", options.force, "overwrite files that misfit did not write (never data, never through links)");
+  verb.add_option("--out", options.session.out, "run folder (default: out/ beside the study)")->type_name("DIR");
+  verb.add_flag("--force", options.session.force, "overwrite files that misfit did not write (never data, never through links)");
   add_method(verb, options);
   add_running(verb, options);
 }
@@ -132,7 +144,7 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
   app.set_version_flag("--version", std::string("misfit ") + version() + " (" + commit() + ")");
   app.require_subcommand(1);
   Options options;
-  options.command = command_text(argc, argv);
+  options.session.command = command_text(argc, argv);
   std::map<const CLI::App*, Verb> calls;
   for (const auto& entry : verbs) {
     CLI::App* verb = app.add_subcommand(entry.name, entry.doc);
@@ -154,10 +166,9 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
     throw InputError(shortened(error.what(), longest_message / 2) + "; see misfit --help and misfit VERB --help");
   }
   const CLI::App* chosen = app.get_subcommands().front();
-  const CLI::Option* seed = chosen->get_option_no_throw("--seed");
-  options.has_seed = seed != nullptr && seed->count() > 0;
-  watch_interrupts();
+  std::signal(SIGINT, on_interrupt);
   refuse_ranks(chosen->get_name());
+  if (!options.quiet && (ranks_started() == 1 || ranks().first())) options.session.listener = terminal_listener();
   if (options.json) out.use_json_escapes();
   return calls.at(chosen)(options, registry);
 }

@@ -1,13 +1,13 @@
 #include <iostream>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 
 int diagnose_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const std::optional<Diagnosis> diagnosis = diagnose_stage(session);
   if (!diagnosis) refuse_declined(session);
   if (options.json) {

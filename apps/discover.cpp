@@ -1,42 +1,24 @@
-#include <algorithm>
 #include <iostream>
 #include <optional>
 
-#include "apps/ladder.h"
 #include "apps/print.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
-#include "misfit/core/ranks.h"
+#include "misfit/jobs/ranks.h"
+#include "misfit/workflow/ladder.h"
 
 namespace misfit {
 namespace {
 
-Discovery discovered(Session& session) {
-  const std::optional<Discovery> discovery = discover_stage(session);
-  if (!discovery) refuse_declined(session);
-  return *discovery;
-}
-
-/// The best accepted candidate that a study can take in one line.
-std::optional<Candidate> next_step(const Discovery& discovery, const Registry& registry) {
-  const std::vector<std::string> known = registry.effect_keys();
-  for (const auto& candidate : discovery.candidates) {
-    if (candidate.accepted && std::find(known.begin(), known.end(), candidate.effect) != known.end()) return candidate;
+int extend(ModelLadder& ladder, const Registry& registry, bool json) {
+  LadderListener listener;
+  if (!json) {
+    listener.discovered = [](const Discovery& discovery) { std::cout << discovery_text(discovery) << '\n' << std::flush; };
+    listener.added = [&](const Rung& rung) {
+      std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.last_fit()) << '\n' << std::flush;
+    };
   }
-  return std::nullopt;
-}
-
-int extend_ladder(ModelLadder& ladder, const Registry& registry, bool json) {
-  constexpr int most_rungs = 12;
-  for (int k = 0; k < most_rungs; ++k) {
-    const Discovery discovery = discovered(ladder.last());
-    if (!json) std::cout << discovery_text(discovery) << '\n' << std::flush;
-    const std::optional<Candidate> next = next_step(discovery, registry);
-    if (!next) break;
-    const Rung& rung = ladder.add(next->effect, next);
-    if (!json) std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.last_fit()) << '\n' << std::flush;
-  }
-  static_cast<void>(ladder.last_rung());
+  extend_ladder(ladder, registry, listener);
   report_ladder(ladder);
   if (json) {
     print_file(ladder.root().folder.file("ladder.json"));
@@ -49,8 +31,7 @@ int extend_ladder(ModelLadder& ladder, const Registry& registry, bool json) {
 }  // namespace
 
 int discover_verb(const Options& options, const Registry& registry) {
-  Options own = options;
-  own.quiet = options.quiet || !ranks().first();
+  SessionOptions own = options.session;
   if (options.automatic && ranks().size() > 1)
     throw InputError("discover --auto cannot run under mpirun: each rung depends on the one before; discover without --auto can");
   // The fit that discovery starts from is written by one rank only; the others find it done.
@@ -61,7 +42,7 @@ int discover_verb(const Options& options, const Registry& registry) {
   });
   if (own.threads == 0) own.threads = threads_of_rank();
   if (!ladder) ladder.emplace(own, registry);
-  if (options.automatic) return extend_ladder(*ladder, registry, options.json);
+  if (options.automatic) return extend(*ladder, registry, options.json);
   Session& session = ladder->last();
   session.options.threads = own.threads;
   const Discovery discovery = discovered(session);
@@ -71,8 +52,8 @@ int discover_verb(const Options& options, const Registry& registry) {
     return 0;
   }
   std::cout << discovery_text(discovery);
-  if (const auto next = next_step(discovery, registry))
-    std::cout << "\nto add it: misfit add " << options.study << " " << next->effect << '\n';
+  if (const auto next = accepted_candidate(discovery, registry))
+    std::cout << "\nto add it: misfit add " << options.session.study << " " << next->effect << '\n';
   return 0;
 }
 

@@ -69,7 +69,7 @@ nlohmann::ordered_json as_json(const EffectSpec& spec) {
 
 int effects_verb(const Options& options, const Registry& registry) {
   std::optional<Study> study;
-  if (!options.study.empty()) study = read_study(options.study);
+  if (!options.session.study.empty()) study = read_study(options.session.study);
   const auto declared = study ? study_registry(*study, registry) : nullptr;
   const Registry& known = study ? *declared : registry;
   nlohmann::ordered_json all = nlohmann::ordered_json::array();

@@ -2,14 +2,14 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
 #include "misfit/core/files.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 
 int fit_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const std::vector<Fit> fits = fit_stage(session);
   if (options.json) {
     nlohmann::ordered_json all = nlohmann::ordered_json::object();  // method → its fit.json

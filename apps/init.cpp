@@ -1,33 +1,19 @@
+#include "misfit/workflow/init/init.h"
+
 #include <fmt/format.h>
 
-#include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
-#include "apps/init_names.h"
-#include "apps/init_text.h"
 #include "apps/verbs.h"
-#include "misfit/core/error.h"
-#include "misfit/core/files.h"
 #include "misfit/core/text.h"
-#include "misfit/core/written_files.h"
-#include "misfit/report/recording_figure.h"
 
 namespace misfit {
 namespace {
 
-namespace fs = std::filesystem;
-
 const char* word_of(ColumnUse use) {
   constexpr const char* words[] = {"time", "input", "output", "rate", "segment", "constant", "text", "unused"};
   return words[static_cast<std::size_t>(use)];
-}
-
-/// Where the study goes: --out, else a folder called like the data in the present one.
-fs::path folder_for(const Options& options, const fs::path& data) {
-  return options.out.empty() ? fs::path(part_names(data, 1).front()) : fs::path(options.out);
 }
 
 std::string survey_text(const RecordingSurvey& survey) {
@@ -68,52 +54,18 @@ nlohmann::ordered_json as_json(const RecordingSurvey& survey) {
   return json;
 }
 
-/// About ten swings where the model swings, else some hundred samples [s].
-double length_of_zoom(const GuessedModel& model, double step) {
-  constexpr double swings = 10.0, samples = 800.0;
-  for (const auto& output : model.outputs) {
-    if (output.guess.order == 2) return swings * 2.0 * std::numbers::pi / std::sqrt(output.guess.stiffness);
-  }
-  return samples * step;
-}
-
-void draw(const RecordingSurvey& survey, const GuessedModel& model, const std::vector<std::string>& names, const fs::path& folder) {
-  const double zoom = length_of_zoom(model, survey.step);
-  for (std::size_t i = 0; i < survey.parts.size(); ++i) {
-    const Table& part = survey.parts[i];
-    const std::vector<double>& t = part.columns.front().values;
-    write_figure(folder / "figures", report::recording_figure(survey, i, names[i], std::nullopt));
-    constexpr double long_record = 2.5;
-    if (t.back() - t.front() < long_record * zoom) continue;
-    write_figure(folder / "figures",
-                 report::recording_figure(survey, i, names[i], report::typical_interval(t, part.columns.back().values, zoom)));
-  }
-}
-
 }  // namespace
 
 int init_verb(const Options& options, const Registry& /*registry*/) {
-  const fs::path data = options.study;
-  RecordingSurvey survey = survey_recording(data, names_of_formulas());
-  const GuessedModel model = guess_model(survey);
-  survey.remarks.insert(survey.remarks.end(), model.remarks.begin(), model.remarks.end());
-  const fs::path folder = folder_for(options, data);
-  const std::vector<std::string> names = part_names(data, survey.parts.size());
-  write_files(folder, {{data}, options.force}, {"study.toml", "model.toml", names.front() + ".csv"}, [&](const fs::path& dir) {
-    for (std::size_t i = 0; i < names.size(); ++i) write_csv(dir / (names[i] + ".csv"), survey.parts[i]);
-    write_atomically(dir / "model.toml", model_text(model, survey));
-    write_atomically(dir / "study.toml", study_text(study_name(data), names, survey));
-    draw(survey, model, names, dir);
-  });
+  const FirstStudy made = init_study(options.session.study, options.session.out, options.session.force);
   if (options.json) {
-    std::cout << as_json(survey).dump(1) << '\n';
+    std::cout << as_json(made.survey).dump(1) << '\n';
     return 0;
   }
-  std::cout << survey_text(survey) << '\n';
-  for (const auto& o : model.outputs) std::cout << wrap_text("model of " + o.name + ": " + o.guess.why, 110, "  ") << '\n';
-  const std::string study = (folder / "study.toml").lexically_normal().string();
-  std::cout << fmt::format("\nwritten: {}, model.toml, the data as {}.csv{}, figures/\nnext: look at the figures, then misfit fit {}\n",
-                           study, names.front(), names.size() > 1 ? " …" : "", study);
+  std::cout << survey_text(made.survey) << '\n';
+  for (const auto& o : made.model.outputs) std::cout << wrap_text("model of " + o.name + ": " + o.guess.why, 110, "  ") << '\n';
+  std::cout << fmt::format("\nwritten: {0}, model.toml, the data as {1}.csv{2}, figures/\nnext: look at the figures, then misfit fit {0}\n",
+                           made.study.string(), made.parts.front(), made.parts.size() > 1 ? " …" : "");
   return 0;
 }
 

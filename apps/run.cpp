@@ -2,14 +2,14 @@
 #include <iostream>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
 #include "misfit/compare/compare.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 
 int run_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
+  Session session(options.session, registry);
   const auto videos = track_stage(session);
   const auto calibration = calibrate_stage(session);
   const auto attitudes = attitude_stage(session);
@@ -37,7 +37,7 @@ int run_verb(const Options& options, const Registry& registry) {
   if (const auto ladder = known_ladder(session)) std::cout << ladder_text(*ladder) << '\n';
   std::cout << "report: " << page.string() << '\n';
   if (session.study.uncertainty && !known_uncertainty(session) && !known_resampling(session))
-    std::cout << "[uncertainty] is not part of `run`; start it with: misfit uncertainty " << options.study << '\n';
+    std::cout << "[uncertainty] is not part of `run`; start it with: misfit uncertainty " << options.session.study << '\n';
   return status_of(fits);
 }
 

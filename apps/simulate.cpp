@@ -1,171 +1,23 @@
+#include "misfit/workflow/simulate.h"
+
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <random>
 
-#include "apps/stages.h"
 #include "apps/verbs.h"
-#include "misfit/core/error.h"
-#include "misfit/core/shown.h"
-#include "misfit/core/table.h"
-#include "misfit/core/text.h"
-#include "misfit/core/units.h"
-#include "misfit/inference/curves.h"
-#include "misfit/inference/states.h"
-#include "misfit/model/curve_table.h"
-#include "misfit/sim/random_run.h"
 
 namespace misfit {
-namespace {
-
-/// Where a simulation starts and what drives it.
-struct Case {
-  Model model;
-  Signals signals;
-  Eigen::VectorXd initial;
-};
-
-/// A number of [simulate], written with or without unit, in the model's unit.
-double in_unit(const config::Number& number, const std::string& name, const std::string& unit) {
-  if (number.unit.empty() || number.unit == "-") return number.value;
-  if (!parse_unit(number.unit).same_dimension(parse_unit(unit)))
-    throw InputError(number.where, name + " needs [" + unit + "], not [" + number.unit + "]");
-  return number.value;
-}
-
-/// Knots for a curve given as a table: one per 0.25 of a degree or a hundredth of its range.
-void knots_from_tables(const Session& session, ModelRequest& request) {
-  for (const auto& [name, of] : curves_without_knots(request, session.registry)) {
-    const auto curve = session.study.curves.find(name);
-    if (curve == session.study.curves.end() || !curve->second.table)
-      throw InputError({session.study.file.string(), 0, 0}, "to simulate, curve " + name + " needs a table: [curves] " + name +
-                                                                " = { of = \"" + of + "\", table = \"FILE.csv\" }");
-    const Table table = read_csv(*curve->second.table);
-    const std::vector<double> x = table.values(of, table.at(of).unit == "deg" ? "rad" : table.at(of).unit);
-    constexpr int intervals = 100;
-    const double low = *std::min_element(x.begin(), x.end()), high = *std::max_element(x.begin(), x.end());
-    request.curves[name].of = of;
-    for (int i = 0; i <= intervals; ++i) request.curves[name].knots.push_back(low + (high - low) * i / intervals);
-  }
-}
-
-void curves_from_tables(const Session& session, Model& model) {
-  for (const auto& curve : std::vector<Curve>(model.curves)) {
-    const auto study = session.study.curves.find(curve.name);
-    if (study == session.study.curves.end() || !study->second.table) continue;
-    const Table table = read_csv(*study->second.table);
-    static_cast<void>(set_curve(model, curve.name, table.values(curve.of, curve.of_unit), table.values(curve.name, curve.unit)));
-  }
-}
-
-void check_noise(const SimulateStudy& ask, const SystemSpec& spec) {
-  std::vector<std::string> names;
-  for (const auto& output : spec.outputs) names.push_back(output.name);
-  for (const auto& [name, number] : ask.noise) {
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      throw InputError(number.where, "[simulate] noise: the system has no output '" + shown(name) + "'" + suggest(name, names));
-  }
-}
-
-Case from_section(Session& session) {
-  const SimulateStudy& ask = *session.study.simulate;
-  ModelRequest request = session.model.request;
-  add_camera(session, request);
-  knots_from_tables(session, request);
-  Case out{assemble(request, session.registry), {}, {}};
-  check_noise(ask, out.model.system->spec());
-  curves_from_tables(session, out.model);
-  const auto samples = static_cast<std::size_t>(ask.duration / ask.step) + 1;
-  out.signals.name = "simulation";
-  for (std::size_t i = 0; i < samples; ++i) out.signals.t.push_back(static_cast<double>(i) * ask.step);
-  for (const auto& input : out.model.system->spec().inputs)
-    out.signals.inputs.push_back({input.name, input.unit, std::vector<double>(samples, 0.0), 0.0});
-  const auto& states = out.model.system->spec().states;
-  out.initial = Eigen::VectorXd::Zero(out.model.states());
-  std::vector<std::string> names;
-  for (const auto& state : states) names.push_back(state.name);
-  for (std::size_t z = 0; z < out.model.own_states.size(); ++z)
-    out.initial[static_cast<Eigen::Index>(states.size() + z)] = out.model.own_states[z].initial;
-  for (const auto& [name, number] : ask.initial) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-      throw InputError(number.where, "[simulate] initial: the system has no state '" + shown(name) + "'" + suggest(name, names));
-    out.initial[found - names.begin()] = in_unit(number, name, states[static_cast<std::size_t>(found - names.begin())].unit);
-  }
-  return out;
-}
-
-/// The fitted model of a run, over the experiment it was fitted to.
-Case from_fit(Session& session) {
-  const std::vector<Fit> fits = fit_stage(session);
-  const auto usable = [](const Fit& fit) { return !fit.parameters.empty() && fit.method != "sliding_bin"; };
-  const auto fit = std::find_if(fits.rbegin(), fits.rend(), usable);
-  if (fit == fits.rend()) throw RunError("no method gave parameters to simulate with");
-  Prepared prepared = prepare(session);
-  for (auto& p : prepared.model.parameters) {
-    const auto value = fit->parameters.find(p.name);
-    if (value != fit->parameters.end()) p.value = value->second.value;
-  }
-  session.say("simulating with the parameters of " + fit->method);
-  const ReconstructedStates states = reconstruct_states(prepared.model, prepared.experiments.front());
-  const auto known = std::find(states.ok.begin(), states.ok.end(), true);
-  if (known == states.ok.end()) throw RunError("no sample shows the states to start from");
-  return {prepared.model, prepared.experiments.front(), states.x.row(known - states.ok.begin())};
-}
-
-Table simulate(const Case& c, const Session& session) {
-  Stepper stepper(c.model);
-  const InputTable inputs = input_table(c.signals, c.model.inputs());
-  std::mt19937_64 random(session.study.seed);
-  Segment run;
-  if (has_random_states(stepper.evaluator(), c.initial.data(), inputs.at(0), c.signals.t.front())) {
-    run_randomly(stepper, c.signals, inputs, c.initial.data(), random, run);
-  } else {
-    run_segment(stepper, c.signals, inputs, 0, c.signals.samples(), c.initial.data(), false, run);
-  }
-  if (!run.finite) throw RunError("simulation diverged (non-finite state) at t = " + format_value(c.signals.t[run.failed_at]) + " s");
-  Table table;
-  table.add("t", "s", c.signals.t);
-  for (Eigen::Index o = 0; o < run.y.cols(); ++o) {
-    const OutputSpec& output = c.model.system->spec().outputs[static_cast<std::size_t>(o)];
-    const std::string unit = display_unit(output.unit);
-    std::vector<double> values, noisy;
-    double sigma = 0.0;
-    if (session.study.simulate) {
-      const auto found = session.study.simulate->noise.find(output.name);
-      if (found != session.study.simulate->noise.end()) sigma = in_unit(found->second, output.name, output.unit);
-    }
-    std::normal_distribution<double> normal(0.0, 1.0);
-    for (Eigen::Index i = 0; i < run.y.rows(); ++i) {
-      values.push_back(convert(run.y(i, o), output.unit, unit));
-      noisy.push_back(convert(run.y(i, o) + sigma * normal(random), output.unit, unit));
-    }
-    if (!std::all_of(noisy.begin(), noisy.end(), [](double v) { return std::isfinite(v); }))
-      throw RunError("output " + output.name + " with noise of sigma " + format_value(sigma) + " is not finite");
-    if (sigma > 0.0) table.add(output.name, unit, noisy);
-    table.add(sigma > 0.0 ? output.name + "_true" : output.name, unit, values);
-  }
-  return table;
-}
-
-}  // namespace
 
 int simulate_verb(const Options& options, const Registry& registry) {
-  Session session(options, registry);
-  const Case c = session.study.simulate ? from_section(session) : from_fit(session);
-  const Table table = simulate(c, session);
-  const auto file = session.folder.file("simulation.csv");
-  session.redo_stage("simulate", session.inputs(session.study.text, {}), {"simulation.csv"},
-                     [&](const std::filesystem::path& dir) { write_csv(dir / "simulation.csv", table); });
+  Session session(options.session, registry);
+  const Simulation made = simulate_stage(session);
   if (options.json) {
-    std::cout << nlohmann::json{{"file", file.string()}, {"samples", table.rows()}, {"system", c.model.system->spec().key}}.dump(1) << '\n';
+    std::cout << nlohmann::json{{"file", made.file.string()}, {"samples", made.table.rows()}, {"system", made.system}}.dump(1) << '\n';
     return 0;
   }
-  std::cout << fmt::format("{} samples, {:.2f} s of {} → {}\n", table.rows(), c.signals.t.back() - c.signals.t.front(),
-                           c.model.system->spec().key, file.string());
+  const std::vector<double>& t = made.table.columns.front().values;
+  std::cout << fmt::format("{} samples, {:.2f} s of {} → {}\n", made.table.rows(), t.back() - t.front(), made.system, made.file.string());
   return 0;
 }
 

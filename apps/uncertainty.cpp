@@ -1,22 +1,20 @@
 #include <iostream>
 
 #include "apps/print.h"
-#include "apps/stages.h"
 #include "apps/verbs.h"
-#include "misfit/core/ranks.h"
+#include "misfit/jobs/ranks.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit {
 
 int uncertainty_verb(const Options& options, const Registry& registry) {
-  Options own = options;
-  own.quiet = options.quiet || !ranks().first();
   // What the runs start from is written by one rank only; the others find it done.
   on_first_rank([&] {
-    Session session(own, registry);
+    Session session(options.session, registry);
     static_cast<void>(attitude_stage(session));
     if (asks_for_resampling(session.study)) check_profile_names(session);
   });
-  Session session(own, registry);
+  Session session(options.session, registry);
   // Bootstrap and profiles alone need no perturbed rig.
   const bool resampling = asks_for_resampling(session.study);
   const bool perturbs_rig = !resampling || !session.study.uncertainty->perturb.empty();

@@ -1,10 +1,21 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "apps/session.h"
+#include "misfit/workflow/session.h"
 
 namespace misfit {
+
+/// What the command line asks for.
+struct Options {
+  SessionOptions session;
+  bool quiet = false, json = false;
+  std::vector<std::string> studies;  ///< batch: lists, folders, studies
+  std::string effect;                ///< add
+  bool automatic = false;            ///< discover --auto
+  std::string check_video;           ///< track: write the video with the track drawn to this file
+};
 
 // One function per verb: open the study, call the stages, print. Each in apps/NAME.cpp. Return the exit status.
 int track_verb(const Options& options, const Registry& registry);

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "misfit/video/canvas.h"
-#include "tests/apps/film.h"
 #include "tests/apps/program.h"
+#include "tests/workflow/film.h"
 
 namespace {
 

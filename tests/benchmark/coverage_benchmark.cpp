@@ -16,11 +16,11 @@
 #include <tuple>
 
 #include "misfit/core/error.h"
-#include "misfit/core/work_queue.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/trajectory_start.h"
 #include "misfit/inference/curves.h"
+#include "misfit/jobs/work_queue.h"
 #include "misfit_models_registry.h"
 #include "tests/benchmark/coverage_flights.h"
 #include "tests/benchmark/coverage_table.h"

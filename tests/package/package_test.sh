@@ -22,6 +22,16 @@ grep -q pitch_damping "$work/own.txt" || fail "the own program does not list mis
 awk -F, 'END { exit !($1 == 1 && ($2 - 28.6478898)^2 < 1e-6) }' "$work/out/simulation.csv" ||
   fail "the motion with the own effect ends with $(tail -n 1 "$work/out/simulation.csv"), not with t = 1 s, eta = 28.6479 deg"
 
+# The program on misfit/misfit.h finds the friction in the first minute of the flight, and prints nothing but what it means to.
+cp -r "$here/../../configs/swivel_friction" "$work/swivel"
+rm -rf "$work/swivel/out"
+sed -i 1801q "$work/swivel/track.csv"
+"$work/build/identify" "$work/swivel/study.toml" "$work/identified" C_m > "$work/identify.txt" 2> "$work/identify.err" || fail "identify: $(cat "$work/identify.err")"
+[ ! -s "$work/identify.err" ] || fail "identify prints: $(cat "$work/identify.err")"
+grep -q "^added coulomb_friction" "$work/identify.txt" || fail "identify says: $(cat "$work/identify.txt")"
+[ "$(grep -c ' ± ' "$work/identify.txt")" -ge 20 ] || fail "identify prints no curve: $(cat "$work/identify.txt")"
+[ -s "$work/identified/rungs/01_coulomb_friction/out/fit/filter_error/curves.csv" ] || fail "identify leaves no fit of the rung"
+
 # Both programs, the installed and the own, find the video module where it was installed.
 cp -r "$here/../../configs/mpf_f111" "$work/video"
 rm -rf "$work/video/out"

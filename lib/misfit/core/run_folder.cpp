@@ -120,7 +120,7 @@ void RunFolder::read() {
   if (access_ == Access::read) return;
   if (!content && !rules_.force)
     throw InputError(fmt::format("{}: {}: is it a file of yours? --force writes over it, --out DIR writes elsewhere", path.string(), why));
-  fmt::print(stderr, "{}: {}, so all stages run again\n", path.string(), why.empty() ? "is gone" : why);
+  lost_record_ = fmt::format("{}: {}, so all stages run again", path.string(), why.empty() ? "is gone" : why);
 }
 
 std::optional<fs::path> RunFolder::other_study() const {

@@ -35,14 +35,16 @@ class RunFolder {
   /// `read`: looks only; others may be at work in it, and it need not be there.
   enum class Access { write, read };
 
-  /// `study`: the file whose results these are; run.json names it relative to the folder. An unreadable run.json is said on stderr, and all
-  /// stages count as not done.
+  /// `study`: the file whose results these are; run.json names it relative to the folder. Where run.json cannot be read, all stages count
+  /// as not done (lost_record()).
   RunFolder(std::filesystem::path dir, std::string command, unsigned long seed, std::filesystem::path study = {}, WriteRules rules = {},
             Access access = Access::write);
 
   [[nodiscard]] const std::filesystem::path& path() const { return dir_; }
   [[nodiscard]] std::filesystem::path file(const std::string& name) const { return dir_ / name; }
   [[nodiscard]] Access access() const { return access_; }
+  /// Why all stages run again although results are there; else empty.
+  [[nodiscard]] const std::string& lost_record() const { return lost_record_; }
 
   /// True if `stage` ran before with exactly these inputs and the same program version and commit, and all its files are as they were
   /// written.
@@ -91,6 +93,7 @@ class RunFolder {
   unsigned long seed_;
   std::filesystem::path study_, study_before_;  ///< as given, absolute; as run.json has it
   WriteRules rules_;
+  std::string lost_record_;
   std::map<std::string, StageRecord> stages_;
   std::map<std::string, std::string>
       files_;  ///< what misfit made: name → hash; an empty hash fits nothing (run.json of an earlier version)

@@ -7,9 +7,9 @@
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
-#include "misfit/core/work_queue.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/diagnose/innovations.h"
+#include "misfit/jobs/work_queue.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {

@@ -4,9 +4,9 @@
 //   [HK] A. C. Harvey, S. J. Koopman, J. Business & Economic Statistics 10 (1992): diagnostic checking of unobserved-components models.
 //   [LB] G. M. Ljung, G. E. P. Box, Biometrika 65 (1978).
 
-#include "misfit/core/work_queue.h"
 #include "misfit/data/diagnosis.h"
 #include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/jobs/work_queue.h"
 
 namespace misfit {
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
-#include "misfit/core/ranks.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/diagnose/features.h"
@@ -14,6 +13,7 @@
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/refit_jobs.h"
 #include "misfit/discover/verdict.h"
+#include "misfit/jobs/ranks.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "misfit/core/job_queue.h"
 #include "misfit/data/calibration.h"
 #include "misfit/data/candidates.h"
 #include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/jobs/job_queue.h"
 #include "misfit/model/registry.h"
 
 namespace misfit {

@@ -2,8 +2,8 @@
 
 #include <type_traits>
 
-#include "misfit/core/ranks.h"
 #include "misfit/fit/filter/estimate_bytes.h"
+#include "misfit/jobs/ranks.h"
 
 namespace misfit {
 

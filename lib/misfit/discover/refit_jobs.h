@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "misfit/core/job_queue.h"
 #include "misfit/discover/refit.h"
+#include "misfit/jobs/job_queue.h"
 
 namespace misfit {
 

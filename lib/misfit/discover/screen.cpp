@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "misfit/core/work_queue.h"
+#include "misfit/jobs/work_queue.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {

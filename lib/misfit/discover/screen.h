@@ -1,9 +1,9 @@
 #pragma once
 
-#include "misfit/core/work_queue.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/discover/candidate_model.h"
 #include "misfit/discover/frequency_scan.h"
+#include "misfit/jobs/work_queue.h"
 
 namespace misfit {
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <optional>
 
-#include "misfit/core/work_queue.h"
 #include "misfit/data/intervals.h"
+#include "misfit/jobs/work_queue.h"
 #include "misfit/uncertainty/chain_result.h"
 #include "misfit/uncertainty/resample.h"
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "misfit/core/checkpoint.h"
 #include "misfit/core/error.h"
-#include "misfit/core/ranks.h"
+#include "misfit/jobs/checkpoint.h"
+#include "misfit/jobs/ranks.h"
 
 namespace misfit {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "misfit/core/job_queue.h"
+#include "misfit/jobs/job_queue.h"
 
 namespace misfit {
 

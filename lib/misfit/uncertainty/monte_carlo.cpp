@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "misfit/core/error.h"
-#include "misfit/core/ranks.h"
+#include "misfit/jobs/ranks.h"
 
 namespace misfit {
 namespace {

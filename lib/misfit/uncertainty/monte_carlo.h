@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "misfit/core/job_queue.h"
+#include "misfit/jobs/job_queue.h"
 #include "misfit/uncertainty/chain_result.h"
 #include "misfit/uncertainty/perturbation.h"
 #include "misfit/uncertainty/variance_shares.h"

@@ -4,9 +4,9 @@
 #include <optional>
 #include <random>
 
-#include "misfit/core/job_queue.h"
 #include "misfit/data/fit.h"
 #include "misfit/data/multi_start.h"
+#include "misfit/jobs/job_queue.h"
 #include "misfit/model/model.h"
 #include "misfit/uncertainty/chain_result.h"
 

@@ -6,8 +6,8 @@
 
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
-#include "misfit/core/ranks.h"
 #include "misfit/core/text.h"
+#include "misfit/jobs/ranks.h"
 
 namespace misfit {
 namespace {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <optional>
 
-#include "misfit/core/job_queue.h"
 #include "misfit/data/intervals.h"
+#include "misfit/jobs/job_queue.h"
 
 namespace misfit {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "misfit/core/bytes.h"
 #include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/jobs/bytes.h"
 
 namespace misfit {
 

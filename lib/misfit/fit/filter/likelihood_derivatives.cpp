@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "misfit/core/work_queue.h"
+#include "misfit/jobs/work_queue.h"
 
 namespace misfit {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "misfit/core/work_queue.h"
+#include "misfit/jobs/work_queue.h"
 
 namespace misfit {
 namespace {

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "misfit/workflow/session.h"
+
+namespace misfit {
+
+/// One line on stderr, "fit  43 %  12 s left", rewritten at most five times a second; silent when stderr is not a terminal.
+class Progress {
+ public:
+  explicit Progress(const std::string& what);
+  ~Progress();  ///< clears the line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// The time left is told by what was done since the first call: what an earlier run had done took no time in this one.
+  void update(std::size_t done, std::size_t total);
+
+ private:
+  std::string what_;
+  bool visible_;
+  std::optional<std::size_t> before_;  ///< done before the first call
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+/// Notes as lines on stderr, progress as a line that is rewritten there.
+[[nodiscard]] Listener terminal_listener();
+
+}  // namespace misfit

@@ -1,0 +1,16 @@
+# misfit_mpi.so: the only thing that is linked to MPI, loaded when mpirun has started misfit (lib/misfit/jobs/ranks.h). Left out where MPI is not
+# installed: then misfit runs on threads alone.
+set(MPI_CXX_SKIP_MPICXX ON)
+find_package(MPI COMPONENTS CXX QUIET)
+if(MPI_CXX_FOUND)
+  add_library(misfit_mpi MODULE ${PROJECT_SOURCE_DIR}/lib/misfit/jobs/mpi/module.cpp)
+  target_include_directories(misfit_mpi PRIVATE ${PROJECT_SOURCE_DIR}/lib)
+  target_compile_definitions(misfit_mpi PRIVATE OMPI_SKIP_MPICXX)
+  target_link_libraries(misfit_mpi PRIVATE misfit_options MPI::MPI_CXX)
+  set_target_properties(misfit_mpi PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+  add_dependencies(misfit misfit_mpi)
+  install(TARGETS misfit_mpi DESTINATION ${CMAKE_INSTALL_LIBDIR}/misfit)
+  target_link_options(misfit_jobs INTERFACE "$<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${CMAKE_INSTALL_LIBDIR}/misfit>")
+else()
+  message(STATUS "MPI was not found: misfit will run on threads alone")
+endif()

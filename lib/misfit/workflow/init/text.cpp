@@ -1,0 +1,126 @@
+#include "misfit/workflow/init/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/toml_text.h"
+#include "misfit/core/units.h"
+#include "misfit/model/role_units.h"
+
+namespace misfit {
+namespace {
+
+/// Four significant digits, as a TOML float.
+std::string number(double value) {
+  std::string text = fmt::format("{:.4g}", value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string ratio(const std::string& above, const std::string& below) { return bind_unit("{a}/{b}", {{"a", above}, {"b", below}}); }
+
+/// Within a factor of 1000.
+std::string positive_bounds(double value) { return fmt::format("bounds = [{}, {}]", number(1e-3 * value), number(1e3 * value)); }
+
+std::string parameter(const std::string& name, const std::string& unit, double value, const std::string& more, const std::string& doc) {
+  return fmt::format("{} = {{ unit = {}, value = {}, free = true{}, doc = {} }}\n", name, toml_string(unit), number(value),
+                     more.empty() ? "" : ", " + more, toml_string(doc));
+}
+
+std::string driven_by(const GuessedModel& model, const GuessedOutput& output) {
+  std::string sum;
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) sum += fmt::format(" + {}*{}", output.gains[i], model.inputs[i]);
+  return sum;
+}
+
+std::string parameters_of(const GuessedModel& model, const GuessedOutput& output) {
+  const LinearGuess& g = output.guess;
+  std::string text = fmt::format("# {}: {}.\n", output.name, g.why);
+  if (g.order == 2) {
+    text += parameter(output.stiffness, "1/s^2", g.stiffness, positive_bounds(g.stiffness), "square of the natural frequency");
+    text += parameter(output.damping, "1/s", g.damping, positive_bounds(g.damping), "rate over which the motion slows");
+  } else {
+    text += parameter(output.tau, "s", g.tau, positive_bounds(g.tau), "time constant");
+  }
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    text += parameter(output.gains[i], ratio(output.unit, model.input_units[i]), g.gain[i], "", "static gain of " + model.inputs[i]);
+  }
+  return text + parameter(output.rest, output.unit, g.rest, "", model.inputs.empty() ? "equilibrium" : "output without input");
+}
+
+std::string equations_of(const GuessedModel& model, const GuessedOutput& output) {
+  const std::string target = output.rest + driven_by(model, output);
+  if (output.guess.order == 1) return fmt::format("{} = \"({} - {})/{}\"\n", output.name, target, output.name, output.tau);
+  return fmt::format("{} = \"{}*({} - {}) - {}*{}\"   # d{}/dt = {} by rate_of\n", output.rate_state, output.stiffness, target, output.name,
+                     output.damping, output.rate_state, output.name, output.rate_state);
+}
+
+/// What the comment behind a column says, with its header where that is not simply its name.
+std::string remark_on(const ColumnSurvey& column) {
+  return toml_comment(column.header.starts_with(column.name) ? column.why : "'" + column.header + "': " + column.why);
+}
+
+}  // namespace
+
+std::string model_text(const GuessedModel& model, const RecordingSurvey& survey) {
+  std::string text =
+      "# A linear model to start from, one equation per state. Names, units and formulas are yours to change: misfit checks that they fit\n"
+      "# together. `free = true` is estimated by misfit fit; the values are where it starts.\n"
+      "[system]\n"
+      "doc = \"linear model, estimated from the recording by misfit init\"\n"
+      "source = \"Ljung, System Identification (1999), 4.2\"\n\n[states]\n";
+  for (const auto& o : model.outputs) {
+    text += fmt::format("{} = {{ unit = {}, initial = \"free\" }}\n", o.name, toml_string(o.unit));
+    if (o.guess.order == 2)
+      text +=
+          fmt::format("{} = {{ unit = {}, rate_of = \"{}\", initial = \"free\" }}\n", o.rate_state, toml_string(rate_unit(o.unit)), o.name);
+  }
+  if (!model.inputs.empty()) text += "\n[inputs]\n";
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    text += fmt::format("{} = {{ unit = {}, hold = \"zero_order\" }}   # {}{}\n", model.inputs[i], toml_string(model.input_units[i]),
+                        remark_on(column_called(survey, model.inputs[i])), model.hold_reasons[i]);
+  }
+  text += "\n[parameters]\n";
+  for (const auto& o : model.outputs) text += parameters_of(model, o);
+  text += "\n[equations]                # right-hand side: rate of change of the state\n";
+  for (const auto& o : model.outputs) text += equations_of(model, o);
+  text += "\n[outputs]                  # the measured columns; noise: sigma of the white measurement noise, a start\n";
+  for (const auto& o : model.outputs) {
+    text += fmt::format("{} = {{ unit = {}, noise = {} }}   # {}\n", o.name, toml_string(o.unit), number(o.noise),
+                        remark_on(column_called(survey, o.name)));
+    if (!o.rate.empty() && o.guess.order == 2)
+      text += fmt::format("{} = {{ unit = {}, noise = {} }}   # the measured rate of {}\n", o.rate, toml_string(o.rate_unit),
+                          number(o.rate_noise), o.name);
+  }
+  return text;
+}
+
+std::string study_text(const std::string& name, const std::vector<std::string>& parts, const RecordingSurvey& survey) {
+  std::string text =
+      fmt::format("# Written by misfit init from {}: {}, {} rows, one each {:g} s. Guesses carry their reason: change what is wrong.\n",
+                  toml_comment(std::filesystem::path(survey.source).filename().string()), survey.format, survey.rows, survey.step);
+  for (const auto& remark : survey.remarks) text += "# Note: " + toml_comment(remark) + ".\n";
+  text += fmt::format(
+      "[study]\n"
+      "name = {}\n"
+      "question = \"What does a linear model of this recording miss?\"\n"
+      "methods = [\"output_error\"]   # \"filter_error\" where something unmeasured drives the motion; misfit discover needs it\n"
+      "seed = 1\n\n"
+      "[system]\n"
+      "file = \"model.toml\"          # the equations, as text\n",
+      toml_string(name));
+  for (const auto& part : parts) {
+    text += fmt::format(
+        "\n[[experiment]]\n"
+        "name = {}\n"
+        "data = {}\n"
+        "validation = \"last 25 %\"     # held out: never seen by the fit; or [t0, t1], or another file\n"
+        "# exclude = 5                # initial samples that do not count\n",
+        toml_string(part), toml_string(part + ".csv"));
+  }
+  return text + "\n[effects]                    # what the model lacks: `misfit discover` names it, `misfit add` puts it here\n";
+}
+
+}  // namespace misfit

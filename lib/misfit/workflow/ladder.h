@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "misfit/workflow/stages.h"
+
+namespace misfit {
+
+/// The ladder of a study: ladder.json and rungs/NN_EFFECT/ in its run folder. Every rung is a study of its own, with its own results in the
+/// out/ beside it.
+class ModelLadder {
+ public:
+  /// Opens the study and its ladder. A ladder of a study or data that have changed since is replaced by a new one; a note says so.
+  ModelLadder(const SessionOptions& options, const Registry& registry);
+
+  [[nodiscard]] Session& root() { return root_; }
+  [[nodiscard]] const Ladder& ladder() const { return ladder_; }
+  /// The study of the last rung (the root study where there is none), opened. A note says so when it is not the root study.
+  [[nodiscard]] Session& last();
+  /// The fit of the last rung added here.
+  [[nodiscard]] const Fit& last_fit();
+  /// Its rung; makes the first one, with its fit, where there is no ladder yet.
+  [[nodiscard]] const Rung& last_rung();
+
+  /// A new rung: `effect` (or "system:KIND") added to the last rung. `from`: what discovery says of the effect; without it the rung's note
+  /// says why no drop was predicted. What the parent study read from video or pictures is copied. InputError: no such effect, already
+  /// there, does not suit the system; RunError: the new model cannot be fitted.
+  const Rung& add(const std::string& effect, const std::optional<Candidate>& from);
+
+ private:
+  [[nodiscard]] std::string relative_study(const Session& session) const;
+  void append(Rung rung);
+
+  SessionOptions options_;
+  const Registry& registry_;
+  Session root_;
+  std::unique_ptr<Session> last_;
+  Ladder ladder_;
+};
+
+/// What discovery says of the effect for the last rung: roles, where to start, the drop it predicts. Asked before the effect is added, so
+/// that the prediction is one. nullopt for a change of system, which no discovery ranks. InputError as ModelLadder::add.
+[[nodiscard]] std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect);
+
+/// The best accepted candidate that a study can take in one line.
+[[nodiscard]] std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Registry& registry);
+
+/// What happens while a ladder is extended. Empty functions: nobody listens.
+struct LadderListener {
+  std::function<void(const Discovery&)> discovered;
+  std::function<void(const Rung&)> added;
+};
+
+/// discover --auto: adds the accepted effect and searches again, until none is accepted or 12 rungs were added (lib/misfit/README.md, 6.5).
+void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderListener& listener = {});
+
+/// The same options for another study, its results in the out/ beside it.
+[[nodiscard]] SessionOptions options_for(const SessionOptions& options, const std::filesystem::path& study);
+
+/// The report of the study, written anew after its ladder has grown: a note has its path, or why there is none.
+void report_ladder(ModelLadder& ladder);
+
+/// The study's text with the effect added, for `folder`. InputError as ModelLadder::add.
+[[nodiscard]] std::string study_with_effect(const Session& session, const std::string& effect, const std::optional<Candidate>& from,
+                                            const std::filesystem::path& folder);
+/// The study's text with another system: what does not suit it becomes a comment. Names of effects left out go to `left_out`.
+[[nodiscard]] std::string study_with_system(const Session& session, const std::string& kind, const std::filesystem::path& folder,
+                                            std::vector<std::string>& left_out);
+
+}  // namespace misfit

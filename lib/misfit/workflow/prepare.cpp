@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "misfit/core/error.h"
+#include "misfit/inference/curves.h"
+#include "misfit/inference/gaps.h"
+#include "misfit/math/statistics.h"
+#include "misfit/model/curve_table.h"
+#include "misfit/model/experiment.h"
+#include "misfit/workflow/stages.h"
+
+namespace misfit {
+namespace {
+
+constexpr int default_intervals = 16;  // per curve: enough for any bend the data can show; roughness does the rest
+
+/// A model in which any knots stand for those still to be chosen: to read signals, which need the system and not the curves.
+Model provisional(ModelRequest request, const Registry& registry) {
+  for (const auto& [name, of] : curves_without_knots(request, registry)) {
+    request.curves[name].of = of;
+    request.curves[name].knots = {1.0, 2.0};
+  }
+  return assemble(request, registry);
+}
+
+/// Does the system predict the image itself? Then it reads the track; every other system reads the attitude.
+bool predicts_pixels(const SystemSpec& spec) {
+  return std::any_of(spec.outputs.begin(), spec.outputs.end(), [](const OutputSpec& o) { return o.name == "P_y" || o.name == "P_z"; });
+}
+
+std::vector<double> where_ok(std::vector<double> values, const std::vector<bool>& ok) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!ok[i]) values[i] = std::nan("");
+  }
+  return values;
+}
+
+/// The track as the channels P_y and P_z, with its sigma where it gives one.
+Signals pixels_of(const ExperimentStudy& experiment, const std::filesystem::path& file, const Model& model) {
+  const Track track = read_track(file, experiment.columns);
+  Table table;
+  table.source = file.string();
+  table.add("t", "s", track.t);
+  table.add("P_y", "px", where_ok(track.P_y, track.ok));
+  table.add("P_z", "px", where_ok(track.P_z, track.ok));
+  ExperimentStudy plain = experiment;
+  plain.columns = {};  // the map was for the track's columns
+  Signals signals = signals_from(table, model, plain);
+  std::vector<double> known;
+  for (std::size_t i = 0; i < track.sigma.size(); ++i) {
+    if (track.ok[i] && std::isfinite(track.sigma[i])) known.push_back(track.sigma[i]);
+  }
+  for (auto& channel : signals.measured) channel.sigma = known.empty() ? 0.0 : median(known);
+  signals.notes.insert(signals.notes.begin(), track.notes.begin(), track.notes.end());
+  return signals;
+}
+
+/// Does the method run the model, so that a recording is cut where it cannot be run across? A regression takes no derivative across a gap.
+enum class Gaps { cut, left };
+
+std::vector<Signals> read_experiments(Session& session, const Model& model, Gaps gaps) {
+  std::vector<Signals> out;
+  const std::vector<std::optional<Attitude>> attitudes = attitude_stage(session);
+  const bool pixels = predicts_pixels(model.system->spec());
+  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
+    const ExperimentStudy& experiment = session.study.experiments[e];
+    if (attitudes[e] && pixels) {
+      out.push_back(pixels_of(experiment, track_files(session, e).track, model));
+    } else if (attitudes[e]) {
+      ExperimentStudy plain = experiment;
+      plain.columns = {};
+      out.push_back(signals_from(attitude_table(*attitudes[e]), model, plain));
+    } else {
+      Signals whole = signals_from(read_csv(*experiment.data), model, experiment);
+      std::vector<Signals> parts = gaps == Gaps::cut ? split_at_gaps(model, std::move(whole)) : std::vector<Signals>{std::move(whole)};
+      std::move(parts.begin(), parts.end(), std::back_inserter(out));
+    }
+  }
+  return out;
+}
+
+void start_from_tables(const Session& session, Model& model) {
+  for (const auto& [name, curve] : session.study.curves) {
+    const Curve* target = model.find_curve(name);
+    if (!curve.table || target == nullptr) continue;
+    const Table table = read_csv(*curve.table);
+    static_cast<void>(set_curve(model, name, table.values(curve.of, target->of_unit), table.values(name, target->unit)));
+  }
+}
+
+Prepared prepare_request(Session& session, ModelRequest request, Gaps gaps) {
+  if (session.study.experiments.empty())
+    throw InputError({session.study.file.string(), 0, 0}, "the study has no [[experiment]]: there is nothing to fit");
+  add_camera(session, request);
+  Prepared out;
+  out.experiments = read_experiments(session, provisional(request, session.registry), gaps);
+  choose_all_knots(request, session.registry, out.experiments, default_intervals);
+  out.model = assemble(request, session.registry);
+  out.request = std::move(request);
+  start_from_tables(session, out.model);
+  return out;
+}
+
+}  // namespace
+
+void add_camera(Session& session, ModelRequest& request) {
+  const SystemType& type = session.registry.system(request.system, request.system_where);
+  const SystemSpec spec = type.make(request.options)->spec();
+  if (!predicts_pixels(spec)) return;
+  const std::optional<Calibration> calibration = calibrate_stage(session);
+  if (!calibration) return;
+  const auto has_flag = std::find(type.flags.begin(), type.flags.end(), "plane_by_plane") != type.flags.end();
+  if (has_flag) request.options.flags.emplace("plane_by_plane", calibration->model == CameraModel::plane_by_plane);
+  for (const char* name : camera_parameter_names) {
+    const bool known = std::any_of(spec.constants.begin(), spec.constants.end(), [&](const ConstantSpec& c) { return c.name == name; });
+    if (!known || request.constants.contains(name)) continue;
+    request.constants[name] = calibration->value(name);
+    if (!(calibration->sigma(name) > 0.0)) continue;
+    request.constant_sigmas[name] = calibration->sigma(name);
+    // Free, with the calibration as its prior: so its uncertainty is in every interval (marginal sigmas; their correlations are left out,
+    // which makes intervals a little wider). A study can fix it again.
+    if (!request.parameters.contains(name)) request.parameters[name].free = true;
+  }
+}
+
+Prepared prepare(Session& session) { return prepare_request(session, session.model.request, Gaps::cut); }
+
+std::optional<Prepared> prepare_regression(Session& session, std::vector<std::string>& left_out) {
+  auto request = regression_form(session.model.request, session.registry, left_out);
+  if (!request) return std::nullopt;
+  return prepare_request(session, std::move(*request), Gaps::left);
+}
+
+bool averaged_by_attitude(const Session& session) { return has_track(session.study.experiments.front()); }
+
+}  // namespace misfit

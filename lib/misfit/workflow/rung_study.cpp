@@ -1,0 +1,148 @@
+// The study of a new rung: the text of the one below with one line changed.
+
+#include <algorithm>
+
+#include "misfit/core/error.h"
+#include "misfit/data/study_edit.h"
+#include "misfit/workflow/ladder.h"
+
+namespace misfit {
+namespace {
+
+/// Does a model with this request come together? Knots still to be chosen are stood in for.
+void try_assemble(ModelRequest request, const Registry& registry) {
+  for (const auto& [name, of] : curves_without_knots(request, registry)) {
+    request.curves[name].of = of;
+    request.curves[name].knots = {1.0, 2.0};
+  }
+  static_cast<void>(assemble(request, registry));
+}
+
+bool same_effect(const EffectRequest& a, const std::string& kind, const std::map<std::string, std::string>& roles) {
+  return a.kind == kind && a.roles == roles;
+}
+
+std::string listed(const std::vector<EffectRequest>& effects) {
+  std::string out;
+  for (const auto& effect : effects) out += (out.empty() ? "" : ", ") + effect.name;
+  return out;
+}
+
+/// A name that no effect of the model has: the kind, or kind_2, ….
+std::string free_name(const std::vector<EffectRequest>& effects, const std::string& kind) {
+  std::string name = kind;
+  const auto taken = [&] { return std::any_of(effects.begin(), effects.end(), [&](const EffectRequest& e) { return e.name == name; }); };
+  for (int number = 2; taken(); ++number) name = kind + "_" + std::to_string(number);
+  return name;
+}
+
+/// Where to start: shapes where discovery's scan found most (from a wrong sector or frequency no refit finds the right one), and if it
+/// refitted the effect, all its numbers at that maximum (another start may end in a lower one).
+std::map<std::string, double> start_found(const Effect& effect, const Candidate& from) {
+  std::map<std::string, double> start;
+  for (const auto& c : effect.spec().coefficients) {
+    const bool scanned_shape = c.scan.count != 0 && c.kind == CoefficientKind::shape;
+    if (c.borrowed || (!scanned_shape && !from.actual_drop)) continue;
+    for (const auto& [name, estimate] : from.parameters) {
+      if (name == c.name || name.ends_with(std::string(".") + c.name)) start[c.name] = estimate.value;
+    }
+  }
+  return start;
+}
+
+/// The name that a coefficient has in a system → the name the same one has in another.
+std::map<std::string, std::string> renamed_coefficients(const SystemSpec& from, const SystemSpec& to) {
+  std::map<std::string, std::string> out;
+  for (const auto& [own, name] : from.coefficient_names) {
+    const auto there = to.coefficient_names.find(own);
+    out[name] = there == to.coefficient_names.end() ? own : there->second;
+  }
+  for (const auto& [own, name] : to.coefficient_names) {
+    if (!from.coefficient_names.contains(own)) out[own] = name;
+  }
+  return out;
+}
+
+/// An edit that is refused names the study.
+template <class Edit>
+std::string edited(const Session& session, const Edit& edit) {
+  try {
+    return edit();
+  } catch (const InputError& error) {
+    throw InputError({session.study.file.string(), 0, 0}, error.what());
+  }
+}
+
+}  // namespace
+
+std::string study_with_effect(const Session& session, const std::string& effect, const std::optional<Candidate>& from,
+                              const std::filesystem::path& folder) {
+  const ModelRequest& model = session.model.request;
+  const Effect& found = session.registry.effect(effect);  // InputError with the nearest name
+  const std::map<std::string, std::string> roles = from ? from->roles : std::map<std::string, std::string>{};
+  for (const auto& own : model.effects) {
+    if (same_effect(own, effect, roles))
+      throw InputError("effect '" + effect + "' is already in the model (" + listed(model.effects) + ")");
+  }
+  const std::string name = free_name(model.effects, effect);
+  ModelRequest with = model;
+  with.effects.push_back({name, effect, roles, {}});
+  try {
+    try_assemble(with, session.registry);
+  } catch (const InputError& error) {
+    throw InputError("effect '" + effect + "' does not suit this model: " + error.what());
+  }
+  const auto start = from ? start_found(found, *from) : std::map<std::string, double>{};
+  const std::string text = text_for_folder(session.study, folder);
+  return edited(session, [&] { return with_effect(text, effect_line(name, effect, roles, start)); });
+}
+
+std::string study_with_system(const Session& session, const std::string& kind, const std::filesystem::path& folder,
+                              std::vector<std::string>& left_out) {
+  const ModelRequest& model = session.model.request;
+  if (kind == model.system) throw InputError("the model's system is already '" + kind + "'");
+  const SystemType& type = session.registry.system(kind);  // InputError with the nearest name
+  std::string text = text_for_folder(session.study, folder);
+  text = edited(session, [&] { return with_system(text, kind); });
+  SystemOptions options;
+  for (const auto& [flag, value] : model.options.flags) {
+    if (std::find(type.flags.begin(), type.flags.end(), flag) != type.flags.end()) {
+      options.flags[flag] = value;
+    } else {
+      text = edited(session, [&] { return without_entry(text, "system", flag, "of " + model.system); });
+    }
+  }
+  const SystemSpec from = session.registry.system(model.system).make(model.options)->spec();
+  const SystemSpec to = type.make(options)->spec();
+  ModelRequest with = model;
+  with.system = kind;
+  with.options = options;
+  with.constants.clear();  // the new system may ask for others; assemble() of the new study says so
+  for (const auto& constant : to.constants) {
+    const auto given = model.constants.find(constant.name);
+    with.constants[constant.name] = given != model.constants.end() ? given->second : std::max(constant.value, constant.lower);
+  }
+  with.parameters.clear();
+  with.curves.clear();
+  for (const auto& effect : model.effects) {
+    with.effects = {effect};
+    const auto& coefficients = session.registry.effect(effect.kind).spec().coefficients;
+    if (std::any_of(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& c) { return c.borrowed; }))
+      with.effects = model.effects;  // it needs the others: judged together with them
+    try {
+      try_assemble(with, session.registry);
+    } catch (const InputError& error) {
+      if (with.effects.size() > 1) continue;
+      left_out.push_back(effect.name);
+      text = edited(session, [&] { return without_entry(text, "effects", effect.name, "does not suit " + kind); });
+    }
+  }
+  for (const auto& [old_name, new_name] : renamed_coefficients(from, to)) {
+    for (const char* section : {"curves", "parameters"})
+      text =
+          edited(session, [&, from_name = old_name, to_name = new_name] { return with_renamed_entry(text, section, from_name, to_name); });
+  }
+  return text;
+}
+
+}  // namespace misfit

@@ -1,0 +1,216 @@
+#include "misfit/workflow/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <stdexcept>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/core/table.h"
+#include "misfit/data/reference.h"
+#include "misfit/data/sweep.h"
+#include "misfit/data/track.h"
+#include "misfit/jobs/ranks.h"
+#include "misfit/model/declared.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+Study open_study(const SessionOptions& options) {
+  Study study = read_study(options.study);
+  if (options.seed) study.seed = *options.seed;
+  return study;
+}
+
+fs::path folder_of(const SessionOptions& options, const Study& study) {
+  return options.out.empty() ? study.folder / "out" : fs::path(options.out);
+}
+
+RunFolder open_folder(const SessionOptions& options, const Study& study, RunFolder::Access access) {
+  RunFolder folder(folder_of(options, study), options.command, study.seed, study.file, {files_of_study(study), options.force}, access);
+  if (const auto other = folder.other_study())
+    throw InputError("the run folder " + folder.path().string() + " holds the results of another study, " + other->string() +
+                     ": give this one a folder of its own (--out out-" + study.file.stem().string() + ", say), or remove that one");
+  return folder;
+}
+
+/// How run.json names a file: "out/…" for those of the run folder, else relative to the study. The same however the two were typed.
+std::string shown_path(const fs::path& file, const fs::path& study, const fs::path& run) {
+  const auto from = [whole = fs::absolute(file).lexically_normal()](const fs::path& folder) {
+    return whole.lexically_relative(fs::absolute(folder).lexically_normal());
+  };
+  const fs::path inside = from(run);
+  if (!inside.empty() && *inside.begin() != "..") return ("out" / inside).generic_string();
+  const fs::path beside = from(study);
+  return beside.empty() ? file.filename().string() : beside.generic_string();
+}
+
+/// Inputs of a stage without the place of their files: a rung names the same video by another path.
+std::multiset<std::pair<std::string, std::string>> by_file_name(const std::map<std::string, std::string>& inputs) {
+  std::multiset<std::pair<std::string, std::string>> out;
+  for (const auto& [file, hash] : inputs) out.emplace(fs::path(file).filename().string(), hash);
+  return out;
+}
+
+}  // namespace
+
+const std::string& hash_of_program() {
+  static const std::string hash = [] {
+    std::error_code error;
+    const fs::path self = fs::read_symlink("/proc/self/exe", error);
+    return error ? "unknown" : hash_file(self);
+  }();
+  return hash;
+}
+
+namespace {
+
+/// What a long stage would otherwise find out at its end: files that are small, and everything that a video's tracking comes before.
+void check_small_files(const Study& study) {
+  for (const auto& [curve, file] : study.reference) static_cast<void>(read_reference(file, curve));
+  for (const auto& [name, curve] : study.curves) {
+    if (curve.table) static_cast<void>(read_csv(*curve.table));
+  }
+  if (std::none_of(study.experiments.begin(), study.experiments.end(), [](const ExperimentStudy& e) { return e.video.has_value(); }))
+    return;
+  if (study.camera.sweep) static_cast<void>(read_sweep(*study.camera.sweep));
+  if (study.camera.sweep_images) static_cast<void>(read_sweep_pictures(*study.camera.sweep_images));
+  for (const ExperimentStudy& e : study.experiments) {
+    if (e.data) static_cast<void>(read_csv(*e.data));
+    if (e.track) static_cast<void>(read_track(*e.track, e.columns));
+  }
+}
+
+/// The pictures that the table of a sweep names. A table that cannot be read is reported by the stage that needs it.
+void add_sweep_pictures(const Study& study, std::vector<fs::path>& files) {
+  if (!study.camera.sweep_images) return;
+  try {
+    for (const SweepPicture& picture : read_sweep_pictures(*study.camera.sweep_images)) files.push_back(picture.file);
+  } catch (const InputError&) {
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> files_of_study(const Study& study) {
+  std::vector<fs::path> files{study.file};
+  const auto add = [&](const std::optional<fs::path>& file) {
+    if (file) files.push_back(*file);
+  };
+  add(study.system_file);
+  add(study.camera.sweep);
+  add(study.camera.sweep_images);
+  add(study.camera.sweep_marker.picture);
+  add(study.video.marker.picture);
+  add_sweep_pictures(study, files);
+  for (const ExperimentStudy& e : study.experiments) {
+    add(e.track);
+    add(e.video);
+    add(e.data);
+  }
+  for (const auto& [name, curve] : study.curves) add(curve.table);
+  for (const auto& [name, file] : study.reference) add(file);
+  return files;
+}
+
+RunFolder::Access access_of_rank() { return ranks().first() ? RunFolder::Access::write : RunFolder::Access::read; }
+
+Session::Session(const SessionOptions& o, const Registry& r, RunFolder::Access access)
+    : options(o),
+      study(open_study(o)),
+      declared(study_registry(study, r)),
+      registry(*declared),
+      model(read_model(study, registry)),
+      folder(open_folder(o, study, access)),
+      program(hash_of_program()) {
+  if (!folder.lost_record().empty()) note(folder.lost_record());
+  if (access == RunFolder::Access::read) return;
+  for (const char* below_it : {"fit", "figures", "rungs"}) check_folder(folder.file(below_it));
+  check_small_files(study);
+}
+
+std::map<std::string, std::string> Session::inputs(const std::string& settings, const std::vector<fs::path>& files) const {
+  std::map<std::string, std::string> out{{"program", program}, {"settings", hash_text(settings)}};
+  for (const auto& file : files) {
+    out[shown_path(file, study.folder, folder.path())] = hash_file(file);
+  }
+  return out;
+}
+
+void Session::do_stage(const std::string& stage, const std::map<std::string, std::string>& inputs, const std::vector<std::string>& files,
+                       const std::function<void(const fs::path&)>& make) {
+  if (folder.up_to_date(stage, inputs)) return;
+  const auto before = folder.stages().find(stage);
+  const std::vector<std::string> damaged = folder.damaged(stage);
+  if (before != folder.stages().end() && before->second.inputs == inputs && !damaged.empty())
+    note(fmt::format("{}{}: not as misfit wrote {}: made again", folder.file(damaged.front()).string(),
+                     damaged.size() > 1 ? fmt::format(" and {} more", damaged.size() - 1) : "", damaged.size() > 1 ? "them" : "it"));
+  redo_stage(stage, inputs, files, make);
+}
+
+void Session::redo_stage(const std::string& stage, const std::map<std::string, std::string>& inputs, const std::vector<std::string>& files,
+                         const std::function<void(const fs::path&)>& make) {
+  if (folder.access() == RunFolder::Access::read) throw std::logic_error("stage '" + stage + "' is to be done by the first rank");
+  folder.check_places(files);
+  const auto begin = std::chrono::steady_clock::now();
+  const PartFolder part(folder.path());
+  const auto in_place = [&](std::string message) {
+    const std::string made = part.path().string();
+    for (std::size_t at = message.find(made); at != std::string::npos; at = message.find(made))
+      message.replace(at, made.size(), folder.path().string());
+    return message;
+  };
+  try {
+    make(part.path());
+  } catch (const WriteError& error) {
+    throw WriteError(in_place(error.what()));
+  } catch (const MachineError& error) {
+    throw MachineError(in_place(error.what()));
+  } catch (const RunError& error) {
+    throw RunError(in_place(error.what()));
+  }
+  folder.commit(part,
+                {stage, options.command, inputs, {}, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()});
+}
+
+std::vector<fs::path> Session::files_of_stage(const std::string& stage) const {
+  std::vector<fs::path> files;
+  const auto done = folder.stages().find(stage);
+  if (done == folder.stages().end()) return files;
+  for (const std::string& name : done->second.outputs) files.push_back(folder.file(name));
+  return files;
+}
+
+bool Session::copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs) {
+  if (parent.empty()) return false;
+  const RunFolder from(parent, options.command, study.seed, {}, {}, RunFolder::Access::read);
+  const auto known = from.stages().find(stage);
+  if (known == from.stages().end() || !from.up_to_date(stage, known->second.inputs) ||
+      by_file_name(known->second.inputs) != by_file_name(inputs))
+    return false;
+  StageRecord record{stage, options.command + "  # copied from " + parent.lexically_normal().string(), inputs};
+  const PartFolder part(folder.path());
+  for (const auto& output : known->second.outputs) {
+    make_writable_folder((part.path() / output).parent_path());
+    write_atomically(part.path() / output, read_file(from.file(output)));
+    record.command += ", " + output + " " + hash_file(from.file(output));
+  }
+  folder.commit(part, std::move(record));
+  return true;
+}
+
+void Session::note(const std::string& line) const {
+  if (options.listener.note) options.listener.note(line);
+}
+
+ProgressFn Session::progress(const std::string& name) const {
+  if (options.listener.progress) return options.listener.progress(name);
+  return [](std::size_t, std::size_t) {};
+}
+
+}  // namespace misfit

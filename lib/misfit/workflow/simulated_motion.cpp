@@ -1,0 +1,197 @@
+// Motions that the fitted model makes, put through the same measurement as the recorded one (lib/misfit/README.md, 6.1).
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "misfit/compare/motion_statistics.h"
+#include "misfit/compare/noisy_run.h"
+#include "misfit/inference/states.h"
+#include "misfit/workflow/stages.h"
+
+namespace misfit {
+namespace {
+
+constexpr std::size_t runs = 199;  // if half of them fail, the smallest p-value is still 1/100
+
+/// Quantities that are of interest beside the channels, where the system has them, and whether only their distribution is looked at: a rate
+/// of an angle that is undefined at zero tilt is unbounded there.
+struct Wanted {
+  const char* name;
+  bool spread_only;
+};
+constexpr Wanted wanted[] = {{"alpha_T", false}, {"phi_rate", true}};
+
+/// From the first sample that the filter runs at, without the samples that it rejected.
+Signals as_filtered(const FilterData& data) {
+  Signals out = *data.signals;
+  const auto first = static_cast<std::ptrdiff_t>(data.first);
+  const std::size_t channels = out.measured.size();
+  for (std::size_t c = 0; c < channels; ++c) {
+    auto& values = out.measured[c].values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (data.use[i * channels + c] == SampleRole::none) values[i] = std::nan("");
+    }
+    values.erase(values.begin(), values.begin() + first);
+  }
+  for (auto& input : out.inputs) input.values.erase(input.values.begin(), input.values.begin() + first);
+  out.t.erase(out.t.begin(), out.t.begin() + first);
+  return out;
+}
+
+bool is_input(const SystemSpec& spec, const std::string& name) {
+  return std::any_of(spec.inputs.begin(), spec.inputs.end(), [&](const auto& input) { return input.name == name; });
+}
+
+/// The channels as read, and quantities at the states that the channels show.
+std::vector<MotionPath> paths_of(const Model& model, const Signals& signals) {
+  std::vector<MotionPath> out;
+  for (const auto& channel : signals.measured) out.push_back({channel.name, channel.unit, channel.values});
+  const SystemSpec& spec = model.system->spec();
+  std::vector<std::size_t> places;
+  for (const Wanted& w : wanted) {
+    const auto found =
+        std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const QuantitySpec& q) { return w.name == std::string(q.name); });
+    const bool channel = std::any_of(out.begin(), out.end(), [&](const MotionPath& p) { return p.name == w.name; });
+    if (found == spec.quantities.end() || channel || is_input(spec, w.name)) continue;
+    places.push_back(static_cast<std::size_t>(found - spec.quantities.begin()));
+    out.push_back({w.name, found->unit, std::vector<double>(signals.samples(), std::nan("")), w.spread_only});
+  }
+  if (places.empty()) return out;
+  const ReconstructedStates states = reconstruct_states(model, signals);
+  const InputTable inputs = input_table(signals, model.inputs());
+  Evaluator evaluator(model);
+  std::vector<double> q(spec.quantities.size());
+  for (std::size_t i = 0; i < signals.samples(); ++i) {
+    if (!states.ok[i]) continue;
+    evaluator.quantities(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs.at(i), signals.t[i], q.data());
+    for (std::size_t k = 0; k < places.size(); ++k) out[signals.measured.size() + k].values[i] = q[places[k]];
+  }
+  return out;
+}
+
+StochasticModel stochastic_model(const FilterEstimate& estimate, const Model& model) {
+  StochasticModel out;
+  out.model = &model;
+  const auto own = static_cast<std::size_t>(model.states() - model.system_states());
+  out.intensity.assign(own, 0.0);
+  out.start_sigma.assign(own, 0.0);
+  for (int state : estimate.forced.force_states) {
+    const auto place = static_cast<std::size_t>(state - model.system_states());
+    out.intensity[place] = estimate.noise.force * std::sqrt(2.0 / estimate.noise.force_time);
+    out.start_sigma[place] = estimate.noise.force;
+  }
+  for (const ChannelNoise& c : estimate.noise.channels) out.noise.push_back({c.white, c.jitter, c.jitter_frequency, c.jitter_damping});
+  return out;
+}
+
+void note_gaps(const Signals& signals, SimulatedMotion& out) {
+  std::size_t missing = 0, all = 0;
+  for (const auto& channel : signals.measured) {
+    all += channel.values.size();
+    missing +=
+        static_cast<std::size_t>(std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isfinite(v); }));
+  }
+  constexpr double worth_a_word = 0.01;
+  const double share = static_cast<double>(missing) / static_cast<double>(std::max<std::size_t>(all, 1));
+  if (share > worth_a_word) {
+    out.notes.push_back(
+        fmt::format("{:.1f} % of the samples of {} are missing, and the simulated motions miss the same times; if the "
+                    "missing samples are the largest excursions, the measured distribution is too narrow",
+                    100.0 * share, signals.name));
+  }
+}
+
+struct Experiment {
+  Signals measured;
+  std::vector<double> start;
+  std::vector<MotionPath> paths;
+  std::vector<MotionScales> scales;
+  std::vector<std::vector<MotionNumbers>> simulated;  ///< run → path; empty: failed
+};
+
+Experiment experiment_of(const FilterWork& work, const FilterData& data) {
+  Experiment e;
+  e.measured = as_filtered(data);
+  e.start.assign(data.start.data(), data.start.data() + data.start.size());
+  e.start.resize(static_cast<std::size_t>(work.estimate->forced.model.states()), 0.0);
+  e.paths = paths_of(work.estimate->model, e.measured);
+  for (const auto& path : e.paths) e.scales.push_back(scales_of(path, usual_step(e.measured.t)));
+  e.simulated.resize(runs);
+  return e;
+}
+
+void simulate(const FilterWork& work, const StochasticModel& model, std::uint64_t seed, std::size_t run, Experiment& e) {
+  const std::optional<Signals> made = noisy_run(model, e.measured, e.start, seed);
+  if (!made) return;
+  const std::vector<MotionPath> paths = paths_of(work.estimate->model, *made);
+  for (std::size_t p = 0; p < paths.size(); ++p) e.simulated[run].push_back(motion_numbers(paths[p], e.scales[p]));
+}
+
+/// Runs that stayed among the finite numbers in every experiment: run j of all experiments is one motion.
+std::vector<std::size_t> runs_made(const std::vector<Experiment>& experiments) {
+  std::vector<std::size_t> out;
+  for (std::size_t run = 0; run < runs; ++run) {
+    const bool all = std::all_of(experiments.begin(), experiments.end(), [&](const Experiment& e) { return !e.simulated[run].empty(); });
+    if (all) out.push_back(run);
+  }
+  return out;
+}
+
+void compare_experiment(const Experiment& e, const std::vector<std::size_t>& made, SimulatedMotion& out, MotionDistances& distances) {
+  for (std::size_t p = 0; p < e.paths.size(); ++p) {
+    std::vector<MotionNumbers> numbers;
+    for (const std::size_t run : made) numbers.push_back(e.simulated[run][p]);
+    out.series.push_back(
+        compare_motion(e.measured.name, e.paths[p], e.scales[p], motion_numbers(e.paths[p], e.scales[p]), numbers, distances));
+  }
+}
+
+/// All experiments together are one motion, with one rank among those simulated.
+void compare_all(const std::vector<Experiment>& experiments, SimulatedMotion& out) {
+  const std::vector<std::size_t> made = runs_made(experiments);
+  out.failed = runs - made.size();
+  if (2 * made.size() < runs) {
+    out.notes.push_back(
+        fmt::format("of {} simulated motions {} diverged: the fitted model does not hold outside the operating range, and "
+                    "nothing is compared",
+                    runs, out.failed));
+    return;
+  }
+  MotionDistances distances;
+  for (const auto& e : experiments) compare_experiment(e, made, out, distances);
+  if (!distances.empty()) out.p_value = overall_p_value(distances);
+}
+
+}  // namespace
+
+SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int threads, const ProgressFn& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  SimulatedMotion out;
+  out.method = work.fit.method;
+  out.runs = runs;
+  const FilterEstimate& estimate = *work.estimate;
+  Model model = all_fixed(estimate.forced.model);
+  for (const auto& p : estimate.model.parameters) model.parameters[static_cast<std::size_t>(model.find_parameter(p.name))].value = p.value;
+  model.parameters[static_cast<std::size_t>(estimate.forced.time_parameter)].value = estimate.noise.force_time;
+  const StochasticModel stochastic = stochastic_model(estimate, model);
+  std::vector<Experiment> experiments;
+  for (const auto& data : estimate.data) experiments.push_back(experiment_of(work, data));
+  run_jobs(
+      runs * experiments.size(), threads,
+      [&](std::size_t job) {
+        const std::size_t e = job / runs, run = job % runs;
+        simulate(work, stochastic, (static_cast<std::uint64_t>(seed) << 32U) + job, run, experiments[e]);
+      },
+      progress);
+  for (const auto& e : experiments) note_gaps(e.measured, out);
+  compare_all(experiments, out);
+  conclude_motion(out);
+  out.notes.emplace_back("the bands do not include the uncertainty of the parameters, which are fixed at their estimates");
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace misfit

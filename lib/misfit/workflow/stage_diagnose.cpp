@@ -1,0 +1,55 @@
+#include "misfit/core/error.h"
+#include "misfit/diagnose/diagnose.h"
+#include "misfit/jobs/interrupt.h"
+#include "misfit/workflow/stages.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* method = "filter_error";
+
+}  // namespace
+
+std::vector<fs::path> files_of_filter(const Session& session) { return session.files_of_stage(std::string("fit/") + method); }
+
+bool filter_declined(Session& session) {
+  const Fit fit = fit_stage(session, {method}).front();
+  return fit.status == FitStatus::declined || fit.status == FitStatus::failed;
+}
+
+void refuse_declined(Session& session) {
+  const Fit fit = fit_stage(session, {method}).front();
+  throw RunError(fit.method + " " + to_string(fit.status) + ", so there are no innovations to test: " + fit.message);
+}
+
+std::optional<Diagnosis> known_diagnosis(const Session& session) {
+  const auto inputs = session.inputs("diagnose", files_of_filter(session));
+  if (!session.folder.up_to_date("diagnose", inputs)) return std::nullopt;
+  return read_diagnosis(session.folder.path());
+}
+
+std::map<std::string, std::string> inputs_of_discovery(const Session& session) {
+  std::vector<fs::path> files = files_of_filter(session);
+  if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
+  return session.inputs("discover", files);
+}
+
+std::optional<Discovery> known_discovery(const Session& session) {
+  if (!session.folder.up_to_date("discover", inputs_of_discovery(session))) return std::nullopt;
+  return read_discovery(session.folder.path());
+}
+
+std::optional<Diagnosis> diagnose_stage(Session& session) {
+  if (filter_declined(session)) return std::nullopt;
+  stop_if_interrupted();
+  const auto inputs = session.inputs("diagnose", files_of_filter(session));
+  session.do_stage("diagnose", inputs, {"diagnosis.json", "missing_force.csv"}, [&](const fs::path& dir) {
+    const auto work = filter_work(session);
+    write_diagnosis(dir, diagnose(*work->estimate, {session.options.threads, session.progress("diagnose")}));
+  });
+  return read_diagnosis(session.folder.path());
+}
+
+}  // namespace misfit

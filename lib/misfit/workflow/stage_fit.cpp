@@ -1,0 +1,71 @@
+#include <fmt/ranges.h>
+
+#include "misfit/core/config.h"
+#include "misfit/core/error.h"
+#include "misfit/core/file_name.h"
+#include "misfit/core/files.h"
+#include "misfit/jobs/interrupt.h"
+#include "misfit/workflow/methods.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// resolved.toml. A study that makes no model is refused here, before any method has left a result.
+void resolved_stage(Session& session, Methods& methods) {
+  auto inputs = inputs_of_fit(session, "resolved");
+  inputs["methods"] = fmt::format("{} seed {}", fmt::join(session.methods(), " "), session.study.seed);
+  session.do_stage("resolved", inputs, {"resolved.toml"}, [&](const fs::path& dir) { write_resolved(session, methods.prepared(), dir); });
+}
+
+}  // namespace
+
+std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method,
+                                                 const std::vector<std::string>& without) {
+  std::vector<fs::path> files;
+  if (session.study.system_file) files.push_back(*session.study.system_file);
+  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
+    const ExperimentStudy& experiment = session.study.experiments[e];
+    if (experiment.data) files.push_back(*experiment.data);
+    if (!has_track(experiment)) continue;
+    files.push_back(track_files(session, e).track);
+    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + file_name_for(experiment.name) + ".csv"));
+  }
+  if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
+  for (const auto& [name, curve] : session.study.curves) {
+    if (curve.table) files.push_back(*curve.table);
+  }
+  return session.inputs(method + "\n" + config::content_of(session.study.text, without), files);
+}
+
+std::shared_ptr<const FilterWork> filter_work(Session& session) {
+  if (!session.filter) {
+    session.note("re-running filter_error (needed by the next stage)");
+    session.filter = Methods(session).run_filter_error();
+  }
+  if (!session.filter->estimate)
+    throw RunError("filter_error " + to_string(session.filter->fit.status) + ": " + session.filter->fit.message);
+  return session.filter;
+}
+
+std::vector<Fit> fit_stage(Session& session) { return fit_stage(session, session.methods()); }
+
+std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& names) {
+  static_cast<void>(attitude_stage(session));
+  std::vector<Fit> fits;
+  Methods methods(session);
+  resolved_stage(session, methods);
+  const ProgressFn progress = session.progress("fit");
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    stop_if_interrupted();
+    const std::string stage = "fit/" + names[k];
+    session.do_stage(stage, inputs_of_fit(session, names[k]), {stage + "/fit.json"},
+                     [&](const fs::path& dir) { write_fit(dir / stage, methods.run(names[k])); });
+    fits.push_back(read_fit(session.folder.file(stage)));
+    progress(k + 1, names.size());
+  }
+  return fits;
+}
+
+}  // namespace misfit

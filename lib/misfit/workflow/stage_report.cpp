@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include "misfit/core/file_name.h"
+#include "misfit/core/files.h"
+#include "misfit/core/version.h"
+#include "misfit/jobs/interrupt.h"
+#include "misfit/report/report.h"
+#include "misfit/workflow/stages.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<report::ExperimentInput> experiments_of(Session& session) {
+  std::vector<report::ExperimentInput> out;
+  std::vector<std::optional<TrackFacts>> videos = track_stage(session);
+  std::vector<std::optional<Attitude>> attitudes = attitude_stage(session);
+  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
+    const ExperimentStudy& study = session.study.experiments[e];
+    report::ExperimentInput input;
+    input.name = study.name;
+    if (has_track(study)) input.track = read_track(track_files(session, e).track, study.columns);
+    if (videos[e]) {
+      input.video = std::move(videos[e]);
+      input.contact_sheet = read_file(track_files(session, e).sheet);
+    }
+    input.attitude = std::move(attitudes[e]);
+    out.push_back(std::move(input));
+  }
+  return out;
+}
+
+report::RunFacts facts_of(const Session& session) {
+  report::RunFacts facts;
+  facts.version = version();
+  facts.commit = commit();
+  facts.command = session.options.command;
+  facts.seed = session.study.seed;
+  for (const auto& [name, stage] : session.folder.stages()) {
+    facts.stages.emplace_back(name, stage.seconds);
+    for (const auto& [input, hash] : stage.inputs) {
+      if (input != "settings") facts.hashes[input] = hash;
+    }
+  }
+  facts.hashes[session.study.file.filename().string()] = hash_text(session.study.text);
+  return facts;
+}
+
+std::vector<fs::path> files_of_report(const Session& session, const std::vector<Fit>& fits) {
+  std::vector<fs::path> files = files_of_fits(session, fits);
+  files.push_back(session.folder.file("compare.json"));
+  if (fs::exists(session.folder.file("ladder.json"))) files.push_back(session.folder.file("ladder.json"));
+  for (const auto& [curve, file] : session.study.reference) files.push_back(file);
+  if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
+  for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
+    const ExperimentStudy& experiment = session.study.experiments[e];
+    if (!has_track(experiment)) continue;
+    files.push_back(track_files(session, e).track);
+    files.push_back(session.folder.file(e == 0 ? "attitude.csv" : "attitude_" + file_name_for(experiment.name) + ".csv"));
+  }
+  return files;
+}
+
+/// What diagnose and discover found of the study's own model and of the last rung that was asked.
+void add_findings(const Session& session, report::ReportInput& input, std::vector<fs::path>& files) {
+  Findings own = findings_of(session, input.notes);
+  input.diagnosis = std::move(own.diagnosis);
+  input.discovery = std::move(own.discovery);
+  files.insert(files.end(), own.files.begin(), own.files.end());
+  if (!input.ladder) return;
+  auto above = findings_of_last_rung(session, *input.ladder, input.notes);
+  if (!above) return;
+  files.insert(files.end(), above->findings.files.begin(), above->findings.files.end());
+  input.rung = report::RungInput{above->rung, above->added, std::move(above->findings.diagnosis), std::move(above->findings.discovery)};
+}
+
+}  // namespace
+
+fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
+  stop_if_interrupted();
+  report::ReportInput input;
+  input.comparison = compare_stage(session, fits);
+  input.experiments = experiments_of(session);
+  input.calibration = calibrate_stage(session);
+  input.ladder = known_ladder(session);
+  std::vector<fs::path> files = files_of_report(session, fits);
+  add_findings(session, input, files);
+  input.uncertainty = known_uncertainty(session);
+  if (input.uncertainty) files.push_back(session.folder.file("uncertainty.json"));
+  input.resampling = known_resampling(session);
+  for (const char* file : {"resampling.json", "bootstrap.json", "profile.json"}) {
+    if (input.resampling && fs::exists(session.folder.file(file))) files.push_back(session.folder.file(file));
+  }
+  const auto inputs = session.inputs(session.study.text + fmt::format("{}", fmt::join(input.notes, "\n")), files);
+  session.do_stage("report", inputs, {"report.html"}, [&](const fs::path& dir) {
+    input.study = session.study.name;
+    input.question = session.study.question;
+    input.fits = fits;
+    input.references = references(session);
+    input.run = facts_of(session);
+    static_cast<void>(report::write_report(dir, input));
+  });
+  return session.folder.file("report.html");
+}
+
+}  // namespace misfit
