@@ -16,6 +16,7 @@
 #include "misfit/core/ranks.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/version.h"
+#include "misfit/data/estimators.h"
 
 namespace misfit {
 namespace {
@@ -50,9 +51,7 @@ constexpr VerbEntry verbs[] = {
 };
 
 void add_method(CLI::App& verb, Options& options) {
-  verb.add_option("--method", options.methods, "only these methods")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
+  verb.add_option("--method", options.methods, "only these methods")->type_name("NAME")->check(CLI::IsMember(estimator_names()));
 }
 
 /// CLI11 takes what does not fit for the largest number that does. As in a study, where TOML sets the limit.

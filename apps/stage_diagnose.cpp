@@ -1,6 +1,7 @@
 #include "apps/stages.h"
 #include "misfit/core/error.h"
 #include "misfit/core/progress.h"
+#include "misfit/data/estimators.h"
 #include "misfit/diagnose/diagnose.h"
 
 namespace misfit {
@@ -8,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* method = "filter_error";
+const char* const method = random_force_estimator().name;
 
 }  // namespace
 

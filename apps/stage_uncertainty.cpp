@@ -6,6 +6,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/progress.h"
 #include "misfit/core/ranks.h"
+#include "misfit/data/estimators.h"
 #include "misfit/report/figures_uncertainty.h"
 
 namespace misfit {
@@ -65,7 +66,8 @@ std::vector<std::string> notes_of(const Session& session, const StudyChain& chai
     if (!c.informative) notes.push_back(fmt::format("{} is not informative: {}.", c.name, c.why));
   }
   const std::string& method = chain.nominal().method;
-  if (session.study.experiments.size() > 1 && method == "sliding_bin") notes.emplace_back("sliding_bin uses the first experiment only.");
+  if (session.study.experiments.size() > 1 && find_estimator(method)->regression_form)
+    notes.push_back(method + " uses the first experiment only.");
   return notes;
 }
 
