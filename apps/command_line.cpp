@@ -17,6 +17,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/version.h"
+#include "misfit/data/estimators.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/ranks.h"
 
@@ -59,9 +60,7 @@ constexpr VerbEntry verbs[] = {
 };
 
 void add_method(CLI::App& verb, Options& options) {
-  verb.add_option("--method", options.session.methods, "only these methods")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"sliding_bin", "equation_error", "output_error", "filter_error"}));
+  verb.add_option("--method", options.session.methods, "only these methods")->type_name("NAME")->check(CLI::IsMember(estimator_names()));
 }
 
 /// CLI11 takes what does not fit for the largest number that does. As in a study, where TOML sets the limit.

@@ -4,6 +4,7 @@
 #include "apps/print.h"
 #include "apps/verbs.h"
 #include "misfit/compare/compare.h"
+#include "misfit/data/estimators.h"
 #include "misfit/workflow/stages.h"
 
 namespace misfit {
@@ -15,7 +16,7 @@ int run_verb(const Options& options, const Registry& registry) {
   const auto attitudes = attitude_stage(session);
   const std::vector<Fit> fits = fit_stage(session);
   const Comparison comparison = compare_stage(session, fits);
-  const bool filtered = std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == "filter_error"; });
+  const bool filtered = std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name; });
   const auto diagnosis = filtered ? diagnose_stage(session) : std::nullopt;
   const auto discovery = filtered ? discover_stage(session) : std::nullopt;
   const auto page = report_stage(session, fits);

@@ -10,6 +10,7 @@
 #include "misfit/core/error.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/regression/equation_error.h"
+#include "misfit/fit/shooting/output_error.h"
 #include "misfit/inference/curves.h"
 #include "tests/fit/cart_filter.h"
 #include "tests/fit/planar_model.h"

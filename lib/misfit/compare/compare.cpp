@@ -10,6 +10,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/data/curve_coefficient.h"
+#include "misfit/data/estimators.h"
 
 namespace misfit {
 namespace {
@@ -105,6 +106,11 @@ void add_trims(const Estimate& a, const Estimate& b, const Sides& sides, Compari
   c.trims.push_back({sides.a, sides.b, sides.reference, difference, sigmas, sentence("the trim", sides, difference, sigmas)});
 }
 
+bool differentiates(const std::string& method) {
+  const EstimatorInfo* info = find_estimator(method);
+  return info != nullptr && !info->has_likelihood;
+}
+
 /// A regression takes the noise of its differentiated measurements, and what a local polynomial smooths away, into its parameters: its
 /// sigmas know nothing of that.
 void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
@@ -117,8 +123,10 @@ void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
     constexpr double worth_saying = 3.0;
     if (d.sigmas > worth_saying) {
       d.sentence = sentence(name, {a.method, b.method}, difference, d.sigmas) + ": they cannot both be right";
-      if (a.method == "equation_error" || b.method == "equation_error")
-        d.sentence += "; equation_error is biased by numerical differentiation, which its sigma does not cover";
+      for (const Fit* fit : {&a, &b}) {
+        if (differentiates(fit->method))
+          d.sentence += "; " + fit->method + " is biased by numerical differentiation, which its sigma does not cover";
+      }
     }
     c.parameters.push_back(std::move(d));
   }

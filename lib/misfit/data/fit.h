@@ -45,7 +45,7 @@ struct ChannelPrediction {
 
 /// What every method returns. An empty `predictions` means the method does not predict motion.
 struct Fit {
-  std::string method;  ///< "output_error"
+  std::string method;  ///< EstimatorInfo::name
   FitStatus status = FitStatus::failed;
   std::string message;                         ///< why it stopped, in words
   std::vector<std::string> warnings;           ///< what a reader must know before believing it

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "misfit/core/files.h"
+#include "misfit/data/estimators.h"
 #include "misfit/data/study_parts.h"
 
 namespace misfit {
@@ -16,7 +17,7 @@ constexpr long largest_seed = std::numeric_limits<long>::max();
 
 void read_head(const Section& root, Study& study) {
   study.name = fs::absolute(study.file).parent_path().filename().string();
-  study.methods = {"sliding_bin", "equation_error", "output_error"};
+  study.methods = default_estimators();
   const auto head = root.table("study");
   if (!head) return;
   study.name = head->text("name").value_or(study.name);
@@ -24,7 +25,7 @@ void read_head(const Section& root, Study& study) {
   study.seed = static_cast<unsigned long>(head->integer("seed", 0, largest_seed).value_or(1));
   if (const auto methods = head->texts("methods")) {
     study.methods = *methods;
-    study_parts::check_names(*head, "methods", *methods, {"sliding_bin", "equation_error", "output_error", "filter_error"});
+    study_parts::check_names(*head, "methods", *methods, estimator_names());
     if (methods->empty()) head->fail("methods", "at least one method is needed; leave the key out for the default ones");
   }
   head->finish();
@@ -67,7 +68,7 @@ double bin_angle(const Section& section, std::string_view key) {
 }
 
 void read_sliding_bin(const Section& root, Study& study) {
-  const auto section = root.table("sliding_bin");
+  const auto section = root.table(estimators::sliding_bin.name);
   if (!section) return;
   study.bin_width = bin_angle(*section, "width");
   study.bin_step = bin_angle(*section, "step");

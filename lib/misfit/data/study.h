@@ -126,7 +126,7 @@ struct UncertaintyStudy {
 struct Study {
   std::filesystem::path file, folder;
   std::string name, question;
-  std::vector<std::string> methods;  ///< subset of sliding_bin, equation_error, output_error, filter_error
+  std::vector<std::string> methods;  ///< names of data/estimators.h
   unsigned long seed = 1;
   std::string system_kind;  ///< or …
   std::optional<std::filesystem::path> system_file;

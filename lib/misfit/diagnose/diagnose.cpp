@@ -7,6 +7,7 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/estimators.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/diagnose/innovations.h"
 #include "misfit/jobs/work_queue.h"
@@ -173,7 +174,7 @@ void conclude(Diagnosis& out) {
 Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& options) {
   const Stopwatch clock;
   Diagnosis out;
-  out.method = "filter_error";
+  out.method = random_force_estimator().name;
   const ScoreTest score(estimate);
   const ForceSensitivity force(estimate);
   const std::vector<Features> features = features_of(estimate, force);

@@ -74,6 +74,11 @@ std::vector<Penalty> curve_penalties(const Model& model) {
   return penalties;
 }
 
+Model with_roughness(Model model, const std::vector<Penalty>& penalties) {
+  for (const auto& p : penalties) model.curves[p.curve].roughness = p.lambda;
+  return model;
+}
+
 PenalisedFit estimate_smoothing(const NormalEquations& problem, std::vector<Penalty>& penalties, double sigma2_given) {
   PenalisedFit out;
   double sigma2 = sigma2_given > 0.0 ? sigma2_given : std::max(problem.rss / std::max(problem.count, 1.0), 1e-300);

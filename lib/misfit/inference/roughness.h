@@ -28,6 +28,9 @@ struct Penalty {
 /// `scale`-based size: a curve whose slope turns by its typical size over its whole range.
 [[nodiscard]] std::vector<Penalty> curve_penalties(const Model& model);
 
+/// The curves' roughness as it was chosen, so that any method keeps it.
+[[nodiscard]] Model with_roughness(Model model, const std::vector<Penalty>& penalties);
+
 /// A Gaussian linearisation of a fit: residuals r (unweighted sum of squares), N = JᵀJ, g = Jᵀr at θ, in units where one residual's
 /// variance is σ².
 struct NormalEquations {

@@ -9,6 +9,7 @@
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/data/curve_coefficient.h"
+#include "misfit/data/estimators.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/filter/k_step.h"
 
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* ladder_name = "ladder.json";
-constexpr const char* method = "filter_error";
+const char* const method = random_force_estimator().name;
 constexpr std::string_view system_prefix = "system:";
 
 /// filter_error's fit and estimate; RunError in its words if it declined.

@@ -1,9 +1,10 @@
 #include "misfit/workflow/methods.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
-#include "misfit/fit/filter/filter_error.h"
-#include "misfit/fit/shooting/output_error.h"
+#include "misfit/fit/regression/equation_error.h"
 #include "misfit/inference/curves.h"
 
 namespace misfit {
@@ -29,26 +30,21 @@ void add_notes(const Prepared& prepared, Fit& fit) {
 
 }  // namespace
 
-Fit Methods::run(const std::string& method) {
-  if (method == "sliding_bin") return run_sliding_bin();
-  if (method == "equation_error") return regression().fit;
-  if (method == "output_error") return run_output_error().fit;
-  session_.filter = run_filter_error();
-  return session_.filter->fit;
-}
-
-std::shared_ptr<const FilterWork> Methods::run_filter_error() {
+MethodRun Methods::run(const std::string& method) {
+  const Estimator& method_of_study = estimator(method);
+  if (method_of_study.info.regression_form) return {run_in_regression_form(method_of_study), nullptr};
   auto work = std::make_shared<FilterWork>();
   work->prepared = prepared();
-  FilterOptions options;
-  options.threads = session_.options.threads;
-  FilterError result = filter_error(started().from, work->prepared.experiments, options);
-  work->fit = std::move(result.fit);
-  work->estimate = std::move(result.estimate);
-  add_notes(work->prepared, work->fit);
+  const auto regression = [this]() -> const FittedModel& { return this->regression(); };
+  Estimation result = method_of_study.run({work->prepared.model, work->prepared.experiments, regression, {}, session_.options.threads});
+  Fit& fit = result.at.fitted.fit;
+  add_notes(work->prepared, fit);
+  if (method_of_study.info.deterministic) return {std::move(result.at), nullptr};
   if (work->prepared.model.free_parameters().empty())
-    work->fit.warnings.emplace_back("every parameter is fixed: only the noise and the random force were estimated");
-  return work;
+    fit.warnings.emplace_back("every parameter is fixed: only the noise and the random force were estimated");
+  work->fit = fit;
+  work->estimate = std::move(result.filter);
+  return {std::move(result.at), std::move(work)};
 }
 
 const Prepared& Methods::prepared() {
@@ -57,40 +53,29 @@ const Prepared& Methods::prepared() {
 }
 
 const FittedModel& Methods::regression() {
-  if (!regression_) {
-    regression_ = equation_error(prepared().model, prepared().experiments);
-    add_notes(prepared(), regression_->fit);
-  }
+  if (!regression_) regression_ = equation_error(prepared().model, prepared().experiments);
   return *regression_;
 }
 
-Fit Methods::run_sliding_bin() {
+FittedMethod Methods::run_in_regression_form(const Estimator& method) {
   std::vector<std::string> left_out;
   const auto form = prepare_regression(session_, left_out);
-  if (!form) return no_regression_form(session_);
-  Fit fit = sliding_bin(form->model, form->experiments.front(), bin_options(session_));
+  FittedMethod out;
+  out.method = method.info.name;
+  Fit& fit = out.fitted.fit;
+  if (!form) {
+    fit.method = method.info.name;
+    fit.status = FitStatus::declined;
+    fit.message = fmt::format("system '{}' has no form for it: {} needs one equation of motion with a static and a damping curve",
+                              session_.model.request.system, method.info.name);
+    return out;
+  }
+  out = method.run({form->model, form->experiments, {}, bin_options(session_), session_.options.threads}).at;
   if (form->experiments.size() > 1)
     fit.warnings.push_back("only the first experiment, '" + form->experiments.front().name + "', is used by this method");
   for (const auto& name : left_out) fit.warnings.push_back("effect '" + name + "' is not in the equation of this method");
   add_scale(*form, fit);
   add_notes(*form, fit);
-  return fit;
-}
-
-TrajectoryStart Methods::started() {
-  return trajectory_start(prepared().model, prepared().experiments, [this]() -> const FittedModel& { return regression(); });
-}
-
-FittedModel Methods::run_output_error() {
-  auto [start, regressed] = started();
-  if (!regressed && start.model.free_parameters().empty()) {
-    start.fit.method = "output_error";
-    return start;
-  }
-  OutputErrorStart options;
-  options.from_regression = regressed;
-  FittedModel out = output_error(start, prepared().experiments, options);
-  add_notes(prepared(), out.fit);
   return out;
 }
 
@@ -100,15 +85,6 @@ SlidingBinOptions bin_options(const Session& session) {
   if (session.study.bin_step > 0.0) options.step = session.study.bin_step;
   options.three_point_average = !averaged_by_attitude(session);
   return options;
-}
-
-Fit no_regression_form(const Session& session) {
-  Fit fit;
-  fit.method = "sliding_bin";
-  fit.status = FitStatus::declined;
-  fit.message = "system '" + session.model.request.system +
-                "' has no form for it: sliding_bin needs one equation of motion with a static and a damping curve";
-  return fit;
 }
 
 }  // namespace misfit

@@ -5,11 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "misfit/fit/methods.h"
 #include "misfit/fit/regression/sliding_bin.h"
 #include "misfit/fit/trajectory_start.h"
 #include "misfit/workflow/stages.h"
 
 namespace misfit {
+
+/// What a method made of the study's data; `filter` where its model has a random force.
+struct MethodRun {
+  FittedMethod at;  ///< at.fitted.fit is the fit
+  std::shared_ptr<const FilterWork> filter;
+};
 
 /// The methods of a study on its data. They share the prepared model and the regression that starts the others: each is made when first
 /// asked for. Nothing is written.
@@ -17,15 +24,12 @@ class Methods {
  public:
   explicit Methods(Session& session) : session_(session) {}
 
-  [[nodiscard]] Fit run(const std::string& method);
-  [[nodiscard]] std::shared_ptr<const FilterWork> run_filter_error();
-  [[nodiscard]] FittedModel run_output_error();
-  [[nodiscard]] const FittedModel& regression();
+  [[nodiscard]] MethodRun run(const std::string& method);
   [[nodiscard]] const Prepared& prepared();
 
  private:
-  [[nodiscard]] Fit run_sliding_bin();
-  [[nodiscard]] TrajectoryStart started();
+  [[nodiscard]] const FittedModel& regression();
+  [[nodiscard]] FittedMethod run_in_regression_form(const Estimator& method);
 
   Session& session_;
   std::optional<Prepared> prepared_;
@@ -34,8 +38,5 @@ class Methods {
 
 /// What the study says of bins, for a channel that the attitude has averaged or not.
 [[nodiscard]] SlidingBinOptions bin_options(const Session& session);
-
-/// The words with which sliding_bin declines a system that has no form for it.
-[[nodiscard]] Fit no_regression_form(const Session& session);
 
 }  // namespace misfit

@@ -9,6 +9,7 @@
 #include "misfit/core/table.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/states.h"
 #include "misfit/model/curve_table.h"
@@ -98,7 +99,7 @@ Case from_section(Session& session) {
 /// The fitted model of a run, over the experiment it was fitted to.
 Case from_fit(Session& session) {
   const std::vector<Fit> fits = fit_stage(session);
-  const auto usable = [](const Fit& fit) { return !fit.parameters.empty() && fit.method != "sliding_bin"; };
+  const auto usable = [](const Fit& fit) { return !fit.parameters.empty() && !find_estimator(fit.method)->regression_form; };
   const auto fit = std::find_if(fits.rbegin(), fits.rend(), usable);
   if (fit == fits.rend()) throw RunError("no method gave parameters to simulate with");
   Prepared prepared = prepare(session);

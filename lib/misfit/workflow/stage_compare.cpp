@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "misfit/compare/compare.h"
+#include "misfit/data/estimators.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/stages.h"
 
@@ -11,7 +12,7 @@ namespace fs = std::filesystem;
 
 /// Only the fit with a random force can make motion like the measured one: without it motion dies away.
 bool can_be_simulated(const std::vector<Fit>& fits) {
-  return std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == "filter_error" && fit.usable(); });
+  return std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name && fit.usable(); });
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "misfit/core/error.h"
+#include "misfit/data/estimators.h"
 #include "misfit/diagnose/diagnose.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/stages.h"
@@ -8,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* method = "filter_error";
+const char* const method = random_force_estimator().name;
 
 }  // namespace
 

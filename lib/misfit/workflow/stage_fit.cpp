@@ -35,11 +35,12 @@ std::map<std::string, std::string> inputs_of_fit(const Session& session, const s
 
 std::shared_ptr<const FilterWork> filter_work(Session& session) {
   if (!session.filter) {
-    session.note("re-running filter_error (needed by the next stage)");
-    session.filter = Methods(session).run_filter_error();
+    const std::string method = random_force_estimator().name;
+    session.note("re-running " + method + " (needed by the next stage)");
+    session.filter = Methods(session).run(method).filter;
   }
   if (!session.filter->estimate)
-    throw RunError("filter_error " + to_string(session.filter->fit.status) + ": " + session.filter->fit.message);
+    throw RunError(session.filter->fit.method + " " + to_string(session.filter->fit.status) + ": " + session.filter->fit.message);
   return session.filter;
 }
 
@@ -54,8 +55,11 @@ std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& nam
   for (std::size_t k = 0; k < names.size(); ++k) {
     stop_if_interrupted();
     const std::string stage = "fit/" + names[k];
-    session.do_stage(stage, inputs_of_fit(session, names[k]), {stage + "/fit.json"},
-                     [&](const fs::path& dir) { write_fit(dir / stage, methods.run(names[k])); });
+    session.do_stage(stage, inputs_of_fit(session, names[k]), {stage + "/fit.json"}, [&](const fs::path& dir) {
+      MethodRun run = methods.run(names[k]);
+      if (run.filter) session.filter = std::move(run.filter);
+      write_fit(dir / stage, run.at.fitted.fit);
+    });
     fits.push_back(read_fit(session.folder.file(stage)));
     progress(k + 1, names.size());
   }

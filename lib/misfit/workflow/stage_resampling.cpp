@@ -31,26 +31,6 @@ struct Started {
   Fit fit;
 };
 
-Started started(Methods& methods, const std::string& method) {
-  Started out;
-  out.from.method = method;
-  if (method == "equation_error") out.from.fitted = methods.regression();
-  if (method == "output_error") out.from.fitted = methods.run_output_error();
-  out.fit = out.from.fitted.fit;
-  if (method != "filter_error") return out;
-  const auto work = methods.run_filter_error();
-  out.fit = work->fit;
-  if (!work->estimate) return out;
-  out.from.fitted.model = work->estimate->model;
-  out.from.fitted.penalties = work->estimate->penalties;
-  out.from.fitted.fit = work->fit;
-  out.from.noise = work->estimate->noise;
-  out.from.around = work->estimate->around;
-  out.from.use.emplace();
-  for (const auto& data : work->estimate->data) out.from.use->push_back(data.use);
-  return out;
-}
-
 Inputs inputs_of(const Session& session) {
   const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   Inputs inputs = inputs_of_fit(session, stage);
@@ -70,7 +50,7 @@ class Work {
 
   Resampling run() {
     for (const std::string& method : session_.methods()) {
-      if (method == "sliding_bin") {
+      if (estimator(method).info.regression_form) {
         note(method, "it has no parametric model to resample or profile");
         continue;
       }
@@ -100,7 +80,8 @@ class Work {
   void resample(const std::string& method) {
     Started s;
     const bool fitted = attempt(method, [&] {
-      s = started(methods_, method);
+      s.from = methods_.run(method).at;
+      s.fit = s.from.fitted.fit;
       if (!s.fit.usable()) throw RunError(to_string(s.fit.status) + ": " + s.fit.message);
     });
     if (!fitted) return;
@@ -132,7 +113,8 @@ class Work {
     options.runs = uncertainty_.bootstrap;
     options.seed = session_.study.seed;
     options.block = {static_cast<int>(uncertainty_.block), s.from.fitted.equation_residuals};
-    const Resampled what = s.from.method == "output_error" ? Resampled::residuals : Resampled::rows;
+    const EstimatorInfo& info = estimator(s.from.method).info;
+    const Resampled what = info.has_likelihood && info.deterministic ? Resampled::residuals : Resampled::rows;
     const FitReplica refit = [&](const std::vector<Signals>& replica) { return fit_again(s.from, replica); };
     std::optional<BlockBootstrap> bootstrap;
     if (!attempt(s.from.method, [&] { bootstrap.emplace(s.fit, methods_.prepared().experiments, what, refit, options); })) return;
@@ -234,9 +216,8 @@ void check_profile_names(Session& session) {
   if (uncertainty.profile.empty()) return;
   const std::vector<std::string> asked = session.methods();
   if (std::none_of(asked.begin(), asked.end(), has_likelihood)) {
-    throw InputError(
-        uncertainty.where_profile,
-        fmt::format("profile: {} has no likelihood of the motion; output_error and filter_error have", fmt::join(asked, ", ")));
+    throw InputError(uncertainty.where_profile, fmt::format("profile: {} has no likelihood of the motion; {} have", fmt::join(asked, ", "),
+                                                            estimators_with_likelihood()));
   }
   const Model model = prepare(session).model;
   for (const std::string& name : uncertainty.profile) {

@@ -2,6 +2,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/data/estimators.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/report/figures_uncertainty.h"
@@ -62,7 +63,8 @@ std::vector<std::string> notes_of(const Session& session, const StudyChain& chai
     if (!c.informative) notes.push_back(fmt::format("{} is not informative: {}.", c.name, c.why));
   }
   const std::string& method = chain.nominal().method;
-  if (session.study.experiments.size() > 1 && method == "sliding_bin") notes.emplace_back("sliding_bin uses the first experiment only.");
+  if (session.study.experiments.size() > 1 && find_estimator(method)->regression_form)
+    notes.push_back(method + " uses the first experiment only.");
   return notes;
 }
 

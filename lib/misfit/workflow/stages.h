@@ -146,7 +146,7 @@ struct RungFindings {
 [[nodiscard]] std::optional<RungFindings> findings_of_last_rung(const Session& session, const Ladder& ladder,
                                                                 std::vector<std::string>& notes);
 [[nodiscard]] std::map<std::string, std::string> inputs_of_discovery(const Session& session);
-/// ladder.json where it still belongs to the study and its data (apps/ladder.h).
+/// ladder.json where it still belongs to the study and its data (workflow/ladder.h).
 [[nodiscard]] std::optional<Ladder> known_ladder(const Session& session);
 /// Runs filter_error where it must; did it decline or fail?
 [[nodiscard]] bool filter_declined(Session& session);

@@ -4,8 +4,6 @@
 
 #include "misfit/attitude/attitude.h"
 #include "misfit/core/error.h"
-#include "misfit/fit/filter/filter_error.h"
-#include "misfit/fit/shooting/output_error.h"
 #include "misfit/inference/gaps.h"
 #include "misfit/model/experiment.h"
 
@@ -29,47 +27,37 @@ struct StudyChain::Recording {
 
 StudyChain::~StudyChain() = default;
 
-StudyChain::StudyChain(Session& session, const std::string& method) : method_(method) {
+StudyChain::StudyChain(Session& session, const std::string& method) {
   hold_perturbed_camera(session);
-  prepare_method(session, method);
+  make_nominal(session, method);
   if (!nominal_.usable()) throw RunError(method + " " + to_string(nominal_.status) + ": " + nominal_.message);
   read_recordings(session);
   rig_.emplace(session, prepared_.model);
   const PerturbedRig as_it_is = rig_->at(std::vector<double>(rig_->perturbations().names().size(), 0.0));
-  numbers_.emplace(nominal_, fit(start_, signals(as_it_is, start_)), prepared_.model.system->spec().static_curve);
+  numbers_.emplace(nominal_, fit(from_.fitted.model, signals(as_it_is, from_.fitted.model)), prepared_.model.system->spec().static_curve);
 }
 
-void StudyChain::prepare_method(Session& session, const std::string& method) {
+/// A regression is solved anew in every run; the others start at the nominal estimates and keep roughness and noise.
+void StudyChain::make_nominal(Session& session, const std::string& method) {
   Methods methods(session);
-  if (method == "sliding_bin") {
-    nominal_ = methods.run(method);
+  const EstimatorInfo& info = estimator(method).info;
+  from_ = methods.run(method).at;
+  nominal_ = std::move(from_.fitted.fit);
+  if (info.regression_form) {
     std::vector<std::string> left_out;
     auto form = prepare_regression(session, left_out);
     if (!form) return;
     form->experiments.resize(1);  // the only one that it uses
     prepared_ = std::move(*form);
-    start_ = prepared_.model;
-    bins_ = bin_options(session);
-    bins_.curves_only = true;
-    return;
+    from_.bins.curves_only = true;
+  } else {
+    prepared_ = methods.prepared();
   }
-  prepared_ = methods.prepared();
-  start_ = prepared_.model;
-  if (method == "equation_error") nominal_ = methods.regression().fit;
-  if (method == "output_error") {
-    FittedModel fitted = methods.run_output_error();
-    nominal_ = std::move(fitted.fit);
-    start_ = std::move(fitted.model);
-    penalties_ = std::move(fitted.penalties);
-  }
-  if (method == "filter_error") {
-    const auto work = methods.run_filter_error();
-    nominal_ = work->fit;
-    if (!work->estimate) return;
-    start_ = work->estimate->model;
-    penalties_ = work->estimate->penalties;
-    noise_ = work->estimate->noise;
-  }
+  if (!info.has_likelihood) from_.fitted = {{}, prepared_.model, {}, {}};
+  from_.fitted.fit = {};
+  from_.fitted.fit.noise = nominal_.noise;
+  from_.fitted.initial_states.clear();
+  from_.around.reset();
 }
 
 void StudyChain::read_recordings(Session& session) {
@@ -85,7 +73,7 @@ void StudyChain::read_recordings(Session& session) {
 }
 
 Model StudyChain::perturbed(const PerturbedRig& rig) const {
-  Model model = start_;
+  Model model = from_.fitted.model;
   for (Parameter& p : model.parameters) {
     if (p.free || p.curve >= 0) continue;
     if (const auto found = rig.constants.find(p.name); found != rig.constants.end()) p.value = found->second;
@@ -115,22 +103,9 @@ std::vector<Signals> StudyChain::signals(const PerturbedRig& rig, const Model& m
 }
 
 Fit StudyChain::fit(const Model& model, const std::vector<Signals>& experiments) const {
-  if (method_ == "sliding_bin") return sliding_bin(model, experiments.front(), bins_);
-  if (method_ == "equation_error") return equation_error(model, experiments).fit;
-  if (method_ == "output_error") {
-    OutputErrorStart warm;
-    warm.keep_roughness = true;
-    warm.coloured = false;
-    FittedModel start{{}, model, penalties_, {}};
-    start.fit.noise = nominal_.noise;
-    return output_error(start, experiments, warm).fit;
-  }
-  FilterOptions warm;
-  warm.threads = 1;
-  warm.noise = noise_;
-  warm.choose_roughness = false;
-  warm.verify = false;
-  return filter_fit(estimate_filter(model, penalties_, experiments, warm));
+  FittedMethod from = from_;
+  from.fitted.model = model;
+  return estimator(from.method).refit(from, experiments);
 }
 
 ChainResult StudyChain::run(const std::vector<double>& errors) const {

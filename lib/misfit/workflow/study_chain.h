@@ -30,18 +30,14 @@ class StudyChain {
 
  private:
   struct Recording;
-  void prepare_method(Session& session, const std::string& method);
+  void make_nominal(Session& session, const std::string& method);
   void read_recordings(Session& session);
   [[nodiscard]] Model perturbed(const PerturbedRig& rig) const;
   [[nodiscard]] std::vector<Signals> signals(const PerturbedRig& rig, const Model& model) const;
   [[nodiscard]] Fit fit(const Model& model, const std::vector<Signals>& experiments) const;
 
-  std::string method_;
   Prepared prepared_;
-  Model start_;  ///< nominal estimates in it
-  std::vector<Penalty> penalties_;
-  std::optional<FilterNoise> noise_;
-  SlidingBinOptions bins_;
+  FittedMethod from_;    ///< where every run starts
   bool pixels_ = false;  ///< the system predicts the image: angles are not needed
   std::vector<Recording> recordings_;
   Fit nominal_;

@@ -9,6 +9,7 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/estimators.h"
 #include "misfit/data/ladder.h"
 #include "misfit/fit/filter/noise_interval.h"
 #include "misfit/inference/curves.h"
@@ -273,7 +274,7 @@ void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
 
 Fit filter_fit(const FilterEstimate& estimate, int threads) {
   Fit fit;
-  fit.method = "filter_error";
+  fit.method = estimators::filter_error.name;
   fit.status = estimate.converged ? FitStatus::converged : FitStatus::not_converged;
   fit.message = estimate.message;
   fit.loglik = estimate.loglik;
@@ -317,7 +318,7 @@ FilterError filter_error(const FittedModel& start, const std::vector<Signals>& e
     out.estimate = estimate_filter(start.model, curve_penalties(start.model), experiments, options);
     out.fit = filter_fit(*out.estimate, options.threads);
   } catch (const RunError& error) {
-    out.fit.method = "filter_error";
+    out.fit.method = estimators::filter_error.name;
     out.fit.status = FitStatus::declined;
     out.fit.message = error.what();
   }

@@ -7,6 +7,7 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/estimators.h"
 #include "misfit/inference/coloured.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
@@ -261,7 +262,7 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
 FittedModel equation_error(const Model& model, const std::vector<Signals>& experiments) {
   const Stopwatch clock;
   FittedModel out{{}, model, curve_penalties(model), {}};
-  out.fit.method = "equation_error";
+  out.fit.method = estimators::equation_error.name;
   const Regressor regressor(model, experiments);
   if (regressor.rows().empty()) {
     out.fit.status = FitStatus::declined;

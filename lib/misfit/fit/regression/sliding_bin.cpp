@@ -9,6 +9,7 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/estimators.h"
 #include "misfit/fit/regression/bin_equations.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/whiteness.h"
@@ -216,7 +217,7 @@ void tell_damping(const BinForm& form, const Pass& pass, Fit& fit) {
 
 Fit declined(const std::string& why) {
   Fit fit;
-  fit.method = "sliding_bin";
+  fit.method = estimators::sliding_bin.name;
   fit.status = FitStatus::declined;
   fit.message = why;
   return fit;
@@ -251,7 +252,7 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   if (pass.bins.bins.empty()) return declined(why_no_bins(*form, options, pass));
   const auto& spec = model.system->spec();
   Fit fit;
-  fit.method = "sliding_bin";
+  fit.method = estimators::sliding_bin.name;
   fit.status = FitStatus::converged;
   fit.curves = {curve(*form, pass.bins.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma),
                 curve(*form, pass.bins.bins, spec.damping_curve, &BinSolution::damping, &BinSolution::damping_sigma)};

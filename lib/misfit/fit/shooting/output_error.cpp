@@ -5,6 +5,7 @@
 
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
+#include "misfit/data/estimators.h"
 #include "misfit/fit/shooting/output_error_result.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
@@ -213,14 +214,14 @@ class Estimator {
   /// On motion that is driven a failure to simulate is what had to be expected: then the method declines, in words.
   FittedModel failed(const std::string& why) {
     FittedModel out{{}, shooting_.model(), penalties_, {}};
-    out.fit.method = "output_error";
+    out.fit.method = estimators::output_error.name;
     out.fit.status = start_driven_ ? FitStatus::declined : FitStatus::failed;
     out.fit.driven = start_driven_;
     out.fit.message = shooting_.failure().empty() ? why : shooting_.failure() + (why.empty() ? "" : " (" + why + ")");
     if (start_driven_) {
       out.fit.message =
           "the motion is driven by something this deterministic model does not have, and it cannot follow it: " + out.fit.message +
-          ". The method that can estimate such motion is filter_error";
+          ". The method that can estimate such motion is " + random_force_estimator().name;
       show_segments(out.fit);
     }
     out.fit.linearisations = shooting_.linearisations();
@@ -230,7 +231,7 @@ class Estimator {
   FittedModel finish(const LeastSquares::Summary& summary) {
     FittedModel out{{}, shooting_.model(), penalties_, {}};
     Fit& fit = out.fit;
-    fit.method = "output_error";
+    fit.method = estimators::output_error.name;
     fit.status = summary.converged && settled_ ? FitStatus::converged : FitStatus::not_converged;
     fit.message = summary.converged && !settled_ ? "noise variances and smoothing parameters have not converged" : summary.message;
     NormalEquations linearised;

@@ -9,6 +9,7 @@
 
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
+#include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/whiteness.h"
 
@@ -205,8 +206,8 @@ void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit
   }
   fit.status = FitStatus::declined;
   fit.message = "the motion is driven by something this deterministic model does not have: it cannot follow the measured motion (" +
-                fit.facts["explained"] + "; " + fit.facts["whiteness"] +
-                "). The method that can estimate such motion is filter_error. Solver: " + fit.message;
+                fit.facts["explained"] + "; " + fit.facts["whiteness"] + "). The method that can estimate such motion is " +
+                random_force_estimator().name + ". Solver: " + fit.message;
   for (const auto& curve : model.curves)
     mark_not_informative(model, curve.name, "driven motion: a deterministic trajectory cannot follow it", fit);
   fit.trim.reset();

@@ -7,6 +7,7 @@
 
 #include "misfit/core/toml_text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/estimators.h"
 #include "misfit/model/role_units.h"
 
 namespace misfit {
@@ -106,11 +107,11 @@ std::string study_text(const std::string& name, const std::vector<std::string>& 
       "[study]\n"
       "name = {}\n"
       "question = \"What does a linear model of this recording miss?\"\n"
-      "methods = [\"output_error\"]   # \"filter_error\" where something unmeasured drives the motion; misfit discover needs it\n"
+      "methods = [\"{}\"]   # \"{}\" where something unmeasured drives the motion; misfit discover needs it\n"
       "seed = 1\n\n"
       "[system]\n"
       "file = \"model.toml\"          # the equations, as text\n",
-      toml_string(name));
+      toml_string(name), trajectory_estimator().name, random_force_estimator().name);
   for (const auto& part : parts) {
     text += fmt::format(
         "\n[[experiment]]\n"

@@ -1,0 +1,178 @@
+#include "misfit/fit/methods.h"
+
+#include <algorithm>
+#include <array>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/regression/equation_error.h"
+#include "misfit/fit/shooting/output_error.h"
+#include "misfit/fit/trajectory_start.h"
+
+namespace misfit {
+namespace {
+
+using Experiments = std::vector<Signals>;
+
+// sliding_bin
+
+Estimation run_sliding_bin(const EstimationTask& task) {
+  Estimation out{{estimators::sliding_bin.name, {{}, task.model, {}, {}}, {}, {}, {}, task.bins}, {}};
+  out.at.fitted.fit = sliding_bin(task.model, task.experiments.front(), task.bins);
+  return out;
+}
+
+Fit refit_sliding_bin(const FittedMethod& from, const Experiments& experiments) {
+  return sliding_bin(from.fitted.model, experiments.front(), from.bins);
+}
+
+// equation_error
+
+Estimation run_equation_error(const EstimationTask& task) {
+  return {{estimators::equation_error.name, task.regression ? task.regression() : equation_error(task.model, task.experiments), {}, {}, {}},
+          {}};
+}
+
+Fit refit_equation_error(const FittedMethod& from, const Experiments& experiments) {
+  return equation_error(with_roughness(from.fitted.model, from.fitted.penalties), experiments).fit;
+}
+
+// output_error
+
+Estimation run_output_error(const EstimationTask& task) {
+  TrajectoryStart start = trajectory_start(task.model, task.experiments, task.regression);
+  Estimation out{{estimators::output_error.name, {}, {}, {}, {}}, {}};
+  if (!start.regressed && task.model.free_parameters().empty()) {
+    out.at.fitted = std::move(start.from);
+    out.at.fitted.fit.method = estimators::output_error.name;
+    return out;
+  }
+  OutputErrorStart options;
+  options.from_regression = start.regressed;
+  out.at.fitted = output_error(start.from, task.experiments, options);
+  return out;
+}
+
+OutputErrorStart quick_output_error() {
+  OutputErrorStart options;
+  options.coloured = false;
+  options.keep_roughness = true;
+  return options;
+}
+
+Fit refit_output_error(const FittedMethod& from, const Experiments& experiments) {
+  FittedModel start = from.fitted;
+  start.model = with_roughness(std::move(start.model), start.penalties);
+  return output_error(start, experiments, quick_output_error()).fit;
+}
+
+Maximisation maximise_output_error(const FittedMethod& from, const Experiments& experiments, SearchStart begin) {
+  FittedModel start = from.fitted;
+  OutputErrorStart options = quick_output_error();
+  if (begin == SearchStart::values) {
+    start.initial_states.clear();
+    options.from_regression = false;
+  }
+  const FittedModel end = output_error(start, experiments, options);
+  if (end.fit.status != FitStatus::converged || !end.fit.loglik) return {{}, to_string(end.fit.status) + ": " + end.fit.message, {}};
+  Maximisation out{*end.fit.loglik + log_prior(end.model, from.fitted.penalties), "", from};
+  out.at.fitted.model.parameters = end.model.parameters;
+  out.at.fitted.initial_states = end.initial_states;
+  return out;
+}
+
+// filter_error
+
+Estimation run_filter_error(const EstimationTask& task) {
+  FilterOptions options;
+  options.threads = task.threads;
+  FilterError result = filter_error(trajectory_start(task.model, task.experiments, task.regression).from, task.experiments, options);
+  Estimation out{{estimators::filter_error.name, {std::move(result.fit), task.model, {}, {}}, {}, {}, {}}, std::move(result.estimate)};
+  if (!out.filter) return out;
+  out.at.fitted.model = out.filter->model;
+  out.at.fitted.penalties = out.filter->penalties;
+  out.at.noise = out.filter->noise;
+  out.at.around = out.filter->around;
+  out.at.use.emplace();
+  for (const auto& data : out.filter->data) out.at.use->push_back(data.use);
+  return out;
+}
+
+FilterOptions warm_filter(const FittedMethod& from) {
+  FilterOptions options;
+  options.threads = 1;
+  options.noise = from.noise;
+  options.around = from.around;
+  options.choose_roughness = false;
+  options.verify = false;
+  return options;
+}
+
+Fit refit_filter_error(const FittedMethod& from, const Experiments& experiments) {
+  FittedModel start = from.fitted;
+  start.model = with_roughness(std::move(start.model), start.penalties);
+  return filter_error(start, experiments, warm_filter(from)).fit;
+}
+
+/// Verified: the noise at its restricted likelihood, as in the fit. Without that the two blocks drift to another maximum in turn.
+Maximisation maximise_filter_error(const FittedMethod& from, const Experiments& experiments, SearchStart begin) {
+  FilterOptions options = warm_filter(from);
+  if (begin == SearchStart::values) options.noise.reset();
+  options.use = from.use;
+  options.verify = true;
+  const FilterEstimate end = estimate_filter(from.fitted.model, from.fitted.penalties, experiments, options);
+  if (!end.converged) return {{}, to_string(FitStatus::not_converged) + ": " + end.message, {}};
+  Maximisation out{end.objective, "", from};
+  out.at.fitted.model.parameters = end.model.parameters;
+  out.at.noise = end.noise;
+  return out;
+}
+
+constexpr std::array table{
+    Estimator{estimators::sliding_bin, run_sliding_bin, refit_sliding_bin, nullptr},
+    Estimator{estimators::equation_error, run_equation_error, refit_equation_error, nullptr},
+    Estimator{estimators::output_error, run_output_error, refit_output_error, maximise_output_error},
+    Estimator{estimators::filter_error, run_filter_error, refit_filter_error, maximise_filter_error},
+};
+
+/// What cannot be run has no maximum.
+Maximisation maximise(const FittedMethod& from, const Experiments& experiments, SearchStart start) {
+  try {
+    return estimator(from.method).maximise(from, experiments, start);
+  } catch (const RunError& error) {
+    return {{}, error.what(), {}};
+  }
+}
+
+}  // namespace
+
+const Estimator& estimator(const std::string& name) {
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Estimator& e) { return e.info.name == name; });
+  if (found == table.end()) throw InputError("there is no method '" + name + "'" + suggest(name, estimator_names()));
+  return *found;
+}
+
+Fit fit_again(const FittedMethod& from, const Experiments& experiments) {
+  try {
+    return estimator(from.method).refit(from, experiments);
+  } catch (const RunError& error) {
+    Fit fit;
+    fit.method = from.method;
+    fit.message = error.what();
+    return fit;
+  }
+}
+
+Maximisation maximise_near(const FittedMethod& from, const Experiments& experiments) {
+  return maximise(from, experiments, SearchStart::fitted);
+}
+
+Maximisation maximise_from(const FittedMethod& from, const std::vector<double>& values, const Experiments& experiments) {
+  FittedMethod start = from;
+  start.fitted.model = with_roughness(std::move(start.fitted.model), start.fitted.penalties);
+  for (std::size_t i = 0; i < values.size(); ++i) start.fitted.model.parameters[i].value = values[i];
+  return maximise(start, experiments, SearchStart::values);
+}
+
+}  // namespace misfit

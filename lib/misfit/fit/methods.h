@@ -1,0 +1,75 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/data/estimators.h"
+#include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/fit/regression/sliding_bin.h"
+#include "misfit/inference/fitted_model.h"
+
+namespace misfit {
+
+/// What a method is given.
+struct EstimationTask {
+  const Model& model;  ///< in the system's regression form for methods that solve that (EstimatorInfo::regression_form)
+  const std::vector<Signals>& experiments;
+  std::function<const FittedModel&()> regression = {};  ///< equation_error() of the same, where somebody has it
+  SlidingBinOptions bins = {};
+  int threads = 0;  ///< 0: one per core; does not change the answer
+};
+
+/// A fit as others start from it: of replicas of its data, or of the same data with a parameter held. Roughness stays as it was chosen.
+struct FittedMethod {
+  std::string method;                                       ///< EstimatorInfo::name
+  FittedModel fitted;                                       ///< penalties with the weights that were chosen
+  std::optional<FilterNoise> noise, around;                 ///< of a method with a random force
+  std::optional<std::vector<std::vector<SampleRole>>> use;  ///< of the same: which measurements count
+  SlidingBinOptions bins = {};
+};
+
+struct Estimation {
+  FittedMethod at;                       ///< at.fitted.fit is the fit
+  std::optional<FilterEstimate> filter;  ///< of a method with a random force, unless it declined; refers to the task's experiments
+};
+
+/// A maximum of the penalised log-likelihood, roughness held.
+struct Maximisation {
+  std::optional<double> objective;  ///< nullopt: the search ended nowhere …
+  std::string why;                  ///< … for this reason
+  FittedMethod at;                  ///< the fit's, moved to where the search ended
+};
+
+/// Where a search for a maximum begins.
+enum class SearchStart {
+  fitted,  ///< where the fit stands, its noise and initial states too
+  values   ///< at the values of its parameters alone, as a new fit does: initial states and noise are looked for
+};
+
+/// One row of the table of estimators: everything that others ask of a method. Several threads may call all of it at once.
+struct Estimator {
+  const EstimatorInfo& info;
+  Estimation (*run)(const EstimationTask& task);
+  /// Again from where the fit ended, on other data of the same model (knots are the model's). The roughness is held, sigmas are those of
+  /// white residuals. RunError: the model cannot be run on these data.
+  Fit (*refit)(const FittedMethod& from, const std::vector<Signals>& experiments);
+  /// nullptr: the method has no likelihood.
+  Maximisation (*maximise)(const FittedMethod& from, const std::vector<Signals>& experiments, SearchStart start);
+};
+
+/// InputError for a name that no method has.
+[[nodiscard]] const Estimator& estimator(const std::string& name);
+
+/// Estimator::refit; a fit that could not be made says why (failed).
+[[nodiscard]] Fit fit_again(const FittedMethod& from, const std::vector<Signals>& experiments);
+
+/// Where the method ends when it begins near a maximum: from where `from` stands, its noise and initial states too.
+[[nodiscard]] Maximisation maximise_near(const FittedMethod& from, const std::vector<Signals>& experiments);
+
+/// Where it ends when it begins at other values of all parameters, as a new fit does: initial states and noise are looked for.
+[[nodiscard]] Maximisation maximise_from(const FittedMethod& from, const std::vector<double>& values,
+                                         const std::vector<Signals>& experiments);
+
+}  // namespace misfit
