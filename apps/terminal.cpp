@@ -7,6 +7,7 @@
 #include <streambuf>
 #include <string>
 #include <system_error>
+#include <tuple>
 
 #include "misfit/core/shown.h"
 
@@ -80,7 +81,7 @@ std::string PrintableStream::failure() {
 void reserve_standard_streams() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
-    static_cast<void>(::open(number == STDOUT_FILENO ? "/dev/full" : "/dev/null", O_RDWR));  // takes the lowest free number
+    std::ignore = ::open(number == STDOUT_FILENO ? "/dev/full" : "/dev/null", O_RDWR);  // takes the lowest free number
   }
 }
 

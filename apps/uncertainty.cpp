@@ -11,7 +11,7 @@ int uncertainty_verb(const Options& options, const Registry& registry) {
   // What the runs start from is written by one rank only; the others find it done.
   on_first_rank([&] {
     Session session(options.session, registry);
-    static_cast<void>(attitude_stage(session));
+    attitude_stage(session);
     if (asks_for_resampling(session.study)) check_profile_names(session);
   });
   Session session(options.session, registry);

@@ -117,7 +117,7 @@ class UnitReader {
   }
 
   std::vector<std::pair<std::string, double>> symbols() {
-    static_cast<void>(read());
+    read();
     return std::move(symbols_);
   }
 

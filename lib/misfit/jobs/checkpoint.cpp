@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <tuple>
 
 #include "misfit/core/files.h"
 #include "misfit/core/written_files.h"
@@ -130,7 +131,7 @@ void CheckpointWriter::write_whole(std::string_view bytes) {
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
       const std::string why = reason(n == 0 ? ENOSPC : errno);
-      static_cast<void>(::ftruncate(file_, static_cast<off_t>(length_)) == 0);  // if not, the checksum finds it
+      std::ignore = ::ftruncate(file_, static_cast<off_t>(length_)) == 0;  // if not, the checksum finds it
       throw WriteError(path_.string() + " cannot be written: " + why +
                        "; what was finished before is in it, and the same command continues from there");
     }

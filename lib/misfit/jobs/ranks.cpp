@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <thread>
+#include <tuple>
 
 #include "misfit/core/module.h"
 
@@ -59,7 +60,7 @@ void on_first_rank(const std::function<void()>& action) {
   try {
     action();
   } catch (...) {
-    static_cast<void>(ranks().agree(false));
+    std::ignore = ranks().agree(false);
     throw;
   }
   if (!ranks().agree(true)) throw EndedElsewhere();

@@ -89,8 +89,8 @@ class Search {
     side_.end = inside + (wanted - inside_root) / (outside_root - inside_root) * (outside - inside);
     side_.found = off < rough_crossing;
     if (!side_.found)
-      static_cast<void>(ended(inside, "between " + format_value(inside) + " and " + format_value(outside) +
-                                          " the profile is discontinuous or failed: refits reach different maxima"));
+      ended(inside, "between " + format_value(inside) + " and " + format_value(outside) +
+                        " the profile is discontinuous or failed: refits reach different maxima");
   }
 
   const ProfileRequest& request_;

@@ -153,7 +153,7 @@ std::optional<FittedBatch> fit_batch(const SessionOptions& options, const std::v
   FittedBatch out{merged(*results), job.folder()};
   const PartFolder part(job.folder());
   write_batch(part.path(), out.batch);
-  static_cast<void>(report::write_batch_figures(part.path() / "figures", out.batch));
+  report::write_batch_figures(part.path() / "figures", out.batch);
   folder->commit(part, {"batch", options.command, {{"settings", job.digest()}}});
   return out;
 }

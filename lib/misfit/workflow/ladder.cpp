@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
@@ -273,9 +274,9 @@ void report_ladder(ModelLadder& ladder) {
 std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect) {
   if (effect.starts_with(system_prefix)) return std::nullopt;
   Session& session = ladder.last();
-  static_cast<void>(session.registry.effect(effect));  // InputError with the nearest name
+  std::ignore = session.registry.effect(effect);  // InputError with the nearest name
   try {
-    static_cast<void>(study_with_effect(session, effect, std::nullopt, session.folder.path()));  // refuses what cannot be added
+    std::ignore = study_with_effect(session, effect, std::nullopt, session.folder.path());  // refuses what cannot be added
   } catch (const InputError&) {
     // Not where it would go by default, or it is there already: discovery may know another place.
     auto elsewhere = predict_effect(session, effect);
@@ -303,7 +304,7 @@ void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderLi
     const Rung& rung = ladder.add(next->effect, next);
     if (listener.added) listener.added(rung);
   }
-  static_cast<void>(ladder.last_rung());
+  ladder.last_rung();
 }
 
 }  // namespace misfit

@@ -23,7 +23,7 @@ class ModelLadder {
   /// The fit of the last rung added here.
   [[nodiscard]] const Fit& last_fit();
   /// Its rung; makes the first one, with its fit, where there is no ladder yet.
-  [[nodiscard]] const Rung& last_rung();
+  const Rung& last_rung();
 
   /// A new rung: `effect` (or "system:KIND") added to the last rung. `from`: what discovery says of the effect; without it the rung's note
   /// says why no drop was predicted. What the parent study read from video or pictures is copied. InputError: no such effect, already

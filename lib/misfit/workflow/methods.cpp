@@ -14,11 +14,10 @@ namespace {
 void add_scale(const Prepared& form, Fit& fit) {
   const Signals& signals = form.experiments.front();
   const ReconstructedStates states = reconstruct_states(form.model, signals);
-  const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
-  if (known == static_cast<std::ptrdiff_t>(states.ok.size())) return;
+  const std::ptrdiff_t sample = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+  if (sample == std::ssize(states.ok)) return;
   const InputTable inputs = input_table(signals, form.model.inputs());
-  const auto sample = static_cast<std::size_t>(known);
-  const auto scales = scale_uncertainties(form.model, states.x.row(known).data(), inputs.at(sample), signals.t[sample]);
+  const auto scales = scale_uncertainties(form.model, states.x.row(sample).data(), inputs.at(sample), signals.t[sample]);
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
 }
 

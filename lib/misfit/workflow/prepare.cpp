@@ -80,7 +80,7 @@ void start_from_tables(const Session& session, Model& model) {
     const Curve* target = model.find_curve(name);
     if (!curve.table || target == nullptr) continue;
     const Table table = read_csv(*curve.table);
-    static_cast<void>(set_curve(model, name, table.values(curve.of, target->of_unit), table.values(name, target->unit)));
+    set_curve(model, name, table.values(curve.of, target->of_unit), table.values(name, target->unit));
   }
 }
 

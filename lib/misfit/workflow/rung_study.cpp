@@ -1,6 +1,7 @@
 // The study of a new rung: the text of the one below with one line changed.
 
 #include <algorithm>
+#include <tuple>
 
 #include "misfit/core/error.h"
 #include "misfit/data/study_edit.h"
@@ -15,7 +16,7 @@ void try_assemble(ModelRequest request, const Registry& registry) {
     request.curves[name].of = of;
     request.curves[name].knots = {1.0, 2.0};
   }
-  static_cast<void>(assemble(request, registry));
+  std::ignore = assemble(request, registry);
 }
 
 bool same_effect(const EffectRequest& a, const std::string& kind, const std::map<std::string, std::string>& roles) {

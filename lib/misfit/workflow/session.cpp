@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
@@ -72,17 +73,17 @@ namespace {
 
 /// What a long stage would otherwise find out at its end: files that are small, and everything that a video's tracking comes before.
 void check_small_files(const Study& study) {
-  for (const auto& [curve, file] : study.reference) static_cast<void>(read_reference(file, curve));
+  for (const auto& [curve, file] : study.reference) std::ignore = read_reference(file, curve);
   for (const auto& [name, curve] : study.curves) {
-    if (curve.table) static_cast<void>(read_csv(*curve.table));
+    if (curve.table) std::ignore = read_csv(*curve.table);
   }
   if (std::none_of(study.experiments.begin(), study.experiments.end(), [](const ExperimentStudy& e) { return e.video.has_value(); }))
     return;
-  if (study.camera.sweep) static_cast<void>(read_sweep(*study.camera.sweep));
-  if (study.camera.sweep_images) static_cast<void>(read_sweep_pictures(*study.camera.sweep_images));
+  if (study.camera.sweep) std::ignore = read_sweep(*study.camera.sweep);
+  if (study.camera.sweep_images) std::ignore = read_sweep_pictures(*study.camera.sweep_images);
   for (const ExperimentStudy& e : study.experiments) {
-    if (e.data) static_cast<void>(read_csv(*e.data));
-    if (e.track) static_cast<void>(read_track(*e.track, e.columns));
+    if (e.data) std::ignore = read_csv(*e.data);
+    if (e.track) std::ignore = read_track(*e.track, e.columns);
   }
 }
 

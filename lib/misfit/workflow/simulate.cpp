@@ -55,7 +55,7 @@ void curves_from_tables(const Session& session, Model& model) {
     const auto study = session.study.curves.find(curve.name);
     if (study == session.study.curves.end() || !study->second.table) continue;
     const Table table = read_csv(*study->second.table);
-    static_cast<void>(set_curve(model, curve.name, table.values(curve.of, curve.of_unit), table.values(curve.name, curve.unit)));
+    set_curve(model, curve.name, table.values(curve.of, curve.of_unit), table.values(curve.name, curve.unit));
   }
 }
 

@@ -47,7 +47,7 @@ std::shared_ptr<const FilterWork> filter_work(Session& session) {
 std::vector<Fit> fit_stage(Session& session) { return fit_stage(session, session.methods()); }
 
 std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& names) {
-  static_cast<void>(attitude_stage(session));
+  attitude_stage(session);
   std::vector<Fit> fits;
   Methods methods(session);
   resolved_stage(session, methods);

@@ -93,7 +93,7 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
     input.fits = fits;
     input.references = references(session);
     input.run = facts_of(session);
-    static_cast<void>(report::write_report(dir, input));
+    report::write_report(dir, input);
   });
   return session.folder.file("report.html");
 }

@@ -192,7 +192,7 @@ void write(const Session& session, const std::filesystem::path& dir, const Resam
   if (uncertainty.bootstrap > 0) write_bootstrap(dir, r.bootstraps);
   if (!uncertainty.profile.empty()) write_profiles(dir, r.profiles);
   if (uncertainty.starts > 0) write_multi_starts(dir, r.starts);
-  static_cast<void>(report::write_interval_figures(dir / "figures", r));
+  report::write_interval_figures(dir / "figures", r);
 }
 
 Resampling read(const Session& session) {
@@ -228,7 +228,7 @@ void check_profile_names(Session& session) {
 
 Resampling resampling_stage(Session& session) {
   if (!ranks().first()) {
-    if (!session.folder.up_to_date(stage, inputs_of(session))) static_cast<void>(Work(session).run());
+    if (!session.folder.up_to_date(stage, inputs_of(session))) Work(session).run();
     return {};
   }
   session.do_stage(stage, inputs_of(session), {"resampling.json"},

@@ -104,19 +104,19 @@ std::string digest_of(const Inputs& inputs) {
 }
 
 Uncertainty uncertainty_stage(Session& session) {
-  static_cast<void>(uncertainty_study(session));
-  static_cast<void>(attitude_stage(session));
+  uncertainty_study(session);
+  attitude_stage(session);
   if (session.folder.up_to_date(stage, inputs_of(session))) return read_uncertainty(session.folder.path());
   const std::unique_ptr<StudyChain> chain = chain_of(session);
   const Sampler sampler(chain->rig().perturbations(), session.study.seed);
   if (!ranks().first()) {
-    static_cast<void>(finished(sampled(session, *chain, sampler)));
+    finished(sampled(session, *chain, sampler));
     return {};
   }
   session.do_stage(stage, inputs_of(session), {"uncertainty.json"}, [&](const std::filesystem::path& dir) {
     const Uncertainty result = result_of(session, *chain, sampler, finished(sampled(session, *chain, sampler)));
-    static_cast<void>(write_uncertainty(dir, result));
-    static_cast<void>(report::write_uncertainty_figures(dir / "figures", result, references(session)));
+    write_uncertainty(dir, result);
+    report::write_uncertainty_figures(dir / "figures", result, references(session));
   });
   return read_uncertainty(session.folder.path());
 }

@@ -44,7 +44,7 @@ void write_check_video(const Session& session, const std::vector<std::optional<T
 /// camera.json; nullopt if the study has no camera.
 [[nodiscard]] std::optional<Calibration> calibrate_stage(Session& session);
 /// attitude.csv (attitude_NAME.csv for further experiments); empty for experiments without a track.
-[[nodiscard]] std::vector<std::optional<Attitude>> attitude_stage(Session& session);
+std::vector<std::optional<Attitude>> attitude_stage(Session& session);
 /// attitude.csv or, of further experiments, attitude_NAME.csv.
 [[nodiscard]] std::filesystem::path attitude_file(const Session& session, std::size_t experiment);
 /// camera.json, and of every experiment that starts from pixels the track and the attitude.
