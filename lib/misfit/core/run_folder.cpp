@@ -150,7 +150,7 @@ std::vector<std::string> RunFolder::damaged(const std::string& stage) const {
   return names;
 }
 
-bool RunFolder::up_to_date(const std::string& stage, const std::map<std::string, std::string>& inputs) const {
+bool RunFolder::up_to_date(const std::string& stage, const StageInputs& inputs) const {
   const auto it = stages_.find(stage);
   if (it == stages_.end()) return false;
   const StageRecord& before = it->second;

@@ -12,12 +12,15 @@
 
 namespace misfit {
 
+/// What a stage depends on, name → hash: files, and "settings" for the part of the study.
+using StageInputs = std::map<std::string, std::string>;
+
 /// One entry of run.json.
 struct StageRecord {
-  std::string stage;                          ///< "calibrate", "fit/output_error"
-  std::string command;                        ///< command line that made it
-  std::map<std::string, std::string> inputs;  ///< name → hash (files, and "settings" for the part of the study it depends on)
-  std::vector<std::string> outputs = {};      ///< paths relative to the run folder: filled by RunFolder::commit
+  std::string stage;    ///< "calibrate", "fit/output_error"
+  std::string command;  ///< command line that made it
+  StageInputs inputs;
+  std::vector<std::string> outputs = {};  ///< paths relative to the run folder: filled by RunFolder::commit
   double seconds = 0.0;
   std::string version = {}, commit = {};  ///< of the program that made it: filled by RunFolder::commit
 };
@@ -55,7 +58,7 @@ class RunFolder {
 
   /// True if `stage` ran before with exactly these inputs and the same program version and commit, and all its files are as they were
   /// written.
-  [[nodiscard]] bool up_to_date(const std::string& stage, const std::map<std::string, std::string>& inputs) const;
+  [[nodiscard]] bool up_to_date(const std::string& stage, const StageInputs& inputs) const;
   /// Names of the files of `stage` that are not as they were written; none if the stage was not done.
   [[nodiscard]] std::vector<std::string> damaged(const std::string& stage) const;
   /// Is this file as misfit wrote it?

@@ -123,7 +123,7 @@ void compare_with_parent(const FilterWork& child, const FilterWork& parent, int 
   rung.held_out_gain = gain.held_out;
 }
 
-std::map<std::string, std::string> inputs_of_ladder(const Session& session) {
+StageInputs inputs_of_ladder(const Session& session) {
   std::vector<fs::path> files;
   for (const auto& experiment : session.study.experiments) {
     for (const auto& file : {experiment.track, experiment.video, experiment.data}) {

@@ -52,7 +52,7 @@ std::string shown_path(const fs::path& file, const fs::path& study, const fs::pa
 }
 
 /// Inputs of a stage without the place of their files: a rung names the same video by another path.
-std::multiset<std::pair<std::string, std::string>> by_file_name(const std::map<std::string, std::string>& inputs) {
+std::multiset<std::pair<std::string, std::string>> by_file_name(const StageInputs& inputs) {
   std::multiset<std::pair<std::string, std::string>> out;
   for (const auto& [file, hash] : inputs) out.emplace(fs::path(file).filename().string(), hash);
   return out;
@@ -135,15 +135,15 @@ Session::Session(const SessionOptions& o, const Registry& r, RunFolder::Access a
   check_small_files(study);
 }
 
-std::map<std::string, std::string> Session::inputs(const std::string& settings, const std::vector<fs::path>& files) const {
-  std::map<std::string, std::string> out{{"program", program}, {"settings", hash_text(settings)}};
+StageInputs Session::inputs(const std::string& settings, const std::vector<fs::path>& files) const {
+  StageInputs out{{"program", program}, {"settings", hash_text(settings)}};
   for (const auto& file : files) {
     out[shown_path(file, study.folder, folder.path())] = hash_file(file);
   }
   return out;
 }
 
-void Session::do_stage(const std::string& stage, const std::map<std::string, std::string>& inputs, const std::vector<std::string>& files,
+void Session::do_stage(const std::string& stage, const StageInputs& inputs, const std::vector<std::string>& files,
                        const std::function<void(const fs::path&)>& make) {
   if (folder.up_to_date(stage, inputs)) return;
   const auto before = folder.stages().find(stage);
@@ -154,7 +154,7 @@ void Session::do_stage(const std::string& stage, const std::map<std::string, std
   redo_stage(stage, inputs, files, make);
 }
 
-void Session::redo_stage(const std::string& stage, const std::map<std::string, std::string>& inputs, const std::vector<std::string>& files,
+void Session::redo_stage(const std::string& stage, const StageInputs& inputs, const std::vector<std::string>& files,
                          const std::function<void(const fs::path&)>& make) {
   if (folder.access() == RunFolder::Access::read) throw std::logic_error("stage '" + stage + "' is to be done by the first rank");
   folder.check_places(files);
@@ -186,7 +186,7 @@ std::vector<fs::path> Session::files_of_stage(const std::string& stage) const {
   return files;
 }
 
-bool Session::copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs) {
+bool Session::copied_from_below(const std::string& stage, const StageInputs& inputs) {
   if (parent.empty()) return false;
   const RunFolder from(parent, {options.command, study.seed}, RunFolder::Access::read);
   const auto known = from.stages().find(stage);

@@ -57,22 +57,21 @@ struct Session {
 
   [[nodiscard]] std::vector<std::string> methods() const { return options.methods.empty() ? study.methods : options.methods; }
   /// {"program", "settings"} and the files, hashed: the inputs of a stage.
-  [[nodiscard]] std::map<std::string, std::string> inputs(const std::string& settings,
-                                                          const std::vector<std::filesystem::path>& files) const;
+  [[nodiscard]] StageInputs inputs(const std::string& settings, const std::vector<std::filesystem::path>& files) const;
   /// Does a stage unless it was done from the same inputs and its files are as they were written (those that are not: a note):
   /// `make` writes them into the folder that it is given, as they are to lie in the run folder, and they come to their places when all are
   /// whole (RunFolder). `files`: those that are known beforehand, so that what must not be written over is refused before the work. What
   /// follows reads the results from the run folder: so it is the same whether the stage was done now or before.
-  void do_stage(const std::string& stage, const std::map<std::string, std::string>& inputs, const std::vector<std::string>& files,
+  void do_stage(const std::string& stage, const StageInputs& inputs, const std::vector<std::string>& files,
                 const std::function<void(const std::filesystem::path&)>& make);
   /// The same, whether it was done before or not.
-  void redo_stage(const std::string& stage, const std::map<std::string, std::string>& inputs, const std::vector<std::string>& files,
+  void redo_stage(const std::string& stage, const StageInputs& inputs, const std::vector<std::string>& files,
                   const std::function<void(const std::filesystem::path&)>& make);
   /// Where a stage's files lie; none if it was not done.
   [[nodiscard]] std::vector<std::filesystem::path> files_of_stage(const std::string& stage) const;
   /// True if this stage was done from the same inputs in the run folder of the parent rung: its files are then copied from there, and
   /// run.json says so with their hashes.
-  [[nodiscard]] bool copied_from_below(const std::string& stage, const std::map<std::string, std::string>& inputs);
+  [[nodiscard]] bool copied_from_below(const std::string& stage, const StageInputs& inputs);
   /// A line for the listener.
   void note(const std::string& line) const;
   /// To be called with (done, total) of work that begins now, as long as it goes on.

@@ -28,7 +28,7 @@ std::optional<Diagnosis> known_diagnosis(const Session& session) {
   return read_diagnosis(session.folder.path());
 }
 
-std::map<std::string, std::string> inputs_of_discovery(const Session& session) {
+StageInputs inputs_of_discovery(const Session& session) {
   std::vector<fs::path> files = files_of_filter(session);
   if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
   return session.inputs("discover", files);

@@ -20,8 +20,7 @@ void resolved_stage(Session& session, Methods& methods) {
 
 }  // namespace
 
-std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method,
-                                                 const std::vector<std::string>& without) {
+StageInputs inputs_of_fit(const Session& session, const std::string& method, const std::vector<std::string>& without) {
   std::vector<fs::path> files = files_of_attitude(session);
   if (session.study.system_file) files.push_back(*session.study.system_file);
   for (const ExperimentStudy& experiment : session.study.experiments) {

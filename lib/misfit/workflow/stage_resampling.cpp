@@ -21,8 +21,6 @@
 namespace misfit {
 namespace {
 
-using Inputs = std::map<std::string, std::string>;
-
 constexpr const char* stage = "resampling";
 
 /// A method's fit as replicas and profiles start from it.
@@ -31,9 +29,9 @@ struct Started {
   Fit fit;
 };
 
-Inputs inputs_of(const Session& session) {
+StageInputs inputs_of(const Session& session) {
   const UncertaintyStudy& uncertainty = *session.study.uncertainty;
-  Inputs inputs = inputs_of_fit(session, stage);
+  StageInputs inputs = inputs_of_fit(session, stage);
   inputs["methods"] = fmt::format("{}", fmt::join(session.methods(), " "));
   inputs["seed"] = std::to_string(session.study.seed);
   inputs["bootstrap"] = fmt::format("{} runs, block {}", uncertainty.bootstrap, uncertainty.block);
@@ -95,7 +93,7 @@ class Work {
   /// `settings`: what of [uncertainty] a job's result depends on. Other methods do not matter to it, nor how many runs there are.
   [[nodiscard]] StoredJobs jobs(const std::string& what, const std::string& method, const std::string& settings,
                                 std::size_t count = 0) const {
-    Inputs inputs = inputs_of_jobs(session_, stage, {"uncertainty"});
+    StageInputs inputs = inputs_of_jobs(session_, stage, {"uncertainty"});
     inputs["methods"] = method;
     inputs["settings"] = settings;
     return {session_.folder.file(what + "_" + method), digest_of(inputs), count, session_.options.threads};
@@ -239,7 +237,7 @@ Resampling resampling_stage(Session& session) {
 std::optional<Resampling> known_resampling(const Session& session) {
   const auto record = session.folder.stages().find(stage);
   if (!asks_for_resampling(session.study) || record == session.folder.stages().end()) return std::nullopt;
-  Inputs now = inputs_of(session);
+  StageInputs now = inputs_of(session);
   // By whatever methods were asked for.
   const auto& before = record->second.inputs;
   for (const char* key : {"methods", "seed"}) {

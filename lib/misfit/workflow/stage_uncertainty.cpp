@@ -12,8 +12,6 @@
 namespace misfit {
 namespace {
 
-using Inputs = std::map<std::string, std::string>;
-
 constexpr const char* stage = "uncertainty";
 
 const UncertaintyStudy& uncertainty_study(const Session& session) {
@@ -26,15 +24,15 @@ const UncertaintyStudy& uncertainty_study(const Session& session) {
 std::size_t runs_of(const Session& session) { return session.options.runs > 0 ? session.options.runs : session.study.uncertainty->runs; }
 
 /// All that a run depends on but its number: not how many there are, what else is asked for, or what the study is called.
-Inputs inputs_of_run(const Session& session) {
-  Inputs inputs = inputs_of_jobs(
+StageInputs inputs_of_run(const Session& session) {
+  StageInputs inputs = inputs_of_jobs(
       session, stage, {"uncertainty.runs", "uncertainty.bootstrap", "uncertainty.block", "uncertainty.profile", "uncertainty.starts"});
   inputs["methods"] = fmt::format("{}", fmt::join(session.methods(), " "));
   return inputs;
 }
 
-Inputs inputs_of(const Session& session) {
-  Inputs inputs = inputs_of_run(session);
+StageInputs inputs_of(const Session& session) {
+  StageInputs inputs = inputs_of_run(session);
   inputs["runs"] = std::to_string(runs_of(session));
   return inputs;
 }
@@ -90,14 +88,14 @@ MonteCarloResult finished(std::optional<MonteCarloResult> runs) {
 
 }  // namespace
 
-Inputs inputs_of_jobs(const Session& session, const std::string& what, std::vector<std::string> more) {
+StageInputs inputs_of_jobs(const Session& session, const std::string& what, std::vector<std::string> more) {
   for (const char* key : {"study.name", "study.question", "study.methods", "reference"}) more.emplace_back(key);
-  Inputs inputs = inputs_of_fit(session, what, more);
+  StageInputs inputs = inputs_of_fit(session, what, more);
   inputs["seed"] = std::to_string(session.study.seed);
   return inputs;
 }
 
-std::string digest_of(const Inputs& inputs) {
+std::string digest_of(const StageInputs& inputs) {
   std::string text;
   for (const auto& [name, hash] : inputs) text += name + " " + hash + "\n";
   return hash_text(text);
@@ -124,7 +122,7 @@ Uncertainty uncertainty_stage(Session& session) {
 std::optional<Uncertainty> known_uncertainty(const Session& session) {
   const auto record = session.folder.stages().find(stage);
   if (!session.study.uncertainty || record == session.folder.stages().end()) return std::nullopt;
-  Inputs now = inputs_of(session);
+  StageInputs now = inputs_of(session);
   // However many runs it was, and by whatever method was asked for.
   const auto& before = record->second.inputs;
   for (const char* key : {"runs", "methods", "seed"}) {

@@ -83,8 +83,7 @@ struct FilterWork {
 /// with the fit's words if it declined.
 [[nodiscard]] std::shared_ptr<const FilterWork> filter_work(Session& session);
 /// What a fit by `method` depends on: not comments and spaces of the study, nor the tables and keys in `without` (config::content_of).
-[[nodiscard]] std::map<std::string, std::string> inputs_of_fit(const Session& session, const std::string& method,
-                                                               const std::vector<std::string>& without = {});
+[[nodiscard]] StageInputs inputs_of_fit(const Session& session, const std::string& method, const std::vector<std::string>& without = {});
 /// Everything the fits left on disk.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_fits(const Session& session, const std::vector<Fit>& fits);
 [[nodiscard]] std::vector<Reference> references(const Session& session);
@@ -100,10 +99,9 @@ std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fit
 [[nodiscard]] Uncertainty uncertainty_stage(Session& session);
 /// What a stored job of `what` depends on but its number, `more` left out too: not what the study is called, nor which methods it asks
 /// for.
-[[nodiscard]] std::map<std::string, std::string> inputs_of_jobs(const Session& session, const std::string& what,
-                                                                std::vector<std::string> more);
+[[nodiscard]] StageInputs inputs_of_jobs(const Session& session, const std::string& what, std::vector<std::string> more);
 /// One word for all these.
-[[nodiscard]] std::string digest_of(const std::map<std::string, std::string>& inputs);
+[[nodiscard]] std::string digest_of(const StageInputs& inputs);
 /// What it left on disk, where it still belongs to the study and its data.
 [[nodiscard]] std::optional<Uncertainty> known_uncertainty(const Session& session);
 
@@ -145,7 +143,7 @@ struct RungFindings {
 };
 [[nodiscard]] std::optional<RungFindings> findings_of_last_rung(const Session& session, const Ladder& ladder,
                                                                 std::vector<std::string>& notes);
-[[nodiscard]] std::map<std::string, std::string> inputs_of_discovery(const Session& session);
+[[nodiscard]] StageInputs inputs_of_discovery(const Session& session);
 /// ladder.json where it still belongs to the study and its data (workflow/ladder.h).
 [[nodiscard]] std::optional<Ladder> known_ladder(const Session& session);
 /// Runs filter_error where it must; did it decline or fail?
