@@ -144,13 +144,13 @@ std::optional<FittedBatch> fit_batch(const SessionOptions& options, const std::v
     if (options.listener.note && !folder->lost_record().empty()) options.listener.note(folder->lost_record());
   });
   const StoredJobs jobs{job.folder() / "checkpoints", job.digest(), job.size(), options.threads};
-  const auto results = run_stored_jobs(
-      jobs, [&](std::size_t k) { return job.run(k); },
-      options.listener.progress ? options.listener.progress(fmt::format("batch of {} studies", job.size())) : ProgressFn(), &interrupted());
+  const ProgressFn progress =
+      options.listener.progress ? options.listener.progress(fmt::format("batch of {} studies", job.size())) : ProgressFn();
+  const JobResults results = finished(run_stored_jobs(
+      jobs, [&](std::size_t k) { return job.run(k); }, progress, &interrupted()));
   stop_if_interrupted();
-  if (!results) throw EndedElsewhere();
   if (!ranks().first()) return std::nullopt;
-  FittedBatch out{merged(*results), job.folder()};
+  FittedBatch out{merged(results), job.folder()};
   const PartFolder part(job.folder());
   write_batch(part.path(), out.batch);
   report::write_batch_figures(part.path() / "figures", out.batch);

@@ -186,7 +186,7 @@ std::vector<fs::path> Session::files_of_stage(const std::string& stage) const {
   return files;
 }
 
-bool Session::copied_from_below(const std::string& stage, const StageInputs& inputs) {
+bool Session::copied_from_parent(const std::string& stage, const StageInputs& inputs) {
   if (parent.empty()) return false;
   const RunFolder from(parent, {options.command, study.seed}, RunFolder::Access::read);
   const auto known = from.stages().find(stage);

@@ -71,7 +71,7 @@ struct Session {
   [[nodiscard]] std::vector<std::filesystem::path> files_of_stage(const std::string& stage) const;
   /// True if this stage was done from the same inputs in the run folder of the parent rung: its files are then copied from there, and
   /// run.json says so with their hashes.
-  [[nodiscard]] bool copied_from_below(const std::string& stage, const StageInputs& inputs);
+  [[nodiscard]] bool copied_from_parent(const std::string& stage, const StageInputs& inputs);
   /// A line for the listener.
   void note(const std::string& line) const;
   /// To be called with (done, total) of work that begins now, as long as it goes on.

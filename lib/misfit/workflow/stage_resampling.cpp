@@ -23,12 +23,6 @@ namespace {
 
 constexpr const char* stage = "resampling";
 
-/// A method's fit as replicas and profiles start from it.
-struct Started {
-  FittedMethod from;
-  Fit fit;
-};
-
 StageInputs inputs_of(const Session& session) {
   const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   StageInputs inputs = inputs_of_fit(session, stage);
@@ -42,9 +36,9 @@ StageInputs inputs_of(const Session& session) {
 
 /// One method after the other. The first rank alone summarises; whatever happens there, all ranks come to the same stored jobs, or the
 /// program ends.
-class Work {
+class ResamplingJob {
  public:
-  explicit Work(Session& session) : session_(session), uncertainty_(*session.study.uncertainty), methods_(session) {}
+  explicit ResamplingJob(Session& session) : session_(session), uncertainty_(*session.study.uncertainty), methods_(session) {}
 
   Resampling run() {
     for (const std::string& method : session_.methods()) {
@@ -76,18 +70,18 @@ class Work {
   }
 
   void resample(const std::string& method) {
-    Started s;
+    FittedMethod from;
+    const Fit& fit = from.fitted.fit;
     const bool fitted = attempt(method, [&] {
-      s.from = methods_.run(method).at;
-      s.fit = s.from.fitted.fit;
-      if (!s.fit.usable()) throw RunError(to_string(s.fit.status) + ": " + s.fit.message);
+      from = methods_.run(method).at;
+      if (!fit.usable()) throw RunError(to_string(fit.status) + ": " + fit.message);
     });
     if (!fitted) return;
-    if (s.fit.status == FitStatus::not_converged)
-      out_.notes.push_back(method + " has not converged (" + s.fit.message + "): resampling starts from its last iterate");
-    if (uncertainty_.bootstrap > 0) add_bootstrap(s);
-    if (!uncertainty_.profile.empty() && has_likelihood(method)) add_profiles(s);
-    if (uncertainty_.starts > 0 && has_likelihood(method)) add_starts(s);
+    if (fit.status == FitStatus::not_converged)
+      out_.notes.push_back(method + " has not converged (" + fit.message + "): resampling starts from its last iterate");
+    if (uncertainty_.bootstrap > 0) add_bootstrap(from);
+    if (!uncertainty_.profile.empty() && has_likelihood(method)) add_profiles(from);
+    if (uncertainty_.starts > 0 && has_likelihood(method)) add_starts(from);
   }
 
   /// `settings`: what of [uncertainty] a job's result depends on. Other methods do not matter to it, nor how many runs there are.
@@ -99,80 +93,73 @@ class Work {
     return {session_.folder.file(what + "_" + method), digest_of(inputs), count, session_.options.threads};
   }
 
-  template <class Result>
-  static Result finished(std::optional<Result> result) {
-    if (result) return std::move(*result);
-    stop_if_interrupted();
-    throw EndedElsewhere();  // Ctrl-C reached another rank only
-  }
-
-  void add_bootstrap(const Started& s) {
+  void add_bootstrap(const FittedMethod& from) {
     BootstrapOptions options;
     options.runs = uncertainty_.bootstrap;
     options.seed = session_.study.seed;
-    options.block = {static_cast<int>(uncertainty_.block), s.from.fitted.equation_residuals};
-    const EstimatorInfo& info = estimator(s.from.method).info;
+    options.block = {static_cast<int>(uncertainty_.block), from.fitted.equation_residuals};
+    const EstimatorInfo& info = estimator(from.method).info;
     const Resampled what = info.has_likelihood && info.deterministic ? Resampled::residuals : Resampled::rows;
-    const FitReplica refit = [&](const std::vector<Signals>& replica) { return fit_again(s.from, replica); };
+    const FitReplica refit = [&](const std::vector<Signals>& replica) { return fit_again(from, replica); };
     std::optional<BlockBootstrap> bootstrap;
-    if (!attempt(s.from.method, [&] { bootstrap.emplace(s.fit, methods_.prepared().experiments, what, refit, options); })) return;
-    const ProgressFn progress = session_.progress(fmt::format("bootstrap of {}, {} runs", s.from.method, uncertainty_.bootstrap));
+    if (!attempt(from.method, [&] { bootstrap.emplace(from.fitted.fit, methods_.prepared().experiments, what, refit, options); })) return;
+    const ProgressFn progress = session_.progress(fmt::format("bootstrap of {}, {} runs", from.method, uncertainty_.bootstrap));
     const auto results = finished(stored_runs([&](std::size_t k) { return bootstrap->run(k); },
-                                              jobs("bootstrap", s.from.method, fmt::format("block {}", uncertainty_.block), options.runs),
+                                              jobs("bootstrap", from.method, fmt::format("block {}", uncertainty_.block), options.runs),
                                               progress, &interrupted()));
-    if (ranks().first()) attempt(s.from.method, [&] { out_.bootstraps.push_back(bootstrap->summary(results)); });
+    if (ranks().first()) attempt(from.method, [&] { out_.bootstraps.push_back(bootstrap->summary(results)); });
   }
 
-  void add_profiles(const Started& s) {
+  void add_profiles(const FittedMethod& from) {
     std::vector<ProfileRequest> requests;
     for (const std::string& parameter : uncertainty_.profile)
-      attempt(s.from.method, [&] { requests.push_back(request_for(s, parameter)); });
+      attempt(from.method, [&] { requests.push_back(request_for(from, parameter)); });
     if (requests.empty()) return;
-    const ProgressFn progress = session_.progress("profiles of " + s.from.method);
+    const ProgressFn progress = session_.progress("profiles of " + from.method);
     for (auto& profile : finished(stored_profiles(
-             requests, jobs("profile", s.from.method, fmt::format("{}", fmt::join(uncertainty_.profile, " "))), progress, &interrupted())))
+             requests, jobs("profile", from.method, fmt::format("{}", fmt::join(uncertainty_.profile, " "))), progress, &interrupted())))
       out_.profiles.push_back(std::move(profile));
   }
 
-  void add_starts(const Started& s) {
+  void add_starts(const FittedMethod& from) {
     MultiStartOptions options;
     options.runs = uncertainty_.starts;
     options.seed = session_.study.seed;
     const std::vector<Signals>& experiments = methods_.prepared().experiments;
     const SearchFrom search = [&](const std::vector<double>& values) {
-      const Maximisation end = maximise_from(s.from, values, experiments);
+      const Maximisation end = maximise_from(from, values, experiments);
       return Maximum{end.objective, end.why, end.at.fitted.model.values()};
     };
     std::optional<MultiStarts> starts;
-    const bool possible = attempt(s.from.method, [&] {
-      const Maximisation best = maximise_near(s.from, experiments);
+    const bool possible = attempt(from.method, [&] {
+      const Maximisation best = maximise_near(from, experiments);
       if (!best.objective) throw RunError("starts: the refit at the estimate failed: " + best.why);
-      starts.emplace(s.fit, s.from.fitted.model, *best.objective, search, options);
+      starts.emplace(from.fitted.fit, from.fitted.model, *best.objective, search, options);
     });
     if (!possible) return;
-    const ProgressFn progress = session_.progress(fmt::format("{} random starts of {}", uncertainty_.starts, s.from.method));
+    const ProgressFn progress = session_.progress(fmt::format("{} random starts of {}", uncertainty_.starts, from.method));
     const auto results =
         finished(stored_runs([&](std::size_t k) { return starts->run(k); },
-                             jobs("starts", s.from.method, "from the model's typical sizes", options.runs), progress, &interrupted()));
-    if (ranks().first()) attempt(s.from.method, [&] { out_.starts.push_back(starts->summary(results)); });
+                             jobs("starts", from.method, "from the model's typical sizes", options.runs), progress, &interrupted()));
+    if (ranks().first()) attempt(from.method, [&] { out_.starts.push_back(starts->summary(results)); });
   }
 
-  ProfileRequest request_for(const Started& s, const std::string& parameter) {
+  ProfileRequest request_for(const FittedMethod& from, const std::string& parameter) {
     const std::vector<Signals>& experiments = methods_.prepared().experiments;
-    const auto found = std::find(s.fit.names.begin(), s.fit.names.end(), parameter);
-    if (found == s.fit.names.end()) throw RunError("profile of " + parameter + ": it is not free in this fit");
-    ProfileObjective at_best(s.from, experiments, parameter);
-    const Estimate& e = s.fit.parameters.at(parameter);
-    const Parameter& p = s.from.fitted.model.parameters[s.from.fitted.model.find_parameter(parameter)];
+    const auto found = std::find(from.fitted.fit.names.begin(), from.fitted.fit.names.end(), parameter);
+    if (found == from.fitted.fit.names.end()) throw RunError("profile of " + parameter + ": it is not free in this fit");
+    ProfileObjective at_best(from, experiments, parameter);
+    const Estimate& e = from.fitted.fit.parameters.at(parameter);
+    const Parameter& p = from.fitted.model.parameters[from.fitted.model.find_parameter(parameter)];
     const std::optional<double> objective = at_best(e.value);
     if (!objective) throw RunError("profile of " + parameter + ": the refit at the estimate failed");
     if (!(e.sigma > 0.0)) throw RunError("profile of " + parameter + ": the fit gives no sigma, hence no step size");
-    const auto plain = s.fit.plain_sigmas.find(parameter);
+    const auto plain = from.fitted.fit.plain_sigmas.find(parameter);
     ProfileRequest r{
-        s.from.method, parameter, e.unit, e.value, *objective, e.sigma, plain == s.fit.plain_sigmas.end() ? 0.0 : plain->second,
-        p.lower,       p.upper,   {}};
-    r.from_best = [&s, &experiments, parameter] {
-      auto held = std::make_shared<ProfileObjective>(s.from, experiments, parameter);
+        from.method, parameter, e.unit, e.value, *objective, e.sigma, plain == from.fitted.fit.plain_sigmas.end() ? 0.0 : plain->second,
+        p.lower,     p.upper,   {}};
+    r.from_best = [&from, &experiments, parameter] {
+      auto held = std::make_shared<ProfileObjective>(from, experiments, parameter);
       return HeldMaximum([held](double value) { return (*held)(value); });
     };
     return r;
@@ -226,11 +213,11 @@ void check_profile_names(Session& session) {
 
 Resampling resampling_stage(Session& session) {
   if (!ranks().first()) {
-    if (!session.folder.up_to_date(stage, inputs_of(session))) Work(session).run();
+    if (!session.folder.up_to_date(stage, inputs_of(session))) ResamplingJob(session).run();
     return {};
   }
   session.do_stage(stage, inputs_of(session), {"resampling.json"},
-                   [&](const std::filesystem::path& dir) { write(session, dir, Work(session).run()); });
+                   [&](const std::filesystem::path& dir) { write(session, dir, ResamplingJob(session).run()); });
   return read(session);
 }
 

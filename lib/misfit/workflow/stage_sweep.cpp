@@ -151,7 +151,7 @@ fs::path sweep_stage(Session& session) {
   for (const SweepPicture& picture : pictures) read.push_back(picture.file);
   if (camera.sweep_marker.picture) read.push_back(*camera.sweep_marker.picture);
   const auto inputs = session.inputs(settings_of(camera), read);
-  if (session.folder.up_to_date("sweep", inputs) || session.copied_from_below("sweep", inputs)) return file;
+  if (session.folder.up_to_date("sweep", inputs) || session.copied_from_parent("sweep", inputs)) return file;
   session.do_stage("sweep", inputs, {"sweep.csv", sheet},
                    [&](const fs::path& dir) { make_sweep(session, pictures, dir / "sweep.csv", dir / sheet); });
   return file;

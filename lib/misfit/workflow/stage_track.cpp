@@ -57,7 +57,7 @@ std::vector<std::optional<TrackFacts>> track_stage(Session& session) {
     if (session.study.video.marker.picture) read.push_back(*session.study.video.marker.picture);
     const auto inputs = session.inputs(settings_of(session.study.video), read);
     const std::string stage = "track/" + experiment.name;
-    if (!session.folder.up_to_date(stage, inputs) && !session.copied_from_below(stage, inputs)) {
+    if (!session.folder.up_to_date(stage, inputs) && !session.copied_from_parent(stage, inputs)) {
       const std::string end = file_suffix(e, session.study.experiments[e].name);
       session.do_stage(stage, inputs, {"track" + end + ".csv", "track" + end + ".json"},
                        [&](const fs::path& dir) { make_track(session, e, made_files(dir, end)); });

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/data/estimators.h"
@@ -79,13 +81,6 @@ Uncertainty result_of(const Session& session, const StudyChain& chain, const Sam
   return out;
 }
 
-/// The runs of all ranks.
-MonteCarloResult finished(std::optional<MonteCarloResult> runs) {
-  if (runs) return std::move(*runs);
-  stop_if_interrupted();
-  throw EndedElsewhere();  // Ctrl-C reached another rank only
-}
-
 }  // namespace
 
 StageInputs inputs_of_jobs(const Session& session, const std::string& what, std::vector<std::string> more) {
@@ -108,7 +103,7 @@ Uncertainty uncertainty_stage(Session& session) {
   const std::unique_ptr<StudyChain> chain = chain_of(session);
   const Sampler sampler(chain->rig().perturbations(), session.study.seed);
   if (!ranks().first()) {
-    finished(sampled(session, *chain, sampler));
+    std::ignore = finished(sampled(session, *chain, sampler));
     return {};
   }
   session.do_stage(stage, inputs_of(session), {"uncertainty.json"}, [&](const std::filesystem::path& dir) {
