@@ -56,6 +56,12 @@ INSTANTIATE_TEST_SUITE_P(EachKind, AnyName,
                                          std::string(5000, 'n'), std::string(79, 'a') + "é"),
                          [](const auto& i) { return std::to_string(i.index); });
 
+TEST(FileSuffix, IsNothingForTheFirstAndTheNameOfEachOther) {
+  EXPECT_EQ(file_suffix(0, "day one"), "");
+  EXPECT_EQ(file_suffix(1, "second"), "_second");
+  EXPECT_EQ(file_suffix(2, "a/b"), "_" + file_name_for("a/b"));
+}
+
 TEST(UniqueName, TakesTheFirstThatIsFree) {
   std::set<std::string> taken{"a", "a_2"};
   EXPECT_EQ(unique_name("b", taken), "b");
