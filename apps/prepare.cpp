@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "apps/stages.h"
+#include "misfit/attitude/attitude.h"
 #include "misfit/core/error.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/gaps.h"

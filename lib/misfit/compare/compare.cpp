@@ -14,11 +14,6 @@
 namespace misfit {
 namespace {
 
-/// The curve whose zero is the trim; its slope there is the static stability.
-constexpr const char* static_curve = "C_m";
-
-bool usable(const Fit& fit) { return fit.status == FitStatus::converged || fit.status == FitStatus::not_converged; }
-
 bool alike(const CurveEstimate& a, const CurveEstimate& b) {
   return a.name == b.name && a.of == b.of && a.of_unit == b.of_unit && a.unit == b.unit;
 }
@@ -31,11 +26,11 @@ MethodSummary summary(const Fit& fit) {
   MethodSummary m{fit.method,         fit.status, fit.message,           fit.driven, fit.trim, {}, {}, fit.rms,
                   fit.validation_rms, fit.loglik, fit.validation_loglik, {}};
   for (const auto& [name, estimate] : fit.parameters) {
-    if (usable(fit) && !is_curve_coefficient(name)) m.parameters[name] = estimate;
+    if (fit.usable() && !is_curve_coefficient(name)) m.parameters[name] = estimate;
   }
   for (const CurveEstimate& curve : fit.curves) {
-    if (!usable(fit) || !fit.trim || !curve.informative || curve.of_unit != fit.trim->unit) continue;
-    if (curve.name == static_curve) {
+    if (!fit.usable() || !fit.trim || !curve.informative || curve.of_unit != fit.trim->unit) continue;
+    if (curve.trimmed) {  // its slope there is the static stability
       if (const auto slope = slope_at(curve, fit.trim->value)) m.slopes[curve.name] = *slope;
     } else if (const auto point = visited_point(curve, fit.trim->value)) {
       m.at_trim[curve.name] = {point->value, point->sigma, curve.unit};
@@ -45,7 +40,7 @@ MethodSummary summary(const Fit& fit) {
 }
 
 void list_left_out(const Fit& fit, Comparison& c) {
-  if (!usable(fit)) {
+  if (!fit.usable()) {
     c.not_compared.push_back({fit.method, to_string(fit.status) + (fit.message.empty() ? "" : ": " + fit.message)});
     return;
   }
@@ -60,7 +55,7 @@ struct Sides {
   bool reference = false;
 };
 
-void add_difference(const CurveEstimate& curve, const std::vector<CurvePoint>& points, const Sides& sides, Comparison& c) {
+void add_difference(const CurveEstimate& curve, const std::vector<CurveValue>& points, const Sides& sides, Comparison& c) {
   std::optional<CurveDifference> d = difference(curve, points);
   if (!d) {
     c.not_compared.push_back(
@@ -84,7 +79,7 @@ void compare_pair(const Fit& a, const Fit& b, Comparison& c) {
 }
 
 void compare_reference(const Fit& fit, const Reference& reference, Comparison& c) {
-  std::vector<CurvePoint> points;
+  std::vector<CurveValue> points;
   for (std::size_t i = 0; i < reference.x.size(); ++i) points.push_back({reference.x[i], reference.value[i], reference.sigma[i]});
   for (const CurveEstimate& curve : fit.curves) {
     if (curve.informative && alike(curve, reference)) add_difference(curve, points, {fit.method, reference.name, true}, c);
@@ -136,9 +131,9 @@ Comparison compare(const std::vector<Fit>& fits, const std::vector<Reference>& r
   for (std::size_t i = 0; i < fits.size(); ++i) {
     c.methods.push_back(summary(fits[i]));
     list_left_out(fits[i], c);
-    if (!usable(fits[i])) continue;
+    if (!fits[i].usable()) continue;
     for (std::size_t j = i + 1; j < fits.size(); ++j) {
-      if (!usable(fits[j])) continue;
+      if (!fits[j].usable()) continue;
       compare_pair(fits[i], fits[j], c);
       add_parameters(fits[i], fits[j], c);
       if (fits[i].trim && fits[j].trim) add_trims(*fits[i].trim, *fits[j].trim, {fits[i].method, fits[j].method}, c);

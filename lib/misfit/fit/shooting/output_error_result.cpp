@@ -10,7 +10,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/inference/curves.h"
-#include "misfit/inference/whiteness.h"
+#include "misfit/math/whiteness.h"
 
 namespace misfit::output_error_parts {
 
