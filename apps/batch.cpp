@@ -165,7 +165,8 @@ int batch_verb(const Options& options, const Registry& registry) {
   if (options.json) {
     print_file(job.folder() / "batch.json");
   } else {
-    std::cout << batch_text(batch) << "results: " << job.folder().string() << '\n';
+    print(batch);
+    std::cout << "results: " << job.folder().string() << '\n';
   }
   return status_of(batch);
 }

@@ -30,18 +30,18 @@ int extend_ladder(ModelLadder& ladder, const Registry& registry, bool json) {
   constexpr int most_rungs = 12;
   for (int k = 0; k < most_rungs; ++k) {
     const Discovery discovery = discovered(ladder.last());
-    if (!json) std::cout << discovery_text(discovery) << '\n' << std::flush;
+    if (!json) print(discovery);
     const std::optional<Candidate> next = next_step(discovery, registry);
     if (!next) break;
     const Rung& rung = ladder.add(next->effect, next);
-    if (!json) std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.last_fit()) << '\n' << std::flush;
+    if (!json) print(ladder.ladder(), rung, ladder.last_fit());
   }
   static_cast<void>(ladder.last_rung());
   report_ladder(ladder);
   if (json) {
     print_file(ladder.root().folder.file("ladder.json"));
   } else {
-    std::cout << ladder_text(ladder.ladder());
+    print(ladder.ladder());
   }
   return 0;
 }
@@ -70,9 +70,9 @@ int discover_verb(const Options& options, const Registry& registry) {
     print_file(session.folder.file("candidates.json"));
     return 0;
   }
-  std::cout << discovery_text(discovery);
+  print(discovery);
   if (const auto next = next_step(discovery, registry))
-    std::cout << "\nto add it: misfit add " << options.study << " " << next->effect << '\n';
+    std::cout << "to add it: misfit add " << options.study << " " << next->effect << '\n';
   return 0;
 }
 
