@@ -15,8 +15,9 @@ int add_verb(const Options& options, const Registry& registry) {
     print_file(ladder.root().folder.file("ladder.json"));
     return 0;
   }
-  std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.last_fit()) << '\n' << ladder_text(ladder.ladder());
-  std::cout << "\nstudy of this rung: " << ladder.root().folder.file(rung.study).lexically_normal().string() << '\n';
+  print(ladder.ladder(), rung, ladder.last_fit());
+  print(ladder.ladder());
+  std::cout << "study of this rung: " << ladder.root().folder.file(rung.study).lexically_normal().string() << '\n';
   return 0;
 }
 

@@ -14,7 +14,7 @@ int attitude_verb(const Options& options, const Registry& registry) {
   bool any = false;
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
   for (std::size_t e = 0; e < attitudes.size(); ++e) {
-    if (attitudes[e] && !options.json) std::cout << attitude_text(session.study.experiments[e].name, *attitudes[e]);
+    if (attitudes[e] && !options.json) print(session.study.experiments[e].name, *attitudes[e]);
     if (attitudes[e]) all[session.study.experiments[e].name] = {{"samples", attitudes[e]->t.size()}, {"notes", attitudes[e]->notes}};
     any = any || attitudes[e].has_value();
   }

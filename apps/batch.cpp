@@ -23,7 +23,8 @@ int batch_verb(const Options& options, const Registry& registry) {
   if (options.json) {
     print_file(fitted->folder / "batch.json");
   } else {
-    std::cout << batch_text(fitted->batch) << "results: " << fitted->folder.string() << '\n';
+    print(fitted->batch);
+    std::cout << "results: " << fitted->folder.string() << '\n';
   }
   return status_of(fitted->batch);
 }

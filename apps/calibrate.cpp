@@ -14,7 +14,7 @@ int calibrate_verb(const Options& options, const Registry& registry) {
   if (options.json) {
     print_file(session.folder.file("camera.json"));
   } else {
-    std::cout << calibration_text(*calibration);
+    print(*calibration);
   }
   return calibration->converged ? 0 : 1;
 }

@@ -14,7 +14,7 @@ int compare_verb(const Options& options, const Registry& registry) {
   if (options.json) {
     print_file(session.folder.file("compare.json"));
   } else {
-    std::cout << comparison_text(comparison);
+    print(comparison);
   }
   return 0;
 }

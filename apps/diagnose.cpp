@@ -13,7 +13,7 @@ int diagnose_verb(const Options& options, const Registry& registry) {
   if (options.json) {
     print_file(session.folder.file("diagnosis.json"));
   } else {
-    std::cout << diagnosis_text(*diagnosis);
+    print(*diagnosis);
   }
   return 0;
 }

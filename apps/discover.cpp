@@ -13,17 +13,15 @@ namespace {
 int extend(ModelLadder& ladder, const Registry& registry, bool json) {
   LadderListener listener;
   if (!json) {
-    listener.discovered = [](const Discovery& discovery) { std::cout << discovery_text(discovery) << '\n' << std::flush; };
-    listener.added = [&](const Rung& rung) {
-      std::cout << rung_text(ladder.ladder(), rung) << warnings_text(ladder.last_fit()) << '\n' << std::flush;
-    };
+    listener.discovered = [](const Discovery& discovery) { print(discovery); };
+    listener.added = [&](const Rung& rung) { print(ladder.ladder(), rung, ladder.last_fit()); };
   }
   extend_ladder(ladder, registry, listener);
   report_ladder(ladder);
   if (json) {
     print_file(ladder.root().folder.file("ladder.json"));
   } else {
-    std::cout << ladder_text(ladder.ladder());
+    print(ladder.ladder());
   }
   return 0;
 }
@@ -51,9 +49,9 @@ int discover_verb(const Options& options, const Registry& registry) {
     print_file(session.folder.file("candidates.json"));
     return 0;
   }
-  std::cout << discovery_text(discovery);
+  print(discovery);
   if (const auto next = accepted_candidate(discovery, registry))
-    std::cout << "\nto add it: misfit add " << options.session.study << " " << next->effect << '\n';
+    std::cout << "to add it: misfit add " << options.session.study << " " << next->effect << '\n';
   return 0;
 }
 

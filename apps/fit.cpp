@@ -17,7 +17,7 @@ int fit_verb(const Options& options, const Registry& registry) {
       all[fit.method] = nlohmann::ordered_json::parse(read_file(session.folder.file("fit/" + fit.method + "/fit.json")));
     std::cout << all.dump(1) << '\n';
   } else {
-    std::cout << fits_text(fits);
+    print(fits);
   }
   return status_of(fits);
 }

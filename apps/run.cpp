@@ -26,16 +26,17 @@ int run_verb(const Options& options, const Registry& registry) {
   }
   std::cout << session.study.name << '\n' << session.study.question << "\n\n";
   for (std::size_t e = 0; e < videos.size(); ++e) {
-    if (videos[e]) std::cout << track_text(session.study.experiments[e].name, *videos[e]) << '\n';
+    if (videos[e]) print(session.study.experiments[e].name, *videos[e]);
   }
-  if (calibration) std::cout << calibration_text(*calibration) << '\n';
+  if (calibration) print(*calibration);
   for (std::size_t e = 0; e < attitudes.size(); ++e) {
-    if (attitudes[e]) std::cout << attitude_text(session.study.experiments[e].name, *attitudes[e]) << '\n';
+    if (attitudes[e]) print(session.study.experiments[e].name, *attitudes[e]);
   }
-  std::cout << fits_text(fits) << '\n' << comparison_text(comparison) << '\n';
-  if (diagnosis) std::cout << diagnosis_text(*diagnosis) << '\n';
-  if (discovery) std::cout << discovery_text(*discovery) << '\n';
-  if (const auto ladder = known_ladder(session)) std::cout << ladder_text(*ladder) << '\n';
+  print(fits);
+  print(comparison);
+  if (diagnosis) print(*diagnosis);
+  if (discovery) print(*discovery);
+  if (const auto ladder = known_ladder(session)) print(*ladder);
   std::cout << "report: " << page.string() << '\n';
   if (session.study.uncertainty && !known_uncertainty(session) && !known_resampling(session))
     std::cout << "[uncertainty] is not part of `run`; start it with: misfit uncertainty " << options.session.study << '\n';

@@ -21,8 +21,8 @@ int track_verb(const Options& options, const Registry& registry) {
     if (options.json) {
       print_file(files.facts);
     } else {
-      std::cout << track_text(session.study.experiments[e].name, *facts[e]) << "  " << files.track.string() << "\n  "
-                << files.sheet.string() << '\n';
+      print(session.study.experiments[e].name, *facts[e]);
+      std::cout << "  " << files.track.string() << "\n  " << files.sheet.string() << '\n';
     }
   }
   return 0;

@@ -29,8 +29,8 @@ int uncertainty_verb(const Options& options, const Registry& registry) {
                                    : !again.profiles.empty()   ? "profile.json"
                                                                : "starts.json"));
   } else {
-    if (perturbs_rig) std::cout << uncertainty_text(result);
-    std::cout << resampling_text(again);
+    if (perturbs_rig) print(result);
+    print(again);
   }
   return 0;
 }

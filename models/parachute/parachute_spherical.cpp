@@ -276,6 +276,8 @@ struct ParachuteSpherical {
     s.regression = {.kind = "parachute_planar", .flags = {{"induced_angle", false}}};
     s.static_curve = "C_m";
     s.damping_curve = "C_mq";
+    s.folded_angle = {.name = "alpha_T", .signed_name = "alpha", .even_curves = {"C_mq", "C_m_alphadot"}};
+    s.compared_quantities = {{.name = "alpha_T"}, {.name = "phi_rate", .distribution_only = true}};  // undefined at zero tilt: unbounded
     constexpr double typical_rate = 15.0;
     s.fastest_rate = typical_rate;
     return s;

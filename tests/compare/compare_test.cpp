@@ -15,7 +15,7 @@ constexpr double degree = std::numbers::pi / 180.0;
 
 /// value = slope (x − trim) on 0 … 20 deg; visited from `from` to `to` [deg].
 CurveEstimate line(double trim, double sigma, double from = 0.0, double to = 20.0) {
-  CurveEstimate c{"C_m", "alpha_T", "rad", "-", {}, {}, {}, {}, true, ""};
+  CurveEstimate c{"C_m", "alpha_T", "rad", "-", {}, {}, {}, {}, true, "", true};
   for (double a = 0.0; a <= 20.0; a += 0.5) {
     c.x.push_back(a * degree);
     c.value.push_back(-0.2 * (a - trim) * degree);
@@ -55,7 +55,6 @@ TEST(Compare, ParametersThatCannotBothBeRightAreSaidToBe) {
   EXPECT_NEAR(c.parameters[1].sigmas, 0.0734 / std::hypot(0.0024, 0.0003), 1e-9);
   expect_parts(c.parameters[1].sentence,
                {"k of equation_error is 0.0734 ± 0.0024 1/s below that of output_error (30.3 sigma)", "numerical differentiation"});
-  expect_parts(comparison_text(c), {"! k of equation_error is 0.0734", "0.9265 ± 0.0024"});
   const TemporaryFolder folder;
   write_comparison(folder.path() / "compare.json", c);
   const Comparison again = read_comparison(folder.path() / "compare.json");
@@ -163,14 +162,6 @@ TEST(Compare, BetweenGridPointsValuesAreInterpolatedAndNothingIsExtrapolated) {
   EXPECT_FALSE(visited_point(c, 15.25 * degree).has_value());
   EXPECT_FALSE(visited_point(c, 40.0 * degree).has_value());
   EXPECT_FALSE(slope_at(c, 4.0 * degree).has_value());
-}
-
-TEST(Compare, TheTerminalFormShowsUnitsAndWhatWasLeftOut) {
-  Fit declined = fit("output_error", 12.0, 0.003);
-  declined.status = FitStatus::declined;
-  declined.message = "the motion is driven";
-  const std::string text = comparison_text(compare({declined, fit("filter_error", 10.0, 0.003)}, {reference(12.0)}));
-  expect_parts(text, {"10.00 ± 0.30", "deg", "1/rad", "static_test", "not compared: output_error", "the motion is driven", "(4.0 sigma)"});
 }
 
 TEST(Compare, NothingToCompareIsAnEmptyComparison) {

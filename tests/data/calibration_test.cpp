@@ -82,6 +82,7 @@ TEST_F(CalibrationFile, HasTheFieldsOfTheContract) {
   write_calibration(path_, example());
   std::ifstream in(path_);
   const auto json = nlohmann::json::parse(in);
+  EXPECT_EQ(json["model"], "plane_by_plane");
   EXPECT_EQ(json["K"]["value"], 133.86);
   EXPECT_NEAR(json["K"]["sigma"].get<double>(), 0.02, 1e-15);
   EXPECT_EQ(json["K"]["unit"], "px/m");

@@ -13,9 +13,8 @@ struct Point {
   std::string name;
 };
 
-template <class Bytes, class Data>
-  requires std::is_same_v<std::remove_const_t<Data>, Point>
-void fields(Bytes& bytes, Data& point) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<Point> auto& point) {
   auto& [x, name] = point;
   bytes(x, name);
 }

@@ -255,7 +255,7 @@ TEST(DiscoveryReport, TheLadderIsTheFirstPictureAndEveryFigureIsDrawn) {
     for (const char* suffix : {".svg", ".csv", ".gp"})
       EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures" / (std::string(name) + suffix))) << name << suffix;
   }
-  expect_parts(page, {"it fails in the wake", "add strut_wake", "14 effects", "26.90 ± 0.50"});
+  expect_parts(page, {"It fails in the wake.", "Add strut_wake.", "14 effects", "26.90 ± 0.50"});
 }
 
 TEST(DiscoveryReport, CellsAndBarsAreInTheTableWithUnits) {
@@ -273,7 +273,8 @@ TEST(DiscoveryReport, ARungsFindingsStandUnderItsName) {
   input.rung = RungInput{2, "strut_wake", std::nullopt, input.discovery};
   input.rung->discovery->verdict = "nothing more";
   const std::string page = read_file(write_report(folder.path(), input));
-  expect_parts(page, {"Of the study", "(rung 0)", "Candidate effects after rung 2, strut_wake added", "nothing more"});
+  expect_parts(page,
+               {"Candidate effects (rung 0, the study&#39;s model)", "Candidate effects (rung 2, strut_wake added)", "Nothing more."});
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures/rung_02_candidates.svg"));
 }
 

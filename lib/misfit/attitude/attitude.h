@@ -3,6 +3,7 @@
 // References
 //   [P]  the paper (lib/misfit/README.md, [1]).
 
+#include "misfit/core/table.h"
 #include "misfit/data/attitude.h"
 #include "misfit/data/calibration.h"
 #include "misfit/data/geometry.h"
@@ -32,5 +33,9 @@ struct AttitudeOptions {
 /// geometry that cannot be (R, V, l_b not positive, l_s not beyond R), RunError if no sample can be read at all.
 [[nodiscard]] Attitude attitude(const Track& track, const Calibration& calibration, const RigGeometry& geometry,
                                 const AttitudeOptions& options = {});
+
+/// The attitude as a recording in SI: t, theta, psi, alpha, beta, alpha_T, eta, phi (unwrapped) and phi_rate, phi' being from the rates of
+/// the averages through phi = atan2(tan psi, tan theta).
+[[nodiscard]] Table attitude_table(const Attitude& attitude);
 
 }  // namespace misfit

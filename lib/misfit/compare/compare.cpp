@@ -15,9 +15,6 @@
 namespace misfit {
 namespace {
 
-/// The curve whose zero is the trim; its slope there is the static stability.
-constexpr const char* static_curve = "C_m";
-
 bool alike(const CurveEstimate& a, const CurveEstimate& b) {
   return a.name == b.name && a.of == b.of && a.of_unit == b.of_unit && a.unit == b.unit;
 }
@@ -34,7 +31,7 @@ MethodSummary summary(const Fit& fit) {
   }
   for (const CurveEstimate& curve : fit.curves) {
     if (!fit.usable() || !fit.trim || !curve.informative || curve.of_unit != fit.trim->unit) continue;
-    if (curve.name == static_curve) {
+    if (curve.trimmed) {  // its slope there is the static stability
       if (const auto slope = slope_at(curve, fit.trim->value)) m.slopes[curve.name] = *slope;
     } else if (const auto point = visited_point(curve, fit.trim->value)) {
       m.at_trim[curve.name] = {point->value, point->sigma, curve.unit};
@@ -59,7 +56,7 @@ struct Sides {
   bool reference = false;
 };
 
-void add_difference(const CurveEstimate& curve, const std::vector<CurvePoint>& points, const Sides& sides, Comparison& c) {
+void add_difference(const CurveEstimate& curve, const std::vector<CurveValue>& points, const Sides& sides, Comparison& c) {
   std::optional<CurveDifference> d = difference(curve, points);
   if (!d) {
     c.not_compared.push_back(
@@ -83,7 +80,7 @@ void compare_pair(const Fit& a, const Fit& b, Comparison& c) {
 }
 
 void compare_reference(const Fit& fit, const Reference& reference, Comparison& c) {
-  std::vector<CurvePoint> points;
+  std::vector<CurveValue> points;
   for (std::size_t i = 0; i < reference.x.size(); ++i) points.push_back({reference.x[i], reference.value[i], reference.sigma[i]});
   for (const CurveEstimate& curve : fit.curves) {
     if (curve.informative && alike(curve, reference)) add_difference(curve, points, {fit.method, reference.name, true}, c);

@@ -14,7 +14,4 @@ namespace misfit {
 /// with why: fits that declined or failed, curves marked not informative, ranges that do not meet, curves without any uncertainty.
 [[nodiscard]] Comparison compare(const std::vector<Fit>& fits, const std::vector<Reference>& references);
 
-/// The same as aligned rows with units, for a terminal: methods, trims, curve differences, what was not compared.
-[[nodiscard]] std::string comparison_text(const Comparison& comparison);
-
 }  // namespace misfit

@@ -9,16 +9,16 @@
 namespace misfit {
 
 /// Value and sigma of a curve at one argument.
-struct CurvePoint {
+struct CurveValue {
   double x = 0.0, value = 0.0, sigma = 0.0;
 };
 
 /// Linear interpolation of value and sigma between neighbouring grid points that were both visited (count > 0, values finite); nullopt
 /// elsewhere. `curve.x` ascending.
-[[nodiscard]] std::optional<CurvePoint> visited_point(const CurveEstimate& curve, double x);
+[[nodiscard]] std::optional<CurveValue> visited_point(const CurveEstimate& curve, double x);
 
 /// The visited grid points themselves.
-[[nodiscard]] std::vector<CurvePoint> visited_points(const CurveEstimate& curve);
+[[nodiscard]] std::vector<CurveValue> visited_points(const CurveEstimate& curve);
 
 /// Half the distance over which a slope is taken: 1/20 of the visited range, at least one grid step.
 ///   slope = (c(x + h) − c(x − h)) / 2h,  sigma = sqrt(s(x + h)² + s(x − h)²) / 2h
@@ -28,6 +28,6 @@ struct CurvePoint {
 
 /// `curve` against points of something else of the same quantity and unit. Names are left to the caller. nullopt if fewer than two points
 /// lie in the visited range of the curve or no point has an uncertainty.
-[[nodiscard]] std::optional<CurveDifference> difference(const CurveEstimate& curve, const std::vector<CurvePoint>& points);
+[[nodiscard]] std::optional<CurveDifference> difference(const CurveEstimate& curve, const std::vector<CurveValue>& points);
 
 }  // namespace misfit

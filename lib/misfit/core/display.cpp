@@ -1,10 +1,13 @@
 #include "misfit/core/display.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 
 namespace misfit {
-
 namespace {
 
 struct Display {
@@ -19,6 +22,21 @@ struct Display {
 };
 
 }  // namespace
+
+double display_value(double value, const std::string& si) {
+  const std::string unit = display_unit(si);
+  return unit == si ? value : convert(value, si, unit);
+}
+
+std::vector<double> display_values(std::vector<double> values, const std::string& si) {
+  const double factor = Display(si).factor;
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+std::string display_field(double value, const std::string& si) {
+  return std::isfinite(value) ? fmt::format("{}", display_value(value, si)) : std::string();
+}
 
 std::string in_display_unit(double value, const std::string& si, double sigma) {
   const Display display(si);

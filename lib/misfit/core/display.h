@@ -1,8 +1,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace misfit {
+
+/// A number of SI unit `si` in display_unit(si). What is no unit to core/units.h (dB) stays as it is.
+[[nodiscard]] double display_value(double value, const std::string& si);
+
+[[nodiscard]] std::vector<double> display_values(std::vector<double> values, const std::string& si);
+
+/// The same as a field of a CSV: the shortest text that reads back exactly; empty where it is not finite.
+[[nodiscard]] std::string display_field(double value, const std::string& si);
 
 /// A number for a sentence, in the unit people like to read: "12.30 ± 0.21 deg" for 0.2147 ± 0.0037 rad; a pure number ("-" or "") without
 /// one. sigma 0: not estimated, the number alone. InputError: `si` is no unit.

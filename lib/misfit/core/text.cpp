@@ -32,11 +32,17 @@ std::string fixed(double x, int decimals) {
   return text;
 }
 
-void append_row(std::string& out, const std::vector<std::string>& cells, const std::vector<std::size_t>& width, const std::string& indent) {
+struct ColumnForm {
+  std::size_t width = 0;
+  bool right = false;
+};
+
+void append_row(std::string& out, const std::vector<std::string>& cells, const std::vector<ColumnForm>& columns,
+                const std::string& indent) {
   std::string line = indent;
   for (std::size_t j = 0; j < cells.size(); ++j) {
-    line += cells[j];
-    if (j + 1 < cells.size()) line += std::string(width[j] - code_points(cells[j]) + 2, ' ');
+    const std::string blanks(columns[j].width - code_points(cells[j]), ' ');
+    line += (j > 0 ? "  " : "") + (columns[j].right ? blanks + cells[j] : cells[j] + blanks);
   }
   line.erase(line.find_last_not_of(' ') + 1);
   out += line + "\n";
@@ -64,19 +70,20 @@ std::string format_interval(double low, double high, double sigma) {
   return end(low) + " to " + end(high);
 }
 
-std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::string& indent) {
-  std::vector<std::size_t> width;
+std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::string& indent, const std::vector<bool>& right) {
+  std::vector<ColumnForm> columns;
   for (const auto& row : rows) {
-    if (row.size() > width.size()) width.resize(row.size(), 0);
-    for (std::size_t j = 0; j < row.size(); ++j) width[j] = std::max(width[j], code_points(row[j]));
+    if (row.size() > columns.size()) columns.resize(row.size());
+    for (std::size_t j = 0; j < row.size(); ++j) columns[j].width = std::max(columns[j].width, code_points(row[j]));
   }
+  for (std::size_t j = 0; j < std::min(right.size(), columns.size()); ++j) columns[j].right = right[j];
   std::string out;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    append_row(out, rows[i], width, indent);
+    append_row(out, rows[i], columns, indent);
     if (i > 0) continue;
     std::vector<std::string> rule;
-    for (std::size_t j = 0; j < rows[0].size(); ++j) rule.emplace_back(width[j], '-');
-    append_row(out, rule, width, indent);
+    for (std::size_t j = 0; j < rows[0].size(); ++j) rule.emplace_back(columns[j].width, '-');
+    append_row(out, rule, columns, indent);
   }
   return out;
 }
@@ -109,7 +116,12 @@ std::string wrap_text(const std::string& text, std::size_t width, const std::str
 std::string format_probability(double p) {
   if (std::isnan(p)) return "not available";
   constexpr double smallest = 1e-300;
-  return p < smallest ? "below 1e-300" : fmt::format("{:.2g}", p);
+  return p < smallest ? "< 1e-300" : fmt::format("{:.2g}", p);
+}
+
+std::string p_equals(double p) {
+  const std::string text = format_probability(p);
+  return text.starts_with('<') ? "p " + text : "p = " + text;
 }
 
 std::string join_words(const std::vector<std::string>& words) {

@@ -12,12 +12,15 @@ namespace misfit {
 /// "26.10 to 29.57": both to the digits of `sigma` (five significant ones without it).
 [[nodiscard]] std::string format_interval(double low, double high, double sigma);
 
-/// A p-value: two significant digits, "below 1e-300" where it is not representable.
+/// A p-value for a table: two significant digits, "< 1e-300" where it is not representable.
 [[nodiscard]] std::string format_probability(double p);
+/// The same for a sentence: "p = 0.023", "p < 1e-300".
+[[nodiscard]] std::string p_equals(double p);
 
 /// Pads columns so that they align (UTF-8 aware: counts code points); first row is the header, underlined. Numbers are not parsed: give
-/// strings.
-[[nodiscard]] std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::string& indent = "  ");
+/// strings. Columns marked in `right` end at one place, the others begin at one.
+[[nodiscard]] std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::string& indent = "  ",
+                                        const std::vector<bool>& right = {});
 
 /// Breaks at blanks to at most `width` code points.
 [[nodiscard]] std::string wrap_text(const std::string& text, std::size_t width = 100, const std::string& indent = "");

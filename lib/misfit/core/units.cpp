@@ -233,11 +233,25 @@ double convert(double value, std::string_view from, std::string_view to) {
   return value * (source.to_si / target.to_si);
 }
 
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> displayed = {
+    {{"rad", "deg"}, {"rad/s", "deg/s"}, {"rad/s^2", "deg/s^2"}}};
+
+}  // namespace
+
 std::string display_unit(std::string_view si) {
-  if (si == "rad") return "deg";
-  if (si == "rad/s") return "deg/s";
-  if (si == "rad/s^2") return "deg/s^2";
+  for (const auto& [own, shown] : displayed) {
+    if (si == own) return std::string(shown);
+  }
   return std::string(si);
+}
+
+std::string si_unit(std::string_view display) {
+  for (const auto& [own, shown] : displayed) {
+    if (display == shown) return std::string(own);
+  }
+  return std::string(display);
 }
 
 std::string rate_unit(std::string_view unit) {

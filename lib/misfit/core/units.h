@@ -46,5 +46,7 @@ struct Quantity {
 
 /// The unit people like to read for a quantity whose inside unit is `si`: rad → deg, rad/s → deg/s, rad/s^2 → deg/s^2; else itself.
 [[nodiscard]] std::string display_unit(std::string_view si);
+/// The other way: deg → rad, deg/s → rad/s, deg/s^2 → rad/s^2; else itself.
+[[nodiscard]] std::string si_unit(std::string_view display);
 
 }  // namespace misfit

@@ -2,50 +2,44 @@
 
 #include <fmt/format.h>
 
+#include "misfit/core/display.h"
 #include "misfit/core/units.h"
-#include "misfit/data/json_number.h"
+#include "misfit/data/json_fields.h"
 
 namespace misfit {
+template <class Archive>
+void fields(Archive& json, MaybeConst<BatchRow> auto& row) {
+  json("study", row.study);
+  json("path", row.path);
+  json("folder", row.folder);
+  json("method", row.method);
+  json("status", row.status);
+  json("message", row.message);
+  json("values", row.values);
+  json("rms", row.rms);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<BatchSummary> auto& s) {
+  const double factor = json.factor("unit", s.unit);
+  json("method", s.method);
+  json("name", s.name);
+  json("unit", DisplayUnit(s.unit));
+  json("studies", s.count);
+  json("mean", Scaled(s.mean, factor));
+  json("mean_sigma", Sigma(s.mean_sigma, factor));
+  json("scatter", Scaled(s.scatter, factor));
+  json("own_sigma", Sigma(s.own_sigma, factor));
+  json("p_value", s.p_value);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<Batch> auto& batch) {
+  json("studies", batch.rows);
+  json("summary", batch.summary);
+}
+
 namespace {
-
-double shown(double value, const std::string& unit) { return convert(value, unit, display_unit(unit)); }
-
-Json to_json(const BatchRow& row) {
-  return {{"study", row.study},
-          {"path", row.path},
-          {"folder", row.folder},
-          {"method", row.method},
-          {"status", row.status},
-          {"message", row.message},
-          {"values", estimates_to_json(row.values)},
-          {"rms", estimates_to_json(row.rms)}};
-}
-
-BatchRow row_from(const Json& object) {
-  BatchRow row;
-  object.at("study").get_to(row.study);
-  object.at("path").get_to(row.path);
-  object.at("folder").get_to(row.folder);
-  object.at("method").get_to(row.method);
-  object.at("status").get_to(row.status);
-  object.at("message").get_to(row.message);
-  row.values = estimates_from_json(object.at("values"));
-  row.rms = estimates_from_json(object.at("rms"));
-  return row;
-}
-
-Json to_json(const BatchSummary& s) {
-  const auto in = [&](double value) { return number_or_null(shown(value, s.unit)); };
-  return {{"method", s.method},
-          {"name", s.name},
-          {"unit", display_unit(s.unit)},
-          {"studies", s.count},
-          {"mean", in(s.mean)},
-          {"mean_sigma", sigma_or_null(shown(s.mean_sigma, s.unit))},
-          {"scatter", in(s.scatter)},
-          {"own_sigma", sigma_or_null(shown(s.own_sigma, s.unit))},
-          {"p_value", number_or_null(s.p_value)}};
-}
 
 /// Every number that some row has, with its unit, in the order of appearance.
 std::vector<std::pair<std::string, std::string>> columns_of(const std::vector<BatchRow>& rows) {
@@ -59,10 +53,6 @@ std::vector<std::pair<std::string, std::string>> columns_of(const std::vector<Ba
     for (const auto& [name, e] : row.rms) add("rms of " + name, e.unit);
   }
   return columns;
-}
-
-std::string field(double value, const std::string& unit) {
-  return std::isfinite(value) ? fmt::format("{}", shown(value, unit)) : std::string();
 }
 
 /// A text as one field of a CSV.
@@ -97,8 +87,8 @@ std::string table_of(const std::vector<BatchRow>& rows) {
     text += fmt::format("{},{},{}", quoted(row.study), row.method, row.status);
     for (const auto& column : columns) {
       const Estimate* e = value_in(row, column);
-      text += "," + (e == nullptr ? "" : field(e->value, e->unit));
-      if (!column.first.starts_with("rms of ")) text += "," + (e == nullptr || !(e->sigma > 0.0) ? "" : field(e->sigma, e->unit));
+      text += "," + (e == nullptr ? "" : display_field(e->value, e->unit));
+      if (!column.first.starts_with("rms of ")) text += "," + (e == nullptr || !(e->sigma > 0.0) ? "" : display_field(e->sigma, e->unit));
     }
     text += fmt::format(",{}\n", quoted(row.message));
   }
@@ -108,15 +98,13 @@ std::string table_of(const std::vector<BatchRow>& rows) {
 }  // namespace
 
 std::string batch_rows_text(const std::vector<BatchRow>& rows) {
-  Json array = Json::array();
-  for (const BatchRow& row : rows) array.push_back(to_json(row));
-  return array.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return JsonWriter::json_of(rows).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::vector<BatchRow> batch_rows_from(const std::string& text) {
   std::vector<BatchRow> rows;
   try {
-    for (const Json& object : Json::parse(text)) rows.push_back(row_from(object));
+    JsonReader::read(Json::parse(text), rows);
   } catch (const Json::exception& error) {
     throw RunError(std::string("a stored result of the batch cannot be read: ") + error.what());
   }
@@ -124,10 +112,7 @@ std::vector<BatchRow> batch_rows_from(const std::string& text) {
 }
 
 void write_batch(const std::filesystem::path& dir, const Batch& batch) {
-  Json out{{"studies", Json::array()}, {"summary", Json::array()}};
-  for (const BatchRow& row : batch.rows) out["studies"].push_back(to_json(row));
-  for (const BatchSummary& s : batch.summary) out["summary"].push_back(to_json(s));
-  write_atomically(dir / "batch.json", out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_json(dir / "batch.json", batch);
   write_atomically(dir / "batch.csv", table_of(batch.rows));
 }
 

@@ -1,151 +1,128 @@
 #include "misfit/data/diagnosis.h"
 
+#include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/table.h"
 #include "misfit/core/units.h"
-#include "misfit/data/json_number.h"
+#include "misfit/data/json_fields.h"
 
 namespace misfit {
 namespace {
 
 namespace fs = std::filesystem;
 
-Json to_json(const WhitenessReport& w) {
-  return {{"experiment", w.experiment},
-          {"channel", w.channel},
-          {"lags", w.lags},
-          {"ljung_box", number_or_null(w.ljung_box)},
-          {"ljung_box_p", number_or_null(w.ljung_box_p)},
-          {"periodogram_p", number_or_null(w.periodogram_p)},
-          {"peak_frequency", number_or_null(w.peak_frequency)},
-          {"peak_power", number_or_null(w.peak_power)},
-          {"peak_p", number_or_null(w.peak_p)},
-          {"band", number_or_null(w.band)},
-          {"autocorrelation", numbers_to_json(w.autocorrelation)},
-          {"frequency", numbers_to_json(w.frequency)},
-          {"power", numbers_to_json(w.power)}};
+/// A column of missing_force.csv.
+struct NamedColumn {
+  std::string name, unit;  ///< SI
+};
+
+/// What diagnosis.json says of a MissingForce, whose numbers are in a table.
+struct MissingForceTable {
+  std::string experiment, file;
+  std::vector<NamedColumn> ports, quantities;
+};
+
+}  // namespace
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<WhitenessReport> auto& w) {
+  json("experiment", w.experiment);
+  json("channel", w.channel);
+  json("lags", w.lags);
+  json("ljung_box", w.ljung_box);
+  json("ljung_box_p", w.ljung_box_p);
+  json("periodogram_p", w.periodogram_p);
+  json("peak_frequency", w.peak_frequency);
+  json("peak_power", w.peak_power);
+  json("peak_p", w.peak_p);
+  json("band", w.band);
+  json("autocorrelation", w.autocorrelation);
+  json("frequency", w.frequency);
+  json("power", w.power);
 }
 
-WhitenessReport whiteness_from(const Json& object) {
-  WhitenessReport w;
-  w.experiment = object.at("experiment");
-  w.channel = object.at("channel");
-  w.lags = object.at("lags");
-  w.ljung_box = number_or_nan(object, "ljung_box");
-  w.ljung_box_p = number_or_nan(object, "ljung_box_p");
-  w.periodogram_p = number_or_nan(object, "periodogram_p");
-  w.peak_frequency = number_or_nan(object, "peak_frequency");
-  w.peak_power = number_or_nan(object, "peak_power");
-  w.peak_p = number_or_nan(object, "peak_p");
-  w.band = number_or_nan(object, "band");
-  w.autocorrelation = numbers_from_json(object.at("autocorrelation"));
-  w.frequency = numbers_from_json(object.at("frequency"));
-  w.power = numbers_from_json(object.at("power"));
-  return w;
+template <class Archive>
+void fields(Archive& json, MaybeConst<ForceMap> auto& m) {
+  json("port", m.port);
+  json("port_unit", m.port_unit);
+  json("quantity", m.quantity);
+  json("quantity_unit", m.quantity_unit);
+  json("chi2", m.chi2);
+  json("dof", m.dof);
+  json("p_value", m.p_value);
+  json("p_corrected", m.p_corrected);
+  json("sentence", m.sentence);
+  json("x", m.x);
+  json("amplitude", m.amplitude);
+  json("sigma", m.sigma);
+  json("count", m.count);
 }
 
-Json to_json(const ForceMap& m) {
-  return {{"port", m.port},
-          {"port_unit", m.port_unit},
-          {"quantity", m.quantity},
-          {"quantity_unit", m.quantity_unit},
-          {"chi2", number_or_null(m.chi2)},
-          {"dof", m.dof},
-          {"p_value", number_or_null(m.p_value)},
-          {"p_corrected", number_or_null(m.p_corrected)},
-          {"sentence", m.sentence},
-          {"x", numbers_to_json(m.x)},
-          {"amplitude", numbers_to_json(m.amplitude)},
-          {"sigma", numbers_to_json(m.sigma)},
-          {"count", numbers_to_json(m.count)}};
+template <class Archive>
+void fields(Archive& json, MaybeConst<PairMap> auto& m) {
+  json("port", m.port);
+  json("port_unit", m.port_unit);
+  json("quantity_x", m.quantity_x);
+  json("unit_x", m.unit_x);
+  json("quantity_y", m.quantity_y);
+  json("unit_y", m.unit_y);
+  json("chi2", m.chi2);
+  json("dof", m.dof);
+  json("p_value", m.p_value);
+  json("p_corrected", m.p_corrected);
+  json("x", m.x);
+  json("y", m.y);
+  json("amplitude", m.amplitude);
+  json("sigma", m.sigma);
 }
 
-ForceMap map_from(const Json& object) {
-  ForceMap m;
-  m.port = object.at("port");
-  m.port_unit = object.at("port_unit");
-  m.quantity = object.at("quantity");
-  m.quantity_unit = object.at("quantity_unit");
-  m.chi2 = number_or_nan(object, "chi2");
-  m.dof = object.at("dof");
-  m.p_value = number_or_nan(object, "p_value");
-  m.p_corrected = number_or_nan(object, "p_corrected");
-  m.sentence = object.at("sentence");
-  m.x = numbers_from_json(object.at("x"));
-  m.amplitude = numbers_from_json(object.at("amplitude"));
-  m.sigma = numbers_from_json(object.at("sigma"));
-  m.count = numbers_from_json(object.at("count"));
-  return m;
+template <class Archive>
+void fields(Archive& json, MaybeConst<NisSeries> auto& n) {
+  json("experiment", n.experiment);
+  json("lower", n.lower);
+  json("upper", n.upper);
+  json("outside", n.outside);
+  json("t", n.t);
+  json("nis", n.nis);
 }
 
-Json to_json(const PairMap& m) {
-  return {{"port", m.port},
-          {"port_unit", m.port_unit},
-          {"quantity_x", m.quantity_x},
-          {"unit_x", m.unit_x},
-          {"quantity_y", m.quantity_y},
-          {"unit_y", m.unit_y},
-          {"chi2", number_or_null(m.chi2)},
-          {"dof", m.dof},
-          {"p_value", number_or_null(m.p_value)},
-          {"p_corrected", number_or_null(m.p_corrected)},
-          {"x", numbers_to_json(m.x)},
-          {"y", numbers_to_json(m.y)},
-          {"amplitude", numbers_to_json(m.amplitude)},
-          {"sigma", numbers_to_json(m.sigma)}};
+template <class Archive>
+void fields(Archive& json, MaybeConst<NamedColumn> auto& column) {
+  json("name", column.name);
+  json("unit", column.unit);
 }
 
-PairMap pair_from(const Json& object) {
-  PairMap m;
-  m.port = object.at("port");
-  m.port_unit = object.at("port_unit");
-  m.quantity_x = object.at("quantity_x");
-  m.unit_x = object.at("unit_x");
-  m.quantity_y = object.at("quantity_y");
-  m.unit_y = object.at("unit_y");
-  m.chi2 = number_or_nan(object, "chi2");
-  m.dof = object.at("dof");
-  m.p_value = number_or_nan(object, "p_value");
-  m.p_corrected = number_or_nan(object, "p_corrected");
-  m.x = numbers_from_json(object.at("x"));
-  m.y = numbers_from_json(object.at("y"));
-  m.amplitude = numbers_from_json(object.at("amplitude"));
-  m.sigma = numbers_from_json(object.at("sigma"));
-  return m;
+template <class Archive>
+void fields(Archive& json, MaybeConst<MissingForceTable> auto& table) {
+  json("experiment", table.experiment);
+  json("file", table.file);
+  json("ports", table.ports);
+  json("quantities", table.quantities);
 }
 
-Json to_json(const NisSeries& n) {
-  return {{"experiment", n.experiment},           {"lower", number_or_null(n.lower)}, {"upper", number_or_null(n.upper)},
-          {"outside", number_or_null(n.outside)}, {"t", numbers_to_json(n.t)},        {"nis", numbers_to_json(n.nis)}};
-}
+namespace {
 
-NisSeries nis_from(const Json& object) {
-  return {object.at("experiment"),        numbers_from_json(object.at("t")), numbers_from_json(object.at("nis")),
-          number_or_nan(object, "lower"), number_or_nan(object, "upper"),    number_or_nan(object, "outside")};
-}
+/// diagnosis.json.
+struct StoredDiagnosis {
+  Diagnosis diagnosis;
+  std::vector<MissingForceTable> missing;
+};
 
 std::string file_of_missing(const Diagnosis& diagnosis, std::size_t k) {
   return "missing_force" + file_suffix(k, diagnosis.missing[k].experiment) + ".csv";
 }
 
-Json to_json(const MissingForce& m, const std::string& file) {
-  Json ports = Json::array(), quantities = Json::array();
-  for (std::size_t p = 0; p < m.ports.size(); ++p) ports.push_back({{"name", m.ports[p]}, {"unit", m.port_units[p]}});
-  for (std::size_t q = 0; q < m.quantities.size(); ++q) quantities.push_back({{"name", m.quantities[q]}, {"unit", m.quantity_units[q]}});
-  return {{"experiment", m.experiment}, {"file", file}, {"ports", ports}, {"quantities", quantities}};
-}
-
-std::vector<double> shown(std::vector<double> values, const std::string& unit) {
-  const double factor = convert(1.0, unit, display_unit(unit));
-  for (double& value : values) value *= factor;
-  return values;
+std::vector<NamedColumn> columns(const std::vector<std::string>& names, const std::vector<std::string>& units) {
+  std::vector<NamedColumn> out;
+  for (std::size_t k = 0; k < names.size(); ++k) out.push_back({names[k], units[k]});
+  return out;
 }
 
 void write_missing(const fs::path& path, const MissingForce& m) {
   Table table;
   table.add("t", "s", m.t);
   const auto add = [&](const std::string& name, const std::string& unit, const std::vector<double>& values) {
-    table.add(name, display_unit(unit), shown(values, unit));
+    table.add(name, display_unit(unit), display_values(values, unit));
   };
   for (std::size_t p = 0; p < m.ports.size(); ++p) {
     add(m.ports[p], m.port_units[p], m.force[p]);
@@ -155,57 +132,56 @@ void write_missing(const fs::path& path, const MissingForce& m) {
   write_csv(path, table);
 }
 
-MissingForce missing_from(const Json& object, const fs::path& dir) {
+MissingForce read_missing(const fs::path& dir, const MissingForceTable& stored) {
   MissingForce m;
-  m.experiment = object.at("experiment");
-  const Table table = read_csv(dir / object.at("file").get<std::string>());
+  m.experiment = stored.experiment;
+  const Table table = read_csv(dir / stored.file);
   m.t = table.values("t", "s");
-  for (const Json& port : object.at("ports")) {
-    m.ports.push_back(port.at("name"));
-    m.port_units.push_back(port.at("unit"));
-    m.force.push_back(table.values(m.ports.back(), m.port_units.back()));
-    m.sigma.push_back(table.values(m.ports.back() + "_sigma", m.port_units.back()));
+  for (const auto& [name, unit] : stored.ports) {
+    m.ports.push_back(name);
+    m.port_units.push_back(unit);
+    m.force.push_back(table.values(name, unit));
+    m.sigma.push_back(table.values(name + "_sigma", unit));
   }
-  for (const Json& quantity : object.at("quantities")) {
-    m.quantities.push_back(quantity.at("name"));
-    m.quantity_units.push_back(quantity.at("unit"));
-    m.values.push_back(table.values(m.quantities.back(), m.quantity_units.back()));
+  for (const auto& [name, unit] : stored.quantities) {
+    m.quantities.push_back(name);
+    m.quantity_units.push_back(unit);
+    m.values.push_back(table.values(name, unit));
   }
   return m;
 }
 
 }  // namespace
 
+template <class Archive>
+void fields(Archive& json, MaybeConst<StoredDiagnosis> auto& stored) {
+  auto& d = stored.diagnosis;
+  json("method", d.method);
+  json("sentences", d.sentences);
+  json("maps", d.maps);
+  json("pairs", d.pairs);
+  json("whiteness", d.whiteness);
+  json("nis", d.nis);
+  json("missing", stored.missing);
+  json("seconds", d.seconds);
+}
+
 void write_diagnosis(const fs::path& dir, const Diagnosis& diagnosis) {
   make_writable_folder(dir);
-  Json root = {{"method", diagnosis.method}, {"sentences", diagnosis.sentences}, {"maps", Json::array()},
-               {"pairs", Json::array()},     {"whiteness", Json::array()},       {"nis", Json::array()},
-               {"missing", Json::array()},   {"seconds", diagnosis.seconds}};
-  for (const auto& map : diagnosis.maps) root["maps"].push_back(to_json(map));
-  for (const auto& pair : diagnosis.pairs) root["pairs"].push_back(to_json(pair));
-  for (const auto& report : diagnosis.whiteness) root["whiteness"].push_back(to_json(report));
-  for (const auto& series : diagnosis.nis) root["nis"].push_back(to_json(series));
+  StoredDiagnosis stored{diagnosis, {}};
   for (std::size_t k = 0; k < diagnosis.missing.size(); ++k) {
+    const MissingForce& m = diagnosis.missing[k];
     const std::string file = file_of_missing(diagnosis, k);
-    write_missing(dir / file, diagnosis.missing[k]);
-    root["missing"].push_back(to_json(diagnosis.missing[k], file));
+    write_missing(dir / file, m);
+    stored.missing.push_back({m.experiment, file, columns(m.ports, m.port_units), columns(m.quantities, m.quantity_units)});
   }
-  write_atomically(dir / "diagnosis.json", root.dump(1) + "\n");
+  write_json(dir / "diagnosis.json", stored);
 }
 
 Diagnosis read_diagnosis(const fs::path& dir) {
-  return parsed_file(dir / "diagnosis.json", [&](const Json& root) {
-    Diagnosis d;
-    d.method = root.at("method");
-    d.sentences = root.at("sentences").get<std::vector<std::string>>();
-    for (const Json& object : root.at("maps")) d.maps.push_back(map_from(object));
-    for (const Json& object : root.at("pairs")) d.pairs.push_back(pair_from(object));
-    for (const Json& object : root.at("whiteness")) d.whiteness.push_back(whiteness_from(object));
-    for (const Json& object : root.at("nis")) d.nis.push_back(nis_from(object));
-    for (const Json& object : root.at("missing")) d.missing.push_back(missing_from(object, dir));
-    d.seconds = number_or_nan(root, "seconds");
-    return d;
-  });
+  StoredDiagnosis stored = read_json<StoredDiagnosis>(dir / "diagnosis.json");
+  for (const MissingForceTable& table : stored.missing) stored.diagnosis.missing.push_back(read_missing(dir, table));
+  return std::move(stored.diagnosis);
 }
 
 }  // namespace misfit

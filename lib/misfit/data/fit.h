@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -30,10 +31,11 @@ struct CurveEstimate {
   std::vector<double> count;  ///< samples (bin or grid cell) behind the value; 0: outside the visited range
   bool informative = true;    ///< false: the method cannot give this curve from these data; `why` says why
   std::string why;
-  bool trimmed = false;  ///< its stable zero is the fit's trim
+  bool trimmed = false;  ///< the system's static curve: its stable zero is the fit's trim
 };
 
 enum class FitStatus { converged, not_converged, declined, failed };
+inline constexpr std::array<const char*, 4> fit_status_names = {"converged", "not_converged", "declined", "failed"};
 [[nodiscard]] std::string to_string(FitStatus status);
 
 /// One channel of one experiment against the model.
@@ -64,7 +66,7 @@ struct Fit {
   double seconds = 0.0;
   int linearisations = 0;
 
-  /// Has it a result, if not at its maximum?
+  /// Has it a result, be it that the iterations stopped before the maximum?
   [[nodiscard]] bool usable() const { return status == FitStatus::converged || status == FitStatus::not_converged; }
 };
 

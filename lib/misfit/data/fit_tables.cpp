@@ -8,6 +8,7 @@
 #include <limits>
 #include <sstream>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
@@ -18,10 +19,6 @@ namespace misfit {
 namespace {
 
 bool same_columns(const CurveEstimate& a, const CurveEstimate& b) { return a.of == b.of && a.of_unit == b.of_unit && a.unit == b.unit; }
-
-std::string shown(double value, const std::string& unit) {
-  return std::isfinite(value) ? fmt::format("{}", convert(value, unit, display_unit(unit))) : std::string();
-}
 
 std::string curve_header(const CurveEstimate& curve) {
   return fmt::format("curve,{}[{}],value[{}],sigma[{}],count", curve.of, display_unit(curve.of_unit), display_unit(curve.unit),
@@ -78,8 +75,11 @@ std::vector<CurveFile> curve_files(const std::vector<CurveEstimate>& curves) {
       found->curves.push_back(k);
     }
   }
-  const auto of_tilt = [&](const CurveFile& file) { return curves[file.curves.front()].of == "alpha_T"; };
-  std::stable_partition(files.begin(), files.end(), of_tilt);
+  const auto static_curve = std::find_if(curves.begin(), curves.end(), [](const CurveEstimate& curve) { return curve.trimmed; });
+  if (static_curve != curves.end()) {
+    const auto of_it = [&](const CurveFile& file) { return curves[file.curves.front()].of == static_curve->of; };
+    std::stable_partition(files.begin(), files.end(), of_it);
+  }
   std::vector<std::string> used;
   for (CurveFile& file : files) {
     const std::string base = used.empty() ? "curves" : "curves_" + file_name_for(curves[file.curves.front()].of);
@@ -98,8 +98,8 @@ void write_curves(const std::filesystem::path& path, const std::vector<CurveEsti
     const CurveEstimate& curve = curves[k];
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       const std::string count = std::isfinite(curve.count[i]) ? fmt::format("{}", curve.count[i]) : std::string();
-      text += fmt::format("{},{},{},{},{}\n", curve.name, shown(curve.x[i], curve.of_unit), shown(curve.value[i], curve.unit),
-                          shown(curve.sigma[i], curve.unit), count);
+      text += fmt::format("{},{},{},{},{}\n", curve.name, display_field(curve.x[i], curve.of_unit),
+                          display_field(curve.value[i], curve.unit), display_field(curve.sigma[i], curve.unit), count);
     }
   }
   write_atomically(path, text);

@@ -14,8 +14,8 @@ struct CurveFile {
   std::vector<std::size_t> curves;
 };
 
-/// curves.csv holds the curves of alpha_T (of the first curve's quantity if there is none); another quantity or unit of the value gets
-/// curves_QUANTITY.csv, and curves_QUANTITY_2.csv should it differ in the unit of the value only.
+/// curves.csv holds the curves of the static curve's quantity (of the first curve's if none is static); another quantity or unit of the
+/// value gets curves_QUANTITY.csv, and curves_QUANTITY_2.csv should it differ in the unit of the value only.
 [[nodiscard]] std::vector<CurveFile> curve_files(const std::vector<CurveEstimate>& curves);
 
 /// `curve,OF[unit],value[unit],sigma[unit],count`; angles in degrees, missing values empty. Atomic; RunError as write_atomically.

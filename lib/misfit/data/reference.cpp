@@ -2,118 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "misfit/core/error.h"
 #include "misfit/core/table.h"
 #include "misfit/core/units.h"
+#include "misfit/math/stable_zero.h"
 
 namespace misfit {
 namespace {
 
-struct Points {
-  std::vector<double> x, value, sigma;
-  void add(double at, double v, double s) {
-    x.push_back(at);
-    value.push_back(v);
-    sigma.push_back(s);
-  }
-};
-
-bool even_in_angle(const std::string& curve) { return curve.find("dot") != std::string::npos || curve.find("mq") != std::string::npos; }
-
-Points sorted(const Points& points) {
-  std::vector<std::size_t> order(points.x.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return points.x[a] < points.x[b]; });
-  Points result;
-  for (const std::size_t k : order) result.add(points.x[k], points.value[k], points.sigma[k]);
-  return result;
-}
-
-/// Mean of the points of equal x (to 1e-9 of the range); `points` sorted.
-Points averaged(const Points& points) {
-  Points means;
-  const double same = 1e-9 * (points.x.back() - points.x.front());
-  for (std::size_t i = 0; i < points.x.size();) {
-    std::size_t end = i;
-    double weight = 0.0;
-    double sum = 0.0;
-    for (; end < points.x.size() && points.x[end] - points.x[i] <= same; ++end) {
-      const double w = 1.0 / (points.sigma[end] * points.sigma[end]);
-      weight += w;
-      sum += w * points.value[end];
-    }
-    means.add(points.x[i], sum / weight, 1.0 / std::sqrt(weight));
-    i = end;
-  }
-  return means;
-}
-
-/// Number k of the last pair with value[k] > 0 >= value[k+1], away from x = 0 where an odd curve vanishes anyway.
-std::optional<std::size_t> last_stable_bracket(const Points& means) {
-  for (std::size_t k = means.x.size() - 1; k-- > 0;) {
-    if (means.x[k] > 0.0 && means.value[k] > 0.0 && means.value[k + 1] <= 0.0) return k;
-  }
-  return std::nullopt;
-}
-
-struct Polynomial {
-  Eigen::VectorXd c;  ///< in u = x − origin
-  Eigen::MatrixXd covariance;
-  double origin = 0.0;
-  [[nodiscard]] Eigen::VectorXd basis(double x) const {
-    Eigen::VectorXd b(c.size());
-    for (Eigen::Index k = 0; k < c.size(); ++k) b(k) = std::pow(x - origin, static_cast<double>(k));
-    return b;
-  }
-  [[nodiscard]] double at(double x) const { return basis(x).dot(c); }
-  [[nodiscard]] double slope(double x) const { return c(1) + (c.size() > 2 ? 2.0 * c(2) * (x - origin) : 0.0); }
-};
-
-Polynomial fit_polynomial(const Points& points, Eigen::Index order, double origin, bool sigmas_known) {
-  const auto n = static_cast<Eigen::Index>(points.x.size());
-  Polynomial p{Eigen::VectorXd::Zero(order), {}, origin};
-  Eigen::MatrixXd A(n, order);
-  Eigen::VectorXd b(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    A.row(i) = p.basis(points.x[k]).transpose() / points.sigma[k];
-    b(i) = points.value[k] / points.sigma[k];
-  }
-  const Eigen::MatrixXd normal = A.transpose() * A;
-  p.c = normal.ldlt().solve(A.transpose() * b);
-  const double reduced = n > order ? (A * p.c - b).squaredNorm() / static_cast<double>(n - order) : 0.0;
-  p.covariance = normal.inverse() * (sigmas_known ? std::max(1.0, reduced) : reduced);
-  return p;
-}
-
-double zero_between(const Polynomial& p, double lo, double hi) {
-  for (int k = 0; k < 60; ++k) {
-    const double middle = 0.5 * (lo + hi);
-    (p.at(middle) > 0.0 ? lo : hi) = middle;
-  }
-  return 0.5 * (lo + hi);
-}
-
-Points between(const Points& points, double lo, double hi) {
-  Points result;
-  for (std::size_t i = 0; i < points.x.size(); ++i) {
-    if (points.x[i] >= lo && points.x[i] <= hi) result.add(points.x[i], points.value[i], points.sigma[i]);
-  }
-  return result;
-}
-
-Points read_points(const Table& table, const Column& value, const std::string& of_unit, const std::string& unit) {
+WeightedPoints read_points(const Table& table, const Column& value, const std::string& of_unit, const std::string& unit) {
   const Column& argument = table.columns.front();
   const Column* sigma = table.find("sigma");
   const std::vector<double> x = table.values(argument.name, of_unit);
   const std::vector<double> v = table.values(value.name, unit);
   const std::vector<double> s = sigma != nullptr ? table.values("sigma", unit) : std::vector<double>(x.size(), 0.0);
-  Points points;
+  WeightedPoints points;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!std::isfinite(x[i]) || !std::isfinite(v[i])) continue;
     if (sigma != nullptr && !(s[i] > 0.0)) {
@@ -127,60 +33,40 @@ Points read_points(const Table& table, const Column& value, const std::string& o
 
 }  // namespace
 
-std::optional<Estimate> stable_zero(const std::vector<double>& x, const std::vector<double>& value, const std::vector<double>& sigma,
-                                    const std::string& unit) {
-  if (x.size() < 2) return std::nullopt;
-  const bool known = std::all_of(sigma.begin(), sigma.end(), [](double s) { return s > 0.0; });
-  const Points points = sorted({x, value, known ? sigma : std::vector<double>(x.size(), 1.0)});
-  const Points means = averaged(points);
-  const std::optional<std::size_t> bracket = last_stable_bracket(means);
-  if (!bracket) return std::nullopt;
-  const std::size_t first = *bracket >= 2 ? *bracket - 2 : 0;
-  const std::size_t last = std::min(*bracket + 3, means.x.size() - 1);
-  const Eigen::Index order = last - first + 1 >= 4 ? 3 : 2;
-  const double lo = means.x[*bracket];
-  const double hi = means.x[*bracket + 1];
-  const Polynomial p = fit_polynomial(between(points, means.x[first], means.x[last]), order, lo, known);
-  const double below = std::max(means.x[first], lo - (hi - lo));  // the smooth curve may cross just outside the bracket of the noisy means
-  const double above = std::min(means.x[last], hi + (hi - lo));
-  if (!(p.at(below) > 0.0) || !(p.at(above) <= 0.0)) return std::nullopt;
-  const double trim = zero_between(p, below, above);
-  const double slope = p.slope(trim);
-  if (!(slope < 0.0)) return std::nullopt;
-  const Eigen::VectorXd g = p.basis(trim) / slope;
-  return Estimate{trim, std::sqrt(std::max(0.0, g.dot(p.covariance * g))), unit};
-}
-
-Reference read_reference(const std::filesystem::path& path, const std::string& curve) {
+Reference read_reference(const std::filesystem::path& path, const std::string& curve, const std::string& static_curve,
+                         const FoldedAngle& folded_angle) {
   const Table table = read_csv(path);
   const Column& argument = table.columns.front();
   const Column& value = table.at(curve);
-  const bool angle = argument.name == "alpha" || argument.name == "alpha_T";
+  const bool angle = !folded_angle.name.empty() && (argument.name == folded_angle.name || argument.name == folded_angle.signed_name);
+  const bool even = std::find(folded_angle.even_curves.begin(), folded_angle.even_curves.end(), curve) != folded_angle.even_curves.end();
   Reference reference;
   reference.name = path.stem().string();
   reference.curve = curve;
-  reference.of = angle ? "alpha_T" : argument.name;
+  reference.of = angle ? folded_angle.name : argument.name;
   const bool radians = angle || parse_unit(argument.unit).angle;
   reference.of_unit = radians ? "rad" : argument.unit;
   reference.unit = value.unit.empty() ? "-" : value.unit;
-  Points points = read_points(table, value, reference.of_unit, reference.unit);
+  WeightedPoints points = read_points(table, value, reference.of_unit, reference.unit);
   if (points.x.empty()) throw InputError(Source{path.string(), 0, 0}, "no row has both " + argument.header() + " and " + value.header());
   int folded = 0;
   for (std::size_t i = 0; angle && i < points.x.size(); ++i) {
     if (points.x[i] >= 0.0) continue;
     points.x[i] = -points.x[i];
-    if (!even_in_angle(curve)) points.value[i] = -points.value[i];
+    if (!even) points.value[i] = -points.value[i];
     ++folded;
   }
   if (folded > 0) {
-    reference.notes.push_back(fmt::format("{}: {} points at negative {} folded to alpha_T by symmetry ({} is {})", reference.name, folded,
-                                          argument.name, curve, even_in_angle(curve) ? "even" : "odd"));
+    reference.notes.push_back(fmt::format("{}: {} points at negative {} folded to {} by symmetry ({} is {})", reference.name, folded,
+                                          argument.name, folded_angle.name, curve, even ? "even" : "odd"));
   }
   points = sorted(points);
   reference.x = points.x;
   reference.value = points.value;
   reference.sigma = points.sigma;
-  if (curve == "C_m" && angle) reference.trim = stable_zero(reference.x, reference.value, reference.sigma, reference.of_unit);
+  if (curve == static_curve && angle) {
+    if (const auto zero = stable_zero(points)) reference.trim = Estimate{zero->x, zero->sigma, reference.of_unit};
+  }
   return reference;
 }
 

@@ -2,60 +2,42 @@
 
 #include <fmt/format.h>
 
-#include "misfit/core/error.h"
-#include "misfit/core/files.h"
-#include "misfit/data/json_number.h"
+#include "misfit/data/json_fields.h"
 
 namespace misfit {
 
-void write_track_facts(const std::filesystem::path& path, const TrackFacts& f) {
-  Json lost = Json::object();
-  for (const auto& [why, count] : f.lost) lost[why] = count;
-  const Json root = {{"video", f.video},
-                     {"width", f.width},
-                     {"height", f.height},
-                     {"frames_per_second", f.rate},
-                     {"frames", {{"declared", f.declared}, {"decoded", f.decoded}, {"missing", f.missing}, {"repeated", f.repeated}}},
-                     {"fields", {{"used", f.fields}, {"shown", f.fields_shown}, {"evidence", f.fields_evidence}}},
-                     {"marker", {{"kind", f.marker}, {"outer_px", f.outer}, {"inner_px", f.inner}}},
-                     {"samples", f.samples},
-                     {"ok", f.ok},
-                     {"lost", lost},
-                     {"sigma_px", number_or_null(f.sigma)},
-                     {"warnings", f.warnings}};
-  write_atomically(path, root.dump(1) + "\n");
+template <class Archive>
+void fields(Archive& json, MaybeConst<TrackFacts> auto& f) {
+  json("video", f.video);
+  json("width", f.width);
+  json("height", f.height);
+  json("frames_per_second", f.rate);
+  json.group("frames", [&](auto& frames) {
+    frames("declared", f.declared);
+    frames("decoded", f.decoded);
+    frames("missing", f.missing);
+    frames("repeated", f.repeated);
+  });
+  json.group("fields", [&](auto& fields_read) {
+    fields_read("used", f.fields);
+    fields_read("shown", f.fields_shown);
+    fields_read("evidence", f.fields_evidence);
+  });
+  json.group("marker", [&](auto& marker) {
+    marker("kind", f.marker);
+    marker("outer_px", f.outer);
+    marker("inner_px", f.inner);
+  });
+  json("samples", f.samples);
+  json("ok", f.ok);
+  json("lost", f.lost);
+  json("sigma_px", f.sigma);
+  json("warnings", f.warnings);
 }
 
-TrackFacts read_track_facts(const std::filesystem::path& path) {
-  TrackFacts f;
-  try {
-    const Json root = Json::parse(read_file(path));
-    f.video = root.at("video");
-    f.width = root.at("width");
-    f.height = root.at("height");
-    f.rate = root.at("frames_per_second");
-    const Json& frames = root.at("frames");
-    f.declared = frames.at("declared");
-    f.decoded = frames.at("decoded");
-    f.missing = frames.at("missing");
-    f.repeated = frames.at("repeated");
-    const Json& fields = root.at("fields");
-    f.fields = fields.at("used");
-    f.fields_shown = fields.at("shown");
-    f.fields_evidence = fields.at("evidence");
-    f.marker = root.at("marker").at("kind");
-    f.outer = root.at("marker").at("outer_px");
-    f.inner = root.at("marker").at("inner_px");
-    f.samples = root.at("samples");
-    f.ok = root.at("ok");
-    for (const auto& [why, count] : root.at("lost").items()) f.lost[why] = count;
-    f.sigma = number_or_nan(root, "sigma_px");
-    for (const auto& warning : root.at("warnings")) f.warnings.push_back(warning);
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError({path.string(), 0, 0}, std::string("no track.json of misfit: ") + error.what());
-  }
-  return f;
-}
+void write_track_facts(const std::filesystem::path& path, const TrackFacts& facts) { write_json(path, facts); }
+
+TrackFacts read_track_facts(const std::filesystem::path& path) { return read_json<TrackFacts>(path); }
 
 std::vector<std::string> sentences(const TrackFacts& f) {
   std::vector<std::string> out;

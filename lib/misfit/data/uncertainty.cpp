@@ -4,134 +4,129 @@
 
 #include <algorithm>
 
+#include "misfit/core/display.h"
 #include "misfit/core/units.h"
 #include "misfit/data/fit_tables.h"
-#include "misfit/data/json_number.h"
+#include "misfit/data/json_fields.h"
 
 namespace misfit {
 namespace {
 
 constexpr const char* how_shares =
     "first-order shares of the variance, Var(E[number | parameter]) / Var(number): least squares of the number on polynomials of the "
-    "sampled errors, orthonormal under their distribution (first and second order; B. Sudret, Reliab. Eng. Syst. Saf. 93, 2008; A. "
-    "Saltelli "
-    "et al., Global Sensitivity Analysis, 2008); effect: change per one sigma of the parameter; rest: parameters acting together";
+    "sampled errors, orthonormal under their distribution (first and second order; B. Sudret, Reliab. Eng. Syst. Saf. 93, 2008; "
+    "A. Saltelli et al., Global Sensitivity Analysis, 2008); effect: change per one sigma of the parameter; rest: parameters acting "
+    "together";
 
-std::string shown_unit(const std::string& unit) { return display_unit(unit); }
-double shown(double value, const std::string& unit) { return convert(value, unit, display_unit(unit)); }
-
-/// The slope of a curve of an angle is "1/rad": shown per radian as it is; only whole angles change.
-Json number_to_json(const SpreadNumber& n) {
-  const auto in = [&](double v) { return number_or_null(shown(v, n.unit)); };
-  Json shares = Json::object();
-  for (const VarianceShare& s : n.shares)
-    shares[s.name] = {{"share", number_or_null(s.share)}, {"sigma", number_or_null(s.sigma)}, {"effect", in(s.effect)}};
-  return {{"value", in(n.mean)},
-          {"sigma", in(n.sigma)},
-          {"low", in(n.mean - 3.0 * n.sigma)},
-          {"high", in(n.mean + 3.0 * n.sigma)},
-          {"unit", shown_unit(n.unit)},
-          {"runs", n.count},
-          {"nominal", {{"value", in(n.nominal)}, {"sigma", sigma_or_null(shown(n.nominal_sigma, n.unit))}}},
-          {"variance_shares", shares},
-          {"rest", n.shares.empty() ? Json(nullptr) : number_or_null(n.rest)}};
-}
-
-std::string si_of(const std::string& unit) {
-  if (unit == "deg") return "rad";
-  if (unit == "deg/s") return "rad/s";
-  return unit == "deg/s^2" ? "rad/s^2" : unit;
-}
-
-SpreadNumber number_from_json(const std::string& name, const Json& object) {
-  SpreadNumber n;
-  n.name = name;
-  const std::string unit = object.at("unit");
-  n.unit = si_of(unit);
-  const auto in = [&](const Json& from, const char* key) { return convert(number_or_nan(from, key), unit, n.unit); };
-  n.mean = in(object, "value");
-  n.sigma = in(object, "sigma");
-  n.count = object.at("runs");
-  n.nominal = in(object.at("nominal"), "value");
-  const double sigma = in(object.at("nominal"), "sigma");
-  n.nominal_sigma = std::isfinite(sigma) ? sigma : 0.0;
-  n.rest = number_or_nan(object, "rest");
-  for (const auto& [share, entry] : object.at("variance_shares").items())
-    n.shares.push_back({share, number_or_nan(entry, "share"), number_or_nan(entry, "sigma"), in(entry, "effect")});
-  return n;
-}
-
-Json curve_to_json(const SpreadCurve& c) {
-  Json out{{"name", c.name}, {"of", c.of},        {"of_unit", c.of_unit}, {"unit", c.unit}, {"informative", c.informative},
-           {"why", c.why},   {"x", Json::array()}};
-  out["trimmed"] = c.trimmed;
-  out["x"] = numbers_to_json(c.x);
-  out["nominal"] = numbers_to_json(c.nominal);
-  out["mean"] = numbers_to_json(c.mean);
-  out["sigma"] = numbers_to_json(c.sigma);
-  out["runs"] = numbers_to_json(c.count);
-  return out;
-}
-
-SpreadCurve curve_from_json(const Json& object) {
-  const auto numbers = [&](const char* key) { return numbers_from_json(object.at(key)); };
-  return {object.at("name"), object.at("of"),          object.at("of_unit"), object.at("unit"),
-          numbers("x"),      numbers("nominal"),       numbers("mean"),      numbers("sigma"),
-          numbers("runs"),   object.at("informative"), object.at("why"),     object.value("trimmed", false)};
-}
-
-Json perturbed_to_json(const PerturbedParameter& p) {
-  return {
-      {"name", p.name},  {"value", number_or_null(p.value)}, {"sigma", number_or_null(p.sigma)}, {"unit", p.unit}, {"reading", p.reading},
-      {"group", p.group}};
-}
-
-/// One object per curve name, the contract's names for the trim and the slopes beside all numbers.
-Json to_json(const Uncertainty& u) {
-  Json out{{"method", u.method}, {"runs", u.runs}, {"failed", u.failed}, {"failures", Json(u.failures)}, {"seed", u.seed}};
-  const SpreadNumber* trim = u.find("trim");
-  out["trim_deg"] = trim != nullptr && trim->unit == "rad" ? number_to_json(*trim) : Json(nullptr);
-  out["slopes"] = Json::object();
-  out["numbers"] = Json::object();
-  constexpr std::string_view slope_of = "slope of ";
-  for (const SpreadNumber& n : u.numbers) {
-    out["numbers"][n.name] = number_to_json(n);
-    if (n.name.starts_with(slope_of)) out["slopes"][n.name.substr(slope_of.size())] = number_to_json(n);
-  }
-  out["variance_shares"] = Json::object();
-  for (const SpreadNumber& n : u.numbers) {
-    if (n.name == "trim" || n.name.starts_with(slope_of)) out["variance_shares"][n.name] = out["numbers"][n.name]["variance_shares"];
-  }
-  out["variance_shares_are"] = how_shares;
-  out["perturbed"] = Json::array();
-  for (const auto& p : u.perturbed) out["perturbed"].push_back(perturbed_to_json(p));
-  out["notes"] = u.notes;
-  out["curves"] = Json::array();
-  for (const auto& c : u.curves) out["curves"].push_back(curve_to_json(c));
-  return out;
-}
-
-std::string field(double value, const std::string& unit) {
-  return std::isfinite(value) ? fmt::format("{}", shown(value, unit)) : std::string();
-}
+constexpr const char* trim_name = "trim";
+constexpr std::string_view slope_of = "slope of ";
 
 std::string table_of(const std::vector<SpreadCurve>& curves, const CurveFile& file) {
   const SpreadCurve& first = curves[file.curves.front()];
-  const std::string unit = shown_unit(first.unit);
-  std::string text = fmt::format("curve,{}[{}],mean[{}],sigma[{}],low[{}],high[{}],nominal[{}],runs\n", first.of, shown_unit(first.of_unit),
-                                 unit, unit, unit, unit, unit);
+  const std::string unit = display_unit(first.unit);
+  std::string text = fmt::format("curve,{}[{}],mean[{}],sigma[{}],low[{}],high[{}],nominal[{}],runs\n", first.of,
+                                 display_unit(first.of_unit), unit, unit, unit, unit, unit);
   for (const std::size_t k : file.curves) {
     const SpreadCurve& c = curves[k];
     for (std::size_t i = 0; i < c.x.size(); ++i) {
       const double low = c.mean[i] - 3.0 * c.sigma[i], high = c.mean[i] + 3.0 * c.sigma[i];
-      text += fmt::format("{},{},{},{},{},{},{},{:.0f}\n", c.name, field(c.x[i], c.of_unit), field(c.mean[i], c.unit),
-                          field(c.sigma[i], c.unit), field(low, c.unit), field(high, c.unit), field(c.nominal[i], c.unit), c.count[i]);
+      text += fmt::format("{},{},{},{},{},{},{},{:.0f}\n", c.name, display_field(c.x[i], c.of_unit), display_field(c.mean[i], c.unit),
+                          display_field(c.sigma[i], c.unit), display_field(low, c.unit), display_field(high, c.unit),
+                          display_field(c.nominal[i], c.unit), c.count[i]);
     }
   }
   return text;
 }
 
 }  // namespace
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<PerturbedParameter> auto& p) {
+  json("name", p.name);
+  json("value", p.value);
+  json("sigma", p.sigma);
+  json("unit", p.unit);
+  json("reading", p.reading);
+  json("group", p.group);
+}
+
+/// The slope of a curve of an angle is "1/rad": shown per radian as it is; only whole angles change.
+template <class Archive>
+void fields(Archive& json, MaybeConst<SpreadNumber> auto& n) {
+  const double factor = json.factor("unit", n.unit);
+  double rest = n.shares.empty() ? std::numeric_limits<double>::quiet_NaN() : n.rest;
+  json("value", Scaled(n.mean, factor));
+  json("sigma", Scaled(n.sigma, factor));
+  json.derived("low", factor * (n.mean - 3.0 * n.sigma));
+  json.derived("high", factor * (n.mean + 3.0 * n.sigma));
+  json("unit", DisplayUnit(n.unit));
+  json("runs", n.count);
+  json.group("nominal", [&](auto& nominal) {
+    nominal("value", Scaled(n.nominal, factor));
+    nominal("sigma", Sigma(n.nominal_sigma, factor));
+  });
+  json.named("variance_shares", n.shares, &VarianceShare::name, [factor](auto& object, auto& s) {
+    object("share", s.share);
+    object("sigma", s.sigma);
+    object("effect", Scaled(s.effect, factor));
+  });
+  json("rest", rest);
+  if constexpr (Archive::reading) n.rest = rest;
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<SpreadCurve> auto& c) {
+  json("name", c.name);
+  json("of", c.of);
+  json("of_unit", c.of_unit);
+  json("unit", c.unit);
+  json("informative", c.informative);
+  json("why", c.why);
+  json("x", c.x);
+  json("trimmed", c.trimmed);
+  json("nominal", c.nominal);
+  json("mean", c.mean);
+  json("sigma", c.sigma);
+  json("runs", c.count);
+}
+
+namespace {
+
+/// Objects of uncertainty.json that repeat part of its `numbers` for other programs.
+struct Repeated {
+  std::map<std::string, SpreadNumber> slopes;
+  Json variance_shares = Json::object();
+
+  explicit Repeated(const Uncertainty& u) {
+    for (const SpreadNumber& n : u.numbers) {
+      const bool slope = n.name.starts_with(slope_of);
+      if (slope) slopes[n.name.substr(slope_of.size())] = n;
+      if (slope || n.name == trim_name) variance_shares[n.name] = JsonWriter::json_of(n)["variance_shares"];
+    }
+  }
+};
+
+}  // namespace
+
+/// One object per curve name, the contract's names for the trim and the slopes beside all numbers.
+template <class Archive>
+void fields(Archive& json, MaybeConst<Uncertainty> auto& u) {
+  const Repeated repeated(u);
+  const SpreadNumber* trim = u.find(trim_name);
+  json("method", u.method);
+  json("runs", u.runs);
+  json("failed", u.failed);
+  json("failures", u.failures);
+  json("seed", u.seed);
+  json.derived("trim_deg", trim != nullptr && trim->unit == "rad" ? std::optional(*trim) : std::nullopt);
+  json.derived("slopes", repeated.slopes);
+  json.named("numbers", u.numbers, &SpreadNumber::name, own_fields);
+  json.derived("variance_shares", repeated.variance_shares);
+  json.derived("variance_shares_are", how_shares);
+  json("perturbed", u.perturbed);
+  json("notes", u.notes);
+  json("curves", u.curves);
+}
 
 const SpreadNumber* Uncertainty::find(const std::string& name) const {
   const auto found = std::find_if(numbers.begin(), numbers.end(), [&](const SpreadNumber& n) { return n.name == name; });
@@ -140,9 +135,9 @@ const SpreadNumber* Uncertainty::find(const std::string& name) const {
 
 std::vector<std::string> write_uncertainty(const std::filesystem::path& dir, const Uncertainty& uncertainty) {
   std::vector<std::string> names{"uncertainty.json"};
-  write_atomically(dir / names.front(), to_json(uncertainty).dump(1) + "\n");
+  write_json(dir / names.front(), uncertainty);
   std::vector<CurveEstimate> like;  // the same files as the fit's curves
-  for (const auto& c : uncertainty.curves) like.push_back({c.name, c.of, c.of_unit, c.unit, {}, {}, {}, {}, true, ""});
+  for (const auto& c : uncertainty.curves) like.push_back({c.name, c.of, c.of_unit, c.unit, {}, {}, {}, {}, true, "", c.trimmed});
   for (const CurveFile& file : curve_files(like)) {
     names.push_back("uncertainty" + file.name.substr(std::string("curves").size()));
     write_atomically(dir / names.back(), table_of(uncertainty.curves, file));
@@ -150,22 +145,6 @@ std::vector<std::string> write_uncertainty(const std::filesystem::path& dir, con
   return names;
 }
 
-Uncertainty read_uncertainty(const std::filesystem::path& dir) {
-  return parsed_file(dir / "uncertainty.json", [](const Json& object) {
-    Uncertainty u;
-    u.method = object.at("method");
-    u.runs = object.at("runs");
-    u.failed = object.at("failed");
-    u.seed = object.at("seed");
-    u.failures = object.at("failures").get<std::map<std::string, std::size_t>>();
-    for (const auto& [name, entry] : object.at("numbers").items()) u.numbers.push_back(number_from_json(name, entry));
-    for (const auto& p : object.at("perturbed"))
-      u.perturbed.push_back(
-          {p.at("name"), p.at("unit"), number_or_nan(p, "value"), number_or_nan(p, "sigma"), p.at("reading"), p.at("group")});
-    for (const auto& c : object.at("curves")) u.curves.push_back(curve_from_json(c));
-    u.notes = object.at("notes").get<std::vector<std::string>>();
-    return u;
-  });
-}
+Uncertainty read_uncertainty(const std::filesystem::path& dir) { return read_json<Uncertainty>(dir / "uncertainty.json"); }
 
 }  // namespace misfit

@@ -141,20 +141,19 @@ void conclude(Diagnosis& out) {
     const bool repeated = std::find(quantities.begin(), quantities.end(), map.port + map.quantity) != quantities.end();
     if (map.sentence.empty() || said >= 3 || repeated) continue;
     quantities.push_back(map.port + map.quantity);
-    out.sentences.push_back(map.sentence + "; the map of " + map.port + " over " + map.quantity + " as a whole differs from zero with p " +
-                            format_probability(map.p_corrected));
+    out.sentences.push_back(map.sentence + "; the map of " + map.port + " over " + map.quantity + " as a whole differs from zero with " +
+                            p_equals(map.p_corrected));
     ++said;
   }
   if (said == 0) {
-    const std::string best = out.maps.empty()
-                                 ? ""
-                                 : ": the most significant map, " + out.maps.front().port + " over " + out.maps.front().quantity +
-                                       ", has p " + format_probability(out.maps.front().p_corrected);
+    const std::string best = out.maps.empty() ? ""
+                                              : ": the most significant map, " + out.maps.front().port + " over " +
+                                                    out.maps.front().quantity + ", has " + p_equals(out.maps.front().p_corrected);
     out.sentences.push_back("no map of the missing force differs significantly from zero" + best);
   }
   const auto time = std::find_if(out.maps.begin(), out.maps.end(), [](const ForceMap& map) { return map.quantity == "time"; });
   if (said > 0 && time != out.maps.end() && time->p_corrected > significant)
-    out.sentences.push_back("no dependence on time: the map over time has p " + format_probability(time->p_corrected));
+    out.sentences.push_back("no dependence on time: the map over time has " + p_equals(time->p_corrected));
   for (const auto& report : out.whiteness) {
     const double count = 3.0 * static_cast<double>(out.whiteness.size());
     if (sidak(report.peak_p, count) < significant) {
@@ -162,9 +161,8 @@ void conclude(Diagnosis& out) {
                               " Hz (" + format_value(report.peak_power) + " times the power of white noise)");
     }
     if (sidak(std::min(report.ljung_box_p, report.periodogram_p), count) < significant) {
-      out.sentences.push_back("the innovations of " + report.channel + " are not white: Ljung-Box p " +
-                              format_probability(report.ljung_box_p) + ", cumulative periodogram p " +
-                              format_probability(report.periodogram_p));
+      out.sentences.push_back("the innovations of " + report.channel + " are not white: Ljung-Box " + p_equals(report.ljung_box_p) +
+                              ", cumulative periodogram " + p_equals(report.periodogram_p));
     }
   }
 }

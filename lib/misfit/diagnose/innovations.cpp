@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "misfit/inference/states.h"
-#include "misfit/inference/whiteness.h"
 #include "misfit/math/statistics.h"
+#include "misfit/math/whiteness.h"
 
 namespace misfit {
 namespace {

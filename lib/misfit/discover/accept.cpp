@@ -108,7 +108,7 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
 /// Why it cannot be accepted by itself; empty: it can, and holds out.
 std::string refusal(RankedCandidate& e, const SearchContext& context) {
   Candidate& c = e.candidate;
-  if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise p " + format_probability(c.p_value);
+  if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
   if (!e.refit->estimate.converged) return "its refit has not converged: " + e.refit->estimate.message;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
   c.held_out_gain = held_out_gain(context.estimate, e.refit->estimate, context.experiments, context.options.threads);
@@ -168,8 +168,8 @@ Selection select(std::vector<RankedCandidate>& ranked, const SearchContext& cont
       out.at = e;
       return out;
     }
-    e->candidate.why = "lack of fit remains: with it in the model an unknown " + left->port + "(" + left->quantity + ") still has p " +
-                       format_probability(left->p_value);
+    e->candidate.why = "lack of fit remains: with it in the model an unknown " + left->port + "(" + left->quantity + ") still has " +
+                       p_equals(left->p_value);
     if (aliases.empty()) out.remaining = left;
     aliases.push_back(e);
     read.insert(read.end(), candidate_model.quantities.begin(), candidate_model.quantities.end());
@@ -196,7 +196,7 @@ std::optional<UnknownCurve> accept_best(std::vector<RankedCandidate>& ranked, co
   }
   Candidate& c = selection.at->candidate;
   c.accepted = true;
-  c.why = "family-wise p " + format_probability(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
+  c.why = "family-wise " + p_equals(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
   if (selection.next != nullptr) c.why += "; " + label(selection.next->candidate) + " explains what remains";
   std::rotate(ranked.begin(), selection.at, selection.at + 1);
   find_groups(ranked, context);

@@ -64,7 +64,7 @@ Candidate unknown_candidate(const UnknownCurve& curve, double families, double p
   c.dof = curve.result.dof;
   c.p_value = sidak(curve.p_value, families);
   c.why = c.p_value < p_accept ? "a force that depends on " + curve.quantity + ", of unknown form"
-                               : "not significant: family-wise p " + format_probability(c.p_value);
+                               : "not significant: family-wise " + p_equals(c.p_value);
   return c;
 }
 

@@ -143,7 +143,7 @@ class Search {
 
   void list_unknown() {
     for (auto& e : ranked_) {
-      const std::string p = "family-wise p " + format_probability(e.candidate.p_value);
+      const std::string p = "family-wise " + p_equals(e.candidate.p_value);
       if (e.candidate.why.empty()) {
         e.candidate.why = e.candidate.p_value < options_.p_accept
                               ? p + ", but less than half of the best predicted drop: tested again with the best in the model"

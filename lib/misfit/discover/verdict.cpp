@@ -58,7 +58,7 @@ std::string physics_evidence(const Discovery& discovery, double p_accept) {
   for (const Candidate& c : discovery.candidates) {
     if (physical(c) && c.p_value < p_accept && (best == nullptr || c.p_value < best->p_value)) best = &c;
   }
-  return best == nullptr ? "" : effect_at(best->effect, best->roles) + " (family-wise p " + format_probability(best->p_value) + ")";
+  return best == nullptr ? "" : effect_at(best->effect, best->roles) + " (family-wise " + p_equals(best->p_value) + ")";
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
   const Candidate& best = out.candidates.front();
   if (best.accepted) {
     out.verdict = "Missing: " + effect_at(best.effect, best.roles) + " (drop " +
-                  format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise p " + format_probability(best.p_value) +
+                  format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise " + p_equals(best.p_value) +
                   "): " + numbers(best) + ".";
     suggest_experiment(best, camera, out);
     note_larger_drops(best, out);
@@ -80,8 +80,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
   if (unexplained) {
     out.unexplained_port = unexplained->port;
     out.unexplained_quantity = unexplained->quantity;
-    out.verdict = "Something is missing that depends on " + unexplained->quantity + " (a force on " + unexplained->port + ", p " +
-                  format_probability(unexplained->p_value) + "), and no effect of the library explains it.";
+    out.verdict = "Something is missing that depends on " + unexplained->quantity + " (a force on " + unexplained->port + ", " +
+                  p_equals(unexplained->p_value) + "), and no effect of the library explains it.";
     if (best.actual_drop)
       out.sentences.push_back("the best candidate of the library is " + effect_at(best.effect, best.roles) + " (drop " +
                               format_value(*best.actual_drop) + "): " + best.why);
@@ -89,7 +89,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
   }
   if (best.actual_drop && best.p_value < p_accept) {
     out.verdict = "No effect accepted; best candidate " + effect_at(best.effect, best.roles) + " (drop " + format_value(*best.actual_drop) +
-                  ", family-wise p " + format_probability(best.p_value) + "), rejected: " + best.why + ".";
+                  ", family-wise " + p_equals(best.p_value) + "), rejected: " + best.why + ".";
     return;
   }
   double least = 1.0;
@@ -100,7 +100,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
       nearest = effect_at(c.effect, c.roles);
     }
   }
-  const std::string closest = nearest.empty() ? "" : "; the best is " + nearest + " with p " + format_probability(least);
+  const std::string closest = nearest.empty() ? "" : "; the best is " + nearest + " with " + p_equals(least);
   out.verdict = "No missing effect detected: none of " + std::to_string(out.candidates.size()) + " candidates reaches a family-wise p of " +
                 format_value(p_accept) + " with a held-out gain" + closest + ".";
 }

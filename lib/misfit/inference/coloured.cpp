@@ -7,8 +7,8 @@
 
 #include "misfit/core/text.h"
 #include "misfit/inference/short_record.h"
-#include "misfit/inference/whiteness.h"
 #include "misfit/math/spectrum.h"
+#include "misfit/math/whiteness.h"
 
 namespace misfit {
 namespace {

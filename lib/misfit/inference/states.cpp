@@ -47,16 +47,6 @@ LocalFit local_quadratic(const std::vector<double>& t, const std::vector<double>
   return {};
 }
 
-}  // namespace
-
-double usual_step(const std::vector<double>& t) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
-  return steps.empty() ? 1.0 : median(steps);
-}
-
-namespace {
-
 /// Fills state and rate of one series of values.
 void add_series(const Model& model, const Signals& signals, int state, const std::vector<double>& values, double h,
                 ReconstructedStates& out) {

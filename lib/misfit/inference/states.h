@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "misfit/data/signals.h"
+#include "misfit/math/statistics.h"
 #include "misfit/model/model.h"
 #include "misfit/sim/trajectory.h"
 
@@ -24,9 +25,6 @@ struct ReconstructedStates {
 
 /// What a state is taken to be before anything shows it: its declared start, else one scale inside its range, else 0.
 [[nodiscard]] double start_of(const StateSpec& state);
-
-/// Usual step of the time base: the median difference [s].
-[[nodiscard]] double usual_step(const std::vector<double>& t);
 
 /// Circular frequency of the motion [rad/s]: sqrt(var(x')/var(x)) over the shown pairs of state and rate, the largest; 0 if there is none.
 [[nodiscard]] double motion_frequency(const Model& model, const ReconstructedStates& states);

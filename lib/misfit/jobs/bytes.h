@@ -12,14 +12,15 @@
 #include <vector>
 
 #include "misfit/core/error.h"
+#include "misfit/core/fields.h"
 
 namespace misfit {
 
 // Plain data as bytes of this machine's order, to the last bit: for results that only the same program reads again (checkpoints). A struct
 // joins by a function beside it,
 //
-//   template <class Bytes, class Data> requires std::is_same_v<std::remove_const_t<Data>, Point>
-//   void fields(Bytes& bytes, Data& point) { auto& [x, y] = point; bytes(x, y); }
+//   template <class Bytes>
+//   void fields(Bytes& bytes, MaybeConst<Point> auto& point) { auto& [x, y] = point; bytes(x, y); }
 //
 // whose structured binding no longer compiles when the struct gets a field more.
 

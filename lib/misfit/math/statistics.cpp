@@ -22,6 +22,12 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
+double usual_step(const std::vector<double>& t) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+  return steps.empty() ? 1.0 : median(steps);
+}
+
 double mad_sigma(const std::vector<double>& values) {
   const double centre = median(values);
   std::vector<double> deviations;

@@ -7,6 +7,9 @@ namespace misfit {
 /// Median of the finite values; the mean of the middle two for an even count. NaN if there is none.
 [[nodiscard]] double median(std::vector<double> values);
 
+/// Usual step of a time base: the median difference [s]; 1 for fewer than two samples.
+[[nodiscard]] double usual_step(const std::vector<double>& t);
+
 /// Robust standard deviation about the median: 1.4826 × median |x − median(x)|, which is sigma for normal x and unmoved by up to half of
 /// the values being wild. Values that are not finite are passed over; NaN if there is none.
 [[nodiscard]] double mad_sigma(const std::vector<double>& values);

@@ -126,7 +126,7 @@ BoundCoefficient Assembler::bind_coefficient(const std::string& name, const Coef
   if (spec.borrowed) return {};  // see lend_coefficients()
   const auto curve = curve_request(name, spec);
   if (curve) return {-1, add_curve(name, spec, *curve, request, kind)};
-  if (spec.over_sine) throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"alpha_T\" }");
+  if (spec.over_sine) throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"QUANTITY\" }");
   Parameter p = as_parameter(name, spec);
   apply_request(p);
   model_.parameters.push_back(p);

@@ -7,6 +7,7 @@
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/math/angle.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -25,20 +26,6 @@ std::vector<double> delayed(const std::vector<double>& t, const std::vector<doub
     out.push_back(share > 0.0 ? values[k] + share * (values[k + 1] - values[k]) : values[k]);
   }
   return out;
-}
-
-constexpr double pi = 3.14159265358979323846;
-
-/// Adds multiples of a full turn so that neighbours differ by less than half a turn; missing values stay missing.
-std::vector<double> unwrapped(std::vector<double> angle) {
-  double turns = 0.0, last = std::nan("");
-  for (double& a : angle) {
-    if (!std::isfinite(a)) continue;
-    if (std::isfinite(last)) turns -= std::round((a + turns - last) / (2.0 * pi)) * 2.0 * pi;
-    a += turns;
-    last = a;
-  }
-  return angle;
 }
 
 std::vector<double> central_rate(const std::vector<double>& t, const std::vector<double>& y) {
@@ -232,29 +219,6 @@ std::vector<std::string> signal_names(const SystemSpec& spec) {
   for (const auto& input : spec.inputs) add(input.name);
   for (const auto& input : spec.inputs) add(level_of(input.name));
   return names;
-}
-
-Table attitude_table(const Attitude& a) {
-  Table table;
-  table.source = "attitude";
-  table.add("t", "s", a.t);
-  table.add("theta", "rad", a.theta);
-  table.add("psi", "rad", a.psi);
-  table.add("alpha", "rad", a.alpha);
-  table.add("beta", "rad", a.beta);
-  table.add("alpha_T", "rad", a.alpha_T);
-  table.add("eta", "rad", a.eta);
-  table.add("phi", "rad", unwrapped(a.phi));
-  // phi = atan2(tan psi, tan theta) → phi' from the rates of the averages.
-  std::vector<double> rate(a.t.size(), std::nan(""));
-  for (std::size_t i = 0; i < a.t.size(); ++i) {
-    const double y = std::tan(a.psi_mean[i]), z = std::tan(a.theta_mean[i]);
-    const double y_rate = (1.0 + y * y) * a.psi_rate[i], z_rate = (1.0 + z * z) * a.theta_rate[i];
-    const double square = y * y + z * z;
-    if (square > 0.0) rate[i] = (y_rate * z - y * z_rate) / square;
-  }
-  table.add("phi_rate", "rad/s", rate);
-  return table;
 }
 
 }  // namespace misfit

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "misfit/core/table.h"
-#include "misfit/data/attitude.h"
 #include "misfit/data/signals.h"
 #include "misfit/data/study.h"
 #include "misfit/model/model.h"
@@ -17,8 +16,5 @@ namespace misfit {
 
 /// What `columns` of a recording may name: the time, outputs, inputs, and NAME for an input NAME_rate.
 [[nodiscard]] std::vector<std::string> signal_names(const SystemSpec& spec);
-
-/// The attitude as a recording in SI: t, theta, psi, alpha, beta, alpha_T, eta, phi (unwrapped) and phi_rate.
-[[nodiscard]] Table attitude_table(const Attitude& attitude);
 
 }  // namespace misfit

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/data/folded_angle.h"
 #include "misfit/model/limits.h"
 
 namespace misfit {
@@ -86,6 +87,12 @@ struct SystemForm {
   std::map<std::string, bool> flags;
 };
 
+/// A quantity whose statistics are compared between measured and simulated motion.
+struct ComparedQuantity {
+  std::string name;
+  bool distribution_only = false;  ///< without its autocorrelation and spectrum: an unbounded rate, say
+};
+
 struct SystemSpec {
   std::string key, doc, formula, source;
   std::vector<StateSpec> states;
@@ -103,7 +110,9 @@ struct SystemSpec {
   std::vector<int> readable_states;                      ///< states that System::read_states() gives
   SystemForm regression;                    ///< form in which sliding_bin is stated ([1] of lib/misfit/README.md, Eq. 8); empty kind: none
   std::string static_curve, damping_curve;  ///< coefficients that sliding_bin solves for; empty: none
-  double fastest_rate = 0.0;                ///< [1/s], of the system without effects
+  FoldedAngle folded_angle = {};            ///< for the points of [reference]
+  std::vector<ComparedQuantity> compared_quantities = {};  ///< of measured and simulated motion, beside the channels
+  double fastest_rate = 0.0;                               ///< [1/s], of the system without effects
 };
 
 /// Row-major blocks of first derivatives; a null pointer means "not wanted".

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<double> degrees(const std::vector<double>& radians) { return shown(radians, "rad"); }
+std::vector<double> degrees(const std::vector<double>& radians) { return display_values(radians, "rad"); }
 
 Figure time_figure(const std::string& name, const std::string& experiment, const std::string& title) {
   Figure figure;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/report/figure_units.h"
 
@@ -29,15 +30,15 @@ Panel panel_of(const Batch& batch, const BatchSummary& summary, const std::vecto
     const auto found = row.values.find(summary.name);
     if (row.method != summary.method || found == row.values.end() || found->second.unit != summary.unit) continue;
     const auto place = std::find(studies.begin(), studies.end(), row.study) - studies.begin();
-    const double value = shown({found->second.value}, summary.unit).front(), sigma = shown({found->second.sigma}, summary.unit).front();
+    const double value = display_value(found->second.value, summary.unit), sigma = display_value(found->second.sigma, summary.unit);
     values.x.push_back(static_cast<double>(place) + 1.0);
     values.y.push_back(value);
     values.lo.push_back(value - sigma);
     values.hi.push_back(value + sigma);
   }
-  const double mean = shown({summary.mean}, summary.unit).front(), sigma = shown({summary.mean_sigma}, summary.unit).front();
+  const double mean = display_value(summary.mean, summary.unit), sigma = display_value(summary.mean_sigma, summary.unit);
   const std::vector<double> ends{0.5, static_cast<double>(studies.size()) + 0.5};
-  const std::string p = summary.p_value ? ", p (homogeneity): " + format_probability(*summary.p_value) : "";
+  const std::string p = summary.p_value ? ", homogeneity: " + p_equals(*summary.p_value) : "";
   const std::string legend = fmt::format("{}: mean {}{}{}", summary.name, format_value(mean, sigma), unit == "-" ? "" : " " + unit, p);
   panel.series = {values, {"mean", legend, Style::dashed, grey, ends, {mean, mean}, {}, {}, 1.4}};
   return panel;

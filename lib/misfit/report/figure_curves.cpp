@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
@@ -20,8 +21,8 @@ struct Drawn {
 };
 
 Drawn drawn(const CurveEstimate& curve) {
-  Drawn d{shown(curve.x, curve.of_unit), shown(curve.value, curve.unit), {}, {}, {}};
-  const std::vector<double> sigma = shown(curve.sigma, curve.unit);
+  Drawn d{display_values(curve.x, curve.of_unit), display_values(curve.value, curve.unit), {}, {}, {}};
+  const std::vector<double> sigma = display_values(curve.sigma, curve.unit);
   for (std::size_t i = 0; i < d.x.size(); ++i) {
     d.lo.push_back(d.value[i] - sigma[i]);
     d.hi.push_back(d.value[i] + sigma[i]);
@@ -76,8 +77,8 @@ void add_curve(const Fit& fit, const CurveEstimate& curve, const std::string& co
 }
 
 void add_trim(const std::string& name, const Estimate& trim, const std::string& colour, Panel& panel) {
-  const double value = shown({trim.value}, trim.unit).front();
-  const double sigma = std::isfinite(trim.sigma) ? shown({trim.sigma}, trim.unit).front() : 0.0;
+  const double value = display_value(trim.value, trim.unit);
+  const double sigma = std::isfinite(trim.sigma) ? display_value(trim.sigma, trim.unit) : 0.0;
   const std::string legend = fmt::format("trim of {}: {} {}", name, format_value(value, sigma), display_unit(trim.unit));
   panel.series.push_back({"trim_" + as_key(name), legend, Style::x_bars, colour, {value}, {0.0}, {value - sigma}, {value + sigma}});
 }
@@ -110,8 +111,6 @@ std::optional<std::array<double, 2>> curve_range(const Panel& panel) {
   return std::array<double, 2>{std::min(lo - margin, -margin), std::max(hi + margin, margin)};
 }
 
-bool usable(const Fit& fit) { return fit.status == FitStatus::converged || fit.status == FitStatus::not_converged; }
-
 /// The quantity of the first curve of this name: a further one has its own in the name of its figure.
 std::string first_quantity(const std::string& curve, const std::vector<Fit>& fits, const std::vector<Reference>& references) {
   for (const Fit& fit : fits) {
@@ -140,9 +139,9 @@ Figure curve_figure(const std::string& curve, const std::string& of, const std::
   panel.height = 400.0;
   figure.panels.push_back(panel);
   for (std::size_t k = 0; k < fits.size(); ++k) {
-    if (!usable(fits[k])) figure.notes.push_back(fits[k].method + " " + to_string(fits[k].status) + ": " + fits[k].message);
+    if (!fits[k].usable()) figure.notes.push_back(fits[k].method + " " + to_string(fits[k].status) + ": " + fits[k].message);
     for (const CurveEstimate& c : fits[k].curves) {
-      if (c.name != curve || c.of != of || !usable(fits[k])) continue;
+      if (c.name != curve || c.of != of || !fits[k].usable()) continue;
       figure.x_unit = display_unit(c.of_unit);
       figure.panels.front().y_unit = display_unit(c.unit);
       add_curve(fits[k], c, palette(k), figure);
@@ -158,7 +157,7 @@ Figure curve_figure(const std::string& curve, const std::string& of, const std::
   for (std::size_t k = 0; k < fits.size(); ++k) {
     const bool trimmed = std::any_of(fits[k].curves.begin(), fits[k].curves.end(),
                                      [&](const CurveEstimate& c) { return c.trimmed && c.name == curve && c.of == of; });
-    if (trimmed && usable(fits[k]) && fits[k].trim) add_trim(fits[k].method, *fits[k].trim, palette(k), figure.panels.front());
+    if (trimmed && fits[k].usable() && fits[k].trim) add_trim(fits[k].method, *fits[k].trim, palette(k), figure.panels.front());
   }
   for (const Reference& reference : references) {
     if (reference.curve == curve && reference.of == of && reference.trim)

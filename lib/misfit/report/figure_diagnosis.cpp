@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/text.h"
 #include "misfit/report/figure_units.h"
@@ -13,8 +14,6 @@ namespace misfit::report {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::string probability(double p) { return p < 1e-300 ? format_probability(p) : "= " + format_probability(p); }
 
 /// Half of the distance to the neighbours: how wide a place is drawn.
 std::vector<double> half_steps(const std::vector<double>& x) {
@@ -51,15 +50,16 @@ std::size_t quantity_index(const MissingForce& missing, const std::string& quant
 Figure map_figure(const ForceMap& map) {
   Figure figure;
   figure.name = "map_" + as_key(map.port) + "_by_" + as_key(map.quantity);
-  figure.title = fmt::format("Missing {} against {} (p {})", map.port, map.quantity, probability(map.p_corrected));
+  figure.title = fmt::format("Missing {} against {} ({})", map.port, map.quantity, p_equals(map.p_corrected));
   figure.caption =
       fmt::format("Estimated unmodelled {} as a function of {} (free parameters re-adjusted), ± 1 sigma. {}", map.port, map.quantity,
                   map.sentence.empty() ? "No value differs significantly from zero." : "Here " + map.sentence + ".");
   figure.x_label = map.quantity;
   figure.x_unit = display_unit(map.quantity_unit);
   Panel panel{map.port, display_unit(map.port_unit), {}, std::nullopt, 0.0, 230.0, true, {}};
-  const std::vector<double> x = shown(map.x, map.quantity_unit), sigma = shown(map.sigma, map.port_unit);
-  Series amplitude{"amplitude", "missing force, ± 1 sigma", Style::error_bars, palette(1), x, shown(map.amplitude, map.port_unit), {}, {}};
+  const std::vector<double> x = display_values(map.x, map.quantity_unit), sigma = display_values(map.sigma, map.port_unit);
+  Series amplitude{
+      "amplitude", "missing force, ± 1 sigma", Style::error_bars, palette(1), x, display_values(map.amplitude, map.port_unit), {}, {}};
   for (std::size_t i = 0; i < x.size(); ++i) {
     amplitude.lo.push_back(amplitude.y[i] - sigma[i]);
     amplitude.hi.push_back(amplitude.y[i] + sigma[i]);
@@ -78,7 +78,7 @@ Figure map_figure(const ForceMap& map) {
 Figure pair_figure(const PairMap& map) {
   Figure figure;
   figure.name = "map_" + as_key(map.port) + "_by_" + as_key(map.quantity_x) + "_and_" + as_key(map.quantity_y);
-  figure.title = fmt::format("Missing {} against {} and {} (p {})", map.port, map.quantity_x, map.quantity_y, probability(map.p_corrected));
+  figure.title = fmt::format("Missing {} against {} and {} ({})", map.port, map.quantity_x, map.quantity_y, p_equals(map.p_corrected));
   figure.caption =
       "Estimated unmodelled force in units of its sigma: beyond 3 is unlikely by chance. White also where there are too few samples.";
   figure.x_label = map.quantity_x;
@@ -87,7 +87,7 @@ Figure pair_figure(const PairMap& map) {
   figure.z_unit = std::string("-");
   Panel panel{map.quantity_y, display_unit(map.unit_y), {}, std::nullopt, 0.0, 380.0, false, {}};
   Series cells{"force", "", Style::cells, black, {}, {}, {}, {}};
-  const std::vector<double> x = shown(map.x, map.unit_x), y = shown(map.y, map.unit_y);
+  const std::vector<double> x = display_values(map.x, map.unit_x), y = display_values(map.y, map.unit_y);
   const std::vector<double> half_x = half_steps(x), half_y = half_steps(y);
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (std::size_t j = 0; j < y.size(); ++j) {
@@ -116,10 +116,9 @@ Figure innovation_figure(const std::vector<WhitenessReport>& whiteness) {
   for (const WhitenessReport& w : whiteness) {
     Panel panel{w.channel, "-", {}, std::nullopt, 0.0, 150.0, true, {}};
     const std::string key = as_key(w.experiment + "_" + w.channel);
-    Series rho{key,          fmt::format("{} of {}, Ljung-Box p {}", w.channel, w.experiment, probability(w.ljung_box_p)),
-               Style::boxes, palette(0),
-               {},           {},
-               {},           {}};
+    Series rho{
+        key, fmt::format("{} of {}, Ljung-Box {}", w.channel, w.experiment, p_equals(w.ljung_box_p)), Style::boxes, palette(0), {}, {}, {},
+        {}};
     for (std::size_t lag = 1; lag < w.autocorrelation.size(); ++lag) {
       rho.x.push_back(static_cast<double>(lag));
       rho.y.push_back(w.autocorrelation[lag]);
@@ -158,7 +157,7 @@ Figure periodogram_figure(const std::vector<WhitenessReport>& whiteness) {
     double total = 0.0, sum = 0.0;
     for (const double p : w.power) total += std::isfinite(p) ? p : 0.0;
     Series s{as_key(w.experiment + "_" + w.channel),
-             fmt::format("{} of {}, p {}", w.channel, w.experiment, probability(w.periodogram_p)),
+             fmt::format("{} of {}, {}", w.channel, w.experiment, p_equals(w.periodogram_p)),
              Style::line,
              palette(k),
              w.frequency,
@@ -214,8 +213,8 @@ Figure missing_force_figure(const MissingForce& missing, const std::optional<Int
   for (std::size_t p = 0; p < missing.ports.size(); ++p) {
     const std::string key = as_key(missing.ports[p]);
     Panel panel{missing.ports[p], display_unit(missing.port_units[p]), {}, std::nullopt, 0.0, 180.0, true, {}};
-    const std::vector<double> y = shown(cut(missing.force[p]), missing.port_units[p]);
-    const std::vector<double> sigma = shown(cut(missing.sigma[p]), missing.port_units[p]);
+    const std::vector<double> y = display_values(cut(missing.force[p]), missing.port_units[p]);
+    const std::vector<double> sigma = display_values(cut(missing.sigma[p]), missing.port_units[p]);
     Series band{key + "_band", "", Style::band, palette(p), t, {}, {}, {}};
     for (std::size_t i = 0; i < y.size(); ++i) {
       band.lo.push_back(y[i] - sigma[i]);
@@ -238,10 +237,12 @@ Figure missing_force_by_figure(const MissingForce& missing, const std::string& q
   figure.x_label = quantity;
   const std::string unit = q < missing.quantities.size() ? missing.quantity_units[q] : "-";
   figure.x_unit = display_unit(unit);
-  const std::vector<double> x = q < missing.quantities.size() ? shown(missing.values[q], unit) : std::vector<double>(missing.t.size(), nan);
+  const std::vector<double> x =
+      q < missing.quantities.size() ? display_values(missing.values[q], unit) : std::vector<double>(missing.t.size(), nan);
   for (std::size_t p = 0; p < missing.ports.size(); ++p) {
     Panel panel{missing.ports[p], display_unit(missing.port_units[p]), {}, std::nullopt, 0.0, 200.0, true, {}};
-    panel.series = {{as_key(missing.ports[p]), "", Style::points, palette(p), x, shown(missing.force[p], missing.port_units[p]), {}, {}}};
+    panel.series = {
+        {as_key(missing.ports[p]), "", Style::points, palette(p), x, display_values(missing.force[p], missing.port_units[p]), {}, {}}};
     figure.panels.push_back(std::move(panel));
   }
   return figure;

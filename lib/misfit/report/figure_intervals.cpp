@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures_intervals.h"
@@ -18,7 +19,7 @@ constexpr double limit_95 = 3.841459;   // chi², 1 degree of freedom
 
 /// `values` in the unit drawn, NaN outside the visited range.
 std::vector<double> visited(const std::vector<double>& values, const BootstrapCurve& curve) {
-  std::vector<double> out = shown(values, curve.unit);
+  std::vector<double> out = display_values(values, curve.unit);
   const auto seen = [](double count) { return count > 0.0; };
   const auto first = std::find_if(curve.count.begin(), curve.count.end(), seen) - curve.count.begin();
   const auto behind = curve.count.rend() - std::find_if(curve.count.rbegin(), curve.count.rend(), seen);
@@ -31,7 +32,7 @@ std::vector<double> visited(const std::vector<double>& values, const BootstrapCu
 void add_bootstrap(const Bootstrap& bootstrap, const BootstrapCurve& curve, const std::string& colour, Figure& figure) {
   Panel& panel = figure.panels.front();
   const std::string key = as_key(bootstrap.method);
-  const std::vector<double> x = shown(curve.x, curve.of_unit);
+  const std::vector<double> x = display_values(curve.x, curve.of_unit);
   std::vector<double> below, above;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
     below.push_back(curve.value[i] - two_sided * curve.fit_sigma[i]);
@@ -86,7 +87,7 @@ Figure profile_figure(const LikelihoodProfile& p) {
   Panel panel;
   panel.y_label = p.scale == 1.0 ? "drop" : "drop/scale";
   panel.y_unit = "-";
-  const std::vector<double> x = shown(p.value, p.unit);
+  const std::vector<double> x = display_values(p.value, p.unit);
   std::vector<double> drop;
   for (double d : p.drop) drop.push_back(d / p.scale);
   const auto [least, most] = std::minmax_element(p.value.begin(), p.value.end());
@@ -98,8 +99,8 @@ Figure profile_figure(const LikelihoodProfile& p) {
   }
   panel.series.push_back({"profile", "all others re-estimated", Style::line, palette(0), x, drop, {}, {}});
   panel.series.push_back({"points", "", Style::markers, palette(0), x, drop, {}, {}});
-  panel.series.push_back({"parabola", "sigma of the fit", Style::dotted, black, shown(fine, p.unit), parabola, {}, {}});
-  const std::vector<double> ends = shown({p.lower, p.best, p.upper}, p.unit);
+  panel.series.push_back({"parabola", "sigma of the fit", Style::dotted, black, display_values(fine, p.unit), parabola, {}, {}});
+  const std::vector<double> ends = display_values({p.lower, p.best, p.upper}, p.unit);
   panel.series.push_back({"interval",
                           fmt::format("95 %: {} to {} {}", p.lower_found ? format_value(ends[0]) : "?",
                                       p.upper_found ? format_value(ends[2]) : "?", figure.x_unit),

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
+#include "misfit/math/whiteness.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
 
@@ -49,40 +51,13 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-/// c_lag/c_0 with c_lag = (1/n) Σ r[i] r[i+lag]; where entries are missing (NaN) the mean of the pairs that exist stands for all n − lag.
-double autocorrelation(const std::vector<double>& r, std::size_t lag) {
-  double sum = 0.0;
-  double square = 0.0;
-  std::size_t pairs = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    if (!std::isfinite(r[i])) continue;
-    square += r[i] * r[i];
-    ++count;
-    if (i + lag < r.size() && std::isfinite(r[i + lag])) {
-      sum += r[i] * r[i + lag];
-      ++pairs;
-    }
-  }
-  if (pairs == 0 || !(square > 0.0)) return nan;
-  const double share = static_cast<double>(r.size() - lag) / static_cast<double>(r.size());
-  return share * sum / static_cast<double>(pairs) / (square / static_cast<double>(count));
-}
-
-/// Residuals over their sigma, less their mean, NaN where held out or missing.
+/// Residuals over their sigma, NaN where held out or missing.
 std::vector<double> normalised_residuals(const ChannelPrediction& c) {
   std::vector<double> r = residuals(c);
-  double sum = 0.0;
-  std::size_t count = 0;
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (std::isfinite(c.sigma[i]) && c.sigma[i] > 0.0) r[i] /= c.sigma[i];
     if (c.held_out[i]) r[i] = nan;
-    if (!std::isfinite(r[i])) continue;
-    sum += r[i];
-    ++count;
   }
-  if (count == 0) return r;
-  for (double& value : r) value -= sum / static_cast<double>(count);
   return r;
 }
 
@@ -90,18 +65,25 @@ Panel motion_panel(const ChannelPrediction& c, const std::string& unit) {
   Panel panel{c.channel, unit, {}, std::nullopt, 0.0, 270.0, false};
   std::vector<bool> estimation = c.held_out;
   estimation.flip();
-  panel.series.push_back({"measured", "measured", Style::points, black, c.t, masked(shown(c.measured, c.unit), estimation), {}, {}});
   panel.series.push_back(
-      {"predicted", "predicted", Style::line, palette(0), c.t, masked(shown(c.predicted, c.unit), estimation), {}, {}, 1.4});
+      {"measured", "measured", Style::points, black, c.t, masked(display_values(c.measured, c.unit), estimation), {}, {}});
+  panel.series.push_back(
+      {"predicted", "predicted", Style::line, palette(0), c.t, masked(display_values(c.predicted, c.unit), estimation), {}, {}, 1.4});
   if (std::find(c.held_out.begin(), c.held_out.end(), true) != c.held_out.end()) {
-    panel.series.push_back(
-        {"measured_held_out", "measured, held out", Style::points, grey, c.t, masked(shown(c.measured, c.unit), c.held_out), {}, {}});
+    panel.series.push_back({"measured_held_out",
+                            "measured, held out",
+                            Style::points,
+                            grey,
+                            c.t,
+                            masked(display_values(c.measured, c.unit), c.held_out),
+                            {},
+                            {}});
     panel.series.push_back({"predicted_held_out",
                             "predicted, held out",
                             Style::line,
                             palette(1),
                             c.t,
-                            masked(shown(c.predicted, c.unit), c.held_out),
+                            masked(display_values(c.predicted, c.unit), c.held_out),
                             {},
                             {},
                             1.4});
@@ -111,9 +93,9 @@ Panel motion_panel(const ChannelPrediction& c, const std::string& unit) {
 
 Panel residual_panel(const ChannelPrediction& c, const std::string& unit) {
   Panel panel{"residual", unit, {}, std::nullopt, 0.0, 130.0, true};
-  const std::vector<double> sigma = shown(c.sigma, c.unit);
+  const std::vector<double> sigma = display_values(c.sigma, c.unit);
   panel.series.push_back({"sigma", "± 1 sigma of the prediction", Style::band, palette(0), c.t, {}, scaled(sigma, -1.0), sigma});
-  panel.series.push_back({"residual", "measured − predicted", Style::points, black, c.t, shown(residuals(c), c.unit), {}, {}});
+  panel.series.push_back({"residual", "measured − predicted", Style::points, black, c.t, display_values(residuals(c), c.unit), {}, {}});
   return panel;
 }
 
@@ -154,6 +136,7 @@ Figure motion_figure(const std::string& method, const ChannelPrediction& channel
 
 Figure autocorrelation_figure(const std::string& method, const ChannelPrediction& channel, std::size_t max_lag) {
   const std::vector<double> r = normalised_residuals(channel);
+  const std::vector<double> correlations = autocorrelation(r, static_cast<int>(max_lag));
   const auto count = static_cast<double>(std::count_if(r.begin(), r.end(), [](double v) { return std::isfinite(v); }));
   Figure figure;
   figure.name = "autocorrelation_" + as_key(method) + "_" + file_name_for(channel.experiment) + "_" + file_name_for(channel.channel);
@@ -166,7 +149,7 @@ Figure autocorrelation_figure(const std::string& method, const ChannelPrediction
   for (std::size_t lag = 1; lag <= max_lag && static_cast<double>(lag) < count; ++lag) {
     const auto x = static_cast<double>(lag);
     rho.x.push_back(x);
-    rho.y.push_back(autocorrelation(r, lag));
+    rho.y.push_back(correlations[lag]);
     rho.lo.push_back(x - 0.35);
     rho.hi.push_back(x + 0.35);
   }

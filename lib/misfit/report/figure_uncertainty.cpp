@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures_uncertainty.h"
@@ -29,8 +30,8 @@ struct Band {
 };
 
 Band band_of(const SpreadCurve& c, const Uncertainty& u) {
-  Band b{shown(c.x, c.of_unit), shown(c.mean, c.unit), {}, {}, shown(c.nominal, c.unit), {}, {}};
-  const std::vector<double> sigma = shown(c.sigma, c.unit);
+  Band b{display_values(c.x, c.of_unit), display_values(c.mean, c.unit), {}, {}, display_values(c.nominal, c.unit), {}, {}};
+  const std::vector<double> sigma = display_values(c.sigma, c.unit);
   const double half = 0.5 * static_cast<double>(u.runs - u.failed);
   for (std::size_t i = 0; i < b.x.size(); ++i) {
     b.low.push_back(b.mean[i] - 3.0 * sigma[i]);
@@ -42,7 +43,7 @@ Band band_of(const SpreadCurve& c, const Uncertainty& u) {
 }
 
 void add_trim(const SpreadNumber& trim, Panel& panel) {
-  const double mean = shown({trim.mean}, trim.unit).front(), reach = 3.0 * shown({trim.sigma}, trim.unit).front();
+  const double mean = display_value(trim.mean, trim.unit), reach = 3.0 * display_value(trim.sigma, trim.unit);
   if (!std::isfinite(mean) || !std::isfinite(reach)) return;
   const std::string legend = fmt::format("trim, ± 3 sigma: {} {}", format_value(mean, reach), display_unit(trim.unit));
   panel.series.push_back({"trim", legend, Style::x_bars, palette(1), {mean}, {0.0}, {mean - reach}, {mean + reach}});

@@ -1,19 +1,11 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "misfit/core/file_name.h"
 #include "misfit/core/units.h"
 
 namespace misfit::report {
-
-/// Values of unit `si` in the unit that figures show.
-[[nodiscard]] inline std::vector<double> shown(std::vector<double> values, const std::string& si) {
-  const double factor = convert(1.0, si, display_unit(si));
-  for (double& value : values) value *= factor;
-  return values;
-}
 
 /// The name of a quantity, a port or a parameter as part of a figure's name, or any text as a column's key: everything but letters, digits,
 /// '-' becomes '_'. A name that a user is free to choose goes through file_name_for(): these texts may become equal.

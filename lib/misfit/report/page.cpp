@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
-
 #include "misfit/report/style.h"
 #include "misfit/report/symbols.h"
 
@@ -24,16 +22,34 @@ void remove_between(std::string& text, const std::string& begin, const std::stri
   }
 }
 
-std::string table_row(const std::vector<std::string>& cells, const char* tag) {
+std::string table_row(const std::vector<std::string>& cells, const std::vector<Column>& columns, const char* tag) {
   std::string html = "<tr>";
-  for (const std::string& cell : cells) {
-    const char* css = std::string_view(tag) == "td" && cell.size() < 32 ? " class=\"short\"" : "";
-    html += fmt::format("<{}{}>{}</{}>", tag, css, html_text(cell), tag);
+  constexpr std::size_t short_cell = 32;  // bytes that are not broken into lines
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const bool number = k < columns.size() && columns[k].align == Align::right;
+    const char* css = number ? " class=\"number\"" : cells[k].size() < short_cell ? " class=\"short\"" : "";
+    html += fmt::format("<{0}{1}>{2}</{0}>", tag, css, html_text(cells[k]));
   }
   return html + "</tr>\n";
 }
 
 }  // namespace
+
+void Page::show(const Blocks& blocks, const std::function<void(const std::string& place)>& figures, const std::string& note) {
+  for (const Block& block : blocks.all()) {
+    if (const auto* heading = std::get_if<Heading>(&block)) {
+      heading->level == 1 ? section(heading->text + note) : subsection(heading->text);
+    } else if (const auto* text = std::get_if<Paragraph>(&block)) {
+      paragraph(text->text, text->tone == Tone::lead ? "question" : text->tone == Tone::warning ? "bad" : "");
+    } else if (const auto* items = std::get_if<List>(&block)) {
+      list(*items);
+    } else if (const auto* rows = std::get_if<TableBlock>(&block)) {
+      table(*rows);
+    } else if (const auto* place = std::get_if<FigurePlace>(&block); place != nullptr && figures) {
+      figures(place->name);
+    }
+  }
+}
 
 void Page::section(const std::string& heading) {
   if (!sections_.empty()) body_ += "</section>\n";
@@ -47,17 +63,17 @@ void Page::paragraph(const std::string& text, const std::string& css_class) {
   body_ += fmt::format("<p{}>{}</p>\n", css_class.empty() ? "" : " class=\"" + css_class + "\"", html_text(text));
 }
 
-void Page::list(const std::vector<std::string>& items) {
-  if (items.empty()) return;
-  body_ += "<ul>\n";
-  for (const std::string& item : items) body_ += "<li>" + html_text(item) + "</li>\n";
+void Page::list(const List& list) {
+  body_ += list.tone == Tone::warning ? "<ul class=\"warnings\">\n" : "<ul>\n";
+  for (const std::string& item : list.items) body_ += "<li>" + html_text(item) + "</li>\n";
   body_ += "</ul>\n";
 }
 
-void Page::table(const std::vector<std::vector<std::string>>& rows) {
-  if (rows.size() < 2) return;
-  body_ += "<div class=\"wide\"><table><thead>" + table_row(rows.front(), "th") + "</thead><tbody>\n";
-  for (std::size_t k = 1; k < rows.size(); ++k) body_ += table_row(rows[k], "td");
+void Page::table(const TableBlock& table) {
+  std::vector<std::string> header;
+  for (const Column& column : table.columns) header.push_back(column.heading);
+  body_ += "<div class=\"wide\"><table><thead>" + table_row(header, table.columns, "th") + "</thead><tbody>\n";
+  for (const auto& row : table.rows) body_ += table_row(row, table.columns, "td");
   body_ += "</tbody></table></div>\n";
 }
 

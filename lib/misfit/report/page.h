@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "misfit/core/unique_name.h"
 #include "misfit/report/figure.h"
+#include "misfit/show/blocks.h"
 
 namespace misfit::report {
 
@@ -14,12 +16,12 @@ class Page {
  public:
   explicit Page(std::string title) : title_(std::move(title)) {}
 
+  /// `figures` draws what belongs to a place; `note` is added to the headings of sections.
+  void show(const Blocks& blocks, const std::function<void(const std::string& place)>& figures = {}, const std::string& note = "");
   void section(const std::string& heading);
   void subsection(const std::string& heading);
   void paragraph(const std::string& text, const std::string& css_class = "");
-  void list(const std::vector<std::string>& items);               ///< nothing if empty
-  void table(const std::vector<std::vector<std::string>>& rows);  ///< first row is the header; nothing if only that
-  void figure(const Figure& figure, const std::string& svg);      ///< drawing, caption, notes
+  void figure(const Figure& figure, const std::string& svg);  ///< drawing, caption, notes
   /// A name for the next figure: `name`, or if a figure of the page has it one with a number behind.
   [[nodiscard]] std::string free_figure_name(const std::string& name) { return unique_name(name, figure_names_, "."); }
   void html(const std::string& markup) { body_ += markup; }
@@ -28,6 +30,9 @@ class Page {
   [[nodiscard]] std::string text() const;
 
  private:
+  void list(const List& list);
+  void table(const TableBlock& table);
+
   std::string title_, body_;
   std::vector<std::string> sections_;
   std::set<std::string> figure_names_;

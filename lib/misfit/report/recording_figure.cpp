@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
 #include "misfit/report/figure_units.h"
 
@@ -16,7 +17,7 @@ bool after_gap(const std::vector<double>& t, std::size_t k, double step) { retur
 /// A value with the place of the row before it broken, so that no line is drawn across a gap.
 Series curve(const Column& column, const std::vector<double>& t, double step, std::size_t colour, const Interval& part) {
   Series s{as_key(column.name), "", Style::line, palette(colour), {}, {}, {}, {}, 1.2};
-  const std::vector<double> values = shown(column.values, column.unit.empty() ? "-" : column.unit);
+  const std::vector<double> values = display_values(column.values, column.unit.empty() ? "-" : column.unit);
   for (std::size_t k = 0; k < t.size(); ++k) {
     if (t[k] < part.from || t[k] > part.to) continue;
     if (!s.x.empty() && after_gap(t, k, step)) {

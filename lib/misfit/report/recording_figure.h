@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "misfit/data/recording.h"
+#include "misfit/recording/recording.h"
 #include "misfit/report/figures.h"
 
 namespace misfit::report {

@@ -6,11 +6,11 @@
 #include <set>
 
 #include "misfit/core/files.h"
-#include "misfit/core/text.h"
-#include "misfit/core/units.h"
 #include "misfit/report/figures.h"
+#include "misfit/report/figures_intervals.h"
 #include "misfit/report/figures_simulated.h"
-#include "misfit/report/rows.h"
+#include "misfit/report/figures_uncertainty.h"
+#include "misfit/show/results.h"
 
 namespace misfit::report {
 namespace {
@@ -29,20 +29,6 @@ std::vector<std::pair<std::string, std::string>> curves_of(const ReportInput& in
   return names;
 }
 
-void differences_table(const Comparison& comparison, Page& page) {
-  std::vector<std::vector<std::string>> rows = {
-      {"curve", "between", "rms [sigma]", "largest [sigma]", "at", "difference there", "compared from", "to"}};
-  for (const CurveDifference& d : comparison.curves) {
-    const std::string unit = display_unit(d.of_unit);
-    const auto x = [&](double value) { return fmt::format("{:.3g} {}", convert(value, d.of_unit, unit), unit); };
-    const Row there("difference", d.difference.value, d.difference.sigma, d.unit.empty() ? "-" : d.unit);
-    rows.push_back({d.curve, d.a + " − " + d.b, fmt::format("{:.2f}", d.rms_sigmas), fmt::format("{:.2f}", d.max_sigmas), x(d.at),
-                    there.shown_number() + " " + there.shown_unit(), x(d.from), x(d.to)});
-  }
-  if (rows.size() > 1) page.subsection("Differences between curves");
-  page.table(rows);
-}
-
 }  // namespace
 
 void Draw::operator()(Figure figure) const {
@@ -55,12 +41,29 @@ void curves_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (names.empty() && !input.comparison) return;
   page.section("Curves");
   for (const auto& [curve, of] : names) draw(curve_figure(curve, of, input.fits, input.references));
-  if (!input.comparison) return;
-  differences_table(*input.comparison, page);
-  std::vector<std::string> left_out;
-  for (const NotCompared& n : input.comparison->not_compared) left_out.push_back(n.what + " (" + n.why + ")");
-  if (!left_out.empty()) page.subsection("Not compared");
-  page.list(left_out);
+  if (input.comparison) page.show(curve_difference_blocks(*input.comparison));
+}
+
+void uncertainty_section(const ReportInput& input, Page& page, const Draw& draw) {
+  if (!input.uncertainty) return;
+  page.show(blocks_of(*input.uncertainty), [&](const std::string&) {
+    for (const Figure& figure : uncertainty_figures(*input.uncertainty, input.references)) draw(figure);
+  });
+}
+
+void resampling_section(const ReportInput& input, Page& page, const Draw& draw) {
+  if (!input.resampling) return;
+  page.show(blocks_of(*input.resampling), [&](const std::string&) {
+    for (const Figure& figure : interval_figures(*input.resampling)) draw(figure);
+  });
+}
+
+void calibration_section(const ReportInput& input, Page& page, const Draw& draw) {
+  if (!input.calibration) return;
+  page.show(blocks_of(*input.calibration), [&](const std::string&) {
+    draw(calibration_figure(*input.calibration));
+    draw(calibration_residual_figure(*input.calibration));
+  });
 }
 
 void measured_section(const ReportInput& input, Page& page, const Draw& draw) {
@@ -94,27 +97,15 @@ void prediction_section(const ReportInput& input, Page& page, const Draw& draw) 
 void simulated_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (!input.comparison || !input.comparison->motion) return;
   const SimulatedMotion& motion = *input.comparison->motion;
-  page.section("Simulated against measured motion");
-  page.paragraph(
-      "Random motion cannot be matched sample by sample: a correct model must reproduce its statistics. Small p: the fitted model does "
-      "not reproduce that group of statistics.");
-  page.list(motion.sentences);
-  page.list(motion.notes);
   std::vector<std::string> experiments;
   for (const MotionSeries& s : motion.series) {
     if (std::find(experiments.begin(), experiments.end(), s.experiment) == experiments.end()) experiments.push_back(s.experiment);
   }
-  for (const std::string& experiment : experiments) {
-    for (const char* group : {"distribution", "autocorrelation", "spectrum"}) draw(simulated_figure(motion, experiment, group));
-  }
-  std::vector<std::vector<std::string>> rows = {{"experiment", "series", "statistics", "p", "outside their band"}};
-  for (const MotionSeries& s : motion.series) {
-    for (const MotionGroup& g : s.groups) {
-      const auto outside = std::count_if(g.numbers.begin(), g.numbers.end(), [](const MotionNumber& n) { return n.outside; });
-      rows.push_back({s.experiment, s.name, g.name, fmt::format("{:.3f}", g.p_value), fmt::format("{} of {}", outside, g.numbers.size())});
+  page.show(blocks_of(motion), [&](const std::string&) {
+    for (const std::string& experiment : experiments) {
+      for (const char* group : {"distribution", "autocorrelation", "spectrum"}) draw(simulated_figure(motion, experiment, group));
     }
-  }
-  page.table(rows);
+  });
 }
 
 void notes_section(const ReportInput& input, Page& page) {
@@ -128,23 +119,27 @@ void notes_section(const ReportInput& input, Page& page) {
   }
   if (input.calibration) add("calibration", input.calibration->notes);
   for (const Reference& reference : input.references) add("", reference.notes);
-  page.section("Data notes");
-  if (notes.empty()) page.paragraph("No sample was dropped or rejected.");
-  page.list(notes);
+  Blocks out;
+  out.heading("Data notes");
+  if (notes.empty()) out.paragraph("No sample was dropped or rejected.");
+  out.list({notes});
+  page.show(out);
 }
 
 void provenance_section(const ReportInput& input, Page& page) {
-  page.section("Provenance");
-  std::vector<std::vector<std::string>> facts = {{"", ""}, {"misfit", input.run.version}, {"commit", input.run.commit}};
-  facts.push_back({"seed", std::to_string(input.run.seed)});
-  if (!input.run.command.empty()) facts.push_back({"command", input.run.command});
-  page.table(facts);
-  std::vector<std::vector<std::string>> files = {{"file", "hash (FNV-1a, 64 bit)"}};
-  for (const auto& [file, hash] : input.run.hashes) files.push_back({file, hash});
-  page.table(files);
-  std::vector<std::vector<std::string>> stages = {{"stage", "time [s]"}};
-  for (const auto& [stage, seconds] : input.run.stages) stages.push_back({stage, fmt::format("{:.2f}", seconds)});
-  page.table(stages);
+  const RunFacts& run = input.run;
+  TableBlock facts{{{""}, {""}}, {{"misfit", run.version}, {"commit", run.commit}, {"seed", std::to_string(run.seed)}}};
+  if (!run.command.empty()) facts.rows.push_back({"command", run.command});
+  TableBlock files{{{"file"}, {"hash (FNV-1a, 64 bit)"}}, {}};
+  for (const auto& [file, hash] : run.hashes) files.rows.push_back({file, hash});
+  TableBlock stages{{{"stage"}, {"time [s]", Align::right}}, {}};
+  for (const auto& [stage, seconds] : run.stages) stages.rows.push_back({stage, fmt::format("{:.2f}", seconds)});
+  Blocks out;
+  out.heading("Provenance");
+  out.table(std::move(facts));
+  out.table(std::move(files));
+  out.table(std::move(stages));
+  page.show(out);
 }
 
 }  // namespace misfit::report

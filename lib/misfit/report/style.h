@@ -4,7 +4,7 @@ namespace misfit::report {
 
 /// Style sheet of the page: sober, readable on narrow screens and in print; no font or picture from elsewhere.
 inline constexpr const char* page_style = R"css(
-:root { --ink: #1d2327; --soft: #5b6670; --line: #d9dee2; --accent: #0b5c8c; --bad: #a63a00; --good: #00724f; }
+:root { --ink: #1d2327; --soft: #5b6670; --line: #d9dee2; --accent: #0b5c8c; --bad: #a63a00; }
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 62rem; padding: 1.5rem 1.25rem 4rem; color: var(--ink); background: #fff;
   font: 16px/1.55 "Segoe UI", "Helvetica Neue", Helvetica, Arial, "DejaVu Sans", sans-serif; }
@@ -24,14 +24,11 @@ main li { max-width: 46rem; margin: .2rem 0; }
 table { border-collapse: collapse; font-size: .92rem; }
 th, td { padding: .32rem .9rem .32rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
 thead th { border-bottom: 1.5px solid var(--ink); font-weight: 600; }
-tbody th { font-weight: 400; }
 .number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-td.short { white-space: nowrap; }
-.unit { color: var(--soft); white-space: nowrap; }
-.status { font-weight: 600; white-space: nowrap; }
-.good { color: var(--good); }
+.short { white-space: nowrap; }
 .bad { color: var(--bad); }
-.warnings { margin: .2rem 0 0; padding-left: 1.1rem; }
+.warnings { list-style: "!  "; }
+.warnings li::marker { color: var(--bad); font-weight: 600; }
 figure { margin: 1.4rem 0 2rem; }
 figure svg { display: block; width: 100%; height: auto; }
 figcaption { max-width: 46rem; margin-top: .3rem; font-size: .9rem; color: var(--soft); }

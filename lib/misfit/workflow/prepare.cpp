@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "misfit/attitude/attitude.h"
 #include "misfit/core/error.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/gaps.h"

@@ -16,14 +16,6 @@ namespace {
 
 constexpr std::size_t runs = 199;  // if half of them fail, the smallest p-value is still 1/100
 
-/// Quantities that are of interest beside the channels, where the system has them, and whether only their distribution is looked at: a rate
-/// of an angle that is undefined at zero tilt is unbounded there.
-struct Wanted {
-  const char* name;
-  bool spread_only;
-};
-constexpr Wanted wanted[] = {{"alpha_T", false}, {"phi_rate", true}};
-
 /// From the first sample that the filter runs at, without the samples that it rejected.
 Signals as_filtered(const FilterData& data) {
   Signals out = *data.signals;
@@ -51,13 +43,13 @@ std::vector<MotionPath> paths_of(const Model& model, const Signals& signals) {
   for (const auto& channel : signals.measured) out.push_back({channel.name, channel.unit, channel.values});
   const SystemSpec& spec = model.system->spec();
   std::vector<std::size_t> places;
-  for (const Wanted& w : wanted) {
+  for (const ComparedQuantity& w : spec.compared_quantities) {
     const auto found =
-        std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const QuantitySpec& q) { return w.name == std::string(q.name); });
+        std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const QuantitySpec& q) { return w.name == q.name; });
     const bool channel = std::any_of(out.begin(), out.end(), [&](const MotionPath& p) { return p.name == w.name; });
     if (found == spec.quantities.end() || channel || is_input(spec, w.name)) continue;
     places.push_back(found - spec.quantities.begin());
-    out.push_back({w.name, found->unit, std::vector<double>(signals.samples(), std::nan("")), w.spread_only});
+    out.push_back({w.name, found->unit, std::vector<double>(signals.samples(), std::nan("")), w.distribution_only});
   }
   if (places.empty()) return out;
   const ReconstructedStates states = reconstruct_states(model, signals);

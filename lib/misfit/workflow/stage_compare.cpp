@@ -28,7 +28,10 @@ std::vector<fs::path> files_of_fits(const Session& session, const std::vector<Fi
 
 std::vector<Reference> references(const Session& session) {
   std::vector<Reference> out;
-  for (const auto& [curve, file] : session.study.reference) out.push_back(read_reference(file, curve));
+  const ModelRequest& request = session.model.request;
+  const SystemSpec spec = session.registry.system(request.system).make(request.options)->spec();
+  for (const auto& [curve, file] : session.study.reference)
+    out.push_back(read_reference(file, curve, spec.static_curve, spec.folded_angle));
   return out;
 }
 

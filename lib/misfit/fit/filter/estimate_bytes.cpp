@@ -1,69 +1,64 @@
 #include "misfit/fit/filter/estimate_bytes.h"
 
-#include <type_traits>
-
 namespace misfit {
 
 // The structured bindings name every field: one more and they no longer compile.
 
-template <class T, class Of>
-concept Is = std::is_same_v<std::remove_const_t<T>, Of>;
-
-template <class Bytes, Is<ChannelNoise> Data>
-void fields(Bytes& bytes, Data& data) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<ChannelNoise> auto& data) {
   auto& [white, jitter, jitter_frequency, jitter_damping] = data;
   bytes(white, jitter, jitter_frequency, jitter_damping);
 }
 
-template <class Bytes, Is<FilterNoise> Data>
-void fields(Bytes& bytes, Data& data) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<FilterNoise> auto& data) {
   auto& [force, force_time, channels] = data;
   bytes(force, force_time, channels);
 }
 
-template <class Bytes, Is<NoiseFit> Data>
-void fields(Bytes& bytes, Data& data) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<NoiseFit> auto& data) {
   auto& [noise, minus_loglik, information, logs, at_bound, converged] = data;
   bytes(noise, minus_loglik, information, logs, at_bound, converged);
 }
 
-template <class Bytes, Is<Penalty> Data>
-void fields(Bytes& bytes, Data& data) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<Penalty> auto& data) {
   auto& [curve, first, omega, rank, lambda, chosen] = data;
   bytes(curve, first, omega, rank, lambda, chosen);
 }
 
-template <class Bytes, Is<InputTable> Data>
-void fields(Bytes& bytes, Data& data) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<InputTable> auto& data) {
   auto& [inputs, values] = data;
   bytes(inputs, values);
 }
 
 /// All but the measurements.
-template <class Bytes, Is<FilterData> Data>
-void fields(Bytes& bytes, Data& data) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<FilterData> auto& data) {
   auto& [signals, inputs, use, first, start, scale] = data;
   static_cast<void>(signals);
   bytes(inputs, use, first, start, scale);
 }
 
-template <class Bytes, Is<FilterTrace> Data>
-void fields(Bytes& bytes, Data& data) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<FilterTrace> auto& data) {
   auto& [n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, e, S, y, y_variance, P, loglik, validation_loglik,
          counted, validated] = data;
   bytes(n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, e, S, y, y_variance, P, loglik, validation_loglik,
         counted, validated);
 }
 
-template <class Bytes, Is<FilterJacobian> Data>
-void fields(Bytes& bytes, Data& data) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<FilterJacobian> auto& data) {
   auto& [J, r, index] = data;
   bytes(J, r, index);
 }
 
 /// All but the models.
-template <class Bytes, Is<FilterEstimate> Data>
-void fields(Bytes& bytes, Data& estimate) {
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<FilterEstimate> auto& estimate) {
   auto& [model, forced, penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information,
          objective, loglik, validation_loglik, left, edf, converged, message, outliers, nonlinear, linearisations] = estimate;
   static_cast<void>(model);

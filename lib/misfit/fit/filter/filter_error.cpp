@@ -15,8 +15,8 @@
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/short_record.h"
-#include "misfit/inference/whiteness.h"
 #include "misfit/math/statistics.h"
+#include "misfit/math/whiteness.h"
 
 namespace misfit {
 namespace {
@@ -222,7 +222,7 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
       const WhitenessTest test = whiteness(on_even_grid(estimate.data[e].signals->t, innovations), 1, last_lag);
       if (!(test.p_value < improbable) || std::abs(test.largest) < worth_saying) continue;
       fit.warnings.push_back("the innovations of " + outputs[o].name + " in '" + estimate.data[e].signals->name +
-                             "' are not white (Ljung-Box p = " + format_probability(test.p_value) + ", largest autocorrelation " +
+                             "' are not white (Ljung-Box " + p_equals(test.p_value) + ", largest autocorrelation " +
                              format_value(std::round(1000.0 * test.largest) / 1000.0) + " at lag " + std::to_string(test.largest_lag) +
                              "): the process or noise model is incomplete; standard errors assume whiteness and may be too small");
     }

@@ -12,8 +12,8 @@
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/short_record.h"
-#include "misfit/inference/whiteness.h"
 #include "misfit/math/bounded.h"
+#include "misfit/math/whiteness.h"
 
 namespace misfit {
 namespace {

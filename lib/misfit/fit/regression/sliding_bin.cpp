@@ -12,7 +12,7 @@
 #include "misfit/data/estimators.h"
 #include "misfit/fit/regression/bin_equations.h"
 #include "misfit/inference/curves.h"
-#include "misfit/inference/whiteness.h"
+#include "misfit/math/whiteness.h"
 
 namespace misfit {
 namespace {

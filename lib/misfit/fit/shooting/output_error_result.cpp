@@ -11,7 +11,7 @@
 #include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
-#include "misfit/inference/whiteness.h"
+#include "misfit/math/whiteness.h"
 
 namespace misfit::output_error_parts {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "misfit/data/recording.h"
 #include "misfit/fit/regression/linear_guess.h"
+#include "misfit/recording/recording.h"
 
 namespace misfit {
 

@@ -1,4 +1,4 @@
-#include "misfit/data/recording_time.h"
+#include "misfit/recording/recording_time.h"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,10 @@
-#include "misfit/inference/whiteness.h"
+#include "misfit/math/whiteness.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "misfit/core/text.h"
-#include "misfit/inference/states.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -135,7 +134,7 @@ WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int
 std::string in_words(const WhitenessTest& test) {
   if (test.last_lag < test.first_lag) return "too few samples to tell whether they remember";
   return "lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) + " samples: largest autocorrelation " +
-         format_value(test.largest) + " at lag " + std::to_string(test.largest_lag) + ", Ljung-Box p = " + format_probability(test.p_value);
+         format_value(test.largest) + " at lag " + std::to_string(test.largest_lag) + ", Ljung-Box " + p_equals(test.p_value);
 }
 
 bool clearly_coloured(const WhitenessTest& test) {

@@ -1,4 +1,4 @@
-#include "misfit/data/recording.h"
+#include "misfit/recording/recording.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@
 #include "misfit/core/text.h"
 #include "misfit/core/unique_name.h"
 #include "misfit/core/units.h"
-#include "misfit/data/column_facts.h"
-#include "misfit/data/recording_time.h"
+#include "misfit/recording/column_facts.h"
+#include "misfit/recording/recording_time.h"
 
 namespace misfit {
 namespace {

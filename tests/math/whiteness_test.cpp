@@ -1,4 +1,4 @@
-#include "misfit/inference/whiteness.h"
+#include "misfit/math/whiteness.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "misfit/data/recording.h"
+#include "misfit/recording/recording.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "misfit/data/column_facts.h"
+#include "misfit/recording/column_facts.h"
 
 #include <fmt/format.h>
 

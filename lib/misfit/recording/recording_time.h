@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "misfit/data/recording.h"
+#include "misfit/recording/recording.h"
 
 namespace misfit {
 

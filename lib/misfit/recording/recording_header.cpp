@@ -6,7 +6,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/units.h"
-#include "misfit/data/recording.h"
+#include "misfit/recording/recording.h"
 
 namespace misfit {
 namespace {

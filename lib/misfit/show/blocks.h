@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace misfit {
+
+// What is shown of a result: a list of blocks, written to a terminal by as_text() and to a page by report/page.h.
+
+enum class Tone { plain, lead, warning };  ///< lead: the answer itself, before everything else
+
+/// Level 1: of a result; 2: of a part of it.
+struct Heading {
+  std::string text;
+  int level = 1;
+};
+
+struct Paragraph {
+  std::string text;
+  Tone tone = Tone::plain;
+};
+
+/// How much of a long block a terminal gets; a page gets all of it.
+struct Excerpt {
+  std::size_t most = std::numeric_limits<std::size_t>::max();
+  std::string file = {};  ///< that has the rest
+};
+
+struct List {
+  std::vector<std::string> items;
+  Tone tone = Tone::plain;
+  Excerpt excerpt = {};
+};
+
+enum class Align { left, right };
+
+struct Column {
+  std::string heading;
+  Align align = Align::left;
+};
+
+/// A value stands with its unit in its cell, or the heading has the unit.
+struct TableBlock {
+  std::vector<Column> columns;
+  std::vector<std::vector<std::string>> rows;
+  Excerpt excerpt = {};
+};
+
+/// Where a page puts figures of its own choice.
+struct FigurePlace {
+  std::string name;
+};
+
+using Block = std::variant<Heading, Paragraph, List, TableBlock, FigurePlace>;
+
+/// Blocks under construction. A table or list without content is left out.
+class Blocks {
+ public:
+  void heading(const std::string& text) { all_.emplace_back(Heading{text, 1}); }
+  void subheading(const std::string& text) { all_.emplace_back(Heading{text, 2}); }
+  void paragraph(const std::string& text, Tone tone = Tone::plain);
+  void list(List list);
+  void warnings(const std::vector<std::string>& sentences) { list({sentences, Tone::warning}); }
+  void table(TableBlock table);
+  void figures(const std::string& place) { all_.emplace_back(FigurePlace{place}); }
+  void append(const Blocks& more) { all_.insert(all_.end(), more.all_.begin(), more.all_.end()); }
+
+  [[nodiscard]] const std::vector<Block>& all() const { return all_; }
+
+ private:
+  std::vector<Block> all_;
+};
+
+/// "A sentence." from "a sentence": with a capital letter and a full stop. A first word with '_', a name of a study, stays as it is.
+[[nodiscard]] std::string as_sentence(std::string text);
+
+/// For a terminal: paragraphs wrapped at 110 characters, columns aligned, warnings led by "! ".
+[[nodiscard]] std::string as_text(const Blocks& blocks);
+
+}  // namespace misfit

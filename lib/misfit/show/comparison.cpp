@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/display.h"
+#include "misfit/core/units.h"
+#include "misfit/show/results.h"
+#include "misfit/show/rows.h"
+
+namespace misfit {
+namespace {
+
+std::vector<Row> rows_of(const MethodSummary& m) {
+  std::vector<Row> rows;
+  if (m.trim) rows.emplace_back("trim", *m.trim);
+  add_rows(rows, "slope of ", m.slopes, " at the trim");
+  add_rows(rows, "", m.at_trim, " at the trim");
+  add_rows(rows, "", m.parameters);
+  add_rows(rows, "RMS of ", m.rms);
+  add_rows(rows, "RMS of ", m.validation_rms, ", held out");
+  if (m.loglik) rows.emplace_back("log-likelihood", *m.loglik, 0.0, "-");
+  if (m.validation_loglik) rows.emplace_back("log-likelihood, held out", *m.validation_loglik, 0.0, "-");
+  return rows;
+}
+
+/// Three significant digits, without unit.
+std::string short_number(double value, const std::string& si) {
+  return std::isfinite(value) ? fmt::format("{:.3g}", display_value(value, si)) : "–";
+}
+
+std::string with_unit(const std::string& number, const std::string& si) {
+  const std::string unit = display_unit(si);
+  return unit == "-" || unit.empty() ? number : number + " " + unit;
+}
+
+std::string range(double low, double high, const std::string& si) {
+  return with_unit(short_number(low, si) + " to " + short_number(high, si), si);
+}
+
+/// Quantiles of no interest by themselves only where they are outside; correlations and spectral lines as a count.
+void add_group(const MotionSeries& s, const MotionGroup& g, TableBlock& table) {
+  const std::string name = s.experiment + " " + s.name;
+  std::string p = fmt::format("{:.3f}", g.p_value);
+  if (g.name == "autocorrelation" || g.name == "spectrum") {
+    const auto outside = std::count_if(g.numbers.begin(), g.numbers.end(), [](const MotionNumber& n) { return n.outside; });
+    table.rows.push_back({name, g.name, fmt::format("{} of {} outside", outside, g.numbers.size()), "", "", p});
+    return;
+  }
+  for (const MotionNumber& n : g.numbers) {
+    const bool always = n.name == "mean" || n.name == "standard deviation" || n.at == 0.05 || n.at == 0.5 || n.at == 0.95;
+    if (!always && !n.outside) continue;
+    table.rows.push_back({name, g.name == "amplitude" ? "amplitude, " + n.name : n.name,
+                          with_unit(short_number(n.measured, g.unit), g.unit), range(n.low, n.high, g.unit), n.outside ? "outside" : "",
+                          p});
+    p.clear();
+  }
+}
+
+}  // namespace
+
+TableBlock method_table(const Comparison& c) {
+  std::vector<Subject> subjects;
+  for (const MethodSummary& m : c.methods) subjects.push_back({m.method, rows_of(m)});
+  for (const auto& [name, trim] : c.reference_trims) subjects.push_back({name + " (reference)", {Row("trim", trim)}});
+  return subjects_table("result", subjects);
+}
+
+Blocks curve_difference_blocks(const Comparison& c) {
+  Blocks out;
+  TableBlock table{{{"curve"},
+                    {"between"},
+                    {"RMS [sigma]", Align::right},
+                    {"largest [sigma]", Align::right},
+                    {"at"},
+                    {"difference there"},
+                    {"compared range"}},
+                   {}};
+  for (const CurveDifference& d : c.curves) {
+    table.rows.push_back({d.curve, d.a + " − " + d.b, fmt::format("{:.2f}", d.rms_sigmas), fmt::format("{:.2f}", d.max_sigmas),
+                          with_unit(short_number(d.at, d.of_unit), d.of_unit), shown(d.difference), range(d.from, d.to, d.of_unit)});
+  }
+  if (!table.rows.empty()) out.subheading("Differences between curves");
+  out.table(std::move(table));
+  std::vector<std::string> left_out;
+  for (const NotCompared& n : c.not_compared) left_out.push_back(n.what + ": " + n.why);
+  if (!left_out.empty()) out.subheading("Not compared");
+  out.list({left_out});
+  return out;
+}
+
+Blocks blocks_of(const SimulatedMotion& motion) {
+  Blocks out;
+  out.heading("Simulated and measured motion");
+  out.paragraph(
+      fmt::format("Random motion cannot be matched sample by sample: a correct model must reproduce its statistics. {} runs of the "
+                  "model fitted by {}; a small p means that it does not reproduce that group of statistics.",
+                  motion.runs, motion.method));
+  out.list({motion.sentences});
+  out.figures("statistics");
+  TableBlock table{{{"series"}, {"statistic"}, {"measured"}, {"simulated, 95 %"}, {""}, {"p of the group", Align::right}}, {}};
+  for (const MotionSeries& s : motion.series) {
+    for (const MotionGroup& g : s.groups) add_group(s, g, table);
+  }
+  out.table(std::move(table));
+  out.warnings(motion.notes);
+  return out;
+}
+
+Blocks blocks_of(const Comparison& c) {
+  Blocks out;
+  out.heading("Comparison of methods");
+  out.table(method_table(c));
+  std::vector<std::string> trims, parameters;
+  for (const TrimDifference& d : c.trims) trims.push_back(as_sentence(d.sentence));
+  for (const ParameterDifference& d : c.parameters) {
+    if (!d.sentence.empty()) parameters.push_back(d.sentence);  // begins with the parameter's name
+  }
+  out.list({trims});
+  out.warnings(parameters);
+  out.append(curve_difference_blocks(c));
+  if (c.motion) out.append(blocks_of(*c.motion));
+  return out;
+}
+
+}  // namespace misfit

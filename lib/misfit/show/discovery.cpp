@@ -1,0 +1,277 @@
+// What the model lacks: diagnosis, candidates, ladder.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/text.h"
+#include "misfit/show/results.h"
+#include "misfit/show/rows.h"
+
+namespace misfit {
+namespace {
+
+constexpr const char* missing = "–";
+
+std::vector<std::string> as_sentences(std::vector<std::string> all) {
+  for (std::string& sentence : all) sentence = as_sentence(sentence);
+  return all;
+}
+
+/// The place where a map is largest in its own sigmas.
+std::string largest(const ForceMap& map) {
+  std::size_t best = map.x.size();
+  for (std::size_t i = 0; i < map.x.size(); ++i) {
+    if (!(map.sigma[i] > 0.0)) continue;
+    if (best == map.x.size() || std::abs(map.amplitude[i] / map.sigma[i]) > std::abs(map.amplitude[best] / map.sigma[best])) best = i;
+  }
+  if (best == map.x.size()) return missing;
+  return fmt::format("{} at {}", shown({map.amplitude[best], map.sigma[best], map.port_unit}),
+                     shown({map.x[best], 0.0, map.quantity_unit}));
+}
+
+TableBlock map_table(const Diagnosis& d) {
+  TableBlock table{{{"force on"},
+                    {"against"},
+                    {"p (corrected)", Align::right},
+                    {"p (this map)", Align::right},
+                    {"chi²", Align::right},
+                    {"dof", Align::right},
+                    {"most significant value"}},
+                   {}};
+  const auto add = [&](const auto& map, const std::string& against, const std::string& value) {
+    table.rows.push_back({map.port, against, format_probability(map.p_corrected), format_probability(map.p_value),
+                          fmt::format("{:.1f}", map.chi2), std::to_string(map.dof), value});
+  };
+  for (const ForceMap& map : d.maps) add(map, map.quantity, largest(map));
+  for (const PairMap& map : d.pairs) add(map, map.quantity_x + " and " + map.quantity_y, missing);
+  return table;
+}
+
+TableBlock whiteness_table(const Diagnosis& d) {
+  TableBlock table{{{"innovations of"},
+                    {"Ljung-Box p", Align::right},
+                    {"lags", Align::right},
+                    {"periodogram p", Align::right},
+                    {"largest spectral line"},
+                    {"p of the line", Align::right}},
+                   {}};
+  for (const WhitenessReport& w : d.whiteness) {
+    table.rows.push_back({w.experiment + " " + w.channel, format_probability(w.ljung_box_p), std::to_string(w.lags),
+                          format_probability(w.periodogram_p), fmt::format("{:.3f} Hz, {:.1f} times white", w.peak_frequency, w.peak_power),
+                          format_probability(w.peak_p)});
+  }
+  return table;
+}
+
+/// One strength where the ports share it, without the correlation time.
+std::string force_text(const std::map<std::string, Estimate>& force) {
+  std::string out;
+  for (const auto& [port, e] : force) {
+    if (e.unit == "s") continue;
+    const std::string text = shown(e);
+    if (out.find(text) == std::string::npos) out += (out.empty() ? "" : ", ") + text;
+  }
+  return out.empty() ? missing : out;
+}
+
+std::string values_text(const std::map<std::string, Estimate>& estimates) {
+  std::string text;
+  for (const auto& [name, e] : estimates) text += (text.empty() ? "" : "; ") + name + " = " + shown(e);
+  return text;
+}
+
+TableBlock candidate_table(const Discovery& d) {
+  TableBlock table{{{"rank", Align::right},
+                    {"effect"},
+                    {"predicted drop", Align::right},
+                    {"actual drop", Align::right},
+                    {"held-out gain", Align::right},
+                    {"p", Align::right},
+                    {"indistinguishable from"},
+                    {"accepted"}},
+                   {},
+                   {15, "candidates.json"}};
+  for (const Candidate& c : d.candidates) {
+    std::vector<std::string> others = c.group;
+    std::erase(others, effect_at(c.effect, c.roles));
+    table.rows.push_back({std::to_string(c.rank), effect_at(c.effect, c.roles), shown_drop(c.predicted_drop), shown_drop(c.actual_drop),
+                          shown_gain(c.held_out_gain), format_probability(c.p_value),
+                          others.empty() ? missing : fmt::format("{}", fmt::join(others, ", ")), c.accepted ? "yes" : "no"});
+  }
+  return table;
+}
+
+const Rung* parent_of(const Ladder& ladder, const Rung& rung) {
+  const auto found = std::find_if(ladder.rungs.begin(), ladder.rungs.end(), [&](const Rung& other) { return other.id == rung.parent; });
+  return found == ladder.rungs.end() ? nullptr : &*found;
+}
+
+std::string change(double before, double after) {
+  return before != 0.0 && std::isfinite(before) && std::isfinite(after) ? fmt::format("{:+.1f} %", 100.0 * (after / before - 1.0))
+                                                                        : missing;
+}
+
+/// The table of a rung against its parent.
+class BeforeAndAfter {
+ public:
+  BeforeAndAfter(const Rung& before, const Rung& after) {
+    add_channels("one step ahead", before.rms, after.rms);
+    add_steps(before, after);
+    add_channels("held out, one step ahead", before.validation_rms, after.validation_rms);
+    add("random force", force_text(before.force), force_text(after.force), change(strength(before), strength(after)));
+    if (before.trim || after.trim) add("trim", shown(before.trim), shown(after.trim));
+    if (!after.actual_drop) return;
+    add("log-likelihood", shown_drop(before.loglik), shown_drop(after.loglik));
+    if (after.validation_loglik) add("log-likelihood, held out", shown_drop(before.validation_loglik), shown_drop(after.validation_loglik));
+  }
+
+  TableBlock table{{{""}, {"before"}, {"after"}, {"change", Align::right}}, {}};
+
+ private:
+  void add(const std::string& what, const std::string& before, const std::string& after, const std::string& by = "") {
+    table.rows.push_back({what, before, after, by});
+  }
+  void add_channels(const std::string& what, const std::map<std::string, Estimate>& before, const std::map<std::string, Estimate>& after) {
+    for (const auto& [channel, e] : after) {
+      const auto was = before.find(channel);
+      const bool known = was != before.end();
+      add("RMS of " + channel + ", " + what, known ? shown(was->second) : missing, shown(e),
+          known ? change(was->second.value, e.value) : missing);
+    }
+    for (const auto& [channel, e] : before) {
+      if (!after.contains(channel)) add("RMS of " + channel + ", " + what, shown(e), missing, missing);
+    }
+  }
+  void add_steps(const Rung& before, const Rung& after) {
+    for (const std::size_t k : {std::size_t{3}, std::size(kLadderSteps) - 1}) {
+      const auto at = [k](const Rung& rung) {
+        std::map<std::string, Estimate> out;
+        for (const auto& [channel, values] : rung.k_step) {
+          const auto rms = rung.rms.find(channel);
+          if (values.size() > k && rms != rung.rms.end()) out[channel] = {values[k], 0.0, rms->second.unit};
+        }
+        return out;
+      };
+      add_channels(fmt::format("{} steps ahead", kLadderSteps[k]), at(before), at(after));
+    }
+  }
+  static double strength(const Rung& r) {
+    const auto found = std::find_if(r.force.begin(), r.force.end(), [](const auto& f) { return f.second.unit != "s"; });
+    return found == r.force.end() ? std::nan("") : found->second.value;
+  }
+};
+
+std::string drop_sentence(const Rung& rung) {
+  std::string out =
+      fmt::format("Drop: {} predicted, {:.1f} actual for {} parameter{}", rung.predicted_drop ? shown_drop(rung.predicted_drop) : "none",
+                  *rung.actual_drop, rung.parameters.size(), rung.parameters.size() == 1 ? "" : "s");
+  return out + (rung.held_out_gain ? fmt::format("; gain of the held-out log-likelihood: {:+.1f}.", *rung.held_out_gain)
+                                   : "; no validation data: set validation = \"last 25 %\".");
+}
+
+/// Per channel, of all rungs.
+TableBlock error_table(const Ladder& ladder) {
+  std::vector<Subject> rungs;
+  for (const Rung& r : ladder.rungs) {
+    rungs.push_back({fmt::format("rung {}", r.id), {}});
+    add_rows(rungs.back().rows, "", r.rms);
+    add_rows(rungs.back().rows, "", r.validation_rms, ", held out");
+  }
+  return subjects_table("RMS, one step ahead", rungs);
+}
+
+}  // namespace
+
+Blocks blocks_of(const Diagnosis& d) {
+  Blocks out;
+  out.heading("Residual diagnostics of " + d.method);
+  out.list({as_sentences(d.sentences)});
+  out.figures("maps");
+  if (!d.maps.empty()) {
+    out.subheading("Unexplained force");
+    out.paragraph("For a correct model, p is uniform on [0, 1]; it is corrected for the number of maps.");
+    out.table(map_table(d));
+  }
+  if (!d.whiteness.empty()) {
+    out.subheading("Whiteness of the innovations");
+    out.table(whiteness_table(d));
+    out.figures("innovations");
+  }
+  std::vector<std::string> outside;
+  for (const NisSeries& n : d.nis) {
+    outside.push_back(fmt::format("{}: the normalised innovations squared of {:.1f} % of the windows are outside their 95 % band.",
+                                  n.experiment, 100.0 * n.outside));
+  }
+  out.list({outside});
+  if (!d.missing.empty()) out.figures("force");
+  return out;
+}
+
+Blocks blocks_of(const Discovery& d) {
+  Blocks out;
+  out.heading("Candidate effects");
+  out.paragraph(as_sentence(d.verdict), Tone::lead);
+  out.list({as_sentences(d.sentences)});
+  out.figures("candidates");
+  out.table(candidate_table(d));
+  std::vector<std::string> why;
+  for (const Candidate& c : d.candidates) {
+    if (!c.why.empty()) why.push_back(effect_at(c.effect, c.roles) + ": " + c.why);
+  }
+  if (!why.empty()) out.subheading("Reasons");
+  out.list({why, Tone::plain, {5, "candidates.json"}});
+  if (!d.force.empty()) out.paragraph("Random force of this model: " + force_text(d.force) + ".");
+  if (!d.tried.empty()) out.subheading("Effect families tested");
+  out.list({d.tried, Tone::plain, {0, "discovery.json"}});
+  return out;
+}
+
+Blocks blocks_of(const Ladder& ladder, const Rung& rung, const Fit& fit) {
+  const Rung* parent = parent_of(ladder, rung);
+  const Rung none;
+  const Rung& before = parent != nullptr ? *parent : none;
+  Blocks out;
+  out.heading(fmt::format("Rung {}: {} added to {}", rung.id, rung.added, before.system));
+  out.table(BeforeAndAfter(before, rung).table);
+  constexpr double explains_nothing = 1.0;  // of the drop
+  if (rung.actual_drop) {
+    out.paragraph(drop_sentence(rung));
+    if (*rung.actual_drop < explains_nothing) out.paragraph("The added effect explains nothing in these data.", Tone::warning);
+  }
+  if (!rung.note.empty()) out.paragraph(as_sentence(rung.note));
+  std::vector<std::string> parameters;
+  for (const auto& [name, e] : rung.parameters) parameters.push_back(name + " = " + shown(e));
+  out.list({parameters});
+  out.warnings(fit.warnings);
+  return out;
+}
+
+Blocks blocks_of(const Ladder& ladder) {
+  Blocks out;
+  out.heading("Model ladder");
+  out.figures("ladder");
+  TableBlock table{{{"rung", Align::right},
+                    {"added"},
+                    {"system"},
+                    {"predicted drop", Align::right},
+                    {"actual drop", Align::right},
+                    {"held-out gain", Align::right},
+                    {"random force"},
+                    {"trim"}},
+                   {}};
+  std::vector<std::string> remarks;
+  for (const Rung& r : ladder.rungs) {
+    table.rows.push_back({std::to_string(r.id), r.added.empty() ? "(the study)" : r.added, r.system, shown_drop(r.predicted_drop),
+                          shown_drop(r.actual_drop), shown_gain(r.held_out_gain), force_text(r.force), shown(r.trim)});
+    if (!r.parameters.empty()) remarks.push_back(fmt::format("Rung {}, {}: {}.", r.id, r.added, values_text(r.parameters)));
+    if (!r.note.empty()) remarks.push_back(as_sentence(fmt::format("Rung {}: {}", r.id, r.note)));
+  }
+  out.table(std::move(table));
+  out.table(error_table(ladder));
+  out.list({remarks});
+  return out;
+}
+
+}  // namespace misfit

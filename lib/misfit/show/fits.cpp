@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/display.h"
+#include "misfit/core/units.h"
+#include "misfit/data/curve_coefficient.h"
+#include "misfit/show/results.h"
+#include "misfit/show/rows.h"
+
+namespace misfit {
+namespace {
+
+std::string in_words(FitStatus status) {
+  std::string words = to_string(status);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+/// The range in which the data determine it.
+std::string range_of(const CurveEstimate& curve) {
+  if (!curve.informative) return "not informative: " + curve.why;
+  double lowest = std::nan(""), highest = std::nan("");
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (!(curve.count[i] > 0.0)) continue;
+    if (!std::isfinite(lowest)) lowest = curve.x[i];
+    highest = curve.x[i];
+  }
+  const std::string unit = display_unit(curve.of_unit);
+  return fmt::format("from {:.1f} to {:.1f}{} of {}", display_value(lowest, curve.of_unit), display_value(highest, curve.of_unit),
+                     unit == "-" ? "" : " " + unit, curve.of);
+}
+
+Blocks blocks_of(const Fit& fit) {
+  Blocks out;
+  out.heading(fmt::format("{}: {} ({:.2f} s, {} linearisations)", fit.method, in_words(fit.status), fit.seconds, fit.linearisations));
+  out.paragraph(fit.message);
+  std::vector<Row> rows;
+  if (fit.trim) rows.emplace_back("trim", *fit.trim);
+  add_rows(rows, "RMS of ", fit.rms);
+  add_rows(rows, "RMS of ", fit.validation_rms, ", held out");
+  TableBlock table = rows_table("result", rows);
+  const TableBlock parameters = parameter_table(fit);
+  table.rows.insert(table.rows.end(), parameters.rows.begin(), parameters.rows.end());
+  for (const CurveEstimate& curve : fit.curves) table.rows.push_back({"curve " + curve.name, range_of(curve)});
+  out.table(std::move(table));
+  out.warnings(fit.warnings);
+  return out;
+}
+
+}  // namespace
+
+TableBlock parameter_table(const Fit& fit) {
+  std::vector<Row> rows;
+  for (const auto& [name, estimate] : fit.parameters) {
+    if (!is_curve_coefficient(name)) rows.emplace_back(name, estimate);
+  }
+  add_rows(rows, "noise of ", fit.noise);
+  add_rows(rows, "random force, ", fit.force);
+  return rows_table("parameter", rows);
+}
+
+Blocks status_blocks(const std::vector<Fit>& fits) {
+  Blocks out;
+  TableBlock table{{{"method"}, {"status"}, {"termination"}, {"time [s]", Align::right}, {"linearisations", Align::right}}, {}};
+  std::vector<std::string> warnings;
+  for (const Fit& fit : fits) {
+    table.rows.push_back(
+        {fit.method, in_words(fit.status), fit.message, fmt::format("{:.2f}", fit.seconds), std::to_string(fit.linearisations)});
+    for (const std::string& warning : fit.warnings) warnings.push_back(fit.method + ": " + warning);
+  }
+  out.table(std::move(table));
+  out.warnings(warnings);
+  return out;
+}
+
+Blocks blocks_of(const std::vector<Fit>& fits) {
+  Blocks out;
+  for (const Fit& fit : fits) out.append(blocks_of(fit));
+  return out;
+}
+
+}  // namespace misfit

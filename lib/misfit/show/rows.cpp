@@ -1,0 +1,68 @@
+#include "misfit/show/rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/display.h"
+#include "misfit/core/error.h"
+#include "misfit/core/units.h"
+
+namespace misfit {
+namespace {
+
+constexpr const char* missing = "–";
+
+}  // namespace
+
+Row::Row(std::string what_, double value_, double sigma_, std::string unit_)
+    : what(std::move(what_)), value(value_), sigma(sigma_), unit(std::move(unit_)) {
+  if (unit.empty()) throw InputError("'" + what + "' has no unit: a number without unit is not shown ('-' for a pure number)");
+  static_cast<void>(parse_unit(unit));
+}
+
+std::string Row::shown() const {
+  const std::string text = in_display_unit(value, unit, sigma);
+  return interval ? text + " (95 %: " + interval_in_display_unit(interval->first, interval->second, unit, sigma) + ")" : text;
+}
+
+void add_rows(std::vector<Row>& rows, const std::string& before, const std::map<std::string, Estimate>& estimates,
+              const std::string& after) {
+  for (const auto& [name, estimate] : estimates) rows.emplace_back(before + name + after, estimate);
+}
+
+TableBlock rows_table(const std::string& what, const std::vector<Row>& rows) {
+  TableBlock table{{{what}, {"value"}}, {}};
+  for (const Row& row : rows) table.rows.push_back({row.what, row.shown()});
+  return table;
+}
+
+TableBlock subjects_table(const std::string& what, const std::vector<Subject>& subjects) {
+  TableBlock table{{{what}}, {}};
+  for (const Subject& subject : subjects) {
+    table.columns.push_back({subject.name});
+    for (auto& line : table.rows) line.emplace_back(missing);
+    for (const Row& row : subject.rows) {
+      auto line = std::find_if(table.rows.begin(), table.rows.end(), [&](const auto& other) { return other.front() == row.what; });
+      if (line == table.rows.end()) {
+        line = table.rows.insert(line, std::vector<std::string>(table.columns.size(), missing));
+        line->front() = row.what;
+      }
+      line->back() = row.shown();
+    }
+  }
+  return table;
+}
+
+std::string shown(const std::optional<Estimate>& e) { return e ? shown(*e) : missing; }
+
+std::string shown_drop(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? fmt::format("{:.1f}", *value) : missing;
+}
+
+std::string shown_gain(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? fmt::format("{:+.1f}", *value) : missing;
+}
+
+}  // namespace misfit

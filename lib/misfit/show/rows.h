@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "misfit/data/fit.h"
+#include "misfit/show/blocks.h"
+
+namespace misfit {
+
+/// A number on its way to a reader. The unit is required ("-" for a pure number); sigma 0 means "not estimated". Angles are given in
+/// radians and shown in degrees.
+struct Row {
+  std::string what;
+  double value;
+  double sigma;
+  std::string unit;
+  std::optional<std::pair<double, double>> interval;  ///< 95 %, where it is not value ± 1.96 sigma
+
+  /// InputError if the unit is empty or unknown (core/units.h).
+  Row(std::string what_, double value_, double sigma_, std::string unit_);
+  Row(std::string what_, const Estimate& e) : Row(std::move(what_), e.value, e.sigma, e.unit) { interval = e.interval; }
+
+  /// "12.03 ± 0.21 deg", with the interval where there is one.
+  [[nodiscard]] std::string shown() const;
+};
+
+/// One line per estimate, `before` and `after` around its name.
+void add_rows(std::vector<Row>& rows, const std::string& before, const std::map<std::string, Estimate>& estimates,
+              const std::string& after = "");
+
+/// Columns: `what`, value.
+[[nodiscard]] TableBlock rows_table(const std::string& what, const std::vector<Row>& rows);
+
+/// Rows of several subjects side by side (methods, say): one line per `Row::what`, in order of first appearance, one column per subject.
+struct Subject {
+  std::string name;
+  std::vector<Row> rows;
+};
+[[nodiscard]] TableBlock subjects_table(const std::string& what, const std::vector<Subject>& subjects);
+
+/// An estimate as it is shown: "12.03 ± 0.21 deg".
+[[nodiscard]] inline std::string shown(const Estimate& e) { return Row("", e).shown(); }
+/// "–" for what is missing.
+[[nodiscard]] std::string shown(const std::optional<Estimate>& e);
+/// With one decimal and, for a change, its sign.
+[[nodiscard]] std::string shown_drop(const std::optional<double>& value);
+[[nodiscard]] std::string shown_gain(const std::optional<double>& value);
+
+}  // namespace misfit

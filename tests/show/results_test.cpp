@@ -1,0 +1,68 @@
+// The same blocks for the terminal and the report: units, headings, what is left out.
+#include "misfit/show/results.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/core/temporary_folder.h"
+
+namespace misfit {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+TEST(ShownComparison, HasUnitsTheMethodsSideBySideAndWhatWasLeftOut) {
+  Comparison c;
+  MethodSummary one;
+  one.method = "equation_error";
+  one.trim = Estimate{10.0 * degree, 0.3 * degree, "rad"};
+  one.slopes = {{"C_m", {-0.35, 0.04, "1/rad"}}};
+  one.parameters = {{"k", {0.9265, 0.0024, "1/s"}}};
+  c.methods = {one};
+  c.reference_trims = {{"static_test", {12.0 * degree, 0.0, "rad"}}};
+  c.trims = {{"equation_error", "static_test", true, {}, 4.0, "the trim of equation_error is 2 deg below that of static_test (4.0 sigma)"}};
+  c.parameters = {{"k", "equation_error", "output_error", {}, 30.3, "k of equation_error is 0.0734 below that of output_error"}};
+  c.not_compared = {{"output_error", "declined: the motion is driven"}};
+  expect_parts(as_text(blocks_of(c)),
+               {"equation_error", "static_test (reference)", "10.00 ± 0.30 deg", "-0.350 ± 0.040 1/rad", "0.9265 ± 0.0024 1/s",
+                "The trim of equation_error", "(4.0 sigma).", "! k of equation_error is 0.0734", "Not compared", "output_error: declined"});
+}
+
+TEST(ShownDiscovery, SaysTheVerdictFirstAndNamesOnlyOtherEffectsAsIndistinguishable) {
+  Discovery d;
+  Candidate wake;
+  wake.rank = 1;
+  wake.effect = "strut_wake";
+  wake.group = {"strut_wake", "coning"};
+  wake.predicted_drop = 275.0;
+  wake.p_value = 0.0;
+  wake.why = "it is";
+  d.candidates = {wake};
+  d.verdict = "missing: strut_wake";
+  d.tried = {"14 effects", "3 sensors"};
+  const std::string text = as_text(blocks_of(d));
+  EXPECT_LT(text.find("Missing: strut_wake."), text.find("rank"));
+  expect_parts(text, {"275.0", "< 1e-300", "coning", "strut_wake: it is", "2 in discovery.json"});
+  EXPECT_EQ(text.find("strut_wake, coning"), std::string::npos);
+}
+
+TEST(ShownUncertainty, HasTheBandOfThreeSigmasAndFourNumbersPerTableOfShares) {
+  Uncertainty u;
+  u.method = "sliding_bin";
+  u.runs = 100;
+  u.failed = 1;
+  u.failures = {{"not_converged", 1}};
+  const std::vector<VarianceShare> shares{{"mass", 0.9, 0.01, 0.5 * degree}};
+  for (const char* name : {"trim", "b", "c", "d", "e"})
+    u.numbers.push_back({name, "rad", 12.0 * degree, 0.1 * degree, 12.0 * degree, degree, 99, shares, 0.05});
+  const std::string text = as_text(blocks_of(u));
+  expect_parts(
+      text, {"12.00 ± 0.10 deg", "12.0 ± 1.0 deg", "9.0 to 15.0 deg", "90.0 ± 1.0 %", "+0.5 deg", "interactions", "1 of 100 runs gave no result"});
+  EXPECT_NE(text.find("share of the variance"), text.rfind("share of the variance"));
+}
+
+TEST(ShownResampling, NothingAskedForIsNothingShown) { EXPECT_TRUE(blocks_of(Resampling{}).all().empty()); }
+
+}  // namespace
+}  // namespace misfit
