@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "misfit/workflow/session.h"
+#include "misfit/workflow/session/session.h"
 
 namespace misfit {
 

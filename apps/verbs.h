@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "misfit/workflow/session.h"
+#include "misfit/workflow/session/session.h"
 
 namespace misfit {
 

@@ -12,7 +12,7 @@
 #include "misfit/core/table.h"
 #include "misfit/video/module.h"
 #include "misfit/video/video.h"
-#include "misfit/workflow/track_video.h"
+#include "misfit/workflow/measure/track_video.h"
 #include "tests/core/temporary_folder.h"
 
 /// Films made by tests out of the flight of mpf_f111, whose apex is known in every field (data/apex_truth.csv, which the program never

@@ -1,4 +1,4 @@
-#include "misfit/workflow/quantities_of_interest.h"
+#include "misfit/workflow/uncertainty/quantities_of_interest.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "misfit/data/batch.h"
-#include "misfit/workflow/session.h"
+#include "misfit/workflow/session/session.h"
 
 namespace misfit {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "misfit/core/table.h"
-#include "misfit/workflow/session.h"
+#include "misfit/workflow/session/session.h"
 
 namespace misfit {
 

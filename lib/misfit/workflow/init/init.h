@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "misfit/data/recording.h"
+#include "misfit/recording/recording.h"
 #include "misfit/workflow/init/guess.h"
 
 namespace misfit {

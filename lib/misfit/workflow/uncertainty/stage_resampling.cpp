@@ -15,8 +15,8 @@
 #include "misfit/uncertainty/bootstrap.h"
 #include "misfit/uncertainty/multi_start.h"
 #include "misfit/uncertainty/profile.h"
-#include "misfit/workflow/methods.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/estimate/methods.h"
+#include "misfit/workflow/uncertainty/uncertainty.h"
 
 namespace misfit {
 namespace {

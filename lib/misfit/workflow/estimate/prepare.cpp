@@ -9,7 +9,7 @@
 #include "misfit/math/statistics.h"
 #include "misfit/model/curve_table.h"
 #include "misfit/model/experiment.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/estimate/estimate.h"
 
 namespace misfit {
 namespace {

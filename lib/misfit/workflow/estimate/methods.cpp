@@ -1,4 +1,4 @@
-#include "misfit/workflow/methods.h"
+#include "misfit/workflow/estimate/methods.h"
 
 #include <fmt/format.h>
 

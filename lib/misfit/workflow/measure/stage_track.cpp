@@ -4,8 +4,8 @@
 #include "misfit/core/files.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/video/check_video.h"
-#include "misfit/workflow/stages.h"
-#include "misfit/workflow/track_video.h"
+#include "misfit/workflow/measure/measure.h"
+#include "misfit/workflow/measure/track_video.h"
 
 namespace misfit {
 namespace {

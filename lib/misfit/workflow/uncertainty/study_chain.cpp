@@ -1,4 +1,4 @@
-#include "misfit/workflow/study_chain.h"
+#include "misfit/workflow/uncertainty/study_chain.h"
 
 #include <algorithm>
 

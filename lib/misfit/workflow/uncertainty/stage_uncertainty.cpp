@@ -8,8 +8,8 @@
 #include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/report/figures_uncertainty.h"
-#include "misfit/workflow/stages.h"
-#include "misfit/workflow/study_chain.h"
+#include "misfit/workflow/uncertainty/study_chain.h"
+#include "misfit/workflow/uncertainty/uncertainty.h"
 
 namespace misfit {
 namespace {
@@ -88,12 +88,6 @@ StageInputs inputs_of_jobs(const Session& session, const std::string& what, std:
   StageInputs inputs = inputs_of_fit(session, what, more);
   inputs["seed"] = std::to_string(session.study.seed);
   return inputs;
-}
-
-std::string digest_of(const StageInputs& inputs) {
-  std::string text;
-  for (const auto& [name, hash] : inputs) text += name + " " + hash + "\n";
-  return hash_text(text);
 }
 
 Uncertainty uncertainty_stage(Session& session) {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "misfit/uncertainty/monte_carlo.h"
-#include "misfit/workflow/methods.h"
-#include "misfit/workflow/quantities_of_interest.h"
-#include "misfit/workflow/rig.h"
+#include "misfit/workflow/estimate/methods.h"
+#include "misfit/workflow/uncertainty/quantities_of_interest.h"
+#include "misfit/workflow/uncertainty/rig.h"
 
 namespace misfit {
 

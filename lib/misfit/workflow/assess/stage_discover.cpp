@@ -3,7 +3,7 @@
 #include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/job_queue.h"
 #include "misfit/jobs/ranks.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/assess/assess.h"
 
 namespace misfit {
 namespace {

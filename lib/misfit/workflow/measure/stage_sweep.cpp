@@ -12,8 +12,8 @@
 #include "misfit/track/survey.h"
 #include "misfit/track/sweep_points.h"
 #include "misfit/video/video.h"
-#include "misfit/workflow/stages.h"
-#include "misfit/workflow/track_video.h"
+#include "misfit/workflow/measure/measure.h"
+#include "misfit/workflow/measure/track_video.h"
 
 namespace misfit {
 namespace {

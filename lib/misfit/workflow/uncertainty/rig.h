@@ -10,7 +10,7 @@
 #include "misfit/data/sweep.h"
 #include "misfit/data/uncertainty.h"
 #include "misfit/uncertainty/perturbation.h"
-#include "misfit/workflow/session.h"
+#include "misfit/workflow/session/session.h"
 
 namespace misfit {
 

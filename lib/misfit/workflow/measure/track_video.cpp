@@ -1,4 +1,4 @@
-#include "misfit/workflow/track_video.h"
+#include "misfit/workflow/measure/track_video.h"
 
 #include <fmt/format.h>
 

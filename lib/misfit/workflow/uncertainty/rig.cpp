@@ -1,4 +1,4 @@
-#include "misfit/workflow/rig.h"
+#include "misfit/workflow/uncertainty/rig.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/uncertainty/uncertainty.h"
 
 namespace misfit {
 namespace {

@@ -3,7 +3,7 @@
 #include "misfit/compare/compare.h"
 #include "misfit/data/estimators.h"
 #include "misfit/jobs/interrupt.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/assess/assess.h"
 
 namespace misfit {
 namespace {
@@ -16,24 +16,6 @@ bool can_be_simulated(const std::vector<Fit>& fits) {
 }
 
 }  // namespace
-
-std::vector<fs::path> files_of_fits(const Session& session, const std::vector<Fit>& fits) {
-  std::vector<fs::path> files;
-  for (const auto& fit : fits) {
-    const std::vector<fs::path> own = session.files_of_stage("fit/" + fit.method);
-    files.insert(files.end(), own.begin(), own.end());
-  }
-  return files;
-}
-
-std::vector<Reference> references(const Session& session) {
-  std::vector<Reference> out;
-  const ModelRequest& request = session.model.request;
-  const SystemSpec spec = session.registry.system(request.system).make(request.options)->spec();
-  for (const auto& [curve, file] : session.study.reference)
-    out.push_back(read_reference(file, curve, spec.static_curve, spec.folded_angle));
-  return out;
-}
 
 Comparison compare_stage(Session& session, const std::vector<Fit>& fits) {
   stop_if_interrupted();

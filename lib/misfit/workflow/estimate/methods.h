@@ -8,7 +8,7 @@
 #include "misfit/fit/methods.h"
 #include "misfit/fit/regression/sliding_bin.h"
 #include "misfit/fit/trajectory_start.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/estimate/estimate.h"
 
 namespace misfit {
 

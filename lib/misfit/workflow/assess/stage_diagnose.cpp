@@ -2,25 +2,11 @@
 #include "misfit/data/estimators.h"
 #include "misfit/diagnose/diagnose.h"
 #include "misfit/jobs/interrupt.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/assess/assess.h"
 
 namespace misfit {
-namespace {
 
 namespace fs = std::filesystem;
-
-const char* const method = random_force_estimator().name;
-
-}  // namespace
-
-std::vector<fs::path> files_of_filter(const Session& session) { return session.files_of_stage(std::string("fit/") + method); }
-
-bool filter_declined(Session& session) { return !fit_stage(session, {method}).front().usable(); }
-
-void refuse_declined(Session& session) {
-  const Fit fit = fit_stage(session, {method}).front();
-  throw RunError(fit.method + " " + to_string(fit.status) + ", so there are no innovations to test: " + fit.message);
-}
 
 std::optional<Diagnosis> known_diagnosis(const Session& session) {
   const auto inputs = session.inputs("diagnose", files_of_filter(session));

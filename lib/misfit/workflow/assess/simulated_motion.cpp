@@ -9,7 +9,7 @@
 #include "misfit/compare/noisy_run.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/inference/states.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/assess/assess.h"
 
 namespace misfit {
 namespace {

@@ -7,7 +7,7 @@
 #include "misfit/core/toml_text.h"
 #include "misfit/core/version.h"
 #include "misfit/inference/gaps.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/estimate/estimate.h"
 
 namespace misfit {
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "misfit/core/run_folder.h"
+#include "misfit/data/reference.h"
 #include "misfit/data/study.h"
 #include "misfit/jobs/work_queue.h"
 #include "misfit/model/request.h"
@@ -78,6 +79,10 @@ struct Session {
   [[nodiscard]] ProgressFn progress(const std::string& name) const;
 };
 
+/// One word for all these.
+[[nodiscard]] std::string digest_of(const StageInputs& inputs);
+/// The reference curves that a study names.
+[[nodiscard]] std::vector<Reference> references(const Session& session);
 /// Of the running program: computed once.
 [[nodiscard]] const std::string& hash_of_program();
 /// Every file that a study names, itself first.

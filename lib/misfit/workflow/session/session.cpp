@@ -1,4 +1,4 @@
-#include "misfit/workflow/session.h"
+#include "misfit/workflow/session/session.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "misfit/core/files.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/table.h"
-#include "misfit/data/reference.h"
 #include "misfit/data/sweep.h"
 #include "misfit/data/track.h"
 #include "misfit/jobs/ranks.h"
@@ -211,6 +210,21 @@ void Session::note(const std::string& line) const {
 ProgressFn Session::progress(const std::string& name) const {
   if (options.listener.progress) return options.listener.progress(name);
   return [](std::size_t, std::size_t) {};
+}
+
+std::string digest_of(const StageInputs& inputs) {
+  std::string text;
+  for (const auto& [name, hash] : inputs) text += name + " " + hash + "\n";
+  return hash_text(text);
+}
+
+std::vector<Reference> references(const Session& session) {
+  std::vector<Reference> out;
+  const ModelRequest& request = session.model.request;
+  const SystemSpec spec = session.registry.system(request.system).make(request.options)->spec();
+  for (const auto& [curve, file] : session.study.reference)
+    out.push_back(read_reference(file, curve, spec.static_curve, spec.folded_angle));
+  return out;
 }
 
 }  // namespace misfit

@@ -7,7 +7,7 @@
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/jobs/interrupt.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/measure/measure.h"
 
 namespace misfit {
 namespace {

@@ -4,7 +4,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/jobs/interrupt.h"
-#include "misfit/workflow/methods.h"
+#include "misfit/workflow/estimate/methods.h"
 
 namespace misfit {
 namespace {
@@ -63,6 +63,26 @@ std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& nam
     progress(k + 1, names.size());
   }
   return fits;
+}
+
+std::vector<fs::path> files_of_fits(const Session& session, const std::vector<Fit>& fits) {
+  std::vector<fs::path> files;
+  for (const auto& fit : fits) {
+    const std::vector<fs::path> own = session.files_of_stage("fit/" + fit.method);
+    files.insert(files.end(), own.begin(), own.end());
+  }
+  return files;
+}
+
+std::vector<fs::path> files_of_filter(const Session& session) {
+  return session.files_of_stage(std::string("fit/") + random_force_estimator().name);
+}
+
+bool filter_declined(Session& session) { return !fit_stage(session, {random_force_estimator().name}).front().usable(); }
+
+void refuse_declined(Session& session) {
+  const Fit fit = fit_stage(session, {random_force_estimator().name}).front();
+  throw RunError(fit.method + " " + to_string(fit.status) + ", so there are no innovations to test: " + fit.message);
 }
 
 }  // namespace misfit

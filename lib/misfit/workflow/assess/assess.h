@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/data/candidates.h"
+#include "misfit/data/comparison.h"
+#include "misfit/data/diagnosis.h"
+#include "misfit/workflow/estimate/estimate.h"
+
+namespace misfit {
+
+// What fits are worth, and what their model is missing.
+
+/// Statistics of motions that the fitted model of filter_error makes, against the measured one (lib/misfit/README.md, 6.1).
+[[nodiscard]] SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int threads, const ProgressFn& progress);
+/// compare.json.
+[[nodiscard]] Comparison compare_stage(Session& session, const std::vector<Fit>& fits);
+/// diagnosis.json and missing_force.csv; nullopt if filter_error declined (its fit says why). Runs that fit where it must.
+[[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);
+/// candidates.json and discovery.json; nullopt if filter_error declined.
+[[nodiscard]] std::optional<Discovery> discover_stage(Session& session);
+/// The same; RunError in the fit's words if filter_error declined.
+[[nodiscard]] Discovery discovered(Session& session);
+/// What discovery says of one effect: from the whole search where that is on disk, else it alone is screened. nullopt if it cannot be
+/// screened (it has no strength, or is driven by noise, or stands for another).
+[[nodiscard]] std::optional<Candidate> predict_effect(Session& session, const std::string& effect);
+/// What these stages left on disk, where it still belongs to the fit that is there.
+[[nodiscard]] std::optional<Diagnosis> known_diagnosis(const Session& session);
+[[nodiscard]] std::optional<Discovery> known_discovery(const Session& session);
+/// What discovery depends on.
+[[nodiscard]] StageInputs inputs_of_discovery(const Session& session);
+
+}  // namespace misfit

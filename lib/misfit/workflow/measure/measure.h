@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "misfit/data/attitude.h"
+#include "misfit/data/calibration.h"
+#include "misfit/data/track_facts.h"
+#include "misfit/workflow/session/session.h"
+
+namespace misfit {
+
+// From videos and pictures to angles.
+
+/// Is there a track of the experiment, given or made from its video?
+[[nodiscard]] bool has_track(const ExperimentStudy& experiment);
+/// Where it is: the study's own file, or what the track stage writes to the run folder (then with facts and contact sheet).
+struct TrackFiles {
+  std::filesystem::path track, facts, sheet;
+};
+[[nodiscard]] TrackFiles track_files(const Session& session, std::size_t experiment);
+/// track.csv, track.json and figures/contact_sheet.png of every experiment that starts from a video (track_NAME… for further ones); nullopt
+/// for others.
+[[nodiscard]] std::vector<std::optional<TrackFacts>> track_stage(Session& session);
+/// The first video of the study with its track drawn on it, to the file `to`. `facts`: what track_stage() gave. WriteError: write_rules().
+void write_check_video(const Session& session, const std::vector<std::optional<TrackFacts>>& facts, const std::filesystem::path& to);
+/// Files that are never written over.
+[[nodiscard]] WriteRules write_rules(const Session& session);
+/// The table of the sweep: the study's own, or sweep.csv made from its pictures (with figures/sweep_sheet.png).
+[[nodiscard]] std::filesystem::path sweep_stage(Session& session);
+/// camera.json; nullopt if the study has no camera.
+[[nodiscard]] std::optional<Calibration> calibrate_stage(Session& session);
+/// attitude.csv (attitude_NAME.csv for further experiments); empty for experiments without a track.
+std::vector<std::optional<Attitude>> attitude_stage(Session& session);
+/// attitude.csv or, of further experiments, attitude_NAME.csv.
+[[nodiscard]] std::filesystem::path attitude_file(const Session& session, std::size_t experiment);
+/// camera.json, and of every experiment that starts from pixels the track and the attitude.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_attitude(const Session& session);
+
+}  // namespace misfit
