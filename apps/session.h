@@ -24,7 +24,7 @@ struct Options {
   bool quiet = false, json = false;
   long runs = 0;                     ///< of `uncertainty`; 0: as the study says
   std::vector<std::string> studies;  ///< of `batch`: lists, folders, studies
-  std::string effect;                ///< of `add`
+  std::string effect;                ///< of `add`, and of `effects` with a study
   bool automatic = false;            ///< discover --auto
   bool force = false;                ///< write over files that misfit did not make
   std::string check_video;           ///< track: write the video with the track drawn to this file
