@@ -11,11 +11,13 @@
 #include <new>
 #include <thread>
 
+#include "apps/help.h"
 #include "apps/progress.h"
 #include "apps/terminal.h"
 #include "apps/verbs.h"
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
+#include "misfit/core/text.h"
 #include "misfit/core/version.h"
 #include "misfit/data/estimators.h"
 #include "misfit/jobs/interrupt.h"
@@ -56,7 +58,7 @@ constexpr VerbEntry verbs[] = {
     {"simulate", "simulate the model as described in [simulate], or as fitted", simulate_verb, true},
     {"batch", "fit many studies as one job, on threads or under mpirun; tabulate how their results vary", batch_verb, true},
     {"init", "write a first study for a CSV file: column roles, linear model, figures", init_verb, true},
-    {"effects", "list the effects of the program, or of a study: formula, roles, ports, coefficients, source", effects_verb, false},
+    {"effects", "list the effects of the program, or of a study; with the key of an effect, print it in full", effects_verb, false},
 };
 
 void add_method(CLI::App& verb, Options& options) {
@@ -104,6 +106,13 @@ void add_options(CLI::App& verb, Options& options, bool study_required) {
     add_running(verb, options);
     return;
   }
+  if (verb.get_name() == "effects") {
+    verb.add_option("what", options.session.study, "key of an effect, or a study: study.toml, or the folder that holds it")
+        ->type_name("KEY|STUDY");
+    verb.add_option("effect", options.effect, "effect of that study")->type_name("KEY");
+    verb.add_flag("--json", options.json, "print the effects as JSON");
+    return;
+  }
   auto* study = verb.add_option("study", options.session.study, "study.toml, or the folder that holds it")->type_name("STUDY");
   if (study_required) study->required();
   if (verb.get_name() == "add")
@@ -132,6 +141,35 @@ std::vector<std::string> verb_names() {
   return names;
 }
 
+/// What `misfit help` alone prints: the verbs, and the topics beside them.
+std::string contents_of_help() {
+  constexpr std::size_t columns = 100;
+  std::string out;
+  const auto add = [&](const std::string& name, const std::string& doc) {
+    out += "  " + name + wrap_text(doc, columns, std::string(14, ' ')).substr(2 + name.size()) + "\n";
+  };
+  out += "misfit help VERB (the same as misfit VERB --help)\n";
+  for (const auto& verb : verbs) add(verb.name, verb.doc);
+  out += "\nmisfit help TOPIC\n";
+  for (const auto& [topic, doc] : help_topics()) add(topic, doc);
+  return out;
+}
+
+/// `misfit help …`; nullopt for a verb, whose own help is to be printed.
+std::optional<std::string> help_on(int argc, char** argv, const Registry& registry) {
+  if (argc < 3) return contents_of_help();
+  if (argc > 3) throw InputError("misfit help takes one verb or topic");
+  const std::string topic = argv[2];
+  std::vector<std::string> names = verb_names();
+  for (const auto& [name, doc] : help_topics()) names.push_back(name);
+  if (std::find(names.begin(), names.end(), topic) == names.end())
+    throw InputError("misfit help knows no '" + shown(topic) + "'" + suggest(topic, names));
+  for (const auto& [name, doc] : help_topics()) {
+    if (name == topic) return help_text(topic, registry);
+  }
+  return std::nullopt;
+}
+
 /// Verbs that are one job would do it several times over, in one folder.
 void refuse_ranks(const std::string& verb) {
   if (ranks_started() > 1 && verb != "uncertainty" && verb != "batch" && verb != "discover")
@@ -139,6 +177,16 @@ void refuse_ranks(const std::string& verb) {
 }
 
 int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out) {
+  if (argc > 1 && std::string_view(argv[1]) == "help") {
+    const auto text = help_on(argc, argv, registry);
+    if (text) {
+      std::cout << *text;
+      return 0;
+    }
+    std::string own_help = "--help";
+    std::array<char*, 3> of_verb = {argv[0], argv[2], own_help.data()};
+    return dispatch(3, of_verb.data(), registry, out);
+  }
   CLI::App app{"misfit — find out what your model is missing"};
   app.set_version_flag("--version", std::string("misfit ") + version() + " (" + commit() + ")");
   app.require_subcommand(1);
@@ -154,7 +202,8 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
     calls[verb] = entry.call;
   }
   if (argc > 1 && argv[1][0] != '-') {
-    const std::vector<std::string> names = verb_names();
+    std::vector<std::string> names = verb_names();
+    names.emplace_back("help");
     if (std::find(names.begin(), names.end(), argv[1]) == names.end())
       throw InputError(std::string("unknown verb '") + shown(argv[1]) + "'" + suggest(argv[1], names));
   }

@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "apps/verbs.h"
+#include "misfit/core/shown.h"
 #include "misfit/core/text.h"
+#include "misfit/data/study_edit.h"
 #include "misfit/model/declared.h"
 
 namespace misfit {
@@ -36,14 +40,6 @@ std::string states_of(const EffectSpec& spec) {
   return out.empty() ? "none" : out;
 }
 
-/// Names as the study calls them, or every effect the program knows.
-std::vector<std::string> chosen(const std::optional<Study>& study, const Registry& registry) {
-  if (!study) return registry.effect_keys();
-  std::vector<std::string> keys;
-  for (const auto& effect : study->effects) keys.push_back(registry.effect(effect.kind, effect.where).spec().key);
-  return keys;
-}
-
 nlohmann::ordered_json as_json(const EffectSpec& spec) {
   nlohmann::ordered_json json{
       {"effect", spec.key},          {"formula", spec.formula},  {"symbols", spec.symbols}, {"roles", joined(spec.quantities)},
@@ -65,34 +61,114 @@ nlohmann::ordered_json as_json(const EffectSpec& spec) {
   return json;
 }
 
+/// "name  text" with further lines below the text.
+std::string entry(const std::string& name, const std::string& text, std::size_t width = 100) {
+  constexpr std::size_t column = 16;
+  const std::string lines = wrap_text(text, width, std::string(column, ' '));
+  return "  " + name + lines.substr(name.size() + 2) + "\n";
+}
+
+using Texts = std::vector<std::pair<std::string, std::string>>;
+
+std::string short_text(const EffectSpec& spec) {
+  std::string out = spec.key + "\n";
+  for (const auto& [what, text] : Texts{{"formula", spec.formula},
+                                        {"symbols", spec.symbols},
+                                        {"roles", joined(spec.quantities)},
+                                        {"ports", joined(spec.ports)},
+                                        {"coefficients", coefficients_of(spec)},
+                                        {"own states", states_of(spec)},
+                                        {"valid", spec.valid},
+                                        {"size", spec.size},
+                                        {"source", spec.source},
+                                        {"not", spec.excludes}}) {
+    if (text != "none") out += fmt::format("  {:<13} {}\n", what, text);
+  }
+  return out + "\n";
+}
+
+std::string parameters_table(const EffectSpec& spec) {
+  std::vector<std::vector<std::string>> rows{{"parameter", "unit", "kind", "default", "bounds", "meaning"}};
+  for (const auto& c : spec.coefficients) {
+    const std::string kind = c.borrowed ? "of another effect" : c.kind == CoefficientKind::strength ? "strength" : "shape";
+    const std::string meaning = c.curve_of[0] == '\0' ? c.doc : fmt::format("{}; a curve of {}", c.doc, c.curve_of);
+    rows.push_back({c.name, c.unit, kind, c.borrowed ? "" : fmt::format("{:g}{}", c.value, c.fixed ? ", fixed" : ""),
+                    c.borrowed ? "" : fmt::format("[{:g}, {:g}]", c.lower, c.upper), meaning});
+  }
+  return rows.size() > 1 ? "\n" + align_columns(rows) + "\n" : "";
+}
+
+/// Roles of any unit are what a study most often binds.
+std::string study_line(const EffectSpec& spec) {
+  std::string roles;
+  for (const auto* list : {&spec.quantities, &spec.ports}) {
+    for (const Role& role : *list)
+      if (!role.optional) roles += fmt::format("{}{} = \"NAME\"", roles.empty() ? "" : ", ", role.name);
+  }
+  return fmt::format("  in a study\n    [effects]\n    {}\n    # to act elsewhere: {} = {{ {} }}\n", effect_line(spec.key, spec.key, {}),
+                     spec.key, roles);
+}
+
+std::string full_text(const EffectSpec& spec) {
+  std::string constants;
+  for (const auto& name : spec.constants) constants += (constants.empty() ? "" : ", ") + name;
+  std::string out = spec.key + "\n";
+  const auto add = [&](const Texts& texts) {
+    for (const auto& [what, text] : texts)
+      if (!text.empty() && text != "none") out += entry(what, text);
+  };
+  add({{"formula", spec.formula}, {"symbols", spec.symbols}, {"reads", joined(spec.quantities)}, {"adds to", joined(spec.ports)}});
+  add({{"constants", constants}, {"own states", states_of(spec)}});
+  out += parameters_table(spec);
+  add({{"valid", spec.valid}, {"size", spec.size}, {"source", spec.source}, {"not", spec.excludes}});
+  return out + study_line(spec);
+}
+
+/// The effects that the words on the command line name: those of a study, one of them, or one of the program.
+struct Chosen {
+  std::shared_ptr<const Registry> declared;  ///< owns what the study declares
+  std::vector<const EffectSpec*> effects;
+  bool in_full = false;
+};
+
+Chosen of_study(const Options& options, const Registry& registry) {
+  const Study study = read_study(options.session.study);
+  Chosen out{study_registry(study, registry), {}, !options.effect.empty()};
+  std::vector<std::string> names;
+  for (const EffectStudy& effect : study.effects) {
+    names.push_back(effect.name);
+    const EffectSpec& spec = out.declared->effect(effect.kind, effect.where).spec();
+    if (!out.in_full || options.effect == effect.name) out.effects.push_back(&spec);
+  }
+  if (out.in_full && out.effects.empty())
+    throw InputError("the study has no effect '" + shown(options.effect) + "'" + suggest(options.effect, names));
+  return out;
+}
+
+Chosen chosen(const Options& options, const Registry& registry) {
+  std::error_code error;
+  const std::string& what = options.session.study;
+  const bool is_path = what.find('/') != std::string::npos || what.ends_with(".toml") || std::filesystem::exists(what, error);
+  const std::vector<std::string> keys = registry.effect_keys();
+  const bool is_key = std::find(keys.begin(), keys.end(), what) != keys.end();
+  if (!what.empty() && is_path && !is_key) return of_study(options, registry);
+  Chosen out;
+  if (!what.empty()) return {nullptr, {&registry.effect(what).spec()}, true};
+  for (const auto& key : keys) out.effects.push_back(&registry.effect(key).spec());
+  return out;
+}
+
 }  // namespace
 
 int effects_verb(const Options& options, const Registry& registry) {
-  std::optional<Study> study;
-  if (!options.session.study.empty()) study = read_study(options.session.study);
-  const auto declared = study ? study_registry(*study, registry) : nullptr;
-  const Registry& known = study ? *declared : registry;
+  const Chosen known = chosen(options, registry);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const auto& key : chosen(study, known)) {
-    const EffectSpec& spec = known.effect(key).spec();
+  for (const EffectSpec* spec : known.effects) {
     if (options.json) {
-      all.push_back(as_json(spec));
-      continue;
+      all.push_back(as_json(*spec));
+    } else {
+      std::cout << (known.in_full ? full_text(*spec) : short_text(*spec));
     }
-    std::cout << key << '\n';
-    for (const auto& [what, text] : std::vector<std::pair<std::string, std::string>>{{"formula", spec.formula},
-                                                                                     {"symbols", spec.symbols},
-                                                                                     {"roles", joined(spec.quantities)},
-                                                                                     {"ports", joined(spec.ports)},
-                                                                                     {"coefficients", coefficients_of(spec)},
-                                                                                     {"own states", states_of(spec)},
-                                                                                     {"valid", spec.valid},
-                                                                                     {"size", spec.size},
-                                                                                     {"source", spec.source},
-                                                                                     {"not", spec.excludes}}) {
-      if (text != "none") std::cout << fmt::format("  {:<13} {}\n", what, text);
-    }
-    std::cout << '\n';
   }
   if (options.json) std::cout << all.dump(1) << '\n';
   return 0;

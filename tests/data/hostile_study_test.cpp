@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"ATinyStep", simulate + "step = 1e-12\n", {"study.toml:4", "simulate.step", "samples"}},
         Hostile{"Both", simulate + "duration = 1e300\nstep = 1e-300\n", {"study.toml:4", "simulate.duration", "samples"}},
         Hostile{"OneSampleTooMany", simulate + "duration = 1e7\nstep = 1\n", {"study.toml:4", "simulate.duration"}},
-        Hostile{"NoStep", simulate + "step = 0\n", {"study.toml:4", "simulate.step", "positive"}},
+        Hostile{"NoStep", simulate + "step = 0\n", {"study.toml:4", "simulate.step", "above 0"}},
         Hostile{"NegativeNoise", simulate + "noise = { theta = -1 }\n", {"study.toml:4", "simulate.noise.theta", "-1", "below 0"}},
         Hostile{"NegativeNoiseWithAUnit", simulate + "noise = { theta = \"-1 deg\" }\n", {"simulate.noise.theta", "below 0"}},
         Hostile{"NoiseThatIsNoNumber", simulate + "noise = { theta = nan }\n", {"simulate.noise.theta"}},

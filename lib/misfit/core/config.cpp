@@ -68,12 +68,32 @@ struct Section::State {
     return slot;
   }
 
+  /// Each element of an array of numbers as `from` has it.
+  template <class T, class Read>
+  std::optional<std::vector<T>> elements(std::string_view key, const Read& from);
+
   [[noreturn]] void fail(std::string_view key, const toml::node& node, const std::string& expected) const {
     std::ostringstream text;
     node.visit([&text](const auto& value) { text << value; });  // as TOML
     throw InputError(place(node.source()), shown(full(key)) + " = " + shown(on_one_line(text.str())) + ": " + expected);
   }
 };
+
+template <class T, class Read>
+std::optional<std::vector<T>> Section::State::elements(std::string_view key, const Read& from) {
+  const toml::node* node = take(key);
+  if (!node) return std::nullopt;
+  if (!node->is_array()) fail(key, *node, "an array of numbers is expected, as [0, 0.5, 1]");
+  std::vector<T> out;
+  for (const toml::node& element : *node->as_array()) {
+    try {
+      out.push_back(from(element));
+    } catch (const InputError& error) {
+      fail(std::string(key) + "[" + std::to_string(out.size()) + "]", element, error.what());
+    }
+  }
+  return out;
+}
 
 namespace {
 
@@ -237,18 +257,16 @@ std::optional<std::string> Section::choice(std::string_view key, const std::vect
 }
 
 std::optional<std::vector<double>> Section::numbers(std::string_view key, std::string_view unit) const {
-  const toml::node* node = state_->take(key);
-  if (!node) return std::nullopt;
-  if (!node->is_array()) state_->fail(key, *node, "an array of numbers is expected, as [0, 0.5, 1]");
-  std::vector<double> out;
-  for (const toml::node& element : *node->as_array()) {
-    try {
-      out.push_back(number_of(element, unit));
-    } catch (const InputError& error) {
-      state_->fail(std::string(key) + "[" + std::to_string(out.size()) + "]", element, error.what());
-    }
-  }
-  return out;
+  return state_->elements<double>(key, [unit](const toml::node& element) { return number_of(element, unit); });
+}
+
+std::optional<std::vector<Number>> Section::quantities(std::string_view key) const {
+  return state_->elements<Number>(key, [this](const toml::node& element) -> Number {
+    const Source at = state_->place(element.source());
+    if (!element.is_string()) return {number_of(element, ""), std::nullopt, "", at};
+    const Quantity quantity = parse_quantity(element.as_string()->get());
+    return {quantity.value, std::nullopt, quantity.unit, at};
+  });
 }
 
 std::optional<std::vector<std::string>> Section::texts(std::string_view key) const {
@@ -291,13 +309,15 @@ bool Section::is_table(std::string_view key) const { return has(key) && state_->
 bool Section::is_array(std::string_view key) const { return has(key) && state_->node(key)->is_array(); }
 bool Section::is_flag(std::string_view key) const { return has(key) && state_->node(key)->is_boolean(); }
 
-void Section::finish() const {
+void Section::finish() const { finish(state_->asked); }
+
+void Section::finish(const std::vector<std::string>& valid) const {
   for (const std::string& key : keys()) {
     if (state_->read.count(key) > 0) continue;
     const std::string what = state_->node(key)->is_table() && state_->path.empty() ? "unknown section [" : "unknown key '";
     const std::string end = what.back() == '[' ? "]" : "'";
     const std::string inside = state_->path.empty() ? "" : " in [" + shown(state_->path) + "]";
-    throw InputError(where(key), what + shown(key) + end + inside + suggest(key, state_->asked));
+    throw InputError(where(key), what + shown(key) + end + inside + suggest(key, valid));
   }
 }
 

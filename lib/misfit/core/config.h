@@ -15,7 +15,7 @@ namespace misfit::config {
 struct Number {
   double value = 0.0;
   std::optional<double> sigma;
-  std::string unit;  ///< unit asked for by the reader
+  std::string unit;  ///< unit asked for by the reader, or as written
   Source where;
 };
 
@@ -46,6 +46,8 @@ class Section {
   /// One of `allowed`, else InputError with the nearest.
   [[nodiscard]] std::optional<std::string> choice(std::string_view key, const std::vector<std::string>& allowed) const;
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key, std::string_view unit) const;
+  /// Numbers whose unit is known later: 0.5 as it is, with an empty unit; "24 in" in SI, with the unit as written.
+  [[nodiscard]] std::optional<std::vector<Number>> quantities(std::string_view key) const;
   [[nodiscard]] std::optional<std::vector<std::string>> texts(std::string_view key) const;
   [[nodiscard]] std::optional<Section> table(std::string_view key) const;
   [[nodiscard]] std::vector<Section> tables(std::string_view key) const;  ///< array of tables; a single table counts as one
@@ -56,7 +58,8 @@ class Section {
   [[nodiscard]] bool is_array(std::string_view key) const;
   [[nodiscard]] bool is_flag(std::string_view key) const;
 
-  void finish() const;  ///< this table only; sub-tables finish themselves
+  void finish() const;                                       ///< this table only; sub-tables finish themselves
+  void finish(const std::vector<std::string>& valid) const;  ///< with these as the names in the message
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
 
  private:

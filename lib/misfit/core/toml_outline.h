@@ -5,10 +5,12 @@
 
 namespace misfit {
 
+using TomlPath = std::vector<std::string>;  ///< keys from the top, numbers for elements of arrays
+
 /// A value of a TOML text, and where it stands in it. Places are bytes, ends exclusive.
 struct TomlNode {
   enum class Kind { text, table, array, other };
-  std::vector<std::string> path;  ///< keys from the top, numbers for elements of arrays
+  TomlPath path;
   Kind kind = Kind::other;
   std::string value;                       ///< text: what it says; other: as written
   std::size_t key_begin = 0, key_end = 0;  ///< the last part of its key; both 0 for an element of an array

@@ -1,8 +1,5 @@
 #include "misfit/data/study.h"
 
-#include <limits>
-#include <numbers>
-
 #include "misfit/core/files.h"
 #include "misfit/data/estimators.h"
 #include "misfit/data/study_parts.h"
@@ -11,24 +8,17 @@ namespace misfit {
 namespace {
 
 namespace fs = std::filesystem;
+using config::DescribedSection;
 using config::Section;
 
-constexpr long largest_seed = std::numeric_limits<long>::max();
-
 void read_head(const Section& root, Study& study) {
-  study.name = fs::absolute(study.file).parent_path().filename().string();
-  study.methods = default_estimators();
-  const auto head = root.table("study");
-  if (!head) return;
-  study.name = head->text("name").value_or(study.name);
-  study.question = head->text("question").value_or("");
-  study.seed = static_cast<unsigned long>(head->integer("seed", 0, largest_seed).value_or(1));
-  if (const auto methods = head->texts("methods")) {
-    study.methods = *methods;
-    study_parts::check_names(*head, "methods", *methods, estimator_names());
-    if (methods->empty()) head->fail("methods", "at least one method is needed; leave the key out for the default ones");
-  }
-  head->finish();
+  const DescribedSection head = study_parts::described(root, "study");
+  study.name = head.text("name").value_or(fs::absolute(study.file).parent_path().filename().string());
+  study.question = *head.text("question");
+  study.seed = *head.integer("seed");
+  study.methods = *head.texts("methods");
+  if (study.methods.empty()) head.fail("methods", "at least one method is needed; leave the key out for the default ones");
+  head.finish();
 }
 
 /// A flag, or a number kept with the unit as written: what it must be is known to the model only.
@@ -45,34 +35,25 @@ void read_system_option(const Section& system, const std::string& key, Study& st
 }
 
 void read_system(const Section& root, Study& study) {
-  const auto system = root.table("system");
-  if (!system)
+  if (!root.has("system"))
     throw InputError({study.file.string(), 0, 0}, "the section [system] is missing: it names the model, as kind = \"parachute_spherical\"");
-  if (system->has("kind") == system->has("file")) system->fail("", "exactly one of kind and file is needed");
-  study.system_kind = system->text("kind").value_or("");
-  study.system_file = study_parts::existing_file(*system, "file", study.folder);
-  for (const std::string& key : system->keys()) {
-    study.system_where[key] = system->where(key);
-    if (key != "kind" && key != "file") read_system_option(*system, key, study);
+  const DescribedSection system = study_parts::described(root, "system");
+  if (system.has("kind") == system.has("file")) system.fail("", "exactly one of kind and file is needed");
+  study.system_kind = system.text("kind").value_or("");
+  study.system_file = study_parts::existing_file(system, "file", study.folder);
+  for (const std::string& key : system.keys()) {
+    study.system_where[key] = system.where(key);
+    if (key != "kind" && key != "file") read_system_option(system, key, study);
   }
-  system->finish();
-}
-
-/// More than 30 deg is degrees written without unit.
-double bin_angle(const Section& section, std::string_view key) {
-  const auto angle = section.number(key, "rad");
-  if (!angle) return 0.0;
-  if (angle->value <= 0.0 || angle->value > std::numbers::pi / 6.0)
-    section.fail(key, "an angle above 0 and up to 30 deg is expected, as \"1.5 deg\"");
-  return angle->value;
+  system.finish();
 }
 
 void read_sliding_bin(const Section& root, Study& study) {
-  const auto section = root.table(estimators::sliding_bin.name);
-  if (!section) return;
-  study.bin_width = bin_angle(*section, "width");
-  study.bin_step = bin_angle(*section, "step");
-  section->finish();
+  if (!root.has(estimators::sliding_bin.name)) return;
+  const DescribedSection section = study_parts::described(root, estimators::sliding_bin.name);
+  study.bin_width = *section.value("width");
+  study.bin_step = *section.value("step");
+  section.finish();
 }
 
 }  // namespace
@@ -98,7 +79,7 @@ Study read_study(const fs::path& path) {
   study_parts::read_uncertainty(root, study);
   read_sliding_bin(root, study);
   study_parts::read_simulate(root, study);
-  root.finish();
+  root.finish(config::sections_of(study_keys()));
   return study;
 }
 

@@ -16,7 +16,7 @@ namespace misfit {
 
 /// What is followed in pictures: "ring", "bright", "dark", or a picture cut from a frame.
 struct MarkerStudy {
-  std::string kind = "ring";  ///< "picture" if `picture` is given
+  std::string kind;  ///< "ring", "bright", "dark"; "picture" if `picture` is given
   std::optional<std::filesystem::path> picture;
 };
 
@@ -26,7 +26,7 @@ struct CameraStudy {
   std::optional<std::filesystem::path> sweep_images;  ///< … or from pictures: a table of angles and image or video files (data/sweep.h)
   MarkerStudy sweep_marker;                           ///< of the three points in them; default that of [video]
   std::vector<PixelPoint> sweep_points;               ///< about where points 1, 2, 3 are in the first picture; empty: from the geometry
-  std::string model = "pinhole";                      ///< "pinhole" or "plane_by_plane"
+  std::string model;                                  ///< "pinhole" or "plane_by_plane"
   std::map<std::string, config::Number> given;        ///< … or h_c, K and any other camera parameter, with sigma where known
   std::vector<std::string> offer;                     ///< optional parameters that calibrate may select; default all
   std::vector<std::string> take_in;                   ///< optional parameters that calibrate must free whatever the test says
@@ -36,8 +36,8 @@ struct CameraStudy {
 
 /// [video]: how a video is read and what is followed in it.
 struct VideoStudy {
-  std::string fields = "auto";  ///< "auto", "progressive", "top_first", "bottom_first"
-  bool check_fields = true;     ///< false: `fields` holds even if the pictures contradict it
+  std::string fields;        ///< "auto", "progressive", "top_first", "bottom_first"
+  bool check_fields = true;  ///< false: `fields` holds even if the pictures contradict it
   MarkerStudy marker;
   std::optional<PixelPoint> start;              ///< about where the marker is in the first frame [px]
   std::optional<std::array<double, 4>> region;  ///< left, top, right, bottom [px]: where it is looked for
@@ -87,17 +87,17 @@ struct ParameterStudy {
 };
 
 struct CurveStudy {
-  std::string of;                              ///< quantity
-  std::optional<std::vector<double>> knots;    ///< as written (degrees for angles); nullopt = "auto"
-  std::optional<double> roughness;             ///< nullopt = "auto"; unit of the weight: see inference/roughness.h
+  std::string of;                                    ///< quantity
+  std::optional<std::vector<config::Number>> knots;  ///< without a unit: in degrees for angles, else SI; nullopt = "auto"
+  std::optional<double> roughness;                   ///< nullopt = "auto"; unit of the weight: see inference/roughness.h
   std::optional<std::filesystem::path> table;  ///< CSV with columns `of` and the curve's name: values to start from, or to simulate with
   Source where;
 };
 
 /// [simulate]: what `misfit simulate` makes when the study has no experiment to take times and initial state from.
 struct SimulateStudy {
-  double duration = 10.0;                         ///< [s]
-  double step = 1.0 / 59.94;                      ///< [s]
+  double duration = 0.0;                          ///< [s]
+  double step = 0.0;                              ///< [s]
   std::map<std::string, config::Number> initial;  ///< state → value as written (unit checked by the model)
   std::map<std::string, config::Number> noise;    ///< output → sigma of white noise added, as written
 };
@@ -111,7 +111,7 @@ struct PerturbStudy {
 
 /// [uncertainty]: the Monte-Carlo over the set-up, block bootstrap, profiles and random starts.
 struct UncertaintyStudy {
-  long runs = 1000;
+  long runs = 0;
   std::vector<PerturbStudy> perturb;  ///< in file order
   bool calibrated_camera = false;     ///< camera = "calibration": its free parameters too, with their joint covariance
   long bootstrap = 0;                 ///< runs of the block bootstrap of every method asked for; 0: none

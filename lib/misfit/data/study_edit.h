@@ -13,8 +13,9 @@ namespace misfit {
 // change, it is refused (InputError without the file's name).
 
 /// Every entry that names an existing file, taken from the study's folder, rewritten so that it names the same file from `folder`. Absolute
-/// paths stay.
-[[nodiscard]] std::string text_for_folder(const Study& study, const std::filesystem::path& folder);
+/// paths stay. A path that is no UTF-8, which TOML cannot name, is refused, or its odd bytes become U+FFFD.
+enum class OddPaths { refuse, replace };
+[[nodiscard]] std::string text_for_folder(const Study& study, const std::filesystem::path& folder, OddPaths odd = OddPaths::refuse);
 
 /// The line of [effects] for an effect: "bearing = { kind = \"coulomb_friction\", rate = \"omega\" }". `start`: values of parameters to
 /// start from [SI].

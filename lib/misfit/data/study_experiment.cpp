@@ -9,6 +9,7 @@
 namespace misfit::study_parts {
 namespace {
 
+using config::DescribedSection;
 using config::Section;
 
 constexpr const char* validation_forms = "\"last 25 %\", [t0, t1] in seconds, or a file ending in .csv is expected";
@@ -102,13 +103,14 @@ bool names_a_file(const Section& section) {
 }  // namespace
 
 void read_experiments(const Section& root, Study& study) {
-  for (const Section& section : root.tables("experiment")) {
+  for (const Section& table : root.tables("experiment")) {
+    const DescribedSection section(table, config::group_of(study_keys(), "experiment"));
     ExperimentStudy experiment;
     experiment.where = section.where();
     read_source(section, study, experiment);
     read_columns(section, experiment);
     read_validation(section, experiment);
-    experiment.exclude = section.integer("exclude", 0, 1'000'000'000).value_or(0);
+    experiment.exclude = *section.integer("exclude");
     read_name(section, study, experiment);
     std::optional<ExperimentStudy> other;
     if (names_a_file(section)) other = wholly_held_out(section, study, experiment);

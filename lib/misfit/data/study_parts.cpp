@@ -12,15 +12,12 @@
 namespace misfit::study_parts {
 
 namespace fs = std::filesystem;
+using config::DescribedSection;
 using config::Section;
 
-void check_names(const Section& section, std::string_view key, const std::vector<std::string>& names,
-                 const std::vector<std::string>& valid) {
-  for (auto it = names.begin(); it != names.end(); ++it) {
-    if (std::find(valid.begin(), valid.end(), *it) == valid.end())
-      section.fail(key, "unknown name '" + shown(*it) + "'" + suggest(*it, valid));
-    if (std::find(names.begin(), it, *it) != it) section.fail(key, "'" + shown(*it) + "' is given twice");
-  }
+DescribedSection described(const Section& section, std::string_view key, std::string_view path) {
+  const auto table = section.table(key);
+  return {table ? *table : Section::parse("", section.file().string()), config::group_of(study_keys(), path.empty() ? key : path)};
 }
 
 std::optional<fs::path> existing_file(const Section& section, std::string_view key, const fs::path& folder) {
@@ -42,6 +39,7 @@ std::optional<fs::path> existing_file(const Section& section, std::string_view k
 }
 
 config::Number number_as_written(const Section& section, std::string_view key) {
+  if (!section.is_text(key)) return *section.number(key, "");
   config::Number out;
   out.where = section.where(key);
   try {
@@ -56,12 +54,6 @@ config::Number number_as_written(const Section& section, std::string_view key) {
 
 namespace {
 
-/// Names of CameraTest (data/calibration.h): what calibrate may free beside h_c and K.
-const std::vector<std::string>& optional_camera_parameters() {
-  static const std::vector<std::string> names{"camera_roll", "image_centre", "pixel_aspect", "lens_k1", "camera_distance"};
-  return names;
-}
-
 void check_camera(const Section& section, const CameraStudy& camera) {
   if (camera.sweep && camera.sweep_images) section.fail("sweep_images", "the sweep is either a table of positions (sweep) or of pictures");
   if (camera.from_sweep() && !camera.given.empty()) {
@@ -69,8 +61,6 @@ void check_camera(const Section& section, const CameraStudy& camera) {
   }
   if (!camera.from_sweep() && (camera.given.count("h_c") == 0 || camera.given.count("K") == 0))
     section.fail("", "sweep = \"FILE\" (or sweep_images), or both h_c and K, are needed");
-  if (!camera.from_sweep() && section.has("offer")) section.fail("offer", "has no meaning without sweep");
-  if (!camera.from_sweep() && section.has("take_in")) section.fail("take_in", "has no meaning without sweep");
 }
 
 /// Absent or "auto"; another text is refused.
@@ -83,28 +73,25 @@ bool is_auto(const Section& section, std::string_view key) {
 }  // namespace
 
 void read_camera(const Section& root, Study& study) {
-  const auto section = root.table("camera");
-  if (!section) return;
-  study.has_camera = true;
+  study.has_camera = root.has("camera");
+  if (!study.has_camera) return;
+  const DescribedSection section = described(root, "camera");
   CameraStudy& camera = study.camera;
-  camera.sweep = existing_file(*section, "sweep", study.folder);
-  read_sweep_images(*section, study);
-  camera.model = section->choice("model", {"pinhole", "plane_by_plane"}).value_or(camera.model);
-  camera.offer = section->texts("offer").value_or(optional_camera_parameters());
-  camera.take_in = section->texts("take_in").value_or(std::vector<std::string>{});
-  check_names(*section, "offer", camera.offer, optional_camera_parameters());
-  check_names(*section, "take_in", camera.take_in, optional_camera_parameters());
-  for (std::size_t i = 0; i < camera_parameter_names.size(); ++i) {
-    const char* name = camera_parameter_names[i];
-    if (const auto number = section->number(name, camera_parameter_units[i], true)) camera.given[name] = *number;
+  camera.sweep = existing_file(section, "sweep", study.folder);
+  read_sweep_images(section, study);
+  camera.model = *section.choice("model");
+  camera.offer = section.texts("offer").value_or(section.description().key("offer").choices);
+  camera.take_in = section.texts("take_in").value_or(std::vector<std::string>{});
+  for (const char* name : camera_parameter_names) {
+    if (const auto number = section.number(name)) camera.given[name] = *number;
   }
-  section->finish();
-  check_camera(*section, camera);
+  section.finish();
+  check_camera(section, camera);
 }
 
 namespace {
 
-FormulaStudy read_formula(const Section& section) {
+FormulaStudy read_formula(const DescribedSection& section) {
   FormulaStudy out;
   out.formula = *section.text("formula");
   out.where = section.where_text("formula");
@@ -121,15 +108,15 @@ InitialStudy read_one_initial(const Section& initial, const std::string& key) {
   out.where = initial.where(key);
   const auto is_kind = [](const std::string& text) { return text == "free" || text == "shared"; };
   if (initial.is_table(key)) {
-    const Section table = *initial.table(key);
-    out.kind = table.choice("kind", {"free", "shared", "fixed"}).value_or("");
-    if (table.has("value")) out.value = table.is_text("value") ? number_as_written(table, "value") : *table.number("value", "");
+    const DescribedSection table = described(initial, key, "initial.NAME");
+    out.kind = table.choice("kind").value_or("");
+    if (table.has("value")) out.value = number_as_written(table, "value");
     table.finish();
     if (out.kind == "fixed" && !out.value) table.fail("value", "a fixed initial state needs a value");
   } else if (initial.is_text(key) && is_kind(*initial.text(key))) {
     out.kind = *initial.text(key);
   } else {
-    out.value = initial.is_text(key) ? number_as_written(initial, key) : *initial.number(key, "");
+    out.value = number_as_written(initial, key);
     out.kind = "fixed";
   }
   return out;
@@ -144,40 +131,50 @@ void read_initial(const Section& root, Study& study) {
   initial->finish();
 }
 
+namespace {
+
+/// Starts, formula or kind and roles of one effect.
+EffectStudy read_effect(const DescribedSection& section, const std::string& name) {
+  EffectStudy effect;
+  effect.name = name;
+  if (section.has("formula")) effect.declared = read_formula(section);
+  effect.kind = effect.declared ? name : section.text("kind").value_or(name);
+  for (const std::string& role : section.keys()) {
+    if (!effect.declared && role != "kind" && role != "start") effect.roles[role] = section.text(role).value_or("");
+  }
+  if (section.has("start")) {
+    const DescribedSection start = described(section, "start", "effects.NAME.start");
+    for (const std::string& parameter : start.keys()) effect.start[parameter] = number_as_written(start, parameter);
+    start.finish();
+  }
+  section.finish();
+  return effect;
+}
+
+}  // namespace
+
 void read_effects(const Section& root, Study& study) {
   const auto effects = root.table("effects");
   if (!effects) return;
   for (const std::string& key : effects->keys()) {
     if (!effects->is_table(key)) effects->fail(key, "an effect is a table, as " + key + " = {}");
-    const Section section = *effects->table(key);
-    EffectStudy effect;
-    effect.name = key;
-    effect.where = effects->where(key);
-    if (section.has("formula")) effect.declared = read_formula(section);
-    effect.kind = effect.declared ? key : section.text("kind").value_or(key);
-    for (const std::string& role : section.keys()) {
-      if (!effect.declared && role != "kind" && role != "start") effect.roles[role] = section.text(role).value_or("");
-    }
-    if (const auto start = section.table("start")) {
-      for (const std::string& name : start->keys())
-        effect.start[name] = start->is_text(name) ? number_as_written(*start, name) : *start->number(name, "");
-      start->finish();
-    }
-    section.finish();
-    study.effects.push_back(std::move(effect));
+    const Section table = *effects->table(key);
+    study.effects.push_back(
+        read_effect({table, config::group_of(study_keys(), "effects.NAME", table.has("formula") ? "formula" : "")}, key));
+    study.effects.back().where = effects->where(key);
   }
   effects->finish();
 }
 
 /// What is said of one parameter, or, under the first part of a name with a point ("coulomb_friction.friction", which TOML without quotes
 /// reads as a table in a table), of those of one effect.
-void read_parameter(const std::string& name, const Section& section, const Source& where, Study& study) {
-  const std::vector<std::string> known{"free", "value", "bounds", "sigma"};
+void read_parameter(const std::string& name, const DescribedSection& section, const Source& where, Study& study) {
+  const std::vector<std::string> known = section.description().names();
   bool of_an_effect = false;
   for (const std::string& entry : section.keys()) {
     if (std::find(known.begin(), known.end(), entry) != known.end()) continue;
     if (!section.is_table(entry)) section.fail(entry, "unknown key" + suggest(entry, known));
-    read_parameter(name + "." + entry, *section.table(entry), section.where(entry), study);
+    read_parameter(name + "." + entry, described(section, entry, "parameters.NAME"), section.where(entry), study);
     of_an_effect = true;
   }
   if (of_an_effect) {
@@ -194,7 +191,8 @@ void read_parameter(const std::string& name, const Section& section, const Sourc
 void read_parameters(const Section& root, Study& study) {
   const auto parameters = root.table("parameters");
   if (!parameters) return;
-  for (const std::string& key : parameters->keys()) read_parameter(key, *parameters->table(key), parameters->where(key), study);
+  for (const std::string& key : parameters->keys())
+    read_parameter(key, described(*parameters, key, "parameters.NAME"), parameters->where(key), study);
   parameters->finish();
 }
 
@@ -202,18 +200,20 @@ void read_curves(const Section& root, Study& study) {
   const auto curves = root.table("curves");
   if (!curves) return;
   for (const std::string& key : curves->keys()) {
-    const Section section = *curves->table(key);
+    const DescribedSection section = described(*curves, key, "curves.NAME");
     CurveStudy curve;
     curve.where = curves->where(key);
     const auto of = section.text("of");
     if (!of || of->empty()) section.fail("of", "the quantity that the curve depends on is needed, as of = \"alpha_T\"");
     curve.of = *of;
-    if (!is_auto(section, "knots")) curve.knots = section.numbers("knots", "deg");
-    if (curve.knots && (curve.knots->size() < 2 || !std::is_sorted(curve.knots->begin(), curve.knots->end(), std::less_equal<>()))) {
+    if (!is_auto(section, "knots")) curve.knots = section.quantities("knots");
+    const auto falls = [](const config::Number& a, const config::Number& b) {
+      return a.unit.empty() == b.unit.empty() && !(a.value < b.value);
+    };
+    if (curve.knots &&
+        (curve.knots->size() < 2 || std::adjacent_find(curve.knots->begin(), curve.knots->end(), falls) != curve.knots->end()))
       section.fail("knots", "at least two knots are needed, each above the one before");
-    }
-    if (!is_auto(section, "roughness")) curve.roughness = section.number("roughness", "")->value;
-    if (curve.roughness && *curve.roughness < 0.0) section.fail("roughness", "\"auto\" or a number from 0 is expected");
+    if (!is_auto(section, "roughness")) curve.roughness = section.value("roughness");
     curve.table = existing_file(section, "table", study.folder);
     section.finish();
     study.curves[key] = std::move(curve);
@@ -244,29 +244,23 @@ void check_samples(const Section& section, const SimulateStudy& simulate) {
 }  // namespace
 
 void read_simulate(const Section& root, Study& study) {
-  const auto section = root.table("simulate");
-  if (!section) return;
+  if (!root.has("simulate")) return;
+  const DescribedSection section = described(root, "simulate");
   SimulateStudy simulate;
-  const auto positive = [&](const char* key, double fallback) {
-    const auto number = section->number(key, "s");
-    if (number && !(number->value > 0.0)) section->fail(key, "must be positive");
-    return number ? number->value : fallback;
-  };
-  simulate.duration = positive("duration", simulate.duration);
-  simulate.step = positive("step", simulate.step);
-  check_samples(*section, simulate);
-  for (const char* key : {"initial", "noise"}) {
-    const auto table = section->table(key);
-    if (!table) continue;
-    auto& into = std::string_view(key) == "initial" ? simulate.initial : simulate.noise;
-    for (const std::string& name : table->keys()) {
-      into[name] = table->is_text(name) ? number_as_written(*table, name) : *table->number(name, "");
-      if (&into == &simulate.noise && into[name].value < 0.0)
-        table->fail(name, fmt::format("{} is below 0: the standard deviation of white noise is expected", into[name].value));
-    }
-    table->finish();
+  simulate.duration = *section.value("duration");
+  simulate.step = *section.value("step");
+  check_samples(section, simulate);
+  const DescribedSection initial = described(section, "initial", "simulate.initial");
+  for (const std::string& state : initial.keys()) simulate.initial[state] = number_as_written(initial, state);
+  initial.finish();
+  const DescribedSection noise = described(section, "noise", "simulate.noise");
+  for (const std::string& output : noise.keys()) {
+    simulate.noise[output] = number_as_written(noise, output);
+    if (simulate.noise[output].value < 0.0)
+      noise.fail(output, fmt::format("{} is below 0: the standard deviation of white noise is expected", simulate.noise[output].value));
   }
-  section->finish();
+  noise.finish();
+  section.finish();
   study.simulate = simulate;
 }
 

@@ -10,8 +10,6 @@
 
 namespace misfit {
 
-using TomlPath = std::vector<std::string>;
-
 /// A TOML text with what stands where.
 class StudyText {
  public:

@@ -5,9 +5,10 @@
 namespace misfit::study_parts {
 namespace {
 
+using config::DescribedSection;
 using config::Section;
 
-void read_marker(const Section& section, std::string_view key, const Study& study, MarkerStudy& marker) {
+void read_marker(const DescribedSection& section, std::string_view key, const Study& study, MarkerStudy& marker) {
   const auto name = section.text(key);
   if (!name) return;
   if (name->ends_with(".png")) {
@@ -15,12 +16,12 @@ void read_marker(const Section& section, std::string_view key, const Study& stud
     marker.kind = "picture";
   } else {
     marker.picture.reset();
-    marker.kind = *section.choice(key, {"ring", "bright", "dark"});
+    marker.kind = *section.choice(key);
   }
 }
 
-std::optional<std::vector<double>> pixels(const Section& section, std::string_view key, std::size_t count, const char* form) {
-  auto values = section.numbers(key, "px");
+std::optional<std::vector<double>> pixels(const DescribedSection& section, std::string_view key, std::size_t count, const char* form) {
+  auto values = section.numbers(key);
   if (values && values->size() != count) section.fail(key, std::string(form) + " is expected, in pixels of the frame");
   return values;
 }
@@ -28,30 +29,26 @@ std::optional<std::vector<double>> pixels(const Section& section, std::string_vi
 }  // namespace
 
 void read_video(const Section& root, Study& study) {
-  const auto video = root.table("video");
-  if (!video) return;
+  const DescribedSection video = described(root, "video");
   VideoStudy& v = study.video;
-  v.fields = video->choice("fields", {"auto", "progressive", "top_first", "bottom_first"}).value_or(v.fields);
-  v.check_fields = video->flag("check_fields").value_or(true);
-  read_marker(*video, "marker", study, v.marker);
-  if (const auto start = pixels(*video, "start", 2, "[column, row]")) v.start = PixelPoint{(*start)[0], (*start)[1]};
-  if (const auto r = pixels(*video, "region", 4, "[left, top, right, bottom]")) {
-    if (!((*r)[0] < (*r)[2]) || !((*r)[1] < (*r)[3])) video->fail("region", "left must be below right, and top below bottom");
+  v.fields = *video.choice("fields");
+  v.check_fields = *video.flag("check_fields");
+  read_marker(video, "marker", study, v.marker);
+  if (const auto start = pixels(video, "start", 2, "[column, row]")) v.start = PixelPoint{(*start)[0], (*start)[1]};
+  if (const auto r = pixels(video, "region", 4, "[left, top, right, bottom]")) {
+    if (!((*r)[0] < (*r)[2]) || !((*r)[1] < (*r)[3])) video.fail("region", "left must be below right, and top below bottom");
     v.region = {(*r)[0], (*r)[1], (*r)[2], (*r)[3]};
   }
-  video->finish();
+  video.finish();
 }
 
-void read_sweep_images(const Section& camera, Study& study) {
+void read_sweep_images(const DescribedSection& camera, Study& study) {
   CameraStudy& c = study.camera;
   c.sweep_images = existing_file(camera, "sweep_images", study.folder);
   c.sweep_marker = study.video.marker;
   read_marker(camera, "sweep_marker", study, c.sweep_marker);
   if (const auto p = pixels(camera, "sweep_points", 6, "[column, row, column, row, column, row]")) {
     for (std::size_t k = 0; k < 6; k += 2) c.sweep_points.push_back({(*p)[k], (*p)[k + 1]});
-  }
-  for (const char* key : {"sweep_marker", "sweep_points"}) {
-    if (!c.sweep_images && camera.has(key)) camera.fail(key, "has no meaning without sweep_images");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "misfit/core/shown.h"
+#include "misfit/data/study_parts.h"
 #include "misfit/formula/build.h"
 #include "misfit/formula/program.h"
 #include "misfit/model/declared_parameter.h"
@@ -110,7 +111,7 @@ class FormulaEffectBuilder {
       if (!formula::is_name(name)) declared_.parameters->fail(name, "a name has letters, digits and underscores and is no function");
       if (find_quantity(name) != nullptr || find_constant(name) != nullptr)
         declared_.parameters->fail(name, "the system has a '" + shown(name) + "' already");
-      const config::Section s = *declared_.parameters->table(name);
+      const config::DescribedSection s = study_parts::described(*declared_.parameters, name, "effects.NAME.parameters.NAME");
       const declared::ParameterText text = declared::read_parameter(s);
       CoefficientSpec c;
       c.name = keep(name);
@@ -120,7 +121,7 @@ class FormulaEffectBuilder {
       c.lower = text.lower;
       c.upper = text.upper;
       c.scale = text.scale.value_or(c.value != 0.0 ? std::abs(c.value) : text.sigma.value_or(1.0));
-      c.fixed = !text.free.value_or(true);
+      c.fixed = !text.free;
       c.own_sigma = text.sigma.value_or(0.0);
       c.doc = keep(text.doc.empty() ? "declared in the study" : text.doc);
       measures_.push_back(text.measure);

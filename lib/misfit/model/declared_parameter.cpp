@@ -13,27 +13,21 @@ std::string read_unit(const config::Section& section) {
   return *text;
 }
 
-ParameterText read_parameter(const config::Section& section) {
+ParameterText read_parameter(const config::DescribedSection& section) {
   ParameterText p;
   p.unit = read_unit(section);
   p.measure = formula::measure_of(p.unit);
-  p.doc = section.text("doc").value_or("");
-  const auto number = [&](const char* key) -> std::optional<double> {
-    const auto n = section.number(key, p.unit);
-    return n ? std::optional<double>(n->value) : std::nullopt;
-  };
+  p.doc = *section.text("doc");
   if (const auto bounds = section.numbers("bounds", p.unit)) {
     if (bounds->size() != 2 || !(bounds->front() < bounds->back())) section.fail("bounds", "must be [lower, upper], lower below upper");
     p.lower = bounds->front();
     p.upper = bounds->back();
   }
-  p.value = number("value");
+  p.value = section.value("value", p.unit);
   if (p.value && (*p.value < p.lower || *p.value > p.upper)) section.fail("value", "is outside its bounds");
-  p.free = section.flag("free");
-  p.sigma = number("sigma");
-  p.scale = number("scale");
-  if (p.sigma && !(*p.sigma > 0.0)) section.fail("sigma", "must be positive");
-  if (p.scale && !(*p.scale > 0.0)) section.fail("scale", "must be positive");
+  p.free = *section.flag("free");
+  p.sigma = section.value("sigma", p.unit);
+  p.scale = section.value("scale", p.unit);
   return p;
 }
 

@@ -4,22 +4,22 @@
 #include <optional>
 #include <string>
 
-#include "misfit/core/config.h"
+#include "misfit/core/keys.h"
 #include "misfit/formula/measure.h"
 
 namespace misfit::declared {
 
-/// A parameter as a declaration gives it: { unit, value, bounds, free, sigma, scale, doc }, numbers in SI.
+/// A parameter as a declaration gives it (declared_parameter_keys of study_keys.h), numbers in SI.
 struct ParameterText {
   std::string unit, doc;
   formula::Measure measure;
   std::optional<double> value, sigma, scale;
-  std::optional<bool> free;
+  bool free = true;
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();  ///< none unless given
 };
 
 /// InputError at its place for a missing or unknown unit, bounds that do not increase, a value outside them, a sigma or scale not above 0.
-[[nodiscard]] ParameterText read_parameter(const config::Section& section);
+[[nodiscard]] ParameterText read_parameter(const config::DescribedSection& section);
 
 /// The unit of an entry, which must be there and SI.
 [[nodiscard]] std::string read_unit(const config::Section& section);

@@ -16,7 +16,7 @@ class Roles {
     for (const auto& q : s.quantities) quantities.push_back(q.name);
     for (const auto& p : s.dynamic_ports) ports.push_back(p.name);
     for (const auto& o : s.outputs) outputs.push_back(o.name);
-    if (d_.roles && d_.roles->has("force_ports")) s.force_ports = *d_.roles->texts("force_ports");
+    s.force_ports = d_.roles->texts("force_ports").value_or(s.force_ports);
     for (const auto& port : s.force_ports) check_role("force_ports", port, ports);
     s.roles["port"] = role("port", own_ports > 0 ? ports.front() : s.force_ports.empty() ? ports.front() : s.force_ports.front(), ports);
     const auto& port =
@@ -34,7 +34,7 @@ class Roles {
         throw InputError(d_.where,
                          "[ports] " + p.name + ": rate = '" + shown(p.conjugate) + "' is no quantity" + suggest(p.conjugate, quantities));
     }
-    if (d_.roles) d_.roles->finish();
+    d_.roles->finish();
   }
 
  private:
@@ -44,19 +44,19 @@ class Roles {
     const std::string moving = role("rate", by_default, quantities);
     const int rate = index_of(s.states, moving);
     const int level = rate < 0 ? -1 : s.states[static_cast<std::size_t>(rate)].rate_of;
-    if (level >= 0 || (d_.roles && d_.roles->has("rate"))) s.roles["rate"] = moving;
+    if (level >= 0 || d_.roles->has("rate")) s.roles["rate"] = moving;
     s.roles["level"] = role("level", level < 0 ? moving : s.states[static_cast<std::size_t>(level)].name, quantities);
     if (level >= 0) s.roles["displacement"] = s.roles["level"];
   }
 
   std::string role(const char* name, const std::string& fallback, const std::vector<std::string>& valid) {
-    std::string given = d_.roles ? d_.roles->text(name).value_or(fallback) : fallback;
+    std::string given = d_.roles->text(name).value_or(fallback);
     check_role(name, given, valid);
     return given;
   }
   void check_role(const char* name, const std::string& given, const std::vector<std::string>& valid) {
     if (std::find(valid.begin(), valid.end(), given) == valid.end())
-      throw InputError(d_.roles ? d_.roles->where(name) : d_.where,
+      throw InputError(d_.roles->where(name),
                        std::string("[roles] ") + name + ": there is no '" + shown(given) + "'" + suggest(given, valid));
   }
 

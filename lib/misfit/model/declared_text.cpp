@@ -6,11 +6,13 @@
 
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
+#include "misfit/model/declared_keys.h"
 #include "misfit/model/declared_parameter.h"
 
 namespace misfit::declared {
 namespace {
 
+using config::DescribedSection;
 using config::Section;
 
 class Reader {
@@ -22,17 +24,17 @@ class Reader {
 
   Declaration run() {
     read_head();
-    each("states", true, [&](const Section& s, const std::string& name) { read_state(s, name); });
-    each("inputs", false, [&](const Section& s, const std::string& name) { read_input(s, name); });
-    each("parameters", false, [&](const Section& s, const std::string& name) { read_parameter(s, name); });
-    each("quantities", false, [&](const Section& s, const std::string& name) { read_quantity(s, name); });
-    each("ports", false, [&](const Section& s, const std::string& name) { read_port(s, name); });
+    each("states", true, [&](const DescribedSection& s, const std::string& name) { read_state(s, name); });
+    each("inputs", false, [&](const DescribedSection& s, const std::string& name) { read_input(s, name); });
+    each("parameters", false, [&](const DescribedSection& s, const std::string& name) { read_parameter(s, name); });
+    each("quantities", false, [&](const DescribedSection& s, const std::string& name) { read_quantity(s, name); });
+    each("ports", false, [&](const DescribedSection& s, const std::string& name) { read_port(s, name); });
     link_rates();
     read_equations();
     names_.clear();  // an output may be called as a state or quantity
-    each("outputs", true, [&](const Section& s, const std::string& name) { read_output(s, name); });
-    out_.roles = root_.table("roles");
-    root_.finish();
+    each("outputs", true, [&](const DescribedSection& s, const std::string& name) { read_output(s, name); });
+    out_.roles = described(root_, "roles", "roles");
+    root_.finish(config::sections_of(system_keys()));
     return std::move(out_);
   }
 
@@ -40,16 +42,11 @@ class Reader {
   [[noreturn]] void fail(const std::string& message) const { throw InputError({file_, 0, 0}, message); }
 
   void read_head() {
-    out_.spec.doc = "declared system";
-    const auto head = root_.table("system");
-    if (!head) return;
-    out_.spec.doc = head->text("doc").value_or(out_.spec.doc);
-    out_.spec.source = head->text("source").value_or("");
-    if (const auto rate = head->number("fastest_rate", "1/s")) {
-      if (!(rate->value > 0.0)) head->fail("fastest_rate", "must be above 0");
-      out_.spec.fastest_rate = rate->value;
-    }
-    head->finish();
+    const DescribedSection head = described(root_, "system", "system");
+    out_.spec.doc = *head.text("doc");
+    out_.spec.source = *head.text("source");
+    out_.spec.fastest_rate = head.value("fastest_rate").value_or(0.0);
+    head.finish();
   }
 
   template <class Read>
@@ -65,41 +62,35 @@ class Reader {
       if (!names_.insert(name).second)
         section->fail(name, "the name '" + shown(name) + "' is taken by a state, input, parameter, quantity or port");
       if (!section->is_table(name)) section->fail(name, "a table is expected, as { unit = \"V\" }");
-      const Section entry = *section->table(name);
+      const DescribedSection entry = described(*section, name, std::string(section_name) + ".NAME");
       read(entry, name);
       entry.finish();
     }
     section->finish();
   }
 
-  static double number(const Section& s, const char* key, const std::string& of, double fallback) {
-    const auto n = s.number(key, of);
-    return n ? n->value : fallback;
-  }
-
-  void read_state(const Section& s, const std::string& name) {
+  void read_state(const DescribedSection& s, const std::string& name) {
     StateSpec state;
     state.name = name;
     state.unit = read_unit(s);
-    state.lower = number(s, "min", state.unit, state.lower);
-    state.upper = number(s, "max", state.unit, state.upper);
+    state.lower = s.value("min", state.unit).value_or(state.lower);
+    state.upper = s.value("max", state.unit).value_or(state.upper);
     if (!(state.lower < state.upper)) s.fail("max", "must be above min");
     read_initial(s, state);
-    state.scale = number(s, "scale", state.unit, std::isfinite(state.start) && state.start != 0.0 ? std::abs(state.start) : 1.0);
-    if (!(state.scale > 0.0)) s.fail("scale", "must be positive");
+    state.scale = s.value("scale", state.unit).value_or(std::isfinite(state.start) && state.start != 0.0 ? std::abs(state.start) : 1.0);
     if (state.start < state.lower || state.start > state.upper) s.fail("initial", "is outside min to max");
     rate_of_.push_back(s.text("rate_of").value_or(""));
     rate_of_where_.push_back(s.where("rate_of"));
     out_.spec.states.push_back(state);
   }
 
-  static void read_initial(const Section& s, StateSpec& state) {
+  static void read_initial(const DescribedSection& s, StateSpec& state) {
     if (!s.has("initial")) return;
     if (s.is_table("initial")) {
-      const Section table = *s.table("initial");
-      const std::string kind = table.choice("kind", {"free", "shared", "fixed"}).value_or("free");
+      const DescribedSection table = described(s, "initial", "states.NAME.initial");
+      const std::string kind = *table.choice("kind");
       state.initial = kind == "free" ? Initial::free : kind == "shared" ? Initial::shared : Initial::fixed;
-      state.start = number(table, "value", state.unit, state.start);
+      state.start = table.value("value", state.unit).value_or(state.start);
       if (state.initial == Initial::fixed && !table.has("value")) table.fail("value", "a fixed initial value is missing");
       table.finish();
       return;
@@ -108,21 +99,20 @@ class Reader {
     if (kind == "shared") state.initial = Initial::shared;
     if (kind == "shared" || kind == "free") return;
     state.initial = Initial::fixed;
-    state.start = number(s, "initial", state.unit, 0.0);
+    state.start = s.value("initial", state.unit).value_or(0.0);
   }
 
-  void read_input(const Section& s, const std::string& name) {
+  void read_input(const DescribedSection& s, const std::string& name) {
     InputSpec input;
     input.name = name;
     input.unit = read_unit(s);
-    input.doc = s.text("doc").value_or("");
-    if (s.choice("hold", {"zero_order", "first_order"}).value_or("first_order") == "zero_order") input.hold = Hold::zero_order;
-    input.delay = number(s, "delay", "s", 0.0);
-    if (input.delay < 0.0) s.fail("delay", "must not be negative: the system cannot see what has not happened yet");
+    input.doc = *s.text("doc");
+    if (*s.choice("hold") == "zero_order") input.hold = Hold::zero_order;
+    input.delay = *s.value("delay");
     out_.spec.inputs.push_back(input);
   }
 
-  void read_parameter(const Section& s, const std::string& name) {
+  void read_parameter(const DescribedSection& s, const std::string& name) {
     const ParameterText text = declared::read_parameter(s);
     ConstantSpec p;
     p.name = name;
@@ -132,7 +122,7 @@ class Reader {
     p.upper = text.upper;
     p.required = !text.value;
     p.value = text.value.value_or(0.0);
-    p.free = text.free.value_or(false);
+    p.free = text.free;
     p.prior_sigma = text.sigma.value_or(0.0);
     out_.spec.constants.push_back(p);
   }
@@ -143,21 +133,21 @@ class Reader {
     return {formula::parse({*text, of, s.where_text(key)}), formula::measure_of(unit_text)};
   }
 
-  void read_quantity(const Section& s, const std::string& name) {
+  void read_quantity(const DescribedSection& s, const std::string& name) {
     QuantitySpec q;
     q.name = name;
     q.unit = read_unit(s);
-    q.doc = s.text("doc").value_or("");
+    q.doc = *s.text("doc");
     q.carries_sign = true;
     out_.quantities.push_back(formula_of(s, "formula", "quantity " + name, q.unit));
     out_.spec.quantities.push_back(q);
   }
 
-  void read_port(const Section& s, const std::string& name) {
+  void read_port(const DescribedSection& s, const std::string& name) {
     PortSpec port;
     port.name = name;
     port.unit = read_unit(s);
-    port.doc = s.text("doc").value_or("");
+    port.doc = *s.text("doc");
     port.conjugate = s.text("rate").value_or("");
     out_.spec.dynamic_ports.push_back(port);
   }
@@ -204,11 +194,11 @@ class Reader {
     section->finish();
   }
 
-  void read_output(const Section& s, const std::string& name) {
+  void read_output(const DescribedSection& s, const std::string& name) {
     OutputSpec output;
     output.name = name;
     output.unit = read_unit(s);
-    output.noise = number(s, "noise", output.unit, 0.0);
+    output.noise = s.value("noise", output.unit).value_or(0.0);
     const std::string of = "output " + name;
     out_.outputs.push_back(s.has("formula") ? formula_of(s, "formula", of, output.unit)
                                             : Formula{formula::parse({name, of, s.where()}), formula::measure_of(output.unit)});

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "misfit/core/config.h"
+#include "misfit/core/keys.h"
 #include "misfit/formula/build.h"
 #include "misfit/model/system.h"
 
@@ -25,7 +25,7 @@ struct Declaration {
   std::vector<Formula> equations;   ///< per state
   std::vector<Formula> outputs;
   Source where;  ///< of the file
-  std::optional<config::Section> roles;
+  std::optional<config::DescribedSection> roles;
 };
 
 [[nodiscard]] Declaration read(const std::string& text, const std::string& file, const std::string& key);

@@ -5,6 +5,7 @@
 
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
+#include "misfit/data/study_keys.h"
 #include "misfit/model/experiment.h"
 
 namespace misfit {
@@ -12,24 +13,20 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-constexpr std::array<RigEntry, 9> entries = {{{"R", "m", &RigGeometry::R},
-                                              {"R_cp", "m", &RigGeometry::R_cp},
-                                              {"V", "m/s", &RigGeometry::V},
-                                              {"l_b", "m", &RigGeometry::l_b},
-                                              {"l_s", "m", &RigGeometry::l_s},
-                                              {"l_p", "m", &RigGeometry::l_p},
-                                              {"R1", "m", &RigGeometry::R1},
-                                              {"R2", "m", &RigGeometry::R2},
-                                              {"R3", "m", &RigGeometry::R3}}};
+constexpr std::array<RigEntry, 9> entries = {{{"R", &RigGeometry::R},
+                                              {"R_cp", &RigGeometry::R_cp},
+                                              {"V", &RigGeometry::V},
+                                              {"l_b", &RigGeometry::l_b},
+                                              {"l_s", &RigGeometry::l_s},
+                                              {"l_p", &RigGeometry::l_p},
+                                              {"R1", &RigGeometry::R1},
+                                              {"R2", &RigGeometry::R2},
+                                              {"R3", &RigGeometry::R3}}};
 
-void read_rig(const config::Section& geometry, RigGeometry& rig) {
+void read_rig(const config::Section& section, RigGeometry& rig) {
+  const config::DescribedSection geometry(section, config::group_of(study_keys(), "geometry"));
   for (const auto& entry : entries) {
-    const auto number = geometry.number(entry.name, entry.unit, true);
-    if (!number) continue;
-    if (!(number->value > 0.0))
-      throw InputError(number->where,
-                       std::string(entry.name) + " must be positive, it is " + std::to_string(number->value) + " " + entry.unit);
-    rig.*entry.field = number->value;
+    if (const auto number = geometry.number(entry.name)) rig.*entry.field = number->value;
   }
 }
 
@@ -48,14 +45,9 @@ ParameterRequest read_parameter(const ParameterStudy& study, const std::string& 
   out.where = study.where;
   out.free = study.free;
   if (!study.section) return out;
-  const config::Section& section = *study.section;
-  const auto number = [&](const char* key) -> std::optional<double> {
-    const auto n = section.number(key, unit);
-    return n ? std::optional<double>(n->value) : std::nullopt;
-  };
-  out.value = number("value");
-  out.sigma = number("sigma");
-  if (out.sigma && !(*out.sigma > 0.0)) section.fail("sigma", "must be positive");
+  const config::DescribedSection section(*study.section, config::group_of(study_keys(), "parameters.NAME"));
+  out.value = section.value("value", unit);
+  out.sigma = section.value("sigma", unit);
   if (const auto bounds = section.numbers("bounds", unit)) {
     if (bounds->size() != 2) section.fail("bounds", "must be [lower, upper]");
     out.lower = bounds->front();
@@ -97,21 +89,27 @@ void read_initial(const Study& study, const SystemSpec& spec, ModelRequest& requ
   }
 }
 
-bool is_angle(const SystemSpec& spec, const std::string& quantity) {
+/// Of a quantity or output; empty if the system has neither of that name.
+std::string unit_of(const SystemSpec& spec, const std::string& quantity) {
   for (const auto& q : spec.quantities) {
-    if (q.name == quantity) return parse_unit(q.unit).angle;
+    if (q.name == quantity) return q.unit;
   }
   for (const auto& o : spec.outputs) {
-    if (o.name == quantity) return parse_unit(o.unit).angle;
+    if (o.name == quantity) return o.unit;
   }
-  return false;
+  return "";
 }
 
+/// Knots without a unit of an angle are in degrees.
 void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& request) {
   for (const auto& [name, curve] : study.curves) {
-    CurveRequest out{curve.of, curve.knots.value_or(std::vector<double>{}), curve.roughness, curve.where};
-    if (is_angle(spec, curve.of)) {
-      for (double& knot : out.knots) knot *= degree;
+    CurveRequest out{curve.of, {}, curve.roughness, curve.where};
+    const std::string unit = unit_of(spec, curve.of);
+    const double bare = !unit.empty() && parse_unit(unit).angle ? degree : 1.0;
+    for (const config::Number& knot : curve.knots.value_or(std::vector<config::Number>{})) {
+      if (!unit.empty() && !knot.unit.empty() && !parse_unit(knot.unit).same_dimension(parse_unit(unit)))
+        throw InputError(knot.where, "[curves] " + name + ": knots need [" + unit + "], not [" + knot.unit + "]");
+      out.knots.push_back(knot.unit.empty() ? bare * knot.value : knot.value);
     }
     request.curves[name] = out;
   }

@@ -18,7 +18,6 @@ struct StudyModel {
 /// A length or speed of the rig by its name in [geometry].
 struct RigEntry {
   const char* name;
-  const char* unit;
   double RigGeometry::*field;
 };
 [[nodiscard]] std::span<const RigEntry> rig_entries();

@@ -10,6 +10,7 @@
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/study_keys.h"
 #include "misfit/workflow/uncertainty/uncertainty.h"
 
 namespace misfit {
@@ -92,7 +93,8 @@ void Rig::list_known(Session& session, const Model& model) {
   nominal_.calibration = calibrate_stage(session);
   for (const RigEntry& entry : rig_entries()) {
     const bool used = !of_sweep(entry.name) || session.study.uncertainty->recalibrate;
-    if (used && nominal_.geometry.*entry.field > 0.0) known_[entry.name] = {entry.unit, nominal_.geometry.*entry.field};
+    if (used && nominal_.geometry.*entry.field > 0.0)
+      known_[entry.name] = {config::group_of(study_keys(), "geometry").key(entry.name).unit, nominal_.geometry.*entry.field};
   }
   known_["P_y"] = known_["P_z"] = {"px", 0.0};
   if (!nominal_.calibration) return;

@@ -1,0 +1,104 @@
+#include "apps/help.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "misfit/core/text.h"
+#include "misfit/data/study_keys.h"
+#include "misfit/formula/syntax.h"
+#include "misfit/model/declared_keys.h"
+
+namespace misfit {
+namespace {
+
+constexpr std::size_t columns = 100;
+
+std::string paragraph(const std::string& text, const std::string& indent = "") { return wrap_text(text, columns, indent) + "\n"; }
+
+std::string systems_text(const Registry& registry) {
+  std::string out = "Systems of this program: kind, options and constants for [geometry]\n\n";
+  for (const std::string& key : registry.system_keys()) {
+    const SystemType& type = registry.system(key);
+    const auto system = type.make({});
+    out += key + "\n" + paragraph(system->spec().doc, "  ");
+    if (!type.flags.empty()) out += paragraph(fmt::format("options: {}", fmt::join(type.flags, ", ")), "  ");
+    std::vector<std::vector<std::string>> rows{{"constant", "unit", "default", "meaning"}};
+    for (const ConstantSpec& c : system->spec().constants)
+      rows.push_back({c.name, c.unit, c.required ? "required" : fmt::format("{:g}", c.value), c.doc});
+    if (rows.size() > 1) out += align_columns(rows, "    ");
+    out += "\n";
+  }
+  return out;
+}
+
+std::string study_text(const Registry& registry) {
+  return paragraph(
+             "study.toml is TOML. Numbers are in SI, angles in radians, or texts with a unit: 0.6, \"24 in\", \"3 deg/s\". Files are taken "
+             "from "
+             "the folder of the study. Keys in capitals stand for names that you choose or that the model has. An unknown key is an "
+             "error.") +
+         "\n" + config::key_reference(study_keys(), columns) + systems_text(registry);
+}
+
+std::string system_text() {
+  return paragraph(
+             "A system declared as text (TOML), named by [system] file of a study. misfit init writes one for a table of data; "
+             "models/*.toml are examples.") +
+         "\n" + config::key_reference(declared::system_keys(), columns) +
+         paragraph(fmt::format("Names that formulas reserve: {}.", fmt::join(formula::reserved_names(), ", ")));
+}
+
+std::string effects_text(const Registry& registry) {
+  std::string out = "Effects of this program (misfit effects KEY prints one in full):\n\n";
+  std::size_t width = 0;
+  for (const std::string& key : registry.effect_keys()) width = std::max(width, key.size());
+  for (const std::string& key : registry.effect_keys()) {
+    const std::string lines = wrap_text(registry.effect(key).spec().formula, columns, std::string(width + 4, ' '));
+    out += "  " + key + lines.substr(key.size() + 2) + "\n";
+  }
+  return out;
+}
+
+/// lib/misfit/README.md, 2, in twelve words.
+std::string words_text() {
+  const std::vector<std::pair<const char*, const char*>> words = {
+      {"study", "a folder with study.toml and data: one question put to one or more recordings"},
+      {"system", "the skeleton of a model: states, inputs, outputs, quantities, ports, constants"},
+      {"quantity", "a named function of state and input that effects read, with a unit: alpha_T [rad]"},
+      {"port", "a named place where effects add up: a force, a rate, a quantity, an output"},
+      {"effect", "one physical cause: reads quantities, owns parameters, adds to ports"},
+      {"strength, shape", "kinds of parameter: with all strengths 0 an effect is off; shapes are the rest"},
+      {"curve", "a parameter as a function of a quantity: a cubic spline with a roughness penalty"},
+      {"missing force", "the random force per degree of freedom that would explain the data, estimated by filter_error"},
+      {"drop", "2 log likelihood ratio: by how much an effect improves the fit"},
+      {"candidate", "an effect, or an unknown curve, that the model may lack"},
+      {"alias", "a candidate that imitates what is missing: it explains much, but leaves a curve of its own quantities"},
+      {"ladder, rung", "the sequence of models, each with one effect more; a rung is one of them"}};
+  std::string out;
+  for (const auto& [word, meaning] : words) {
+    const std::string lines = wrap_text(meaning, columns, std::string(19, ' '));
+    out += "  " + std::string(word) + lines.substr(2 + std::string_view(word).size()) + "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string, std::string>>& help_topics() {
+  static const std::vector<std::pair<std::string, std::string>> topics = {
+      {"study", "every key of study.toml: type, unit, default, meaning; systems and their constants"},
+      {"system", "every key of a system declared as text"},
+      {"effects", "the effects, one line each"},
+      {"words", "the words that misfit uses in a sense of its own"}};
+  return topics;
+}
+
+std::string help_text(const std::string& topic, const Registry& registry) {
+  if (topic == "study") return study_text(registry);
+  if (topic == "system") return system_text();
+  if (topic == "effects") return effects_text(registry);
+  return words_text();
+}
+
+}  // namespace misfit
