@@ -70,7 +70,8 @@ ModelRequest with_system_only(const ModelRequest& model, const std::string& kind
   with.system = kind;
   with.options = options;
   with.constants.clear();  // the new system may ask for others; assemble() of the new study says so
-  for (const auto& constant : type.make(options)->spec().constants) {
+  const SystemSpec spec = type.make(options)->spec();
+  for (const auto& constant : spec.constants) {
     const auto given = model.constants.find(constant.name);
     with.constants[constant.name] = given != model.constants.end() ? given->second : std::max(constant.value, constant.lower);
   }
