@@ -31,7 +31,7 @@ struct SessionOptions {
   std::optional<unsigned long> seed = {};  ///< instead of the study's
   long runs = 0;                           ///< of the Monte Carlo; 0: as the study says
   bool force = false;                      ///< write over files that misfit did not make
-  std::string command = {};                ///< what run.json names as the command that made a result
+  std::string command = "C++";             ///< what run.json and the report name as the command that made a result
   Listener listener = {};
 };
 
