@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -42,10 +43,13 @@ struct Column {
   Align align = Align::left;
 };
 
+/// From their headings, parted by '|'; those that begin with '>' are aligned to the right: "effect|>drop|accepted".
+[[nodiscard]] std::vector<Column> columns(std::string_view headings);
+
 /// A value stands with its unit in its cell, or the heading has the unit.
 struct TableBlock {
-  std::vector<Column> columns;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<Column> columns = {};
+  std::vector<std::vector<std::string>> rows = {};
   Excerpt excerpt = {};
 };
 
