@@ -100,6 +100,11 @@ std::string as_sentence(std::string text) {
   return text.ends_with('.') || text.ends_with('!') || text.ends_with('?') ? text : text + ".";
 }
 
+std::vector<std::string> as_sentences(std::vector<std::string> texts) {
+  for (std::string& text : texts) text = as_sentence(text);
+  return texts;
+}
+
 std::string as_text(const Blocks& blocks) {
   TextWriter writer;
   for (const Block& block : blocks.all()) std::visit(writer, block);

@@ -80,6 +80,7 @@ class Blocks {
 
 /// "A sentence." from "a sentence": with a capital letter and a full stop. A first word with '_', a name of a study, stays as it is.
 [[nodiscard]] std::string as_sentence(std::string text);
+[[nodiscard]] std::vector<std::string> as_sentences(std::vector<std::string> texts);
 
 /// For a terminal: paragraphs wrapped at 110 characters, columns aligned, warnings led by "! ".
 [[nodiscard]] std::string as_text(const Blocks& blocks);

@@ -84,7 +84,7 @@ Blocks blocks_of(const SimulatedMotion& motion) {
       fmt::format("Random motion cannot be matched sample by sample: a correct model must reproduce its statistics. {} runs of the "
                   "model fitted by {}; a small p means that it does not reproduce that group of statistics.",
                   motion.runs, motion.method));
-  out.list({motion.sentences});
+  out.list({as_sentences(motion.sentences)});
   out.figures("statistics");
   TableBlock table{columns("series|statistic|measured|simulated, 95 %||>p of the group")};
   for (const MotionSeries& s : motion.series) {
@@ -100,11 +100,11 @@ Blocks blocks_of(const Comparison& c) {
   out.heading("Comparison of methods");
   out.table(method_table(c));
   std::vector<std::string> trims, parameters;
-  for (const TrimDifference& d : c.trims) trims.push_back(as_sentence(d.sentence));
+  for (const TrimDifference& d : c.trims) trims.push_back(d.sentence);
   for (const ParameterDifference& d : c.parameters) {
     if (!d.sentence.empty()) parameters.push_back(d.sentence);  // begins with the parameter's name
   }
-  out.list({trims});
+  out.list({as_sentences(trims)});
   out.warnings(parameters);
   out.append(curve_difference_blocks(c));
   if (c.motion) out.append(blocks_of(*c.motion));

@@ -12,11 +12,6 @@
 namespace misfit {
 namespace {
 
-std::vector<std::string> as_sentences(std::vector<std::string> all) {
-  for (std::string& sentence : all) sentence = as_sentence(sentence);
-  return all;
-}
-
 /// The place where a map is largest in its own sigmas.
 std::string largest(const ForceMap& map) {
   std::size_t best = map.x.size();
@@ -144,7 +139,7 @@ std::string drop_sentence(const Rung& rung) {
   std::string out =
       fmt::format("Drop: {} predicted, {:.1f} actual for {} parameter{}", rung.predicted_drop ? shown_drop(rung.predicted_drop) : "none",
                   *rung.actual_drop, rung.parameters.size(), rung.parameters.size() == 1 ? "" : "s");
-  return out + (rung.held_out_gain ? fmt::format("; gain of the held-out log-likelihood: {:+.1f}.", *rung.held_out_gain)
+  return out + (rung.held_out_gain ? "; gain of the held-out log-likelihood: " + shown_gain(rung.held_out_gain) + "."
                                    : "; no validation data: set validation = \"last 25 %\".");
 }
 
@@ -193,13 +188,13 @@ Blocks blocks_of(const Discovery& d) {
   out.list({as_sentences(d.sentences)});
   out.figures("candidates");
   out.table(candidate_table(d));
+  if (!d.force.empty()) out.paragraph("Random force of this model: " + force_text(d.force) + ".");
   std::vector<std::string> why;
   for (const Candidate& c : d.candidates) {
     if (!c.why.empty()) why.push_back(effect_at(c.effect, c.roles) + ": " + c.why);
   }
   if (!why.empty()) out.subheading("Reasons");
   out.list({why, Tone::plain, {5, "candidates.json"}});
-  if (!d.force.empty()) out.paragraph("Random force of this model: " + force_text(d.force) + ".");
   if (!d.tried.empty()) out.subheading("Effect families tested");
   out.list({d.tried, Tone::plain, {0, "discovery.json"}});
   return out;

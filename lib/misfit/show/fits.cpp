@@ -51,13 +51,16 @@ Blocks blocks_of(const Fit& fit) {
 }  // namespace
 
 TableBlock parameter_table(const Fit& fit) {
-  std::vector<Row> rows;
+  std::vector<Row> others;
+  TableBlock table{columns("parameter|value")};
   for (const auto& [name, estimate] : fit.parameters) {
-    if (!is_curve_coefficient(name)) rows.emplace_back(name, estimate);
+    if (!is_curve_coefficient(name)) table.rows.push_back({name, shown(estimate) + (estimate.sigma > 0.0 ? "" : " (sigma not available)")});
   }
-  add_rows(rows, "noise of ", fit.noise);
-  add_rows(rows, "random force, ", fit.force);
-  return rows_table("parameter", rows);
+  add_rows(others, "noise of ", fit.noise);
+  add_rows(others, "random force, ", fit.force);
+  const TableBlock more = rows_table("", others);
+  table.rows.insert(table.rows.end(), more.rows.begin(), more.rows.end());
+  return table;
 }
 
 Blocks status_blocks(const std::vector<Fit>& fits) {

@@ -56,7 +56,9 @@ std::string shown_drop(const std::optional<double>& value) {
 }
 
 std::string shown_gain(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? fmt::format("{:+.1f}", *value) : kMissing;
+  if (!value || !std::isfinite(*value)) return kMissing;
+  constexpr double shown_as_zero = 0.05;
+  return std::abs(*value) < shown_as_zero ? "0.0" : fmt::format("{:+.1f}", *value);
 }
 
 }  // namespace misfit
