@@ -108,8 +108,8 @@ TEST(CompareMotion, LargerMotionIsNamed) {
   conclude_motion(motion);
   EXPECT_DOUBLE_EQ(motion.p_value, 0.01);
   EXPECT_THAT(motion.sentences.front(),
-              testing::StartsWith("the fitted model does not reproduce the statistics of the measured motion: p 0.01"));
-  EXPECT_THAT(motion.sentences, testing::Contains(testing::StartsWith("the distribution of x (flight): p 0.01")));
+              testing::StartsWith("the fitted model does not reproduce the statistics of the measured motion: p = 0.01"));
+  EXPECT_THAT(motion.sentences, testing::Contains(testing::StartsWith("the distribution of x (flight): p = 0.01")));
 }
 
 /// By exchange of the measured motion with any simulated one, P(p ≤ 0.1) is at most 0.1: of 150 trials 15 are expected, 27 is three sigma.
@@ -150,7 +150,7 @@ SimulatedMotion two_experiments(unsigned seed, double departs, std::size_t runs,
 TEST(CompareMotion, OneOfTwoExperimentsThatDepartsIsNamed) {
   const SimulatedMotion motion = two_experiments(500, 1.6, 99, 1500);
   EXPECT_DOUBLE_EQ(motion.p_value, 0.01) << "the calm one does not dilute it";
-  EXPECT_THAT(motion.sentences, testing::Contains(testing::StartsWith("the distribution of x (wild): p 0.01")));
+  EXPECT_THAT(motion.sentences, testing::Contains(testing::StartsWith("the distribution of x (wild): p = 0.01")));
   EXPECT_THAT(motion.sentences, testing::Not(testing::Contains(testing::HasSubstr("(calm)"))));
 }
 

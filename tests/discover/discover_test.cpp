@@ -146,7 +146,7 @@ TEST(Verdict, SignificantPhysicsThatWasRefusedIsNotTheCamerasAlone) {
   weaker.candidates[1].p_value = 0.05;
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
-  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight gives evidence of unknown:moment(phi) (family-wise p 0.005)"));
+  EXPECT_THAT(d.verdict, testing::HasSubstr("the flight gives evidence of unknown:moment(phi) (family-wise p = 0.005)"));
   add_camera_remarks(&calibration, 0.01, weaker);
   EXPECT_THAT(weaker.verdict, testing::StartsWith("The camera model is incomplete"));
 }

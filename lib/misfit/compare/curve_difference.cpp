@@ -16,7 +16,7 @@ double finite_or_zero(double sigma) { return std::isfinite(sigma) ? sigma : 0.0;
 std::optional<CurveValue> visited_point(const CurveEstimate& curve, double x) {
   const auto above = std::lower_bound(curve.x.begin(), curve.x.end(), x);
   if (above == curve.x.end()) return std::nullopt;
-  const auto k = static_cast<std::size_t>(above - curve.x.begin());
+  const std::size_t k = above - curve.x.begin();
   if (!visited(curve, k)) return std::nullopt;
   if (curve.x[k] == x) return CurveValue{x, curve.value[k], finite_or_zero(curve.sigma[k])};
   if (k == 0 || !visited(curve, k - 1)) return std::nullopt;

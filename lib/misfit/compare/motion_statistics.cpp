@@ -180,7 +180,7 @@ MotionScales scales_of(const MotionPath& measured, double step) {
   const std::size_t samples = measured.values.size(), longest = std::max<std::size_t>(samples / 6, 2);
   const std::vector<double> r = autocovariance(measured.values, longest);
   const auto crossing = std::find_if(r.begin(), r.end(), [](double v) { return v <= 0.0; });
-  const auto quarter = std::max<std::size_t>(static_cast<std::size_t>(crossing - r.begin()), 1);
+  const auto quarter = std::max<std::size_t>(crossing - r.begin(), 1);
   out.period = std::max<std::size_t>(4 * quarter, 2);
   const std::size_t most = std::clamp<std::size_t>(3 * out.period, 2, longest);
   constexpr std::size_t points = 30;
@@ -250,23 +250,22 @@ void conclude_motion(SimulatedMotion& motion) {
     for (const MotionGroup& g : s.groups) {
       ++groups;
       numbers += g.numbers.size();
-      outside +=
-          static_cast<std::size_t>(std::count_if(g.numbers.begin(), g.numbers.end(), [](const MotionNumber& n) { return n.outside; }));
+      outside += std::count_if(g.numbers.begin(), g.numbers.end(), [](const MotionNumber& n) { return n.outside; });
       if (g.p_value <= clear)
-        departing.push_back(fmt::format("the {} of {} ({}): p {:.2g}; {}", g.name, s.name, s.experiment, g.p_value, worst_of(g)));
+        departing.push_back(fmt::format("the {} of {} ({}): {}; {}", g.name, s.name, s.experiment, p_equals(g.p_value), worst_of(g)));
     }
   }
   if (groups == 0) return;
   if (motion.p_value <= clear) {
     motion.sentences.push_back(
-        fmt::format("the fitted model does not reproduce the statistics of the measured motion: p {:.2g} over {} groups of statistics of "
-                    "{} simulated motions",
-                    motion.p_value, groups, motion.runs));
+        fmt::format("the fitted model does not reproduce the statistics of the measured motion: {} over {} groups of statistics of {} "
+                    "simulated motions",
+                    p_equals(motion.p_value), groups, motion.runs));
     motion.sentences.insert(motion.sentences.end(), departing.begin(), departing.end());
   } else {
     motion.sentences.push_back(
-        fmt::format("the fitted model reproduces the statistics of the measured motion: p {:.2g} over {} groups of statistics",
-                    motion.p_value, groups));
+        fmt::format("the fitted model reproduces the statistics of the measured motion: {} over {} groups of statistics",
+                    p_equals(motion.p_value), groups));
   }
   motion.sentences.push_back(
       fmt::format("{} of {} statistics lie outside the 95 % band of the simulated motions; about {:.0f} would by chance", outside, numbers,

@@ -59,7 +59,7 @@ std::optional<Signals> noisy_run(const StochasticModel& model, const Signals& li
   std::mt19937_64 random(sequence);
   std::normal_distribution<double> normal;
   std::vector<double> start = x0;
-  const auto own = static_cast<std::size_t>(model.model->system_states());
+  const std::size_t own = model.model->system_states();
   for (std::size_t i = 0; i < model.start_sigma.size(); ++i) start[own + i] += model.start_sigma[i] * normal(random);
   Stepper stepper(*model.model);
   Segment run;

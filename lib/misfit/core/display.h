@@ -13,6 +13,9 @@ namespace misfit {
 /// The same as a field of a CSV: the shortest text that reads back exactly; empty where it is not finite.
 [[nodiscard]] std::string display_field(double value, const std::string& si);
 
+/// "12.3 deg" of "12.3" and "rad": a number in display_unit(si) with that unit behind; a pure number ("-" or "") has none.
+[[nodiscard]] std::string with_display_unit(const std::string& number, const std::string& si);
+
 /// A number for a sentence, in the unit people like to read: "12.30 ± 0.21 deg" for 0.2147 ± 0.0037 rad; a pure number ("-" or "") without
 /// one. sigma 0: not estimated, the number alone. InputError: `si` is no unit.
 [[nodiscard]] std::string in_display_unit(double value, const std::string& si, double sigma = 0.0);

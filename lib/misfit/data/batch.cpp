@@ -7,36 +7,25 @@
 #include "misfit/data/json_fields.h"
 
 namespace misfit {
+
 template <class Archive>
 void fields(Archive& json, MaybeConst<BatchRow> auto& row) {
-  json("study", row.study);
-  json("path", row.path);
-  json("folder", row.folder);
-  json("method", row.method);
-  json("status", row.status);
-  json("message", row.message);
-  json("values", row.values);
-  json("rms", row.rms);
+  json("study", row.study), json("path", row.path), json("folder", row.folder), json("method", row.method);
+  json("status", row.status), json("message", row.message), json("values", row.values), json("rms", row.rms);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<BatchSummary> auto& s) {
   const double factor = json.factor("unit", s.unit);
-  json("method", s.method);
-  json("name", s.name);
-  json("unit", DisplayUnit(s.unit));
-  json("studies", s.count);
-  json("mean", Scaled(s.mean, factor));
-  json("mean_sigma", Sigma(s.mean_sigma, factor));
-  json("scatter", Scaled(s.scatter, factor));
-  json("own_sigma", Sigma(s.own_sigma, factor));
+  json("method", s.method), json("name", s.name), json("unit", DisplayUnit(s.unit)), json("studies", s.count);
+  json("mean", Scaled(s.mean, factor)), json("mean_sigma", Sigma(s.mean_sigma, factor));
+  json("scatter", Scaled(s.scatter, factor)), json("own_sigma", Sigma(s.own_sigma, factor));
   json("p_value", s.p_value);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<Batch> auto& batch) {
-  json("studies", batch.rows);
-  json("summary", batch.summary);
+  json("studies", batch.rows), json("summary", batch.summary);
 }
 
 namespace {

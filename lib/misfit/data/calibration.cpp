@@ -16,7 +16,7 @@ constexpr std::array<const char*, 2> model_names = {"plane_by_plane", "pinhole"}
 
 std::size_t parameter_index(const std::string& name) {
   const auto found = std::find(camera_parameter_names.begin(), camera_parameter_names.end(), name);
-  if (found != camera_parameter_names.end()) return static_cast<std::size_t>(found - camera_parameter_names.begin());
+  if (found != camera_parameter_names.end()) return found - camera_parameter_names.begin();
   throw InputError("'" + name + "' is not a camera parameter" +
                    suggest(name, {camera_parameter_names.begin(), camera_parameter_names.end()}));
 }
@@ -35,23 +35,15 @@ void check(const Calibration& c) {
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<CameraTest> auto& test) {
-  json("parameters", test.parameters);
-  json("values", test.values);
-  json("sigmas", test.sigmas);
-  json("drop", test.drop);
-  json("p_value", test.p_value);
-  json("taken_in", test.selected);
+  json("parameters", test.parameters), json("values", test.values), json("sigmas", test.sigmas);
+  json("drop", test.drop), json("p_value", test.p_value), json("taken_in", test.selected);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<CalibrationResidual> auto& r) {
   std::string coordinate(1, r.coordinate);
-  json("point", r.point);
-  json("coordinate", coordinate);
-  json("theta", r.theta);
-  json("measured", r.measured);
-  json("predicted", r.predicted);
-  json("used", r.used);
+  json("point", r.point), json("coordinate", coordinate), json("theta", r.theta), json("measured", r.measured);
+  json("predicted", r.predicted), json("used", r.used);
   if constexpr (Archive::reading) {
     if (coordinate != "y" && coordinate != "z") throw InputError("coordinate is '" + coordinate + "': 'y' or 'z'");
     r.coordinate = coordinate.front();
@@ -68,16 +60,9 @@ void fields(Archive& json, MaybeConst<Calibration> auto& c) {
     json(name, e);
     if constexpr (Archive::reading) *camera_entries(c.camera)[i] = e.value;
   }
-  json("names", c.names);
-  json("covariance", c.covariance);
-  json("sigma_px", c.sigma_px);
-  json("rms_px", c.rms_px);
-  json("outliers", c.outliers);
-  json("converged", c.converged);
-  json("message", c.message);
-  json.named("tests", c.tests, &CameraTest::name, own_fields);
-  json("residuals", c.residuals);
-  json("notes", c.notes);
+  json("names", c.names), json("covariance", c.covariance), json("sigma_px", c.sigma_px), json("rms_px", c.rms_px);
+  json("outliers", c.outliers), json("converged", c.converged), json("message", c.message);
+  json("tests", Named(c.tests, &CameraTest::name)), json("residuals", c.residuals), json("notes", c.notes);
   if constexpr (Archive::reading) check(c);
 }
 
@@ -87,7 +72,7 @@ double Calibration::sigma(const std::string& name) const {
   static_cast<void>(parameter_index(name));
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) return 0.0;
-  const auto i = static_cast<Eigen::Index>(found - names.begin());
+  const Eigen::Index i = found - names.begin();
   return std::sqrt(covariance(i, i));
 }
 

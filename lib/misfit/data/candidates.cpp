@@ -3,36 +3,21 @@
 #include "misfit/data/json_fields.h"
 
 namespace misfit {
+
 /// The keys that other programs rely on first, then what this program knows beside them.
 template <class Archive>
 void fields(Archive& json, MaybeConst<Candidate> auto& c) {
-  json("rank", c.rank);
-  json("effect", c.effect);
-  json("ports", c.ports);
-  json("score", c.score);
-  json("predicted_drop", c.predicted_drop);
-  json("actual_drop", c.actual_drop);
-  json("held_out_gain", c.held_out_gain);
-  json("p_value", c.p_value);
-  json("group", c.group);
-  json("accepted", c.accepted);
-  json("why", c.why);
-  json("parameters", c.parameters);
-  json("family", c.family);
-  json("roles", c.roles);
-  json("dof", c.dof);
-  json("described", c.described);
-  json("force", c.force);
+  json("rank", c.rank), json("effect", c.effect), json("ports", c.ports), json("score", c.score);
+  json("predicted_drop", c.predicted_drop), json("actual_drop", c.actual_drop);
+  json("held_out_gain", c.held_out_gain), json("p_value", c.p_value), json("group", c.group);
+  json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters), json("family", c.family);
+  json("roles", c.roles), json("dof", c.dof), json("described", c.described), json("force", c.force);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<Discovery> auto& d) {
-  json("verdict", d.verdict);
-  json("sentences", d.sentences);
-  json("tried", d.tried);
-  json("force", d.force);
-  json("sweep_asks", d.sweep_asks);
-  json("seconds", d.seconds);
+  json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("force", d.force);
+  json("sweep_asks", d.sweep_asks), json("seconds", d.seconds);
 }
 
 std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles) {

@@ -26,77 +26,43 @@ struct MissingForceTable {
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<WhitenessReport> auto& w) {
-  json("experiment", w.experiment);
-  json("channel", w.channel);
-  json("lags", w.lags);
-  json("ljung_box", w.ljung_box);
-  json("ljung_box_p", w.ljung_box_p);
-  json("periodogram_p", w.periodogram_p);
-  json("peak_frequency", w.peak_frequency);
-  json("peak_power", w.peak_power);
-  json("peak_p", w.peak_p);
-  json("band", w.band);
-  json("autocorrelation", w.autocorrelation);
-  json("frequency", w.frequency);
+  json("experiment", w.experiment), json("channel", w.channel), json("lags", w.lags), json("ljung_box", w.ljung_box);
+  json("ljung_box_p", w.ljung_box_p), json("periodogram_p", w.periodogram_p);
+  json("peak_frequency", w.peak_frequency), json("peak_power", w.peak_power), json("peak_p", w.peak_p);
+  json("band", w.band), json("autocorrelation", w.autocorrelation), json("frequency", w.frequency);
   json("power", w.power);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<ForceMap> auto& m) {
-  json("port", m.port);
-  json("port_unit", m.port_unit);
-  json("quantity", m.quantity);
-  json("quantity_unit", m.quantity_unit);
-  json("chi2", m.chi2);
-  json("dof", m.dof);
-  json("p_value", m.p_value);
-  json("p_corrected", m.p_corrected);
-  json("sentence", m.sentence);
-  json("x", m.x);
-  json("amplitude", m.amplitude);
-  json("sigma", m.sigma);
-  json("count", m.count);
+  json("port", m.port), json("port_unit", m.port_unit), json("quantity", m.quantity);
+  json("quantity_unit", m.quantity_unit), json("chi2", m.chi2), json("dof", m.dof), json("p_value", m.p_value);
+  json("p_corrected", m.p_corrected), json("sentence", m.sentence), json("x", m.x), json("amplitude", m.amplitude);
+  json("sigma", m.sigma), json("count", m.count);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<PairMap> auto& m) {
-  json("port", m.port);
-  json("port_unit", m.port_unit);
-  json("quantity_x", m.quantity_x);
-  json("unit_x", m.unit_x);
-  json("quantity_y", m.quantity_y);
-  json("unit_y", m.unit_y);
-  json("chi2", m.chi2);
-  json("dof", m.dof);
-  json("p_value", m.p_value);
-  json("p_corrected", m.p_corrected);
-  json("x", m.x);
-  json("y", m.y);
-  json("amplitude", m.amplitude);
-  json("sigma", m.sigma);
+  json("port", m.port), json("port_unit", m.port_unit), json("quantity_x", m.quantity_x), json("unit_x", m.unit_x);
+  json("quantity_y", m.quantity_y), json("unit_y", m.unit_y), json("chi2", m.chi2), json("dof", m.dof);
+  json("p_value", m.p_value), json("p_corrected", m.p_corrected), json("x", m.x), json("y", m.y);
+  json("amplitude", m.amplitude), json("sigma", m.sigma);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<NisSeries> auto& n) {
-  json("experiment", n.experiment);
-  json("lower", n.lower);
-  json("upper", n.upper);
-  json("outside", n.outside);
-  json("t", n.t);
-  json("nis", n.nis);
+  json("experiment", n.experiment), json("lower", n.lower), json("upper", n.upper), json("outside", n.outside);
+  json("t", n.t), json("nis", n.nis);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<NamedColumn> auto& column) {
-  json("name", column.name);
-  json("unit", column.unit);
+  json("name", column.name), json("unit", column.unit);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<MissingForceTable> auto& table) {
-  json("experiment", table.experiment);
-  json("file", table.file);
-  json("ports", table.ports);
+  json("experiment", table.experiment), json("file", table.file), json("ports", table.ports);
   json("quantities", table.quantities);
 }
 
@@ -156,14 +122,8 @@ MissingForce read_missing(const fs::path& dir, const MissingForceTable& stored) 
 template <class Archive>
 void fields(Archive& json, MaybeConst<StoredDiagnosis> auto& stored) {
   auto& d = stored.diagnosis;
-  json("method", d.method);
-  json("sentences", d.sentences);
-  json("maps", d.maps);
-  json("pairs", d.pairs);
-  json("whiteness", d.whiteness);
-  json("nis", d.nis);
-  json("missing", stored.missing);
-  json("seconds", d.seconds);
+  json("method", d.method), json("sentences", d.sentences), json("maps", d.maps), json("pairs", d.pairs);
+  json("whiteness", d.whiteness), json("nis", d.nis), json("missing", stored.missing), json("seconds", d.seconds);
 }
 
 void write_diagnosis(const fs::path& dir, const Diagnosis& diagnosis) {

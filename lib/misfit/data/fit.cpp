@@ -8,17 +8,28 @@ namespace {
 
 constexpr const char* trim_key = "trim";  // in Fit::plain_sigmas
 
-/// The sigma of parameter `of` had the residuals been white, where it is distinguished; stored in `unit`.
-template <class Archive, class AnyFit>
-void plain_sigma(Archive& json, AnyFit& fit, const std::string& of, double unit) {
-  std::optional<double> stored;
-  if constexpr (!Archive::reading) {
-    const auto found = fit.plain_sigmas.find(of);
-    if (found != fit.plain_sigmas.end()) stored = found->second > 0.0 ? found->second / unit : std::numeric_limits<double>::quiet_NaN();
-  }
-  json.if_there("plain_sigma", stored);
-  if constexpr (Archive::reading) {
-    if (stored) fit.plain_sigmas[of] = *stored * unit;
+/// A parameter with its sigma had the residuals been white, where it is distinguished.
+struct StoredParameter {
+  Estimate estimate;
+  std::optional<double> plain_sigma;
+};
+
+std::optional<double> plain_sigma_of(const Fit& fit, const std::string& name, double unit = 1.0) {
+  const auto found = fit.plain_sigmas.find(name);
+  if (found == fit.plain_sigmas.end()) return std::nullopt;
+  return found->second > 0.0 ? found->second / unit : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::map<std::string, StoredParameter> stored_parameters(const Fit& fit) {
+  std::map<std::string, StoredParameter> out;
+  for (const auto& [name, estimate] : fit.parameters) out[name] = {estimate, plain_sigma_of(fit, name)};
+  return out;
+}
+
+void restore_parameters(const std::map<std::string, StoredParameter>& stored, Fit& fit) {
+  for (const auto& [name, parameter] : stored) {
+    fit.parameters[name] = parameter.estimate;
+    if (parameter.plain_sigma) fit.plain_sigmas[name] = *parameter.plain_sigma;
   }
 }
 
@@ -49,55 +60,46 @@ Json curves_to_json(const std::vector<CurveEstimate>& curves) {
 /// Without the points, which are in a table beside.
 template <class Archive>
 void fields(Archive& json, MaybeConst<CurveEstimate> auto& curve) {
-  json("name", curve.name);
-  json("of", curve.of);
-  json("of_unit", curve.of_unit);
-  json("unit", curve.unit);
-  json("informative", curve.informative);
-  json("trimmed", curve.trimmed);
-  json("why", curve.why);
+  json("name", curve.name), json("of", curve.of), json("of_unit", curve.of_unit), json("unit", curve.unit);
+  json("informative", curve.informative), json("trimmed", curve.trimmed), json("why", curve.why);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<StoredParameter> auto& p) {
+  fields(json, p.estimate);
+  json.if_there("plain_sigma", p.plain_sigma);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<ChannelPrediction> auto& p) {
-  json("experiment", p.experiment);
-  json("channel", p.channel);
-  json("unit", p.unit);
+  json("experiment", p.experiment), json("channel", p.channel), json("unit", p.unit);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<Fit> auto& fit) {
-  json("method", fit.method);
-  json("status", NameOf(fit.status, fit_status_names));
-  json("message", fit.message);
-  json("warnings", fit.warnings);
-  json("driven", fit.driven);
-  json.named("parameters", fit.parameters, [&](auto& object, const std::string& name, auto& estimate) {
-    fields(object, estimate);
-    plain_sigma(object, fit, name, 1.0);
-  });
-  json("noise", fit.noise);
-  json("force", fit.force);
-  json("loglik", fit.loglik);
+  std::map<std::string, StoredParameter> parameters = stored_parameters(fit);
+  std::optional<double> plain_sigma = plain_sigma_of(fit, trim_key, degree);
+  json("method", fit.method), json("status", NameOf(fit.status, fit_status_names)), json("message", fit.message);
+  json("warnings", fit.warnings), json("driven", fit.driven), json("parameters", parameters);
+  json("noise", fit.noise), json("force", fit.force), json("loglik", fit.loglik);
   json("validation_loglik", fit.validation_loglik);
-  json.object("trim_deg", fit.trim, [&](auto& object, auto& trim) {
-    trim_fields(object, trim);
-    plain_sigma(object, fit, trim_key, degree);
-    interval_in_degrees(object, trim);
-  });
-  json("rms", fit.rms);
-  json("validation_rms", fit.validation_rms);
-  json("seconds", fit.seconds);
-  json("linearisations", fit.linearisations);
-  json("facts", fit.facts);
+  json("trim_deg", Formed(fit.trim, [&](auto& object, auto& trim) {
+         trim_fields(object, trim);
+         object.if_there("plain_sigma", plain_sigma);
+         interval_in_degrees(object, trim);
+       }));
+  json("rms", fit.rms), json("validation_rms", fit.validation_rms), json("seconds", fit.seconds);
+  json("linearisations", fit.linearisations), json("facts", fit.facts);
   if constexpr (Archive::reading) {
     json("curves", fit.curves);
   } else {
     json("curves", curves_to_json(fit.curves));
   }
-  json("predictions", fit.predictions);
-  json("names", fit.names);
-  json("covariance", fit.covariance);
+  json("predictions", fit.predictions), json("names", fit.names), json("covariance", fit.covariance);
+  if constexpr (Archive::reading) {
+    restore_parameters(parameters, fit);
+    if (plain_sigma) fit.plain_sigmas[trim_key] = *plain_sigma * degree;
+  }
 }
 
 std::string to_string(FitStatus status) { return fit_status_names.at(static_cast<std::size_t>(status)); }

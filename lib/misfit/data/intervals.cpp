@@ -7,62 +7,33 @@
 #include "misfit/data/json_fields.h"
 
 namespace misfit {
+
 template <class Archive>
 void fields(Archive& json, MaybeConst<BootstrapNumber> auto& n) {
-  json("name", n.name);
-  json("unit", n.unit);
-  json("value", n.value);
-  json("fit_sigma", Sigma(n.fit_sigma));
-  json("mean", n.mean);
-  json("sigma", n.sigma);
-  json("interval_95", std::tie(n.lower, n.upper));
-  json("runs", n.runs);
+  json("name", n.name), json("unit", n.unit), json("value", n.value), json("fit_sigma", Sigma(n.fit_sigma));
+  json("mean", n.mean), json("sigma", n.sigma), json("interval_95", std::tie(n.lower, n.upper)), json("runs", n.runs);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<BootstrapCurve> auto& c) {
-  json("name", c.name);
-  json("of", c.of);
-  json("of_unit", c.of_unit);
-  json("unit", c.unit);
-  json("x", c.x);
-  json("value", c.value);
-  json("fit_sigma", c.fit_sigma);
-  json("mean", c.mean);
-  json("sigma", c.sigma);
-  json("lower_95", c.lower);
-  json("upper_95", c.upper);
-  json("count", c.count);
+  json("name", c.name), json("of", c.of), json("of_unit", c.of_unit), json("unit", c.unit), json("x", c.x);
+  json("value", c.value), json("fit_sigma", c.fit_sigma), json("mean", c.mean), json("sigma", c.sigma);
+  json("lower_95", c.lower), json("upper_95", c.upper), json("count", c.count);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<Bootstrap> auto& b) {
-  json("method", b.method);
-  json("how", b.how);
-  json("block_samples", b.block);
-  json("runs", b.runs);
-  json("failed", b.failed);
-  json("seed", b.seed);
-  json("failures", b.failures);
-  json("notes", b.notes);
-  json("numbers", b.numbers);
-  json("curves", b.curves);
+  json("method", b.method), json("how", b.how), json("block_samples", b.block), json("runs", b.runs);
+  json("failed", b.failed), json("seed", b.seed), json("failures", b.failures), json("notes", b.notes);
+  json("numbers", b.numbers), json("curves", b.curves);
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<LikelihoodProfile> auto& p) {
-  json("method", p.method);
-  json("parameter", p.parameter);
-  json("unit", p.unit);
-  json("best", p.best);
-  json("sigma", Sigma(p.sigma));
-  json("plain_sigma", Sigma(p.plain_sigma));
-  json("scale", p.scale);
-  json("interval_95", std::tie(p.lower, p.upper));
-  json("interval_found", std::tie(p.lower_found, p.upper_found));
-  json("value", p.value);
-  json("drop", p.drop);
-  json("words", p.words);
+  json("method", p.method), json("parameter", p.parameter), json("unit", p.unit), json("best", p.best);
+  json("sigma", Sigma(p.sigma)), json("plain_sigma", Sigma(p.plain_sigma)), json("scale", p.scale);
+  json("interval_95", std::tie(p.lower, p.upper)), json("interval_found", std::tie(p.lower_found, p.upper_found));
+  json("value", p.value), json("drop", p.drop), json("words", p.words);
 }
 
 namespace {

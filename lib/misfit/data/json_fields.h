@@ -91,41 +91,49 @@ struct NameOf {
   const std::array<const char*, N>& names;
 };
 
-/// The fields of a struct as `fields()` beside it has them; to be replaced where a struct is stored in several forms.
+/// The fields of a struct as `fields()` beside it has them.
 inline constexpr auto own_fields = [](auto& json, auto& data) { fields(json, data); };
+
+/// A struct, or every struct of a vector, map or optional, whose fields are described by form(json, data) instead.
+template <class Data, class Form>
+struct Formed {
+  Formed(Data& data_, Form form_) : data(data_), form(form_) {}
+  Data& data;
+  Form form;
+};
+
+/// A vector of structs stored as {NAME: object, …}, the names being their members `name`.
+template <class Structs, class Struct, class Form = decltype(own_fields)>
+struct Named {
+  Named(Structs& all_, std::string Struct::*name_, Form form_ = own_fields) : all(all_), name(name_), form(form_) {}
+  Structs& all;
+  std::string Struct::*name;
+  Form form;
+};
 
 class JsonWriter {
  public:
   static constexpr bool reading = false;
 
-  /// Any data: a number, a text, a struct with fields(), or vectors, maps, optionals and tuples of these.
+  /// Any data: a number, a text, a struct with fields(), or vectors, maps, optionals, pairs and tuples of these.
   template <class Data>
   [[nodiscard]] static Json json_of(const Data& data) {
-    return of(data);
+    return of(data, own_fields);
   }
 
   template <class Data>
   void operator()(const std::string& key, const Data& data) {
-    object_[key] = of(data);
+    object_[key] = of(data, own_fields);
   }
   /// Written only, never read: what follows from other fields.
   template <class Data>
   void derived(const std::string& key, const Data& data) {
-    object_[key] = of(data);
+    object_[key] = of(data, own_fields);
   }
   /// The key is left out where there is nothing.
   template <class Data>
   void if_there(const std::string& key, const std::optional<Data>& data) {
-    if (data) object_[key] = of(*data);
-  }
-  /// An object within, described by form(json, data); null for an optional without a value.
-  template <class Data, class Form>
-  void object(const std::string& key, const Data& data, Form form) {
-    object_[key] = described(data, form);
-  }
-  template <class Data, class Form>
-  void object(const std::string& key, const std::optional<Data>& data, Form form) {
-    object_[key] = data ? described(*data, form) : Json(nullptr);
+    if (data) object_[key] = of(*data, own_fields);
   }
   /// An object within, for fields of the struct itself: form(json).
   template <class Form>
@@ -134,45 +142,20 @@ class JsonWriter {
     form(within);
     object_[key] = std::move(within.object_);
   }
-  /// An array of objects.
-  template <class Data, class Form>
-  void array(const std::string& key, const std::vector<Data>& all, Form form) {
-    Json& out = object_[key] = Json::array();
-    for (const Data& one : all) out.push_back(described(one, form));
-  }
-  /// {NAME: object, …} of a map, or of a vector whose elements have their names in `name`.
-  template <class Data, class Form>
-  void named(const std::string& key, const std::map<std::string, Data>& all, Form form) {
-    Json& out = object_[key] = Json::object();
-    for (const auto& [name, one] : all) {
-      JsonWriter within;
-      form(within, name, one);
-      out[name] = std::move(within.object_);
-    }
-  }
-  template <class Data, class Form>
-  void named(const std::string& key, const std::vector<Data>& all, std::string Data::*name, Form form) {
-    Json& out = object_[key] = Json::object();
-    for (const Data& one : all) out[one.*name] = described(one, form);
-  }
   /// For numbers of unit `si`, stored with the display unit under `key`: what Scaled and Sigma multiply with. Units that are not converted
   /// (dB) are none to the program either: 1.
   [[nodiscard]] double factor(const std::string& key, const std::string& si) const {
     static_cast<void>(key);
-    const std::string unit = display_unit(si);
-    return unit == si ? 1.0 : convert(1.0, si, unit);
+    return conversion(si, display_unit(si));
+  }
+
+  [[nodiscard]] static double conversion(const std::string& from, const std::string& to) {
+    return from == to ? 1.0 : convert(1.0, from, to);
   }
 
  private:
   template <class Data, class Form>
-  static Json described(const Data& data, Form form) {
-    JsonWriter within;
-    form(within, data);
-    return std::move(within.object_);
-  }
-
-  template <class Data>
-  static Json of(const Data& data) {
+  static Json of(const Data& data, Form form) {
     if constexpr (std::is_floating_point_v<Data>) {
       return json_number(data);
     } else if constexpr (requires { data.stored(); }) {
@@ -180,40 +163,59 @@ class JsonWriter {
     } else if constexpr (std::is_constructible_v<Json, Data> && !std::is_class_v<Data>) {
       return data;
     } else {
-      return described(data, own_fields);
+      JsonWriter within;
+      form(within, data);
+      return std::move(within.object_);
     }
   }
-  static Json of(const Json& json) { return json; }
-  static Json of(const std::string& text) { return text; }
-  template <class Data>
-  static Json of(const std::optional<Data>& data) {
-    return data ? of(*data) : Json(nullptr);
+  template <class Form>
+  static Json of(const Json& json, Form) {
+    return json;
   }
-  template <class Data>
-  static Json of(const std::vector<Data>& all) {
+  template <class Form>
+  static Json of(const std::string& text, Form) {
+    return text;
+  }
+  template <class Data, class Form>
+  static Json of(const std::optional<Data>& data, Form form) {
+    return data ? of(*data, form) : Json(nullptr);
+  }
+  template <class Data, class Form>
+  static Json of(const std::vector<Data>& all, Form form) {
     Json out = Json::array();
-    for (const auto& one : all) out.push_back(of(one));
+    for (const auto& one : all) out.push_back(of(one, form));
     return out;
   }
-  template <class Data>
-  static Json of(const std::map<std::string, Data>& all) {
+  template <class Data, class Form>
+  static Json of(const std::map<std::string, Data>& all, Form form) {
     Json out = Json::object();
-    for (const auto& [name, one] : all) out[name] = of(one);
+    for (const auto& [name, one] : all) out[name] = of(one, form);
     return out;
   }
-  template <class A, class B>
-  static Json of(const std::pair<A, B>& both) {
-    return of(std::tie(both.first, both.second));
+  template <class Data, class Form, class Outer>
+  static Json of(const Formed<Data, Form>& formed, Outer) {
+    return of(formed.data, formed.form);
   }
-  template <class... Data>
-  static Json of(const std::tuple<Data...>& all) {
-    Json out = Json::array();
-    std::apply([&](const auto&... one) { (out.push_back(of(one)), ...); }, all);
+  template <class Structs, class Struct, class Form, class Outer>
+  static Json of(const Named<Structs, Struct, Form>& named, Outer) {
+    Json out = Json::object();
+    for (const Struct& one : named.all) out[one.*named.name] = of(one, named.form);
     return out;
   }
-  static Json of(const Eigen::MatrixXd& matrix) {
+  template <class A, class B, class Form>
+  static Json of(const std::pair<A, B>& both, Form form) {
+    return of(std::tie(both.first, both.second), form);
+  }
+  template <class... Data, class Form>
+  static Json of(const std::tuple<Data...>& all, Form form) {
     Json out = Json::array();
-    for (const auto& row : matrix.rowwise()) out.push_back(of(std::vector<double>(row.begin(), row.end())));
+    std::apply([&](const auto&... one) { (out.push_back(of(one, form)), ...); }, all);
+    return out;
+  }
+  template <class Form>
+  static Json of(const Eigen::MatrixXd& matrix, Form form) {
+    Json out = Json::array();
+    for (const auto& row : matrix.rowwise()) out.push_back(of(std::vector<double>(row.begin(), row.end()), form));
     return out;
   }
 
@@ -228,62 +230,29 @@ class JsonReader {
 
   template <class Data>
   static void read(const Json& json, Data& data) {
-    into(json, data);
+    into(json, data, own_fields);
   }
 
   template <class Data>
   void operator()(const std::string& key, Data&& data) const {
-    into(object_.at(key), data);
+    into(object_.at(key), data, own_fields);
   }
   template <class Data>
-  void derived(const std::string& key, const Data& data) const {
-    static_cast<void>(key);
-    static_cast<void>(data);
-  }
+  void derived(const std::string&, const Data&) const {}
   template <class Data>
   void if_there(const std::string& key, std::optional<Data>& data) const {
     data.reset();
-    if (object_.contains(key)) into(object_.at(key), data.emplace());
-  }
-  template <class Data, class Form>
-  void object(const std::string& key, Data& data, Form form) const {
-    described(object_.at(key), data, form);
-  }
-  template <class Data, class Form>
-  void object(const std::string& key, std::optional<Data>& data, Form form) const {
-    data.reset();
-    if (!object_.at(key).is_null()) described(object_.at(key), data.emplace(), form);
+    if (object_.contains(key)) into(object_.at(key), data.emplace(), own_fields);
   }
   template <class Form>
   void group(const std::string& key, Form form) const {
     JsonReader within(object_.at(key));
     form(within);
   }
-  template <class Data, class Form>
-  void array(const std::string& key, std::vector<Data>& all, Form form) const {
-    all.clear();
-    for (const Json& json : elements(object_.at(key))) described(json, all.emplace_back(), form);
-  }
-  template <class Data, class Form>
-  void named(const std::string& key, std::map<std::string, Data>& all, Form form) const {
-    all.clear();
-    for (const auto& [name, json] : members(object_.at(key))) {
-      JsonReader within(json);
-      form(within, name, all[name]);
-    }
-  }
-  template <class Data, class Form>
-  void named(const std::string& key, std::vector<Data>& all, std::string Data::*name, Form form) const {
-    all.clear();
-    for (const auto& [own, json] : members(object_.at(key))) {
-      all.emplace_back().*name = own;
-      described(json, all.back(), form);
-    }
-  }
   [[nodiscard]] double factor(const std::string& key, std::string& si) const {
     const std::string unit = object_.at(key);
     si = si_unit(unit);
-    return unit == si ? 1.0 : convert(1.0, unit, si);
+    return JsonWriter::conversion(unit, si);
   }
 
  private:
@@ -292,51 +261,58 @@ class JsonReader {
   static const Json::object_t& members(const Json& json) { return json.get_ref<const Json::object_t&>(); }
 
   template <class Data, class Form>
-  static void described(const Json& json, Data& data, Form form) {
-    JsonReader within(json);
-    form(within, data);
-  }
-
-  template <class Data>
-  static void into(const Json& json, Data& data) {
+  static void into(const Json& json, Data& data, Form form) {
     if constexpr (std::is_floating_point_v<Data>) {
       data = number_from(json);
     } else if constexpr (requires { data.restore(json); }) {
       data.restore(json);
-    } else if constexpr (std::is_arithmetic_v<Data>) {
+    } else if constexpr (std::is_arithmetic_v<Data> || std::is_same_v<Data, std::string>) {
       data = json.get<Data>();
     } else {
-      described(json, data, own_fields);
+      JsonReader within(json);
+      form(within, data);
     }
   }
-  static void into(const Json& json, std::string& text) { text = json.get<std::string>(); }
-  template <class Data>
-  static void into(const Json& json, std::optional<Data>& data) {
+  template <class Data, class Form>
+  static void into(const Json& json, std::optional<Data>& data, Form form) {
     data.reset();
-    if (!json.is_null()) into(json, data.emplace());
+    if (!json.is_null()) into(json, data.emplace(), form);
   }
-  template <class Data>
-  static void into(const Json& json, std::vector<Data>& all) {
+  template <class Data, class Form>
+  static void into(const Json& json, std::vector<Data>& all, Form form) {
     all.clear();
-    for (const Json& one : elements(json)) into(one, all.emplace_back());
+    for (const Json& one : elements(json)) into(one, all.emplace_back(), form);
   }
-  template <class Data>
-  static void into(const Json& json, std::map<std::string, Data>& all) {
+  template <class Data, class Form>
+  static void into(const Json& json, std::map<std::string, Data>& all, Form form) {
     all.clear();
-    for (const auto& [name, one] : members(json)) into(one, all[name]);
+    for (const auto& [name, one] : members(json)) into(one, all[name], form);
   }
-  template <class A, class B>
-  static void into(const Json& json, std::pair<A, B>& both) {
-    into(json, std::tie(both.first, both.second));
+  template <class Data, class Form, class Outer>
+  static void into(const Json& json, Formed<Data, Form>& formed, Outer) {
+    into(json, formed.data, formed.form);
   }
-  template <class... Data>
-  static void into(const Json& json, std::tuple<Data...> all) {
+  template <class Structs, class Struct, class Form, class Outer>
+  static void into(const Json& json, Named<Structs, Struct, Form>& named, Outer) {
+    named.all.clear();
+    for (const auto& [name, one] : members(json)) {
+      named.all.emplace_back().*named.name = name;
+      into(one, named.all.back(), named.form);
+    }
+  }
+  template <class A, class B, class Form>
+  static void into(const Json& json, std::pair<A, B>& both, Form form) {
+    into(json, std::tie(both.first, both.second), form);
+  }
+  template <class... Data, class Form>
+  static void into(const Json& json, std::tuple<Data...> all, Form form) {
     std::size_t k = 0;
-    std::apply([&](auto&... one) { (into(json.at(k++), one), ...); }, all);
+    std::apply([&](auto&... one) { (into(json.at(k++), one, form), ...); }, all);
   }
-  static void into(const Json& json, Eigen::MatrixXd& square) {
+  template <class Form>
+  static void into(const Json& json, Eigen::MatrixXd& square, Form form) {
     std::vector<std::vector<double>> rows;
-    into(json, rows);
+    into(json, rows, form);
     square.resize(std::ssize(rows), std::ssize(rows));
     Eigen::Index i = 0;
     for (const std::vector<double>& row : rows) {

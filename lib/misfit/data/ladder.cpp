@@ -18,25 +18,15 @@ struct RungId {
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<Rung> auto& r) {
-  json("id", r.id);
-  json("parent", RungId(r.parent));
-  json("study", r.study);
-  json("added", r.added);
-  json("predicted_drop", r.predicted_drop);
-  json("actual_drop", r.actual_drop);
-  json("held_out_gain", r.held_out_gain);
-  json("force", r.force);
-  json("rms", r.rms);
-  json("validation_rms", r.validation_rms);
-  json("system", r.system);
-  json("method", r.method);
-  json("loglik", r.loglik);
-  json("validation_loglik", r.validation_loglik);
+  json("id", r.id), json("parent", RungId(r.parent)), json("study", r.study), json("added", r.added);
+  json("predicted_drop", r.predicted_drop), json("actual_drop", r.actual_drop);
+  json("held_out_gain", r.held_out_gain), json("force", r.force), json("rms", r.rms);
+  json("validation_rms", r.validation_rms), json("system", r.system), json("method", r.method);
+  json("loglik", r.loglik), json("validation_loglik", r.validation_loglik);
   json.derived("steps", std::vector<int>(std::begin(kLadderSteps), std::end(kLadderSteps)));
   json("k_step", r.k_step);
-  json.object("trim_deg", r.trim, [](auto& object, auto& trim) { trim_fields(object, trim); });
-  json("parameters", r.parameters);
-  json("note", r.note);
+  json("trim_deg", Formed(r.trim, [](auto& object, auto& trim) { trim_fields(object, trim); }));
+  json("parameters", r.parameters), json("note", r.note);
 }
 
 void write_ladder(const std::filesystem::path& path, const Ladder& ladder) { write_json(path, ladder.rungs); }

@@ -8,30 +8,16 @@ namespace misfit {
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<TrackFacts> auto& f) {
-  json("video", f.video);
-  json("width", f.width);
-  json("height", f.height);
-  json("frames_per_second", f.rate);
+  json("video", f.video), json("width", f.width), json("height", f.height), json("frames_per_second", f.rate);
   json.group("frames", [&](auto& frames) {
-    frames("declared", f.declared);
-    frames("decoded", f.decoded);
-    frames("missing", f.missing);
+    frames("declared", f.declared), frames("decoded", f.decoded), frames("missing", f.missing);
     frames("repeated", f.repeated);
   });
   json.group("fields", [&](auto& fields_read) {
-    fields_read("used", f.fields);
-    fields_read("shown", f.fields_shown);
-    fields_read("evidence", f.fields_evidence);
+    fields_read("used", f.fields), fields_read("shown", f.fields_shown), fields_read("evidence", f.fields_evidence);
   });
-  json.group("marker", [&](auto& marker) {
-    marker("kind", f.marker);
-    marker("outer_px", f.outer);
-    marker("inner_px", f.inner);
-  });
-  json("samples", f.samples);
-  json("ok", f.ok);
-  json("lost", f.lost);
-  json("sigma_px", f.sigma);
+  json.group("marker", [&](auto& marker) { marker("kind", f.marker), marker("outer_px", f.outer), marker("inner_px", f.inner); });
+  json("samples", f.samples), json("ok", f.ok), json("lost", f.lost), json("sigma_px", f.sigma);
   json("warnings", f.warnings);
 }
 

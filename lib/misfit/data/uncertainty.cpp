@@ -42,12 +42,8 @@ std::string table_of(const std::vector<SpreadCurve>& curves, const CurveFile& fi
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<PerturbedParameter> auto& p) {
-  json("name", p.name);
-  json("value", p.value);
-  json("sigma", p.sigma);
-  json("unit", p.unit);
-  json("reading", p.reading);
-  json("group", p.group);
+  json("name", p.name), json("value", p.value), json("sigma", p.sigma), json("unit", p.unit);
+  json("reading", p.reading), json("group", p.group);
 }
 
 /// The slope of a curve of an angle is "1/rad": shown per radian as it is; only whole angles change.
@@ -55,39 +51,24 @@ template <class Archive>
 void fields(Archive& json, MaybeConst<SpreadNumber> auto& n) {
   const double factor = json.factor("unit", n.unit);
   double rest = n.shares.empty() ? std::numeric_limits<double>::quiet_NaN() : n.rest;
-  json("value", Scaled(n.mean, factor));
-  json("sigma", Scaled(n.sigma, factor));
+  json("value", Scaled(n.mean, factor)), json("sigma", Scaled(n.sigma, factor));
   json.derived("low", factor * (n.mean - 3.0 * n.sigma));
   json.derived("high", factor * (n.mean + 3.0 * n.sigma));
-  json("unit", DisplayUnit(n.unit));
-  json("runs", n.count);
-  json.group("nominal", [&](auto& nominal) {
-    nominal("value", Scaled(n.nominal, factor));
-    nominal("sigma", Sigma(n.nominal_sigma, factor));
-  });
-  json.named("variance_shares", n.shares, &VarianceShare::name, [factor](auto& object, auto& s) {
-    object("share", s.share);
-    object("sigma", s.sigma);
-    object("effect", Scaled(s.effect, factor));
-  });
-  json("rest", rest);
+  json("unit", DisplayUnit(n.unit)), json("runs", n.count);
+  json.group("nominal",
+             [&](auto& nominal) { nominal("value", Scaled(n.nominal, factor)), nominal("sigma", Sigma(n.nominal_sigma, factor)); });
+  const auto share_fields = [factor](auto& object, auto& s) {
+    object("share", s.share), object("sigma", s.sigma), object("effect", Scaled(s.effect, factor));
+  };
+  json("variance_shares", Named(n.shares, &VarianceShare::name, share_fields)), json("rest", rest);
   if constexpr (Archive::reading) n.rest = rest;
 }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<SpreadCurve> auto& c) {
-  json("name", c.name);
-  json("of", c.of);
-  json("of_unit", c.of_unit);
-  json("unit", c.unit);
-  json("informative", c.informative);
-  json("why", c.why);
-  json("x", c.x);
-  json("trimmed", c.trimmed);
-  json("nominal", c.nominal);
-  json("mean", c.mean);
-  json("sigma", c.sigma);
-  json("runs", c.count);
+  json("name", c.name), json("of", c.of), json("of_unit", c.of_unit), json("unit", c.unit);
+  json("informative", c.informative), json("why", c.why), json("x", c.x), json("trimmed", c.trimmed);
+  json("nominal", c.nominal), json("mean", c.mean), json("sigma", c.sigma), json("runs", c.count);
 }
 
 namespace {
@@ -113,19 +94,14 @@ template <class Archive>
 void fields(Archive& json, MaybeConst<Uncertainty> auto& u) {
   const Repeated repeated(u);
   const SpreadNumber* trim = u.find(trim_name);
-  json("method", u.method);
-  json("runs", u.runs);
-  json("failed", u.failed);
-  json("failures", u.failures);
+  json("method", u.method), json("runs", u.runs), json("failed", u.failed), json("failures", u.failures);
   json("seed", u.seed);
   json.derived("trim_deg", trim != nullptr && trim->unit == "rad" ? std::optional(*trim) : std::nullopt);
   json.derived("slopes", repeated.slopes);
-  json.named("numbers", u.numbers, &SpreadNumber::name, own_fields);
+  json("numbers", Named(u.numbers, &SpreadNumber::name));
   json.derived("variance_shares", repeated.variance_shares);
   json.derived("variance_shares_are", how_shares);
-  json("perturbed", u.perturbed);
-  json("notes", u.notes);
-  json("curves", u.curves);
+  json("perturbed", u.perturbed), json("notes", u.notes), json("curves", u.curves);
 }
 
 const SpreadNumber* Uncertainty::find(const std::string& name) const {

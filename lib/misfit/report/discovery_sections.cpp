@@ -34,7 +34,7 @@ std::size_t maps_to_draw(const std::vector<ForceMap>& maps) {
   constexpr double stands_out = 0.01;
   constexpr std::ptrdiff_t least = 3, most = 8;
   const auto found = std::count_if(maps.begin(), maps.end(), [](const ForceMap& map) { return map.p_corrected < stands_out; });
-  return static_cast<std::size_t>(std::min(std::ssize(maps), std::clamp(found, least, most)));
+  return std::min(std::ssize(maps), std::clamp(found, least, most));
 }
 
 void draw_maps(const Diagnosis& d, const Put& draw) {

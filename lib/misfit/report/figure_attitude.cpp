@@ -51,8 +51,8 @@ std::vector<double> broken_at_jumps(std::vector<double> phi) {
 }  // namespace
 
 Figure orientation_figure(const std::string& experiment, const Attitude& a, const Interval& part) {
-  Figure figure = time_figure("orientation", experiment, "segment of the orientation track");
-  figure.caption = "Pitch theta and yaw psi of the axis: points as read from the images, line averaged over three points.";
+  Figure figure = time_figure("orientation", experiment, "orientation of the axis (part)");
+  figure.caption = "Pitch theta and yaw psi of the axis: points from the images, line: three-point average.";
   const auto panel = [&](const char* label, const std::vector<double>& raw, const std::vector<double>& mean, std::size_t colour) {
     Panel p = angle_panel(label, 200.0);
     const std::string key = label;
@@ -69,7 +69,7 @@ Figure path_figure(const std::string& experiment, const Attitude& a) {
   Figure figure;
   figure.name = "path_" + file_name_for(experiment);
   figure.title = experiment + ": path of the axis";
-  figure.caption = "Pitch against yaw, three-point averages, the whole record: the path of the apex about the swivel.";
+  figure.caption = "Pitch against yaw over the whole record (three-point averages): the path of the apex about the swivel.";
   figure.x_label = "psi";
   figure.x_unit = "deg";
   figure.equal_axes = true;
@@ -98,7 +98,7 @@ Figure histogram_figure(const std::string& experiment, const Attitude& a) {
   Figure figure;
   figure.name = "histogram_" + file_name_for(experiment);
   figure.title = experiment + ": samples per " + fmt::format("{}", bin) + " deg of alpha_T";
-  figure.caption = "How much data stands behind each angle: curves are uncertain where there are few samples.";
+  figure.caption = "Number of samples per angle: curves are uncertain where there are few.";
   figure.x_label = "alpha_T";
   figure.x_unit = "deg";
   std::vector<double> counts;

@@ -36,10 +36,10 @@ Panel panel_of(const Batch& batch, const BatchSummary& summary, const std::vecto
     values.lo.push_back(value - sigma);
     values.hi.push_back(value + sigma);
   }
-  const double mean = display_value(summary.mean, summary.unit), sigma = display_value(summary.mean_sigma, summary.unit);
+  const double mean = display_value(summary.mean, summary.unit);
   const std::vector<double> ends{0.5, static_cast<double>(studies.size()) + 0.5};
   const std::string p = summary.p_value ? ", homogeneity: " + p_equals(*summary.p_value) : "";
-  const std::string legend = fmt::format("{}: mean {}{}{}", summary.name, format_value(mean, sigma), unit == "-" ? "" : " " + unit, p);
+  const std::string legend = summary.name + ": mean " + in_display_unit(summary.mean, summary.unit, summary.mean_sigma) + p;
   panel.series = {values, {"mean", legend, Style::dashed, grey, ends, {mean, mean}, {}, {}, 1.4}};
   return panel;
 }
@@ -49,8 +49,8 @@ Panel panel_of(const Batch& batch, const BatchSummary& summary, const std::vecto
 Figure batch_figure(const Batch& batch, const std::string& method, std::size_t most) {
   Figure figure;
   figure.name = "batch_" + as_key(method);
-  figure.title = "Over the studies, " + method;
-  figure.caption = "Value ± 1 sigma of every study, and their mean. A small p says that they differ by more than their sigmas.";
+  figure.title = "Results of all studies, " + method;
+  figure.caption = "Value ± 1 sigma of each study, and the mean. A small p: the studies scatter by more than their sigmas explain.";
   const std::vector<std::string> studies = studies_of(batch);
   constexpr std::size_t few = 12;
   figure.x_label = studies.size() <= few ? "study" : "study, in the order of the list";

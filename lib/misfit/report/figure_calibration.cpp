@@ -53,12 +53,12 @@ bool has_coordinate(const Calibration& c, char coordinate) {
 Figure calibration_figure(const Calibration& calibration) {
   Figure figure = sweep_figure("calibration", "Calibration: reference points in the image");
   figure.caption =
-      "Pixels of the three reference points of the static rig: circles measured, lines as the calibrated camera predicts them.";
+      "Image coordinates of the three reference points of the static rig: measured (circles), predicted by the calibrated camera (lines).";
   for (const char coordinate : {'z', 'y'}) {
     if (!has_coordinate(calibration, coordinate) && coordinate == 'y') continue;
     Panel panel{fmt::format("P_{}", coordinate), "px", {}, std::nullopt, 0.0, coordinate == 'z' ? 260.0 : 170.0, false};
     for (int point = 1; point <= 3; ++point) {
-      const std::string colour = palette(static_cast<std::size_t>(point - 1));
+      const std::string colour = palette(point - 1);
       Series line{fmt::format("predicted_{}{}", point, coordinate), "", Style::line, colour, {}, {}, {}, {}, 1.4};
       Series marks{fmt::format("measured_{}{}", point, coordinate), fmt::format("point {}", point), Style::markers, colour, {}, {}, {}, {}};
       fill(line, calibration, {point, coordinate}, any, predicted);
@@ -73,7 +73,7 @@ Figure calibration_figure(const Calibration& calibration) {
 Figure calibration_residual_figure(const Calibration& calibration) {
   Figure figure = sweep_figure("calibration_residuals", "Calibration: measured − predicted");
   figure.caption = fmt::format(
-      "Residuals of the calibration per point and angle; rms {:.2f} px. A trend would mean a camera parameter that is not free.",
+      "Residuals of the calibration per point and angle; RMS {:.2f} px. A trend indicates a camera parameter that should be free.",
       calibration.rms_px);
   for (const char coordinate : {'z', 'y'}) {
     if (!has_coordinate(calibration, coordinate) && coordinate == 'y') continue;
@@ -82,7 +82,7 @@ Figure calibration_residual_figure(const Calibration& calibration) {
       Series s{fmt::format("residual_{}{}", point, coordinate),
                fmt::format("point {}", point),
                Style::markers,
-               palette(static_cast<std::size_t>(point - 1)),
+               palette(point - 1),
                {},
                {},
                {},

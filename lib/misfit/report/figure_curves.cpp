@@ -31,7 +31,7 @@ Drawn drawn(const CurveEstimate& curve) {
   const auto seen = [](double count) { return count > 0.0; };
   const auto first = std::find_if(curve.count.begin(), curve.count.end(), seen) - curve.count.begin();
   const auto behind = curve.count.rend() - std::find_if(curve.count.rbegin(), curve.count.rend(), seen);
-  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(d.x.size()); ++i) d.visited.push_back(i >= first && i < behind);
+  for (std::ptrdiff_t i = 0; i < std::ssize(d.x); ++i) d.visited.push_back(i >= first && i < behind);
   return d;
 }
 
@@ -79,7 +79,8 @@ void add_curve(const Fit& fit, const CurveEstimate& curve, const std::string& co
 void add_trim(const std::string& name, const Estimate& trim, const std::string& colour, Panel& panel) {
   const double value = display_value(trim.value, trim.unit);
   const double sigma = std::isfinite(trim.sigma) ? display_value(trim.sigma, trim.unit) : 0.0;
-  const std::string legend = fmt::format("trim of {}: {} {}", name, format_value(value, sigma), display_unit(trim.unit));
+  const std::string legend =
+      "trim of " + name + ": " + in_display_unit(trim.value, trim.unit, std::isfinite(trim.sigma) ? trim.sigma : 0.0);
   panel.series.push_back({"trim_" + as_key(name), legend, Style::x_bars, colour, {value}, {0.0}, {value - sigma}, {value + sigma}});
 }
 

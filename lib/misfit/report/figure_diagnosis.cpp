@@ -42,7 +42,7 @@ double round_step(double most) {
 
 std::size_t quantity_index(const MissingForce& missing, const std::string& quantity) {
   const auto found = std::find(missing.quantities.begin(), missing.quantities.end(), quantity);
-  return static_cast<std::size_t>(found - missing.quantities.begin());
+  return found - missing.quantities.begin();
 }
 
 }  // namespace
@@ -141,7 +141,7 @@ Figure periodogram_figure(const std::vector<WhitenessReport>& whiteness) {
   figure.title = "Innovations: cumulative periodogram";
   figure.caption =
       "The share of the variance below each frequency. White innovations follow the diagonal inside the band (Kolmogorov–Smirnov, 95 %); a "
-      "jump is a spectral line, a smooth departure coloured innovations.";
+      "jump indicates a spectral line, a smooth departure coloured innovations.";
   figure.x_label = "frequency";
   figure.x_unit = "Hz";
   Panel panel{"cumulative power", "-", {}, std::array<double, 2>{0.0, 1.0}, 0.25, 320.0, false, {}};
@@ -201,14 +201,12 @@ Figure missing_force_figure(const MissingForce& missing, const std::optional<Int
       "causes the motion.";
   figure.x_label = "time";
   figure.x_unit = std::string("s");
-  std::size_t from = 0, to = missing.t.size();
+  std::ptrdiff_t from = 0, to = std::ssize(missing.t);
   if (zoom) {
-    from = static_cast<std::size_t>(std::lower_bound(missing.t.begin(), missing.t.end(), zoom->from) - missing.t.begin());
-    to = static_cast<std::size_t>(std::upper_bound(missing.t.begin(), missing.t.end(), zoom->to) - missing.t.begin());
+    from = std::lower_bound(missing.t.begin(), missing.t.end(), zoom->from) - missing.t.begin();
+    to = std::upper_bound(missing.t.begin(), missing.t.end(), zoom->to) - missing.t.begin();
   }
-  const auto cut = [&](const std::vector<double>& v) {
-    return std::vector<double>(v.begin() + static_cast<std::ptrdiff_t>(from), v.begin() + static_cast<std::ptrdiff_t>(to));
-  };
+  const auto cut = [&](const std::vector<double>& v) { return std::vector<double>(v.begin() + from, v.begin() + to); };
   const std::vector<double> t = cut(missing.t);
   for (std::size_t p = 0; p < missing.ports.size(); ++p) {
     const std::string key = as_key(missing.ports[p]);

@@ -23,8 +23,8 @@ std::vector<double> visited(const std::vector<double>& values, const BootstrapCu
   const auto seen = [](double count) { return count > 0.0; };
   const auto first = std::find_if(curve.count.begin(), curve.count.end(), seen) - curve.count.begin();
   const auto behind = curve.count.rend() - std::find_if(curve.count.rbegin(), curve.count.rend(), seen);
-  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(out.size()); ++i) {
-    if (i < first || i >= behind) out[static_cast<std::size_t>(i)] = nan;
+  for (std::ptrdiff_t i = 0; i < std::ssize(out); ++i) {
+    if (i < first || i >= behind) out[i] = nan;
   }
   return out;
 }
@@ -81,7 +81,7 @@ Figure profile_figure(const LikelihoodProfile& p) {
   Figure figure;
   figure.name = "profile_" + as_key(p.method) + "_" + as_key(p.parameter);
   figure.title = "Profile likelihood: " + p.parameter + ", " + p.method;
-  figure.caption = "Drop of the likelihood when the parameter is held and all others are re-estimated.";
+  figure.caption = "Drop 2 (log L of the fit − log L) with the parameter held at each value and all others re-estimated.";
   figure.x_label = p.parameter;
   figure.x_unit = display_unit(p.unit);
   Panel panel;
@@ -102,8 +102,8 @@ Figure profile_figure(const LikelihoodProfile& p) {
   panel.series.push_back({"parabola", "sigma of the fit", Style::dotted, black, display_values(fine, p.unit), parabola, {}, {}});
   const std::vector<double> ends = display_values({p.lower, p.best, p.upper}, p.unit);
   panel.series.push_back({"interval",
-                          fmt::format("95 %: {} to {} {}", p.lower_found ? format_value(ends[0]) : "?",
-                                      p.upper_found ? format_value(ends[2]) : "?", figure.x_unit),
+                          fmt::format("95 %: {} to {}", p.lower_found ? in_display_unit(p.lower, p.unit) : "not reached",
+                                      p.upper_found ? in_display_unit(p.upper, p.unit) : "not reached"),
                           Style::x_bars,
                           palette(1),
                           {ends[1]},
@@ -116,16 +116,34 @@ Figure profile_figure(const LikelihoodProfile& p) {
   return figure;
 }
 
+namespace {
+
+/// Logarithmic in both directions from 0.
+double start_place(double drop) { return std::copysign(std::log10(1.0 + std::abs(drop)), drop); }
+
+void add_start_axis(const MultiStart& s, Panel& panel) {
+  const double least = std::min(s.drop.empty() ? 0.0 : s.drop.front(), -1.0), most = std::max(s.drop.empty() ? 0.0 : s.drop.back(), 10.0);
+  for (const double sign : {-1.0, 1.0}) {
+    const double end = sign < 0.0 ? -least : most;
+    for (double size = 1.0; size <= 10.0 * end; size *= 10.0)
+      panel.y_marks.push_back({start_place(sign * size), fmt::format("{:g}", sign * size)});
+  }
+  panel.y_marks.push_back({0.0, "0"});
+  constexpr double beyond = 1.3;
+  panel.y_range = {start_place(beyond * least), start_place(beyond * most)};
+}
+
+}  // namespace
+
 Figure starts_figure(const MultiStart& s) {
   Figure figure;
   figure.name = "starts_" + as_key(s.method);
   figure.title = "Random starts: " + s.method;
   figure.caption =
-      "Maxima reached from random starting values, as the drop of the likelihood below that of the fit. All at 0: one maximum, "
-      "which the fit has reached. Below 0: the fit is not at the global maximum.";
+      "Maxima reached from random starting values, as the drop 2 (log L of the fit − log L). All at 0: one maximum, which the "
+      "fit has reached. Below 0: the fit is not at the global maximum.";
   figure.x_label = "start, best first";
   figure.x_unit = "-";
-  const auto drawn = [](double drop) { return std::copysign(std::log10(1.0 + std::abs(drop)), drop); };
   Panel panel;
   panel.y_label = "drop";
   panel.y_unit = "-";
@@ -137,17 +155,9 @@ Figure starts_figure(const MultiStart& s) {
   for (std::size_t i = 0; i < s.drop.size(); ++i) {
     Series& to = std::abs(s.drop[i]) > kSameMaximum ? other : same;
     to.x.push_back(static_cast<double>(i + 1));
-    to.y.push_back(drawn(s.drop[i]));
+    to.y.push_back(start_place(s.drop[i]));
   }
-  const double least = std::min(s.drop.empty() ? 0.0 : s.drop.front(), -1.0), most = std::max(s.drop.empty() ? 0.0 : s.drop.back(), 10.0);
-  for (const double sign : {-1.0, 1.0}) {
-    const double end = sign < 0.0 ? -least : most;
-    for (double size = 1.0; size <= 10.0 * end; size *= 10.0)
-      panel.y_marks.push_back({drawn(sign * size), fmt::format("{:g}", sign * size)});
-  }
-  panel.y_marks.push_back({0.0, "0"});
-  constexpr double beyond = 1.3;
-  panel.y_range = {drawn(beyond * least), drawn(beyond * most)};
+  add_start_axis(s, panel);
   if (!same.x.empty()) panel.series.push_back(std::move(same));
   if (!other.x.empty()) panel.series.push_back(std::move(other));
   figure.panels.push_back(std::move(panel));

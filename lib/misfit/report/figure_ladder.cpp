@@ -102,7 +102,7 @@ bool channels_change(const Ladder& ladder) {
 
 std::string colour_of(const std::string& channel, Errors& errors) {
   const auto found = std::find(errors.channels.begin(), errors.channels.end(), channel);
-  const auto place = static_cast<std::size_t>(found - errors.channels.begin());
+  const std::size_t place = found - errors.channels.begin();
   if (found == errors.channels.end()) errors.channels.push_back(channel);
   return palette(place == 1 ? 2 : place == 2 ? 3 : place);  // 1 is the random force
 }
@@ -178,9 +178,10 @@ void set_range(Panel& panel) {
 Figure ladder_figure(const Ladder& ladder) {
   Figure figure;
   figure.name = "ladder";
-  figure.title = "The ladder: what each model leaves unexplained";
+  figure.title = "Model ladder: unexplained force and prediction errors";
   figure.caption =
-      "From left to right one more effect. Drop = 2 (log-likelihood with the effect − without); a change of system has none. The random "
+      "Each rung adds one effect to its parent. Drop = 2 (log-likelihood with the effect − without); a change of system has none. The "
+      "random "
       "force is the part of the excitation that the model does not explain; errors are of predictions from the filtered state.";
   figure.x_label = "model";
   std::vector<Panel> drop, force, near, far, trim;
@@ -202,7 +203,7 @@ Figure ladder_figure(const Ladder& ladder) {
       figure.panels.push_back(std::move(panel));
     }
   }
-  const double last = ladder.rungs.empty() ? 1.0 : static_cast<double>(ladder.rungs.back().id);
+  const double last = ladder.rungs.empty() ? 1.0 : ladder.rungs.back().id;
   figure.x_range = {-0.5, last + 0.5};
   return figure;
 }

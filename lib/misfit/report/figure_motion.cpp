@@ -23,13 +23,13 @@ std::vector<double> masked(std::vector<double> values, const std::vector<bool>& 
 }
 
 template <class V>
-V slice(const V& values, std::size_t from, std::size_t to) {
-  return V(values.begin() + static_cast<std::ptrdiff_t>(from), values.begin() + static_cast<std::ptrdiff_t>(to));
+V slice(const V& values, std::ptrdiff_t from, std::ptrdiff_t to) {
+  return V(values.begin() + from, values.begin() + to);
 }
 
 ChannelPrediction cut(const ChannelPrediction& c, const Interval& part) {
-  const auto from = static_cast<std::size_t>(std::lower_bound(c.t.begin(), c.t.end(), part.from) - c.t.begin());
-  const auto to = static_cast<std::size_t>(std::upper_bound(c.t.begin(), c.t.end(), part.to) - c.t.begin());
+  const auto from = std::lower_bound(c.t.begin(), c.t.end(), part.from) - c.t.begin();
+  const auto to = std::upper_bound(c.t.begin(), c.t.end(), part.to) - c.t.begin();
   return {c.experiment,
           c.channel,
           c.unit,
@@ -127,7 +127,7 @@ Figure motion_figure(const std::string& method, const ChannelPrediction& channel
       "motion_" + as_key(method) + "_" + file_name_for(channel.experiment) + "_" + file_name_for(channel.channel) + (zoom ? "_zoom" : "");
   figure.title =
       fmt::format("{} of {}: measured and predicted by {}{}", channel.channel, channel.experiment, method, zoom ? " (part)" : "");
-  figure.caption = fmt::format("{} against time, measured and as {} predicts it; below, their difference.", channel.channel, method);
+  figure.caption = fmt::format("{} against time: measured, and predicted by {}. Below: the residuals.", channel.channel, method);
   figure.x_label = "time";
   figure.x_unit = std::string("s");  // g++ 12 warns wrongly about a one-letter literal assigned
   figure.panels = {motion_panel(c, unit), residual_panel(c, unit)};

@@ -18,7 +18,7 @@ struct Look {
 };
 constexpr Look looks[] = {{"distribution", "Distribution of the motion", "Quantiles of the motion.", "share of the time", "-"},
                           {"autocorrelation", "Autocorrelation of the motion", "Autocorrelation of the motion.", "lag", "s"},
-                          {"spectrum", "Spectrum of the motion", "Power per frequency; 10 dB are a factor of ten.", "frequency", "Hz"}};
+                          {"spectrum", "Spectrum of the motion", "Power spectral density of the motion.", "frequency", "Hz"}};
 
 Series empty(const std::string& key, const std::string& legend, Style style, const std::string& colour) {
   return {key, legend, style, colour, {}, {}, {}, {}};
@@ -30,7 +30,7 @@ Panel panel_of(const MotionSeries& series, const MotionGroup& group) {
   const std::string key = as_key(series.name);
   Series band = empty(key + "_band", fmt::format("{}: 95 % of the simulated motions", series.name), Style::band, palette(0));
   Series middle = empty(key + "_median", "", Style::line, palette(0));
-  Series measured = empty(key + "_measured", fmt::format("measured (p {:.3f})", group.p_value), Style::markers, black);
+  Series measured = empty(key + "_measured", fmt::format("measured (p = {:.3f})", group.p_value), Style::markers, black);
   Series outside = empty(key + "_outside", "measured, outside the band", Style::markers, palette(1));
   for (const MotionNumber& n : group.numbers) {
     if (!std::isfinite(n.at)) continue;

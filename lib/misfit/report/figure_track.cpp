@@ -45,8 +45,7 @@ Figure track_figure(const std::string& experiment, const Track& track) {
   figure.title = experiment + ": the marker in the image";
   figure.caption =
       "P_y and P_z of the marker from the image centre, one sample per field or frame; lost samples are marked at the lower edge. Below: "
-      "the standard "
-      "deviation of one coordinate, sample by sample.";
+      "the standard deviation of one coordinate at each sample.";
   figure.x_label = "time";
   figure.x_unit = std::string("s");
   Panel sigma{"sigma", "px", {}, std::nullopt, 0.0, 110.0, false};

@@ -45,7 +45,7 @@ Band band_of(const SpreadCurve& c, const Uncertainty& u) {
 void add_trim(const SpreadNumber& trim, Panel& panel) {
   const double mean = display_value(trim.mean, trim.unit), reach = 3.0 * display_value(trim.sigma, trim.unit);
   if (!std::isfinite(mean) || !std::isfinite(reach)) return;
-  const std::string legend = fmt::format("trim, ± 3 sigma: {} {}", format_value(mean, reach), display_unit(trim.unit));
+  const std::string legend = "trim, ± 3 sigma: " + in_display_unit(trim.mean, trim.unit, 3.0 * trim.sigma);
   panel.series.push_back({"trim", legend, Style::x_bars, palette(1), {mean}, {0.0}, {mean - reach}, {mean + reach}});
 }
 
@@ -102,20 +102,7 @@ std::vector<const SpreadNumber*> shared_numbers(const Uncertainty& u) {
   return out;
 }
 
-}  // namespace
-
-Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::vector<Reference>& references) {
-  const Band b = band_of(curve, u);
-  Figure figure;
-  const auto first = std::find_if(u.curves.begin(), u.curves.end(), [&](const SpreadCurve& c) { return c.name == curve.name; });
-  const bool another = first != u.curves.end() && first->of != curve.of;  // of the same name, drawn already
-  figure.name = "uncertainty_" + as_key(curve.name) + (another ? "_" + as_key(curve.of) : "");
-  figure.title = fmt::format("{} over {} perturbed runs, {}", curve.name, u.runs - u.failed, u.method);
-  figure.caption =
-      "Mean over the runs with its band of three standard deviations, and the fit of the study as it is. The band contains "
-      "the propagated uncertainty only, neither measurement noise nor model error.";
-  figure.x_label = curve.of;
-  figure.x_unit = display_unit(curve.of_unit);
+Panel spread_panel(const SpreadCurve& curve, const Band& b) {
   Panel panel;
   panel.y_label = curve.name;
   panel.y_unit = display_unit(curve.unit);
@@ -135,6 +122,25 @@ Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::
   panel.series.push_back({"mean", "mean of the runs", Style::line, colour, b.x, b.mean, {}, {}});
   panel.series.push_back(
       {"nominal", curve.informative ? "nominal" : "nominal (not informative)", Style::dashed, black, b.x, b.nominal, {}, {}, 1.4});
+  panel.y_range = range_of(b);
+  return panel;
+}
+
+}  // namespace
+
+Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::vector<Reference>& references) {
+  const Band b = band_of(curve, u);
+  Figure figure;
+  const auto first = std::find_if(u.curves.begin(), u.curves.end(), [&](const SpreadCurve& c) { return c.name == curve.name; });
+  const bool another = first != u.curves.end() && first->of != curve.of;  // of the same name, drawn already
+  figure.name = "uncertainty_" + as_key(curve.name) + (another ? "_" + as_key(curve.of) : "");
+  figure.title = fmt::format("Propagated uncertainty of {}: {} runs, {}", curve.name, u.runs - u.failed, u.method);
+  figure.caption =
+      "Mean over the runs with its 3-sigma band, and the fit of the unperturbed study. The band contains "
+      "the propagated uncertainty only, neither measurement noise nor model error.";
+  figure.x_label = curve.of;
+  figure.x_unit = display_unit(curve.of_unit);
+  Panel panel = spread_panel(curve, b);
   const SpreadNumber* trim = u.find("trim");
   for (const Reference& reference : references) {
     if (reference.curve == curve.name && reference.of == curve.of && reference.unit == curve.unit) {
@@ -142,7 +148,6 @@ Figure spread_figure(const SpreadCurve& curve, const Uncertainty& u, const std::
     }
   }
   if (trim != nullptr && curve.trimmed && curve.of_unit == trim->unit) add_trim(*trim, panel);
-  panel.y_range = range_of(b);
   if (!b.x.empty()) figure.x_range = {b.x.front(), b.x.back()};
   figure.panels = {panel};
   if (!curve.informative) figure.notes.push_back(curve.name + " is not informative" + (curve.why.empty() ? "." : ": " + curve.why));
@@ -154,7 +159,7 @@ Figure shares_figure(const Uncertainty& u) {
   figure.name = "variance_shares";
   figure.title = "Variance decomposition";
   figure.caption =
-      "First-order shares of the variance over the runs: what would vanish if this parameter were known exactly. "
+      "First-order shares of the variance over the runs: the part that would vanish if the parameter were known exactly. "
       "Interactions: parameters acting jointly, and the sampling error of a finite number of runs. Signs and sigmas are in "
       "uncertainty.json.";
   const std::vector<const SpreadNumber*> numbers = shared_numbers(u);

@@ -76,10 +76,10 @@ class MemoryFile {
     std::string out;
     std::array<char, 1 << 16> buffer{};
     for (;;) {
-      const ssize_t n = ::pread(number_, buffer.data(), buffer.size(), static_cast<off_t>(out.size()));
+      const ssize_t n = ::pread(number_, buffer.data(), buffer.size(), std::ssize(out));
       if (n < 0 && errno == EINTR) continue;
       if (n <= 0) return out;
-      out.append(buffer.data(), static_cast<std::size_t>(n));
+      out.append(buffer.data(), n);
     }
   }
 

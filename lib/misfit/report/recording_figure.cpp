@@ -49,7 +49,7 @@ Figure recording_figure(const RecordingSurvey& survey, std::size_t part, const s
   Figure figure;
   figure.name = "data_" + file_name_for(name) + (zoom ? "_zoom" : "");
   figure.title = name + ": the recording" + (zoom ? " (part)" : "");
-  figure.caption = fmt::format("The columns of {} as misfit reads them; {} rows, one each {:g} s.", name, t.size(), survey.step);
+  figure.caption = fmt::format("Columns of {} as read: {} rows, sampling interval {:g} s.", name, t.size(), survey.step);
   figure.x_label = "time";
   figure.x_unit = std::string("s");
   for (std::size_t i = 1; i < table.columns.size(); ++i) {

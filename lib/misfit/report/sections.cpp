@@ -128,11 +128,11 @@ void notes_section(const ReportInput& input, Page& page) {
 
 void provenance_section(const ReportInput& input, Page& page) {
   const RunFacts& run = input.run;
-  TableBlock facts{{{""}, {""}}, {{"misfit", run.version}, {"commit", run.commit}, {"seed", std::to_string(run.seed)}}};
+  TableBlock facts{columns("|"), {{"misfit", run.version}, {"commit", run.commit}, {"seed", std::to_string(run.seed)}}};
   if (!run.command.empty()) facts.rows.push_back({"command", run.command});
-  TableBlock files{{{"file"}, {"hash (FNV-1a, 64 bit)"}}, {}};
+  TableBlock files{columns("file|hash (FNV-1a, 64 bit)")};
   for (const auto& [file, hash] : run.hashes) files.rows.push_back({file, hash});
-  TableBlock stages{{{"stage"}, {"time [s]", Align::right}}, {}};
+  TableBlock stages{columns("stage|>time [s]")};
   for (const auto& [stage, seconds] : run.stages) stages.rows.push_back({stage, fmt::format("{:.2f}", seconds)});
   Blocks out;
   out.heading("Provenance");

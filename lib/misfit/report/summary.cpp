@@ -34,8 +34,7 @@ std::vector<std::string> findings(const ReportInput& input) {
     }
   }
   sentences.insert(sentences.end(), input.notes.begin(), input.notes.end());
-  for (std::string& sentence : sentences) sentence = as_sentence(sentence);
-  return sentences;
+  return as_sentences(sentences);
 }
 
 }  // namespace
@@ -56,8 +55,7 @@ void parameters_section(const ReportInput& input, Page& page) {
   if (input.fits.empty()) return;
   Blocks out;
   out.heading("Parameters");
-  out.paragraph(
-      "Curve coefficients are in fit.json. ± is one standard deviation; a number without it was not estimated with an uncertainty.");
+  out.paragraph("± is one standard deviation. Coefficients of curves are in fit.json.");
   for (const Fit& fit : input.fits) {
     TableBlock parameters = parameter_table(fit);
     if (parameters.rows.empty() && fit.facts.empty()) continue;

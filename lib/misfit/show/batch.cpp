@@ -11,7 +11,6 @@
 namespace misfit {
 namespace {
 
-constexpr const char* missing = "–";
 constexpr std::size_t most_columns = 4;
 
 /// The trim first.
@@ -22,39 +21,32 @@ std::vector<BatchSummary> in_order(const Batch& batch) {
 }
 
 TableBlock study_table(const Batch& batch) {
-  TableBlock table{{{"study"}, {"method"}, {"status"}}, {}, {40, "batch.csv"}};
+  TableBlock table{columns("study|method|status"), {}, {40, "batch.csv"}};
   std::vector<std::string> names;
   for (const BatchSummary& s : in_order(batch)) {
     if (names.size() < most_columns && std::find(names.begin(), names.end(), s.name) == names.end()) names.push_back(s.name);
   }
   for (const std::string& name : names) table.columns.push_back({name});
   for (const BatchRow& row : batch.rows) {
-    table.rows.push_back({row.study, row.method.empty() ? missing : row.method, row.status});
+    table.rows.push_back({row.study, row.method.empty() ? kMissing : row.method, row.status});
     for (const std::string& name : names) {
       const auto found = row.values.find(name);
-      table.rows.back().push_back(found == row.values.end() ? missing : shown(found->second));
+      table.rows.back().push_back(found == row.values.end() ? kMissing : shown(found->second));
     }
   }
   return table;
 }
 
 TableBlock summary_table(const Batch& batch) {
-  TableBlock table{{{"result"},
-                    {"method"},
-                    {"studies", Align::right},
-                    {"mean"},
-                    {"std. dev. between studies"},
-                    {"RMS of their sigmas"},
-                    {"p (homogeneity)", Align::right}},
-                   {}};
+  TableBlock table{columns("result|method|>studies|mean|std. dev. between studies|RMS of their sigmas|>p (homogeneity)")};
   const auto positive = [](double v, const std::string& unit) {
-    return v > 0.0 && std::isfinite(v) ? shown(Estimate{v, 0.0, unit}) : std::string(missing);
+    return v > 0.0 && std::isfinite(v) ? shown(Estimate{v, 0.0, unit}) : std::string(kMissing);
   };
   constexpr double rounding = 1e-12;
   for (const BatchSummary& s : in_order(batch)) {
     table.rows.push_back({s.name, s.method, std::to_string(s.count), shown(Estimate{s.mean, s.mean_sigma, s.unit}),
                           positive(s.scatter > rounding * std::abs(s.mean) ? s.scatter : 0.0, s.unit), positive(s.own_sigma, s.unit),
-                          s.p_value ? format_probability(*s.p_value) : missing});
+                          s.p_value ? format_probability(*s.p_value) : kMissing});
   }
   return table;
 }

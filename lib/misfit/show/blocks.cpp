@@ -69,6 +69,18 @@ class TextWriter {
 
 }  // namespace
 
+std::vector<Column> columns(std::string_view headings) {
+  std::vector<Column> out;
+  for (std::size_t at = 0; at <= headings.size();) {
+    const std::size_t end = std::min(headings.find('|', at), headings.size());
+    const std::string_view heading = headings.substr(at, end - at);
+    const bool right = heading.starts_with('>');
+    out.push_back({std::string(heading.substr(right ? 1 : 0)), right ? Align::right : Align::left});
+    at = end + 1;
+  }
+  return out;
+}
+
 void Blocks::paragraph(const std::string& text, Tone tone) {
   if (!text.empty()) all_.emplace_back(Paragraph{text, tone});
 }
@@ -86,6 +98,11 @@ std::string as_sentence(std::string text) {
   const bool name = text.substr(0, text.find(' ')).find('_') != std::string::npos;
   if (!name) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   return text.ends_with('.') || text.ends_with('!') || text.ends_with('?') ? text : text + ".";
+}
+
+std::vector<std::string> as_sentences(std::vector<std::string> texts) {
+  for (std::string& text : texts) text = as_sentence(text);
+  return texts;
 }
 
 std::string as_text(const Blocks& blocks) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -42,10 +43,13 @@ struct Column {
   Align align = Align::left;
 };
 
+/// From their headings, parted by '|'; those that begin with '>' are aligned to the right: "effect|>drop|accepted".
+[[nodiscard]] std::vector<Column> columns(std::string_view headings);
+
 /// A value stands with its unit in its cell, or the heading has the unit.
 struct TableBlock {
-  std::vector<Column> columns;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<Column> columns = {};
+  std::vector<std::vector<std::string>> rows = {};
   Excerpt excerpt = {};
 };
 
@@ -76,6 +80,7 @@ class Blocks {
 
 /// "A sentence." from "a sentence": with a capital letter and a full stop. A first word with '_', a name of a study, stays as it is.
 [[nodiscard]] std::string as_sentence(std::string text);
+[[nodiscard]] std::vector<std::string> as_sentences(std::vector<std::string> texts);
 
 /// For a terminal: paragraphs wrapped at 110 characters, columns aligned, warnings led by "! ".
 [[nodiscard]] std::string as_text(const Blocks& blocks);

@@ -13,12 +13,11 @@ namespace {
 
 std::string unit_of(const std::string& parameter) {
   const auto found = std::find(camera_parameter_names.begin(), camera_parameter_names.end(), parameter);
-  return found == camera_parameter_names.end() ? "-"
-                                               : camera_parameter_units[static_cast<std::size_t>(found - camera_parameter_names.begin())];
+  return found == camera_parameter_names.end() ? "-" : camera_parameter_units[found - camera_parameter_names.begin()];
 }
 
 TableBlock camera_table(const Calibration& c) {
-  TableBlock table{{{"parameter"}, {"value"}, {"status"}}, {}};
+  TableBlock table{columns("parameter|value|status")};
   for (const std::string name : camera_parameter_names) {
     const bool free = std::find(c.names.begin(), c.names.end(), name) != c.names.end();
     if (free || c.value(name) != 0.0)
@@ -31,8 +30,7 @@ TableBlock camera_table(const Calibration& c) {
 }
 
 TableBlock test_table(const Calibration& c) {
-  TableBlock table{{{"tested parameter"}, {"estimate when free"}, {"drop", Align::right}, {"p (corrected)", Align::right}, {"decision"}},
-                   {}};
+  TableBlock table{columns("tested parameter|estimate when free|>drop|>p (corrected)|decision")};
   for (const CameraTest& test : c.tests) {
     std::string estimate;
     for (std::size_t k = 0; k < test.parameters.size(); ++k) {
@@ -83,7 +81,7 @@ Blocks blocks_of(const std::string& experiment, const Attitude& a) {
   const double spread = std::sqrt(std::max(squares / std::max(n, 1.0) - mean * mean, 0.0));
   Blocks out;
   out.subheading("Attitude of " + experiment);
-  out.table({{{"quantity"}, {"value"}},
+  out.table({columns("quantity|value"),
              {{"samples read", fmt::format("{} of {}", known, a.t.size())},
               {"mean of alpha_T", Row("", mean, 0.0, "rad").shown()},
               {"standard deviation of alpha_T", Row("", spread, 0.0, "rad").shown()}}});

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
-#include "misfit/core/units.h"
 #include "misfit/show/results.h"
 #include "misfit/show/rows.h"
 
@@ -26,16 +25,11 @@ std::vector<Row> rows_of(const MethodSummary& m) {
 
 /// Three significant digits, without unit.
 std::string short_number(double value, const std::string& si) {
-  return std::isfinite(value) ? fmt::format("{:.3g}", display_value(value, si)) : "–";
-}
-
-std::string with_unit(const std::string& number, const std::string& si) {
-  const std::string unit = display_unit(si);
-  return unit == "-" || unit.empty() ? number : number + " " + unit;
+  return std::isfinite(value) ? fmt::format("{:.3g}", display_value(value, si)) : kMissing;
 }
 
 std::string range(double low, double high, const std::string& si) {
-  return with_unit(short_number(low, si) + " to " + short_number(high, si), si);
+  return with_display_unit(short_number(low, si) + " to " + short_number(high, si), si);
 }
 
 /// Quantiles of no interest by themselves only where they are outside; correlations and spectral lines as a count.
@@ -51,8 +45,8 @@ void add_group(const MotionSeries& s, const MotionGroup& g, TableBlock& table) {
     const bool always = n.name == "mean" || n.name == "standard deviation" || n.at == 0.05 || n.at == 0.5 || n.at == 0.95;
     if (!always && !n.outside) continue;
     table.rows.push_back({name, g.name == "amplitude" ? "amplitude, " + n.name : n.name,
-                          with_unit(short_number(n.measured, g.unit), g.unit), range(n.low, n.high, g.unit), n.outside ? "outside" : "",
-                          p});
+                          with_display_unit(short_number(n.measured, g.unit), g.unit), range(n.low, n.high, g.unit),
+                          n.outside ? "outside" : "", p});
     p.clear();
   }
 }
@@ -68,17 +62,11 @@ TableBlock method_table(const Comparison& c) {
 
 Blocks curve_difference_blocks(const Comparison& c) {
   Blocks out;
-  TableBlock table{{{"curve"},
-                    {"between"},
-                    {"RMS [sigma]", Align::right},
-                    {"largest [sigma]", Align::right},
-                    {"at"},
-                    {"difference there"},
-                    {"compared range"}},
-                   {}};
+  TableBlock table{columns("curve|between|>RMS [sigma]|>largest [sigma]|at|difference there|compared range")};
   for (const CurveDifference& d : c.curves) {
     table.rows.push_back({d.curve, d.a + " − " + d.b, fmt::format("{:.2f}", d.rms_sigmas), fmt::format("{:.2f}", d.max_sigmas),
-                          with_unit(short_number(d.at, d.of_unit), d.of_unit), shown(d.difference), range(d.from, d.to, d.of_unit)});
+                          with_display_unit(short_number(d.at, d.of_unit), d.of_unit), shown(d.difference),
+                          range(d.from, d.to, d.of_unit)});
   }
   if (!table.rows.empty()) out.subheading("Differences between curves");
   out.table(std::move(table));
@@ -96,9 +84,9 @@ Blocks blocks_of(const SimulatedMotion& motion) {
       fmt::format("Random motion cannot be matched sample by sample: a correct model must reproduce its statistics. {} runs of the "
                   "model fitted by {}; a small p means that it does not reproduce that group of statistics.",
                   motion.runs, motion.method));
-  out.list({motion.sentences});
+  out.list({as_sentences(motion.sentences)});
   out.figures("statistics");
-  TableBlock table{{{"series"}, {"statistic"}, {"measured"}, {"simulated, 95 %"}, {""}, {"p of the group", Align::right}}, {}};
+  TableBlock table{columns("series|statistic|measured|simulated, 95 %||>p of the group")};
   for (const MotionSeries& s : motion.series) {
     for (const MotionGroup& g : s.groups) add_group(s, g, table);
   }
@@ -112,11 +100,11 @@ Blocks blocks_of(const Comparison& c) {
   out.heading("Comparison of methods");
   out.table(method_table(c));
   std::vector<std::string> trims, parameters;
-  for (const TrimDifference& d : c.trims) trims.push_back(as_sentence(d.sentence));
+  for (const TrimDifference& d : c.trims) trims.push_back(d.sentence);
   for (const ParameterDifference& d : c.parameters) {
     if (!d.sentence.empty()) parameters.push_back(d.sentence);  // begins with the parameter's name
   }
-  out.list({trims});
+  out.list({as_sentences(trims)});
   out.warnings(parameters);
   out.append(curve_difference_blocks(c));
   if (c.motion) out.append(blocks_of(*c.motion));

@@ -12,13 +12,6 @@
 namespace misfit {
 namespace {
 
-constexpr const char* missing = "–";
-
-std::vector<std::string> as_sentences(std::vector<std::string> all) {
-  for (std::string& sentence : all) sentence = as_sentence(sentence);
-  return all;
-}
-
 /// The place where a map is largest in its own sigmas.
 std::string largest(const ForceMap& map) {
   std::size_t best = map.x.size();
@@ -26,37 +19,24 @@ std::string largest(const ForceMap& map) {
     if (!(map.sigma[i] > 0.0)) continue;
     if (best == map.x.size() || std::abs(map.amplitude[i] / map.sigma[i]) > std::abs(map.amplitude[best] / map.sigma[best])) best = i;
   }
-  if (best == map.x.size()) return missing;
+  if (best == map.x.size()) return kMissing;
   return fmt::format("{} at {}", shown({map.amplitude[best], map.sigma[best], map.port_unit}),
                      shown({map.x[best], 0.0, map.quantity_unit}));
 }
 
 TableBlock map_table(const Diagnosis& d) {
-  TableBlock table{{{"force on"},
-                    {"against"},
-                    {"p (corrected)", Align::right},
-                    {"p (this map)", Align::right},
-                    {"chi²", Align::right},
-                    {"dof", Align::right},
-                    {"most significant value"}},
-                   {}};
+  TableBlock table{columns("force on|against|>p (corrected)|>p (this map)|>chi²|>dof|most significant value")};
   const auto add = [&](const auto& map, const std::string& against, const std::string& value) {
     table.rows.push_back({map.port, against, format_probability(map.p_corrected), format_probability(map.p_value),
                           fmt::format("{:.1f}", map.chi2), std::to_string(map.dof), value});
   };
   for (const ForceMap& map : d.maps) add(map, map.quantity, largest(map));
-  for (const PairMap& map : d.pairs) add(map, map.quantity_x + " and " + map.quantity_y, missing);
+  for (const PairMap& map : d.pairs) add(map, map.quantity_x + " and " + map.quantity_y, kMissing);
   return table;
 }
 
 TableBlock whiteness_table(const Diagnosis& d) {
-  TableBlock table{{{"innovations of"},
-                    {"Ljung-Box p", Align::right},
-                    {"lags", Align::right},
-                    {"periodogram p", Align::right},
-                    {"largest spectral line"},
-                    {"p of the line", Align::right}},
-                   {}};
+  TableBlock table{columns("innovations of|>Ljung-Box p|>lags|>periodogram p|largest spectral line|>p of the line")};
   for (const WhitenessReport& w : d.whiteness) {
     table.rows.push_back({w.experiment + " " + w.channel, format_probability(w.ljung_box_p), std::to_string(w.lags),
                           format_probability(w.periodogram_p), fmt::format("{:.3f} Hz, {:.1f} times white", w.peak_frequency, w.peak_power),
@@ -73,7 +53,7 @@ std::string force_text(const std::map<std::string, Estimate>& force) {
     const std::string text = shown(e);
     if (out.find(text) == std::string::npos) out += (out.empty() ? "" : ", ") + text;
   }
-  return out.empty() ? missing : out;
+  return out.empty() ? kMissing : out;
 }
 
 std::string values_text(const std::map<std::string, Estimate>& estimates) {
@@ -83,22 +63,14 @@ std::string values_text(const std::map<std::string, Estimate>& estimates) {
 }
 
 TableBlock candidate_table(const Discovery& d) {
-  TableBlock table{{{"rank", Align::right},
-                    {"effect"},
-                    {"predicted drop", Align::right},
-                    {"actual drop", Align::right},
-                    {"held-out gain", Align::right},
-                    {"p", Align::right},
-                    {"indistinguishable from"},
-                    {"accepted"}},
-                   {},
-                   {15, "candidates.json"}};
+  TableBlock table{
+      columns(">rank|effect|>predicted drop|>actual drop|>held-out gain|>p|indistinguishable from|accepted"), {}, {15, "candidates.json"}};
   for (const Candidate& c : d.candidates) {
     std::vector<std::string> others = c.group;
     std::erase(others, effect_at(c.effect, c.roles));
     table.rows.push_back({std::to_string(c.rank), effect_at(c.effect, c.roles), shown_drop(c.predicted_drop), shown_drop(c.actual_drop),
                           shown_gain(c.held_out_gain), format_probability(c.p_value),
-                          others.empty() ? missing : fmt::format("{}", fmt::join(others, ", ")), c.accepted ? "yes" : "no"});
+                          others.empty() ? kMissing : fmt::format("{}", fmt::join(others, ", ")), c.accepted ? "yes" : "no"});
   }
   return table;
 }
@@ -110,7 +82,7 @@ const Rung* parent_of(const Ladder& ladder, const Rung& rung) {
 
 std::string change(double before, double after) {
   return before != 0.0 && std::isfinite(before) && std::isfinite(after) ? fmt::format("{:+.1f} %", 100.0 * (after / before - 1.0))
-                                                                        : missing;
+                                                                        : kMissing;
 }
 
 /// The table of a rung against its parent.
@@ -127,7 +99,7 @@ class BeforeAndAfter {
     if (after.validation_loglik) add("log-likelihood, held out", shown_drop(before.validation_loglik), shown_drop(after.validation_loglik));
   }
 
-  TableBlock table{{{""}, {"before"}, {"after"}, {"change", Align::right}}, {}};
+  TableBlock table{columns("|before|after|>change")};
 
  private:
   void add(const std::string& what, const std::string& before, const std::string& after, const std::string& by = "") {
@@ -137,11 +109,11 @@ class BeforeAndAfter {
     for (const auto& [channel, e] : after) {
       const auto was = before.find(channel);
       const bool known = was != before.end();
-      add("RMS of " + channel + ", " + what, known ? shown(was->second) : missing, shown(e),
-          known ? change(was->second.value, e.value) : missing);
+      add("RMS of " + channel + ", " + what, known ? shown(was->second) : kMissing, shown(e),
+          known ? change(was->second.value, e.value) : kMissing);
     }
     for (const auto& [channel, e] : before) {
-      if (!after.contains(channel)) add("RMS of " + channel + ", " + what, shown(e), missing, missing);
+      if (!after.contains(channel)) add("RMS of " + channel + ", " + what, shown(e), kMissing, kMissing);
     }
   }
   void add_steps(const Rung& before, const Rung& after) {
@@ -167,7 +139,7 @@ std::string drop_sentence(const Rung& rung) {
   std::string out =
       fmt::format("Drop: {} predicted, {:.1f} actual for {} parameter{}", rung.predicted_drop ? shown_drop(rung.predicted_drop) : "none",
                   *rung.actual_drop, rung.parameters.size(), rung.parameters.size() == 1 ? "" : "s");
-  return out + (rung.held_out_gain ? fmt::format("; gain of the held-out log-likelihood: {:+.1f}.", *rung.held_out_gain)
+  return out + (rung.held_out_gain ? "; gain of the held-out log-likelihood: " + shown_gain(rung.held_out_gain) + "."
                                    : "; no validation data: set validation = \"last 25 %\".");
 }
 
@@ -216,13 +188,13 @@ Blocks blocks_of(const Discovery& d) {
   out.list({as_sentences(d.sentences)});
   out.figures("candidates");
   out.table(candidate_table(d));
+  if (!d.force.empty()) out.paragraph("Random force of this model: " + force_text(d.force) + ".");
   std::vector<std::string> why;
   for (const Candidate& c : d.candidates) {
     if (!c.why.empty()) why.push_back(effect_at(c.effect, c.roles) + ": " + c.why);
   }
   if (!why.empty()) out.subheading("Reasons");
   out.list({why, Tone::plain, {5, "candidates.json"}});
-  if (!d.force.empty()) out.paragraph("Random force of this model: " + force_text(d.force) + ".");
   if (!d.tried.empty()) out.subheading("Effect families tested");
   out.list({d.tried, Tone::plain, {0, "discovery.json"}});
   return out;
@@ -252,15 +224,7 @@ Blocks blocks_of(const Ladder& ladder) {
   Blocks out;
   out.heading("Model ladder");
   out.figures("ladder");
-  TableBlock table{{{"rung", Align::right},
-                    {"added"},
-                    {"system"},
-                    {"predicted drop", Align::right},
-                    {"actual drop", Align::right},
-                    {"held-out gain", Align::right},
-                    {"random force"},
-                    {"trim"}},
-                   {}};
+  TableBlock table{columns(">rung|added|system|>predicted drop|>actual drop|>held-out gain|random force|trim")};
   std::vector<std::string> remarks;
   for (const Rung& r : ladder.rungs) {
     table.rows.push_back({std::to_string(r.id), r.added.empty() ? "(the study)" : r.added, r.system, shown_drop(r.predicted_drop),

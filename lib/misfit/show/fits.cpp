@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
-#include "misfit/core/units.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/show/results.h"
 #include "misfit/show/rows.h"
@@ -27,9 +26,9 @@ std::string range_of(const CurveEstimate& curve) {
     if (!std::isfinite(lowest)) lowest = curve.x[i];
     highest = curve.x[i];
   }
-  const std::string unit = display_unit(curve.of_unit);
-  return fmt::format("from {:.1f} to {:.1f}{} of {}", display_value(lowest, curve.of_unit), display_value(highest, curve.of_unit),
-                     unit == "-" ? "" : " " + unit, curve.of);
+  const std::string range =
+      fmt::format("from {:.1f} to {:.1f}", display_value(lowest, curve.of_unit), display_value(highest, curve.of_unit));
+  return with_display_unit(range, curve.of_unit) + " of " + curve.of;
 }
 
 Blocks blocks_of(const Fit& fit) {
@@ -52,18 +51,21 @@ Blocks blocks_of(const Fit& fit) {
 }  // namespace
 
 TableBlock parameter_table(const Fit& fit) {
-  std::vector<Row> rows;
+  std::vector<Row> others;
+  TableBlock table{columns("parameter|value")};
   for (const auto& [name, estimate] : fit.parameters) {
-    if (!is_curve_coefficient(name)) rows.emplace_back(name, estimate);
+    if (!is_curve_coefficient(name)) table.rows.push_back({name, shown(estimate) + (estimate.sigma > 0.0 ? "" : " (sigma not available)")});
   }
-  add_rows(rows, "noise of ", fit.noise);
-  add_rows(rows, "random force, ", fit.force);
-  return rows_table("parameter", rows);
+  add_rows(others, "noise of ", fit.noise);
+  add_rows(others, "random force, ", fit.force);
+  const TableBlock more = rows_table("", others);
+  table.rows.insert(table.rows.end(), more.rows.begin(), more.rows.end());
+  return table;
 }
 
 Blocks status_blocks(const std::vector<Fit>& fits) {
   Blocks out;
-  TableBlock table{{{"method"}, {"status"}, {"termination"}, {"time [s]", Align::right}, {"linearisations", Align::right}}, {}};
+  TableBlock table{columns("method|status|termination|>time [s]|>linearisations")};
   std::vector<std::string> warnings;
   for (const Fit& fit : fits) {
     table.rows.push_back(

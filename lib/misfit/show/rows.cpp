@@ -10,12 +10,6 @@
 #include "misfit/core/units.h"
 
 namespace misfit {
-namespace {
-
-constexpr const char* missing = "–";
-
-}  // namespace
-
 Row::Row(std::string what_, double value_, double sigma_, std::string unit_)
     : what(std::move(what_)), value(value_), sigma(sigma_), unit(std::move(unit_)) {
   if (unit.empty()) throw InputError("'" + what + "' has no unit: a number without unit is not shown ('-' for a pure number)");
@@ -42,11 +36,11 @@ TableBlock subjects_table(const std::string& what, const std::vector<Subject>& s
   TableBlock table{{{what}}, {}};
   for (const Subject& subject : subjects) {
     table.columns.push_back({subject.name});
-    for (auto& line : table.rows) line.emplace_back(missing);
+    for (auto& line : table.rows) line.emplace_back(kMissing);
     for (const Row& row : subject.rows) {
       auto line = std::find_if(table.rows.begin(), table.rows.end(), [&](const auto& other) { return other.front() == row.what; });
       if (line == table.rows.end()) {
-        line = table.rows.insert(line, std::vector<std::string>(table.columns.size(), missing));
+        line = table.rows.insert(line, std::vector<std::string>(table.columns.size(), kMissing));
         line->front() = row.what;
       }
       line->back() = row.shown();
@@ -55,14 +49,16 @@ TableBlock subjects_table(const std::string& what, const std::vector<Subject>& s
   return table;
 }
 
-std::string shown(const std::optional<Estimate>& e) { return e ? shown(*e) : missing; }
+std::string shown(const std::optional<Estimate>& e) { return e ? shown(*e) : kMissing; }
 
 std::string shown_drop(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? fmt::format("{:.1f}", *value) : missing;
+  return value && std::isfinite(*value) ? fmt::format("{:.1f}", *value) : kMissing;
 }
 
 std::string shown_gain(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? fmt::format("{:+.1f}", *value) : missing;
+  if (!value || !std::isfinite(*value)) return kMissing;
+  constexpr double shown_as_zero = 0.05;
+  return std::abs(*value) < shown_as_zero ? "0.0" : fmt::format("{:+.1f}", *value);
 }
 
 }  // namespace misfit

@@ -41,9 +41,12 @@ struct Subject {
 };
 [[nodiscard]] TableBlock subjects_table(const std::string& what, const std::vector<Subject>& subjects);
 
+/// In the place of what is not there.
+inline constexpr const char* kMissing = "–";
+
 /// An estimate as it is shown: "12.03 ± 0.21 deg".
 [[nodiscard]] inline std::string shown(const Estimate& e) { return Row("", e).shown(); }
-/// "–" for what is missing.
+/// kMissing without a value, as the next two.
 [[nodiscard]] std::string shown(const std::optional<Estimate>& e);
 /// With one decimal and, for a change, its sign.
 [[nodiscard]] std::string shown_drop(const std::optional<double>& value);

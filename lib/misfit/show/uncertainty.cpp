@@ -6,35 +6,31 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
-#include "misfit/core/units.h"
+#include "misfit/core/text.h"
 #include "misfit/show/results.h"
 #include "misfit/show/rows.h"
 
 namespace misfit {
 namespace {
 
-constexpr const char* missing = "–";
-
 /// Two significant digits.
 std::string sigma_text(double sigma, const std::string& si) {
-  if (!std::isfinite(sigma)) return missing;
-  const std::string unit = display_unit(si);
-  return fmt::format("{:.2g}{}", display_value(sigma, si), unit == "-" || unit.empty() ? "" : " " + unit);
+  return std::isfinite(sigma) ? with_display_unit(fmt::format("{:.2g}", display_value(sigma, si)), si) : kMissing;
 }
 
 TableBlock perturbed_table(const Uncertainty& u) {
-  TableBlock table{{{"perturbed"}, {"nominal"}, {"sigma"}, {"distribution"}}, {}};
+  TableBlock table{columns("perturbed|nominal|sigma|distribution")};
   for (const PerturbedParameter& p : u.perturbed)
     table.rows.push_back({p.name, in_display_unit(p.value, p.unit), sigma_text(p.sigma, p.unit), p.reading});
   return table;
 }
 
 TableBlock number_table(const Uncertainty& u) {
-  TableBlock table{{{"result"}, {"nominal ± sigma (noise)"}, {"mean ± propagated sigma"}, {"3-sigma band"}, {"runs", Align::right}}, {}};
+  TableBlock table{columns("result|nominal ± sigma (noise)|mean ± propagated sigma|3-sigma band|>runs")};
   for (const SpreadNumber& n : u.numbers) {
     const bool spread = std::isfinite(n.sigma);
     table.rows.push_back({n.name, in_display_unit(n.nominal, n.unit, n.nominal_sigma), in_display_unit(n.mean, n.unit, n.sigma),
-                          spread ? interval_in_display_unit(n.mean - 3.0 * n.sigma, n.mean + 3.0 * n.sigma, n.unit, n.sigma) : missing,
+                          spread ? interval_in_display_unit(n.mean - 3.0 * n.sigma, n.mean + 3.0 * n.sigma, n.unit, n.sigma) : kMissing,
                           std::to_string(n.count)});
   }
   return table;
@@ -44,7 +40,7 @@ using Numbers = std::vector<const SpreadNumber*>;
 
 /// Two columns per number; the sign of the second says which way the number goes when the parameter grows.
 TableBlock share_table(const Numbers& numbers) {
-  TableBlock table{{{"share of the variance"}}, {}};
+  TableBlock table{columns("share of the variance")};
   std::vector<std::string> interactions{"interactions"};
   for (const VarianceShare& share : numbers.front()->shares) table.rows.push_back({share.name});
   for (const SpreadNumber* n : numbers) {
@@ -82,18 +78,14 @@ void add_failures(const std::string& of, const std::map<std::string, std::size_t
 }
 
 /// The end of an interval, to a tenth of the sigma; it has no sigma of its own.
-std::string end_of(double value, double sigma, const std::string& unit, bool found = true) {
+std::string end_of(double value, double sigma, const std::string& si, bool found = true) {
   constexpr double fine = 0.1;
-  const std::string both = in_display_unit(value, unit, fine * sigma), si = display_unit(unit);
-  const std::size_t plus_minus = both.find(" ±");
-  if (!found) return "not reached";
-  return plus_minus == std::string::npos ? both : both.substr(0, plus_minus) + (si == "-" ? "" : " " + si);
+  const std::string both = format_value(display_value(value, si), fine * display_value(sigma, si));
+  return found ? with_display_unit(both.substr(0, both.find(" ±")), si) : "not reached";
 }
 
 void add_bootstraps(const std::vector<Bootstrap>& bootstraps, Blocks& out) {
-  TableBlock table{
-      {{"block bootstrap of"}, {"result"}, {"fit ± sigma"}, {"mean ± sigma of the runs"}, {"2.5 %"}, {"97.5 %"}, {"runs", Align::right}},
-      {}};
+  TableBlock table{columns("block bootstrap of|result|fit ± sigma|mean ± sigma of the runs|2.5 %|97.5 %|>runs")};
   std::vector<std::string> remarks, warnings;
   for (const Bootstrap& b : bootstraps) {
     for (const BootstrapNumber& n : b.numbers) {
@@ -110,7 +102,7 @@ void add_bootstraps(const std::vector<Bootstrap>& bootstraps, Blocks& out) {
 }
 
 void add_profiles(const std::vector<LikelihoodProfile>& profiles, Blocks& out) {
-  TableBlock table{{{"profile likelihood of"}, {"method"}, {"fit ± sigma"}, {"95 % from"}, {"95 % to"}}, {}};
+  TableBlock table{columns("profile likelihood of|method|fit ± sigma|95 % from|95 % to")};
   std::vector<std::string> remarks;
   for (const LikelihoodProfile& p : profiles) {
     table.rows.push_back({p.parameter, p.method, in_display_unit(p.best, p.unit, p.sigma), end_of(p.lower, p.sigma, p.unit, p.lower_found),
@@ -122,13 +114,7 @@ void add_profiles(const std::vector<LikelihoodProfile>& profiles, Blocks& out) {
 }
 
 void add_starts(const std::vector<MultiStart>& starts, Blocks& out) {
-  TableBlock table{{{"random starts of"},
-                    {"starts", Align::right},
-                    {"reach the reported maximum", Align::right},
-                    {"a lower one", Align::right},
-                    {"a higher one", Align::right},
-                    {"not converged", Align::right}},
-                   {}};
+  TableBlock table{columns("random starts of|>starts|>reach the reported maximum|>a lower one|>a higher one|>not converged")};
   std::vector<std::string> remarks, warnings;
   for (const MultiStart& s : starts) {
     table.rows.push_back({s.method, std::to_string(s.runs), std::to_string(s.same), std::to_string(s.lower), std::to_string(s.higher),
