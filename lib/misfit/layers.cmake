@@ -7,6 +7,8 @@ target_compile_features(misfit_options INTERFACE cxx_std_20)
 target_compile_options(misfit_options INTERFACE
   $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
   $<$<BOOL:${MISFIT_WERROR}>:$<BUILD_INTERFACE:-Werror>>
+  # An index of either sign serves: g++'s -Wconversion says nothing of the sign, clang's would.
+  $<$<CXX_COMPILER_ID:Clang>:$<BUILD_INTERFACE:-Wno-sign-conversion>>
   # With precompiled headers g++ 12 forgets which code is the standard library's, and shows what it wrongly sees in std::string concatenation
   # (gcc bugs 105651, 105329). Without them these warnings are on.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${MISFIT_PCH}>>:$<BUILD_INTERFACE:-Wno-restrict;-Wno-stringop-overflow;-Wno-array-bounds>>)
