@@ -9,6 +9,8 @@ target_compile_options(misfit_options INTERFACE
   # As g++ has it: from an integer to an unsigned one of its width or more is no surprise.
   $<$<CXX_COMPILER_ID:Clang>:$<BUILD_INTERFACE:-Wno-sign-conversion>>
   $<$<BOOL:${MISFIT_WERROR}>:$<BUILD_INTERFACE:-Werror>>
+  # An index of either sign serves: g++'s -Wconversion says nothing of the sign, clang's would.
+  $<$<CXX_COMPILER_ID:Clang>:$<BUILD_INTERFACE:-Wno-sign-conversion>>
   # With precompiled headers g++ 12 forgets which code is the standard library's, and shows what it wrongly sees in std::string concatenation
   # (gcc bugs 105651, 105329). Without them these warnings are on.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${MISFIT_PCH}>>:$<BUILD_INTERFACE:-Wno-restrict;-Wno-stringop-overflow;-Wno-array-bounds>>)

@@ -24,7 +24,7 @@ TEST(EstimateFilter, RecoversForceJitterAndTrim) {
   const std::vector<Signals> flights = {fly(30.0, 3)};
   const FilterEstimate estimate = fitted(request_for(flights), flights);
   EXPECT_TRUE(estimate.converged) << estimate.message;
-  EXPECT_LT(estimate.left.value(), 0.5);
+  EXPECT_LT(estimate.newton_decrement.value(), 0.5);
   Fit fit = filter_fit(estimate);
   expect_within(fit.force.at("moment_y"), 27.0, "force");
   EXPECT_LT(fit.force.at("moment_y").sigma, 4.0);
@@ -133,8 +133,8 @@ TEST(EstimateFilter, WhatCanStandInForAnotherChangesNothingElse) {
     EXPECT_TRUE(beside.converged) << seed << ": " << beside.message;
     EXPECT_TRUE(beside.nonlinear.empty()) << seed << ": two dampings that can stand in for each other are no roughness";
     EXPECT_NEAR(beside.objective, without.objective, 0.5) << seed;
-    EXPECT_LT(without.left.value(), 0.5) << seed;
-    EXPECT_LT(beside.left.value(), 0.5) << seed;
+    EXPECT_LT(without.newton_decrement.value(), 0.5) << seed;
+    EXPECT_LT(beside.newton_decrement.value(), 0.5) << seed;
   }
 }
 

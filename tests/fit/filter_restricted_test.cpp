@@ -61,7 +61,7 @@ TEST(RestrictedLikelihood, IsThatOfTheWholeCovarianceOfTheReadings) {
     const auto row = static_cast<Eigen::Index>(i);
     EXPECT_NEAR(found.slope[row], -0.5 * share[i].trace(), 2e-3) << i;
     for (std::size_t j = 0; j < logs.size(); ++j)
-      EXPECT_NEAR(found.lost(row, static_cast<Eigen::Index>(j)), 0.5 * (share[i] * share[j]).trace(), 5e-3) << i << ' ' << j;
+      EXPECT_NEAR(found.information_loss(row, static_cast<Eigen::Index>(j)), 0.5 * (share[i] * share[j]).trace(), 5e-3) << i << ' ' << j;
   }
 }
 
@@ -74,7 +74,7 @@ TEST(RestrictedLikelihood, OfACommonFactorCountsTheParameters) {
   Eigen::VectorXd factor = Eigen::VectorXd::Zero(found.slope.size());
   for (const Eigen::Index i : {0, 2, 3, 6, 7}) factor[i] = 1.0;
   EXPECT_NEAR(factor.dot(found.slope), 2.0, 0.01);
-  EXPECT_NEAR(factor.dot(found.lost * factor), 2.0 * 2.0, 0.02);
+  EXPECT_NEAR(factor.dot(found.information_loss * factor), 2.0 * 2.0, 0.02);
 }
 
 TEST(RestrictedLikelihood, NothingWhereNothingIsEstimatedOrAtABound) {
@@ -83,7 +83,7 @@ TEST(RestrictedLikelihood, NothingWhereNothingIsEstimatedOrAtABound) {
   estimate.noise_fit.at_bound[0] = true;
   const RestrictedLikelihood bound = restricted_likelihood(estimate, Eigen::VectorXd::Zero(2), 1);
   EXPECT_EQ(bound.slope[0], 0.0);
-  EXPECT_EQ(bound.lost.row(0).norm(), 0.0);
+  EXPECT_EQ(bound.information_loss.row(0).norm(), 0.0);
   EXPECT_NE(bound.slope[2], 0.0);
   for (Parameter& p : estimate.model.parameters) p.free = false;
   estimate.forced.model = estimate.model;

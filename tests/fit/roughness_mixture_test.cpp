@@ -36,8 +36,7 @@ NormalEquations problem_of(const Readings& r, const Eigen::VectorXd& y) {
   out.g = -r.A.transpose() * y;
   out.rss = y.squaredNorm();
   out.count = static_cast<double>(y.size());
-  out.prior_precision = Eigen::VectorXd::Constant(r.A.cols(), 1e-12);
-  out.prior_mean = Eigen::VectorXd::Zero(r.A.cols());
+  out.prior = {Eigen::VectorXd::Constant(r.A.cols(), 1e-12), Eigen::VectorXd::Zero(r.A.cols())};
   return out;
 }
 
@@ -156,8 +155,7 @@ TEST(UncertainRoughness, OfAStiffCurveIsThatOfALineInItsPlace) {
   problem.N = s.X.transpose() * s.X;
   problem.theta = Eigen::VectorXd::Constant(s.X.cols(), 7.0);  // a line at 7
   problem.g = Eigen::VectorXd::Zero(s.X.cols());
-  problem.prior_precision = Eigen::VectorXd::Constant(s.X.cols(), 1e-12);
-  problem.prior_mean = problem.theta;
+  problem.prior = {Eigen::VectorXd::Constant(s.X.cols(), 1e-12), problem.theta};
   const Eigen::MatrixXd covariance = with_uncertain_roughness(problem, {penalty_of(s.r, s.lambda, true)}, 1.0);
   ASSERT_GT(covariance.size(), 0);
   const double found = covariance.bottomRightCorner(1, 1)(0, 0);

@@ -49,9 +49,8 @@ Model probed(const FilterEstimate& estimate) {
 ScoreTest::ScoreTest(const FilterEstimate& estimate) {
   Eigen::Index rows = 0;
   for (const auto& jacobian : estimate.jacobians) rows += jacobian.r.size();
-  const std::vector<int> free = estimate.model.free_parameters();
-  const auto columns = static_cast<Eigen::Index>(free.size());
-  J_.resize(rows, columns);
+  const Eigen::VectorXd theta = estimate.model.theta();
+  J_.resize(rows, theta.size());
   r_.resize(rows);
   Eigen::Index at = 0;
   for (const auto& jacobian : estimate.jacobians) {
@@ -59,22 +58,12 @@ ScoreTest::ScoreTest(const FilterEstimate& estimate) {
     r_.segment(at, jacobian.r.size()) = jacobian.r;
     at += jacobian.r.size();
   }
-  any_ = columns > 0;
+  any_ = theta.size() > 0;
   if (!any_) return;
-  NormalEquations sums;
-  sums.theta = Eigen::VectorXd::Zero(columns);
-  for (Eigen::Index c = 0; c < columns; ++c)
-    sums.theta[c] = estimate.model.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
-  set_priors(estimate.model, sums);
+  const GaussianPrior prior = estimate.regularised_prior();
   Eigen::MatrixXd information = J_.transpose() * J_;
-  gradient_ = -J_.transpose() * r_;
-  information.diagonal() += sums.prior_precision;
-  gradient_ -= sums.prior_precision.cwiseProduct(sums.theta - sums.prior_mean);
-  for (const auto& p : estimate.penalties) {
-    const Eigen::Index size = p.omega.rows();
-    information.block(p.first, p.first, size, size) += p.lambda * p.omega;
-    gradient_.segment(p.first, size) -= p.lambda * (p.omega * sums.theta.segment(p.first, size));
-  }
+  prior.add_precision(information);
+  gradient_ = -J_.transpose() * r_ + prior.gradient(theta);
   information_.compute(information);
 }
 
@@ -142,7 +131,7 @@ ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors
   }
   if (priors != nullptr) {
     V.diagonal() += priors->precision;
-    s += priors->precision.cwiseProduct(priors->mean);
+    s += priors->gradient(Eigen::VectorXd::Zero(s.size()));
   }
   const std::vector<Eigen::Index> known = known_columns(V, own, out.independent);
   if (!known.empty()) solve_score(V, s, known, out);
@@ -163,7 +152,7 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
   used_.assign(all, false);
   std::vector<double> D(N * kRowStride);
   Slots slots;
-  std::array<double, kMaxStates> x{};
+  Eigen::VectorXd x;
   std::size_t offset = 0;
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
     const FilterTrace& trace = estimate.traces[e];
@@ -173,7 +162,7 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
     times_.insert(times_.end(), signals.t.begin(), signals.t.end());
     stepper.prepare(data.start.data(), data.inputs.at(data.first), signals.t[data.first]);
     for (std::size_t k = data.first; k < trace.samples; ++k) {
-      for (std::size_t i = 0; i < N; ++i) x[i] = trace.predicted[k * N + i] + trace.correction[k * N + i];
+      x = trace.filtered(k);
       used_[offset + k] = true;
       values.quantities(x.data(), data.inputs.at(k), signals.t[k], quantities_.row(static_cast<Eigen::Index>(offset + k)).data());
       if (k + 1 == trace.samples) break;
@@ -207,13 +196,13 @@ Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, co
     NoiseStep noise;
     for (std::size_t k = data.first; k < trace.samples; ++k) {
       for (std::size_t o = 0; o < NY; ++o) {
-        const std::size_t at = k * NY + o;
+        const std::size_t at = trace.place(k, o);
         if (data.use[at] == SampleRole::none) continue;
-        v.noalias() = Eigen::Map<const Eigen::RowVectorXd>(trace.H.data() + at * N, n) * s;
+        v.noalias() = trace.H_at(at).transpose() * s;
         v += jitter.row(2 * static_cast<Eigen::Index>(o));
         if (data.use[at] == SampleRole::counted) out.row(row++) = v / std::sqrt(trace.S[at]);
-        s.noalias() -= Eigen::Map<const Eigen::VectorXd>(trace.K.data() + at * N, n) * v;
-        jitter.noalias() -= Eigen::Map<const Eigen::VectorXd>(trace.Kj.data() + at * 2 * NY, 2 * ny) * v;
+        s.noalias() -= trace.K_at(at) * v;
+        jitter.noalias() -= trace.Kj_at(at) * v;
       }
       if (k + 1 == trace.samples) break;
       const double h = data.signals->t[k + 1] - data.signals->t[k];
@@ -223,7 +212,7 @@ Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, co
       }
       const auto sample = static_cast<Eigen::Index>(offset + k);
       mean = 0.5 * (f.row(sample) + ahead.row(sample));
-      work.noalias() = Eigen::Map<const RowMatrix>(trace.Phi.data() + k * N * N, n, n) * s;
+      work.noalias() = trace.Phi_at(k) * s;
       for (Eigen::Index i = 0; i < n; ++i) {
         const double gain = G_[e][(k * N + static_cast<std::size_t>(i)) * NF + static_cast<std::size_t>(port)];
         if (gain != 0.0) work.row(i) += gain * mean;

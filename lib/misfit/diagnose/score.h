@@ -10,11 +10,6 @@
 
 namespace misfit {
 
-/// Prior of added coefficients: precision 0 = none.
-struct ColumnPriors {
-  Eigen::VectorXd precision, mean;
-};
-
 struct ScoreResult {
   double chi2 = 0.0;          ///< sᵀ V⁻¹ s: also the predicted drop, one Gauss–Newton step [R]
   int dof = 0;                ///< columns that the data know of

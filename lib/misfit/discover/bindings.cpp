@@ -118,15 +118,12 @@ OperatingRange::OperatingRange(const FilterEstimate& estimate) {
   Evaluator evaluator(estimate.forced.model);
   const std::size_t count = system.quantities.size();
   std::vector<std::vector<double>> values(count + system.outputs.size());
-  std::vector<double> x, q(count), steps;
+  std::vector<double> q(count), steps;
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
     const FilterTrace& trace = estimate.traces[e];
     const FilterData& data = estimate.data[e];
-    const auto n = static_cast<std::size_t>(trace.n);
-    x.resize(n);
     for (std::size_t k = data.first; k < trace.samples; ++k) {
-      for (std::size_t i = 0; i < n; ++i) x[i] = trace.predicted[k * n + i] + trace.correction[k * n + i];
-      evaluator.quantities(x.data(), data.inputs.at(k), data.signals->t[k], q.data());
+      evaluator.quantities(trace.filtered(k).data(), data.inputs.at(k), data.signals->t[k], q.data());
       for (std::size_t i = 0; i < count; ++i) values[i].push_back(q[i]);
       if (k > data.first) steps.push_back(data.signals->t[k] - data.signals->t[k - 1]);
     }

@@ -26,15 +26,12 @@ std::vector<Penalty> same_roughness(const Model& model, const FilterEstimate& fr
 
 /// log prior of the effect being off: its strengths at 0.
 double prior_of_off(const CandidateModel& candidate_model) {
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < candidate_model.priors.precision.size(); ++i)
-    sum -= 0.5 * candidate_model.priors.precision[i] * candidate_model.priors.mean[i] * candidate_model.priors.mean[i];
-  return sum;
+  return candidate_model.priors.log_density(Eigen::VectorXd::Zero(candidate_model.priors.mean.size()));
 }
 
 /// What exact derivatives say the objective lacks of its maximum: to be added where the search ended at one. Far from it a Newton step
 /// promises whatever the curvature there says.
-double still_to_gain(const FilterEstimate& estimate) { return estimate.converged ? estimate.left.value_or(0.0) : 0.0; }
+double still_to_gain(const FilterEstimate& estimate) { return estimate.converged ? estimate.newton_decrement.value_or(0.0) : 0.0; }
 
 /// A maximum, and of two the higher.
 bool better(const FilterEstimate& a, const FilterEstimate& b) {
@@ -98,7 +95,7 @@ OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Sc
     p.value = std::clamp(p.value + step[static_cast<Eigen::Index>(c)], p.lower, p.upper);
   }
   FilterModel forced = with_random_force(model);
-  forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = without.noise.force_time;
+  forced.set_force_time(without.noise.force_time);
   FilterRunner runner(forced, false);
   runner.set_parameters(forced.model.values());
   std::vector<FilterData> data;

@@ -1,18 +1,16 @@
 #include "misfit/fit/profile_objective.h"
 
-#include <cmath>
-
 #include "misfit/core/error.h"
 
 namespace misfit {
 std::string why_no_profile(const Model& model, const std::string& name) {
   const int known = model.find_parameter(name);
-  const bool of_a_curve = known >= 0 && model.parameters[static_cast<std::size_t>(known)].curve >= 0;
+  const bool of_a_curve = known >= 0 && model.parameters[known].curve >= 0;
   if (of_a_curve) return "is a coefficient of a curve, which means nothing alone; a profile is of a parameter";
-  if (known >= 0 && model.parameters[static_cast<std::size_t>(known)].free) return {};
+  if (known >= 0 && model.parameters[known].free) return {};
   std::vector<std::string> free;
   for (const int i : model.free_parameters()) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(i)];
+    const Parameter& p = model.parameters[i];
     if (p.curve < 0) free.push_back(p.name);
   }
   if (free.empty()) return "is not free: the model has no free parameter that is not a curve's coefficient";
@@ -26,18 +24,16 @@ ProfileObjective::ProfileObjective(FittedMethod from, const std::vector<Signals>
     throw InputError("profile: " + at_.method + " has no likelihood of the motion; " + estimators_with_likelihood() + " have");
   const std::string why = why_no_profile(at_.fitted.model, parameter);
   if (!why.empty()) throw InputError("profile: '" + parameter + "' " + why);
-  parameter_ = static_cast<std::size_t>(at_.fitted.model.find_parameter(parameter));
-  const Parameter& p = at_.fitted.model.parameters[parameter_];
-  prior_sigma_ = p.prior_sigma;
-  prior_mean_ = p.prior_mean;
+  parameter_ = at_.fitted.model.find_parameter(parameter);
   at_.fitted.model = with_roughness(at_.fitted.model, at_.fitted.penalties);
   at_.fitted.model.parameters[parameter_].free = false;
   at_.fitted.penalties = curve_penalties(at_.fitted.model);  // columns without the parameter
 }
 
 std::optional<double> ProfileObjective::operator()(double value) {
-  at_.fitted.model.parameters[parameter_].value = value;
-  const double prior = prior_sigma_ ? -0.5 * std::pow((value - prior_mean_) / *prior_sigma_, 2) : 0.0;
+  Parameter& held = at_.fitted.model.parameters[parameter_];
+  held.value = value;
+  const double prior = log_prior(held);
   Maximisation there = maximise_near(at_, *experiments_);
   if (!there.objective) return std::nullopt;
   at_ = std::move(there.at);

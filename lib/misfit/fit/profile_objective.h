@@ -25,8 +25,6 @@ class ProfileObjective {
   FittedMethod at_;
   const std::vector<Signals>* experiments_;
   std::size_t parameter_ = 0;
-  double prior_mean_ = 0.0;
-  std::optional<double> prior_sigma_;
 };
 
 }  // namespace misfit

@@ -8,7 +8,7 @@ namespace {
 void damping_to_zero(Model& model) {
   const Curve* damping = model.find_curve(model.system->spec().damping_curve);
   if (damping == nullptr) return;
-  for (int i = 0; i < damping->spline.size(); ++i) model.parameters[static_cast<std::size_t>(damping->first + i)].value = 0.0;
+  for (int i = 0; i < damping->spline.size(); ++i) model.parameters[damping->first + i].value = 0.0;
 }
 
 FittedModel with_shapes_kept(const Model& asked, const std::vector<Signals>& experiments,

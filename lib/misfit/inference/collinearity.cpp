@@ -21,8 +21,8 @@ std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& 
   std::vector<Direction> out;
   const std::vector<int> free = model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    const auto at = static_cast<Eigen::Index>(c);
+    const Parameter& p = model.parameters[free[c]];
+    const Eigen::Index at = c;
     if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
     out.push_back({p.name, p.unit, p.value, Eigen::VectorXd::Unit(covariance.rows(), at)});
   }
@@ -30,9 +30,9 @@ std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& 
     const Curve& curve = model.curves[k];
     const auto column = std::find(free.begin(), free.end(), curve.first);
     if (column == free.end()) continue;
-    const auto first = static_cast<Eigen::Index>(column - free.begin()), size = static_cast<Eigen::Index>(curve.spline.size());
+    const Eigen::Index first = column - free.begin(), size = curve.spline.size();
     Eigen::VectorXd c(size);
-    for (Eigen::Index i = 0; i < size; ++i) c[i] = model.parameters[static_cast<std::size_t>(curve.first + i)].value;
+    for (Eigen::Index i = 0; i < size; ++i) c[i] = model.parameters[curve.first + i].value;
     Eigen::MatrixXd inverse;
     if (!invert_scaled(covariance.block(first, first, size, size), inverse)) continue;
     const Eigen::VectorXd towards = inverse * c;
@@ -81,7 +81,7 @@ void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& co
   const auto n = static_cast<Eigen::Index>(all.size());
   if (n < 2) return;
   Eigen::MatrixXd weights(n, covariance.rows());
-  for (Eigen::Index i = 0; i < n; ++i) weights.row(i) = all[static_cast<std::size_t>(i)].weights;
+  for (Eigen::Index i = 0; i < n; ++i) weights.row(i) = all[i].weights;
   const Eigen::MatrixXd joint = weights * covariance * weights.transpose();
   const Eigen::VectorXd sigma = joint.diagonal().cwiseSqrt();
   const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * joint * sigma.cwiseInverse().asDiagonal();
@@ -95,7 +95,7 @@ void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& co
     std::vector<Eigen::Index> places;
     for (Eigen::Index i = 0; i < n; ++i) {
       if (std::abs(v[i]) < takes_part * v.cwiseAbs().maxCoeff()) continue;
-      const Direction& d = all[static_cast<std::size_t>(i)];
+      const Direction& d = all[i];
       names.push_back(d.name);
       relative.push_back(sigma[i] / std::max(std::abs(d.value), 1e-300));
       places.push_back(i);
@@ -106,7 +106,7 @@ void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& co
       if (std::find(fit.warnings.begin(), fit.warnings.end(), words) == fit.warnings.end()) fit.warnings.push_back(words);
       continue;
     }
-    const Direction &one = all[static_cast<std::size_t>(places[0])], &other = all[static_cast<std::size_t>(places[1])];
+    const Direction &one = all[places[0]], &other = all[places[1]];
     const double sign = one.value * other.value < 0.0 ? -1.0 : 1.0;
     fit.warnings.push_back(pair_in_words(one, other, sigma[places[0]], sigma[places[1]], sign * correlation(places[0], places[1])));
   }
@@ -129,8 +129,8 @@ void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance,
   const std::vector<int> free = model.free_parameters();
   std::string prior_only;
   for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    const auto at = static_cast<Eigen::Index>(c);
+    const Parameter& p = model.parameters[free[c]];
+    const Eigen::Index at = c;
     if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
     const double sigma = std::sqrt(covariance(at, at));
     constexpr double nothing_new = 0.95;
@@ -150,8 +150,8 @@ void refuse_runaways(const Model& model, const Eigen::MatrixXd& covariance, Fit&
   constexpr double far = 2.0, tells_little = 0.5;  // of the prior's sigma
   const std::vector<int> free = model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    const double sigma = std::sqrt(std::max(covariance(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(c)), 0.0));
+    const Parameter& p = model.parameters[free[c]];
+    const double sigma = std::sqrt(std::max(covariance(c, c), 0.0));
     if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
     if (std::abs(p.value - p.prior_mean) < far * *p.prior_sigma || sigma < tells_little * *p.prior_sigma) continue;
     fit.status = FitStatus::failed;

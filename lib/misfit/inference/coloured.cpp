@@ -34,7 +34,7 @@ class Sandwich {
     }
     lags_ = std::min(most_lags, longest / 3);
     size_ = power_of_two(std::min(longest + lags_, longest_transform));
-    products_.assign(static_cast<std::size_t>(lags_ + 1), Eigen::MatrixXd::Zero(channels, channels));
+    products_.assign(lags_ + 1, Eigen::MatrixXd::Zero(channels, channels));
     pairs_ = products_;
     for (const auto& e : experiments) {
       const Eigen::Index samples = e.r.size() / channels, most = size_ - lags_;
@@ -48,7 +48,7 @@ class Sandwich {
   }
 
   ColouredCovariance run() {
-    LagProducts deficit(static_cast<std::size_t>(2 * out_.lags + 1), Eigen::MatrixXd::Zero(channels_, channels_));
+    LagProducts deficit(2 * out_.lags + 1, Eigen::MatrixXd::Zero(channels_, channels_));
     const std::vector<Densities> by_plain = leverage(plain_);
     constexpr int rounds = 6;
     for (int round = 0;; ++round) {
@@ -96,10 +96,10 @@ class Sandwich {
   void add_products(const std::vector<Eigen::VectorXcd>& x, LagProducts& out) const {
     for (Eigen::Index a = 0; a < channels_; ++a) {
       for (Eigen::Index b = 0; b < channels_; ++b) {
-        const auto& from = x[static_cast<std::size_t>(a)];
-        const auto& to = x[static_cast<std::size_t>(b)];
+        const auto& from = x[a];
+        const auto& to = x[b];
         const Eigen::VectorXd by_lag = inverse_fourier(from.conjugate().cwiseProduct(to), size_);
-        for (Eigen::Index k = 0; k <= lags_; ++k) out[static_cast<std::size_t>(k)](a, b) += by_lag[k];
+        for (Eigen::Index k = 0; k <= lags_; ++k) out[k](a, b) += by_lag[k];
       }
     }
   }
@@ -134,14 +134,14 @@ class Sandwich {
     std::vector<Densities> out;
     for (const Stretch& s : stretches_) {
       const Eigen::MatrixXd here = local(A, s);
-      Densities density(static_cast<std::size_t>(size_ / 2 + 1), Eigen::MatrixXcd(channels_, channels_));
+      Densities density(size_ / 2 + 1, Eigen::MatrixXcd(channels_, channels_));
       for (std::size_t b = 0; b < s.real.size(); ++b) {
         const Eigen::MatrixXd real = s.real[b] * here, imaginary = s.imaginary[b] * here;
         for (std::size_t a = 0; a < s.real.size(); ++a) {
           const Eigen::VectorXd even =
               s.real[a].cwiseProduct(real).rowwise().sum() + s.imaginary[a].cwiseProduct(imaginary).rowwise().sum();
           const Eigen::VectorXd odd = s.real[a].cwiseProduct(imaginary).rowwise().sum() - s.imaginary[a].cwiseProduct(real).rowwise().sum();
-          set(density, static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b), even, odd);
+          set(density, a, b, even, odd);
         }
       }
       out.push_back(std::move(density));
@@ -160,10 +160,10 @@ class Sandwich {
         put_in[f] += by_covariance[s][f];
       }
     }
-    LagProducts out(static_cast<std::size_t>(2 * out_.lags + 1), Eigen::MatrixXd::Zero(channels_, channels_));
+    LagProducts out(2 * out_.lags + 1, Eigen::MatrixXd::Zero(channels_, channels_));
     const auto series = [&](const Densities& from, Eigen::Index a, Eigen::Index b) {
-      Eigen::VectorXcd line(static_cast<Eigen::Index>(half));
-      for (std::size_t f = 0; f < half; ++f) line[static_cast<Eigen::Index>(f)] = from[f](a, b);
+      Eigen::VectorXcd line(half);
+      for (std::size_t f = 0; f < half; ++f) line[f] = from[f](a, b);
       return inverse_fourier(line, size_);
     };
     for (Eigen::Index a = 0; a < channels_; ++a) {
@@ -180,14 +180,14 @@ class Sandwich {
   }
 
   static void set(Densities& density, Eigen::Index a, Eigen::Index b, const Eigen::VectorXd& real, const Eigen::VectorXd& imaginary) {
-    for (Eigen::Index f = 0; f < real.size(); ++f) density[static_cast<std::size_t>(f)](a, b) = {real[f], imaginary[f]};
+    for (Eigen::Index f = 0; f < real.size(); ++f) density[f](a, b) = {real[f], imaginary[f]};
   }
 
   /// Real and imaginary part of conj(density) less 1 on the diagonal, by their share of a sum over the whole spectrum.
   void weigh(const Densities& density, Eigen::Index a, Eigen::Index b, Eigen::VectorXd& even, Eigen::VectorXd& odd) const {
     for (Eigen::Index f = 0; f < even.size(); ++f) {
       const double weight = (f == 0 || f == even.size() - 1 ? 1.0 : 2.0) / static_cast<double>(size_);
-      const std::complex<double> g = std::conj(density[static_cast<std::size_t>(f)](a, b));
+      const std::complex<double> g = std::conj(density[f](a, b));
       even[f] = weight * (g.real() - (a == b ? 1.0 : 0.0));
       odd[f] = weight * g.imag();
     }
@@ -203,7 +203,7 @@ class Sandwich {
         Eigen::MatrixXd real = Eigen::MatrixXd::Zero(half, here.cols()), imaginary = real;
         for (std::size_t b = 0; b < s.real.size(); ++b) {
           Eigen::VectorXd even(half), odd(half);
-          weigh(density, static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b), even, odd);
+          weigh(density, a, b, even, odd);
           real += even.asDiagonal() * s.real[b];
           imaginary += even.asDiagonal() * s.imaginary[b];
           if (a == b) continue;

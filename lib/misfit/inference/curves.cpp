@@ -23,7 +23,7 @@ void add_term(const Model& model, const std::vector<int>& column_of, const Curve
   const CurvePoint point = curve.spline.at(x);
   for (int j = 0; j < 4; ++j) {
     const auto parameter = static_cast<std::size_t>(curve.first + point.first + j);
-    const double w = factor * (derivative == 0 ? point.w : point.d)[static_cast<std::size_t>(j)];
+    const double w = factor * (derivative == 0 ? point.w : point.d)[j];
     out.value += w * model.parameters[parameter].value;
     if (column_of[parameter] >= 0) out.on_columns[column_of[parameter]] += w;
   }
@@ -83,12 +83,12 @@ CurveEstimate evaluate(const Model& model, const std::vector<int>& column_of, co
 RowMatrix visited_quantities(const Model& model, const Signals& signals, const ReconstructedStates& states) {
   Evaluator evaluator(model);
   const InputTable inputs = input_table(signals, model.inputs());
-  const auto count = static_cast<Eigen::Index>(std::count(states.ok.begin(), states.ok.end(), true));
-  RowMatrix out(count, static_cast<Eigen::Index>(model.system->spec().quantities.size()));
+  const Eigen::Index count = std::count(states.ok.begin(), states.ok.end(), true);
+  RowMatrix out(count, model.system->spec().quantities.size());
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < states.ok.size(); ++i) {
     if (!states.ok[i]) continue;
-    evaluator.quantities(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs.at(i), signals.t[i], out.row(row++).data());
+    evaluator.quantities(states.x.row(i).data(), inputs.at(i), signals.t[i], out.row(row++).data());
   }
   return out;
 }
@@ -97,7 +97,7 @@ std::vector<double> choose_knots(std::vector<double> visited, int intervals, con
   constexpr double samples_per_interval = 30.0;
   constexpr double tail = 0.001;
   std::sort(visited.begin(), visited.end());
-  if (visited.size() < 2 * static_cast<std::size_t>(samples_per_interval)) {
+  if (static_cast<double>(visited.size()) < 2.0 * samples_per_interval) {
     throw RunError("curve " + curve + ": only " + std::to_string(visited.size()) +
                    " samples show its quantity; at least 60 are needed to choose knots");
   }
@@ -143,10 +143,10 @@ void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMa
   fit.names.clear();
   fit.covariance = covariance;
   for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    column_of[static_cast<std::size_t>(free[c])] = static_cast<int>(c);
+    const Parameter& p = model.parameters[free[c]];
+    column_of[free[c]] = static_cast<int>(c);
     fit.names.push_back(p.name);
-    const auto i = static_cast<Eigen::Index>(c);
+    const Eigen::Index i = c;
     fit.parameters[p.name] = {p.value, std::sqrt(std::max(covariance(i, i), 0.0)), p.unit};
   }
   fit.curves.clear();
@@ -181,11 +181,11 @@ double gain_of(const Model& model, const Curve& curve, std::size_t k, double shi
   Evaluator evaluator(model);
   std::vector<double> values = model.values();
   values[k] += shift;
-  std::vector<double> dx(static_cast<std::size_t>(model.states())), off = dx;
-  for (int i = 0; i < curve.spline.size(); ++i) values[static_cast<std::size_t>(curve.first + i)] = 1.0;
+  std::vector<double> dx(model.states()), off = dx;
+  for (int i = 0; i < curve.spline.size(); ++i) values[curve.first + i] = 1.0;
   evaluator.set_parameters(values.data());
   evaluator.rates(x, u, t, dx.data());
-  for (int i = 0; i < curve.spline.size(); ++i) values[static_cast<std::size_t>(curve.first + i)] = 0.0;
+  for (int i = 0; i < curve.spline.size(); ++i) values[curve.first + i] = 0.0;
   evaluator.set_parameters(values.data());
   evaluator.rates(x, u, t, off.data());
   double largest = 0.0;

@@ -23,7 +23,7 @@ double rate_of_model(const Model& model, const Signals& signals, const Reconstru
   const std::size_t stride = std::max<std::size_t>(1, signals.samples() / looks);
   double fastest = 0.0;
   for (std::size_t i = 0; i < signals.samples(); i += stride) {
-    const double rate = evaluator.fastest_rate(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs.at(i), signals.t[i]);
+    const double rate = evaluator.fastest_rate(states.x.row(i).data(), inputs.at(i), signals.t[i]);
     if (states.ok[i] && std::isfinite(rate)) fastest = std::max(fastest, rate);
   }
   return fastest;
@@ -39,11 +39,11 @@ double rate_of_data(const Model& model, const Signals& signals, const Reconstruc
     double n = 0.0, sum = 0.0, squares = 0.0, slopes = 0.0;
     for (std::size_t i = 0; i < signals.samples(); ++i) {
       if (!states.ok[i]) continue;
-      const double x = states.x(static_cast<Eigen::Index>(i), outputs[o].observes);
+      const double x = states.x(i, outputs[o].observes);
       n += 1.0;
       sum += x;
       squares += x * x;
-      slopes += std::pow(states.dx(static_cast<Eigen::Index>(i), outputs[o].observes), 2);
+      slopes += std::pow(states.dx(i, outputs[o].observes), 2);
     }
     const double noise = measurement_noise(signals.measured[o].values);
     constexpr double of_a_slope = 0.1;  // sum of squares of the weights of five even samples

@@ -24,10 +24,10 @@ Eigen::MatrixXd reduced(const NormalEquations& problem, const std::vector<Column
   const Eigen::MatrixXd all = scale.asDiagonal() * problem.N * scale.asDiagonal();
   Eigen::MatrixXd N(n, n), C(n, states);
   for (Eigen::Index a = 0; a < n; ++a) {
-    const Eigen::Index row = columns[static_cast<std::size_t>(a)].at;
-    for (Eigen::Index b = 0; b < n; ++b) N(a, b) = all(row, columns[static_cast<std::size_t>(b)].at);
+    const Eigen::Index row = columns[a].at;
+    for (Eigen::Index b = 0; b < n; ++b) N(a, b) = all(row, columns[b].at);
     C.row(a) = all.row(row).tail(states);
-    if (problem.prior_precision.size() > row) N(a, a) += problem.prior_precision[row] * scale[row] * scale[row];
+    if (problem.prior.precision.size() > row) N(a, a) += problem.prior.precision[row] * scale[row] * scale[row];
   }
   if (states == 0) return N;
   return N - C * all.bottomRightCorner(states, states).completeOrthogonalDecomposition().solve(C.transpose());
@@ -56,19 +56,18 @@ std::string undetermined(const Model& model, const NormalEquations& problem) {
   std::vector<Column> columns;
   std::vector<std::string> idle;
   for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    const auto at = static_cast<Eigen::Index>(c);
+    const Parameter& p = model.parameters[free[c]];
+    const Eigen::Index at = c;
     if (p.curve >= 0) continue;
-    const bool acts = problem.N(at, at) > 0.0 || (problem.prior_precision.size() > at && problem.prior_precision[at] > 0.0);
+    const bool acts = problem.N(at, at) > 0.0 || (problem.prior.precision.size() > at && problem.prior.precision[at] > 0.0);
     if (acts) columns.push_back({&p, at});
     if (!acts) idle.push_back(p.name);
   }
   if (!idle.empty()) return "nothing in these data depends on " + join_words(idle) + "; fix it, or take it out of the model";
   if (columns.size() < 2) return {};
-  const Eigen::MatrixXd N = reduced(problem, columns, static_cast<Eigen::Index>(free.size()));
+  const Eigen::MatrixXd N = reduced(problem, columns, free.size());
   Eigen::VectorXd size(N.rows());
-  for (Eigen::Index a = 0; a < N.rows(); ++a)
-    size[a] = 1.0 / std::sqrt(problem.N(columns[static_cast<std::size_t>(a)].at, columns[static_cast<std::size_t>(a)].at));
+  for (Eigen::Index a = 0; a < N.rows(); ++a) size[a] = 1.0 / std::sqrt(problem.N(columns[a].at, columns[a].at));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(N);
   if (solver.info() != Eigen::Success || solver.eigenvalues()[0] > nothing * solver.eigenvalues().maxCoeff()) return {};
   const Eigen::VectorXd direction = solver.eigenvectors().col(0);
@@ -77,7 +76,7 @@ std::string undetermined(const Model& model, const NormalEquations& problem) {
   std::vector<double> relative;
   for (Eigen::Index a = 0; a < direction.size(); ++a) {
     if (std::abs(direction[a]) < takes_part * direction.cwiseAbs().maxCoeff()) continue;
-    const Parameter& p = *columns[static_cast<std::size_t>(a)].parameter;
+    const Parameter& p = *columns[a].parameter;
     names.push_back(p.name);
     relative.push_back(direction[a] * size[a] / p.value);
   }
@@ -85,10 +84,7 @@ std::string undetermined(const Model& model, const NormalEquations& problem) {
 }
 
 std::string undetermined_beside_priors(const Model& model, NormalEquations problem) {
-  const std::vector<int> free = model.free_parameters();
-  for (std::size_t c = 0; c < free.size(); ++c) {
-    if (!model.parameters[static_cast<std::size_t>(free[c])].prior_sigma) problem.prior_precision[static_cast<Eigen::Index>(c)] = 0.0;
-  }
+  problem.prior = parameter_priors(model);
   return undetermined(model, problem);
 }
 

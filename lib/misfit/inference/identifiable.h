@@ -14,7 +14,7 @@ namespace misfit {
 /// of the largest. Empty if every parameter is determined.
 [[nodiscard]] std::string undetermined(const Model& model, const NormalEquations& problem);
 
-/// The same where `problem` carries the very wide priors of set_priors(): only those that the model states count.
+/// The same where `problem` carries the very wide priors of regularised_priors(): only those that the model states count.
 [[nodiscard]] std::string undetermined_beside_priors(const Model& model, NormalEquations problem);
 
 /// What these data tell only weakly, in words, into warnings: parameters, and curves as a whole (their scale), that make up for each other

@@ -1,7 +1,6 @@
 #pragma once
 
 // References
-//   [W]  G. Wahba, J. R. Statist. Soc. B 40 (1978): a roughness penalty is a Gaussian prior with C'' white noise.
 //   [G]  A. Gelman, Bayesian Analysis 1 (2006): a uniform prior of a standard deviation.
 //   [KS] R. E. Kass, D. Steffey, J. Am. Statist. Assoc. 84 (1989): what estimated hyperparameters add to a covariance.
 //   [FS] S. N. Wood, M. Fasiolo, Biometrics 73 (2017): generalised Fellner–Schall update of smoothing parameters by marginal likelihood.
@@ -9,38 +8,20 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "misfit/model/model.h"
+#include "misfit/inference/prior.h"
 
 namespace misfit {
-
-/// Quadratic penalty λ ∫ C''² = λ cᵀ Ω c of one curve whose coefficients are all free, in the units of −2 log density: C'' is a priori
-/// white noise of intensity 1/λ [W]. The unit of λ is argument³/value²; it does not depend on the measurement noise.
-struct Penalty {
-  int curve = -1;         ///< index into Model::curves
-  int first = 0;          ///< first column
-  Eigen::MatrixXd omega;  ///< size × size
-  int rank = 0;           ///< size − 2: straight lines are free
-  double lambda = 0.0;
-  bool chosen = false;  ///< true: λ is to be chosen from the data
-};
-
-/// Penalties of the model's free curves; columns are those of Model::free_parameters(). Where the study gives no roughness λ starts at
-/// `scale`-based size: a curve whose slope turns by its typical size over its whole range.
-[[nodiscard]] std::vector<Penalty> curve_penalties(const Model& model);
-
-/// The curves' roughness as it was chosen, so that any method keeps it.
-[[nodiscard]] Model with_roughness(Model model, const std::vector<Penalty>& penalties);
 
 /// A Gaussian linearisation of a fit: residuals r (unweighted sum of squares), N = JᵀJ, g = Jᵀr at θ, in units where one residual's
 /// variance is σ².
 struct NormalEquations {
-  Eigen::MatrixXd N;                            ///< columns × columns
-  Eigen::VectorXd g;                            ///< columns
-  double rss = 0.0;                             ///< rᵀr
-  double count = 0.0;                           ///< residuals
-  Eigen::VectorXd theta;                        ///< columns: where it was made
-  Eigen::VectorXd prior_precision, prior_mean;  ///< per column; precision 0 = none
-  double held = 0.0;                            ///< unknowns that N holds stiffly to a known value or to another unknown: not estimated
+  Eigen::MatrixXd N;      ///< columns × columns
+  Eigen::VectorXd g;      ///< columns
+  double rss = 0.0;       ///< rᵀr
+  double count = 0.0;     ///< residuals
+  Eigen::VectorXd theta;  ///< columns: where it was made
+  ColumnPriors prior;     ///< of the columns
+  double held = 0.0;      ///< unknowns that N holds stiffly to a known value or to another unknown: not estimated
 };
 
 struct PenalisedFit {
@@ -52,28 +33,24 @@ struct PenalisedFit {
   bool ok = false;             ///< false: the information matrix is not positive definite
 };
 
-/// Fills the priors of the free parameters; without one a very wide prior (1000 typical sizes) keeps coefficients finite that no sample
-/// touches.
-void set_priors(const Model& model, NormalEquations& sums);
-
 /// N/σ² + Σ λ Ω + priors; its inverse is the covariance.
 [[nodiscard]] Eigen::MatrixXd precision_of(const NormalEquations& problem, const std::vector<Penalty>& penalties, double sigma2);
 
 /// Inverse of a symmetric positive definite matrix, solved with its diagonal scaled to one: columns of different units differ by many
-/// orders of magnitude. False if it is not positive definite.
-[[nodiscard]] bool invert_scaled(const Eigen::MatrixXd& H, Eigen::MatrixXd& inverse);
+/// orders of magnitude. False if it is not positive definite. `log_determinant`: of H, if asked for.
+[[nodiscard]] bool invert_scaled(const Eigen::MatrixXd& H, Eigen::MatrixXd& inverse, double* log_determinant = nullptr);
 
-/// Unknowns turned into the eigenvectors of each Ω: x = turn · x', Ω diagonal, exactly 0 for the straight line. The weight of a curve that
-/// is a straight line to all that the data show has more digits than a double between its bends and what the data say of the line: in the
-/// curve's coefficients they mix, and λ Ω c and λ cᵀΩc of a line are rounding times a large number; here they do not.
+/// Unknowns in the eigenvectors of each Ω: x = Q x', Ω diagonal, exactly 0 for the straight line. Between the weight of a curve that is a
+/// straight line to all that the data show and the information on that line lie more digits than a double has: in the curve's coefficients
+/// they mix, and λ Ω c and λ cᵀΩc of a line are rounding times a large number; here they do not.
 struct PenaltyBasis {
-  Eigen::MatrixXd turn;
+  Eigen::MatrixXd Q;
   std::vector<Penalty> penalties;
 };
 [[nodiscard]] PenaltyBasis penalty_eigenbasis(Eigen::Index columns, const std::vector<Penalty>& penalties);
 
-/// Inverse of `information` + λ Ω of all penalties (neither is turned), taken in the bends. False as above.
-[[nodiscard]] bool invert_with(const Eigen::MatrixXd& information, const PenaltyBasis& bends, Eigen::MatrixXd& inverse);
+/// Inverse of `information` + λ Ω of all penalties (neither is turned), taken in the eigenvectors. False as above.
+[[nodiscard]] bool invert_with(const Eigen::MatrixXd& information, const PenaltyBasis& basis, Eigen::MatrixXd& inverse);
 
 /// Maximises the marginal likelihood over the λ marked `chosen` and σ² for the linearised problem [FS], updating `penalties`. With
 /// `sigma2_given` > 0 the variance is kept.
@@ -87,8 +64,5 @@ struct PenaltyBasis {
 /// others held; what each adds is summed. Without chosen λ: C + C E C.
 [[nodiscard]] Eigen::MatrixXd with_uncertain_roughness(const NormalEquations& problem, const std::vector<Penalty>& penalties, double sigma2,
                                                        const Eigen::MatrixXd& excess = {});
-
-/// L with LᵀL = λ Ω: residual rows L c for a solver.
-[[nodiscard]] Eigen::MatrixXd penalty_rows(const Penalty& penalty);
 
 }  // namespace misfit

@@ -55,12 +55,12 @@ void add_series(const Model& model, const Signals& signals, int state, const std
   for (std::size_t j = 0; j < states.size(); ++j) {
     if (states[j].rate_of == state) rate = static_cast<int>(j);
   }
-  out.shown[static_cast<std::size_t>(state)] = true;
-  if (rate >= 0) out.shown[static_cast<std::size_t>(rate)] = true;
+  out.shown[state] = true;
+  if (rate >= 0) out.shown[rate] = true;
   for (Eigen::Index i = 0; i < out.x.rows(); ++i) {
-    const LocalFit fit = local_quadratic(signals.t, values, static_cast<std::size_t>(i), h);
+    const LocalFit fit = local_quadratic(signals.t, values, i, h);
     if (!fit.ok) {
-      out.ok[static_cast<std::size_t>(i)] = false;
+      out.ok[i] = false;
       continue;
     }
     out.x(i, state) = fit.value;
@@ -85,7 +85,7 @@ std::vector<std::vector<double>> read_all(const Model& model, const Signals& sig
       known = known && std::isfinite(y[o]);
     }
     if (!known || !model.system->read_states(y.data(), constants.data(), x.data())) continue;
-    for (std::size_t r = 0; r < readable.size(); ++r) out[r][i] = x[static_cast<std::size_t>(readable[r])];
+    for (std::size_t r = 0; r < readable.size(); ++r) out[r][i] = x[readable[r]];
   }
   return out;
 }
@@ -100,13 +100,13 @@ double start_of(const StateSpec& state) {
 
 ReconstructedStates reconstruct_states(const Model& model, const Signals& signals) {
   const auto& spec = model.system->spec();
-  const auto samples = static_cast<Eigen::Index>(signals.samples());
+  const Eigen::Index samples = signals.samples();
   const double h = usual_step(signals.t);
   ReconstructedStates out;
   out.x = RowMatrix::Zero(samples, model.states());
   out.dx = RowMatrix::Zero(samples, model.states());
   out.ok.assign(signals.samples(), true);
-  out.shown.assign(static_cast<std::size_t>(model.states()), false);
+  out.shown.assign(model.states(), false);
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     if (spec.outputs[o].observes >= 0 && o < signals.measured.size())
       add_series(model, signals, spec.outputs[o].observes, signals.measured[o].values, h, out);
@@ -116,10 +116,9 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
     for (std::size_t r = 0; r < values.size(); ++r) add_series(model, signals, spec.readable_states[r], values[r], h, out);
   }
   for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
-    if (!out.shown[j]) out.x.col(static_cast<Eigen::Index>(j)).setConstant(start_of(model.state_specs[j]));
+    if (!out.shown[j]) out.x.col(j).setConstant(start_of(model.state_specs[j]));
   }
-  for (std::size_t z = 0; z < model.own_states.size(); ++z)
-    out.x.col(model.system_states() + static_cast<Eigen::Index>(z)).setConstant(model.own_states[z].initial);
+  for (std::size_t z = 0; z < model.own_states.size(); ++z) out.x.col(model.system_states() + z).setConstant(model.own_states[z].initial);
   return out;
 }
 
@@ -131,11 +130,11 @@ double motion_frequency(const Model& model, const ReconstructedStates& states) {
     if (level < 0 || !states.shown[j]) continue;
     double n = 0.0, sum = 0.0, squares = 0.0, rates = 0.0;
     for (Eigen::Index i = 0; i < states.x.rows(); ++i) {
-      if (!states.ok[static_cast<std::size_t>(i)]) continue;
+      if (!states.ok[i]) continue;
       n += 1.0;
       sum += states.x(i, level);
       squares += states.x(i, level) * states.x(i, level);
-      rates += states.x(i, static_cast<Eigen::Index>(j)) * states.x(i, static_cast<Eigen::Index>(j));
+      rates += states.x(i, j) * states.x(i, j);
     }
     const double variance = n > 2.0 ? squares / n - sum * sum / (n * n) : 0.0;
     if (variance > 0.0) fastest = std::max(fastest, std::sqrt(rates / n / variance));

@@ -111,7 +111,7 @@ WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int
   if (n < of_an_unknown * fitted) test.last_lag = 0;
   if (test.last_lag < first_lag) return test;
   const std::vector<double> rho = autocorrelation(residuals, test.last_lag);
-  const std::vector<double> pairs = pairs_of(residuals, 2 * static_cast<std::size_t>(test.last_lag));
+  const std::vector<double> pairs = pairs_of(residuals, 2 * test.last_lag);
   const auto length = static_cast<double>(residuals.size());
   std::vector<std::size_t> lags;
   for (int lag = first_lag; lag <= test.last_lag; ++lag) {

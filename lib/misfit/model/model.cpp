@@ -18,6 +18,25 @@ std::vector<int> Model::free_parameters() const {
   return out;
 }
 
+Eigen::VectorXd Model::theta() const {
+  const std::vector<int> free = free_parameters();
+  Eigen::VectorXd out(std::ssize(free));
+  for (Eigen::Index c = 0; c < out.size(); ++c) out[c] = parameters[free[c]].value;
+  return out;
+}
+
+void Model::set_theta(const Eigen::VectorXd& theta) {
+  const std::vector<int> free = free_parameters();
+  for (Eigen::Index c = 0; c < std::ssize(free); ++c) parameters[free[c]].value = theta[c];
+}
+
+std::vector<double> Model::values_at(const Eigen::VectorXd& theta) const {
+  const std::vector<int> free = free_parameters();
+  std::vector<double> out = values();
+  for (Eigen::Index c = 0; c < std::ssize(free); ++c) out[free[c]] = theta[c];
+  return out;
+}
+
 int Model::find_parameter(const std::string& name) const {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i].name == name) return static_cast<int>(i);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <memory>
 #include <optional>
@@ -108,9 +109,12 @@ struct Model {
   [[nodiscard]] int states() const { return system_states() + static_cast<int>(own_states.size()); }
   [[nodiscard]] int outputs() const { return static_cast<int>(system->spec().outputs.size()); }
   [[nodiscard]] int inputs() const { return static_cast<int>(system->spec().inputs.size()); }
-  [[nodiscard]] std::vector<double> values() const;                 ///< of all parameters
-  [[nodiscard]] std::vector<int> free_parameters() const;           ///< index into `parameters` of each column
-  [[nodiscard]] int find_parameter(const std::string& name) const;  ///< −1 if there is none
+  [[nodiscard]] std::vector<double> values() const;        ///< of all parameters
+  [[nodiscard]] std::vector<int> free_parameters() const;  ///< index into `parameters` of each column
+  [[nodiscard]] Eigen::VectorXd theta() const;             ///< values of the free parameters, in that order
+  void set_theta(const Eigen::VectorXd& theta);
+  [[nodiscard]] std::vector<double> values_at(const Eigen::VectorXd& theta) const;  ///< values() with these of the free parameters
+  [[nodiscard]] int find_parameter(const std::string& name) const;                  ///< −1 if there is none
   [[nodiscard]] const Curve* find_curve(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> needed_inputs() const;  ///< inputs that some quantity read by somebody needs
 };

@@ -21,30 +21,17 @@
 namespace misfit {
 namespace {
 
-/// States after the measurements of each sample were taken in; rows from the first used sample on.
-RowMatrix filtered_states(const FilterTrace& trace, std::size_t first) {
-  const auto n = static_cast<std::size_t>(trace.n);
-  RowMatrix x(static_cast<Eigen::Index>(trace.samples - first), trace.n);
-  for (std::size_t k = first; k < trace.samples; ++k) {
-    for (std::size_t i = 0; i < n; ++i)
-      x(static_cast<Eigen::Index>(k - first), static_cast<Eigen::Index>(i)) = trace.predicted[k * n + i] + trace.correction[k * n + i];
-  }
-  return x;
-}
-
+/// Quantities at every filtered state, all experiments one after the other.
 RowMatrix visited_by_filter(const FilterEstimate& estimate) {
   Evaluator evaluator(estimate.forced.model);
-  const auto quantities = static_cast<Eigen::Index>(estimate.model.system->spec().quantities.size());
-  RowMatrix out(0, quantities);
+  Eigen::Index rows = 0;
+  for (std::size_t e = 0; e < estimate.data.size(); ++e) rows += estimate.traces[e].samples - estimate.data[e].first;
+  RowMatrix out(rows, std::ssize(estimate.model.system->spec().quantities));
+  Eigen::Index row = 0;
   for (std::size_t e = 0; e < estimate.data.size(); ++e) {
     const FilterData& data = estimate.data[e];
-    const RowMatrix x = filtered_states(estimate.traces[e], data.first);
-    const Eigen::Index before = out.rows();
-    out.conservativeResize(before + x.rows(), quantities);
-    for (Eigen::Index k = 0; k < x.rows(); ++k) {
-      const std::size_t sample = data.first + static_cast<std::size_t>(k);
-      evaluator.quantities(x.row(k).data(), data.inputs.at(sample), data.signals->t[sample], out.row(before + k).data());
-    }
+    for (std::size_t k = data.first; k < estimate.traces[e].samples; ++k)
+      evaluator.quantities(estimate.traces[e].filtered(k).data(), data.inputs.at(k), data.signals->t[k], out.row(row++).data());
   }
   return out;
 }
@@ -59,8 +46,7 @@ std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
                                          ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q))
                                          : Eigen::MatrixXd(information.inverse());
   std::vector<double> out;
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
-    out.push_back(known[static_cast<std::size_t>(i)] ? std::sqrt(std::max(covariance(i, i), 0.0)) : 0.0);
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) out.push_back(known[i] ? std::sqrt(std::max(covariance(i, i), 0.0)) : 0.0);
   return out;
 }
 
@@ -74,7 +60,7 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
   };
   const auto intervals = noise_intervals(estimate, {0, 1}, threads);
   for (int port : estimate.forced.force_ports) {
-    const PortSpec& named = spec.dynamic_ports[static_cast<std::size_t>(port)];
+    const PortSpec& named = spec.dynamic_ports[port];
     fit.force[named.name] = as_estimate(0, named.unit);
     fit.force[named.name].interval = intervals[0];
   }
@@ -180,27 +166,18 @@ void describe_gaps(const FilterEstimate& estimate, Fit& fit) {
 /// that of priors and roughness.
 Eigen::MatrixXd covariance_of(const FilterEstimate& estimate) {
   const bool joint = estimate.joint_covariance.size() > 0;
-  const Eigen::MatrixXd& whole = joint ? estimate.joint_covariance : estimate.covariance;
-  const Eigen::Index columns = estimate.covariance.rows(), all = whole.rows();
+  const Eigen::Index columns = estimate.covariance.rows(), all = joint ? estimate.joint_covariance.rows() : columns;
   NormalEquations problem;
-  set_priors(estimate.model, problem);
-  problem.prior_precision.conservativeResizeLike(Eigen::VectorXd::Zero(all));
-  problem.prior_mean.conservativeResizeLike(Eigen::VectorXd::Zero(all));
   problem.theta = Eigen::VectorXd::Zero(all);
-  const std::vector<int> free = estimate.model.free_parameters();
-  for (std::size_t c = 0; c < free.size(); ++c)
-    problem.theta[static_cast<Eigen::Index>(c)] = estimate.model.parameters[static_cast<std::size_t>(free[c])].value;
+  problem.theta.head(columns) = estimate.model.theta();
+  problem.prior = regularised_priors(estimate.model).padded(all);
+  problem.g = GaussianPrior{problem.prior, estimate.penalties}.gradient(problem.theta);
   problem.N = Eigen::MatrixXd::Zero(all, all);
   if (joint) {
     problem.N = estimate.joint_information;
-    problem.N.diagonal() -= problem.prior_precision;
+    problem.N.diagonal() -= problem.prior.precision;
   } else {
     for (const auto& jacobian : estimate.jacobians) problem.N += jacobian.J.transpose() * jacobian.J;
-  }
-  problem.g = -problem.prior_precision.cwiseProduct(problem.theta - problem.prior_mean);
-  for (const auto& p : estimate.penalties) {
-    const auto size = p.omega.rows();
-    problem.g.segment(p.first, size) -= p.lambda * (p.omega * problem.theta.segment(p.first, size));
   }
   const Eigen::MatrixXd out = with_uncertain_roughness(problem, estimate.penalties, 1.0);
   return out.size() > 0 ? Eigen::MatrixXd(out.topLeftCorner(columns, columns)) : estimate.covariance;
@@ -288,8 +265,9 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   describe_gaps(estimate, fit);
   test_innovations(estimate, fit);
   fit.facts["effective_parameters"] = format_value(estimate.edf);
-  fit.facts["left_by_exact_derivatives"] =
-      estimate.left ? "one more Newton step on the exact likelihood would raise it by " + format_value(*estimate.left) : "not verified";
+  fit.facts["left_by_exact_derivatives"] = estimate.newton_decrement ? "one more Newton step on the exact likelihood would raise it by " +
+                                                                           format_value(*estimate.newton_decrement)
+                                                                     : "not verified";
   if (!estimate.nonlinear.empty()) {
     const auto [first_at, last_at] = std::minmax_element(estimate.nonlinear.begin(), estimate.nonlinear.end());
     fit.warnings.push_back(std::to_string(estimate.nonlinear.size()) + " measurements between t = " + format_value(*first_at) + " and " +

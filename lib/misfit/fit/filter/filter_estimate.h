@@ -32,26 +32,34 @@ struct FilterEstimate {
   Eigen::MatrixXd covariance;             ///< of the free parameters: inverse of the information with roughness and priors
   Eigen::MatrixXd joint_covariance;       ///< of parameters and log noise together, nothing held; empty where not verified
   Eigen::MatrixXd joint_information;      ///< of which that is the inverse, without the roughness
-  double objective = 0.0;                 ///< log-likelihood − ½ Σ λ cᵀΩc − ½ Σ ((θ − mean)/prior sigma)²
+  double objective = 0.0;                 ///< log-likelihood + log prior (GaussianPrior::log_density)
   double loglik = 0.0, validation_loglik = 0.0;
-  std::optional<double> left;  ///< what one more Newton step on the exact likelihood would still gain; nullopt: not verified
+  std::optional<double> newton_decrement;  ///< what one more Newton step on the exact likelihood would still gain; nullopt: not verified
   double edf = 0.0;
   bool converged = false;
   std::string message;
   int outliers = 0;
   std::vector<double> nonlinear;  ///< times [s] of measurements that move the filter but do not count: its linearisation breaks there
   int linearisations = 0;
+
+  /// Of the objective.
+  [[nodiscard]] GaussianPrior prior() const { return {parameter_priors(model), penalties}; }
+  /// Of steps and covariances.
+  [[nodiscard]] GaussianPrior regularised_prior() const { return {regularised_priors(model), penalties}; }
 };
 
-/// Maximum likelihood by blocks: physical parameters by Gauss–Newton on innovations with the gains held per iteration [MI], roughness by
-/// marginal likelihood, noise by Fisher scoring about the runs. Then, if verified, joint steps by exact derivatives of the whole likelihood
-/// (lib/misfit/README.md, 5.7), with the noise by restricted likelihood (filter_restricted.h) and the curvature corrected by what the steps
-/// before have shown (learned_curvature.h). Penalties: those of `start`. RunError if the states cannot be read from the channels or the
-/// model cannot be run from its start.
+/// Maximum likelihood of parameters, roughness and noise, in these steps (`Estimation::run`):
+///   1. `begin`: the filter is run from the start; where no noise is given, the usual one is raised until innovations are about as large as
+///      it expects them.
+///   2. `search_noise` (no noise given): one Gauss–Newton step of the parameters, then the noise from three frequencies of its resonance.
+///   3. `LikelihoodAscent::iterate`: in turn, until neither gains, the parameters by Gauss–Newton on innovations with the gains held per
+///      iteration [MI], roughness by marginal likelihood (estimate_smoothing), and the noise by Fisher scoring about the runs (fit_noise).
+///   4. `reject_outliers` (no use given): measurements beyond the gate are set aside and 3. is repeated, until their set stays.
+///   5. `refine_jointly` (if verified): Newton steps over parameters and noise together by derivatives of the exact likelihood
+///      (lib/misfit/README.md, 5.7); its own steps are listed there.
+///   6. `conclude`: covariance, effective parameters, and in words whether the likelihood still rises.
+/// Penalties: those of `start`. RunError if the states cannot be read from the channels or the model cannot be run from its start.
 [[nodiscard]] FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
                                              const FilterOptions& options = {});
-
-/// log prior of the free parameters at their present values, roughness included (constants left out): −½ Σ λ cᵀΩc − ½ Σ ….
-[[nodiscard]] double log_prior(const Model& model, const std::vector<Penalty>& penalties);
 
 }  // namespace misfit

@@ -12,42 +12,40 @@ template <int M, int NY>
 void run_linear_as(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise,
                    std::vector<double>& e, std::vector<double>& S) {
   const int n = trace.n, ny = trace.ny;
-  const auto N = static_cast<std::size_t>(n), NY_ = static_cast<std::size_t>(ny);
   const std::vector<double>& t = data.signals->t;
-  e.assign(trace.samples * NY_, 0.0);
-  S.assign(trace.samples * NY_, 0.0);
+  e.assign(trace.samples * ny, 0.0);
+  S.assign(trace.samples * ny, 0.0);
   Kalman<M, NY> kalman(n, ny);
   start_covariance(model, data, noise, kalman);
   NoiseSteps steps(noise);
   typename Kalman<M, NY>::StateVector a = Kalman<M, NY>::StateVector::Zero(n), correction = a, shifted = a;
   typename Kalman<M, NY>::StateMatrix phi = Kalman<M, NY>::StateMatrix::Zero(n, n);
-  const double old_time = model.model.parameters[static_cast<std::size_t>(model.time_parameter)].value;
+  const double old_time = model.force_time();
   for (std::size_t k = data.first; k < trace.samples; ++k) {
     for (int o = 0; o < ny; ++o) {
-      const std::size_t at = k * NY_ + static_cast<std::size_t>(o);
+      const std::size_t at = trace.place(k, o);
       if (data.use[at] == SampleRole::none) continue;
-      a = Eigen::Map<const Eigen::VectorXd>(trace.H.data() + at * N, n);
-      S[at] = kalman.variance(a, o, noise.channels[static_cast<std::size_t>(o)].white);
+      a = trace.H_at(at);
+      S[at] = kalman.variance(a, o, noise.channels[o].white);
       e[at] = trace.z[at] - a.dot(kalman.x) - kalman.j[2 * o];
       kalman.update(e[at], S[at]);
     }
     if (k + 1 == trace.samples) break;
-    phi = ConstMap(trace.Phi.data() + k * N * N, n, n);
+    phi = trace.Phi_at(k);
     const double h = t[k + 1] - t[k];
     // The force's own response with the new correlation time, to first order of the step in the rest of the system.
     const double decay = std::exp(-h / noise.force_time) / std::exp(-h / old_time);
     const double share = noise.force_time * std::expm1(-h / noise.force_time) / (old_time * std::expm1(-h / old_time));
     shifted.setZero();  // of the reference itself: its force decays at another rate
     for (int f : model.force_states) {
-      const std::size_t at = k * N + static_cast<std::size_t>(f);
-      const double force = trace.predicted[at] + trace.correction[at];
+      const double force = trace.predicted_at(k)[f] + trace.correction_at(k)[f];
       for (int i = 0; i < n; ++i) {
         const double change = phi(i, f) * ((i == f ? decay : share) - 1.0);
         shifted[i] += change * force;
         phi(i, f) += change;
       }
     }
-    correction = kalman.x - Eigen::Map<const Eigen::VectorXd>(trace.correction.data() + k * N, n);
+    correction = kalman.x - trace.correction_at(k);
     kalman.predict(phi, steps.at(h), model.kind, model.force_states);
     kalman.x.noalias() = phi * correction + shifted;
   }

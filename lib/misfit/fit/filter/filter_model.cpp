@@ -53,7 +53,7 @@ FilterModel with_random_force(const Model& model) {
   for (int port : ports_of(spec)) {
     BoundEffect bound;
     bound.effect = &effect;
-    bound.name = "random_force_" + spec.dynamic_ports[static_cast<std::size_t>(port)].name;
+    bound.name = "random_force_" + spec.dynamic_ports[port].name;
     bound.kind = PortKind::dynamic;
     bound.ports = {port};
     bound.coefficients = {{out.time_parameter, -1}};
@@ -62,19 +62,19 @@ FilterModel with_random_force(const Model& model) {
     out.force_ports.push_back(port);
     out.model.own_states.push_back(effect.spec().states.front());
     out.model.own_state_names.push_back(bound.name + ".force");
-    out.model.own_state_units.push_back(spec.dynamic_ports[static_cast<std::size_t>(port)].unit);
+    out.model.own_state_units.push_back(spec.dynamic_ports[port].unit);
     out.model.effects.push_back(std::move(bound));
   }
   if (out.model.states() > kMaxStates)
     throw RunError("the model has " + std::to_string(model.states()) + " states; with its random forces the filter can take " +
                    std::to_string(kMaxStates));
-  out.kind.assign(static_cast<std::size_t>(out.model.states()), 2);
+  out.kind.assign(out.model.states(), 2);
   for (std::size_t i = 0; i < spec.states.size(); ++i) {
     const bool level =
         std::any_of(spec.states.begin(), spec.states.end(), [&](const StateSpec& s) { return s.rate_of == static_cast<int>(i); });
     if (!level) out.kind[i] = 1;
   }
-  for (int f : out.force_states) out.kind[static_cast<std::size_t>(f)] = 0;
+  for (int f : out.force_states) out.kind[f] = 0;
   return out;
 }
 

@@ -14,6 +14,9 @@ struct FilterModel {
   std::vector<int> force_ports;   ///< dynamic port of each
   std::vector<int> kind;          ///< of each state: 0 force, 1 rate, 2 level (NoiseStep)
   int time_parameter = 0;
+
+  [[nodiscard]] double force_time() const { return model.parameters[time_parameter].value; }
+  void set_force_time(double seconds) { model.parameters[time_parameter].value = seconds; }
 };
 /// RunError if there are more states than kMaxStates.
 [[nodiscard]] FilterModel with_random_force(const Model& model);

@@ -115,7 +115,7 @@ class Scoring {
         moved[i].S[k] = (moved[i].S[k] - here.S[k]) * scale / here.S[k];
       }
     });
-    gradient_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
+    gradient_ = Eigen::VectorXd::Zero(n);
     information_ = Eigen::MatrixXd::Zero(gradient_.size(), gradient_.size());
     for (std::size_t k = 0; k < here.e.size(); ++k) {
       if (!counts_[k]) continue;
@@ -123,8 +123,7 @@ class Scoring {
       for (std::size_t i = 0; i < n; ++i) {
         const auto row = static_cast<Eigen::Index>(i);
         gradient_[row] += w * moved[i].e[k] + 0.5 * (1.0 - w * w) * moved[i].S[k];
-        for (std::size_t j = 0; j <= i; ++j)
-          information_(row, static_cast<Eigen::Index>(j)) += moved[i].e[k] * moved[j].e[k] + 0.5 * moved[i].S[k] * moved[j].S[k];
+        for (std::size_t j = 0; j <= i; ++j) information_(row, j) += moved[i].e[k] * moved[j].e[k] + 0.5 * moved[i].S[k] * moved[j].S[k];
       }
     }
     information_ = Eigen::MatrixXd(information_.selfadjointView<Eigen::Lower>());
@@ -135,7 +134,7 @@ class Scoring {
     Eigen::MatrixXd A = information_;
     for (Eigen::Index i = 0; i < A.rows(); ++i) {
       A(i, i) += damping * A(i, i) + 1e-6;
-      const auto k = static_cast<std::size_t>(i);
+      const std::size_t k = i;
       const bool outward =
           (at[k] <= vector_.lower[k] + 1e-9 && gradient_[i] > 0.0) || (at[k] >= vector_.upper[k] - 1e-9 && gradient_[i] < 0.0);
       if (outward) A(i, i) += 1e12;
@@ -144,7 +143,7 @@ class Scoring {
     expected = 0.5 * gradient_.dot(d);
     std::vector<double> next = at;
     for (std::size_t i = 0; i < at.size(); ++i)
-      next[i] = std::clamp(at[i] - std::clamp(d[static_cast<Eigen::Index>(i)], -1.0, 1.0), vector_.lower[i], vector_.upper[i]);
+      next[i] = std::clamp(at[i] - std::clamp(d[i], -1.0, 1.0), vector_.lower[i], vector_.upper[i]);
     return next;
   }
 
@@ -170,10 +169,10 @@ Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<
 
 std::vector<bool> pin_unknown(const NoiseFit& fit, Eigen::MatrixXd& information) {
   constexpr double determined = 1.0, pin = 1e12;
-  const Eigen::Index first = information.rows() - static_cast<Eigen::Index>(fit.at_bound.size());
+  const Eigen::Index first = information.rows() - fit.at_bound.size();
   std::vector<bool> known;
   for (std::size_t i = 0; i < fit.at_bound.size(); ++i) {
-    double& own = information(first + static_cast<Eigen::Index>(i), first + static_cast<Eigen::Index>(i));
+    double& own = information(first + i, first + i);
     known.push_back(!fit.at_bound[i] && own > determined);
     if (!known.back()) own += pin;
   }

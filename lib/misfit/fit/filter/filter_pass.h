@@ -21,7 +21,7 @@ template <int M, int NY>
 class FilterPass {
  public:
   FilterPass(const FilterModel& model, Stepper& stepper, const FilterData& data, const FilterNoise& noise, FilterTrace& trace,
-             const FilterPassOptions& wishes)
+             const FilterPassOptions& options)
       : model_(model),
         stepper_(stepper),
         evaluator_(stepper.evaluator()),
@@ -29,17 +29,17 @@ class FilterPass {
         signals_(*data.signals),
         noise_(noise),
         trace_(trace),
-        wishes_(wishes),
+        options_(options),
         n_(stepper.states()),
         ny_(evaluator_.outputs()),
-        N_(static_cast<std::size_t>(n_)),
+        N_(n_),
         kalman_(n_, ny_),
         steps_(noise),
         D_(N_ * kRowStride),
-        O_((static_cast<std::size_t>(ny_) + 1) * kRowStride),
+        O_((ny_ + 1) * kRowStride),
         a_(StateVector::Zero(n_)) {
     start_covariance(model, data, noise, kalman_);
-    if (wishes.jacobian != nullptr) begin_derivatives();
+    if (options.jacobian != nullptr) begin_derivatives();
     std::copy_n(data.start.data(), n_, x_.begin());
     stepper_.prepare(x_.data(), data.inputs.at(data.first), signals_.t[data.first]);
   }
@@ -48,9 +48,9 @@ class FilterPass {
     for (std::size_t k = data_.first; k < signals_.samples(); ++k) {
       predict_outputs(k);
       for (int o = 0; o < ny_; ++o) {
-        if (!take_reading(k, o)) return fails(k);
+        if (!update_by(k, o)) return fails(k);
       }
-      move(k);
+      correct_state(k);
       if (k + 1 < signals_.samples() && !step(k)) return fails(k);
     }
     trace_.finite = std::isfinite(trace_.loglik);
@@ -65,9 +65,9 @@ class FilterPass {
   void begin_derivatives() {
     const auto rows = static_cast<Eigen::Index>(std::count(data_.use.begin(), data_.use.end(), SampleRole::counted));
     const int columns = evaluator_.columns();
-    wishes_.jacobian->J.resize(rows, columns);
-    wishes_.jacobian->r.resize(rows);
-    wishes_.jacobian->index.clear();
+    options_.jacobian->J.resize(rows, columns);
+    options_.jacobian->r.resize(rows);
+    options_.jacobian->index.clear();
     s_model_ = RowMatrix::Zero(n_, columns);
     s_jitter_ = RowMatrix::Zero(twice(ny_), columns);
     s_work_.resize(n_, columns);
@@ -80,13 +80,12 @@ class FilterPass {
   }
 
   [[nodiscard]] const double* output_row(int o) const { return O_.data() + static_cast<std::ptrdiff_t>(o) * kRowStride; }
-  [[nodiscard]] std::size_t place(std::size_t k, int o) const { return k * static_cast<std::size_t>(ny_) + static_cast<std::size_t>(o); }
 
   /// Outputs, their rows and their variances before any measurement of the sample is taken in.
   void predict_outputs(std::size_t k) {
     const auto NY_ = static_cast<std::size_t>(ny_);
-    std::copy_n(x_.begin(), n_, trace_.predicted.begin() + static_cast<std::ptrdiff_t>(k * N_));
-    if (wishes_.keep_P) {
+    std::copy_n(x_.begin(), n_, trace_.predicted.begin() + (k * N_));
+    if (options_.keep_P) {
       Eigen::Map<RowMatrix> joint(trace_.P.data() + k * N_ * (N_ + 2 * NY_), n_, n_ + twice(ny_));
       joint.leftCols(n_) = kalman_.P;
       joint.rightCols(twice(ny_)) = kalman_.C;
@@ -96,12 +95,12 @@ class FilterPass {
     if (evaluator_.shifts_time()) evaluator_.rates(x_.data(), data_.inputs.at(k), signals_.t[k], speed_.data());
     kalman_.x.setZero();
     for (int o = 0; o < ny_; ++o) {
-      const std::size_t at = place(k, o);
-      const auto channel = static_cast<std::size_t>(o);
+      const std::size_t at = trace_.place(k, o);
+      const std::size_t channel = o;
       for (int i = 0; i < n_; ++i) a_[i] = output_row(o)[i];
       if (evaluator_.shifts_time()) {
         motion_[channel] = 0.0;
-        for (int i = 0; i < n_; ++i) motion_[channel] += a_[i] * speed_[static_cast<std::size_t>(i)];
+        for (int i = 0; i < n_; ++i) motion_[channel] += a_[i] * speed_[i];
         y_[channel] += motion_[channel] * y_[NY_];
       }
       Eigen::Map<Eigen::VectorXd>(trace_.H.data() + at * N_, n_) = a_;
@@ -111,25 +110,25 @@ class FilterPass {
   }
 
   /// False if the innovation is not a number.
-  bool take_reading(std::size_t k, int o) {
-    const std::size_t at = place(k, o);
-    const auto channel = static_cast<std::size_t>(o);
+  bool update_by(std::size_t k, int o) {
+    const std::size_t at = trace_.place(k, o);
+    const std::size_t channel = o;
     const SampleRole use = data_.use[at];
     if (use == SampleRole::none) return true;
-    a_ = Eigen::Map<const Eigen::VectorXd>(trace_.H.data() + at * N_, n_);
+    a_ = trace_.H_at(at);
     const double S = kalman_.variance(a_, o, noise_.channels[channel].white);
     const double z = signals_.measured[channel].values[k] - y_[channel];
     const double innovation = z - a_.dot(kalman_.x) - kalman_.j[twice(o)];
     if (!(S > 0.0) || !std::isfinite(innovation)) return false;
-    if (wishes_.rejected != nullptr && is_wild(at, channel, innovation * innovation > kOutlierGate * kOutlierGate * S)) return true;
+    if (options_.rejected != nullptr && is_wild(at, channel, innovation * innovation > kOutlierGate * kOutlierGate * S)) return true;
     trace_.z[at] = z;
     trace_.e[at] = innovation;
     trace_.S[at] = S;
     count(use, -0.5 * (kLogTwoPi + std::log(S) + innovation * innovation / S));
     kalman_.update(innovation, S);
     Eigen::Map<Eigen::VectorXd>(trace_.K.data() + at * N_, n_) = kalman_.gain;
-    Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * static_cast<std::size_t>(ny_), twice(ny_)) = kalman_.gain_jitter;
-    if (wishes_.jacobian != nullptr) differentiate_reading(at, o, use);
+    Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * ny_, twice(ny_)) = kalman_.gain_jitter;
+    if (options_.jacobian != nullptr) differentiate_update(at, o, use);
     return true;
   }
 
@@ -139,14 +138,14 @@ class FilterPass {
     if (!beyond) run = 0;
     if (!beyond || run < 0) return false;
     if (++run <= kLongestWildRun) {
-      wishes_.rejected->push_back(at);
+      options_.rejected->push_back(at);
       return true;
     }
-    auto& aside = *wishes_.rejected;
-    const auto width = static_cast<std::size_t>(ny_);
+    auto& aside = *options_.rejected;
+    const std::size_t width = ny_;
     for (std::size_t kept = kLongestWildRun, i = aside.size(); kept > 0 && i-- > 0;) {
       if (aside[i] % width != channel) continue;
-      aside.erase(aside.begin() + static_cast<std::ptrdiff_t>(i));
+      aside.erase(aside.begin() + i);
       --kept;
     }
     run = -1;  // lost: all are taken in until one is within the gate
@@ -163,18 +162,18 @@ class FilterPass {
     }
   }
 
-  void differentiate_reading(std::size_t at, int o, SampleRole use) {
+  void differentiate_update(std::size_t at, int o, SampleRole use) {
     s_row_.noalias() = a_.transpose() * s_model_;
     s_row_ += s_jitter_.row(twice(o));
     const double* row = output_row(o) + n_;
     for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += row[c];
     if (evaluator_.shifts_time()) {
       const double* by_shift = output_row(ny_) + n_;
-      for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += motion_[static_cast<std::size_t>(o)] * by_shift[c];
+      for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += motion_[o] * by_shift[c];
     }
     if (use == SampleRole::counted) {
-      FilterJacobian& jacobian = *wishes_.jacobian;
-      const auto r = static_cast<Eigen::Index>(jacobian.index.size());
+      FilterJacobian& jacobian = *options_.jacobian;
+      const Eigen::Index r = jacobian.index.size();
       const double whiten = 1.0 / std::sqrt(trace_.S[at]);
       jacobian.J.row(r) = whiten * s_row_;
       jacobian.r[r] = -whiten * trace_.e[at];
@@ -184,10 +183,10 @@ class FilterPass {
     s_jitter_.noalias() -= kalman_.gain_jitter * s_row_;
   }
 
-  void move(std::size_t k) {
+  void correct_state(std::size_t k) {
     for (int i = 0; i < n_; ++i) {
-      trace_.correction[k * N_ + static_cast<std::size_t>(i)] = kalman_.x[i];
-      x_[static_cast<std::size_t>(i)] += kalman_.x[i];
+      trace_.correction[k * N_ + i] = kalman_.x[i];
+      x_[i] += kalman_.x[i];
     }
   }
 
@@ -199,7 +198,7 @@ class FilterPass {
     Eigen::Map<RowMatrix>(trace_.Phi.data() + k * N_ * N_, n_, n_) = phi;
     const NoiseStep& noise_step = steps_.at(interval.t1 - interval.t0);
     kalman_.predict(phi, noise_step, model_.kind, model_.force_states);
-    if (wishes_.jacobian == nullptr) return true;
+    if (options_.jacobian == nullptr) return true;
     s_work_.noalias() = phi * s_model_;
     for (int i = 0; i < n_; ++i) {
       const double* row = D_.data() + static_cast<std::ptrdiff_t>(i) * kRowStride + n_;
@@ -207,7 +206,7 @@ class FilterPass {
     }
     s_model_.swap(s_work_);
     for (int o = 0; o < ny_; ++o) {
-      const auto& p = noise_step.jitter[static_cast<std::size_t>(o)].phi;
+      const auto& p = noise_step.jitter[o].phi;
       s_row_ = s_jitter_.row(twice(o));
       s_jitter_.row(twice(o)) = p[0] * s_row_ + p[1] * s_jitter_.row(twice(o) + 1);
       s_jitter_.row(twice(o) + 1) = p[2] * s_row_ + p[3] * s_jitter_.row(twice(o) + 1);
@@ -222,7 +221,7 @@ class FilterPass {
   const Signals& signals_;
   const FilterNoise& noise_;
   FilterTrace& trace_;
-  FilterPassOptions wishes_;
+  FilterPassOptions options_;
   int n_, ny_;
   std::size_t N_;
   Kalman<M, NY> kalman_;

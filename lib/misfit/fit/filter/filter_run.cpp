@@ -13,7 +13,7 @@ void resize(FilterTrace& trace, int n, int ny, std::size_t samples, bool keep_P)
   trace.n = n;
   trace.ny = ny;
   trace.samples = samples;
-  const auto N = static_cast<std::size_t>(n), NY = static_cast<std::size_t>(ny);
+  const std::size_t N = n, NY = ny;
   trace.Phi.assign(samples * N * N, 0.0);
   trace.H.assign(samples * NY * N, 0.0);
   trace.z.assign(samples * NY, 0.0);
@@ -37,13 +37,13 @@ FilterData filter_data(const FilterModel& model, const Signals& signals) {
   FilterData out;
   out.signals = &signals;
   out.inputs = input_table(signals, model.model.inputs());
-  const auto ny = static_cast<std::size_t>(model.model.outputs());
+  const std::size_t ny = model.model.outputs();
   const ReconstructedStates states = reconstruct_states(model.model, signals);
   const auto known = std::find(states.ok.begin(), states.ok.end(), true);
   if (known == states.ok.end() || std::none_of(states.shown.begin(), states.shown.end(), [](bool shown) { return shown; }))
     throw RunError("experiment '" + signals.name + "': no sample at which the states of system '" + model.model.system->spec().key +
                    "' can be read from the channels");
-  out.first = static_cast<std::size_t>(known - states.ok.begin());
+  out.first = known - states.ok.begin();
   out.use.assign(signals.samples() * ny, SampleRole::none);
   for (std::size_t i = out.first; i < signals.samples(); ++i) {
     for (std::size_t o = 0; o < ny; ++o) {
@@ -51,10 +51,10 @@ FilterData filter_data(const FilterModel& model, const Signals& signals) {
       out.use[i * ny + o] = i < signals.exclude ? SampleRole::update : signals.held_out(i) ? SampleRole::validation : SampleRole::counted;
     }
   }
-  out.start = states.x.row(static_cast<Eigen::Index>(out.first)).transpose();
+  out.start = states.x.row(out.first).transpose();
   out.scale = Eigen::VectorXd::Zero(model.model.states());
   const auto& specs = model.model.system->spec().states;
-  for (std::size_t i = 0; i < specs.size(); ++i) out.scale[static_cast<Eigen::Index>(i)] = specs[i].scale;
+  for (std::size_t i = 0; i < specs.size(); ++i) out.scale[i] = specs[i].scale;
   for (int f : model.force_states) out.start[f] = 0.0;
   return out;
 }
@@ -65,7 +65,7 @@ FilterData filter_data_like(const FilterModel& model, const FilterData& data) {
   out.start = out.scale = Eigen::VectorXd::Zero(all);
   out.start.head(system) = data.start.head(system);
   out.scale.head(system) = data.scale.head(system);
-  for (Eigen::Index i = system; i < all; ++i) out.start[i] = model.model.own_states[static_cast<std::size_t>(i - system)].initial;
+  for (Eigen::Index i = system; i < all; ++i) out.start[i] = model.model.own_states[i - system].initial;
   for (int f : model.force_states) out.start[f] = 0.0;
   return out;
 }
@@ -84,10 +84,10 @@ bool FilterRunner::run_gated(const FilterData& data, const FilterNoise& noise, F
   return run_with(data, noise, trace, {nullptr, &rejected, false});
 }
 
-bool FilterRunner::run_with(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterPassOptions& wishes) {
+bool FilterRunner::run_with(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterPassOptions& options) {
   const int n = stepper_.states(), ny = stepper_.evaluator().outputs();
-  resize(trace, n, ny, data.signals->samples(), wishes.keep_P);
-  const auto pass = [&]<int M, int NY>() { return FilterPass<M, NY>(*model_, stepper_, data, noise, trace, wishes).run(); };
+  resize(trace, n, ny, data.signals->samples(), options.keep_P);
+  const auto pass = [&]<int M, int NY>() { return FilterPass<M, NY>(*model_, stepper_, data, noise, trace, options).run(); };
   if (n == 6 && ny == 2) return pass.template operator()<6, 2>();
   if (n == 3 && ny == 1) return pass.template operator()<3, 1>();
   return pass.template operator()<Eigen::Dynamic, Eigen::Dynamic>();

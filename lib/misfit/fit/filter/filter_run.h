@@ -49,10 +49,23 @@ struct FilterTrace {
   std::vector<double> K;              ///< gains on the model's states: ny × n
   std::vector<double> Kj;             ///< gains on the jitter states: ny × 2 ny
   std::vector<double> e, S;           ///< innovations and their variances, each given the earlier channels of its sample; S = 0: not used
-  std::vector<double> y, y_variance;  ///< one-step prediction of each channel before any of the sample is taken in (jitter included)
+  std::vector<double> y, y_variance;  ///< one-step prediction of each channel before any update by the sample (jitter included)
   std::vector<double> P;              ///< only if asked for: covariance of the predicted state with [states | jitter], n × (n + 2 ny)
   double loglik = 0.0, validation_loglik = 0.0;
   std::size_t counted = 0, validated = 0;
+
+  using Vector = Eigen::Map<const Eigen::VectorXd>;
+  using Rows = Eigen::Map<const RowMatrix>;
+  /// Of a measurement: where its e, S, y, … stand.
+  [[nodiscard]] std::size_t place(std::size_t sample, std::size_t channel) const { return sample * ny + channel; }
+  [[nodiscard]] Vector H_at(std::size_t place) const { return {H.data() + place * n, n}; }
+  [[nodiscard]] Vector K_at(std::size_t place) const { return {K.data() + place * n, n}; }
+  [[nodiscard]] Vector Kj_at(std::size_t place) const { return {Kj.data() + place * 2 * ny, 2 * Eigen::Index{ny}}; }
+  [[nodiscard]] Rows Phi_at(std::size_t sample) const { return {Phi.data() + sample * n * n, n, n}; }
+  [[nodiscard]] Vector predicted_at(std::size_t sample) const { return {predicted.data() + sample * n, n}; }
+  [[nodiscard]] Vector correction_at(std::size_t sample) const { return {correction.data() + sample * n, n}; }
+  /// The state after the measurements of a sample: predicted + correction.
+  [[nodiscard]] Eigen::VectorXd filtered(std::size_t sample) const { return predicted_at(sample) + correction_at(sample); }
 };
 
 /// Whitened residuals (predicted − measured)/√S of the counted measurements and their derivatives by the free parameters with the gains
@@ -78,12 +91,12 @@ class FilterRunner {
   /// Fills `trace`; `jacobian` may be null. Returns trace.finite.
   bool run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, FilterJacobian* jacobian = nullptr, bool keep_P = false);
   /// Passes over measurements more than kOutlierGate sigmas from their prediction as it comes to them, so that a wild one does not spoil
-  /// the predictions by which its neighbours are judged; while nothing is taken in, the prediction's sigma grows and with it the gate. Runs
-  /// longer than kLongestWildRun are taken in: there the model fails, not the sensor. `rejected`: sample · ny + channel of each.
+  /// the predictions by which its neighbours are judged; without updates the prediction's sigma grows and with it the gate. Runs longer
+  /// than kLongestWildRun are used after all: there the model fails, not the sensor. `rejected`: sample · ny + channel of each.
   bool run_gated(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, std::vector<std::size_t>& rejected);
 
  private:
-  bool run_with(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterPassOptions& wishes);
+  bool run_with(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterPassOptions& options);
 
   const FilterModel* model_;
   Model own_;

@@ -11,17 +11,17 @@ namespace {
 double force_size(const FilterModel& model, const FilterData& data, const ReconstructedStates& states) {
   Evaluator evaluator(model.model);
   const int n = evaluator.states();
-  std::vector<double> dx(static_cast<std::size_t>(n)), D(static_cast<std::size_t>(n) * kRowStride);
+  std::vector<double> dx(n), D(n * kRowStride);
   Slots slots;
   evaluator.linearise_rates(data.start.data(), data.inputs.at(data.first), data.signals->t[data.first], slots, dx.data(), D.data());
   double size = 0.0;
   for (int f : model.force_states) {
     for (int i = 0; i < n; ++i) {
-      const double gain = std::abs(D[static_cast<std::size_t>(i) * kRowStride + static_cast<std::size_t>(f)]);
-      if (i == f || model.kind[static_cast<std::size_t>(i)] != 1 || !(gain > 0.0)) continue;
+      const double gain = std::abs(D[i * kRowStride + f]);
+      if (i == f || model.kind[i] != 1 || !(gain > 0.0)) continue;
       double squares = 0.0, count = 0.0;
       for (Eigen::Index k = 0; k < states.dx.rows(); ++k) {
-        if (!states.ok[static_cast<std::size_t>(k)]) continue;
+        if (!states.ok[k]) continue;
         squares += states.dx(k, i) * states.dx(k, i);
         count += 1.0;
       }

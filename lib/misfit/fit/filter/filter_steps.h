@@ -9,8 +9,6 @@
 
 namespace misfit {
 
-using ConstMap = Eigen::Map<const RowMatrix>;
-
 /// Discretisations by step length: recordings have few distinct ones, often two or three in turn (times with few digits).
 class NoiseSteps {
  public:

@@ -33,18 +33,16 @@ class FreeRuns {
 
  private:
   void run_from(std::size_t k) {
-    const auto n = static_cast<std::size_t>(trace_.n);
-    std::array<double, kMaxStates> x{};
-    for (std::size_t i = 0; i < n; ++i) x[i] = trace_.predicted[k * n + i] + trace_.correction[k * n + i];
+    Eigen::VectorXd x = trace_.filtered(k);
     std::size_t next = 0;
-    bool fine = true;
+    bool finite = true;
     for (std::size_t j = 1; next < lengths && k + j < signals_.samples(); ++j) {
       const Interval interval{signals_.t[k + j - 1], signals_.t[k + j], data_.inputs.at(k + j - 1), data_.inputs.at(k + j)};
-      fine = fine && stepper_.step(x.data(), interval);
+      finite = finite && stepper_.step(x.data(), interval);
       if (static_cast<int>(j) != kLadderSteps[next]) continue;
-      fine = fine && compare(x.data(), k + j, next);
+      finite = finite && compare(x.data(), k + j, next);
       ++errors_.runs[next];
-      errors_.diverged[next++] += fine ? 0U : 1U;
+      errors_.diverged[next++] += finite ? 0U : 1U;
     }
   }
 

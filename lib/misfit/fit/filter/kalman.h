@@ -73,17 +73,17 @@ class Kalman {
       for (Eigen::Index c = 0; c < P.cols(); ++c) {
         const double right = c == f ? 1.0 : phi(c, f);
         if (right == 0.0) continue;
-        const auto kc = static_cast<std::size_t>(kind[static_cast<std::size_t>(c)]);
+        const std::size_t kc = kind[c];
         for (Eigen::Index r = 0; r < P.rows(); ++r) {
           const double left = r == f ? 1.0 : phi(r, f);
-          if (left != 0.0) P(r, c) += noise.m[static_cast<std::size_t>(kind[static_cast<std::size_t>(r)])][kc] * left * right;
+          if (left != 0.0) P(r, c) += noise.m[kind[r]][kc] * left * right;
         }
       }
     }
     const CrossMatrix crossed = phi * C;
     for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
       const auto& p = noise.jitter[o].phi;
-      const auto at = static_cast<Eigen::Index>(2 * o);
+      const Eigen::Index at = 2 * o;
       C.col(at) = p[0] * crossed.col(at) + p[1] * crossed.col(at + 1);
       C.col(at + 1) = p[2] * crossed.col(at) + p[3] * crossed.col(at + 1);
     }
@@ -94,7 +94,7 @@ class Kalman {
   void rotate_jitter(const NoiseStep& noise) {
     for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
       const auto& p = noise.jitter[o].phi;
-      const auto at = static_cast<Eigen::Index>(2 * o);
+      const Eigen::Index at = 2 * o;
       const JitterVector first = G.col(at), second = G.col(at + 1);
       G.col(at) = p[0] * first + p[1] * second;
       G.col(at + 1) = p[2] * first + p[3] * second;
@@ -105,7 +105,7 @@ class Kalman {
     for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
       const auto& p = noise.jitter[o].phi;
       const auto& q = noise.jitter[o].q;
-      const auto at = static_cast<Eigen::Index>(2 * o);
+      const Eigen::Index at = 2 * o;
       const JitterVector first = G.row(at).transpose(), second = G.row(at + 1).transpose();
       G.row(at) = (p[0] * first + p[1] * second).transpose();
       G.row(at + 1) = (p[2] * first + p[3] * second).transpose();

@@ -17,20 +17,19 @@ struct Box {
   Eigen::VectorXd lower, upper;
 };
 
-Box bounds_of(const Model& model, const std::vector<int>& free) {
-  const auto n = static_cast<Eigen::Index>(free.size());
-  Box box{Eigen::VectorXd(n), Eigen::VectorXd(n)};
-  for (Eigen::Index c = 0; c < n; ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])];
-    box.lower[c] = p.lower;
-    box.upper[c] = p.upper;
+Box bounds_of(const Model& model) {
+  const std::vector<int> free = model.free_parameters();
+  Box box{Eigen::VectorXd(std::ssize(free)), Eigen::VectorXd(std::ssize(free))};
+  for (Eigen::Index c = 0; c < std::ssize(free); ++c) {
+    box.lower[c] = model.parameters[free[c]].lower;
+    box.upper[c] = model.parameters[free[c]].upper;
   }
   return box;
 }
 
 Eigen::VectorXd joined(const Eigen::VectorXd& a, const std::vector<double>& b) {
-  Eigen::VectorXd both(a.size() + static_cast<Eigen::Index>(b.size()));
-  both << a, Eigen::Map<const Eigen::VectorXd>(b.data(), static_cast<Eigen::Index>(b.size()));
+  Eigen::VectorXd both(a.size() + std::ssize(b));
+  both << a, Eigen::Map<const Eigen::VectorXd>(b.data(), std::ssize(b));
   return both;
 }
 
@@ -49,23 +48,10 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
   if (options.use) {
     for (std::size_t e = 0; e < out.data.size(); ++e) out.data[e].use = (*options.use)[e];
   }
-  free = start.free_parameters();
-  theta = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()));
-  for (std::size_t c = 0; c < free.size(); ++c)
-    theta[static_cast<Eigen::Index>(c)] = start.parameters[static_cast<std::size_t>(free[c])].value;
+  theta = start.theta();
   out.around = options.around ? *options.around : usual_noise(out.forced, out.data);
   out.noise = options.noise ? *options.noise : out.around;
-  set_time();
-}
-
-void LikelihoodAscent::set_time() {
-  out.forced.model.parameters[static_cast<std::size_t>(out.forced.time_parameter)].value = out.noise.force_time;
-}
-
-std::vector<double> LikelihoodAscent::values() const {
-  std::vector<double> all = out.forced.model.values();
-  for (std::size_t c = 0; c < free.size(); ++c) all[static_cast<std::size_t>(free[c])] = theta[static_cast<Eigen::Index>(c)];
-  return all;
+  out.forced.set_force_time(out.noise.force_time);
 }
 
 bool LikelihoodAscent::linearise() {
@@ -83,12 +69,12 @@ bool LikelihoodAscent::linearise() {
   }
   ++out.linearisations;
   out.loglik = loglik;
-  objective = loglik + log_prior_at(out.model, out.penalties, theta);
+  objective = loglik + out.prior().log_density(theta);
   return true;
 }
 
 double LikelihoodAscent::objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const {
-  return ExactObjective(out, free).at(there, noise);
+  return ExactObjective(out).at(there, noise);
 }
 
 NormalEquations LikelihoodAscent::normal_equations() const {
@@ -104,19 +90,19 @@ NormalEquations LikelihoodAscent::normal_equations() const {
     sums.count += static_cast<double>(jacobian.r.size());
   }
   sums.N = Eigen::MatrixXd(sums.N.selfadjointView<Eigen::Lower>());
-  set_priors(out.model, sums);
+  sums.prior = regularised_priors(out.model);
   return sums;
 }
 
 double LikelihoodAscent::gauss_newton_step() {
   constexpr double nothing = 0.0, unknown = std::numeric_limits<double>::infinity();
-  if (free.empty()) return nothing;
+  if (theta.size() == 0) return nothing;
   const PenalisedFit smoothed = estimate_smoothing(normal_equations(), out.penalties, 1.0);
   if (!smoothed.ok) return unknown;
   out.edf = smoothed.edf;
   out.covariance = smoothed.covariance;
-  objective = out.loglik + log_prior_at(out.model, out.penalties, theta);  // the roughness may have changed
-  const auto [lower, upper] = bounds_of(out.model, free);
+  objective = out.loglik + out.prior().log_density(theta);  // the roughness may have changed
+  const auto [lower, upper] = bounds_of(out.model);
   const BoundedMaximum best = maximum_inside(smoothed.theta, smoothed.covariance, lower, upper);
   const Eigen::VectorXd step = best.at - theta;
   for (double share = 1.0; share > 0.05; share *= 0.4) {
@@ -141,11 +127,11 @@ bool LikelihoodAscent::try_noise(const NoiseFit& fit) {
   const double then = objective;
   out.noise = fit.noise;
   out.noise_fit = fit;
-  set_time();
+  out.forced.set_force_time(out.noise.force_time);
   if (linearise() && objective > then - 1.0) return true;
   out.noise = before;
   out.noise_fit.logs = logs;
-  set_time();
+  out.forced.set_force_time(out.noise.force_time);
   linearise();
   return false;
 }
@@ -157,7 +143,7 @@ bool LikelihoodAscent::move_to(const Eigen::VectorXd& there, const std::vector<d
     theta = parameters;
     out.noise_fit.logs = noise;
     out.noise = unpack(noise);
-    set_time();
+    out.forced.set_force_time(out.noise.force_time);
     return linearise();
   };
   if (set(there, logs)) return true;
@@ -171,12 +157,11 @@ void LikelihoodAscent::iterate(int most, double tolerance) {
     const double before = objective;
     const bool choosing = std::any_of(out.penalties.begin(), out.penalties.end(), [](const Penalty& p) { return p.chosen; });
     const double edf = out.edf;
-    const double in_vain = gauss_newton_step();
+    const double not_gained = gauss_newton_step();
     try_noise(fit_noise(runs(), out.noise, out.around, threads_, k < 3 ? 3 : kRefinements));
     const bool settled = !choosing || std::abs(out.edf - edf) < 0.05;
-    constexpr double as_a_sigma = 0.5;
     if (k > 0 && settled && std::abs(objective - before) < tolerance) {
-      out.converged = in_vain < as_a_sigma;
+      out.converged = not_gained < kDecrementOfOneSigma;
       return;
     }
   }
@@ -185,17 +170,18 @@ void LikelihoodAscent::iterate(int most, double tolerance) {
 Eigen::VectorXd LikelihoodAscent::joint() const { return joined(theta, out.noise_fit.logs); }
 
 std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse,
-                                                   const Eigen::VectorXd& slope, double enough) {
+                                                   const Eigen::VectorXd& slope) {
+  constexpr double least_gain = 0.02;
   const Eigen::Index n = theta.size();
   const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
-  const auto [lower, upper] = bounds_of(out.model, free);
+  const auto [lower, upper] = bounds_of(out.model);
   const Eigen::VectorXd here = joint(), newton = inverse * gradient;
   const Eigen::VectorXd lowest = joined(lower, noise.lower), highest = joined(upper, noise.upper);
   const BoundedMaximum there = maximum_inside(here + newton, inverse, lowest, highest);
   const Eigen::VectorXd step = there.at - here;
   const double promised = 0.5 * gradient.dot(newton) - there.below;
-  out.left = promised;
-  if (promised < enough) return std::nullopt;
+  out.newton_decrement = promised;
+  if (promised < least_gain) return std::nullopt;
   const auto gain = [&](double share) {
     const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
     return objective_at(at.head(n), unpack({at.data() + n, at.data() + at.size()})) - objective + slope.dot((at - here).tail(slope.size()));
@@ -204,8 +190,8 @@ std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradie
   double share = 1.0, gained = gain(share);
   while (!(gained > 0.0) && share > shortest) gained = gain(share *= 0.5);
   if (!(gained > 0.0)) return std::nullopt;
-  constexpr double more = 1.2, furthest = 256.0;
-  for (double longer = 2.0; share >= 1.0 && gained > more * promised && longer <= furthest; longer *= 2.0) {
+  constexpr double worth_lengthening = 1.2, longest = 256.0;  // of the promised gain; of the step
+  for (double longer = 2.0; share >= 1.0 && gained > worth_lengthening * promised && longer <= longest; longer *= 2.0) {
     const double value = gain(longer);
     if (!(value > gained)) break;
     share = longer;

@@ -4,6 +4,9 @@
 
 namespace misfit {
 
+/// Gain of the log-likelihood that a Newton step promises, ½ gᵀ H⁻¹ g, where it moves one parameter by one sigma, by two.
+inline constexpr double kDecrementOfOneSigma = 0.5, kDecrementOfTwoSigmas = 2.0;
+
 /// Where an estimation stands: parameters, noise, the runs and derivatives there; and the steps that raise its objective. Held in `out`,
 /// which is always that of a run that succeeded unless a member says false.
 class LikelihoodAscent {
@@ -23,26 +26,23 @@ class LikelihoodAscent {
   bool try_noise(const NoiseFit& fit);
   /// A step of a Newton kind over parameters and log noise together, inside their bounds: `gradient` of the exact objective and of a
   /// further term linear in the log noise, with `slope` (what restricted_likelihood() adds), `inverse` of their curvature. Shortened until
-  /// their sum rises, lengthened where it gains more than it promised. `out.left` is what it promises. What it gained; nullopt: it promises
-  /// less than `enough`, or no length of it rises.
-  std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope,
-                                   double enough);
+  /// their sum rises, lengthened where it gains more than it promised. `out.newton_decrement` is what it promises. What it gained; nullopt:
+  /// it promises less than 0.02, or no length of it rises.
+  std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope);
   [[nodiscard]] Eigen::VectorXd joint() const;  ///< the free parameters, then the logarithms of the noise
 
-  [[nodiscard]] std::vector<double> values() const;  ///< of all parameters of the forced model
+  [[nodiscard]] std::vector<double> values() const { return out.forced.model.values_at(theta); }
   [[nodiscard]] LinearisedRuns runs() const { return {&out.forced, &out.data, &out.traces}; }
   [[nodiscard]] NormalEquations normal_equations() const;
   [[nodiscard]] std::string failure() const;
 
   FilterEstimate out;
-  Eigen::VectorXd theta;   ///< the free parameters, in the order of `free`
-  std::vector<int> free;   ///< Model::free_parameters() of the start
+  Eigen::VectorXd theta;   ///< the free parameters (Model::theta)
   double objective = 0.0;  ///< at `theta` and `out.noise`
 
  private:
   /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
   bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
-  void set_time();
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
 
   int threads_;

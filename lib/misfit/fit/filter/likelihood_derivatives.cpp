@@ -16,12 +16,12 @@ double log_density(const FilterTrace& trace, std::size_t i) {
   return trace.S[i] > 0.0 ? -0.5 * (std::log(trace.S[i]) + trace.e[i] * trace.e[i] / trace.S[i]) : 0.0;
 }
 
-/// Adds to `nonlinear` the measurements whose log density bends by more than `bend` between the three runs.
-void find_nonlinear(const FilterData& data, const FilterTrace& here, const FilterTrace& plus, const FilterTrace& minus, double bend,
+/// Adds to `nonlinear` the measurements whose log density departs from a straight line by more than `most` between the three runs.
+void find_nonlinear(const FilterData& data, const FilterTrace& here, const FilterTrace& plus, const FilterTrace& minus, double most,
                     std::vector<std::size_t>& nonlinear) {
   for (std::size_t i = 0; i < data.use.size(); ++i) {
     if (data.use[i] != SampleRole::counted) continue;
-    if (!(std::abs(log_density(plus, i) + log_density(minus, i) - 2.0 * log_density(here, i)) <= bend)) nonlinear.push_back(i);
+    if (!(std::abs(log_density(plus, i) + log_density(minus, i) - 2.0 * log_density(here, i)) <= most)) nonlinear.push_back(i);
   }
 }
 
@@ -67,25 +67,21 @@ struct Axes {
 class Differences {
  public:
   Differences(const FilterEstimate& estimate, const Eigen::VectorXd& theta)
-      : estimate_(estimate),
-        theta_(theta),
-        objective_(estimate, estimate.model.free_parameters()),
-        here_(estimate.loglik),
-        axes_(estimate.covariance) {}
+      : estimate_(estimate), theta_(theta), objective_(estimate), here_(estimate.loglik), axes_(estimate.covariance) {}
 
-  /// A step at which a good part of all measurements bends is too long, not the run nonlinear: the axis of what can hardly be told apart is
-  /// long, and straight for a part of it only. Then a shorter one, a few times.
+  /// Where more than a tenth of all measurements is nonlinear the step is too long, not the run nonlinear: the axis of a combination that
+  /// is hardly determined is long, and straight for a part of it only. Then a shorter one, up to five times.
   OneDerivative along_axis(Eigen::Index i, const Eigen::Ref<Eigen::VectorXd>& column) const {
-    constexpr double shorter = 0.2, good_part = 0.1;
-    constexpr int most = 5;
-    const double enough = 0.5 * good_part * static_cast<double>(column.size());  // a column holds innovations and variances
+    constexpr double shortening = 0.2, most_nonlinear = 0.1;  // of the measurements
+    constexpr int most_steps = 5;
+    const double measurements = 0.5 * static_cast<double>(column.size());  // a column holds innovations and variances
     OneDerivative out;
     double h = longest;
-    for (int k = 0; k < most; ++k, h *= shorter) {
+    for (int k = 0; k < most_steps; ++k, h *= shortening) {
       out = with_step(h * axes_.along.col(i), h, column);
       std::size_t nonlinear = 0;
       for (const auto& experiment : out.nonlinear) nonlinear += experiment.size();
-      out.smooth = static_cast<double>(nonlinear) <= enough;
+      out.smooth = static_cast<double>(nonlinear) <= most_nonlinear * measurements;
       if (out.finite && out.smooth) break;
     }
     return out;
@@ -106,7 +102,7 @@ class Differences {
       std::vector<double> logs = estimate_.noise_fit.logs;
       h = noise_step;
       curvature = information(i, i);
-      logs[static_cast<std::size_t>(i - n)] += h;
+      logs[i - n] += h;
       there = objective_.loglik_at(theta_, unpack(logs), &above);
     }
     OneDerivative out = between(there, -std::numeric_limits<double>::infinity(), h, above, above, column);
@@ -136,9 +132,9 @@ class Differences {
     out.nonlinear.resize(above.size());
     if (!out.finite) return out;
     if (!std::isfinite(plus) || !std::isfinite(minus)) return out;
-    constexpr double bend = 0.05;
+    constexpr double most_curved = 0.05;  // of a log density
     for (std::size_t e = 0; e < above.size(); ++e)
-      find_nonlinear(estimate_.data[e], estimate_.traces[e], above[e], below[e], bend * h / longest, out.nonlinear[e]);
+      find_nonlinear(estimate_.data[e], estimate_.traces[e], above[e], below[e], most_curved * h / longest, out.nonlinear[e]);
     return out;
   }
 
@@ -162,17 +158,6 @@ class Differences {
   Axes axes_;
 };
 
-/// Gradient of log_prior_at.
-Eigen::VectorXd log_prior_slope(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta) {
-  NormalEquations priors;
-  priors.N = Eigen::MatrixXd::Zero(theta.size(), theta.size());
-  priors.theta = theta;
-  set_priors(model, priors);
-  Eigen::VectorXd out = priors.prior_precision.cwiseProduct(priors.prior_mean - theta);
-  for (const auto& p : penalties) out.segment(p.first, p.omega.rows()) -= p.lambda * (p.omega * theta.segment(p.first, p.omega.rows()));
-  return out;
-}
-
 std::string failure_of(const std::vector<OneDerivative>& parts) {
   const auto torn = std::count_if(parts.begin(), parts.end(), [](const OneDerivative& part) { return !part.finite; });
   const auto nonlinear = std::count_if(parts.begin(), parts.end(), [](const OneDerivative& part) { return !part.smooth; });
@@ -191,31 +176,15 @@ Eigen::Index counted_measurements(const FilterEstimate& estimate) {
 
 }  // namespace
 
-double log_prior_at(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta) {
-  const std::vector<int> free = model.free_parameters();
-  double sum = 0.0;
-  for (const auto& p : penalties) {
-    const auto c = theta.segment(p.first, p.omega.rows());
-    sum -= 0.5 * p.lambda * c.dot(p.omega * c);
-  }
-  for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    if (p.prior_sigma) sum -= 0.5 * std::pow((theta[static_cast<Eigen::Index>(c)] - p.prior_mean) / *p.prior_sigma, 2);
-  }
-  return sum;
-}
-
 double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise) const {
-  return loglik_at(theta, noise) + log_prior_at(estimate_->model, estimate_->penalties, theta);
+  return loglik_at(theta, noise) + estimate_->prior().log_density(theta);
 }
 
 double ExactObjective::loglik_at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* traces) const {
   FilterModel forced = estimate_->forced;
-  forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = noise.force_time;
+  forced.set_force_time(noise.force_time);
   FilterRunner runner(forced, false);
-  std::vector<double> all = forced.model.values();
-  for (std::size_t c = 0; c < free_.size(); ++c) all[static_cast<std::size_t>(free_[c])] = theta[static_cast<Eigen::Index>(c)];
-  runner.set_parameters(all);
+  runner.set_parameters(forced.model.values_at(theta));
   double sum = 0.0;
   std::vector<FilterTrace> own(traces == nullptr ? estimate_->data.size() : 0);
   std::vector<FilterTrace>& runs = traces != nullptr ? *traces : own;
@@ -232,26 +201,25 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
   if (n > 0 && estimate.covariance.size() == 0) return {{}, {}, {}, "the information matrix cannot be inverted"};
   const Differences differences(estimate, theta);
   std::vector<OneDerivative> parts(n + estimate.noise_fit.logs.size());
-  Eigen::MatrixXd columns(2 * counted_measurements(estimate), static_cast<Eigen::Index>(parts.size()));
+  Eigen::MatrixXd columns(2 * counted_measurements(estimate), parts.size());
   run_jobs(parts.size(), threads, [&](std::size_t i) {
-    auto column = columns.col(static_cast<Eigen::Index>(i));
+    auto column = columns.col(i);
     if (near != nullptr) {
-      parts[i] = differences.upwards(static_cast<Eigen::Index>(i), near->information, column);
+      parts[i] = differences.upwards(i, near->information, column);
       return;
     }
-    parts[i] = i < n ? differences.along_axis(static_cast<Eigen::Index>(i), column) : differences.by_noise(i - n, column);
+    parts[i] = i < n ? differences.along_axis(i, column) : differences.by_noise(i - n, column);
   });
   LikelihoodDerivatives out{Eigen::VectorXd(columns.cols()), Eigen::MatrixXd::Zero(columns.cols(), columns.cols()),
                             std::vector<std::vector<std::size_t>>(estimate.data.size()), failure_of(parts)};
   if (!out.failure.empty()) return out;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    out.gradient[static_cast<Eigen::Index>(i)] = parts[i].slope;
+    out.gradient[i] = parts[i].slope;
     for (std::size_t e = 0; e < parts[i].nonlinear.size(); ++e)
       out.nonlinear[e].insert(out.nonlinear[e].end(), parts[i].nonlinear[e].begin(), parts[i].nonlinear[e].end());
   }
   const Eigen::MatrixXd& back = differences.axes().back;
-  out.gradient.head(theta.size()) =
-      back.transpose() * out.gradient.head(theta.size()).eval() + log_prior_slope(estimate.model, estimate.penalties, theta);
+  out.gradient.head(theta.size()) = back.transpose() * out.gradient.head(theta.size()).eval() + estimate.regularised_prior().gradient(theta);
   columns.leftCols(theta.size()) = columns.leftCols(theta.size()) * back;
   out.information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
   out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
@@ -263,12 +231,8 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
 }
 
 Eigen::MatrixXd joint_information(const FilterEstimate& estimate, const LikelihoodDerivatives& exact) {
-  const auto n = static_cast<Eigen::Index>(estimate.model.free_parameters().size());
   Eigen::MatrixXd out = exact.information;
-  NormalEquations priors;
-  priors.N = Eigen::MatrixXd::Zero(n, n);
-  set_priors(estimate.model, priors);
-  out.topLeftCorner(n, n).diagonal() += priors.prior_precision;
+  out.diagonal() += regularised_priors(estimate.model).padded(out.rows()).precision;
   pin_unknown(estimate.noise_fit, out);
   return out;
 }

@@ -12,8 +12,8 @@ namespace misfit {
 /// The penalised log-likelihood of an estimate's data at any parameters: the filter run anew, nothing held.
 class ExactObjective {
  public:
-  /// Keeps a pointer; `free`: Model::free_parameters() of the estimate's model.
-  ExactObjective(const FilterEstimate& estimate, std::vector<int> free) : estimate_(&estimate), free_(std::move(free)) {}
+  /// Keeps a pointer.
+  explicit ExactObjective(const FilterEstimate& estimate) : estimate_(&estimate) {}
 
   /// −infinity where a run fails. `theta` in the order of the free parameters; `traces`, if given, one per experiment.
   [[nodiscard]] double at(const Eigen::VectorXd& theta, const FilterNoise& noise) const;
@@ -22,7 +22,6 @@ class ExactObjective {
 
  private:
   const FilterEstimate* estimate_;
-  std::vector<int> free_;
 };
 
 /// First derivatives of the exact objective, log prior and roughness in closed form (what a stiff roughness says of a line is a difference
@@ -40,8 +39,8 @@ struct LikelihoodDerivatives {
   /// as at a kink; what is smooth bends by the square of it): there the filter's linearisation breaks, its run is as good as random, and
   /// the likelihood has kinks that no maximum can be found on.
   std::vector<std::vector<std::size_t>> nonlinear;
-  std::string
-      failure;  ///< why they do not hold: the model cannot be run beside the estimate, or a good part of all measurements is nonlinear
+  /// Why they do not hold: the model cannot be run beside the estimate, or more than a tenth of all measurements is nonlinear.
+  std::string failure;
 };
 /// With `near`, taken a short step away: half the runs, to one side only; the curvature that a difference to one side lacks is taken from
 /// near's information, and nonlinear measurements are not looked for. Where the curvature differs from that information by a tenth, a slope
@@ -53,8 +52,5 @@ struct LikelihoodDerivatives {
 /// that is at its bound, or of which the data do not even know the logarithm to one unit (the shape of something that is not there), is
 /// pinned.
 [[nodiscard]] Eigen::MatrixXd joint_information(const FilterEstimate& estimate, const LikelihoodDerivatives& exact);
-
-/// log prior of the free parameters at `theta`, roughness included (constants left out).
-[[nodiscard]] double log_prior_at(const Model& model, const std::vector<Penalty>& penalties, const Eigen::VectorXd& theta);
 
 }  // namespace misfit

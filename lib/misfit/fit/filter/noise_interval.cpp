@@ -13,7 +13,7 @@ class Paths {
       : estimate_(estimate),
         threads_(threads),
         bounds_(pack(estimate.noise, estimate.model.system->spec(), estimate.around)),
-        here_(Eigen::Map<const Eigen::VectorXd>(estimate.noise_fit.logs.data(), static_cast<Eigen::Index>(estimate.noise_fit.logs.size()))),
+        here_(Eigen::Map<const Eigen::VectorXd>(estimate.noise_fit.logs.data(), estimate.noise_fit.logs.size())),
         joint_(estimate.joint_covariance.bottomRightCorner(here_.size(), here_.size())) {
     scale_ = Eigen::VectorXd::Ones(here_.size());
     scale_ = (joint_.diagonal().array() / covariance(here_).diagonal().array()).sqrt();
@@ -21,7 +21,7 @@ class Paths {
 
   [[nodiscard]] bool known(Eigen::Index j) const {
     constexpr double most = 1.0;  // sigma of the logarithm
-    return !estimate_.noise_fit.at_bound[static_cast<std::size_t>(j)] && joint_(j, j) > 0.0 && joint_(j, j) < most;
+    return !estimate_.noise_fit.at_bound[j] && joint_(j, j) > 0.0 && joint_(j, j) < most;
   }
 
   [[nodiscard]] double end(Eigen::Index j, double z) const {
@@ -42,9 +42,7 @@ class Paths {
   }
 
   [[nodiscard]] Eigen::VectorXd inside(const Eigen::VectorXd& logs) const {
-    const auto at = [](const std::vector<double>& v) {
-      return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
-    };
+    const auto at = [](const std::vector<double>& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()); };
     return logs.cwiseMax(at(bounds_.lower)).cwiseMin(at(bounds_.upper));
   }
 

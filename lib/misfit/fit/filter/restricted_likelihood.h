@@ -17,7 +17,7 @@ struct RestrictedLikelihood {
   /// By how much the noise's Fisher information is less than with known parameters: ½ tr(N⁻¹ ∂N/∂φᵢ N⁻¹ ∂N/∂φⱼ). Exact where the noise's
   /// covariance has the parameters' columns as its eigenvectors (a common factor of it, independent measurements) [H], else an
   /// approximation.
-  Eigen::MatrixXd lost;
+  Eigen::MatrixXd information_loss;
 };
 
 /// By differences of 1e-3 of the logarithms, to one side; zero for those at a bound and for a model without free parameters, and where the

@@ -49,8 +49,8 @@ void list_known(const Model& model, BinForm& form) {
     return in(form.static_coefficients) || in(form.damping_coefficients);
   };
   for (int i : model.free_parameters()) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(i)];
-    const std::string name = p.curve >= 0 ? model.curves[static_cast<std::size_t>(p.curve)].name : p.name;
+    const Parameter& p = model.parameters[i];
+    const std::string name = p.curve >= 0 ? model.curves[p.curve].name : p.name;
     const bool told = !form.taken_as_known.empty() && form.taken_as_known.back() == name;
     if (!own(i) && !told) form.taken_as_known.push_back(name);
   }
@@ -96,55 +96,54 @@ ReconstructedStates stencil_states(const BinForm& form, const Signals& signals, 
   }
   if (average) level = average_of_three(signals.t, level);
   const StencilMotion motion = stencil_motion(signals.t, level, stencils);
-  const auto samples = static_cast<Eigen::Index>(signals.samples());
+  const Eigen::Index samples = signals.samples();
   ReconstructedStates out;
   out.x = RowMatrix::Zero(samples, form.model.states());
   out.dx = out.x;
   out.ok.assign(signals.samples(), false);
-  out.shown.assign(static_cast<std::size_t>(form.model.states()), false);
-  out.shown[static_cast<std::size_t>(form.level)] = out.shown[static_cast<std::size_t>(form.rate)] = true;
+  out.shown.assign(form.model.states(), false);
+  out.shown[form.level] = out.shown[form.rate] = true;
   for (std::size_t i = signals.exclude; i < signals.samples(); ++i) {
     if (!std::isfinite(motion.level[i])) continue;
-    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Index row = i;
     out.ok[i] = true;
     out.x(row, form.level) = motion.level[i];
     out.x(row, form.rate) = out.dx(row, form.level) = motion.rate[i];
     out.dx(row, form.rate) = motion.acceleration[i];
   }
   const auto& own = form.model.own_states;
-  for (std::size_t z = 0; z < own.size(); ++z)
-    out.x.col(form.model.system_states() + static_cast<Eigen::Index>(z)).setConstant(own[z].initial);
+  for (std::size_t z = 0; z < own.size(); ++z) out.x.col(form.model.system_states() + z).setConstant(own[z].initial);
   return out;
 }
 
 std::vector<BinEquation> bin_equations(const BinForm& form, const Signals& signals, const ReconstructedStates& states) {
   Evaluator evaluator(form.model);
   const InputTable inputs = input_table(signals, form.model.inputs());
-  std::vector<double> dx(static_cast<std::size_t>(form.model.states())), quantities(form.model.system->spec().quantities.size());
+  std::vector<double> dx(form.model.states()), quantities(form.model.system->spec().quantities.size());
   const auto with = [&](double static_value, double damping_value) {
     std::vector<double> values = form.model.values();
-    for (int i : form.static_coefficients) values[static_cast<std::size_t>(i)] = static_value;
-    for (int i : form.damping_coefficients) values[static_cast<std::size_t>(i)] = damping_value;
+    for (int i : form.static_coefficients) values[i] = static_value;
+    for (int i : form.damping_coefficients) values[i] = damping_value;
     return values;
   };
   const std::vector<double> neither = with(0.0, 0.0), static_one = with(1.0, 0.0), damping_one = with(0.0, 1.0);
   std::vector<BinEquation> equations;
   for (std::size_t i = 0; i < signals.samples(); ++i) {
     if (!states.ok[i]) continue;
-    const double* x = states.x.row(static_cast<Eigen::Index>(i)).data();
+    const double* x = states.x.row(i).data();
     const auto acceleration = [&](const std::vector<double>& values) {
       evaluator.set_parameters(values.data());
       evaluator.rates(x, inputs.at(i), signals.t[i], dx.data());
-      return dx[static_cast<std::size_t>(form.rate)];
+      return dx[form.rate];
     };
     const double known = acceleration(neither);
     BinEquation e;
     e.static_gain = acceleration(static_one) - known;
     e.damping_gain = acceleration(damping_one) - known;
     e.known = known;
-    e.y = states.dx(static_cast<Eigen::Index>(i), form.rate) - known;
+    e.y = states.dx(i, form.rate) - known;
     evaluator.quantities(x, inputs.at(i), signals.t[i], quantities.data());
-    e.x = quantities[static_cast<std::size_t>(form.quantity)];
+    e.x = quantities[form.quantity];
     e.t = signals.t[i];
     e.sample = i;
     if (std::isfinite(e.x) && std::isfinite(e.y) && std::isfinite(e.static_gain) && std::isfinite(e.damping_gain)) equations.push_back(e);

@@ -58,7 +58,7 @@ Between between_steps(const Model& model, const Signals& signals) {
       for (std::size_t at = i - 1; at <= std::min(i + 1, n - 1); ++at) out.steps[at] = false;
     }
   }
-  const auto left = static_cast<std::size_t>(std::count(out.steps.begin(), out.steps.end(), true));
+  const std::size_t left = std::count(out.steps.begin(), out.steps.end(), true);
   if (2 * left >= n) return out;
   return {std::vector<bool>(n, true), true};
 }
@@ -88,12 +88,10 @@ class Regressor {
   Regression linearise(const Model& at, bool keep_rows = false) const {
     Regression out;
     Evaluator evaluator(at);
-    const std::vector<int> free = at.free_parameters();
     const int columns = evaluator.columns();
     out.sums.N = Eigen::MatrixXd::Zero(columns, columns);
     out.sums.g = Eigen::VectorXd::Zero(columns);
-    out.sums.theta = Eigen::VectorXd::Zero(columns);
-    for (int c = 0; c < columns; ++c) out.sums.theta[c] = at.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])].value;
+    out.sums.theta = at.theta();
     for (std::size_t e = 0; e < experiments_.size(); ++e) {
       if (keep_rows) out.rows.push_back(empty_rows(e, columns));
       add(e, evaluator, out);
@@ -113,7 +111,7 @@ class Regressor {
     const Signals& signals = experiments_[e];
     const ReconstructedStates& states = states_[e];
     const int n = evaluator.states();
-    std::vector<double> D(static_cast<std::size_t>(n) * kRowStride), dx(static_cast<std::size_t>(n));
+    std::vector<double> D(n * kRowStride), dx(n);
     Slots slots;
     for (std::size_t channel = 0; channel < rows_.size(); ++channel) {
       const int row = rows_[channel];
@@ -121,13 +119,12 @@ class Regressor {
       for (std::size_t i = signals.exclude; i < signals.samples(); ++i) {
         if (!states.ok[i] || signals.held_out(i) || !between_[e].steps[i]) continue;
         slots.clear();
-        evaluator.linearise_rates(states.x.row(static_cast<Eigen::Index>(i)).data(), inputs_[e].at(i), signals.t[i], slots, dx.data(),
-                                  D.data());
-        const double r = dx[static_cast<std::size_t>(row)] - states.dx(static_cast<Eigen::Index>(i), row);
+        evaluator.linearise_rates(states.x.row(i).data(), inputs_[e].at(i), signals.t[i], slots, dx.data(), D.data());
+        const double r = dx[row] - states.dx(i, row);
         if (!std::isfinite(r)) continue;
         residuals[i] = r;
-        const double* d = D.data() + static_cast<std::ptrdiff_t>(row) * kRowStride + n;
-        if (out.rows.size() > e) keep(d, slots, r, static_cast<Eigen::Index>(i * rows_.size() + channel), out.rows[e]);
+        const double* d = D.data() + row * kRowStride + n;
+        if (out.rows.size() > e) keep(d, slots, r, i * rows_.size() + channel, out.rows[e]);
         for (int a = 0; a < slots.count(); ++a) {
           out.sums.g[slots.column(a)] += d[a] * r;
           for (int b = 0; b < slots.count(); ++b) out.sums.N(slots.column(a), slots.column(b)) += d[a] * d[b];
@@ -156,10 +153,10 @@ Eigen::VectorXd inside_bounds(const Model& model, const std::vector<int>& free, 
   constexpr double infinite = std::numeric_limits<double>::infinity();
   Eigen::VectorXd lower = Eigen::VectorXd::Constant(smoothed.theta.size(), -infinite), upper = -lower;
   for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
+    const Parameter& p = model.parameters[free[c]];
     if (p.curve >= 0) continue;
-    lower[static_cast<Eigen::Index>(c)] = p.lower;
-    upper[static_cast<Eigen::Index>(c)] = p.upper;
+    lower[c] = p.lower;
+    upper[c] = p.upper;
   }
   return maximum_inside(smoothed.theta, smoothed.covariance, lower, upper).at;
 }
@@ -174,7 +171,7 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
   for (int round = 0; round < rounds && !settled; ++round) {
     Regression regression = regressor.linearise(out.model);
     ++out.fit.linearisations;
-    set_priors(out.model, regression.sums);
+    regression.sums.prior = regularised_priors(out.model);
     if (regression.sums.count < 2.0 * static_cast<double>(free.size()) || free.empty()) {
       out.fit.status = FitStatus::declined;
       out.fit.message = free.empty() ? "every parameter is fixed: there is nothing to estimate"
@@ -187,8 +184,7 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
     const Eigen::VectorXd there = inside_bounds(out.model, free, smoothed);
     const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
     settled = round > 0 && (there - regression.sums.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < still;
-    for (std::size_t c = 0; c < free.size(); ++c)
-      out.model.parameters[static_cast<std::size_t>(free[c])].value = there[static_cast<Eigen::Index>(c)];
+    out.model.set_theta(there);
   }
   out.fit.status = !smoothed.ok ? FitStatus::failed : settled ? FitStatus::converged : FitStatus::not_converged;
   out.fit.message = !smoothed.ok ? "the regression is singular: some coefficients are not determined by these data"
@@ -207,10 +203,10 @@ void test_residuals(const Regressor& regressor, const std::vector<Signals>& expe
   const int last_lag = std::max(beyond_stencil + 5, static_cast<int>(half_period / step));
   const WhitenessTest test = whiteness(on_even_grid(experiments.front().t, regression.residuals.front()), beyond_stencil, last_lag);
   out.fit.driven = looks_driven(test);
-  const std::string unit = rate_unit(out.model.system->spec().states[static_cast<std::size_t>(regressor.rows().front())].unit);
+  const std::string unit = rate_unit(out.model.system->spec().states[regressor.rows().front()].unit);
   out.fit.noise["equation_residual"] = {std::sqrt(sigma2), 0.0, unit};
   out.fit.facts["whiteness"] = "equation residuals at " + in_words(test);
-  const auto rows = static_cast<std::ptrdiff_t>(regressor.rows().size());
+  const std::ptrdiff_t rows = regressor.rows().size();
   for (auto r = regression.residuals.begin(); r != regression.residuals.end(); r += rows) out.equation_residuals.emplace_back(r, r + rows);
 }
 
@@ -228,9 +224,8 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
     rows.r *= weight;
   }
   const double degrees = regression.sums.count - smoothed.edf;
-  const ColouredCovariance coloured =
-      memory_of_residuals(regression.rows, smoothed.covariance, static_cast<Eigen::Index>(regressor.rows().size()), degrees);
-  set_priors(out.model, regression.sums);
+  const ColouredCovariance coloured = memory_of_residuals(regression.rows, smoothed.covariance, regressor.rows().size(), degrees);
+  regression.sums.prior = regularised_priors(out.model);
   out.plain_covariance = with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2);
   describe_both(out.model, out.plain_covariance, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess),
                 visited, out.fit);
@@ -239,7 +234,7 @@ void describe_all(const Regressor& regressor, const std::vector<Signals>& experi
   const ReconstructedStates& states = regressor.states(0);
   const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
   const InputTable inputs = input_table(experiments.front(), out.model.inputs());
-  const auto sample = static_cast<std::size_t>(known);
+  const std::size_t sample = known;
   out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
   if (regressor.smeared()) {
     out.fit.warnings.emplace_back(

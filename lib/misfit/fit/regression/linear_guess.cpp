@@ -88,7 +88,7 @@ std::optional<Regression> regress(const GuessData& data, std::size_t d, double s
     row[1] = (data.y[k - 2 * d] - spread.mean) / spread.sigma;
     row[2] = 1.0;
     for (Eigen::Index i = 0; i < inputs; ++i) {
-      const Means& mean = means[static_cast<std::size_t>(i)];
+      const Means& mean = means[i];
       row[3 + 2 * i] = mean(k - d, k);
       row[4 + 2 * i] = mean(k - 2 * d, k - d);
     }

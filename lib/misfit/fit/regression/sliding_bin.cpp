@@ -46,7 +46,7 @@ TelescopedSum telescoped_sum(const BinForm& form, const Signals& signals, const 
       sums.push_back(0.0);
       begin = signals.t[i];
     }
-    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Index row = i;
     sums.back() += states.dx(row, form.rate) * states.x(row, form.rate);
     ++out.count;
   }
@@ -131,8 +131,7 @@ CurveEstimate curve(const BinForm& form, const std::vector<BinSolution>& bins, c
                     double BinSolution::*sigma) {
   const Curve& own = *form.model.find_curve(form.model.system->spec().static_curve);
   const Parameter& coefficient =
-      form.model
-          .parameters[static_cast<std::size_t>(name == own.name ? form.static_coefficients.front() : form.damping_coefficients.front())];
+      form.model.parameters[name == own.name ? form.static_coefficients.front() : form.damping_coefficients.front()];
   CurveEstimate out;
   out.name = name;
   out.of = own.of;
@@ -189,7 +188,7 @@ void tell_bins(const BinForm& form, const SlidingBinOptions& options, const Pass
 
 void tell_damping(const BinForm& form, const Pass& pass, Fit& fit) {
   const auto& spec = form.model.system->spec();
-  const std::string name = spec.damping_curve, level_unit = spec.states[static_cast<std::size_t>(form.level)].unit;
+  const std::string name = spec.damping_curve, level_unit = spec.states[form.level].unit;
   fit.facts["whiteness"] = "residuals of the bins at " + in_words(pass.whiteness);
   const std::string sum = "sum of acceleration times rate over " + std::to_string(pass.sum.count) +
                           " samples: " + format_value(pass.sum.value, pass.sum.sigma) + " " + level_unit + "^2/s^3, " +
@@ -262,7 +261,7 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   if (options.curves_only) return fit;
   const Pass other =
       run(*form, signals, options, options.stencils == Stencils::fourth_order ? Stencils::second_order_four_point : Stencils::fourth_order);
-  fit.noise["equation_residual"] = {pass.residual_rms, 0.0, rate_unit(spec.states[static_cast<std::size_t>(form->rate)].unit)};
+  fit.noise["equation_residual"] = {pass.residual_rms, 0.0, rate_unit(spec.states[form->rate].unit)};
   fit.driven = pass.driven;
   tell_bins(*form, options, pass, other, fit);
   tell_damping(*form, pass, fit);

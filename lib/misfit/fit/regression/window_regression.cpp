@@ -47,7 +47,7 @@ class RunningSums {
     const Row4 z = row(i);
     sums_ += sign * z * z.transpose();
     level_ += sign * (Wide{all_.equations_[i].x} - Wide{centre_});
-    const auto sample = static_cast<std::ptrdiff_t>(all_.equations_[i].sample);
+    const std::ptrdiff_t sample = all_.equations_[i].sample;
     for (std::size_t lag = 1; lag < rho_.size(); ++lag) {
       const auto apart = static_cast<std::ptrdiff_t>(lag);
       for (const std::ptrdiff_t other : {sample - apart, sample + apart}) add_pair(i, z, other, lag, sign);
@@ -56,9 +56,9 @@ class RunningSums {
 
   void add_pair(std::size_t i, const Row4& z, std::ptrdiff_t other, std::size_t lag, Wide sign) {
     if (other < 0 || other >= static_cast<std::ptrdiff_t>(all_.place_.size())) return;
-    const std::ptrdiff_t place = all_.place_[static_cast<std::size_t>(other)];
+    const std::ptrdiff_t place = all_.place_[other];
     if (place < static_cast<std::ptrdiff_t>(first_) || place >= static_cast<std::ptrdiff_t>(last_)) return;
-    const auto j = static_cast<std::size_t>(place);
+    const std::size_t j = place;
     const double apart = std::abs(all_.equations_[i].t - all_.equations_[j].t);
     if (std::abs(apart - static_cast<double>(lag) * all_.step_) > 0.5 * all_.step_) return;  // a gap in time lies between
     const Row3 a = z.head<3>(), b = row(j).head<3>();
@@ -125,7 +125,7 @@ BinRegression::BinRegression(std::vector<BinEquation> equations) : equations_(st
   std::sort(equations_.begin(), equations_.end(),
             [](const auto& a, const auto& b) { return a.x < b.x || (a.x == b.x && a.sample < b.sample); });
   place_.assign(samples, -1);
-  for (std::size_t i = 0; i < equations_.size(); ++i) place_[equations_[i].sample] = static_cast<std::ptrdiff_t>(i);
+  for (std::size_t i = 0; i < equations_.size(); ++i) place_[equations_[i].sample] = i;
 }
 
 SlidBins BinRegression::slide(const BinLayout& layout, const std::vector<double>& rho) const {

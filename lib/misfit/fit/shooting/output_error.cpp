@@ -95,7 +95,7 @@ class Estimator {
         double squares = 0.0, count = 0.0;
         for (std::size_t i = 0; i < experiments_[e].samples(); ++i) {
           if (!shooting_.counts(e, i, o)) continue;
-          squares += std::pow(y[e](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments_[e].measured[o].values[i], 2);
+          squares += std::pow(y[e](i, o) - experiments_[e].measured[o].values[i], 2);
           count += 1.0;
         }
         if (!(std::sqrt(squares / std::max(count, 1.0)) <= motion_size(experiments_[e].measured[o].values))) return false;
@@ -144,7 +144,7 @@ class Estimator {
         ChannelPrediction p{
             experiments_[e].name, outputs[o].name, outputs[o].unit, experiments_[e].t, experiments_[e].measured[o].values, {}, {}, {}};
         for (std::size_t i = 0; i < p.t.size(); ++i) {
-          p.predicted.push_back(y[e](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)));
+          p.predicted.push_back(y[e](i, o));
           p.held_out.push_back(experiments_[e].held_out(i));
           if (!shooting_.counts(e, i, o)) continue;
           squares += std::pow(p.measured[i] - p.predicted[i], 2);
@@ -240,7 +240,7 @@ class Estimator {
     const PenalisedFit smoothed = estimate_smoothing(linearised, penalties, 1.0);
     if (!smoothed.ok) return failed(singular_message(linearised));
     if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(at_the_end(which));
-    const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
+    const Eigen::Index columns = out.model.free_parameters().size();
     const double degrees = linearised.count - smoothed.edf;
     const std::vector<Segment> runs = shooting_.run(true);
     const auto& outputs = out.model.system->spec().outputs;
@@ -300,8 +300,7 @@ class Estimator {
     if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
     out.fit.facts["covariance"] = in_words(coloured);
     const auto& outputs = out.model.system->spec().outputs;
-    for (std::size_t o = 0; o < outputs.size(); ++o)
-      out.fit.noise.at(outputs[o].name).sigma *= std::sqrt(coloured.squared_correlations[static_cast<Eigen::Index>(o)]);
+    for (std::size_t o = 0; o < outputs.size(); ++o) out.fit.noise.at(outputs[o].name).sigma *= std::sqrt(coloured.squared_correlations[o]);
     return covariance;
   }
 

@@ -28,7 +28,7 @@ std::vector<std::vector<double>> channel_residuals(const Shooting& shooting, con
     out.emplace_back(experiments[e].samples(), std::nan(""));
     for (std::size_t i = 0; i < experiments[e].samples() && runs[e].finite; ++i) {
       if (!shooting.counts(e, i, o)) continue;
-      out.back()[i] = runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i];
+      out.back()[i] = runs[e].y(i, o) - experiments[e].measured[o].values[i];
     }
   }
   return out;
@@ -64,7 +64,7 @@ std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<S
 std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vector<Segment>& runs,
                                         const std::vector<Signals>& experiments) {
   std::vector<ResidualRows> out;
-  const auto ny = static_cast<std::size_t>(shooting.model().outputs());
+  const std::size_t ny = shooting.model().outputs();
   for (std::size_t e = 0; e < runs.size(); ++e) {
     ResidualRows rows{runs[e].y_rows, Eigen::VectorXd(runs[e].y_rows.rows()), {}};
     for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
@@ -73,9 +73,7 @@ std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vec
         const bool used = shooting.counts(e, i, o);
         const double weight = used ? 1.0 / shooting.sigma()[o] : 0.0;
         rows.J.row(at) *= weight;
-        rows.r[at] =
-            used ? weight * (runs[e].y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(o)) - experiments[e].measured[o].values[i])
-                 : std::nan("");
+        rows.r[at] = used ? weight * (runs[e].y(i, o) - experiments[e].measured[o].values[i]) : std::nan("");
       }
     }
     const Eigen::Index n = shooting.model().states(), columns = rows.J.cols() - n;
@@ -89,25 +87,25 @@ std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vec
 void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
                     const Eigen::MatrixXd& covariance, Fit& fit) {
   const auto& outputs = shooting.model().system->spec().outputs;
-  const auto ny = static_cast<Eigen::Index>(outputs.size());
+  const Eigen::Index ny = outputs.size();
   const Eigen::Index n = shooting.model().states();
   for (std::size_t e = 0; e < runs.size(); ++e) {
     const Segment& run = runs[e];
     const Eigen::Index columns = run.y_rows.cols() - n;
     const RowMatrix& rows = run.y_rows;
     Eigen::MatrixXd joint(columns + n, columns + n);
-    const Eigen::Index at = columns + n * static_cast<Eigen::Index>(e);
+    const Eigen::Index at = columns + n * e;
     joint << covariance.topLeftCorner(columns, columns), covariance.block(0, at, columns, n), covariance.block(at, 0, n, columns),
         covariance.block(at, at, n, n);
     const Eigen::VectorXd spread = (rows * joint).cwiseProduct(rows).rowwise().sum();
     for (Eigen::Index o = 0; o < ny; ++o) {
       ChannelPrediction p;
       p.experiment = experiments[e].name;
-      p.channel = outputs[static_cast<std::size_t>(o)].name;
-      p.unit = outputs[static_cast<std::size_t>(o)].unit;
+      p.channel = outputs[o].name;
+      p.unit = outputs[o].unit;
       p.t = experiments[e].t;
-      p.measured = experiments[e].measured[static_cast<std::size_t>(o)].values;
-      const double sigma = shooting.sigma()[static_cast<std::size_t>(o)];
+      p.measured = experiments[e].measured[o].values;
+      const double sigma = shooting.sigma()[o];
       for (std::size_t i = 0; i < p.t.size(); ++i) {
         const auto row = static_cast<Eigen::Index>(i);
         p.predicted.push_back(run.y(row, o));

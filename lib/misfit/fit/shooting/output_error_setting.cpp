@@ -23,12 +23,12 @@ Setting look_at(const Model& model, const std::vector<Signals>& experiments, con
     if (!(sigma > 0.0)) sigma = spec.outputs[o].noise > 0.0 ? spec.outputs[o].noise : 1.0;
     s.sigma.push_back(sigma);
   }
-  s.state_scale.assign(static_cast<std::size_t>(model.states()), 1.0);
+  s.state_scale.assign(model.states(), 1.0);
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
-    if (spec.outputs[o].observes >= 0) s.state_scale[static_cast<std::size_t>(spec.outputs[o].observes)] = s.sigma[o];
+    if (spec.outputs[o].observes >= 0) s.state_scale[spec.outputs[o].observes] = s.sigma[o];
   }
   for (std::size_t j = 0; j < spec.states.size(); ++j) {
-    if (spec.states[j].rate_of >= 0) s.state_scale[j] = s.state_scale[static_cast<std::size_t>(spec.states[j].rate_of)] * s.frequency;
+    if (spec.states[j].rate_of >= 0) s.state_scale[j] = s.state_scale[spec.states[j].rate_of] * s.frequency;
   }
   return s;
 }
@@ -39,7 +39,7 @@ std::vector<RowMatrix> start_states(const Setting& setting) {
     RowMatrix x = states.x;
     Eigen::Index known = -1;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      if (!states.ok[static_cast<std::size_t>(i)]) continue;
+      if (!states.ok[i]) continue;
       for (Eigen::Index k = known + 1; k < i; ++k) {
         const double share = known < 0 ? 1.0 : static_cast<double>(k - known) / static_cast<double>(i - known);
         x.row(k) = known < 0 ? x.row(i).eval() : (x.row(known) + share * (x.row(i) - x.row(known))).eval();

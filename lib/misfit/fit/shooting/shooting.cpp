@@ -24,10 +24,9 @@ Shooting::Shooting(Model model, const std::vector<Signals>& experiments, std::ve
     RowMatrix& history = history_[e];
     for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
       const StateSpec& state = model_.state_specs[j];
-      auto column = history.col(static_cast<Eigen::Index>(j)).array();
+      auto column = history.col(j).array();
       column = column.max(state.lower).min(state.upper);
-      if (state.initial == Initial::fixed && !experiments_[e].after_gap && history.rows() > 0)
-        history(0, static_cast<Eigen::Index>(j)) = state.start;
+      if (state.initial == Initial::fixed && !experiments_[e].after_gap && history.rows() > 0) history(0, j) = state.start;
     }
   }
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
@@ -46,7 +45,7 @@ bool Shooting::counts(std::size_t experiment, std::size_t i, std::size_t o) cons
 }
 
 void Shooting::set_theta(const double* theta) {
-  for (std::size_t c = 0; c < free_.size(); ++c) values_[static_cast<std::size_t>(free_[c])] = theta[c];
+  for (std::size_t c = 0; c < free_.size(); ++c) values_[free_[c]] = theta[c];
   stepper_->evaluator().set_parameters(values_.data());
 }
 
@@ -66,22 +65,20 @@ std::vector<Shooting::Piece> Shooting::cut(std::size_t length) const {
 /// Measurement rows: (predicted − measured)/sigma; zero where a sample does not count.
 void Shooting::fill_rows(const Piece& piece, double* r, double** J) const {
   const Segment& s = piece.segment;
-  const auto ny = static_cast<std::size_t>(s.y.cols());
-  const auto columns = static_cast<Eigen::Index>(free_.size());
+  const std::size_t ny = s.y.cols();
+  const Eigen::Index columns = free_.size();
   const Eigen::Index n = model_.states();
   const Signals& signals = experiments_[piece.experiment];
   for (std::size_t i = piece.first; i < piece.last; ++i) {
     for (std::size_t o = 0; o < ny; ++o) {
       const std::size_t row = (i - piece.first) * ny + o;
-      const auto at = static_cast<Eigen::Index>(row);
+      const Eigen::Index at = row;
       const bool used = counts(piece.experiment, i, o);
       const double weight = used ? 1.0 / sigma_[o] : 0.0;
-      r[row] =
-          used ? (s.y(static_cast<Eigen::Index>(i - piece.first), static_cast<Eigen::Index>(o)) - signals.measured[o].values[i]) * weight
-               : 0.0;
+      r[row] = used ? (s.y(i - piece.first, o) - signals.measured[o].values[i]) * weight : 0.0;
       if (J == nullptr) continue;
       if (J[0] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[0] + row * free_.size(), columns) = weight * s.y_rows.row(at).head(columns);
-      if (J[1] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[1] + row * static_cast<std::size_t>(n), n) = weight * s.y_rows.row(at).tail(n);
+      if (J[1] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[1] + row * n, n) = weight * s.y_rows.row(at).tail(n);
     }
   }
 }
@@ -97,18 +94,17 @@ bool Shooting::evaluate(Piece& piece, double defect_weight, const double* const*
   fill_rows(piece, r, J);
   if (piece.next < 0) return true;
   const int n = model_.states();
-  const auto first = static_cast<std::size_t>(s.y.size());
-  if (J != nullptr && J[2] != nullptr) std::fill_n(J[2], (first + static_cast<std::size_t>(n)) * static_cast<std::size_t>(n), 0.0);
+  const std::size_t first = s.y.size();
+  if (J != nullptr && J[2] != nullptr) std::fill_n(J[2], (first + n) * n, 0.0);
   for (int j = 0; j < n; ++j) {
-    const double weight = defect_weight / state_scale_[static_cast<std::size_t>(j)];
-    const std::size_t row = first + static_cast<std::size_t>(j);
+    const double weight = defect_weight / state_scale_[j];
+    const std::size_t row = first + j;
     r[row] = weight * (s.end[j] - blocks[2][j]);
     if (J == nullptr) continue;
     if (J[0] != nullptr)
-      Eigen::Map<Eigen::RowVectorXd>(J[0] + row * free_.size(), static_cast<Eigen::Index>(free_.size())) =
-          weight * s.end_rows.row(j).head(static_cast<Eigen::Index>(free_.size()));
-    if (J[1] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[1] + row * static_cast<std::size_t>(n), n) = weight * s.end_rows.row(j).tail(n);
-    if (J[2] != nullptr) J[2][row * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)] = -weight;
+      Eigen::Map<Eigen::RowVectorXd>(J[0] + row * free_.size(), free_.size()) = weight * s.end_rows.row(j).head(free_.size());
+    if (J[1] != nullptr) Eigen::Map<Eigen::RowVectorXd>(J[1] + row * n, n) = weight * s.end_rows.row(j).tail(n);
+    if (J[2] != nullptr) J[2][row * n + j] = -weight;
   }
   return true;
 }
@@ -120,32 +116,18 @@ void Shooting::note_failure(const Segment& segment, std::size_t experiment) {
 }
 
 void Shooting::add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const {
-  for (const auto& penalty : penalties) {
-    const Eigen::MatrixXd L = penalty_rows(penalty);
-    const auto columns = free_.size();
-    problem.add_residuals({theta_block}, static_cast<int>(L.rows()),
-                          [L, first = penalty.first, columns](const double* const* blocks, double* r, double** J) {
-                            const auto rows = L.rows();
-                            Eigen::Map<Eigen::VectorXd>(r, rows) = L * Eigen::Map<const Eigen::VectorXd>(blocks[0] + first, L.cols());
+  for (const PriorRows& rows : prior_rows({parameter_priors(model_), penalties})) {
+    problem.add_residuals({theta_block}, static_cast<int>(rows.L.rows()),
+                          [rows, columns = std::ssize(free_)](const double* const* blocks, double* r, double** J) {
+                            const auto& [first, L, mean] = rows;
+                            Eigen::Map<Eigen::VectorXd>(r, L.rows()) =
+                                L * (Eigen::Map<const Eigen::VectorXd>(blocks[0] + first, L.cols()) - mean);
                             if (J == nullptr || J[0] == nullptr) return true;
-                            Eigen::Map<RowMatrix> jacobian(J[0], rows, static_cast<Eigen::Index>(columns));
+                            Eigen::Map<RowMatrix> jacobian(J[0], L.rows(), columns);
                             jacobian.setZero();
                             jacobian.middleCols(first, L.cols()) = L;
                             return true;
                           });
-  }
-  for (std::size_t c = 0; c < free_.size(); ++c) {
-    const Parameter& p = model_.parameters[static_cast<std::size_t>(free_[c])];
-    if (!p.prior_sigma || p.curve >= 0) continue;
-    const double mean = p.prior_mean, weight = 1.0 / *p.prior_sigma;
-    const auto columns = free_.size();
-    problem.add_residuals({theta_block}, 1, [c, mean, weight, columns](const double* const* blocks, double* r, double** J) {
-      r[0] = weight * (blocks[0][c] - mean);
-      if (J == nullptr || J[0] == nullptr) return true;
-      std::fill_n(J[0], columns, 0.0);
-      J[0][c] = weight;
-      return true;
-    });
   }
 }
 
@@ -156,7 +138,7 @@ int add_parameters(LeastSquares& problem, const Model& model, const std::vector<
   std::vector<double> theta, lower, upper;
   bool bounded = false;
   for (int index : free) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(index)];
+    const Parameter& p = model.parameters[index];
     theta.push_back(p.value);
     // Bounds of curve coefficients would bind combinations that mean nothing: roughness holds them.
     // Where there are bounds the solver searches along every step (Armijo), which keeps it from leaping into a far valley where a parameter
@@ -174,8 +156,7 @@ struct StateBounds {
   bool any = false;
 
   explicit StateBounds(const Model& model)
-      : least(static_cast<std::size_t>(model.states()), -std::numeric_limits<double>::infinity()),
-        most(least.size(), std::numeric_limits<double>::infinity()) {
+      : least(model.states(), -std::numeric_limits<double>::infinity()), most(least.size(), std::numeric_limits<double>::infinity()) {
     for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
       least[j] = model.state_specs[j].lower;
       most[j] = model.state_specs[j].upper;
@@ -193,7 +174,7 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   std::vector<Piece> pieces = cut(pass.length);
   const StateBounds bounds(model_);
   for (auto& piece : pieces) {
-    const auto start = history_[piece.experiment].row(static_cast<Eigen::Index>(piece.first));
+    const auto start = history_[piece.experiment].row(piece.first);
     piece.block = bounds.any ? problem.add_block({start.begin(), start.end()}, bounds.least, bounds.most)
                              : problem.add_block({start.begin(), start.end()});
   }
@@ -202,8 +183,7 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
     if (k + 1 < pieces.size() && pieces[k + 1].experiment == piece.experiment) piece.next = pieces[k + 1].block;
     std::vector<int> blocks{theta_block, piece.block};
     if (piece.next >= 0) blocks.push_back(piece.next);
-    const int residuals =
-        static_cast<int>((piece.last - piece.first) * static_cast<std::size_t>(model_.outputs())) + (piece.next >= 0 ? model_.states() : 0);
+    const int residuals = static_cast<int>((piece.last - piece.first) * model_.outputs()) + (piece.next >= 0 ? model_.states() : 0);
     problem.add_residuals(blocks, residuals, [this, &piece, weight = pass.defect_weight](const double* const* x, double* r, double** J) {
       return evaluate(piece, weight, x, r, J);
     });
@@ -219,7 +199,7 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   linearisations_ += summary.linearisations;
   if (!summary.usable) return summary;
   const std::vector<double>& solved = problem.block(theta_block);
-  for (std::size_t c = 0; c < free_.size(); ++c) model_.parameters[static_cast<std::size_t>(free_[c])].value = solved[c];
+  model_.set_theta(Eigen::Map<const Eigen::VectorXd>(solved.data(), std::ssize(solved)));
   set_theta(solved.data());
   remember(pieces, problem);
   return summary;
@@ -229,7 +209,7 @@ void Shooting::remember(std::vector<Piece>& pieces, const LeastSquares& problem)
   for (const auto& piece : pieces) {
     const RowMatrix states = run_states(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last,
                                         problem.block(piece.block).data());
-    history_[piece.experiment].middleRows(static_cast<Eigen::Index>(piece.first), states.rows()) = states;
+    history_[piece.experiment].middleRows(piece.first, states.rows()) = states;
   }
 }
 
@@ -239,18 +219,16 @@ void Shooting::restore(const State& state) {
 }
 
 std::vector<RowMatrix> Shooting::predict_segments() {
-  std::vector<double> theta;
-  for (int index : free_) theta.push_back(model_.parameters[static_cast<std::size_t>(index)].value);
-  set_theta(theta.data());
+  set_theta(model_.theta().data());
   std::vector<RowMatrix> out;
-  std::vector<double> y(static_cast<std::size_t>(model_.outputs()) + 1);
+  std::vector<double> y(model_.outputs() + 1);
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     out.emplace_back(history_[e].rows(), model_.outputs());
     for (Eigen::Index i = 0; i < history_[e].rows(); ++i) {
       const auto sample = static_cast<std::size_t>(i);
       const bool known = predict_at(*stepper_, experiments_[e], inputs_[e], sample, history_[e].row(i).data(), y.data());
       if (!known) std::fill(y.begin(), y.end(), std::nan(""));
-      for (Eigen::Index o = 0; o < out[e].cols(); ++o) out[e](i, o) = y[static_cast<std::size_t>(o)];
+      for (Eigen::Index o = 0; o < out[e].cols(); ++o) out[e](i, o) = y[o];
     }
   }
   return out;
@@ -258,9 +236,7 @@ std::vector<RowMatrix> Shooting::predict_segments() {
 
 std::vector<Segment> Shooting::run(bool sensitivities) {
   std::vector<Segment> out(experiments_.size());
-  std::vector<double> theta;
-  for (int index : free_) theta.push_back(model_.parameters[static_cast<std::size_t>(index)].value);
-  set_theta(theta.data());
+  set_theta(model_.theta().data());
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     const Eigen::VectorXd x0 = initial_state(e);
     run_segment(*stepper_, experiments_[e], inputs_[e], 0, experiments_[e].samples(), x0.data(), sensitivities, out[e]);

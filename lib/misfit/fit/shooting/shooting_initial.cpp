@@ -12,7 +12,7 @@ std::optional<double> Shooting::known_start(std::size_t experiment, std::size_t 
   const bool goes_on = experiments_[experiment].after_gap;
   if (spec.initial == Initial::fixed && !goes_on) return spec.start;
   if ((spec.initial == Initial::shared && !goes_on) || !held_out_[experiment]) return std::nullopt;
-  return read_start_[experiment][static_cast<Eigen::Index>(state)];
+  return read_start_[experiment][state];
 }
 
 bool Shooting::shared_start(std::size_t experiment, std::size_t state) const {
@@ -37,7 +37,7 @@ void Shooting::add_initial(LeastSquares& problem, const std::vector<Piece>& piec
       const bool tied = shared_start(piece.experiment, j) && piece.block != first;
       if (!known && !tied) continue;
       const double weight = std::sqrt(holding(j)), value = known.value_or(0.0);
-      const auto n = static_cast<std::size_t>(model_.states());
+      const std::size_t n = model_.states();
       const auto row = [j, n](double* J, double slope) {
         if (J == nullptr) return;
         std::fill_n(J, n, 0.0);

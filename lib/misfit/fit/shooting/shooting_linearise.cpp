@@ -9,16 +9,9 @@
 namespace misfit {
 
 NormalEquations Shooting::empty_sums(Eigen::Index unknowns) const {
-  NormalEquations out{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns), 0.0, 0.0, Eigen::VectorXd::Zero(unknowns),
-                      Eigen::VectorXd::Zero(unknowns),           Eigen::VectorXd::Zero(unknowns)};
-  for (std::size_t c = 0; c < free_.size(); ++c) {
-    const Parameter& p = model_.parameters[static_cast<std::size_t>(free_[c])];
-    const auto i = static_cast<Eigen::Index>(c);
-    out.theta[i] = p.value;
-    if (!p.prior_sigma || p.curve >= 0) continue;
-    out.prior_precision[i] = 1.0 / (*p.prior_sigma * *p.prior_sigma);
-    out.prior_mean[i] = p.prior_mean;
-  }
+  NormalEquations out{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns),          0.0, 0.0,
+                      Eigen::VectorXd::Zero(unknowns),           parameter_priors(model_).padded(unknowns)};
+  out.theta.head(std::ssize(free_)) = model_.theta();
   return out;
 }
 
@@ -37,7 +30,7 @@ bool Shooting::linearise_segments(std::size_t length, NormalEquations& out) {
   set_theta(out.theta.data());
   ++linearisations_;
   for (Piece& piece : cut(length)) {
-    const Eigen::VectorXd x0 = history_[piece.experiment].row(static_cast<Eigen::Index>(piece.first));
+    const Eigen::VectorXd x0 = history_[piece.experiment].row(piece.first);
     run_segment(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last, x0.data(), true,
                 piece.segment);
     if (!piece.segment.finite) return false;
@@ -62,7 +55,7 @@ bool Shooting::linearise_segments(std::size_t length, NormalEquations& out) {
 /// Scales rows and residuals of a run by 1/sigma in place; rows that do not count become zero.
 double Shooting::weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r) const {
   const Signals& signals = experiments_[experiment];
-  const auto ny = static_cast<std::size_t>(run.y.cols());
+  const std::size_t ny = run.y.cols();
   r.resize(run.y.size());
   double count = 0.0;
   for (std::size_t i = run.first; i < run.last; ++i) {
@@ -70,9 +63,7 @@ double Shooting::weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r)
       const auto row = static_cast<Eigen::Index>((i - run.first) * ny + o);
       const bool used = counts(experiment, i, o);
       const double weight = used ? 1.0 / sigma_[o] : 0.0;
-      r[row] =
-          used ? (run.y(static_cast<Eigen::Index>(i - run.first), static_cast<Eigen::Index>(o)) - signals.measured[o].values[i]) * weight
-               : 0.0;
+      r[row] = used ? (run.y(i - run.first, o) - signals.measured[o].values[i]) * weight : 0.0;
       run.y_rows.row(row) *= weight;
       count += used ? 1.0 : 0.0;
     }
@@ -83,7 +74,7 @@ double Shooting::weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r)
 bool Shooting::linearise(NormalEquations& out) {
   const auto columns = static_cast<Eigen::Index>(free_.size());
   const Eigen::Index n = model_.states();
-  const Eigen::Index all = columns + n * static_cast<Eigen::Index>(experiments_.size());
+  const Eigen::Index all = columns + n * experiments_.size();
   ++linearisations_;
   out = empty_sums(all);
   set_theta(out.theta.data());
@@ -106,7 +97,7 @@ bool Shooting::linearise(NormalEquations& out) {
       return false;
     }
     N.triangularView<Eigen::StrictlyUpper>() = N.transpose();
-    const Eigen::Index at = columns + n * static_cast<Eigen::Index>(e);
+    const Eigen::Index at = columns + n * e;
     out.theta.segment(at, n) = x0;
     out.N.topLeftCorner(columns, columns) += N.topLeftCorner(columns, columns);
     out.N.block(0, at, columns, n) = N.topRightCorner(columns, n);

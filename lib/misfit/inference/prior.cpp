@@ -1,0 +1,119 @@
+#include "misfit/inference/prior.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace misfit {
+ColumnPriors parameter_priors(const Model& model) {
+  const std::vector<int> free = model.free_parameters();
+  ColumnPriors out{Eigen::VectorXd::Zero(std::ssize(free)), Eigen::VectorXd::Zero(std::ssize(free))};
+  for (Eigen::Index c = 0; c < std::ssize(free); ++c) {
+    const Parameter& p = model.parameters[free[c]];
+    if (!p.prior_sigma) continue;
+    out.precision[c] = 1.0 / (*p.prior_sigma * *p.prior_sigma);
+    out.mean[c] = p.prior_mean;
+  }
+  return out;
+}
+
+ColumnPriors regularised_priors(const Model& model) {
+  constexpr double very_wide = 1e3;  // typical sizes
+  const std::vector<int> free = model.free_parameters();
+  ColumnPriors out = parameter_priors(model);
+  for (Eigen::Index c = 0; c < std::ssize(free); ++c) {
+    const Parameter& p = model.parameters[free[c]];
+    if (!p.prior_sigma) out.precision[c] = 1.0 / std::pow(very_wide * p.scale, 2);
+  }
+  return out;
+}
+
+double log_prior(const Parameter& parameter) {
+  return parameter.prior_sigma ? -0.5 * std::pow((parameter.value - parameter.prior_mean) / *parameter.prior_sigma, 2) : 0.0;
+}
+
+double ColumnPriors::log_density(const Eigen::VectorXd& theta) const {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < precision.size(); ++i) sum -= 0.5 * precision[i] * std::pow(theta[i] - mean[i], 2);
+  return sum;
+}
+
+Eigen::VectorXd ColumnPriors::gradient(const Eigen::VectorXd& theta) const { return precision.cwiseProduct(mean - theta); }
+
+ColumnPriors ColumnPriors::padded(Eigen::Index unknowns) const {
+  ColumnPriors out{Eigen::VectorXd::Zero(unknowns), Eigen::VectorXd::Zero(unknowns)};
+  out.precision.head(precision.size()) = precision;
+  out.mean.head(mean.size()) = mean;
+  return out;
+}
+
+double Penalty::log_normalisation() const { return 0.5 * rank * std::log(lambda); }
+
+double GaussianPrior::log_density(const Eigen::VectorXd& theta) const {
+  double sum = columns.log_density(theta);
+  for (const Penalty& p : penalties) {
+    const auto c = theta.segment(p.first, p.omega.rows());
+    sum -= 0.5 * p.lambda * c.dot(p.omega * c);
+  }
+  return sum;
+}
+
+Eigen::VectorXd GaussianPrior::gradient(const Eigen::VectorXd& theta) const {
+  Eigen::VectorXd out = columns.gradient(theta);
+  for (const Penalty& p : penalties) {
+    const Eigen::Index size = p.omega.rows();
+    out.segment(p.first, size) -= p.lambda * (p.omega * theta.segment(p.first, size));
+  }
+  return out;
+}
+
+void GaussianPrior::add_precision(Eigen::MatrixXd& information) const {
+  information.diagonal() += columns.precision;
+  for (const Penalty& p : penalties) information.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
+}
+
+double log_prior(const Model& model, const std::vector<Penalty>& penalties) {
+  return GaussianPrior{parameter_priors(model), penalties}.log_density(model.theta());
+}
+
+std::vector<Penalty> curve_penalties(const Model& model) {
+  std::vector<Penalty> penalties;
+  const std::vector<int> free = model.free_parameters();
+  for (int k = 0; k < std::ssize(model.curves); ++k) {
+    const Curve& curve = model.curves[k];
+    const auto column = std::find(free.begin(), free.end(), curve.first);
+    if (column == free.end()) continue;
+    Penalty p;
+    p.curve = k;
+    p.first = static_cast<int>(column - free.begin());
+    p.omega = curve.spline.roughness();
+    p.rank = curve.spline.size() - 2;
+    p.chosen = !curve.roughness.has_value();
+    const double range = curve.spline.highest() - curve.spline.lowest();
+    constexpr double turns_of_slope = 10.0;  // start loose: more structure than a parabola of typical size
+    p.lambda = curve.roughness.value_or(std::pow(range, 3) / std::pow(turns_of_slope * curve.scale, 2));
+    penalties.push_back(std::move(p));
+  }
+  return penalties;
+}
+
+Model with_roughness(Model model, const std::vector<Penalty>& penalties) {
+  for (const Penalty& p : penalties) model.curves[p.curve].roughness = p.lambda;
+  return model;
+}
+
+std::vector<PriorRows> prior_rows(const GaussianPrior& prior) {
+  std::vector<PriorRows> out;
+  for (const Penalty& p : prior.penalties) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p.omega);
+    const Eigen::VectorXd values = (p.lambda * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
+    out.push_back({p.first, values.asDiagonal() * eigen.eigenvectors().transpose(), Eigen::VectorXd::Zero(p.omega.rows())});
+  }
+  for (int c = 0; c < prior.columns.precision.size(); ++c) {
+    const double precision = prior.columns.precision[c];
+    if (precision > 0.0) out.push_back({c, Eigen::MatrixXd::Constant(1, 1, std::sqrt(precision)), prior.columns.mean.segment(c, 1)});
+  }
+  return out;
+}
+
+}  // namespace misfit

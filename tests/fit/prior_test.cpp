@@ -1,0 +1,129 @@
+#include "misfit/inference/prior.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "misfit/fit/regression/equation_error.h"
+#include "misfit/fit/shooting/output_error.h"
+#include "misfit/inference/curves.h"
+#include "tests/fit/planar_model.h"
+
+namespace misfit {
+namespace {
+
+std::vector<Signals> noisy_motion() {
+  Signals signals = testing_planar::validation_signals("alpha_T_true");
+  constexpr std::size_t samples = 1200;
+  signals.t.resize(samples);
+  for (auto& s : signals.measured) s.values.resize(samples);
+  for (auto& s : signals.inputs) s.values.resize(samples);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.1 * testing_planar::degree);
+  for (double& v : signals.measured.front().values) v += noise(random);
+  return {signals};
+}
+
+/// The damping curve's coefficients with a prior, if one is given.
+Model model_of(const std::vector<Signals>& experiments, std::optional<double> mean = {}, std::optional<double> sigma = {}) {
+  ModelRequest request = testing_planar::eq_8();
+  for (auto& [name, curve] : request.curves) curve.knots.clear();
+  if (mean) request.parameters["C_m_alphadot"].value = mean;
+  if (sigma) request.parameters["C_m_alphadot"].sigma = sigma;
+  choose_all_knots(request, testing_planar::registry(), experiments, 8);
+  return assemble(request, testing_planar::registry());
+}
+
+/// Values of the damping curve's coefficients.
+Eigen::VectorXd damping_of(const Model& model) {
+  const Curve& curve = *model.find_curve("C_m_alphadot");
+  Eigen::VectorXd out(curve.spline.size());
+  for (int i = 0; i < curve.spline.size(); ++i) out[i] = model.parameters[static_cast<std::size_t>(curve.first + i)].value;
+  return out;
+}
+
+TEST(GaussianPrior, GradientAndPrecisionAreDerivativesOfItsDensity) {
+  const std::vector<Signals> experiments = noisy_motion();
+  const Model model = model_of(experiments, -0.2, 0.05);
+  std::vector<Penalty> penalties = curve_penalties(model);
+  for (Penalty& p : penalties) p.lambda *= 3.0;
+  const GaussianPrior prior{parameter_priors(model), penalties};
+  Eigen::VectorXd theta = model.theta();
+  for (Eigen::Index i = 0; i < theta.size(); ++i) theta[i] += 0.01 * std::sin(static_cast<double>(i));
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(theta.size(), theta.size());
+  prior.add_precision(precision);
+  const Eigen::VectorXd gradient = prior.gradient(theta);
+  constexpr double h = 1e-3;
+  for (Eigen::Index i = 0; i < theta.size(); ++i) {
+    const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(theta.size(), i);
+    const double slope = (prior.log_density(theta + step) - prior.log_density(theta - step)) / (2.0 * h);
+    EXPECT_NEAR(gradient[i], slope, 1e-7 * gradient.norm()) << i;
+    const Eigen::VectorXd bend = (prior.gradient(theta - step) - prior.gradient(theta + step)) / (2.0 * h);
+    EXPECT_LT((precision.col(i) - bend).norm(), 1e-7 * precision.norm()) << i;
+  }
+}
+
+TEST(GaussianPrior, RowsOfASolverAreItsDensity) {
+  const std::vector<Signals> experiments = noisy_motion();
+  const Model model = model_of(experiments, -0.2, 0.05);
+  const GaussianPrior prior{parameter_priors(model), curve_penalties(model)};
+  const Eigen::VectorXd theta = Eigen::VectorXd::LinSpaced(model.theta().size(), -1.0, 2.0);
+  double squares = 0.0;
+  for (const PriorRows& rows : prior_rows(prior))
+    squares += (rows.L * (theta.segment(rows.first, rows.L.cols()) - rows.mean)).squaredNorm();
+  EXPECT_NEAR(-0.5 * squares, prior.log_density(theta), 1e-10 * squares);
+}
+
+TEST(GaussianPrior, ThatOfAModelIsTheSumOverItsParameters) {
+  const std::vector<Signals> experiments = noisy_motion();
+  Model model = model_of(experiments, -0.2, 0.05);
+  Eigen::VectorXd theta = model.theta();
+  theta.array() += 0.03;
+  model.set_theta(theta);
+  double sum = 0.0;
+  for (const Parameter& p : model.parameters) sum += p.free ? log_prior(p) : 0.0;
+  EXPECT_LT(sum, -0.1);
+  EXPECT_NEAR(log_prior(model, {}), sum, 1e-12);
+}
+
+/// A prior three times as tight as what the data say of the best known coefficient: its sigma bounds that of every one.
+class SigmaOfACurve : public testing::Test {
+ protected:
+  void expect_prior_in(const FittedModel& fit) const {
+    ASSERT_EQ(fit.fit.status, FitStatus::converged) << fit.fit.message;
+    const Curve& curve = *fit.model.find_curve("C_m_alphadot");
+    const std::vector<int> free = fit.model.free_parameters();
+    const auto first = std::find(free.begin(), free.end(), curve.first) - free.begin();
+    const Eigen::VectorXd variance = fit.fit.covariance.diagonal().segment(first, curve.spline.size());
+    EXPECT_LT(std::sqrt(variance.maxCoeff()), 1.01 * sigma);
+  }
+
+  std::vector<Signals> experiments = noisy_motion();
+  double mean = -0.2, sigma = 1e-3;
+};
+
+TEST_F(SigmaOfACurve, CountsInOutputError) {
+  OutputErrorStart white;
+  white.coloured = false;
+  const FittedModel without = output_error(equation_error(model_of(experiments), experiments), experiments, white);
+  ASSERT_EQ(without.fit.status, FitStatus::converged) << without.fit.message;
+  mean = damping_of(without.model).mean();
+  const Curve& curve = *without.model.find_curve("C_m_alphadot");
+  const std::vector<int> free = without.model.free_parameters();
+  const auto first = std::find(free.begin(), free.end(), curve.first) - free.begin();
+  sigma = std::sqrt(without.fit.covariance.diagonal().segment(first, curve.spline.size()).minCoeff()) / 3.0;
+  expect_prior_in(output_error(equation_error(model_of(experiments, mean, sigma), experiments), experiments, white));
+}
+
+TEST_F(SigmaOfACurve, CountsInEquationError) {
+  const FittedModel without = equation_error(model_of(experiments), experiments);
+  mean = damping_of(without.model).mean();
+  FittedModel with = equation_error(model_of(experiments, mean, sigma), experiments);
+  with.fit.covariance = with.plain_covariance;
+  expect_prior_in(with);
+}
+
+}  // namespace
+}  // namespace misfit
