@@ -122,9 +122,9 @@ Table simulate(const Case& c, const Session& session) {
   std::mt19937_64 random(session.study.seed);
   Segment run;
   if (has_random_states(stepper.evaluator(), c.initial.data(), inputs.at(0), c.signals.t.front())) {
-    run_randomly(stepper, c.signals, inputs, c.initial.data(), random, run);
+    run_randomly({stepper, c.signals, inputs}, c.initial.data(), random, run);
   } else {
-    run_segment(stepper, c.signals, inputs, 0, c.signals.samples(), c.initial.data(), false, run);
+    run_segment({stepper, c.signals, inputs}, {0, c.signals.samples(), c.initial.data()}, run);
   }
   if (!run.finite) throw RunError("simulation diverged (non-finite state) at t = " + format_value(c.signals.t[run.failed_at]) + " s");
   Table table;
