@@ -42,7 +42,7 @@ std::map<std::string, double> start_found(const Effect& effect, const Candidate&
   std::map<std::string, double> start;
   for (const auto& c : effect.spec().coefficients) {
     const bool scanned_shape = c.scan.count != 0 && c.kind == CoefficientKind::shape;
-    if (c.borrowed || (!scanned_shape && !from.actual_drop)) continue;
+    if (c.shared || (!scanned_shape && !from.actual_drop)) continue;
     for (const auto& [name, estimate] : from.parameters) {
       if (name == c.name || name.ends_with(std::string(".") + c.name)) start[c.name] = estimate.value;
     }
@@ -127,7 +127,7 @@ std::string study_with_system(const Session& session, const std::string& kind, c
   for (const auto& effect : model.effects) {
     with.effects = {effect};
     const auto& coefficients = session.registry.effect(effect.kind).spec().coefficients;
-    if (std::any_of(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& c) { return c.borrowed; }))
+    if (std::any_of(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& c) { return c.shared; }))
       with.effects = model.effects;  // it needs the others: judged together with them
     try {
       try_assemble(with, session.registry);
