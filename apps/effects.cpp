@@ -23,7 +23,7 @@ std::string joined(const std::vector<Role>& roles) {
 std::string coefficients_of(const EffectSpec& spec) {
   std::string out;
   for (const auto& c : spec.coefficients) {
-    if (c.borrowed) {
+    if (c.shared) {
       out += fmt::format("{}{} [{}] of another effect", out.empty() ? "" : "; ", c.name, c.unit);
       continue;
     }
@@ -50,7 +50,7 @@ nlohmann::ordered_json as_json(const EffectSpec& spec) {
   for (const auto& c : spec.coefficients) {
     json["coefficients"].push_back({{"name", c.name},
                                     {"unit", c.unit},
-                                    {"kind", c.borrowed                            ? "borrowed"
+                                    {"kind", c.shared                              ? "shared"
                                              : c.kind == CoefficientKind::strength ? "strength"
                                                                                    : "shape"},
                                     {"bounds", {c.lower, c.upper}},
@@ -90,10 +90,10 @@ std::string short_text(const EffectSpec& spec) {
 std::string parameters_table(const EffectSpec& spec) {
   std::vector<std::vector<std::string>> rows{{"parameter", "unit", "kind", "default", "bounds", "meaning"}};
   for (const auto& c : spec.coefficients) {
-    const std::string kind = c.borrowed ? "of another effect" : c.kind == CoefficientKind::strength ? "strength" : "shape";
+    const std::string kind = c.shared ? "of another effect" : c.kind == CoefficientKind::strength ? "strength" : "shape";
     const std::string meaning = c.curve_of[0] == '\0' ? c.doc : fmt::format("{}; a curve of {}", c.doc, c.curve_of);
-    rows.push_back({c.name, c.unit, kind, c.borrowed ? "" : fmt::format("{:g}{}", c.value, c.fixed ? ", fixed" : ""),
-                    c.borrowed ? "" : fmt::format("[{:g}, {:g}]", c.lower, c.upper), meaning});
+    rows.push_back({c.name, c.unit, kind, c.shared ? "" : fmt::format("{:g}{}", c.value, c.fixed ? ", fixed" : ""),
+                    c.shared ? "" : fmt::format("[{:g}, {:g}]", c.lower, c.upper), meaning});
   }
   return rows.size() > 1 ? "\n" + align_columns(rows) + "\n" : "";
 }

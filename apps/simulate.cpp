@@ -11,7 +11,7 @@ namespace misfit {
 
 int simulate_verb(const Options& options, const Registry& registry) {
   Session session(options.session, registry);
-  const Simulation made = simulate_stage(session);
+  const SimulatedRecord made = simulate_stage(session);
   if (options.json) {
     std::cout << nlohmann::json{{"file", made.file.string()}, {"samples", made.table.rows()}, {"system", made.system}}.dump(1) << '\n';
     return 0;

@@ -6,8 +6,6 @@ add_library(misfit::options ALIAS misfit_options)
 target_compile_features(misfit_options INTERFACE cxx_std_20)
 target_compile_options(misfit_options INTERFACE
   $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
-  # As g++ has it: from an integer to an unsigned one of its width or more is no surprise.
-  $<$<CXX_COMPILER_ID:Clang>:$<BUILD_INTERFACE:-Wno-sign-conversion>>
   $<$<BOOL:${MISFIT_WERROR}>:$<BUILD_INTERFACE:-Werror>>
   # An index of either sign serves: g++'s -Wconversion says nothing of the sign, clang's would.
   $<$<CXX_COMPILER_ID:Clang>:$<BUILD_INTERFACE:-Wno-sign-conversion>>

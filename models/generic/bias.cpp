@@ -7,7 +7,7 @@ using namespace misfit;
 /// A sensor that reads too much by a constant.
 struct Bias {
   static constexpr const char* formula = "y = h(x) + offset";
-  static constexpr const char* symbols = "offset [output], y the reading [any]";
+  static constexpr const char* symbols = "offset [output], y the output [any]";
   static constexpr const char* valid = "an offset that is constant over the recording";
   static constexpr const char* size = "0.1 deg on the tilt moves the trim by 0.1 deg";
   static constexpr const char* source = "JCGM 100:2008 (GUM), 3.2.3: a recognised systematic effect is corrected for";
@@ -17,7 +17,7 @@ struct Bias {
   static constexpr Role ports[] = {{.name = "output", .unit = "*"}};
   enum Coefficient { offset };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "offset", .unit = "{output}", .lower = -1e6, .upper = 1e6, .scale = 0.01, .doc = "reading where the true value is 0"},
+      {.name = "offset", .unit = "{output}", .lower = -1e6, .upper = 1e6, .scale = 0.01, .doc = "output where the true value is 0"},
   };
 
   template <class T, class K>
@@ -26,7 +26,7 @@ struct Bias {
   }
 
   static std::vector<Example> examples() {
-    return {{.coefficients = {0.002}, .ports = {0.002}, .source = "the reading moves by the offset"},
+    return {{.coefficients = {0.002}, .ports = {0.002}, .source = "the output moves by the offset"},
             {.coefficients = {-7.5}, .t = 3.0, .ports = {-7.5}, .source = "whatever the time"}};
   }
 };

@@ -37,7 +37,7 @@ struct DirectionalFriction {
        .lower = 1e-6,
        .upper = 1e6,
        .doc = "smoothing of coulomb_friction",
-       .borrowed = true},
+       .shared = true},
   };
 
   template <class T, class K>

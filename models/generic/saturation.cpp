@@ -15,7 +15,7 @@ struct Saturation {
   static constexpr const char* size = "an input of 12 V at a limit of 10 V: a sixth of what it should do is lacking";
   static constexpr const char* source = "Khalil, Nonlinear Systems (2002), section 1.2.7";
   static constexpr const char* excludes =
-      "unequal limits, integrator wind-up; a limited level is an overflow, a limited reading sensor_saturation";
+      "unequal limits, integrator wind-up; a limited level is an overflow, a limited output sensor_saturation";
 
   enum Quantity { input };
   static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};

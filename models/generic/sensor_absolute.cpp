@@ -8,16 +8,16 @@ using namespace misfit;
 /// A sensor that cannot tell the sign: a rectifier, a speed from a toothed wheel, a magnitude.
 struct SensorAbsolute {
   static constexpr const char* formula = "y = h + folded (|h| - h), |h| rounded over fold_width";
-  static constexpr const char* symbols = "h predicted reading [output], folded share [-] (1: the size alone is read), fold_width [output]";
-  static constexpr const char* valid = "readings that are mostly larger than the width";
-  static constexpr const char* size = "twice the reading wherever it is negative";
+  static constexpr const char* symbols = "h predicted output [output], folded share [-] (1: the size alone is read), fold_width [output]";
+  static constexpr const char* valid = "outputs that are mostly larger than the width";
+  static constexpr const char* size = "twice the output wherever it is negative";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "a sign that is lost at random";
 
-  enum Quantity { reading };
-  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Quantity { signal };
+  static constexpr Role quantities[] = {{.name = "signal", .unit = "*"}};
   enum Port { output };
-  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { folded, fold_width };
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "folded", .unit = "-", .lower = 0.0, .upper = 1.0, .scale = 0.1, .doc = "share of the sign that is lost"},
@@ -30,12 +30,12 @@ struct SensorAbsolute {
        .scale = 0.05,
        .doc = "rounding about 0",
        .fixed = true,
-       .scan = {.from = 0.02, .to = 0.02, .count = 1, .over = "|reading|"}},
+       .scan = {.from = 0.02, .to = 0.02, .count = 1, .over = "|signal|"}},
   };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
-    y[output] = in.c[folded] * (smooth_abs(in.q[reading], in.c[fold_width]) - in.q[reading]);
+    y[output] = in.c[folded] * (smooth_abs(in.q[signal], in.c[fold_width]) - in.q[signal]);
   }
 
   static std::vector<Example> examples() {

@@ -4,25 +4,25 @@ namespace {
 
 using namespace misfit;
 
-/// A reading that comes late while the others do not: a slow bus, a video line. Second-order Pade approximation as in `delay`; time_offset
-/// moves all readings together and is exact.
+/// An output that comes late while the others do not: a slow bus, a video line. Second-order Pade approximation as in `delay`; time_offset
+/// moves all outputs together and is exact.
 struct SensorDelay {
   static constexpr const char* formula =
       "y = h + late_share (h(t - tau) - h), h(t - tau) = h - tau z_rate; z' = z_rate, z_rate' = 12/tau^2 (h - z) - 6/tau z_rate";
   static constexpr const char* symbols =
-      "h predicted reading, z, z_rate filtered reading and its rate, late_share of the reading [-] (1: all of it), tau = sensor_delay [s]";
-  static constexpr const char* valid = "readings slower than 1.7/tau (phase to 1 %)";
+      "h predicted output, z, z_rate filtered output and its rate, late_share of the output [-] (1: all of it), tau = sensor_delay [s]";
+  static constexpr const char* valid = "outputs slower than 1.7/tau (phase to 1 %)";
   static constexpr const char* size = "20 ms at 1 rad/s: 2 % of the amplitude, 90 deg after it";
   static constexpr const char* source = "Golub and Van Loan, Matrix Computations, 11.3: Pade (2, 2) of exp(-tau s)";
   static constexpr const char* excludes = "a clock that is off for all channels (time_offset), delays that change";
 
-  enum Quantity { reading };
-  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Quantity { signal };
+  static constexpr Role quantities[] = {{.name = "signal", .unit = "*"}};
   enum Port { output };
-  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { late_share, sensor_delay };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "late_share", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.1, .doc = "part of the reading that comes late"},
+      {.name = "late_share", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.1, .doc = "part of the output that comes late"},
       {.name = "sensor_delay",
        .kind = CoefficientKind::shape,
        .value = 0.05,
@@ -41,7 +41,7 @@ struct SensorDelay {
     const T& tau = in.c[sensor_delay];
     y[output] = -in.c[late_share] * tau * in.z[z_rate];
     drift[z] = in.z[z_rate];
-    drift[z_rate] = (12.0 * (in.q[reading] - in.z[z]) / tau - 6.0 * in.z[z_rate]) / tau;
+    drift[z_rate] = (12.0 * (in.q[signal] - in.z[z]) / tau - 6.0 * in.z[z_rate]) / tau;
   }
 
   /// Its poles lie at |s| = sqrt(12)/tau.

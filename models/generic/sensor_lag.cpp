@@ -4,22 +4,22 @@ namespace {
 
 using namespace misfit;
 
-/// A sensor with inertia: its reading follows what it measures.
+/// A sensor with inertia: its output follows what it measures.
 struct SensorLag {
   static constexpr const char* formula = "y = h + share (z - h), z' = (h - z)/sensor_tau";
-  static constexpr const char* symbols = "h predicted reading, z lagged reading [output], share of the lagged part [-], sensor_tau [s]";
+  static constexpr const char* symbols = "h predicted output, z lagged output [output], share of the lagged part [-], sensor_tau [s]";
   static constexpr const char* valid = "first-order sensors: thermometers, filters";
-  static constexpr const char* size = "share = 1: the whole reading lags by sensor_tau";
+  static constexpr const char* size = "share = 1: the whole output lags by sensor_tau";
   static constexpr const char* source = "first-order filter: Doebelin, Measurement Systems, section 3.3";
   static constexpr const char* excludes = "pure delay (sensor_delay), filters of higher order";
 
-  enum Quantity { reading };
-  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Quantity { signal };
+  static constexpr Role quantities[] = {{.name = "signal", .unit = "*"}};
   enum Port { output };
-  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { share, sensor_tau };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "share", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.1, .doc = "lagged part of the reading"},
+      {.name = "share", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.1, .doc = "lagged part of the output"},
       {.name = "sensor_tau",
        .kind = CoefficientKind::shape,
        .value = 0.05,
@@ -35,7 +35,7 @@ struct SensorLag {
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y, T* drift) {
-    const T ahead = in.q[reading] - in.z[z];
+    const T ahead = in.q[signal] - in.z[z];
     y[output] = -in.c[share] * ahead;
     drift[z] = ahead / in.c[sensor_tau];
   }

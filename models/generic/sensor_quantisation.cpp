@@ -7,23 +7,23 @@ namespace {
 
 using namespace misfit;
 
-/// A reading in whole steps of a converter or an encoder: what rounding to the next of them adds, its first three harmonics, since a jump
-/// has no derivative. The step is usually known or seen at once (the smallest difference of two readings) and is held; where the reading's
-/// own noise is above a third of a step, rounding is only a little more noise (step/sqrt(12)).
+/// An output in whole steps of a converter or an encoder: what rounding to the next of them adds, its first three harmonics, since a jump
+/// has no derivative. The step is usually known or seen at once (the smallest difference of two measurements) and is held; where the
+/// output's own noise is above a third of a step, rounding is only a little more noise (step/sqrt(12)).
 struct SensorQuantisation {
   static constexpr const char* formula = "y = h + rounded step/pi sum_{k=1..3} (-1)^k/k sin(2 pi k h/step)";
-  static constexpr const char* symbols = "h predicted reading [output], rounded share [-] (1: whole steps are read), step [output]";
+  static constexpr const char* symbols = "h predicted output [output], rounded share [-] (1: whole steps are read), step [output]";
   static constexpr const char* valid =
-      "readings that cross steps slowly; within 0.1 step of the rounded one up to 0.4 step from its middle, smooth where that jumps";
+      "outputs that cross steps slowly; within 0.1 step of the rounded one up to 0.4 step from its middle, smooth where that jumps";
   static constexpr const char* size = "at most half a step, on average step/sqrt(12): 2.9 mV for steps of 10 mV";
   static constexpr const char* source =
       "B. Widrow, I. Kollar, Quantization Noise (2008), ch. 2: the rounding error as a sawtooth; its Fourier series";
   static constexpr const char* excludes = "steps that are not even, rounding down (bias), hysteresis between steps (backlash)";
 
-  enum Quantity { reading };
-  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Quantity { signal };
+  static constexpr Role quantities[] = {{.name = "signal", .unit = "*"}};
   enum Port { output };
-  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { rounded, step };
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "rounded", .unit = "-", .lower = 0.0, .upper = 1.0, .scale = 0.1, .doc = "share of the rounding"},
@@ -34,9 +34,9 @@ struct SensorQuantisation {
        .lower = 1e-9,
        .upper = 1e9,
        .scale = 0.1,
-       .doc = "smallest difference of two readings",
+       .doc = "smallest difference of two measurements",
        .fixed = true,
-       .scan = {.from = 0.05, .to = 0.2, .count = 3, .over = "|reading|"}},
+       .scan = {.from = 0.05, .to = 0.2, .count = 3, .over = "|signal|"}},
   };
 
   template <class T, class K>
@@ -45,7 +45,7 @@ struct SensorQuantisation {
     constexpr int harmonics = 3;
     constexpr double pi = std::numbers::pi;
     T sum(0.0);
-    for (int k = 1; k <= harmonics; ++k) sum += T((k % 2 == 0 ? 1.0 : -1.0) / k) * sin(2.0 * pi * k * in.q[reading] / in.c[step]);
+    for (int k = 1; k <= harmonics; ++k) sum += T((k % 2 == 0 ? 1.0 : -1.0) / k) * sin(2.0 * pi * k * in.q[signal] / in.c[step]);
     y[output] = in.c[rounded] * in.c[step] / pi * sum;
   }
 

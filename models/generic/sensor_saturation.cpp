@@ -5,21 +5,21 @@ namespace {
 
 using namespace misfit;
 
-/// A sensor that reads no more than its range: above the ceiling, and below the floor where a study gives one, the reading stands still.
+/// A sensor that reads no more than its range: above the ceiling, and below the floor where a study gives one, the output stands still.
 struct SensorSaturation {
   static constexpr const char* formula = "y = h + clipped (clamp(h, floor, ceiling) - h)";
   static constexpr const char* symbols =
-      "h predicted reading [output], clipped share [-] (1: the reading stands still beyond), ceiling, floor [output]";
+      "h predicted output [output], clipped share [-] (1: the output stands still beyond), ceiling, floor [output]";
   static constexpr const char* valid =
-      "a range that is left as it is entered; the derivative at the corner is that of the side the reading is on";
-  static constexpr const char* size = "readings of 10.5 V at a ceiling of 10 V are 0.5 V too high without it";
+      "a range that is left as it is entered; the derivative at the corner is that of the side the output is on";
+  static constexpr const char* size = "outputs of 10.5 V at a ceiling of 10 V are 0.5 V too high without it";
   static constexpr const char* source = "JCGM 200:2012 (VIM), 4.7: measuring interval";
   static constexpr const char* excludes = "a level that is itself limited (overflow)";
 
-  enum Quantity { reading };
-  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Quantity { signal };
+  static constexpr Role quantities[] = {{.name = "signal", .unit = "*"}};
   enum Port { output };
-  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { clipped, ceiling, floor };
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "clipped",
@@ -35,8 +35,8 @@ struct SensorSaturation {
        .lower = -1e9,
        .upper = 1e9,
        .scale = 0.1,
-       .doc = "highest reading",
-       .scan = {.from = 0.6, .to = 0.99, .count = 6, .over = "reading"}},
+       .doc = "highest output",
+       .scan = {.from = 0.6, .to = 0.99, .count = 6, .over = "signal"}},
       {.name = "floor",
        .kind = CoefficientKind::shape,
        .value = -1e9,
@@ -44,13 +44,13 @@ struct SensorSaturation {
        .lower = -1e9,
        .upper = 1e9,
        .scale = 0.1,
-       .doc = "lowest reading; -1e9: none",
+       .doc = "lowest output; -1e9: none",
        .fixed = true},
   };
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
-    y[output] = in.c[clipped] * (above(T(in.c[floor] - in.q[reading])) - above(T(in.q[reading] - in.c[ceiling])));
+    y[output] = in.c[clipped] * (above(T(in.c[floor] - in.q[signal])) - above(T(in.q[signal] - in.c[ceiling])));
   }
 
   static std::vector<Example> examples() {

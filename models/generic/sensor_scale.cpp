@@ -4,19 +4,19 @@ namespace {
 
 using namespace misfit;
 
-/// A sensor whose scale is wrong by a share of the reading; as a curve of the reading, its calibration curve.
+/// A sensor whose scale is wrong by a share of the output; as a curve of the output, its calibration curve.
 struct SensorScale {
   static constexpr const char* formula = "y = h (1 + scale_error)";
-  static constexpr const char* symbols = "h predicted reading [output], scale_error [-]";
+  static constexpr const char* symbols = "h predicted output [output], scale_error [-]";
   static constexpr const char* valid = "a scale that is constant over the recording";
-  static constexpr const char* size = "1 % of the reading for 0.01";
+  static constexpr const char* size = "1 % of the output for 0.01";
   static constexpr const char* source = "JCGM 200:2012 (VIM), 4.12: sensitivity";
   static constexpr const char* excludes = "offset (bias), saturation";
 
-  enum Quantity { reading };
-  static constexpr Role quantities[] = {{.name = "reading", .unit = "*"}};
+  enum Quantity { signal };
+  static constexpr Role quantities[] = {{.name = "signal", .unit = "*"}};
   enum Port { output };
-  static constexpr Role ports[] = {{.name = "output", .unit = "{reading}"}};
+  static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { scale_error };
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "scale_error", .unit = "-", .lower = -1.0, .upper = 1.0, .scale = 0.01, .doc = "relative error"},
@@ -24,7 +24,7 @@ struct SensorScale {
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
-    y[output] = in.c[scale_error] * in.q[reading];
+    y[output] = in.c[scale_error] * in.q[signal];
   }
 
   static std::vector<Example> examples() {

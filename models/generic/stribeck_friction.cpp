@@ -51,7 +51,7 @@ struct StribeckFriction {
        .lower = 1e-6,
        .upper = 1e6,
        .doc = "smoothing of coulomb_friction",
-       .borrowed = true},
+       .shared = true},
   };
 
   template <class T, class K>

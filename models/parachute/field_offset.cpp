@@ -12,7 +12,8 @@ struct FieldOffset {
   static constexpr const char* symbols =
       "P_z0 pixels by the calibrated camera, t time of the recording [s], field_rate [Hz], field_shift [px]";
   static constexpr const char* valid = "samples at the fields' rate, from t = 0; field_rate is that of the samples";
-  static constexpr const char* size = "0.5 px where fields are taken for frames: as large as the reading noise, at half the sampling rate";
+  static constexpr const char* size =
+      "0.5 px where fields are taken for frames: as large as the measurement noise, at half the sampling rate";
   static constexpr const char* source = "ITU-R BT.601: a field holds every second line";
   static constexpr const char* excludes = "fields that are not equally spaced in time";
 

@@ -36,7 +36,7 @@ struct RelativeDynamicPressure {
        .lower = -1e6,
        .upper = 1e6,
        .doc = "static moment coefficient over the sine of alpha_T",
-       .borrowed = true},
+       .shared = true},
   };
 
   template <class T, class K>

@@ -40,7 +40,7 @@ double drop_of(const World& world, const Hidden& hidden, const FilterEstimate& w
   // Beside curves that were fitted without it the whole effect may be too much to start with.
   for (const double share : {1.0, 0.5, 0.25}) {
     screening.result.amplitude = share * strengths;
-    const Refit refitted = refit(without, world.experiments, screening, truth, threads);
+    const Refit refitted = refit({without, world.experiments, truth, threads}, screening);
     if (refitted.ok) return refitted.drop;
   }
   return 0.0;

@@ -69,7 +69,7 @@ void trajectory(const World& world, const Model& model, bool sensitivities) {
   Stepper stepper(model);
   Segment out;
   const std::array<double, 2> x0 = {0.2, 0.3};
-  run_in_batches(stepper, world.signals, world.inputs, 0, samples, x0.data(), sensitivities, 128, out, [](Segment&) {});
+  run_in_batches({stepper, world.signals, world.inputs}, {0, samples, x0.data(), sensitivities, 128}, out, [](Segment&) {});
   if (!out.finite) std::printf("the run left the finite numbers\n");
   benchmark::DoNotOptimize(out.end.data());
 }
@@ -90,8 +90,8 @@ void check_alike(const World& world) {
   Stepper cpp(world.in_cpp), text(world.as_text);
   const std::array<double, 2> x0 = {0.2, 0.3};
   Segment a, b;
-  run_segment(cpp, world.signals, world.inputs, 0, 300, x0.data(), true, a);
-  run_segment(text, world.signals, world.inputs, 0, 300, x0.data(), true, b);
+  run_segment({cpp, world.signals, world.inputs}, {0, 300, x0.data(), true}, a);
+  run_segment({text, world.signals, world.inputs}, {0, 300, x0.data(), true}, b);
   std::printf("same motion to %.1e, same sensitivities to %.1e (relative)\n", (a.y - b.y).norm() / a.y.norm(),
               (a.end_rows - b.end_rows).norm() / a.end_rows.norm());
 }

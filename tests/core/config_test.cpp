@@ -159,6 +159,17 @@ TEST(Numbers, ReadsAnArrayAndNamesTheWrongElement) {
   expect_parts(error_of("a = 1", [](const Section& s) { (void)s.numbers("a", "m"); }), {"an array of numbers"});
 }
 
+TEST(Quantities, KeepTheUnitThatIsWritten) {
+  const auto found = parse("a = [1, \"5 deg\", \"2 km\"]").quantities("a");
+  ASSERT_EQ(found->size(), 3U);
+  EXPECT_EQ((*found)[0].value, 1.0);
+  EXPECT_EQ((*found)[0].unit, "");
+  EXPECT_DOUBLE_EQ((*found)[1].value, 5.0 * 3.14159265358979323846 / 180.0);
+  EXPECT_EQ((*found)[1].unit, "deg");
+  EXPECT_EQ((*found)[2].value, 2000.0);
+  expect_parts(error_of("a = [1, true]", [](const Section& s) { (void)s.quantities("a"); }), {"study.toml:1:9", "a[1]"});
+}
+
 TEST(Texts, ReadsAnArrayAndNamesTheWrongElement) {
   EXPECT_EQ(*parse("a = [\"x\", \"y\"]").texts("a"), (std::vector<std::string>{"x", "y"}));
   expect_parts(error_of("a = [\"x\", 2]", [](const Section& s) { (void)s.texts("a"); }), {"study.toml:1:11", "a[1]"});

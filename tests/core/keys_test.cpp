@@ -67,7 +67,7 @@ TEST(DescribedSection, NamesKeysThatNobodyReadAndThoseWithoutWhatTheyNeed) {
       s.finish();
     });
   };
-  expect_parts(finished("forc = 1\n"), {"p.toml:2", "unknown key 'powr'", "did you mean 'force'?"});
+  expect_parts(finished("forc = 1\n"), {"p.toml:2", "unknown key 'forc'", "did you mean 'force'?"});
   expect_parts(finished("gap = 1\n"), {"pump.gap", "no meaning without vanes"});
 }
 

@@ -30,7 +30,7 @@ struct World {
     estimate = estimate_filter(assemble(request, registry()), {}, signals);
     for (const auto& [name, bound] : upper) request.parameters[name].upper = bound;  // of an effect that is not in it yet
     list = candidate_models(estimate, request, registry(), nullptr);
-    screening = screen(estimate, ScoreTest(estimate), ForceSensitivity(estimate), list, 0);
+    screening = screen({estimate, ScoreTest(estimate), ForceSensitivity(estimate)}, list);
   }
 
   [[nodiscard]] double families() const { return static_cast<double>(list.size()); }
@@ -44,15 +44,15 @@ struct World {
     e.candidate = named_candidate(*e.screening, families());
     e.log_p = e.screening->log_p;
     if (!refitted) return e;
-    e.refit = refit(estimate, signals, *e.screening, registry(), 0);
+    e.refit = refit({estimate, signals, registry()}, *e.screening);
     e.candidate.actual_drop = e.refit->drop;
     e.log_p = log_score_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
     e.candidate.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families());
     return e;
   }
 
-  std::optional<UnknownCurve> accept(std::vector<RankedCandidate>& ranked) const {
-    return accept_best(ranked, {estimate, registry(), signals, options, families()});
+  std::optional<Unexplained> accept(std::vector<RankedCandidate>& ranked) const {
+    return accept_best(ranked, {}, {estimate, registry(), signals, options, families()});
   }
 };
 
@@ -87,11 +87,11 @@ TEST(NamedCandidate, WhatTheModelAllButDescribesIsDescribedUnlessTheRestIsBeyond
 TEST(Refit, FromOneStepOnEndsWhereTheEstimateWithTheEffectDoes) {
   const World world = with_friction(3.0);
   const ScreeningResult& screening = *world.entry("coulomb_friction", false).screening;
-  const OneStep step = one_step(world.estimate, ScoreTest(world.estimate), screening, registry(), 0);
+  const RefitWork work{world.estimate, world.signals, registry()};
+  const OneStep step = one_step(work, ScoreTest(world.estimate), screening);
   ASSERT_TRUE(step.model.has_value());
   EXPECT_GE(step.drop, screening.result.chi2);
-  const Refit plain = refit(world.estimate, world.signals, screening, registry(), 0),
-              onwards = refit(world.estimate, world.signals, screening, registry(), 0, step);
+  const Refit plain = refit(work, screening), onwards = refit(work, screening, step);
   ASSERT_TRUE(plain.ok && onwards.ok) << plain.why << onwards.why;
   EXPECT_NEAR(onwards.drop, plain.drop, 0.1);
   EXPECT_LE(onwards.estimate.linearisations, plain.estimate.linearisations);

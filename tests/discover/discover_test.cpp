@@ -172,7 +172,7 @@ TEST(Screen, AStrengthThatCannotBeNegativeIsNot) {
   const ScoreTest score(flight.estimate);
   const ForceSensitivity force(flight.estimate);
   int one_sided = 0;
-  for (const auto& s : screen(flight.estimate, score, force, list, 0)) {
+  for (const auto& s : screen({flight.estimate, score, force}, list)) {
     if (s.candidate_model->strengths.size() != 1 || !s.candidate_model->one_sided.front() || !s.runs) continue;
     ++one_sided;
     EXPECT_GE(s.result.amplitude[0], 0.0) << s.candidate_model->effect;
@@ -193,7 +193,7 @@ TEST(Screen, FindsTheFrequencyOfALine) {
   ASSERT_EQ(list.size(), 1U);
   const ScoreTest score(flight.estimate);
   const ForceSensitivity force(flight.estimate);
-  const std::vector<ScreeningResult> found = screen(flight.estimate, score, force, list, 0);
+  const std::vector<ScreeningResult> found = screen({flight.estimate, score, force}, list);
   EXPECT_NEAR(found[0].cell.back(), 2.7, 1.0 / (4.0 * 15.0));
   EXPECT_LT(found[0].p_value, 1e-4);
 }

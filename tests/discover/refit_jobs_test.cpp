@@ -23,7 +23,7 @@ class RefitJobs : public testing::Test {
     estimate_ = estimate_filter(assemble(request_, registry()), {}, signals_);
     score_.emplace(estimate_);
     list_ = candidate_models(estimate_, request_, registry(), nullptr);
-    screening_ = screen(estimate_, *score_, ForceSensitivity(estimate_), list_, 0);
+    screening_ = screen({estimate_, *score_, ForceSensitivity(estimate_)}, list_);
   }
 
   [[nodiscard]] const ScreeningResult& effect(const std::string& key) const {
@@ -32,7 +32,7 @@ class RefitJobs : public testing::Test {
     }
     throw std::runtime_error(key + " is not offered");
   }
-  [[nodiscard]] RefitWork work() const { return {estimate_, *score_, signals_, registry()}; }
+  [[nodiscard]] RefitWork work(int threads = 0) const { return {estimate_, signals_, registry(), threads}; }
   [[nodiscard]] std::vector<const ScreeningResult*> three() const {
     return {&effect("coulomb_friction"), &effect("quadratic_drag"), &effect("cubic_stiffness")};
   }
@@ -51,16 +51,16 @@ class RefitJobs : public testing::Test {
 };
 
 TEST_F(RefitJobs, AreTheSameInMemoryOnDiskAndOnAnyThreads) {
-  const std::vector<std::string> plain = packed(refit_all(work(), three(), 1, std::nullopt));
+  const std::vector<std::string> plain = packed(refit_all(work(1), *score_, three()));
   ASSERT_EQ(plain.size(), 3U);
-  EXPECT_EQ(packed(refit_all(work(), three(), 2, std::nullopt)), plain);
+  EXPECT_EQ(packed(refit_all(work(2), *score_, three())), plain);
   const TemporaryFolder folder;
-  EXPECT_EQ(packed(refit_all(work(), three(), 2, StoredJobs{folder.path(), "digest", 0, 0})), plain);
+  EXPECT_EQ(packed(refit_all(work(2), *score_, three(), {StoredJobs{folder.path(), "digest", 0, 0}})), plain);
 }
 
 TEST_F(RefitJobs, WhatComesBackCanBeGoneOnWith) {
   const ScreeningResult& friction = effect("coulomb_friction");
-  const auto made = refit_all(work(), {&friction}, 0, std::nullopt);
+  const auto made = refit_all(work(0), *score_, {&friction});
   ASSERT_TRUE(made && made->front().refit.ok);
   const Refit& before = made->front().refit;
   const Refit after = unpack_refit(pack(made->front(), friction), work(), friction).refit;
@@ -82,18 +82,18 @@ TEST_F(RefitJobs, WhatComesBackCanBeGoneOnWith) {
 TEST_F(RefitJobs, AreNotMadeAgain) {
   const TemporaryFolder folder;
   const StoredJobs stored{folder.path(), "digest", 0, 1};
-  const auto first = refit_all(work(), three(), 1, stored);
+  const auto first = refit_all(work(1), *score_, three(), {stored});
   const std::string bytes = read_file(folder.path() / "checkpoint_0.bin");
-  EXPECT_EQ(packed(refit_all(work(), three(), 1, stored)), packed(first));
+  EXPECT_EQ(packed(refit_all(work(1), *score_, three(), {stored})), packed(first));
   EXPECT_EQ(read_file(folder.path() / "checkpoint_0.bin"), bytes);
   std::atomic<bool> stop{true};
-  EXPECT_TRUE(refit_all(work(), three(), 1, stored, {}, &stop)) << "nothing is left to be stopped";
-  EXPECT_FALSE(refit_all(work(), three(), 1, StoredJobs{folder.path(), "other", 0, 1}, {}, &stop));
+  EXPECT_TRUE(refit_all(work(1), *score_, three(), {stored, {}, &stop})) << "nothing is left to be stopped";
+  EXPECT_FALSE(refit_all(work(1), *score_, three(), {StoredJobs{folder.path(), "other", 0, 1}, {}, &stop}));
 }
 
 TEST_F(RefitJobs, OfAnotherEffectOrCutOffAreRefused) {
   const ScreeningResult &friction = effect("coulomb_friction"), &drag = effect("quadratic_drag");
-  const std::string bytes = pack(refit_all(work(), {&friction}, 0, std::nullopt)->front(), friction);
+  const std::string bytes = pack(refit_all(work(0), *score_, {&friction})->front(), friction);
   EXPECT_THROW(static_cast<void>(unpack_refit(bytes, work(), drag)), RunError);
   EXPECT_THROW(static_cast<void>(unpack_refit(bytes.substr(0, bytes.size() - 1), work(), friction)), RunError);
   EXPECT_THROW(static_cast<void>(unpack_refit(bytes + "x", work(), friction)), RunError);

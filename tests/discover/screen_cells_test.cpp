@@ -26,7 +26,7 @@ struct Screening {
     for (auto& s : candidate_models(estimate, request, registry(), nullptr)) {
       if (s.effect == key) list.push_back(std::move(s));
     }
-    found = screen(estimate, ScoreTest(estimate), ForceSensitivity(estimate), list, 0);
+    found = screen({estimate, ScoreTest(estimate), ForceSensitivity(estimate)}, list);
   }
 };
 

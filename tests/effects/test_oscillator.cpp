@@ -60,7 +60,7 @@ struct TestOscillator {
         {.name = "gain", .unit = "1/m", .doc = "of the position sensor", .lower = -1e3, .upper = 1e3, .required = false, .value = 1.0}};
     s.outputs = {{.name = "position_reading", .unit = "-", .noise = 1e-3},
                  {.name = "speed_reading", .unit = "m/s", .observes = v, .noise = 1e-3}};
-    s.roles = {{"rate", "v"},         {"level", "x"},    {"port", "force"}, {"output", "position_reading"}, {"reading", "position_reading"},
+    s.roles = {{"rate", "v"},         {"level", "x"},    {"port", "force"}, {"output", "position_reading"}, {"signal", "position_reading"},
                {"displacement", "x"}, {"input", "drive"}};
     s.fastest_rate = 2.0;
     return s;

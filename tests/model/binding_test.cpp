@@ -88,9 +88,9 @@ TEST(Binding, ASensorReadsTheOutputThatItIsBoundTo) {
 TEST(Binding, ABorrowedCoefficientIsThatOfTheOtherEffect) {
   const Model m = assemble(spherical({effect("strut_wake")}), registry());
   EXPECT_EQ(std::count_if(m.parameters.begin(), m.parameters.end(), [](const auto& p) { return p.name == "C_m[0]"; }), 1);
-  const BoundEffect &lender = m.effects.front(), &borrower = m.effects.back();
-  EXPECT_EQ(borrower.coefficients.back().curve, lender.coefficients.front().curve);
-  EXPECT_GE(borrower.coefficients.back().curve, 0);
+  const BoundEffect &lender = m.effects.front(), &user = m.effects.back();
+  EXPECT_EQ(user.coefficients.back().curve, lender.coefficients.front().curve);
+  EXPECT_GE(user.coefficients.back().curve, 0);
 }
 
 TEST(Binding, ABorrowedCoefficientThatNobodyHasIsAnError) {

@@ -48,6 +48,14 @@ class HostileText : public testing::TestWithParam<Hostile> {
       "[equations]\nx = \"-k*x + k*u + u_rate + swell_rate\"\n[outputs]\ny = { formula = \"x\", unit = \"V\" }\n";
 };
 
+TEST_F(HostileText, KnotsHaveTheUnitOfTheirQuantity) {
+  const std::string curve = "[curves]\nc = { of = \"x\", knots = [0, \"500 mV\", \"1 V\"] }\n";
+  read(study_ + curve, system_);
+  const std::string message =
+      message_of<InputError>([&] { read(study_ + std::string("[curves]\nc = { of = \"x\", knots = [0, \"1 s\"] }\n"), system_); });
+  expect_parts(message, {"study.toml:8", "knots need [V], not [s]"});
+}
+
 class HostileStudyOfASystem : public HostileText {};
 class HostileSystem : public HostileText {};
 

@@ -151,7 +151,7 @@ TEST_P(EffectLaws, ScansNameWhatTheyAreSharesOfAndLieInsideBounds) {
 /// wrong end. What has no strength, or is driven by noise, is no candidate.
 TEST_P(EffectLaws, EveryShapeOfACandidateIsScannedHeldOrBorrowed) {
   bool candidate = false;
-  for (const auto& c : spec_.coefficients) candidate = candidate || (c.kind == CoefficientKind::strength && !c.borrowed);
+  for (const auto& c : spec_.coefficients) candidate = candidate || (c.kind == CoefficientKind::strength && !c.shared);
   for (const auto& example : examples_) {
     std::vector<double> intensity(spec_.states.size() + 1, 0.0);
     const Inputs in(example);
@@ -160,7 +160,7 @@ TEST_P(EffectLaws, EveryShapeOfACandidateIsScannedHeldOrBorrowed) {
   }
   if (!candidate) return;
   for (const auto& c : spec_.coefficients) {
-    EXPECT_TRUE(c.kind == CoefficientKind::strength || c.borrowed || c.fixed || c.scan.count != 0)
+    EXPECT_TRUE(c.kind == CoefficientKind::strength || c.shared || c.fixed || c.scan.count != 0)
         << GetParam() << ": '" << c.name << "' is free in a refit but neither scanned nor held";
   }
 }

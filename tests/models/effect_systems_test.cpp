@@ -17,7 +17,7 @@ class EffectInSystems : public testing::TestWithParam<std::string> {};
 std::string owner_of(const std::string& coefficient) {
   for (const auto& key : registry().effect_keys()) {
     for (const auto& c : registry().effect(key).spec().coefficients) {
-      if (!c.borrowed && c.name == coefficient) return key;
+      if (!c.shared && c.name == coefficient) return key;
     }
   }
   throw std::logic_error("nobody lends " + coefficient);
@@ -32,7 +32,7 @@ std::vector<Model> models_with(const std::string& key) {
     ModelRequest alone = request;
     alone.effects = {effect(key)};
     for (const auto& c : coefficients) {
-      if (c.borrowed) alone.effects.push_back(effect(owner_of(c.name)));
+      if (c.shared) alone.effects.push_back(effect(owner_of(c.name)));
     }
     alone.curves.clear();
     for (const auto& [name, of] : curves_without_knots(alone, registry())) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};

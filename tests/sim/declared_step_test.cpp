@@ -45,7 +45,7 @@ TEST(DeclaredTank, EmptiesStaysEmptyAndFillsAgain) {
   const Signals signals = filling();
   const InputTable inputs = input_table(signals, 1);
   const double x0 = 0.25;  // sqrt(x) falls by k1/2 per second: empty after 2 s
-  const RowMatrix x = run_states(stepper, signals, inputs, 0, 60, &x0);
+  const RowMatrix x = run_states({stepper, signals, inputs}, {0, 60, &x0});
   ASSERT_EQ(x.rows(), 60);
   EXPECT_GE(x.minCoeff(), 0.0);
   for (int i = 0; i < 15; ++i) EXPECT_NEAR(x(i, 0), std::pow(0.5 - 0.025 * i, 2), 1e-6) << i;
@@ -65,7 +65,7 @@ TEST(DeclaredTank, ForgetsWhereItCameFromOnceItWasEmpty) {
   const InputTable inputs = input_table(signals, 1);
   const double x0 = 0.25;
   Segment linear;
-  run_segment(stepper, signals, inputs, 0, 60, &x0, true, linear);
+  run_segment({stepper, signals, inputs}, {0, 60, &x0, true}, linear);
   ASSERT_TRUE(linear.finite);
   EXPECT_EQ(linear.end_rows(0, 2), 0.0) << "by the initial state";
   const auto end = [&](double value, int parameter) {
@@ -73,7 +73,7 @@ TEST(DeclaredTank, ForgetsWhereItCameFromOnceItWasEmpty) {
     values[static_cast<std::size_t>(parameter)] = value;
     stepper.evaluator().set_parameters(values.data());
     Segment run;
-    run_segment(stepper, signals, inputs, 0, 60, &x0, false, run);
+    run_segment({stepper, signals, inputs}, {0, 60, &x0}, run);
     return Eigen::VectorXd(run.end);
   };
   for (int p = 0; p < 2; ++p) {
@@ -91,7 +91,7 @@ TEST(DeclaredTank, WithoutARangeFailsInWords) {
   const InputTable inputs = input_table(signals, 1);
   const double x0 = 0.25;
   Segment out;
-  run_segment(stepper, signals, inputs, 0, 60, &x0, true, out);
+  run_segment({stepper, signals, inputs}, {0, 60, &x0, true}, out);
   EXPECT_FALSE(out.finite);
   EXPECT_THAT(stepper.failure(), AllOf(HasSubstr("at t = "), HasSubstr("x1 is -"), HasSubstr("sqrt(x1)"), HasSubstr("equation x1"),
                                        HasSubstr("k1 = 0.5 V^0.5/s")));

@@ -35,7 +35,7 @@ RowMatrix pixels(const Model& m, const Signals& signals, unsigned seed) {
   std::mt19937_64 random(seed);
   const std::vector<double> x0(static_cast<std::size_t>(m.states()), 0.0);
   Segment out;
-  run_randomly(stepper, signals, input_table(signals, 0), x0.data(), random, out);
+  run_randomly({stepper, signals, input_table(signals, 0)}, x0.data(), random, out);
   EXPECT_TRUE(out.finite);
   return out.y;
 }
@@ -75,7 +75,7 @@ TEST(RandomRun, GustsMoveTheAxisAsWhiteNoiseThroughTwoIntegrationsWould) {
     std::mt19937_64 random(static_cast<unsigned>(100 + run));
     const std::vector<double> x0(static_cast<std::size_t>(m.states()), 0.0);
     Segment out;
-    run_randomly(stepper, signals, input_table(signals, 0), x0.data(), random, out);
+    run_randomly({stepper, signals, input_table(signals, 0)}, x0.data(), random, out);
     ASSERT_TRUE(out.finite);
     sum += out.end[2] * out.end[2] + out.end[3] * out.end[3];
   }
@@ -112,9 +112,9 @@ TEST(RandomRun, WithoutNoiseItIsTheTrajectory) {
   const std::vector<double> x0 = {0.3, 0.1, 0.25};
   Stepper stepper(m);
   Segment exact, out;
-  run_segment(stepper, signals, inputs, 0, 120, x0.data(), false, exact);
+  run_segment({stepper, signals, inputs}, {0, 120, x0.data()}, exact);
   std::mt19937_64 random(1);
-  run_randomly(stepper, signals, inputs, x0.data(), random, out);
+  run_randomly({stepper, signals, inputs}, x0.data(), random, out);
   EXPECT_LT((out.y - exact.y).cwiseAbs().maxCoeff(), 1e-5);
 }
 

@@ -43,7 +43,7 @@ class SegmentOf : public testing::TestWithParam<Case> {
 
   Segment run(const std::vector<double>& x0, bool sensitivities) {
     Segment out;
-    run_segment(stepper_, signals_, inputs_, 1, last, x0.data(), sensitivities, out);
+    run_segment({stepper_, signals_, inputs_}, {1, last, x0.data(), sensitivities}, out);
     EXPECT_TRUE(out.finite);
     return out;
   }
@@ -109,9 +109,9 @@ TEST_P(SegmentOf, GivesTheSameOutputsWithAndWithoutDerivatives) {
 TEST_P(SegmentOf, TwoSegmentsInARowAreOneTrajectory) {
   const std::vector<double> x0 = start_of(model_);
   Segment first, second;
-  run_segment(stepper_, signals_, inputs_, 1, 6, x0.data(), false, first);
+  run_segment({stepper_, signals_, inputs_}, {1, 6, x0.data()}, first);
   ASSERT_TRUE(first.finite);
-  run_segment(stepper_, signals_, inputs_, 6, last, first.end.data(), false, second);
+  run_segment({stepper_, signals_, inputs_}, {6, last, first.end.data()}, second);
   ASSERT_TRUE(second.finite);
   const Segment whole = run(x0, false);
   // Sub-steps are chosen anew where a segment begins, so equal to the accuracy of a step, not to the bit.
@@ -130,11 +130,11 @@ TEST(TrajectoryTest, ANonFiniteStateIsReportedWithTheFirstSampleThatIsNotFinite)
   const std::vector<double> x0 = start_of(model);
   for (bool sensitivities : {false, true}) {
     Segment out;
-    run_segment(stepper, signals, inputs, 3, 30, x0.data(), sensitivities, out);
+    run_segment({stepper, signals, inputs}, {3, 30, x0.data(), sensitivities}, out);
     EXPECT_FALSE(out.finite);
     EXPECT_EQ(out.failed_at, 17U);
   }
-  const RowMatrix states = run_states(stepper, signals, inputs, 3, 30, x0.data());
+  const RowMatrix states = run_states({stepper, signals, inputs}, {3, 30, x0.data()});
   EXPECT_EQ(states.rows(), 17 - 3) << "only the finite ones";
   EXPECT_TRUE(states.allFinite());
 }
@@ -146,10 +146,10 @@ TEST(TrajectoryTest, AnExplodingModelIsReportedNotReturned) {
   const InputTable inputs = input_table(signals, model.inputs());
   Stepper stepper(model);
   Segment out;
-  run_segment(stepper, signals, inputs, 0, 400, start_of(model).data(), true, out);
+  run_segment({stepper, signals, inputs}, {0, 400, start_of(model).data(), true}, out);
   ASSERT_FALSE(out.finite);
   EXPECT_GT(out.failed_at, 10U);
-  const RowMatrix states = run_states(stepper, signals, inputs, 0, 400, start_of(model).data());
+  const RowMatrix states = run_states({stepper, signals, inputs}, {0, 400, start_of(model).data()});
   EXPECT_EQ(states.rows(), static_cast<Eigen::Index>(out.failed_at));
 }
 
@@ -159,9 +159,9 @@ TEST(TrajectoryTest, TheSameStepperGivesTheSameBitsTwice) {
   const InputTable inputs = input_table(signals, model.inputs());
   Stepper stepper(model);
   Segment once, twice;
-  run_segment(stepper, signals, inputs, 0, 20, start_of(model).data(), true, once);
-  run_segment(stepper, signals, inputs, 5, 9, start_of(model).data(), true, twice);
-  run_segment(stepper, signals, inputs, 0, 20, start_of(model).data(), true, twice);
+  run_segment({stepper, signals, inputs}, {0, 20, start_of(model).data(), true}, once);
+  run_segment({stepper, signals, inputs}, {5, 9, start_of(model).data(), true}, twice);
+  run_segment({stepper, signals, inputs}, {0, 20, start_of(model).data(), true}, twice);
   EXPECT_EQ(once.y, twice.y);
   EXPECT_EQ(once.y_rows, twice.y_rows);
   EXPECT_EQ(once.end_rows, twice.end_rows);
@@ -180,10 +180,10 @@ TEST(TrajectoryTest, AClockThatRunsAheadReadsTheMotionThatComesLater) {
   const std::vector<double> x0 = {0.3, 0.0};
   Segment now, later;
   Stepper on_time(model);
-  run_segment(on_time, signals, inputs, 0, 40, x0.data(), false, now);
+  run_segment({on_time, signals, inputs}, {0, 40, x0.data()}, now);
   set(model, "clock_offset", 2.0 / 60.0);
   Stepper ahead(model);
-  run_segment(ahead, signals, inputs, 0, 40, x0.data(), false, later);
+  run_segment({ahead, signals, inputs}, {0, 40, x0.data()}, later);
   ASSERT_TRUE(now.finite && later.finite);
   // One step over two samples instead of two steps over one: equal to the accuracy of a step.
   EXPECT_LE((later.y.topRows(38) - now.y.bottomRows(38)).lpNorm<Eigen::Infinity>(), 2e-5);
@@ -229,7 +229,7 @@ Frictions recovered_frictions(const std::string& dry, const Signals& signals, do
   Segment s;
   for (int iteration = 0; iteration < 40; ++iteration) {
     Stepper stepper(model);
-    run_segment(stepper, signals, inputs, 0, signals.samples(), x0.data(), true, s);
+    run_segment({stepper, signals, inputs}, {0, signals.samples(), x0.data(), true}, s);
     EXPECT_TRUE(s.finite);
     const Eigen::MatrixXd J = s.y_rows.leftCols(2);
     const Eigen::VectorXd residual = Eigen::Map<const Eigen::VectorXd>(signals.measured[0].values.data(), s.y.rows()) - s.y.col(0);
@@ -264,13 +264,13 @@ TEST(PredictAt, SeesTheShiftOfTheClock) {
   const std::vector<double> x0 = {0.3, 0.1};
   Stepper stepper(model);
   Segment run;
-  run_segment(stepper, signals, inputs, 0, 20, x0.data(), false, run);
-  const RowMatrix states = run_states(stepper, signals, inputs, 0, 20, x0.data());
+  run_segment({stepper, signals, inputs}, {0, 20, x0.data()}, run);
+  const RowMatrix states = run_states({stepper, signals, inputs}, {0, 20, x0.data()});
   std::array<double, kMaxOutputs + 1> y{}, unshifted{};
   double moved = 0.0;
   for (Eigen::Index i = 0; i < states.rows(); ++i) {
     const auto sample = static_cast<std::size_t>(i);
-    ASSERT_TRUE(predict_at(stepper, signals, inputs, sample, states.row(i).data(), y.data()));
+    ASSERT_TRUE(predict_at({stepper, signals, inputs}, sample, states.row(i).data(), y.data()));
     stepper.evaluator().predict(states.row(i).data(), inputs.at(sample), signals.t[sample], unshifted.data());
     for (Eigen::Index o = 0; o < run.y.cols(); ++o) {
       EXPECT_EQ(y[static_cast<std::size_t>(o)], run.y(i, o));

@@ -38,7 +38,7 @@ void note_losses(Attitude& a, const AxisSamples& axes, const std::vector<bool>& 
   if (axes.unexplained > 0) a.notes.push_back(count_of(axes.unexplained, n, "are lost because no angle explains their pixels"));
   const auto gaps = std::count(even.begin(), even.end(), false);
   if (gaps > 0) a.notes.push_back(std::to_string(gaps) + " steps differ from the usual one and count as gaps");
-  const auto without = static_cast<std::size_t>(std::count_if(a.alpha_T.begin(), a.alpha_T.end(), [](double v) { return std::isnan(v); }));
+  const std::size_t without = std::count_if(a.alpha_T.begin(), a.alpha_T.end(), [](double v) { return std::isnan(v); });
   a.notes.push_back(count_of(without, n, "have no alpha_T, which needs seven in a row"));
 }
 
@@ -47,7 +47,7 @@ std::vector<double> noise_per_sample(const Track& track, const std::vector<bool>
   std::vector<double> sigma = track.sigma;
   sigma.resize(track.t.size(), missing);
   if (std::all_of(sigma.begin(), sigma.end(), [](double s) { return std::isfinite(s); })) return sigma;
-  const auto unknown = static_cast<std::size_t>(std::count_if(sigma.begin(), sigma.end(), [](double s) { return !std::isfinite(s); }));
+  const std::size_t unknown = std::count_if(sigma.begin(), sigma.end(), [](double s) { return !std::isfinite(s); });
   const auto estimate = pixel_noise(track, even);
   notes.push_back(count_of(unknown, sigma.size(), "have no sigma in the track: ") +
                   (estimate ? "measurement noise there is " + format_value(*estimate) + " px, estimated from sixth differences"

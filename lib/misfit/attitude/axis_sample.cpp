@@ -4,21 +4,22 @@
 #include <array>
 #include <cmath>
 
+#include "misfit/core/lists.h"
 #include "misfit/math/scalar.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
 
-constexpr std::size_t parameters = camera_parameter_names.size();
-constexpr int width = 2 + static_cast<int>(parameters);  // P_y, P_z, then the camera
+constexpr int parameters = int_size(camera_parameter_names);
+constexpr int width = 2 + parameters;  // P_y, P_z, then the camera
 using PixelJet = Jet<width>;
 
 std::vector<Eigen::Index> free_columns(const Calibration& calibration) {
   std::vector<Eigen::Index> columns;
   for (const std::string& name : calibration.names) {
     const auto found = std::find(camera_parameter_names.begin(), camera_parameter_names.end(), name);
-    columns.push_back(2 + static_cast<Eigen::Index>(found - camera_parameter_names.begin()));
+    columns.push_back(2 + (found - camera_parameter_names.begin()));
   }
   return columns;
 }
@@ -27,7 +28,7 @@ CameraParameters<PixelJet> jet_camera(const CameraParameters<double>& camera) {
   CameraParameters<PixelJet> jets;
   const auto to = camera_entries(jets);
   const auto values = camera_values(camera);
-  for (std::size_t i = 0; i < parameters; ++i) *to[i] = PixelJet(values[i], 2 + static_cast<int>(i));
+  for (int i = 0; i < parameters; ++i) *to[i] = PixelJet(values[i], 2 + i);
   return jets;
 }
 
@@ -60,11 +61,11 @@ class Reader {
     sample.ok = true;
     sample.theta = (*read)[0].a;
     sample.psi = (*read)[1].a;
-    sample.by_camera.resize(2, static_cast<Eigen::Index>(columns_.size()));
+    sample.by_camera.resize(2, columns_.size());
     for (Eigen::Index row = 0; row < 2; ++row) {
-      const auto& derivatives = (*read)[static_cast<std::size_t>(row)].v;
+      const auto& derivatives = (*read)[row].v;
       sample.by_pixel.row(row) = derivatives.head<2>().transpose();
-      for (std::size_t j = 0; j < columns_.size(); ++j) sample.by_camera(row, static_cast<Eigen::Index>(j)) = derivatives[columns_[j]];
+      for (std::size_t j = 0; j < columns_.size(); ++j) sample.by_camera(row, j) = derivatives[columns_[j]];
     }
     return true;
   }

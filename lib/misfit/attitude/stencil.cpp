@@ -13,8 +13,7 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 // Are all steps from sample `first` to sample `last` even?
 bool even_between(const std::vector<bool>& even, std::size_t first, std::size_t last) {
-  return std::all_of(even.begin() + static_cast<std::ptrdiff_t>(first), even.begin() + static_cast<std::ptrdiff_t>(last),
-                     [](bool e) { return e; });
+  return std::all_of(even.begin() + first, even.begin() + last, [](bool e) { return e; });
 }
 
 }  // namespace

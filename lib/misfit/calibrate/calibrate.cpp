@@ -49,8 +49,7 @@ Plan make_plan(const CalibrateOptions& options, bool with_y) {
 
 std::size_t coordinates(const std::vector<SweepPoint>& points) {
   std::size_t count = 0;
-  for (const SweepPoint& p : points)
-    count += static_cast<std::size_t>(std::isfinite(p.P_y)) + static_cast<std::size_t>(std::isfinite(p.P_z));
+  for (const SweepPoint& p : points) count += (std::isfinite(p.P_y) ? 1 : 0) + (std::isfinite(p.P_z) ? 1 : 0);
   return count;
 }
 
@@ -106,9 +105,9 @@ void note_separability(Calibration& calibration) {
     for (Eigen::Index j = i + 1; j < C.rows(); ++j) {
       const double correlation = C(i, j) / std::sqrt(C(i, i) * C(j, j));
       if (std::abs(correlation) <= 0.98) continue;
-      calibration.notes.push_back(calibration.names[static_cast<std::size_t>(i)] + " and " +
-                                  calibration.names[static_cast<std::size_t>(j)] + " are nearly collinear in this sweep (correlation " +
-                                  format_value(correlation) + "): only their combined effect is well determined");
+      calibration.notes.push_back(calibration.names[i] + " and " + calibration.names[j] +
+                                  " are nearly collinear in this sweep (correlation " + format_value(correlation) +
+                                  "): only their combined effect is well determined");
     }
   }
 }
@@ -124,17 +123,17 @@ void note_tests(Calibration& calibration) {
 void note_outliers(Calibration& calibration, std::size_t points) {
   if (calibration.outliers == 0) return;
   calibration.notes.push_back(std::to_string(calibration.outliers) + " of " + std::to_string(points) + " points were rejected as outliers");
-  if (3 * static_cast<std::size_t>(calibration.outliers) > points) {
+  if (std::size_t{3} * calibration.outliers > points) {
     calibration.notes.emplace_back("that is more than a third: check that points, angles and geometry belong together");
   }
 }
 
 /// Points that do not follow the angles determine no scale.
 void check_scale(const SweepFit& fit) {
-  constexpr double sigmas = 3.0, least = 0.1;  // px/m: the rig would be smaller than a pixel
+  constexpr double least_sigmas = 3.0, least_scale = 0.1;  // px/m: the rig would be smaller than a pixel
   const std::size_t scale = camera_parameter("K");
   const double K = camera_entry(fit.camera, scale), sigma = fit.sigma(scale);
-  if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > std::max(least, sigmas * sigma)) return;
+  if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > std::max(least_scale, least_sigmas * sigma)) return;
   throw RunError("the points do not follow the angles: the scale K = " + format_value(K, sigma) +
                  " px/m does not differ significantly from zero; check that points, angles and geometry belong together");
 }

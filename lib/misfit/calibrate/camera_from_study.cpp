@@ -32,7 +32,7 @@ Calibration camera_from_study(CameraModel model, const std::map<std::string, con
   }
   const config::Number& K = given.at("K");
   if (!(K.value > 0.0)) throw InputError(K.where, "K is " + format_value(K.value) + " px/m, it must be positive");
-  calibration.covariance = Eigen::Map<Eigen::VectorXd>(variances.data(), static_cast<Eigen::Index>(variances.size())).asDiagonal();
+  calibration.covariance = Eigen::Map<Eigen::VectorXd>(variances.data(), variances.size()).asDiagonal();
   return calibration;
 }
 

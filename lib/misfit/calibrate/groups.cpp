@@ -37,7 +37,7 @@ const std::vector<std::string>& optional_camera_parameters() {
 
 std::size_t camera_parameter(const std::string& name) {
   const auto found = std::find(camera_parameter_names.begin(), camera_parameter_names.end(), name);
-  if (found != camera_parameter_names.end()) return static_cast<std::size_t>(found - camera_parameter_names.begin());
+  if (found != camera_parameter_names.end()) return found - camera_parameter_names.begin();
   throw InputError("'" + shown(name) + "' is not a camera parameter" +
                    suggest(name, {camera_parameter_names.begin(), camera_parameter_names.end()}));
 }

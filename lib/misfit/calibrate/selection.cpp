@@ -44,7 +44,7 @@ bool acceptable(const SelectionTask& task, const CameraTest& test, const SweepFi
 }
 
 // One round: tests every group that is out against `selection.fit`, and takes in the best acceptable one. False if none is.
-bool take_in_best(const SelectionTask& task, Members& in, Selection& selection) {
+bool free_best(const SelectionTask& task, Members& in, Selection& selection) {
   std::size_t best = in.size();
   SweepFit best_fit;
   for (std::size_t g = 0; g < in.size(); ++g) {
@@ -96,7 +96,7 @@ void prune(const SelectionTask& task, Members& in, Selection& selection) {
 Selection select_parameters(const SelectionTask& task) {
   Members in(task.candidates.size(), false);
   Selection selection{fit_with(task, in), std::vector<CameraTest>(task.candidates.size())};
-  while (take_in_best(task, in, selection)) {
+  while (free_best(task, in, selection)) {
   }
   prune(task, in, selection);
   return selection;

@@ -7,14 +7,15 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/lists.h"
 #include "misfit/math/scalar.h"
 
 namespace misfit {
 namespace {
 
-constexpr std::size_t parameters = camera_parameter_names.size();
-using CameraJet = Jet<static_cast<int>(parameters)>;
-using Row = Eigen::Matrix<double, 1, static_cast<int>(parameters)>;
+constexpr int parameters = int_size(camera_parameter_names);
+using CameraJet = Jet<parameters>;
+using Row = Eigen::Matrix<double, 1, parameters>;
 
 // Wide physical bounds in the order of camera_parameter_names; an estimate that ends at one is not believed.
 struct Bounds {
@@ -36,7 +37,7 @@ int point_residuals(const SweepPoint& point, double l_b, const CameraParameters<
   CameraParameters<CameraJet> jets;
   const auto to = camera_entries(jets);
   const auto values = camera_values(camera);
-  for (std::size_t i = 0; i < parameters; ++i) *to[i] = CameraJet(values[i], static_cast<int>(i));
+  for (int i = 0; i < parameters; ++i) *to[i] = CameraJet(values[i], i);
   const auto p = project_point(jets, l_b, CameraJet(point.x), CameraJet(0.0), CameraJet(point.z));
   const std::array<double, 2> measured = {point.P_y, point.P_z};
   int count = 0;
@@ -49,7 +50,7 @@ int point_residuals(const SweepPoint& point, double l_b, const CameraParameters<
   return count;
 }
 
-int coordinates(const SweepPoint& p) { return static_cast<int>(std::isfinite(p.P_y)) + static_cast<int>(std::isfinite(p.P_z)); }
+int coordinates(const SweepPoint& p) { return (std::isfinite(p.P_y) ? 1 : 0) + (std::isfinite(p.P_z) ? 1 : 0); }
 
 CameraParameters<double> with_free(CameraParameters<double> camera, const std::vector<std::size_t>& free, const double* values) {
   for (std::size_t j = 0; j < free.size(); ++j) camera_entry(camera, free[j]) = values[j];
@@ -63,9 +64,7 @@ LeastSquares::Evaluate point_cost(const SweepPoint& point, double l_b, const Swe
     const int count = point_residuals(point, l_b, camera, r, rows.data());
     if (J == nullptr || J[0] == nullptr) return true;
     for (int i = 0; i < count; ++i) {
-      for (std::size_t j = 0; j < model.free.size(); ++j)
-        J[0][static_cast<std::size_t>(i) * model.free.size() + j] =
-            rows[static_cast<std::size_t>(i)][static_cast<Eigen::Index>(model.free[j])];
+      for (std::size_t j = 0; j < model.free.size(); ++j) J[0][i * model.free.size() + j] = rows[i][model.free[j]];
     }
     return true;
   };
@@ -85,21 +84,21 @@ void add_covariance(SweepFit& fit, const Eigen::MatrixXd& J) {
 }
 
 void add_statistics(SweepFit& fit, const std::vector<SweepPoint>& points, const std::vector<bool>& keep, double l_b) {
-  Eigen::MatrixXd J(2 * static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(fit.free.size()));
+  Eigen::MatrixXd J(2 * points.size(), fit.free.size());
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!keep[i]) continue;
     std::array<double, 2> r{};
     std::array<Row, 2> rows;
     const int count = point_residuals(points[i], l_b, fit.camera, r.data(), rows.data());
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k, ++row) {
+    for (int k = 0; k < count; ++k, ++row) {
       fit.rss += r[k] * r[k];
       for (std::size_t j = 0; j < fit.free.size(); ++j) {
-        J(row, static_cast<Eigen::Index>(j)) = rows[k][static_cast<Eigen::Index>(fit.free[j])];
+        J(row, j) = rows[k][fit.free[j]];
       }
     }
   }
-  fit.data = static_cast<std::size_t>(row);
+  fit.data = row;
   if (fit.data <= fit.free.size()) return;
   fit.sigma_px = std::sqrt(fit.rss / static_cast<double>(fit.data - fit.free.size()));
   add_covariance(fit, J.topRows(row));
@@ -120,7 +119,7 @@ double SweepFit::sigma(std::size_t parameter) const {
   const auto found = std::find(free.begin(), free.end(), parameter);
   if (found == free.end()) return 0.0;
   if (!determined) return std::numeric_limits<double>::quiet_NaN();
-  const auto j = static_cast<Eigen::Index>(found - free.begin());
+  const Eigen::Index j = found - free.begin();
   return std::sqrt(covariance(j, j));
 }
 

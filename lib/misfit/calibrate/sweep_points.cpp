@@ -45,8 +45,8 @@ std::vector<SweepPoint> sweep_points(const Sweep& sweep, const RigGeometry& geom
     for (int k = 1; k <= 3; ++k) {
       SweepPoint p = rig_point(k, sweep.theta[i], geometry);
       check_geometry(geometry, p);
-      p.P_y = at(sweep.P_y[static_cast<std::size_t>(k - 1)], i);
-      p.P_z = at(sweep.P_z[static_cast<std::size_t>(k - 1)], i);
+      p.P_y = at(sweep.P_y[k - 1], i);
+      p.P_z = at(sweep.P_z[k - 1], i);
       if (!std::isfinite(p.P_y) && !std::isfinite(p.P_z)) continue;
       points.push_back(p);
       angles.insert(p.theta);

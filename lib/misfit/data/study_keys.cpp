@@ -84,66 +84,76 @@ KeyGroup geometry_group() {
             .any = true}}};
 }
 
-KeyGroup camera_group() {
+std::vector<Key> sweep_keys() {
   const std::vector<std::string> optional{"camera_roll", "image_centre", "pixel_aspect", "lens_k1", "camera_distance"};
+  return {{.name = "sweep",
+           .type = Type::file,
+           .meaning = "Table of the static sweep: angle of the rig and pixels of its three points.",
+           .otherwise = "none"},
+          {.name = "sweep_images",
+           .type = Type::file,
+           .meaning = "Instead of sweep: table of angles and image or video files.",
+           .otherwise = "none"},
+          {.name = "sweep_marker",
+           .type = Type::file,
+           .meaning = "Marker of the three points in these pictures.",
+           .otherwise = "that of [video]",
+           .choices = markers,
+           .form = "as marker of [video]",
+           .needs = {"sweep_images"}},
+          {.name = "sweep_points",
+           .type = Type::numbers,
+           .meaning = "About where points 1, 2, 3 are in the first picture: column, row of each.",
+           .unit = "px",
+           .otherwise = "predicted from [geometry]",
+           .form = "list of 6 numbers",
+           .needs = {"sweep_images"}},
+          {.name = "model",
+           .type = Type::choice,
+           .meaning = "Projection.",
+           .fallback = "\"pinhole\"",
+           .choices = {"pinhole", "plane_by_plane"}},
+          {.name = "offer",
+           .type = Type::texts,
+           .meaning = "Optional parameters among which the calibration selects by a significance test.",
+           .otherwise = "all of them",
+           .choices = optional,
+           .needs = {"sweep", "sweep_images"}},
+          {.name = "take_in",
+           .type = Type::texts,
+           .meaning = "Optional parameters that the calibration estimates whatever the test says.",
+           .otherwise = "none",
+           .choices = optional,
+           .needs = {"sweep", "sweep_images"}}};
+}
+
+std::vector<Key> camera_number_keys() {
+  const std::array<const char*, 8> meanings = {"Height of the camera above the swivel",
+                                               "Scale at the backshell face; the focal length in pixels is l_b K",
+                                               "Rotation of the image about the optical axis",
+                                               "Image centre: added to P_y",
+                                               "Image centre: added to P_z",
+                                               "Relative stretch of P_y",
+                                               "Radial distortion: P (1 + lens_k1 r^2), r = |P|/(l_b K)",
+                                               "Correction of the distance from camera to rig, added to l_b and l_s in every depth"};
+  std::vector<Key> keys;
+  for (std::size_t i = 0; i < camera_parameter_names.size(); ++i) {
+    keys.push_back({.name = camera_parameter_names[i],
+                    .type = Type::number_with_sigma,
+                    .meaning = std::string(meanings[i]) + "; where there is no sweep.",
+                    .unit = camera_parameter_units[i],
+                    .otherwise = i < 2 ? "required without a sweep" : "0"});
+  }
+  return keys;
+}
+
+KeyGroup camera_group() {
   KeyGroup group{
       "camera",
-      "The camera, calibrated from a static sweep or given as numbers (h_c and K at least). Needed where an experiment has a track or "
-      "video.",
-      {{.name = "sweep",
-        .type = Type::file,
-        .meaning = "Table of the static sweep: angle of the rig and pixels of its three points.",
-        .otherwise = "none"},
-       {.name = "sweep_images",
-        .type = Type::file,
-        .meaning = "Instead of sweep: table of angles and image or video files.",
-        .otherwise = "none"},
-       {.name = "sweep_marker",
-        .type = Type::file,
-        .meaning = "Marker of the three points in these pictures.",
-        .otherwise = "that of [video]",
-        .choices = markers,
-        .form = "as marker of [video]",
-        .needs = {"sweep_images"}},
-       {.name = "sweep_points",
-        .type = Type::numbers,
-        .meaning = "About where points 1, 2, 3 are in the first picture: column, row of each.",
-        .unit = "px",
-        .otherwise = "predicted from [geometry]",
-        .form = "list of 6 numbers",
-        .needs = {"sweep_images"}},
-       {.name = "model",
-        .type = Type::choice,
-        .meaning = "Projection.",
-        .fallback = "\"pinhole\"",
-        .choices = {"pinhole", "plane_by_plane"}},
-       {.name = "offer",
-        .type = Type::texts,
-        .meaning = "Optional parameters among which the calibration selects by a significance test.",
-        .otherwise = "all of them",
-        .choices = optional,
-        .needs = {"sweep", "sweep_images"}},
-       {.name = "take_in",
-        .type = Type::texts,
-        .meaning = "Optional parameters that the calibration estimates whatever the test says.",
-        .otherwise = "none",
-        .choices = optional,
-        .needs = {"sweep", "sweep_images"}}}};
-  const std::array<const char*, 8> meanings = {"Camera height: camera below the swivel",
-                                               "Image scale times distance to the image plane",
-                                               "Roll about the optical axis",
-                                               "Image centre, horizontal",
-                                               "Image centre, vertical",
-                                               "Relative excess of the horizontal scale",
-                                               "Radial lens distortion, first coefficient",
-                                               "Error of the camera's distance, along x"};
-  for (std::size_t i = 0; i < camera_parameter_names.size(); ++i) {
-    group.keys.push_back({.name = camera_parameter_names[i],
-                          .type = Type::number_with_sigma,
-                          .meaning = std::string(meanings[i]) + "; where there is no sweep.",
-                          .unit = camera_parameter_units[i],
-                          .otherwise = i < 2 ? "required without a sweep" : "0"});
-  }
+      "The camera, calibrated from a static sweep or given as numbers (h_c and K at least). Needed where an experiment has a track "
+      "or video.",
+      sweep_keys()};
+  for (const Key& key : camera_number_keys()) group.keys.push_back(key);
   return group;
 }
 
@@ -334,50 +344,54 @@ KeyGroup reference_group() {
             .any = true}}};
 }
 
-std::vector<KeyGroup> uncertainty_groups() {
-  const std::vector<std::string> readings{"3 sigma", "2 sigma", "sigma", "uniform"};
-  return {{"uncertainty",
-           "Monte Carlo over geometry, camera and mass; bootstrap, profiles, random starts (misfit uncertainty).",
-           {{.name = "runs", .type = Type::integer, .meaning = "Monte Carlo runs.", .fallback = "1000", .least = 1, .most = most_runs},
-            {.name = "perturb",
-             .type = Type::table,
-             .meaning = "What is perturbed and how far: { V = \"0.5 m/s\", P_y = \"10 px\" }.",
-             .otherwise = "nothing"},
-            {.name = "readings",
-             .type = Type::choice,
-             .meaning = "What these numbers are: of a normal distribution, or the bounds of a uniform one. One for all, or a table.",
-             .otherwise = "\"3 sigma\"",
-             .choices = readings,
-             .form = R"("3 sigma", "2 sigma", "sigma", "uniform" or table)"},
-            {.name = "camera",
-             .type = Type::choice,
-             .meaning = "calibration: the camera's parameters too, with their joint covariance.",
-             .otherwise = "not perturbed, but for what perturb names",
-             .choices = {"calibration"}},
-            {.name = "recalibrate",
-             .type = Type::flag,
-             .meaning = "The camera is calibrated again in every run, from the sweep with the perturbed geometry.",
-             .fallback = "false"},
-            {.name = "bootstrap",
-             .type = Type::integer,
-             .meaning = "Replicas of the block bootstrap, for every method.",
-             .otherwise = "no bootstrap",
-             .least = 2,
-             .most = most_runs},
-            {.name = "block",
-             .type = Type::integer,
-             .meaning = "Samples of a block of the bootstrap.",
-             .otherwise = "from the residuals' autocorrelation",
-             .least = 1,
-             .most = most_block},
-            {.name = "starts",
-             .type = Type::integer,
-             .meaning = "Random starts of every method that has a likelihood.",
-             .otherwise = "none",
-             .least = 1,
-             .most = most_runs},
-            {.name = "profile", .type = Type::texts, .meaning = "Parameters whose profile likelihood is computed.", .otherwise = "none"}}},
-          {"uncertainty.perturb",
+const std::vector<std::string> readings{"3 sigma", "2 sigma", "sigma", "uniform"};
+
+KeyGroup uncertainty_group() {
+  return {"uncertainty",
+          "Monte Carlo over geometry, camera and mass; bootstrap, profiles, random starts (misfit uncertainty).",
+          {{.name = "runs", .type = Type::integer, .meaning = "Monte Carlo runs.", .fallback = "1000", .least = 1, .most = most_runs},
+           {.name = "perturb",
+            .type = Type::table,
+            .meaning = "What is perturbed and how far: { V = \"0.5 m/s\", P_y = \"10 px\" }.",
+            .otherwise = "nothing"},
+           {.name = "readings",
+            .type = Type::choice,
+            .meaning = "What these numbers are: of a normal distribution, or the bounds of a uniform one. One for all, or a table.",
+            .otherwise = "\"3 sigma\"",
+            .choices = readings,
+            .form = R"("3 sigma", "2 sigma", "sigma", "uniform" or table)"},
+           {.name = "camera",
+            .type = Type::choice,
+            .meaning = "calibration: the camera's parameters too, with their joint covariance.",
+            .otherwise = "not perturbed, but for what perturb names",
+            .choices = {"calibration"}},
+           {.name = "recalibrate",
+            .type = Type::flag,
+            .meaning = "The camera is calibrated again in every run, from the sweep with the perturbed geometry.",
+            .fallback = "false"},
+           {.name = "bootstrap",
+            .type = Type::integer,
+            .meaning = "Replicas of the block bootstrap, for every method.",
+            .otherwise = "no bootstrap",
+            .least = 2,
+            .most = most_runs},
+           {.name = "block",
+            .type = Type::integer,
+            .meaning = "Samples of a block of the bootstrap.",
+            .otherwise = "from the residuals' autocorrelation",
+            .least = 1,
+            .most = most_block},
+           {.name = "starts",
+            .type = Type::integer,
+            .meaning = "Random starts of every method that has a likelihood.",
+            .otherwise = "none",
+            .least = 1,
+            .most = most_runs},
+           {.name = "profile", .type = Type::texts, .meaning = "Parameters whose profile likelihood is computed.", .otherwise = "none"}}};
+}
+
+std::vector<KeyGroup> perturbation_groups() {
+  return {{"uncertainty.perturb",
            "How far each is perturbed.",
            {{.name = "NAME",
              .type = Type::number,
@@ -448,7 +462,8 @@ std::vector<KeyGroup> all_groups() {
   add({parameters_group(), curves_group()});
   add(initial_groups());
   add({reference_group()});
-  add(uncertainty_groups());
+  add({uncertainty_group()});
+  add(perturbation_groups());
   add({sliding_bin_group()});
   add(simulate_groups());
   return out;

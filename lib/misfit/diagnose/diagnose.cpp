@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
+#include "misfit/core/lists.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
@@ -56,8 +57,8 @@ std::string where_it_fails(const ForceMap& map) {
 
 ForceMap map_of(const ScoreTest& score, const ForceSensitivity& force, const Features& features, const SystemSpec& spec, int port) {
   ForceMap map;
-  map.port = spec.dynamic_ports[static_cast<std::size_t>(port)].name;
-  map.port_unit = spec.dynamic_ports[static_cast<std::size_t>(port)].unit;
+  map.port = spec.dynamic_ports[port].name;
+  map.port_unit = spec.dynamic_ports[port].unit;
   map.quantity = features.quantity;
   map.quantity_unit = features.unit;
   map.x = features.centre;
@@ -109,20 +110,17 @@ std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& 
       column = a.f.col(i).cwiseProduct(b.f.col(j));
       auto next = ahead.col(i * b.f.cols() + j);
       next = a.ahead.col(i).cwiseProduct(b.ahead.col(j));
-      constexpr double fewest = 20.0;
-      enough.push_back(column.sum() >= fewest);
+      constexpr double fewest_samples_of_cell = 20.0;
+      enough.push_back(column.sum() >= fewest_samples_of_cell);
       if (enough.back()) continue;
       column.setZero();
       next.setZero();
     }
   }
-  int port = 0;
-  for (std::size_t p = 0; p < spec.dynamic_ports.size(); ++p) {
-    if (spec.dynamic_ports[p].name == first.port) port = static_cast<int>(p);
-  }
+  const int port = index_of(spec.dynamic_ports, first.port);
   const ScoreResult result = score.test(force.columns(port, cells, ahead));
   for (Eigen::Index c = 0; c < cells.cols(); ++c) {
-    const bool known = enough[static_cast<std::size_t>(c)] && result.sigma[c] > 0.0;
+    const bool known = enough[c] && result.sigma[c] > 0.0;
     map.amplitude.push_back(known ? result.amplitude[c] : std::nan(""));
     map.sigma.push_back(known ? result.sigma[c] : std::nan(""));
   }

@@ -20,7 +20,7 @@ Range visited_range(std::vector<double> values) {
 void add_hats(double value, const std::vector<double>& centre, Eigen::Index row, Eigen::MatrixXd& f) {
   const double step = centre[1] - centre[0];
   const double place = std::clamp((value - centre.front()) / step, 0.0, static_cast<double>(centre.size() - 1));
-  const auto left = std::min(static_cast<Eigen::Index>(place), static_cast<Eigen::Index>(centre.size()) - 2);
+  const auto left = std::min(static_cast<Eigen::Index>(place), std::ssize(centre) - 2);
   const double share = place - static_cast<double>(left);
   f(row, left) += 1.0 - share;
   f(row, left + 1) += share;
@@ -28,17 +28,17 @@ void add_hats(double value, const std::vector<double>& centre, Eigen::Index row,
 
 /// Drops hats that hardly any sample touches.
 void drop_empty(Features& features) {
-  constexpr double fewest = 25.0;
+  constexpr double fewest_samples_of_hat = 25.0;
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < features.f.cols(); ++i) {
-    if (features.f.col(i).sum() >= fewest) kept.push_back(i);
+    if (features.f.col(i).sum() >= fewest_samples_of_hat) kept.push_back(i);
   }
-  Eigen::MatrixXd f(features.f.rows(), static_cast<Eigen::Index>(kept.size())), ahead = f;
+  Eigen::MatrixXd f(features.f.rows(), kept.size()), ahead = f;
   std::vector<double> centre;
   for (std::size_t k = 0; k < kept.size(); ++k) {
-    f.col(static_cast<Eigen::Index>(k)) = features.f.col(kept[k]);
-    ahead.col(static_cast<Eigen::Index>(k)) = features.ahead.col(kept[k]);
-    centre.push_back(features.centre[static_cast<std::size_t>(kept[k])]);
+    f.col(k) = features.f.col(kept[k]);
+    ahead.col(k) = features.ahead.col(kept[k]);
+    centre.push_back(features.centre[kept[k]]);
     features.count.push_back(features.f.col(kept[k]).sum());
   }
   features.f = std::move(f);
@@ -60,11 +60,11 @@ Features hats(const std::string& name, const std::string& unit, int index, const
   const Range range = visited_range(visited);
   if (!(range.high - range.low > 1e-9 * std::max(std::abs(range.high), std::abs(range.low)))) return out;
   for (int i = 0; i < most; ++i) out.centre.push_back(range.low + (range.high - range.low) * i / (most - 1));
-  out.f = out.ahead = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(values.size()), most);
+  out.f = out.ahead = Eigen::MatrixXd::Zero(values.size(), most);
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!used[k] || !std::isfinite(values[k])) continue;
-    add_hats(values[k], out.centre, static_cast<Eigen::Index>(k), out.f);
-    add_hats(std::isfinite(ahead[k]) ? ahead[k] : values[k], out.centre, static_cast<Eigen::Index>(k), out.ahead);
+    add_hats(values[k], out.centre, k, out.f);
+    add_hats(std::isfinite(ahead[k]) ? ahead[k] : values[k], out.centre, k, out.ahead);
   }
   drop_empty(out);
   return out;
@@ -82,8 +82,8 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSen
     if (!specs[q].explains) continue;
     std::vector<double> values(force.used().size()), ahead = values;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      values[k] = force.quantities()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(q));
-      ahead[k] = force.quantities_ahead()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(q));
+      values[k] = force.quantities()(k, q);
+      ahead[k] = force.quantities_ahead()(k, q);
     }
     take(hats(specs[q].name, specs[q].unit, static_cast<int>(q), values, ahead, force.used(), most));
   }

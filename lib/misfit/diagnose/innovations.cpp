@@ -15,7 +15,7 @@ constexpr double pi = std::numbers::pi;
 
 /// Standardised innovations of one channel; NaN where there is none.
 std::vector<double> standardised(const FilterTrace& trace, const FilterData& data, std::size_t channel) {
-  const auto ny = static_cast<std::size_t>(trace.ny);
+  const std::size_t ny = trace.ny;
   std::vector<double> out(trace.samples, std::nan(""));
   for (std::size_t k = 0; k < trace.samples; ++k) {
     const std::size_t at = k * ny + channel;
@@ -57,7 +57,7 @@ void judge_lines(WhitenessReport& out) {
   if (!(total > 0.0)) return;
   const auto m = static_cast<double>(out.power.size());
   const auto highest = std::max_element(out.power.begin(), out.power.end());
-  out.peak_frequency = out.frequency[static_cast<std::size_t>(highest - out.power.begin())];
+  out.peak_frequency = out.frequency[highest - out.power.begin()];
   out.peak_power = *highest * m / total;
   out.peak_p = sidak(std::exp(-out.peak_power), m);
   double sum = 0.0, largest = 0.0;
@@ -77,7 +77,7 @@ std::vector<WhitenessReport> whiteness_of(const FilterEstimate& estimate) {
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
     for (std::size_t o = 0; o < outputs.size(); ++o) {
       std::vector<double> w = standardised(estimate.traces[e], estimate.data[e], o);
-      const auto known = static_cast<std::size_t>(std::count_if(w.begin(), w.end(), [](double v) { return std::isfinite(v); }));
+      const std::size_t known = std::count_if(w.begin(), w.end(), [](double v) { return std::isfinite(v); });
       if (known < 100) continue;
       WhitenessReport report;
       report.experiment = estimate.data[e].signals->name;
@@ -105,7 +105,7 @@ std::vector<NisSeries> nis_of(const FilterEstimate& estimate) {
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
     const FilterTrace& trace = estimate.traces[e];
     const FilterData& data = estimate.data[e];
-    const auto ny = static_cast<std::size_t>(trace.ny);
+    const std::size_t ny = trace.ny;
     NisSeries series;
     series.experiment = data.signals->name;
     const std::size_t window = std::max<std::size_t>(20, trace.samples / 80);
@@ -149,14 +149,14 @@ std::vector<MissingForce> missing_force_of(const FilterEstimate& estimate) {
     }
     force.values.resize(spec.quantities.size());
     for (int port : estimate.forced.force_ports) {
-      force.ports.push_back(spec.dynamic_ports[static_cast<std::size_t>(port)].name);
-      force.port_units.push_back(spec.dynamic_ports[static_cast<std::size_t>(port)].unit);
+      force.ports.push_back(spec.dynamic_ports[port].name);
+      force.port_units.push_back(spec.dynamic_ports[port].unit);
     }
     force.force.resize(force.ports.size());
     force.sigma.resize(force.ports.size());
     std::vector<double> q(spec.quantities.size());
     for (std::size_t k = data.first; k < trace.samples; ++k) {
-      const auto row = static_cast<Eigen::Index>(k);
+      const Eigen::Index row = k;
       force.t.push_back(data.signals->t[k]);
       for (std::size_t p = 0; p < force.ports.size(); ++p) {
         force.force[p].push_back(smoothed.x(row, estimate.forced.force_states[p]));

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "misfit/core/lists.h"
 #include "misfit/model/effect.h"
 
 namespace misfit {
@@ -30,13 +31,13 @@ Model probed(const FilterEstimate& estimate) {
   static const EffectOf<Probe> effect("probe");
   Model model = all_fixed(estimate.forced.model);
   const auto& ports = model.system->spec().dynamic_ports;
-  for (std::size_t p = 0; p < ports.size(); ++p) {
+  for (int p = 0; p < int_size(ports); ++p) {
     BoundEffect bound;
     bound.effect = &effect;
     bound.name = "probe_" + ports[p].name;
-    bound.ports = {static_cast<int>(p)};
-    bound.coefficients = {{static_cast<int>(model.parameters.size()), -1}};
-    bound.first_state = static_cast<int>(model.own_states.size());
+    bound.ports = {p};
+    bound.coefficients = {{int_size(model.parameters), -1}};
+    bound.first_state = int_size(model.own_states);
     Parameter unit{bound.name, ports[p].unit, "", 0.0, -1e12, 1e12, 1.0, true};
     model.parameters.push_back(unit);
     model.effects.push_back(std::move(bound));
@@ -142,13 +143,13 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
   const Model model = probed(estimate);
   Stepper stepper(model);
   Evaluator values(estimate.forced.model);
-  ports_ = static_cast<int>(model.system->spec().dynamic_ports.size());
-  const auto nq = static_cast<Eigen::Index>(model.system->spec().quantities.size());
+  ports_ = int_size(model.system->spec().dynamic_ports);
+  const Eigen::Index nq = model.system->spec().quantities.size();
   const int n = stepper.states();
-  const auto N = static_cast<std::size_t>(n), NF = static_cast<std::size_t>(ports_);
+  const std::size_t N = n, NF = ports_;
   std::size_t all = 0;
   for (const auto& trace : estimate.traces) all += trace.samples;
-  quantities_ = ahead_ = RowMatrix::Zero(static_cast<Eigen::Index>(all), nq);
+  quantities_ = ahead_ = RowMatrix::Zero(all, nq);
   used_.assign(all, false);
   std::vector<double> D(N * kRowStride);
   Slots slots;
@@ -164,14 +165,13 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
     for (std::size_t k = data.first; k < trace.samples; ++k) {
       x = trace.filtered(k);
       used_[offset + k] = true;
-      values.quantities(x.data(), data.inputs.at(k), signals.t[k], quantities_.row(static_cast<Eigen::Index>(offset + k)).data());
+      values.quantities(x.data(), data.inputs.at(k), signals.t[k], quantities_.row(offset + k).data());
       if (k + 1 == trace.samples) break;
       if (!stepper.step_linear(x.data(), {signals.t[k], signals.t[k + 1], data.inputs.at(k), data.inputs.at(k + 1)}, slots, D.data()))
         break;
-      values.quantities(x.data(), data.inputs.at(k + 1), signals.t[k + 1], ahead_.row(static_cast<Eigen::Index>(offset + k)).data());
+      values.quantities(x.data(), data.inputs.at(k + 1), signals.t[k + 1], ahead_.row(offset + k).data());
       for (std::size_t i = 0; i < N; ++i) {
-        for (int c = 0; c < slots.count(); ++c)
-          G_.back()[(k * N + i) * NF + static_cast<std::size_t>(slots.column(c))] = D[i * kRowStride + N + static_cast<std::size_t>(c)];
+        for (int c = 0; c < slots.count(); ++c) G_.back()[(k * N + i) * NF + slots.column(c)] = D[i * kRowStride + N + c];
       }
     }
     offset += trace.samples;
@@ -188,7 +188,7 @@ Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, co
   for (std::size_t e = 0; e < estimate_.traces.size(); ++e) {
     const FilterTrace& trace = estimate_.traces[e];
     const FilterData& data = estimate_.data[e];
-    const auto N = static_cast<std::size_t>(trace.n), NY = static_cast<std::size_t>(trace.ny), NF = static_cast<std::size_t>(ports_);
+    const std::size_t N = trace.n, NY = trace.ny, NF = ports_;
     const Eigen::Index n = trace.n, ny = trace.ny;
     RowMatrix s = RowMatrix::Zero(n, m), jitter = RowMatrix::Zero(2 * ny, m), work(n, m);
     Eigen::RowVectorXd v(m), mean(m);
@@ -199,7 +199,7 @@ Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, co
         const std::size_t at = trace.place(k, o);
         if (data.use[at] == SampleRole::none) continue;
         v.noalias() = trace.H_at(at).transpose() * s;
-        v += jitter.row(2 * static_cast<Eigen::Index>(o));
+        v += jitter.row(2 * o);
         if (data.use[at] == SampleRole::counted) out.row(row++) = v / std::sqrt(trace.S[at]);
         s.noalias() -= trace.K_at(at) * v;
         jitter.noalias() -= trace.Kj_at(at) * v;
@@ -210,16 +210,16 @@ Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, co
         noise = discretise(estimate_.noise, h);
         last_h = h;
       }
-      const auto sample = static_cast<Eigen::Index>(offset + k);
+      const Eigen::Index sample = offset + k;
       mean = 0.5 * (f.row(sample) + ahead.row(sample));
       work.noalias() = trace.Phi_at(k) * s;
       for (Eigen::Index i = 0; i < n; ++i) {
-        const double gain = G_[e][(k * N + static_cast<std::size_t>(i)) * NF + static_cast<std::size_t>(port)];
+        const double gain = G_[e][(k * N + i) * NF + port];
         if (gain != 0.0) work.row(i) += gain * mean;
       }
       s.swap(work);
       for (Eigen::Index o = 0; o < ny; ++o) {
-        const auto& p = noise.jitter[static_cast<std::size_t>(o)].phi;
+        const auto& p = noise.jitter[o].phi;
         v = jitter.row(2 * o);
         jitter.row(2 * o) = p[0] * v + p[1] * jitter.row(2 * o + 1);
         jitter.row(2 * o + 1) = p[2] * v + p[3] * jitter.row(2 * o + 1);
@@ -231,19 +231,17 @@ Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, co
 }
 
 Eigen::VectorXd ForceSensitivity::score_of_steps(int port) const {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(times_.size()));
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(times_.size());
   std::size_t offset = 0;
   for (std::size_t e = 0; e < estimate_.traces.size(); ++e) {
     const FilterTrace& trace = estimate_.traces[e];
     const FilterData& data = estimate_.data[e];
-    const auto N = static_cast<std::size_t>(trace.n), NF = static_cast<std::size_t>(ports_);
+    const std::size_t N = trace.n, NF = ports_;
     const RowMatrix adjoint = adjoint_of(trace, data, estimate_.noise);
     for (std::size_t k = data.first; k + 1 < trace.samples; ++k) {
       double sum = 0.0;
-      for (std::size_t i = 0; i < N; ++i)
-        sum += G_[e][(k * N + i) * NF + static_cast<std::size_t>(port)] *
-               adjoint(static_cast<Eigen::Index>(k + 1), static_cast<Eigen::Index>(i));
-      out[static_cast<Eigen::Index>(offset + k)] = sum;
+      for (std::size_t i = 0; i < N; ++i) sum += G_[e][(k * N + i) * NF + port] * adjoint(k + 1, i);
+      out[offset + k] = sum;
     }
     offset += trace.samples;
   }

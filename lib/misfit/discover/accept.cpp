@@ -11,7 +11,7 @@
 namespace misfit {
 namespace {
 
-constexpr double tie = 6.0;  // refitted drops nearer than this do not distinguish two effects
+constexpr double tied_drops = 6.0;  // refitted drops nearer than this do not distinguish two effects
 
 std::string label(const Candidate& c) { return effect_at(c.effect, c.roles); }
 
@@ -73,7 +73,7 @@ SecondEffect second_effect_given(const RankedCandidate& in, const ConditionalSco
 /// Is `in` still needed beside the other? 2 [log L(both) − log L(other alone)], as any refitted drop family-wise.
 bool needed_given(const RankedCandidate& in, const Refit& both, const RankedCandidate& other, const SearchContext& context) {
   std::optional<Refit> fitted;
-  if (!other.refit) fitted = refit(context.estimate, context.experiments, *other.screening, context.registry, context.options.threads);
+  if (!other.refit) fitted = refit({context.estimate, context.experiments, context.registry, context.options.threads}, *other.screening);
   const Refit& alone = other.refit ? *other.refit : *fitted;
   if (!alone.ok || !alone.estimate.converged) return false;
   const double drop = in.refit->drop + both.drop - alone.drop;
@@ -86,14 +86,14 @@ CandidateModel with_quantities(CandidateModel candidate_model, const std::vector
   return candidate_model;
 }
 
-/// Another known effect with which nothing remains after `in`.
+/// Step 3, for one alias: another known effect with which nothing remains after `in`.
 const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked,
                                          const SearchContext& context) {
   const DiscoverOptions& options = context.options;
   const ConditionalScores conditional(*in.refit, context);
   const SecondEffect second = second_effect_given(in, conditional, ranked, options.p_accept);
   if (second.entry == nullptr) return nullptr;
-  const Refit both = refit(in.refit->estimate, context.experiments, second.score, context.registry, options.threads);
+  const Refit both = refit({in.refit->estimate, context.experiments, context.registry, options.threads}, second.score);
   if (!both.ok || !both.estimate.converged || !(both.drop > 0.0)) return nullptr;
   const Model& model = both.estimate.model;
   const std::vector<int>&strengths = in.screening->candidate_model->strengths, &others = second.score.candidate_model->strengths;
@@ -105,7 +105,7 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   return remaining_lack_of_fit(both.estimate, reads, in.refit->drop, options) ? nullptr : second.entry;
 }
 
-/// Why it cannot be accepted by itself; empty: it can, and holds out.
+/// Step 1: why it cannot be accepted; empty: nothing speaks against it by itself.
 std::string refusal(RankedCandidate& e, const SearchContext& context) {
   Candidate& c = e.candidate;
   if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
@@ -115,7 +115,7 @@ std::string refusal(RankedCandidate& e, const SearchContext& context) {
   return *c.held_out_gain > 0.0 ? "" : "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
 }
 
-/// Groups the front with what these data cannot distinguish from it.
+/// Step 5: groups the front with what these data cannot distinguish from it.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   if (ranked.empty() || !ranked.front().refit) return;
   RankedCandidate& best = ranked.front();
@@ -124,7 +124,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   const double p_accept = context.options.p_accept;
   for (std::size_t k = 1; k < ranked.size(); ++k) {
     RankedCandidate& other = ranked[k];
-    if (!other.refit || std::abs(other.refit->drop - best.refit->drop) > tie) continue;
+    if (!other.refit || std::abs(other.refit->drop - best.refit->drop) > tied_drops) continue;
     if (!adds_nothing(given_best, other, p_accept) || !adds_nothing(ConditionalScores(*other.refit, context), best, p_accept)) continue;
     members.push_back(&other);
   }
@@ -134,7 +134,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   for (RankedCandidate* e : members) e->candidate.group = group;
 }
 
-/// Reasons for those that were refitted and are not accepted, the accepted one in front.
+/// Step 6: reasons for those that were refitted and are not accepted, the accepted one in front.
 void explain_others(std::vector<RankedCandidate>& ranked) {
   const Candidate& best = ranked.front().candidate;
   for (std::size_t k = 1; k < ranked.size(); ++k) {
@@ -148,60 +148,88 @@ void explain_others(std::vector<RankedCandidate>& ranked) {
   }
 }
 
-/// What was found on the way through the list.
-struct Selection {
-  std::vector<RankedCandidate>::iterator at;  ///< of what is accepted, or the end
-  const RankedCandidate* next = nullptr;      ///< what explains what it leaves, where it leaves something
-  std::optional<UnknownCurve> remaining;      ///< after the first that holds out
+using Place = std::vector<RankedCandidate>::iterator;
+
+/// Holds out by itself, but leaves a curve of what it reads: it may only imitate what is missing.
+struct Alias {
+  Place at;
+  UnknownCurve left;
 };
 
-Selection select(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
-  Selection out{ranked.end(), nullptr, std::nullopt};
-  std::vector<std::vector<RankedCandidate>::iterator> aliases;
+/// What is accepted, or the end of the list; with the second effect that it needs, if it leaves something by itself.
+struct Choice {
+  Place at;
+  const RankedCandidate* second = nullptr;
+};
+
+/// Steps 1 and 2: the first that is not refused and leaves nothing. Those before it that are not refused are aliases.
+Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vector<Alias>& aliases, const SearchContext& context) {
   std::vector<int> read;  // by the aliases
   for (auto e = ranked.begin(); e != ranked.end() && e->refit; ++e) {
     e->candidate.why = refusal(*e, context);
     if (!e->candidate.why.empty()) continue;
     const CandidateModel& candidate_model = *e->screening->candidate_model;
     const auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), e->refit->drop, context.options);
-    if (!left) {
-      out.at = e;
-      return out;
-    }
+    if (!left) return {e};
     e->candidate.why = "lack of fit remains: with it in the model an unknown " + left->port + "(" + left->quantity + ") still has " +
                        p_equals(left->p_value);
-    if (aliases.empty()) out.remaining = left;
-    aliases.push_back(e);
+    aliases.push_back({e, *left});
     read.insert(read.end(), candidate_model.quantities.begin(), candidate_model.quantities.end());
   }
-  for (const auto e : aliases) {
-    out.next = explaining_effect(*e, ranked, context);
-    if (out.next == nullptr) continue;
-    out.at = e;
-    return out;
+  return {ranked.end()};
+}
+
+/// Step 3: the first alias with which a second effect leaves nothing.
+Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases, const SearchContext& context) {
+  for (const Alias& alias : aliases) {
+    if (const RankedCandidate* second = explaining_effect(*alias.at, ranked, context)) return {alias.at, second};
   }
-  return out;
+  return {ranked.end()};
+}
+
+/// Step 4.
+void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
+  Candidate& c = choice.at->candidate;
+  c.accepted = true;
+  c.why = "family-wise " + p_equals(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
+  if (choice.second != nullptr) c.why += "; " + label(choice.second->candidate) + " explains what remains";
+  std::rotate(ranked.begin(), choice.at, choice.at + 1);
+}
+
+/// What the first alias leaves, else what a significant front that was refused leaves.
+std::optional<UnknownCurve> left_by_the_best(const std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases,
+                                             const SearchContext& context) {
+  if (!aliases.empty()) return aliases.front().left;
+  if (ranked.empty() || !ranked.front().refit || !(ranked.front().candidate.p_value < context.options.p_accept)) return std::nullopt;
+  const RankedCandidate& best = ranked.front();
+  return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, best.refit->drop, context.options);
+}
+
+/// Step 7: what depends on a quantity in a way that no named effect has. What the best candidate leaves describes it better than an unknown
+/// curve if that candidate explains more than the curve does.
+std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>& ranked, const std::optional<UnknownCurve>& left,
+                                             const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
+  const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
+  const bool any = best != unknown.end(), front_better = any && !ranked.empty() && ranked.front().log_p < best->log_p;
+  if (left && (!any || front_better)) return Unexplained{left->port, left->quantity, left->p_value};
+  if (!any || (front_better && ranked.front().refit)) return std::nullopt;  // what a known effect explains better is not unknown
+  const double p = sidak(best->p_value, context.families);
+  return p < context.options.p_accept ? std::optional(Unexplained{best->port, best->quantity, p}) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<UnknownCurve> accept_best(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
-  const Selection selection = select(ranked, context);
-  if (selection.at == ranked.end()) {
-    find_groups(ranked, context);
-    if (selection.remaining || ranked.empty()) return selection.remaining;
-    const RankedCandidate& best = ranked.front();
-    if (!best.refit || !(best.candidate.p_value < context.options.p_accept)) return std::nullopt;
-    return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, best.refit->drop, context.options);
-  }
-  Candidate& c = selection.at->candidate;
-  c.accepted = true;
-  c.why = "family-wise " + p_equals(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
-  if (selection.next != nullptr) c.why += "; " + label(selection.next->candidate) + " explains what remains";
-  std::rotate(ranked.begin(), selection.at, selection.at + 1);
-  find_groups(ranked, context);
-  explain_others(ranked);
-  return std::nullopt;
+std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
+                                       const SearchContext& context) {
+  std::vector<Alias> aliases;
+  Choice choice = first_without_lack_of_fit(ranked, aliases, context);                           // 1, 2
+  if (choice.at == ranked.end()) choice = first_with_a_second_effect(ranked, aliases, context);  // 3
+  const bool accepted = choice.at != ranked.end();
+  if (accepted) move_to_front(ranked, choice);  // 4
+  find_groups(ranked, context);                 // 5
+  if (accepted) explain_others(ranked);         // 6
+  if (accepted) return std::nullopt;
+  return unexplained_force(ranked, left_by_the_best(ranked, aliases, context), unknown, context);  // 7
 }
 
 }  // namespace misfit

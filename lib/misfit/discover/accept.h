@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "misfit/discover/refit.h"
+#include "misfit/discover/verdict.h"
 
 namespace misfit {
 
@@ -24,14 +25,24 @@ struct SearchContext {
   double families = 1.0;  ///< that a p-value is corrected for
 };
 
-/// Step by step: lib/misfit/README.md, 6.5. Accepts at most one of those that hold out: significant, with strengths away from their bounds,
-/// at a maximum that was reached, and the held-out measurements more likely. Of these the first, in the order of the list, after which no
-/// unknown curve remains of a quantity that it or an alias before it reads (remaining_lack_of_fit): an effect that leaves one is an alias
-/// of what is missing, be its drop the largest. If all leave something, the first with which a second known effect leaves nothing, as long
-/// as each is still needed beside the other and no strength of the two ends at a bound. It comes to the front and is grouped with every
-/// other whose refitted drop is near (6): inseparable if both can be in the model and neither has a significant score once the other is in.
-/// Where nothing is accepted the group is that of the front. All that were refitted get a reason. Returned: what remains, unexplained,
-/// where that is why nothing was accepted.
-[[nodiscard]] std::optional<UnknownCurve> accept_best(std::vector<RankedCandidate>& ranked, const SearchContext& context);
+/// The acceptance rule of discovery: at most one of the refitted candidates, which stand in front, best first. p_accept: 0.01 unless the
+/// options say otherwise; numbers and formulas: lib/misfit/README.md, 6.5.
+///
+/// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, one of its strengths ends
+///    at a bound, or the held-out measurements do not become more likely. The first reason that holds is noted.
+/// 2. Unknown curves are screened again with the candidate in the model (`remaining_lack_of_fit`). If none remains of a quantity that the
+///    candidate, or an alias before it, reads, it is accepted: the first such in the list. Else it is an alias of what is missing.
+/// 3. If every one that is not refused is an alias: accepted is the first with which a second known effect leaves nothing, as long as each
+/// is
+///    needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
+/// 4. The accepted one comes to the front of the list.
+/// 5. The front is grouped with what these data cannot distinguish from it (`find_groups`): a refitted drop within 6, and neither has a
+///    significant score once the other is in the model.
+/// 6. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
+/// 7. Else what remains may depend on a quantity in a way that no named effect has (`unexplained_force`): what the first alias, or a
+///    significant front that was refused, leaves, if the front has a lower p than the best unknown curve; else that curve, if its
+///    family-wise p is below p_accept and no refitted front has a lower p. That is returned.
+[[nodiscard]] std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
+                                                     const SearchContext& context);
 
 }  // namespace misfit

@@ -18,8 +18,8 @@ void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const 
     if (free.chi2 < good_part * out.candidates.front().score) continue;
     std::string numbers, allowed;
     for (std::size_t i = 0; i < s.candidate_model->strengths.size(); ++i) {
-      const Parameter& p = s.candidate_model->model.parameters[static_cast<std::size_t>(s.candidate_model->strengths[i])];
-      const auto k = static_cast<Eigen::Index>(i);
+      const Parameter& p = s.candidate_model->model.parameters[s.candidate_model->strengths[i]];
+      const Eigen::Index k = i;
       numbers += (i == 0 ? "" : ", ") + p.name + " = " + in_display_unit(free.amplitude[k], p.unit, free.sigma[k]);
       if (s.candidate_model->priors.precision[k] > 0.0)
         allowed += (allowed.empty() ? "" : ", ") + in_display_unit(1.0 / std::sqrt(s.candidate_model->priors.precision[k]), p.unit);
@@ -33,7 +33,7 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
                                                   const DiscoverOptions& options) {
   const ScoreTest score(with);
   const ForceSensitivity force(with);
-  std::vector<UnknownCurve> after = unknown_curves(with, score, force, options.threads);
+  std::vector<UnknownCurve> after = unknown_curves({with, score, force, options.threads});
   std::optional<UnknownCurve> worst;
   for (auto& curve : after) {
     curve.p_value = sidak(curve.p_value, static_cast<double>(after.size()));

@@ -28,7 +28,7 @@ std::vector<Roles> natural_ports(const SystemSpec& system) {
     if (state == nullptr || (!forced && !system.force_ports.empty())) continue;
     Roles roles = {{"port", port.name}};
     if (state->rate_of >= 0) {
-      const std::string& moved = system.states[static_cast<std::size_t>(state->rate_of)].name;
+      const std::string& moved = system.states[state->rate_of].name;
       roles.insert({{"rate", state->name}, {"displacement", moved}, {"level", moved}});
     } else {
       roles["level"] = state->name;
@@ -105,7 +105,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   if (has_role(effect.quantities, "input"))
     places = times(places, "input", system.roles.contains("input") ? names_of(system.inputs) : std::vector<std::string>{});
   if (has_role(effect.ports, "output"))
-    places = times(places, "output", system.roles.contains("reading") ? names_of(system.outputs) : std::vector<std::string>{});
+    places = times(places, "output", system.roles.contains("signal") ? names_of(system.outputs) : std::vector<std::string>{});
   for (const Roles& place : places) {
     const auto roles = roles_at(effect, place);
     if (roles && !roles->empty()) out.push_back(*roles);
@@ -136,13 +136,13 @@ OperatingRange::OperatingRange(const FilterEstimate& estimate) {
   }
   for (auto& list : values) ranges_.push_back(range_of(std::move(list)));
   if (steps.empty()) return;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  const auto middle = steps.begin() + steps.size() / 2;
   std::nth_element(steps.begin(), middle, steps.end());
   step_ = *middle;
 }
 
 std::optional<OperatingRange::Range> OperatingRange::range(int quantity) const {
-  const auto i = static_cast<std::size_t>(quantity);
+  const std::size_t i = quantity;
   return quantity < 0 || i >= ranges_.size() ? std::nullopt : ranges_[i];
 }
 
@@ -157,9 +157,7 @@ std::vector<double> OperatingRange::grid(const BoundEffect& effect, std::size_t 
   } else if (!over.empty()) {
     const std::string_view role = size ? over.substr(1, over.size() - 2) : over;
     const auto found = std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const Role& r) { return role == r.name; });
-    const auto range = found == spec.quantities.end()
-                           ? std::nullopt
-                           : this->range(effect.quantities[static_cast<std::size_t>(found - spec.quantities.begin())]);
+    const auto range = found == spec.quantities.end() ? std::nullopt : this->range(effect.quantities[found - spec.quantities.begin()]);
     if (!range) return {c.value};
     origin = size ? 0.0 : range->low;
     unit = size ? std::max(std::abs(range->low), std::abs(range->high)) : range->high - range->low;

@@ -18,7 +18,7 @@ using Roles = std::map<std::string, std::string>;
 /// Where in a system an effect could act: first its default roles ({}), then, for a generic effect, every place that the system itself
 /// suggests. A dynamic port of the random force whose conjugate is a state gives `port` with that state: as `rate`, and what it is the rate
 /// of as `displacement` and `level`; or, where it is the rate of nothing, as `level`. `to_port` is each other such port. `input` is each
-/// input and `output` each output (`reading` follows it), if the system has a default for `input`, or for `reading`: its way of saying
+/// input and `output` each output (`signal` follows it), if the system has a default for `input`, or for `signal`: its way of saying
 /// that generic effects make sense there. Units are not looked at: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 

@@ -9,9 +9,9 @@
 namespace misfit {
 
 Candidate named_candidate(const ScreeningResult& s, double families) {
-  constexpr double imitated = 0.01;  // 1 − R² of the columns with those of the free parameters
-  constexpr double same = 1e-6;      // what is left of the columns then is rounding
-  constexpr double beyond_doubt = 1e-4;
+  constexpr double described_below = 0.01;           // 1 − R² of the columns with those of the free parameters
+  constexpr double rounding_of_independence = 1e-6;  // what is left of the columns then is rounding
+  constexpr double p_beyond_doubt = 1e-4;
   const CandidateModel& candidate_model = *s.candidate_model;
   Candidate c;
   c.effect = candidate_model.effect;
@@ -26,16 +26,16 @@ Candidate named_candidate(const ScreeningResult& s, double families) {
   }
   c.p_value = sidak(s.p_value, families);
   // A little of a strong effect can be more than the data can miss: that is no imitation.
-  const bool hidden_in_it = s.result.independent < same || !(c.p_value < beyond_doubt);
-  c.described = s.result.independent < imitated && hidden_in_it && !candidate_model.has_priors;
+  const bool hidden_in_it = s.result.independent < rounding_of_independence || !(c.p_value < p_beyond_doubt);
+  c.described = s.result.independent < described_below && hidden_in_it && !candidate_model.has_priors;
   for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i) {
-    const Parameter& p = candidate_model.model.parameters[static_cast<std::size_t>(candidate_model.strengths[i])];
-    const auto k = static_cast<Eigen::Index>(i);
+    const Parameter& p = candidate_model.model.parameters[candidate_model.strengths[i]];
+    const Eigen::Index k = i;
     c.parameters[p.name] = {s.result.amplitude[k], s.result.sigma[k], p.unit};
   }
   for (std::size_t i = 0; i < s.cell.size(); ++i) {
     const int shape = i < candidate_model.shapes.size() ? candidate_model.shapes[i] : candidate_model.frequency;
-    const Parameter& p = candidate_model.model.parameters[static_cast<std::size_t>(shape)];
+    const Parameter& p = candidate_model.model.parameters[shape];
     c.parameters[p.name] = {s.cell[i], 0.0, p.unit};
   }
   if (c.described) c.why = "already described by the free parameters (R² above 0.99)";
@@ -73,7 +73,8 @@ void rank_candidates(std::vector<Candidate>& candidates) {
     if (a.accepted != b.accepted) return a.accepted;
     return a.actual_drop.has_value() && !b.actual_drop.has_value();
   });
-  for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].rank = static_cast<int>(i) + 1;
+  int rank = 0;
+  for (Candidate& candidate : candidates) candidate.rank = ++rank;
 }
 
 }  // namespace misfit

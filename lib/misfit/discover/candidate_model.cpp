@@ -25,14 +25,14 @@ bool driven_by_noise(const Effect& effect) {
 bool reads_time(const Effect& effect) {
   const std::size_t size = effect.spec().ports.size() + effect.spec().states.size();
   for (const Example& example : effect.examples()) {
-    constexpr double later = 0.37;
+    constexpr double later_time = 0.37;
     std::vector<double> now(size, 0.0), then(size, 0.0);
     const auto at = [&](double t, std::vector<double>& out) {
       effect.evaluate({example.quantities.data(), example.coefficients.data(), example.states.data(), example.constants.data(), t},
                       out.data());
     };
     at(example.t, now);
-    at(example.t + later, then);
+    at(example.t + later_time, then);
     if (now != then) return true;
   }
   return false;
@@ -54,7 +54,7 @@ bool specialised(const Registry& registry, const std::vector<std::string>& suiti
 
 bool has_strength(const EffectSpec& spec) {
   return std::any_of(spec.coefficients.begin(), spec.coefficients.end(),
-                     [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.borrowed; });
+                     [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.shared; });
 }
 
 /// The kind, or kind_2, … where the model has one already.
@@ -72,7 +72,7 @@ ModelRequest with_effect(const ModelRequest& request, const Effect& effect, cons
   ModelRequest out = request;
   out.effects.push_back({name_of_another(request, effect.spec()), effect.spec().key, roles, {}});
   for (const auto& c : effect.spec().coefficients) {
-    if (c.borrowed || c.curve_of[0] == '\0') continue;
+    if (c.shared || c.curve_of[0] == '\0') continue;
     ParameterRequest number;
     number.value = 0.0;
     number.free = true;
@@ -109,8 +109,8 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
   std::vector<const CoefficientSpec*> strength_specs;
   for (std::size_t c = 0; c < coefficients.size(); ++c) {
     const int parameter = bound.coefficients[c].parameter;
-    if (coefficients[c].borrowed || parameter < 0) continue;
-    Parameter& p = out.model.parameters[static_cast<std::size_t>(parameter)];
+    if (coefficients[c].shared || parameter < 0) continue;
+    Parameter& p = out.model.parameters[parameter];
     if (coefficients[c].kind == CoefficientKind::strength) {
       p.free = true;
       p.value = 0.0;
@@ -137,9 +137,9 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
     }
     out.cells = std::move(grown);
   }
-  const auto n = static_cast<Eigen::Index>(out.strengths.size());
+  const Eigen::Index n = out.strengths.size();
   out.priors.precision = out.priors.mean = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index i = 0; i < n; ++i) add_prior(*strength_specs[static_cast<std::size_t>(i)], calibration, i, out);
+  for (Eigen::Index i = 0; i < n; ++i) add_prior(*strength_specs[i], calibration, i, out);
   for (std::size_t p = 0; p < bound.ports.size(); ++p) {
     if (bound.ports[p] < 0) continue;
     if (bound.kind == PortKind::dynamic) out.ports.push_back(bound.ports[p]);
@@ -156,7 +156,7 @@ std::vector<std::string> names_of_ports(const Model& model) {
   std::vector<std::string> out;
   for (int p : bound.ports) {
     if (p < 0) continue;
-    const auto i = static_cast<std::size_t>(p);
+    const std::size_t i = p;
     if (bound.kind == PortKind::dynamic) out.push_back(spec.dynamic_ports[i].name);
     if (bound.kind == PortKind::quantity) out.push_back(spec.quantity_ports[i].name);
     if (bound.kind == PortKind::sensor) out.push_back(i < spec.outputs.size() ? spec.outputs[i].name : "sample_time");
@@ -173,7 +173,7 @@ Eigen::Index counted_rows(const FilterEstimate& estimate) {
 Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
   FilterRunner runner(forced, true);
   runner.set_parameters(forced.model.values());
-  Eigen::MatrixXd out(counted_rows(estimate), static_cast<Eigen::Index>(candidate_model.strengths.size()));
+  Eigen::MatrixXd out(counted_rows(estimate), candidate_model.strengths.size());
   Eigen::Index at = 0;
   FilterTrace trace;
   FilterJacobian jacobian;
@@ -192,10 +192,10 @@ Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const Ca
 Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
   FilterRunner runner(forced, false);
   std::vector<double> values = forced.model.values();
-  Eigen::MatrixXd out(counted_rows(estimate), static_cast<Eigen::Index>(candidate_model.strengths.size()));
+  Eigen::MatrixXd out(counted_rows(estimate), candidate_model.strengths.size());
   std::array<FilterTrace, 2> sides;
   for (std::size_t c = 0; c < candidate_model.strengths.size(); ++c) {
-    const auto parameter = static_cast<std::size_t>(candidate_model.strengths[c]);
+    const std::size_t parameter = candidate_model.strengths[c];
     constexpr double share_of_scale = 1e-2;
     const double h = share_of_scale * forced.model.parameters[parameter].scale;
     Eigen::Index row = 0;
@@ -207,7 +207,7 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Cand
         if (!runner.run(data, estimate.noise, sides[side])) return {};
       }
       for (std::size_t at : estimate.jacobians[e].index)
-        out(row++, static_cast<Eigen::Index>(c)) = (sides[0].e[at] - sides[1].e[at]) / (2.0 * h * std::sqrt(estimate.traces[e].S[at]));
+        out(row++, c) = (sides[0].e[at] - sides[1].e[at]) / (2.0 * h * std::sqrt(estimate.traces[e].S[at]));
     }
     values[parameter] = 0.0;
   }
@@ -269,11 +269,9 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
 Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const CandidateModel& candidate_model,
                                     const std::vector<double>& cell) {
   FilterModel forced = with_random_force(candidate_model.model);
-  forced.model.parameters[static_cast<std::size_t>(forced.time_parameter)].value = estimate.noise.force_time;
-  for (std::size_t i = 0; i < candidate_model.shapes.size(); ++i)
-    forced.model.parameters[static_cast<std::size_t>(candidate_model.shapes[i])].value = cell[i];
-  if (cell.size() > candidate_model.shapes.size())
-    forced.model.parameters[static_cast<std::size_t>(candidate_model.frequency)].value = cell.back();
+  forced.model.parameters[forced.time_parameter].value = estimate.noise.force_time;
+  for (std::size_t i = 0; i < candidate_model.shapes.size(); ++i) forced.model.parameters[candidate_model.shapes[i]].value = cell[i];
+  if (cell.size() > candidate_model.shapes.size()) forced.model.parameters[candidate_model.frequency].value = cell.back();
   return candidate_model.family == "sensor" ? columns_of_whole_runs(estimate, candidate_model, forced)
                                             : columns_with_gains_held(estimate, candidate_model, forced);
 }

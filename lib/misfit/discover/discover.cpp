@@ -32,15 +32,15 @@ class Search {
         force_(estimate) {}
 
   Discovery run() {
-    screening_ = screen(estimate_, score_, force_, candidate_models_, options_.threads, part(0.0, end_of_screen));
-    unknown_ = unknown_curves(estimate_, score_, force_, options_.threads, part(end_of_screen, end_of_curves));
+    screening_ = screen(scores(), candidate_models_, part(0.0, end_of_screen));
+    unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
     families_ = static_cast<double>(screening_.size() + unknown_.size());
     rank();
     refit_best();
     if (options_.refits && !ranks().first()) return {};
-    remaining_ = accept_best(ranked_, {estimate_, registry_, experiments_, options_, families_});
+    const auto unexplained = accept_best(ranked_, unknown_, {estimate_, registry_, experiments_, options_, families_});
     list_unknown();
-    describe_search();
+    describe_search(unexplained);
     return std::move(out_);
   }
 
@@ -50,11 +50,10 @@ class Search {
         features_of(estimate_, force_, hats_of_unknown_curves).size() * estimate_.model.system->spec().dynamic_ports.size();
     families_ = static_cast<double>(candidate_models_.size() + curves);
     std::erase_if(candidate_models_, [&](const CandidateModel& s) { return s.effect != options_.only; });
-    screening_ = screen(estimate_, score_, force_, candidate_models_, options_.threads, part(0.0, 1.0));
+    screening_ = screen(scores(), candidate_models_, part(0.0, 1.0));
     rank();
     for (auto& e : ranked_) {
-      if (e.screening->runs && !e.candidate.described)
-        e.candidate.predicted_drop = one_step(estimate_, score_, *e.screening, registry_, options_.threads).drop;
+      if (e.screening->runs && !e.candidate.described) e.candidate.predicted_drop = one_step(refit_work(), score_, *e.screening).drop;
       out_.candidates.push_back(e.candidate);
     }
     return std::move(out_);
@@ -68,11 +67,14 @@ class Search {
   ProgressFn part(double from, double to) const {
     if (!options_.progress) return {};
     return [this, from, to](std::size_t done, std::size_t total) {
-      constexpr double fine = 1000.0;
+      constexpr std::size_t progress_steps = 1000;
       const double share = from + (to - from) * static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(total, 1));
-      options_.progress(static_cast<std::size_t>(fine * share), static_cast<std::size_t>(fine));
+      options_.progress(static_cast<std::size_t>(progress_steps * share), progress_steps);
     };
   }
+
+  ScoreWork scores() const { return {estimate_, score_, force_, options_.threads}; }
+  RefitWork refit_work() const { return {estimate_, experiments_, registry_, options_.threads}; }
 
   void rank() {
     for (const auto& s : screening_) {
@@ -103,8 +105,8 @@ class Search {
     const auto worth_it = [&](const RankedCandidate& e) {
       return !e.candidate.described && e.candidate.p_value <= 5.0 * options_.p_accept && e.candidate.predicted_drop >= 0.5 * best;
     };
-    const auto most = static_cast<std::size_t>(options_.most_refits);
-    const std::size_t count = std::min(most, static_cast<std::size_t>(std::count_if(ranked_.begin(), ranked_.end(), worth_it)));
+    const std::size_t most = options_.most_refits;
+    const std::size_t count = std::min<std::size_t>(most, std::count_if(ranked_.begin(), ranked_.end(), worth_it));
     std::vector<RankedCandidate*> chosen;
     std::vector<const ScreeningResult*> effects;
     for (auto& e : ranked_) {
@@ -113,8 +115,7 @@ class Search {
       chosen.push_back(&e);
       effects.push_back(e.screening);
     }
-    auto refits = refit_all({estimate_, score_, experiments_, registry_}, effects, options_.threads, options_.refits,
-                            part(end_of_curves, end_of_refits), options_.stop);
+    auto refits = refit_all(refit_work(), score_, effects, {options_.refits, part(end_of_curves, end_of_refits), options_.stop});
     if (!refits) throw RunError("discover: stopped before all refits were done");
     for (std::size_t k = 0; k < refits->size(); ++k) {  // none on ranks other than the first
       chosen[k]->candidate.predicted_drop = (*refits)[k].predicted_drop;
@@ -136,7 +137,7 @@ class Search {
     c.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families_);
     c.parameters = e.refit->parameters;
     for (int port : e.refit->estimate.forced.force_ports) {
-      const PortSpec& spec = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
+      const PortSpec& spec = estimate_.model.system->spec().dynamic_ports[port];
       c.force[spec.name] = {e.refit->estimate.noise.force, 0.0, spec.unit};
     }
   }
@@ -156,34 +157,18 @@ class Search {
     rank_candidates(out_.candidates);
   }
 
-  void describe_search() {
+  void describe_search(const std::optional<Unexplained>& unexplained) {
     for (int port : estimate_.forced.force_ports) {
-      const PortSpec& spec = estimate_.model.system->spec().dynamic_ports[static_cast<std::size_t>(port)];
+      const PortSpec& spec = estimate_.model.system->spec().dynamic_ports[port];
       out_.force[spec.name] = {estimate_.noise.force, 0.0, spec.unit};
     }
     for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
     std::string curves = "unknown curves:";
     for (const auto& curve : unknown_) curves += " " + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
-    const std::optional<Unexplained> open = unexplained();
-    write_verdict(out_, open, options_.p_accept, options_.calibration != nullptr);
+    write_verdict(out_, unexplained, options_.p_accept, options_.calibration != nullptr);
     report_sensor_aliases(screening_, score_, out_);
     add_camera_remarks(options_.calibration, options_.p_accept, out_);
-  }
-
-  /// What depends on a quantity in a way that no named effect has.
-  std::optional<Unexplained> unexplained() const {
-    // What an alias leaves is described by its own quantities; a curve that explains more than the alias does is the better description.
-    const bool alias_better = !unknown_.empty() && !ranked_.empty() && ranked_.front().log_p < unknown_.front().log_p;
-    if (remaining_ && (unknown_.empty() || alias_better)) return Unexplained{remaining_->port, remaining_->quantity, remaining_->p_value};
-    if (!out_.candidates.empty() && out_.candidates.front().accepted) return std::nullopt;
-    if (unknown_.empty()) return std::nullopt;
-    const UnknownCurve& best = unknown_.front();
-    const double p = sidak(best.p_value, families_);
-    if (!(p < options_.p_accept)) return std::nullopt;
-    const bool named_better = !ranked_.empty() && ranked_.front().refit && ranked_.front().log_p < best.log_p;
-    if (named_better) return std::nullopt;  // what a known effect explains better is not unknown, though it is not accepted
-    return Unexplained{best.port, best.quantity, p};
   }
 
   const FilterEstimate& estimate_;
@@ -196,7 +181,6 @@ class Search {
   std::vector<ScreeningResult> screening_;
   std::vector<UnknownCurve> unknown_;
   std::vector<RankedCandidate> ranked_;
-  std::optional<UnknownCurve> remaining_;
   double families_ = 1.0;
   Discovery out_;
 };

@@ -23,8 +23,8 @@ struct Even {
 
 /// No places: it is not evenly sampled, or has so many gaps that the transform would be mostly zeros.
 Even even_places(const std::vector<double>& t, double highest) {
-  constexpr double phase = 0.01;  // [rad]: a line loses half of its square of its power
-  constexpr double most_per_sample = 8.0;
+  constexpr double largest_phase_error = 0.01;  // [rad]: a line loses half of its square of its power
+  constexpr double most_grid_steps_per_sample = 8.0;
   Even out;
   if (t.size() < 3) return out;
   std::vector<double> steps;
@@ -33,14 +33,14 @@ Even even_places(const std::vector<double>& t, double highest) {
   Eigen::Index last = 0;
   std::vector<Eigen::Index> place = {0};
   for (const double h : steps) {
-    last += static_cast<Eigen::Index>(std::llround(std::min(h / usual, 1e9)));
-    if (last == place.back() || static_cast<double>(last) > most_per_sample * static_cast<double>(steps.size())) return out;
+    last += std::llround(std::min(h / usual, 1e9));
+    if (last == place.back() || static_cast<double>(last) > most_grid_steps_per_sample * static_cast<double>(steps.size())) return out;
     place.push_back(last);
   }
   const double step = length_of(t) / static_cast<double>(last);
   for (std::size_t k = 0; k < t.size(); ++k) {
     const double off = t[k] - t.front() - step * static_cast<double>(place[k]);
-    if (two_pi * highest * std::abs(off) > phase) return out;
+    if (two_pi * highest * std::abs(off) > largest_phase_error) return out;
   }
   out.step = step;
   out.place = std::move(place);
@@ -51,25 +51,25 @@ using Series = Eigen::Ref<const Eigen::VectorXd>;
 
 void add_by_transform(const Series& lambda, double start, const Even& even, const FrequencyGrid& grid, Eigen::VectorXcd& sum) {
   Eigen::VectorXd series = Eigen::VectorXd::Zero(even.place.back() + 1);
-  for (Eigen::Index k = 0; k < lambda.size(); ++k) series[even.place[static_cast<std::size_t>(k)]] = lambda[k];
+  for (Eigen::Index k = 0; k < lambda.size(); ++k) series[even.place[k]] = lambda[k];
   const Eigen::VectorXcd line = chirp_transform(series, grid.first * even.step, grid.step * even.step, sum.size());
   for (std::size_t f = 0; f < grid.count; ++f) {
-    const auto i = static_cast<Eigen::Index>(f);
+    const Eigen::Index i = f;
     sum[i] += line[i] * std::polar(1.0, two_pi * grid.at(f) * start);
   }
 }
 
 /// Sample by sample: the rotation goes on from one to the next, with its cosine only where the step changes.
 std::complex<double> direct_sum(const Series& lambda, const std::vector<double>& t, double omega) {
-  constexpr std::size_t anew = 512;  // from time to time: the rotation gathers rounding
+  constexpr std::size_t samples_between_exact_phases = 512;  // from time to time: the rotation gathers rounding
   std::complex<double> sum, at, turn;
   double last = -1.0;
   for (std::size_t k = 0; k < t.size(); ++k) {
     const double h = k == 0 ? 0.0 : t[k] - t[k - 1];
     if (h != last) turn = std::polar(1.0, omega * h);
     last = h;
-    at = k % anew == 0 ? std::polar(1.0, omega * t[k]) : at * turn;
-    sum += lambda[static_cast<Eigen::Index>(k)] * at;
+    at = k % samples_between_exact_phases == 0 ? std::polar(1.0, omega * t[k]) : at * turn;
+    sum += lambda[k] * at;
   }
   return sum;
 }
@@ -88,27 +88,27 @@ FrequencyGrid frequency_grid(const SampleTimes& times, double from, double to, s
   for (const auto& t : times) {
     if (even_places(t, grid.wanted).place.empty()) uneven += t.size();
   }
-  constexpr double most_turns = 4e9;  // some 10 s of work
-  const double affordable = most_turns / static_cast<double>(std::max<std::size_t>(uneven * series, 1));
+  constexpr double most_rotations = 4e9;  // some 10 s of work
+  const double affordable = most_rotations / static_cast<double>(std::max<std::size_t>(uneven * series, 1));
   grid.count = static_cast<std::size_t>(std::clamp((grid.wanted - grid.first) / grid.step, 0.0, affordable));
   return grid;
 }
 
 std::vector<double> periodogram(const Eigen::VectorXd& lambda, const SampleTimes& times, const FrequencyGrid& grid) {
-  Eigen::VectorXcd sum = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(grid.count));
+  Eigen::VectorXcd sum = Eigen::VectorXcd::Zero(grid.count);
   Eigen::Index from = 0;
   for (const auto& t : times) {
-    const auto own = lambda.segment(from, static_cast<Eigen::Index>(t.size()));
+    const auto own = lambda.segment(from, t.size());
     from += own.size();
     const Even even = even_places(t, grid.wanted);
     if (!even.place.empty()) {
       add_by_transform(own, t.front(), even, grid, sum);
       continue;
     }
-    for (std::size_t f = 0; f < grid.count; ++f) sum[static_cast<Eigen::Index>(f)] += direct_sum(own, t, two_pi * grid.at(f));
+    for (std::size_t f = 0; f < grid.count; ++f) sum[f] += direct_sum(own, t, two_pi * grid.at(f));
   }
   std::vector<double> out(grid.count);
-  for (std::size_t f = 0; f < grid.count; ++f) out[f] = std::norm(sum[static_cast<Eigen::Index>(f)]);
+  for (std::size_t f = 0; f < grid.count; ++f) out[f] = std::norm(sum[f]);
   return out;
 }
 
@@ -116,8 +116,8 @@ void add_over_background(const std::vector<double>& line, std::vector<double>& p
   const std::size_t count = line.size(), reach = std::max<std::size_t>(40, count / 40);
   const std::size_t stride = std::max<std::size_t>(reach / 40, 1);  // the median changes slowly: straight lines between
   const auto background = [&](std::size_t f) {
-    const auto from = static_cast<std::ptrdiff_t>(f > reach ? f - reach : 0);
-    const auto to = static_cast<std::ptrdiff_t>(std::min(count, f + reach));
+    const std::ptrdiff_t from = f > reach ? f - reach : 0;
+    const std::ptrdiff_t to = std::min(count, f + reach);
     return std::max(median({line.begin() + from, line.begin() + to}), 1e-300);
   };
   for (std::size_t from = 0; from < count; from += stride) {

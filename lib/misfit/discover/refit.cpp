@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/lists.h"
 
 namespace misfit {
 namespace {
@@ -59,6 +60,27 @@ std::vector<std::vector<SampleRole>> without_last_quarter(const FilterEstimate& 
   return out;
 }
 
+/// Of the effect, which is the model's last.
+std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estimate, const ScreeningResult& screening) {
+  std::map<std::string, Estimate> out;
+  const CandidateModel& candidate_model = *screening.candidate_model;
+  const std::vector<int> free = estimate.model.free_parameters();
+  const BoundEffect& bound = estimate.model.effects.back();
+  for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
+    const int at = bound.coefficients[c].parameter;
+    if (at < 0 || bound.effect->spec().coefficients[c].shared) continue;
+    const int column = place_of(free, at), strength = place_of(candidate_model.strengths, at);
+    const bool known = column >= 0 && estimate.covariance.size() > 0;
+    double sigma = known ? std::sqrt(std::max(estimate.covariance(column, column), 0.0)) : 0.0;
+    // With the gains held the covariance believes too much of a sensor effect (sensitivity_columns): the screen's is from whole runs.
+    const bool screened = strength >= 0 && strength < screening.result.sigma.size();
+    if (candidate_model.family == "sensor" && screened) sigma = screening.result.sigma[strength];
+    const Parameter& p = estimate.model.parameters[at];
+    out[p.name] = {p.value, sigma, p.unit};
+  }
+  return out;
+}
+
 }  // namespace
 
 Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry) {
@@ -69,8 +91,8 @@ Model start_model(const FilterEstimate& without, const ScreeningResult& screenin
     model.parameters[i].free = without.model.parameters[i].free;
   }
   for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i) {
-    Parameter& p = model.parameters[static_cast<std::size_t>(candidate_model.strengths[i])];
-    const auto k = static_cast<Eigen::Index>(i);
+    Parameter& p = model.parameters[candidate_model.strengths[i]];
+    const Eigen::Index k = i;
     p.value = std::clamp(screening.result.amplitude[k], p.lower, p.upper);
     p.free = true;
     if (candidate_model.priors.precision[k] > 0.0) {
@@ -80,19 +102,19 @@ Model start_model(const FilterEstimate& without, const ScreeningResult& screenin
   }
   for (std::size_t i = 0; i < screening.cell.size(); ++i) {
     const int shape = i < candidate_model.shapes.size() ? candidate_model.shapes[i] : candidate_model.frequency;
-    model.parameters[static_cast<std::size_t>(shape)].value = screening.cell[i];
+    model.parameters[shape].value = screening.cell[i];
   }
   return model;
 }
 
-OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const ScreeningResult& screening, const Registry& registry,
-                 int threads) {
-  Model model = start_model(without, screening, registry);
+OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningResult& screening) {
+  const FilterEstimate& without = work.without;
+  Model model = start_model(without, screening, work.registry);
   const Eigen::VectorXd step = score.adjusted_step(screening.columns, screening.result.amplitude);
   const std::vector<int> free = without.model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c) {
-    Parameter& p = model.parameters[static_cast<std::size_t>(free[c])];
-    p.value = std::clamp(p.value + step[static_cast<Eigen::Index>(c)], p.lower, p.upper);
+    Parameter& p = model.parameters[free[c]];
+    p.value = std::clamp(p.value + step[c], p.lower, p.upper);
   }
   FilterModel forced = with_random_force(model);
   forced.set_force_time(without.noise.force_time);
@@ -105,7 +127,7 @@ OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Sc
     if (!runner.run(data[e], without.noise, traces[e])) return {screening.result.chi2, std::nullopt, {}};
   }
   constexpr int steps_of_noise = 3;
-  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, without.around, threads, steps_of_noise);
+  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, without.around, work.threads, steps_of_noise);
   const double objective = -noise.minus_loglik + log_prior(model, same_roughness(model, without));
   const double drop = 2.0 * (objective - without.objective - prior_of_off(*screening.candidate_model));
   OneStep out{std::max(drop, screening.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing
@@ -113,15 +135,15 @@ OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const Sc
   return out;
 }
 
-Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const ScreeningResult& screening,
-            const Registry& registry, int threads, const OneStep& from) {
+Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from) {
+  const FilterEstimate& without = work.without;
   Refit out;
   out.request = screening.candidate_model->request;
   const auto climb = [&](const Model& start, const FilterNoise& noise) {
-    FilterOptions options = like(without, threads);
+    FilterOptions options = like(without, work.threads);
     options.noise = noise;
     try {
-      FilterEstimate there = estimate_filter(start, same_roughness(start, without), experiments, options);
+      FilterEstimate there = estimate_filter(start, same_roughness(start, without), work.experiments, options);
       if (!out.ok || better(there, out.estimate)) out.estimate = std::move(there);
       out.ok = true;
     } catch (const RunError& error) {
@@ -129,25 +151,11 @@ Refit refit(const FilterEstimate& without, const std::vector<Signals>& experimen
     }
   };
   if (from.model) climb(*from.model, from.noise);
-  if (!out.ok || !out.estimate.converged) climb(start_model(without, screening, registry), without.noise);
+  if (!out.ok || !out.estimate.converged) climb(start_model(without, screening, work.registry), without.noise);
   if (!out.ok) return out;
   out.drop = 2.0 * (out.estimate.objective + still_to_gain(out.estimate) - without.objective - still_to_gain(without) -
                     prior_of_off(*screening.candidate_model));
-  const std::vector<int> free = out.estimate.model.free_parameters();
-  const BoundEffect& bound = out.estimate.model.effects.back();
-  for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
-    const int at = bound.coefficients[c].parameter;
-    if (at < 0 || bound.effect->spec().coefficients[c].borrowed) continue;
-    const Parameter& p = out.estimate.model.parameters[static_cast<std::size_t>(at)];
-    const auto column = std::find(free.begin(), free.end(), at) - free.begin();
-    const bool known = column < static_cast<std::ptrdiff_t>(free.size()) && out.estimate.covariance.size() > 0;
-    double sigma = known ? std::sqrt(std::max(out.estimate.covariance(column, column), 0.0)) : 0.0;
-    // With the gains held the covariance believes too much of a sensor effect (sensitivity_columns): the screen's is from whole runs.
-    const auto strength = std::find(screening.candidate_model->strengths.begin(), screening.candidate_model->strengths.end(), at);
-    const auto place = strength - screening.candidate_model->strengths.begin();
-    if (screening.candidate_model->family == "sensor" && place < screening.result.sigma.size()) sigma = screening.result.sigma[place];
-    out.parameters[p.name] = {p.value, sigma, p.unit};
-  }
+  out.parameters = parameters_of_effect(out.estimate, screening);
   return out;
 }
 

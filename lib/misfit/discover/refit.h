@@ -16,6 +16,14 @@ struct Refit {
   std::map<std::string, Estimate> parameters;  ///< of the effect
 };
 
+/// What refits have in common.
+struct RefitWork {
+  const FilterEstimate& without;
+  const std::vector<Signals>& experiments;
+  const Registry& registry;
+  int threads = 0;
+};
+
 /// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
 [[nodiscard]] Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry);
 
@@ -26,13 +34,11 @@ struct OneStep {
   std::optional<Model> model;  ///< where it ended; nullopt: it could not be run, or is no better than the estimate
   FilterNoise noise;           ///< there
 };
-[[nodiscard]] OneStep one_step(const FilterEstimate& without, const ScoreTest& score, const ScreeningResult& screening,
-                               const Registry& registry, int threads);
+[[nodiscard]] OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningResult& screening);
 
 /// `from`: where to start, if it ended anywhere. Where no maximum is reached from there, and without it: from the estimate with the effect
 /// added to it, which an effect that the other parameters must make room for can throw out of the finite numbers.
-[[nodiscard]] Refit refit(const FilterEstimate& without, const std::vector<Signals>& experiments, const ScreeningResult& screening,
-                          const Registry& registry, int threads, const OneStep& from = {});
+[[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// Gain of the held-out log-likelihood. Where the study holds nothing out, both models are fitted again without the last quarter of every
 /// experiment, and judged on it.

@@ -16,9 +16,9 @@ void fields(Bytes& bytes, Data& estimate) {
 
 namespace {
 
-SteppedRefit stepped(const RefitWork& work, const ScreeningResult& effect, int threads) {
-  const OneStep step = one_step(work.without, work.score, effect, work.registry, threads);
-  return {step.drop, refit(work.without, work.experiments, effect, work.registry, threads, step)};
+SteppedRefit stepped(const RefitWork& work, const ScoreTest& score, const ScreeningResult& effect) {
+  const OneStep step = one_step(work, score, effect);
+  return {step.drop, refit(work, effect, step)};
 }
 
 }  // namespace
@@ -46,24 +46,24 @@ SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const S
   return out;
 }
 
-std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const std::vector<const ScreeningResult*>& effects, int threads,
-                                                   const std::optional<StoredJobs>& stored, const ProgressFn& progress,
-                                                   const std::atomic<bool>* stop) {
-  const int within = effects.size() > 1 || ranks_started() > 1 ? 1 : threads;
-  const auto one = [&](std::size_t k) { return stepped(work, *effects[k], within); };
+std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const ScoreTest& score,
+                                                   const std::vector<const ScreeningResult*>& effects, const RefitJobs& jobs) {
+  const int within = effects.size() > 1 || ranks_started() > 1 ? 1 : work.threads;
+  const RefitWork each{work.without, work.experiments, work.registry, within};
+  const auto one = [&](std::size_t k) { return stepped(each, score, *effects[k]); };
   std::vector<SteppedRefit> out;
-  if (!stored) {
+  if (!jobs.stored) {
     out.resize(effects.size());
     if (!run_jobs(
-            out.size(), threads, [&](std::size_t k) { out[k] = one(k); }, progress, stop))
+            out.size(), work.threads, [&](std::size_t k) { out[k] = one(k); }, jobs.progress, jobs.stop))
       return std::nullopt;
     return out;
   }
-  StoredJobs all = *stored;
+  StoredJobs all = *jobs.stored;
   all.count = effects.size();
-  all.threads = threads;
+  all.threads = work.threads;
   const auto results = run_stored_jobs(
-      all, [&](std::size_t k) { return pack(one(k), *effects[k]); }, progress, stop);
+      all, [&](std::size_t k) { return pack(one(k), *effects[k]); }, jobs.progress, jobs.stop);
   if (!results) return std::nullopt;
   if (!ranks().first()) return out;
   for (std::size_t k = 0; k < effects.size(); ++k) out.push_back(unpack_refit(results->result(k), work, *effects[k]));

@@ -15,21 +15,20 @@ struct SteppedRefit {
   Refit refit;
 };
 
-/// What refits have in common.
-struct RefitWork {
-  const FilterEstimate& without;
-  const ScoreTest& score;
-  const std::vector<Signals>& experiments;
-  const Registry& registry;
+/// Where the results are kept, and how the work is watched.
+struct RefitJobs {
+  std::optional<StoredJobs> stored = std::nullopt;
+  ProgressFn progress = {};
+  const std::atomic<bool>* stop = nullptr;
 };
 
 /// A job each, in the order of `effects`; the answer does not depend on threads and ranks.
 ///
 /// With `stored` (its `count` follows from the effects) each is on disk when it ends and the ranks share them (run_stored_jobs()): a search
 /// begun again goes on; on ranks other than the first the answer is empty. nullopt if `stop` became true before all were done.
-[[nodiscard]] std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const std::vector<const ScreeningResult*>& effects,
-                                                                 int threads, const std::optional<StoredJobs>& stored,
-                                                                 const ProgressFn& progress = {}, const std::atomic<bool>* stop = nullptr);
+[[nodiscard]] std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const ScoreTest& score,
+                                                                 const std::vector<const ScreeningResult*>& effects,
+                                                                 const RefitJobs& jobs = {});
 
 /// To the last bit, and back beside what it was made of. RunError: the bytes are of another refit.
 [[nodiscard]] std::string pack(const SteppedRefit& result, const ScreeningResult& effect);

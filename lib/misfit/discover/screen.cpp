@@ -65,7 +65,7 @@ void refine_cell(const FilterEstimate& estimate, const ScoreTest& score, Screeni
   constexpr double fractions[] = {0.5, 0.25};
   for (const double fraction : fractions) {
     for (std::size_t i = 0; i < candidate_model.shapes.size(); ++i) {
-      const Parameter& p = candidate_model.model.parameters[static_cast<std::size_t>(candidate_model.shapes[i])];
+      const Parameter& p = candidate_model.model.parameters[candidate_model.shapes[i]];
       const std::vector<double> middle = best.cell;
       const double between[] = {neighbour(candidate_model, i, grid[i], -1.0), neighbour(candidate_model, i, grid[i], 1.0)};
       for (const double to : between) {
@@ -84,14 +84,14 @@ void refine_cell(const FilterEstimate& estimate, const ScoreTest& score, Screeni
 
 /// The strongest of the lines, as frequencies.
 std::vector<double> peaks(const FrequencyGrid& grid, const std::vector<double>& power) {
-  constexpr std::size_t most = 8;
+  constexpr std::size_t most_frequencies = 8;
   std::vector<std::size_t> order(grid.count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto first = static_cast<std::ptrdiff_t>(std::min(grid.count, most));
+  const std::ptrdiff_t first = std::min(grid.count, most_frequencies);
   std::partial_sort(order.begin(), order.begin() + first, order.end(),
                     [&](std::size_t a, std::size_t b) { return power[a] != power[b] ? power[a] > power[b] : a < b; });
   std::vector<double> out;
-  for (std::ptrdiff_t i = 0; i < first; ++i) out.push_back(grid.at(order[static_cast<std::size_t>(i)]));
+  for (std::ptrdiff_t i = 0; i < first; ++i) out.push_back(grid.at(order[i]));
   return out;
 }
 
@@ -100,8 +100,8 @@ std::vector<double> frequency_peaks(const FilterEstimate& estimate, const Candid
                                     FrequencyGrid& grid) {
   SampleTimes times;
   for (std::size_t e = 0, from = 0; e < estimate.traces.size(); from += estimate.traces[e++].samples) {
-    const auto first = force.times().begin() + static_cast<std::ptrdiff_t>(from);
-    times.emplace_back(first, first + static_cast<std::ptrdiff_t>(estimate.traces[e].samples));
+    const auto first = force.times().begin() + from;
+    times.emplace_back(first, first + estimate.traces[e].samples);
   }
   grid = frequency_grid(times, candidate_model.frequency_from, candidate_model.frequency_to, candidate_model.ports.size());
   std::vector<double> power(grid.count, 0.0);
@@ -132,26 +132,26 @@ double log_chi_square_tail(double x, double dof) {
   return (0.5 * dof - 1.0) * std::log(0.5 * x) - 0.5 * x - std::lgamma(0.5 * dof);
 }
 
-std::vector<ScreeningResult> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
-                                    const std::vector<CandidateModel>& candidate_models, int threads, const ProgressFn& progress) {
+std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<CandidateModel>& candidate_models,
+                                    const ProgressFn& progress) {
   std::vector<ScreeningResult> out(candidate_models.size());
   std::vector<std::vector<std::vector<double>>> cells(candidate_models.size());
   std::vector<FrequencyGrid> frequencies(candidate_models.size());
   std::vector<std::pair<std::size_t, std::size_t>> jobs;  // candidate model, cell
   for (std::size_t s = 0; s < candidate_models.size(); ++s) {
-    cells[s] = cells_of(estimate, candidate_models[s], force, frequencies[s]);
+    cells[s] = cells_of(work.estimate, candidate_models[s], work.force, frequencies[s]);
     for (std::size_t c = 0; c < cells[s].size(); ++c) jobs.emplace_back(s, c);
   }
   std::vector<std::vector<CellScore>> results;
   for (const auto& own : cells) results.emplace_back(own.size());
   run_jobs(
-      jobs.size(), threads,
+      jobs.size(), work.threads,
       [&](std::size_t j) {
         const auto [s, c] = jobs[j];
-        results[s][c] = score_cell(estimate, score, candidate_models[s], cells[s][c]);
+        results[s][c] = score_cell(work.estimate, work.score, candidate_models[s], cells[s][c]);
       },
       progress);
-  run_jobs(candidate_models.size(), threads, [&](std::size_t s) {
+  run_jobs(candidate_models.size(), work.threads, [&](std::size_t s) {
     ScreeningResult& best = out[s];
     best.candidate_model = &candidate_models[s];
     best.runs = false;
@@ -165,7 +165,7 @@ std::vector<ScreeningResult> screen(const FilterEstimate& estimate, const ScoreT
         best.columns = cell.columns;
       }
       best.runs = true;
-      if (c > 0 && candidate_models[s].frequency < 0) best.cells_effective += novelty(score, results[s][c - 1].columns, cell.columns);
+      if (c > 0 && candidate_models[s].frequency < 0) best.cells_effective += novelty(work.score, results[s][c - 1].columns, cell.columns);
     }
     if (candidate_models[s].frequency >= 0) {
       best.frequencies = frequencies[s];
@@ -175,7 +175,7 @@ std::vector<ScreeningResult> screen(const FilterEstimate& estimate, const ScoreT
     constexpr double worth_refining = 0.1;
     if (!candidate_models[s].shapes.empty() &&
         sidak(chi_square_tail(best.result.chi2, best.result.dof), best.cells_effective) < worth_refining)
-      refine_cell(estimate, score, best);
+      refine_cell(work.estimate, work.score, best);
     best.log_p = log_score_tail(candidate_models[s], best.result.chi2);
     best.p_value = sidak(std::exp(best.log_p), best.cells_effective);
     best.log_p += std::log(best.cells_effective);
@@ -183,10 +183,9 @@ std::vector<ScreeningResult> screen(const FilterEstimate& estimate, const ScoreT
   return out;
 }
 
-std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force, int threads,
-                                         const ProgressFn& progress) {
-  const std::vector<Features> features = features_of(estimate, force, hats_of_unknown_curves);
-  const auto& ports = estimate.model.system->spec().dynamic_ports;
+std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress) {
+  const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
+  const auto& ports = work.estimate.model.system->spec().dynamic_ports;
   std::vector<UnknownCurve> out(features.size() * ports.size());
   const auto test = [&](std::size_t k) {
     const Features& f = features[k / ports.size()];
@@ -195,12 +194,12 @@ std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const S
     curve.port = ports[k % ports.size()].name;
     curve.quantity = f.quantity;
     curve.quantity_index = f.index;
-    curve.result = score.test(force.columns(curve.port_index, f.f, f.ahead));
+    curve.result = work.score.test(work.force.columns(curve.port_index, f.f, f.ahead));
     if (curve.result.dof == 0) return;
     curve.log_p = log_chi_square_tail(curve.result.chi2, curve.result.dof);
     curve.p_value = std::exp(curve.log_p);
   };
-  run_jobs(out.size(), threads, test, progress);
+  run_jobs(out.size(), work.threads, test, progress);
   return out;
 }
 

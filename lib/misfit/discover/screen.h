@@ -30,10 +30,17 @@ struct ScreeningResult {
   FrequencyGrid frequencies;  ///< that were scanned; none where it has no frequency
 };
 
+/// An estimate, and what score tests of it need.
+struct ScoreWork {
+  const FilterEstimate& estimate;
+  const ScoreTest& score;
+  const ForceSensitivity& force;
+  int threads = 0;
+};
+
 /// Score tests of all cells of all candidate models. Frequencies are scanned in steps of 1/(4T) by their line in the score of the force
 /// steps (frequency_grid), and the strongest are then tested exactly. Independent of the number of threads.
-[[nodiscard]] std::vector<ScreeningResult> screen(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
-                                                  const std::vector<CandidateModel>& candidate_models, int threads,
+[[nodiscard]] std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<CandidateModel>& candidate_models,
                                                   const ProgressFn& progress = {});
 
 /// Hats per quantity of the unknown curves.
@@ -50,8 +57,7 @@ struct UnknownCurve {
   ScoreResult result;
   double log_p = 0.0, p_value = 1.0;
 };
-[[nodiscard]] std::vector<UnknownCurve> unknown_curves(const FilterEstimate& estimate, const ScoreTest& score,
-                                                       const ForceSensitivity& force, int threads, const ProgressFn& progress = {});
+[[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
 
 /// log P(chi² > x), accurate where the probability underflows.
 [[nodiscard]] double log_chi_square_tail(double x, double dof);

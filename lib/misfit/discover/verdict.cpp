@@ -106,11 +106,11 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 }
 
 std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths) {
-  constexpr double close = 1e-3;
+  constexpr double at_bound_in_scales = 1e-3;
   for (const int index : strengths) {
-    const Parameter& p = model.parameters[static_cast<std::size_t>(index)];
+    const Parameter& p = model.parameters[index];
     for (const double bound : {p.lower, p.upper}) {
-      if (bound == 0.0 || !std::isfinite(bound) || std::abs(p.value - bound) > close * p.scale) continue;
+      if (bound == 0.0 || !std::isfinite(bound) || std::abs(p.value - bound) > at_bound_in_scales * p.scale) continue;
       return "its strength " + p.name + " ends at its bound " + in_display_unit(bound, p.unit);
     }
   }
@@ -121,8 +121,8 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
   if (calibration == nullptr) return;
   std::vector<std::string> wanted;
   for (const auto& test : calibration->tests) {
-    constexpr double clear = 1e-3;
-    if (!test.selected && test.p_value < clear) wanted.push_back(test.name);
+    constexpr double p_of_wanted_parameter = 1e-3;
+    if (!test.selected && test.p_value < p_of_wanted_parameter) wanted.push_back(test.name);
   }
   if (wanted.empty()) return;
   out.sweep_asks = wanted;

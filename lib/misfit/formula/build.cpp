@@ -3,6 +3,7 @@
 #include <map>
 #include <numbers>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 
 namespace misfit::formula {
@@ -21,9 +22,9 @@ class Builder {
       : syntax_(syntax), names_(names), g_(graph), origin_(origin) {}
 
   Meaning run() {
-    for (std::size_t i = 0; i < syntax_.nodes.size(); ++i) {
+    for (int i = 0; i < int_size(syntax_.nodes); ++i) {
       at_ = &syntax_.nodes[i];
-      g_.set_origin(origin_ + static_cast<int>(i));
+      g_.set_origin(origin_ + i);
       made_.push_back(one());
     }
     g_.set_origin(-1);
@@ -32,13 +33,13 @@ class Builder {
 
  private:
   [[noreturn]] void fail(const std::string& message) const { syntax_.source.fail(at_->begin, at_->end, message); }
-  const Meaning& arg(std::size_t k) const { return made_[static_cast<std::size_t>(at_->arguments[k])]; }
+  const Meaning& arg(std::size_t k) const { return made_[at_->arguments[k]]; }
   std::string shown(std::size_t k) const {
-    const Expression& e = syntax_.nodes[static_cast<std::size_t>(at_->arguments[k])];
+    const Expression& e = syntax_.nodes[at_->arguments[k]];
     constexpr std::size_t longest = 40;
-    std::string part = syntax_.source.text.substr(static_cast<std::size_t>(e.begin), static_cast<std::size_t>(e.end - e.begin));
+    std::string part = syntax_.source.text.substr(e.begin, e.end - e.begin);
     if (part.size() > longest) part = part.substr(0, longest - 3) + "...";
-    const Measure& m = made_[static_cast<std::size_t>(at_->arguments[k])].measure;
+    const Measure& m = made_[at_->arguments[k]].measure;
     return "'" + part + "' " + (m.truth ? "(a condition)" : "[" + m.text() + "]");
   }
 
@@ -176,7 +177,7 @@ class Builder {
 Meaning build(const Syntax& syntax, const Names& names, Graph& graph, int origin) { return Builder(syntax, names, graph, origin).run(); }
 
 void check_unit(const Syntax& syntax, const Meaning& found, const Measure& wanted, const std::string& of) {
-  const int end = static_cast<int>(syntax.source.text.size());
+  const int end = int_size(syntax.source.text);
   if (found.measure.truth) syntax.source.fail(0, end, "a number is needed, this is a condition");
   if (!found.measure.fits(wanted))
     syntax.source.fail(0, end, "it has [" + found.measure.text() + "], " + of + " needs [" + wanted.text() + "]");

@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "misfit/core/lists.h"
 #include "misfit/formula/graph.h"
 
 namespace misfit::formula {
@@ -8,17 +9,16 @@ namespace {
 /// One reverse sweep: adjoints are nodes of the same graph.
 class Sweep {
  public:
-  Sweep(Graph& graph, int out, bool steepest)
-      : g_(graph), steepest_(steepest), adjoint_(static_cast<std::size_t>(out) + 1, -1), masked_(adjoint_.size(), 0) {
+  Sweep(Graph& graph, int out, bool steepest) : g_(graph), steepest_(steepest), adjoint_(out + 1, -1), masked_(adjoint_.size(), 0) {
     adjoint_.back() = g_.constant(1.0);
   }
 
   void run() {
-    for (int n = static_cast<int>(adjoint_.size()) - 1; n >= 0; --n) {
+    for (int n = int_size(adjoint_) - 1; n >= 0; --n) {
       const int seed = adjoint(n);
       if (seed < 0 || g_.is(seed, 0.0)) continue;
       seed_ = seed;
-      mask_ = masked_[static_cast<std::size_t>(n)];
+      mask_ = masked_[n];
       const Node at = g_.node(n);
       if (arity(at.op) == 1) {
         unary(n, at);
@@ -27,13 +27,13 @@ class Sweep {
       }
     }
   }
-  int adjoint(int n) const { return n < static_cast<int>(adjoint_.size()) ? adjoint_[static_cast<std::size_t>(n)] : -1; }
+  int adjoint(int n) const { return n < int_size(adjoint_) ? adjoint_[n] : -1; }
 
  private:
   void push(int to, int value) {
-    int& sum = adjoint_[static_cast<std::size_t>(to)];
+    int& sum = adjoint_[to];
     sum = sum < 0 ? value : g_.add(sum, value);
-    masked_[static_cast<std::size_t>(to)] = static_cast<char>(masked_[static_cast<std::size_t>(to)] | mask_);
+    masked_[to] = static_cast<char>(masked_[to] | mask_);
   }
   /// seed · local; a branch that is not taken must not bring in what is not finite there.
   int times(int local) { return mask_ != 0 ? g_.make(Op::gate, seed_, local) : g_.mul(seed_, local); }

@@ -110,38 +110,38 @@ int Graph::whole_power(int a, int power) {
 }
 
 int Graph::pow(int a, int b) {
-  constexpr double most = 16.0;
+  constexpr double largest_whole_power = 16.0;
   if (!is_constant(b) || is_constant(a)) return make(Op::pow, a, b);
   const double power = node(b).value;
   if (power == 0.0) return constant(1.0);
   if (power == 0.5) return make(Op::sqrt, a);
-  if (power != std::round(power) || std::abs(power) > most) return make(Op::pow, a, b);
+  if (power != std::round(power) || std::abs(power) > largest_whole_power) return make(Op::pow, a, b);
   const int product = whole_power(a, static_cast<int>(std::abs(power)));
   return power > 0.0 ? product : div(constant(1.0), product);
 }
 
 std::vector<int> Graph::leaves_of(int i) const {
-  std::vector<char> reached(static_cast<std::size_t>(i) + 1, 0);
+  std::vector<char> reached(i + 1, 0);
   reached.back() = 1;
   std::vector<int> out;
   for (int n = i; n >= 0; --n) {
-    if (reached[static_cast<std::size_t>(n)] == 0) continue;
+    if (reached[n] == 0) continue;
     const Node& at = node(n);
     if (at.op == Op::leaf) out.push_back(at.a);
     const int count = arity(at.op);
-    if (count > 0) reached[static_cast<std::size_t>(at.a)] = 1;
-    if (count > 1) reached[static_cast<std::size_t>(at.b)] = 1;
-    if (count > 2) reached[static_cast<std::size_t>(at.c)] = 1;
+    if (count > 0) reached[at.a] = 1;
+    if (count > 1) reached[at.b] = 1;
+    if (count > 2) reached[at.c] = 1;
   }
   return out;
 }
 
 int Graph::substitute(int i, int number, int by) {
-  std::vector<int> image(static_cast<std::size_t>(i) + 1);
+  std::vector<int> image(i + 1);
   for (int n = 0; n <= i; ++n) {
     const Node at = node(n);  // a copy: nodes are added
-    const auto of = [&](int k) { return image[static_cast<std::size_t>(k)]; };
-    int& to = image[static_cast<std::size_t>(n)];
+    const auto of = [&](int k) { return image[k]; };
+    int& to = image[n];
     if (at.op == Op::constant) {
       to = n;
     } else if (at.op == Op::leaf) {

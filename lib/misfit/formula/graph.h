@@ -8,6 +8,8 @@
 
 // Formulas as a graph in which every value is computed once: constants are folded, common parts shared, derivatives are further nodes.
 
+#include "misfit/core/lists.h"
+
 namespace misfit::formula {
 
 enum class Op : std::uint8_t {
@@ -167,8 +169,8 @@ class Graph {
   /// a^b. Whole powers to 16 become products, halves roots.
   int pow(int a, int b);
 
-  [[nodiscard]] const Node& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] int size() const { return static_cast<int>(nodes_.size()); }
+  [[nodiscard]] const Node& node(int i) const { return nodes_[i]; }
+  [[nodiscard]] int size() const { return int_size(nodes_); }
   [[nodiscard]] bool is(int i, double value) const { return node(i).op == Op::constant && node(i).value == value; }
   [[nodiscard]] bool is_constant(int i) const { return node(i).op == Op::constant; }
   /// Nodes made from now on have this origin.

@@ -8,39 +8,37 @@
 namespace misfit::formula {
 
 Program::Program(const Graph& graph, const std::vector<int>& roots, int leaves) : registers_(leaves) {
-  std::vector<char> needed(static_cast<std::size_t>(graph.size()), 0);
-  for (int root : roots) needed[static_cast<std::size_t>(root)] = 1;
+  std::vector<char> needed(graph.size(), 0);
+  for (int root : roots) needed[root] = 1;
   for (int n = graph.size() - 1; n >= 0; --n) {
-    if (needed[static_cast<std::size_t>(n)] == 0) continue;
+    if (needed[n] == 0) continue;
     const Node& node = graph.node(n);
     const int count = arity(node.op);
-    if (count > 0) needed[static_cast<std::size_t>(node.a)] = 1;
-    if (count > 1) needed[static_cast<std::size_t>(node.b)] = 1;
-    if (count > 2) needed[static_cast<std::size_t>(node.c)] = 1;
+    if (count > 0) needed[node.a] = 1;
+    if (count > 1) needed[node.b] = 1;
+    if (count > 2) needed[node.c] = 1;
   }
   std::vector<std::uint16_t> place(needed.size(), 0);
   for (int n = 0; n < graph.size(); ++n) {
-    if (needed[static_cast<std::size_t>(n)] == 0) continue;
+    if (needed[n] == 0) continue;
     const Node& node = graph.node(n);
     if (node.op == Op::leaf) {
-      place[static_cast<std::size_t>(n)] = static_cast<std::uint16_t>(node.a);
+      place[n] = static_cast<std::uint16_t>(node.a);
       continue;
     }
     if (registers_ >= kMaxRegisters)
       throw InputError("the formulas together need more than " + std::to_string(kMaxRegisters) + " operations: they are too long");
     const auto at = static_cast<std::uint16_t>(registers_++);
-    place[static_cast<std::size_t>(n)] = at;
+    place[n] = at;
     if (node.op == Op::constant) {
       constants_.push_back({at, node.value});
       continue;
     }
     const int count = arity(node.op);
-    const auto register_of = [&](int k, bool used) {
-      return used ? place[static_cast<std::size_t>(k)] : place[static_cast<std::size_t>(node.a)];
-    };
+    const auto register_of = [&](int k, bool used) { return used ? place[k] : place[node.a]; };
     steps_.push_back({node.op, register_of(node.a, true), register_of(node.b, count > 1), register_of(node.c, count > 2), at, n});
   }
-  for (int root : roots) places_.push_back(place[static_cast<std::size_t>(root)]);
+  for (int root : roots) places_.push_back(place[root]);
 }
 
 const Program::Step* Program::culprit(std::size_t root, const double* registers) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 
 namespace misfit::formula {
@@ -74,7 +75,7 @@ class Lexer {
   Token number() {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-    Token token = cut(Token::Kind::number, static_cast<std::size_t>(end - text_.data()) - at_);
+    Token token = cut(Token::Kind::number, end - text_.data() - at_);
     token.value = value;
     if (error != std::errc() || !std::isfinite(value)) source_.fail(token.begin, token.end, "this number is out of range");
     return token;
@@ -111,7 +112,7 @@ class Parser {
 
   Syntax run() {
     const auto length = out_.source.text.size();
-    if (length > static_cast<std::size_t>(kMaxLength)) {
+    if (length > kMaxLength) {
       out_.source.fail(0, 0,
                        "the formula has " + std::to_string(length) + " characters; at most " + std::to_string(kMaxLength) +
                            " are possible: split it with [quantities]");
@@ -138,7 +139,7 @@ class Parser {
 
   int add(Expression::Kind kind, std::string text, std::vector<int> arguments, int begin, double value = 0.0) {
     out_.nodes.push_back({kind, value, std::move(text), std::move(arguments), begin, last_end()});
-    return static_cast<int>(out_.nodes.size()) - 1;
+    return int_size(out_.nodes) - 1;
   }
 
   static int strength_of(const Token& token) {
@@ -245,7 +246,7 @@ void Text::fail(int begin, int end, const std::string& message) const {
   if (place.column > 0 && text.find('\n') == std::string::npos) place.column += begin;
   constexpr std::size_t longest = 60;
   const auto shortened = [](const std::string& part) { return part.size() > longest ? part.substr(0, longest - 3) + "..." : part; };
-  const std::string part = shortened(text.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(std::max(end - begin, 0))));
+  const std::string part = shortened(text.substr(begin, std::max(end - begin, 0)));
   throw InputError(place, of + (part.empty() ? "" : ", '" + shown(part) + "'") + ": " + message);
 }
 

@@ -12,8 +12,8 @@
 
 namespace misfit::formula {
 
-inline constexpr int kMaxDepth = 200;    ///< of parentheses, calls, signs and powers inside each other
-inline constexpr int kMaxLength = 4096;  ///< characters of one formula
+inline constexpr int kMaxDepth = 200;            ///< of parentheses, calls, signs and powers inside each other
+inline constexpr std::size_t kMaxLength = 4096;  ///< characters of one formula
 
 /// One node of the syntax tree.
 struct Expression {

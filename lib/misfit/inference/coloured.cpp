@@ -41,7 +41,7 @@ class Sandwich {
       for (Eigen::Index first = 0; first < samples; first += most) take(e, first, std::min(most, samples - first));
     }
     const auto least = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(all))));
-    out_.lags = memory_of(products_, pairs_, least);
+    out_.lags = correlation_length(products_, pairs_, least);
     double squares = 1.0;
     for (int k = 1; k <= 2 * out_.lags; ++k) squares += 2.0 * std::pow(flat_top(k, out_.lags), 2);
     out_.degrees = static_cast<double>(all) / squares;

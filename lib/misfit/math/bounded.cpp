@@ -16,12 +16,12 @@ Held hold(const Eigen::VectorXd& centre, const Eigen::MatrixXd& covariance, cons
           const std::vector<int>& side) {
   Held held;
   for (Eigen::Index i = 0; i < centre.size(); ++i) {
-    if (side[static_cast<std::size_t>(i)] != 0) held.at.push_back(i);
+    if (side[i] != 0) held.at.push_back(i);
   }
-  held.excess.resize(static_cast<Eigen::Index>(held.at.size()));
+  held.excess.resize(held.at.size());
   for (std::size_t k = 0; k < held.at.size(); ++k) {
     const Eigen::Index i = held.at[k];
-    held.excess[static_cast<Eigen::Index>(k)] = (side[static_cast<std::size_t>(i)] < 0 ? lower[i] : upper[i]) - centre[i];
+    held.excess[k] = (side[i] < 0 ? lower[i] : upper[i]) - centre[i];
   }
   held.pull = covariance(held.at, held.at).ldlt().solve(held.excess);
   return held;
@@ -32,7 +32,7 @@ Eigen::Index to_let_go(const Held& held, const std::vector<int>& side) {
   Eigen::Index worst = -1;
   double most = 0.0;
   for (std::size_t k = 0; k < held.at.size(); ++k) {
-    const double wrong = side[static_cast<std::size_t>(held.at[k])] * held.pull[static_cast<Eigen::Index>(k)];
+    const double wrong = side[held.at[k]] * held.pull[k];
     if (wrong > most) {
       most = wrong;
       worst = held.at[k];
@@ -46,7 +46,7 @@ Eigen::Index to_let_go(const Held& held, const std::vector<int>& side) {
 BoundedMaximum maximum_inside(const Eigen::VectorXd& centre, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& lower,
                               const Eigen::VectorXd& upper) {
   const Eigen::Index n = centre.size();
-  std::vector<int> side(static_cast<std::size_t>(n), 0);  // −1: at its lower bound, 1: at its upper one
+  std::vector<int> side(n, 0);  // −1: at its lower bound, 1: at its upper one
   for (Eigen::Index change = 0; change < 4 * n + 1; ++change) {
     BoundedMaximum out{centre, 0.0};
     const Held held = hold(centre, covariance, lower, upper, side);
@@ -54,17 +54,17 @@ BoundedMaximum maximum_inside(const Eigen::VectorXd& centre, const Eigen::Matrix
       out.at += covariance(Eigen::all, held.at) * held.pull;
       out.below = 0.5 * held.excess.dot(held.pull);
     }
-    for (const Eigen::Index i : held.at) out.at[i] = side[static_cast<std::size_t>(i)] < 0 ? lower[i] : upper[i];
+    for (const Eigen::Index i : held.at) out.at[i] = side[i] < 0 ? lower[i] : upper[i];
     bool inside = true;
     for (Eigen::Index i = 0; i < n; ++i) {
       if (out.at[i] >= lower[i] && out.at[i] <= upper[i]) continue;
-      side[static_cast<std::size_t>(i)] = out.at[i] < lower[i] ? -1 : 1;
+      side[i] = out.at[i] < lower[i] ? -1 : 1;
       inside = false;
     }
     if (!inside) continue;
     const Eigen::Index free = to_let_go(held, side);
     if (free < 0) return out;
-    side[static_cast<std::size_t>(free)] = 0;
+    side[free] = 0;
   }
   const Eigen::VectorXd cut = centre.cwiseMax(lower).cwiseMin(upper);
   const Eigen::VectorXd off = cut - centre;

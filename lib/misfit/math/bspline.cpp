@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/lists.h"
 
 namespace misfit {
 namespace {
@@ -79,7 +80,7 @@ CubicSpline::CubicSpline(std::vector<double> breakpoints, Parity parity) : knots
   for (std::size_t cell = 0; cell < cells; ++cell) {
     const double x = knots_.front() + static_cast<double>(cell) / cells_per_unit_;
     const auto next = std::upper_bound(knots_.begin(), knots_.end(), x + 1e-12 * (knots_.back() - knots_.front()));
-    lookup_.push_back(std::clamp(static_cast<int>(next - knots_.begin()) - 1, 0, static_cast<int>(pieces_.size()) - 1));
+    lookup_.push_back(std::clamp(static_cast<int>(next - knots_.begin()) - 1, 0, int_size(pieces_) - 1));
   }
 }
 
@@ -105,8 +106,8 @@ CurvePoint CubicSpline::outside(double x) const {
   }
   if (x < knots_.front()) return below(x);
   if (!std::isfinite(x) && !(x > 0.0)) return combine(CurvePoint{}, x, x, x, x);
-  const int last = static_cast<int>(pieces_.size()) - 1;
-  const CurvePoint end = inside(last, knots_.back() - knots_[static_cast<std::size_t>(last)]);
+  const int last = int_size(pieces_) - 1;
+  const CurvePoint end = inside(last, knots_.back() - knots_[last]);
   return combine(end, 1.0, x - knots_.back(), 0.0, 1.0);
 }
 
@@ -137,8 +138,7 @@ Eigen::MatrixXd CubicSpline::roughness() const {
       for (std::size_t k = 0; k < 4; ++k) {  // C'' = 2 p2 + 6 p3 u
         const double a = 2.0 * pieces_[i][2][j], b = 6.0 * pieces_[i][3][j];
         const double c = 2.0 * pieces_[i][2][k], e = 6.0 * pieces_[i][3][k];
-        omega(static_cast<Eigen::Index>(i + j), static_cast<Eigen::Index>(i + k)) +=
-            h * (a * c + h * ((a * e + b * c) / 2.0 + h * b * e / 3.0));
+        omega(i + j, i + k) += h * (a * c + h * ((a * e + b * c) / 2.0 + h * b * e / 3.0));
       }
     }
   }
@@ -147,7 +147,7 @@ Eigen::MatrixXd CubicSpline::roughness() const {
 
 std::vector<double> CubicSpline::greville() const {
   const std::vector<double> extended = extended_knots(knots_);
-  std::vector<double> mean(static_cast<std::size_t>(size()));
+  std::vector<double> mean(size());
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = (extended[i + 1] + extended[i + 2] + extended[i + 3]) / 3.0;
   return mean;
 }
@@ -155,7 +155,7 @@ std::vector<double> CubicSpline::greville() const {
 Eigen::VectorXd CubicSpline::line(double x0, double value0, double slope) const {
   const std::vector<double> places = greville();
   Eigen::VectorXd c(size());
-  for (Eigen::Index i = 0; i < c.size(); ++i) c[i] = value0 + slope * (places[static_cast<std::size_t>(i)] - x0);
+  for (Eigen::Index i = 0; i < c.size(); ++i) c[i] = value0 + slope * (places[i] - x0);
   return c;
 }
 

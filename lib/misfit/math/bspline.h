@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "misfit/core/lists.h"
+
 namespace misfit {
 
 /// Symmetry of a curve about 0 of its argument: C_m is odd in alpha_T, C_mq even, most curves have none.
@@ -34,7 +36,7 @@ class CubicSpline {
   /// At least two strictly increasing breakpoints remain, else InputError.
   explicit CubicSpline(std::vector<double> breakpoints, Parity parity = Parity::none);
 
-  [[nodiscard]] int size() const { return static_cast<int>(knots_.size()) + 2; }
+  [[nodiscard]] int size() const { return int_size(knots_) + 2; }
   [[nodiscard]] const std::vector<double>& breakpoints() const { return knots_; }
   [[nodiscard]] Parity parity() const { return parity_; }
   [[nodiscard]] double lowest() const { return knots_.front(); }
@@ -53,7 +55,7 @@ class CubicSpline {
       return;
     }
     const int interval = interval_of(x);
-    inside(interval, x - knots_[static_cast<std::size_t>(interval)], out);
+    inside(interval, x - knots_[interval], out);
   }
   /// True where both have the same weights at every x inside the knots (parity differs only outside).
   [[nodiscard]] bool same_inside(const CubicSpline& other) const { return knots_ == other.knots_; }
@@ -76,7 +78,7 @@ class CubicSpline {
     return out;
   }
   void inside(int interval, double u, CurvePoint& out) const {
-    const Piece& p = pieces_[static_cast<std::size_t>(interval)];
+    const Piece& p = pieces_[interval];
     std::array<double, 4> w, d;  // not in `out` at once: the compiler must not fear that it is the piece
     for (std::size_t j = 0; j < 4; ++j) {
       w[j] = ((p[3][j] * u + p[2][j]) * u + p[1][j]) * u + p[0][j];
@@ -90,8 +92,8 @@ class CubicSpline {
   [[nodiscard]] int interval_of(double x) const {
     const auto cell = static_cast<std::size_t>((x - knots_.front()) * cells_per_unit_);
     int i = lookup_[cell < lookup_.size() ? cell : lookup_.size() - 1];
-    while (x >= knots_[static_cast<std::size_t>(i) + 1]) ++i;
-    while (x < knots_[static_cast<std::size_t>(i)]) --i;
+    while (x >= knots_[i + 1]) ++i;
+    while (x < knots_[i]) --i;
     return i;
   }
   [[nodiscard]] CurvePoint outside(double x) const;

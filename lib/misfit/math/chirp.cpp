@@ -13,8 +13,8 @@ Eigen::VectorXcd chirp_transform(const Eigen::Ref<const Eigen::VectorXd>& series
   if (n == 0 || count == 0) return Eigen::VectorXcd::Zero(count);
   const Eigen::Index size = power_of_two(n + count - 1);
   const auto chirp = [step](Eigen::Index k) {
-    const auto square = static_cast<double>(k) * static_cast<double>(k);
-    return std::polar(1.0, std::numbers::pi * step * square);
+    const auto x = static_cast<double>(k);
+    return std::polar(1.0, std::numbers::pi * step * (x * x));
   };
   // f k = (f² + k² − (f − k)²)/2
   Eigen::VectorXcd turned = Eigen::VectorXcd::Zero(size), answer = Eigen::VectorXcd::Zero(size);

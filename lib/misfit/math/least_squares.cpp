@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "misfit/core/lists.h"
+
 namespace misfit {
 namespace {
 
@@ -37,11 +39,11 @@ class RuntimeCost final : public ceres::CostFunction {
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     if (!(*evaluate_)(parameters, residuals, jacobians)) return false;
-    const auto rows = static_cast<std::size_t>(num_residuals());
+    const std::size_t rows = num_residuals();
     if (!all_finite(residuals, rows)) return false;
     if (jacobians == nullptr) return true;
     for (std::size_t b = 0; b < parameter_block_sizes().size(); ++b) {
-      const auto columns = static_cast<std::size_t>(parameter_block_sizes()[b]);
+      const std::size_t columns = parameter_block_sizes()[b];
       if (jacobians[b] != nullptr && !all_finite(jacobians[b], rows * columns)) return false;
     }
     return true;
@@ -113,15 +115,15 @@ int LeastSquares::add_block(std::vector<double> values, std::vector<double> lowe
     throw std::invalid_argument("LeastSquares::add_block: bounds and values differ in length");
   }
   blocks_.push_back({std::move(values), std::move(lower), std::move(upper), false});
-  return static_cast<int>(blocks_.size()) - 1;
+  return int_size(blocks_) - 1;
 }
 
-void LeastSquares::fix_block(int block) { blocks_.at(static_cast<std::size_t>(block)).fixed = true; }
+void LeastSquares::fix_block(int block) { blocks_.at(block).fixed = true; }
 
 void LeastSquares::add_residuals(std::vector<int> blocks, int residuals, Evaluate evaluate, Loss loss, double scale) {
   if (residuals < 1 || blocks.empty()) throw std::invalid_argument("LeastSquares::add_residuals: no residuals or no blocks");
   if (loss != Loss::none && !(scale > 0.0)) throw std::invalid_argument("LeastSquares::add_residuals: the loss' width must be positive");
-  for (const int b : blocks) static_cast<void>(blocks_.at(static_cast<std::size_t>(b)));
+  for (const int b : blocks) static_cast<void>(blocks_.at(b));
   residuals_.push_back({std::move(blocks), residuals, std::move(evaluate), loss, scale});
 }
 
@@ -135,15 +137,15 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
     Block& block = blocks_[b];
     if (!block.fixed) result.message = infeasible(b, block.values, block.lower, block.upper);
     if (!result.message.empty()) return result;
-    problem.AddParameterBlock(block.values.data(), static_cast<int>(block.values.size()));
+    problem.AddParameterBlock(block.values.data(), int_size(block.values));
     if (block.fixed) {
       problem.SetParameterBlockConstant(block.values.data());
       continue;
     }
     columns += block.values.size();
-    for (std::size_t i = 0; i < block.values.size(); ++i) {
-      if (block.lower[i] > -infinity) problem.SetParameterLowerBound(block.values.data(), static_cast<int>(i), block.lower[i]);
-      if (block.upper[i] < infinity) problem.SetParameterUpperBound(block.values.data(), static_cast<int>(i), block.upper[i]);
+    for (int i = 0; i < int_size(block.values); ++i) {
+      if (block.lower[i] > -infinity) problem.SetParameterLowerBound(block.values.data(), i, block.lower[i]);
+      if (block.upper[i] < infinity) problem.SetParameterUpperBound(block.values.data(), i, block.upper[i]);
     }
   }
   std::size_t rows = 0;
@@ -151,13 +153,13 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
     std::vector<int> sizes;
     std::vector<double*> pointers;
     for (const int b : term.blocks) {
-      Block& block = blocks_[static_cast<std::size_t>(b)];
-      sizes.push_back(static_cast<int>(block.values.size()));
+      Block& block = blocks_[b];
+      sizes.push_back(int_size(block.values));
       pointers.push_back(block.values.data());
     }
     auto cost = std::make_unique<RuntimeCost>(term.evaluate, term.count, sizes);
     problem.AddResidualBlock(cost.release(), make_loss(term.loss, term.scale).release(), pointers);  // the problem owns both
-    rows += static_cast<std::size_t>(term.count);
+    rows += term.count;
   }
   ceres::Solver::Summary summary;
   ceres::Solve(to_ceres(options, rows, columns), &problem, &summary);

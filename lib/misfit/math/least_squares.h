@@ -40,7 +40,7 @@ class LeastSquares {
     int linearisations = 0;
   };
   [[nodiscard]] Summary solve(const Options& options);
-  [[nodiscard]] const std::vector<double>& block(int number) const { return blocks_[static_cast<std::size_t>(number)].values; }
+  [[nodiscard]] const std::vector<double>& block(int number) const { return blocks_[number].values; }
 
  private:
   struct Block {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unsupported/Eigen/FFT>
 
+#include "misfit/core/lists.h"
+
 namespace misfit {
 
 Eigen::VectorXcd fourier(const Eigen::Ref<const Eigen::VectorXd>& series, Eigen::Index size) {
@@ -45,9 +47,9 @@ bool stands_out(const LagProducts& products, const LagProducts& pairs, std::size
     for (Eigen::Index b = 0; b < channels; ++b) {
       const double n = pairs.front()(a, a), here = pairs[k](a, b);
       if (!(here > 1.0)) continue;
-      constexpr double far = 1.75;
+      constexpr double limit_factor = 1.75;
       const double chance = std::sqrt(std::max(spread(a, b), 1.0) / here);
-      any = any || std::abs(correlation(a, b)) > far * std::sqrt(std::log10(n)) * chance;
+      any = any || std::abs(correlation(a, b)) > limit_factor * std::sqrt(std::log10(n)) * chance;
       spread(a, b) += 2.0 * correlation(a, a) * correlation(b, b);
     }
   }
@@ -56,17 +58,16 @@ bool stands_out(const LagProducts& products, const LagProducts& pairs, std::size
 
 }  // namespace
 
-int memory_of(const LagProducts& products, const LagProducts& pairs, int least) {
-  constexpr int in_a_row = 20;
-  const auto lags = static_cast<int>(products.size()) - 1;
+int correlation_length(const LagProducts& products, const LagProducts& pairs, int least) {
+  constexpr int quiet_lags = 20;
+  const auto lags = int_size(products) - 1;
   Eigen::MatrixXd spread = Eigen::MatrixXd::Ones(products.front().rows(), products.front().cols());
   int last = 0, quiet = 0, known = 0;
-  for (int lag = 1; lag <= lags && (quiet < in_a_row || known < least); ++lag) {
-    const auto k = static_cast<std::size_t>(lag);
-    if (!(pairs[k].maxCoeff() > 1.0)) continue;
+  for (int lag = 1; lag <= lags && (quiet < quiet_lags || known < least); ++lag) {
+    if (!(pairs[lag].maxCoeff() > 1.0)) continue;
     ++quiet;
     ++known;
-    if (stands_out(products, pairs, k, spread)) {
+    if (stands_out(products, pairs, lag, spread)) {
       last = lag;
       quiet = 0;
     }
@@ -77,22 +78,22 @@ int memory_of(const LagProducts& products, const LagProducts& pairs, int least) 
 
 double flat_top(int lag, int m) {
   if (lag <= m) return 1.0;
-  return std::max(0.0, 2.0 - static_cast<double>(lag) / static_cast<double>(m));
+  return std::max(0.0, 2.0 - 1.0 * lag / m);
 }
 
 std::vector<Eigen::MatrixXcd> spectral_density(const LagProducts& covariances, Eigen::Index size) {
   const Eigen::Index channels = covariances.front().rows(), half = size / 2 + 1;
-  std::vector<Eigen::MatrixXcd> out(static_cast<std::size_t>(half), Eigen::MatrixXcd(channels, channels));
+  std::vector<Eigen::MatrixXcd> out(half, Eigen::MatrixXcd(channels, channels));
   for (Eigen::Index a = 0; a < channels; ++a) {
     for (Eigen::Index b = 0; b < channels; ++b) {
       Eigen::VectorXd circular = Eigen::VectorXd::Zero(size);
       circular[0] = covariances.front()(a, b);
       for (std::size_t k = 1; k < covariances.size(); ++k) {
-        circular[static_cast<Eigen::Index>(k)] = covariances[k](a, b);
-        circular[size - static_cast<Eigen::Index>(k)] = covariances[k](b, a);
+        circular[k] = covariances[k](a, b);
+        circular[size - k] = covariances[k](b, a);
       }
       const Eigen::VectorXcd line = fourier(circular, size);
-      for (Eigen::Index f = 0; f < half; ++f) out[static_cast<std::size_t>(f)](a, b) = line[f];
+      for (Eigen::Index f = 0; f < half; ++f) out[f](a, b) = line[f];
     }
   }
   for (Eigen::MatrixXcd& density : out) {

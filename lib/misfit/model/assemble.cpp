@@ -33,7 +33,7 @@ Model Assembler::run() {
   add_constants();
   name_coefficients();
   for (std::size_t i = 0; i < request_.effects.size(); ++i) bind(i);
-  lend_coefficients();
+  share_coefficients();
   check_everything_used();
   check_sizes();
   return std::move(model_);
@@ -45,7 +45,7 @@ std::map<std::string, std::string> Assembler::curves_without_knots() {
   for (std::size_t i = 0; i < request_.effects.size(); ++i) {
     const auto& spec = effect(i).spec();
     for (std::size_t c = 0; c < spec.coefficients.size(); ++c) {
-      if (spec.coefficients[c].borrowed) continue;
+      if (spec.coefficients[c].shared) continue;
       const auto curve = curve_request(names_[i][c], spec.coefficients[c]);
       if (curve && curve->knots.empty()) open[names_[i][c]] = curve->of;
     }
@@ -61,7 +61,7 @@ std::map<std::string, std::string> Assembler::parameter_units() {
     const auto& spec = effect(i).spec();
     const auto roles = role_units(request_.effects[i], spec);
     for (std::size_t c = 0; c < spec.coefficients.size(); ++c) {
-      if (!spec.coefficients[c].borrowed) units[names_[i][c]] = bind_unit(spec.coefficients[c].unit, roles);
+      if (!spec.coefficients[c].shared) units[names_[i][c]] = bind_unit(spec.coefficients[c].unit, roles);
     }
   }
   for (const auto& [name, alias] : aliases_) {
@@ -78,7 +78,7 @@ void Assembler::add_states() {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end())
       throw InputError(request.where, "[initial]: system '" + system().key + "' has no state '" + shown(name) + "'" + suggest(name, names));
-    StateSpec& state = model_.state_specs[static_cast<std::size_t>(found - names.begin())];
+    StateSpec& state = model_.state_specs[found - names.begin()];
     if (request.value) state.start = *request.value;
     if (request.initial) state.initial = *request.initial;
     if (state.start < state.lower || state.start > state.upper) {
@@ -161,12 +161,12 @@ void Assembler::check_everything_used() const {
 }
 
 void Assembler::check_sizes() const {
-  const auto limit = [&](std::size_t have, int most, const char* what) {
-    if (have > static_cast<std::size_t>(most))
+  const auto limit = [&](std::size_t have, std::size_t most, const char* what) {
+    if (have > most)
       throw InputError(request_.system_where,
                        "the model has " + std::to_string(have) + " " + what + "; at most " + std::to_string(most) + " are possible");
   };
-  limit(static_cast<std::size_t>(model_.states()), kMaxStates, "states");
+  limit(model_.states(), kMaxStates, "states");
   limit(system().quantities.size() + system().outputs.size(), kMaxQuantities, "quantities");
   limit(system().dynamic_ports.size() + model_.own_states.size(), kMaxPorts, "dynamic ports and own states");
   limit(system().quantity_ports.size(), kMaxPorts, "quantity ports");

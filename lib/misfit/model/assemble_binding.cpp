@@ -1,5 +1,6 @@
 // One effect put in its place: ports, quantities, constants, coefficients.
 
+#include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/assembler.h"
@@ -25,7 +26,7 @@ void Assembler::bind(std::size_t i) {
   bind_ports(request, spec, bound);
   for (const auto& role : spec.quantities) bound.quantities.push_back(bind_quantity(request, role, bound.kind));
   for (const auto& name : spec.constants) bound.constants.push_back(bind_constant(request, name));
-  bound.first_state = static_cast<int>(model_.own_states.size());
+  bound.first_state = int_size(model_.own_states);
   for (const auto& state : spec.states) {
     model_.own_states.push_back(state);
     model_.own_state_names.push_back(request.name + "." + state.name);
@@ -107,30 +108,27 @@ void Assembler::check_order(const Source& where, const std::string& who, const s
   if (kind == PortKind::quantity && index >= system().base_quantities) {
     throw InputError(where, who + " changes a quantity and so cannot read '" + shown(target) + "', which depends on such changes");
   }
-  if (kind != PortKind::sensor && index >= static_cast<int>(system().quantities.size())) {
+  if (kind != PortKind::sensor && index >= int_size(system().quantities)) {
     throw InputError(where, who + " cannot read the predicted output '" + shown(target) + "': only effects on sensors can");
   }
 }
 
 int Assembler::bind_constant(const EffectRequest& request, const std::string& name) const {
-  const auto& constants = system().constants;
-  for (std::size_t i = 0; i < constants.size(); ++i) {
-    if (constants[i].name == name) return static_cast<int>(i);
-  }
+  if (const int i = index_of(system().constants, name); i >= 0) return i;
   throw InputError(request.where,
                    "effect '" + shown(request.name) + "' needs '" + shown(name) + "', which system '" + system().key + "' does not have");
 }
 
 BoundCoefficient Assembler::bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request,
                                              PortKind kind) {
-  if (spec.borrowed) return {};  // see lend_coefficients()
+  if (spec.shared) return {};  // see share_coefficients()
   const auto curve = curve_request(name, spec);
   if (curve) return {-1, add_curve(name, spec, *curve, request, kind)};
   if (spec.over_sine) throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"QUANTITY\" }");
   Parameter p = as_parameter(name, spec);
   apply_request(p);
   model_.parameters.push_back(p);
-  return {static_cast<int>(model_.parameters.size()) - 1, -1};
+  return {int_size(model_.parameters) - 1, -1};
 }
 
 Parameter Assembler::as_parameter(const std::string& name, const CoefficientSpec& spec) const {
@@ -162,9 +160,9 @@ int Assembler::add_curve(const std::string& name, const CoefficientSpec& spec, c
                                         suggest(request.of, quantity_names()));
   }
   check_order(request.where, "effect '" + shown(by.name) + "'", request.of, curve.quantity, kind);
-  const bool own = curve.quantity < static_cast<int>(system().quantities.size());
+  const bool own = curve.quantity < int_size(system().quantities);
   curve.of_unit = unit_of_quantity(curve.quantity);
-  curve.over_sine = spec.over_sine && own && !system().quantities[static_cast<std::size_t>(curve.quantity)].carries_sign;
+  curve.over_sine = spec.over_sine && own && !system().quantities[curve.quantity].carries_sign;
   curve.roughness = request.roughness;
   curve.scale = spec.scale;
   try {
@@ -172,17 +170,17 @@ int Assembler::add_curve(const std::string& name, const CoefficientSpec& spec, c
   } catch (const InputError& error) {
     throw InputError(request.where, "curve " + name + ": " + error.what());
   }
-  curve.first = static_cast<int>(model_.parameters.size());
+  curve.first = int_size(model_.parameters);
   add_curve_parameters(curve, spec);
   model_.curves.push_back(std::move(curve));
-  return static_cast<int>(model_.curves.size()) - 1;
+  return int_size(model_.curves) - 1;
 }
 
 void Assembler::add_curve_parameters(const Curve& curve, const CoefficientSpec& spec) {
   Parameter p = as_parameter(curve.name, spec);
   p.free = true;
   apply_request(p);
-  p.curve = static_cast<int>(model_.curves.size());
+  p.curve = int_size(model_.curves);
   for (int i = 0; i < curve.spline.size(); ++i) {
     p.name = curve.name + "[" + std::to_string(i) + "]";
     model_.parameters.push_back(p);

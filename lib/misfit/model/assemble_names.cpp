@@ -16,14 +16,14 @@ void Assembler::name_coefficients() {
     for (const auto& c : effect(i).spec().coefficients) {
       const auto renamed = system().coefficient_names.find(c.name);
       own.push_back(renamed == system().coefficient_names.end() ? c.name : renamed->second);
-      if (!c.borrowed) ++uses[own.back()];
+      if (!c.shared) ++uses[own.back()];
     }
     names_.push_back(own);
   }
   for (std::size_t i = 0; i < names_.size(); ++i) {
     for (std::size_t c = 0; c < names_[i].size(); ++c) {
       auto& name = names_[i][c];
-      if (!effect(i).spec().coefficients[c].borrowed && uses[name] > 1) name = request_.effects[i].name + "." + name;
+      if (!effect(i).spec().coefficients[c].shared && uses[name] > 1) name = request_.effects[i].name + "." + name;
     }
   }
   name_aliases();
@@ -35,7 +35,7 @@ void Assembler::name_aliases() {
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const std::string prefix = request_.effects[i].name + ".";
     for (std::size_t c = 0; c < names_[i].size(); ++c) {
-      if (effect(i).spec().coefficients[c].borrowed) continue;
+      if (effect(i).spec().coefficients[c].shared) continue;
       const std::string& name = names_[i][c];
       const bool prefixed = name.starts_with(prefix);
       const std::string bare = prefixed ? name.substr(prefix.size()) : name;
@@ -46,23 +46,23 @@ void Assembler::name_aliases() {
   }
 }
 
-void Assembler::lend_coefficients() {
+void Assembler::share_coefficients() {
   for (std::size_t i = 0; i < model_.effects.size(); ++i) {
     const auto& coefficients = effect(i).spec().coefficients;
     for (std::size_t c = 0; c < coefficients.size(); ++c) {
-      if (!coefficients[c].borrowed) continue;
-      BoundEffect& borrower = model_.effects[i];
+      if (!coefficients[c].shared) continue;
+      BoundEffect& user = model_.effects[i];
       const auto lent = owned_coefficient(coefficients[c].name);
       if (!lent) {
         throw InputError(request_.effects[i].where,
-                         "effect '" + shown(borrower.name) + "' changes what another effect adds by its coefficient '" +
-                             coefficients[c].name + "', and no effect of the model has one" + suggest(coefficients[c].name, owned_names()));
+                         "effect '" + shown(user.name) + "' changes what another effect adds by its coefficient '" + coefficients[c].name +
+                             "', and no effect of the model has one" + suggest(coefficients[c].name, owned_names()));
       }
       if (lent->curve >= 0) {
-        const Curve& curve = model_.curves[static_cast<std::size_t>(lent->curve)];
-        check_order(request_.effects[i].where, "effect '" + shown(borrower.name) + "'", curve.of, curve.quantity, borrower.kind);
+        const Curve& curve = model_.curves[lent->curve];
+        check_order(request_.effects[i].where, "effect '" + shown(user.name) + "'", curve.of, curve.quantity, user.kind);
       }
-      borrower.coefficients[c] = *lent;
+      user.coefficients[c] = *lent;
     }
   }
 }
@@ -71,7 +71,7 @@ std::optional<BoundCoefficient> Assembler::owned_coefficient(const std::string& 
   for (std::size_t i = 0; i < model_.effects.size(); ++i) {
     const auto& coefficients = effect(i).spec().coefficients;
     for (std::size_t c = 0; c < coefficients.size(); ++c) {
-      if (!coefficients[c].borrowed && name == coefficients[c].name) return model_.effects[i].coefficients[c];
+      if (!coefficients[c].shared && name == coefficients[c].name) return model_.effects[i].coefficients[c];
     }
   }
   return std::nullopt;
@@ -81,7 +81,7 @@ std::vector<std::string> Assembler::owned_names() const {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < model_.effects.size(); ++i) {
     for (const auto& c : effect(i).spec().coefficients) {
-      if (!c.borrowed) names.emplace_back(c.name);
+      if (!c.shared) names.emplace_back(c.name);
     }
   }
   return names;
@@ -111,18 +111,15 @@ std::map<std::string, std::string> Assembler::role_units(const EffectRequest& re
 }
 
 const std::string& Assembler::unit_of_quantity(int index) const {
-  const auto i = static_cast<std::size_t>(index);
-  const auto own = system().quantities.size();
-  return i < own ? system().quantities[i].unit : system().outputs[i - own].unit;
+  const int own = int_size(system().quantities);
+  return index < own ? system().quantities[index].unit : system().outputs[index - own].unit;
 }
 
 std::optional<Assembler::Place> Assembler::find_port(const std::string& name) const {
   // Dynamic ports first: a quantity port may share the name of the quantity that it changes, never that of a dynamic port.
   const auto search = [&](const auto& list, PortKind kind) -> std::optional<Place> {
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      if (list[i].name == name) return Place{kind, static_cast<int>(i), list[i].unit};
-    }
-    return std::nullopt;
+    const int i = index_of(list, name);
+    return i < 0 ? std::nullopt : std::optional(Place{kind, i, list[i].unit});
   };
   if (auto place = search(system().dynamic_ports, PortKind::dynamic)) return place;
   if (auto place = search(system().quantity_ports, PortKind::quantity)) return place;
@@ -141,15 +138,8 @@ std::vector<std::string> Assembler::port_names() const {
 }
 
 int Assembler::find_quantity(const std::string& name) const {
-  const auto& list = system().quantities;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (list[i].name == name) return static_cast<int>(i);
-  }
-  const auto& outputs = system().outputs;
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    if (outputs[i].name == name) return static_cast<int>(list.size() + i);
-  }
-  return -1;
+  const int own = index_of(system().quantities, name), output = index_of(system().outputs, name);
+  return own >= 0 || output < 0 ? own : int_size(system().quantities) + output;
 }
 
 std::vector<std::string> Assembler::quantity_names() const {

@@ -37,8 +37,8 @@ class Assembler {
   /// A study may use another name than the model does: the bare one for the first effect that owns it, so that adding a second effect of a
   /// kind leaves the lines of the first as they are; and EFFECT.NAME where the bare one would do.
   void name_aliases();
-  /// Borrowed coefficients, once all effects are bound: that of the first effect which owns one of the name.
-  void lend_coefficients();
+  /// Shared coefficients, once all effects are bound: that of the first effect which owns one of the name.
+  void share_coefficients();
   std::optional<BoundCoefficient> owned_coefficient(const std::string& name) const;
   std::vector<std::string> owned_names() const;
   std::optional<CurveRequest> curve_request(const std::string& name, const CoefficientSpec& spec) const;
@@ -56,7 +56,7 @@ class Assembler {
     const auto bound = request.roles.find(role.name);
     if (bound != request.roles.end()) return bound->second;
     const auto own_output = request.roles.find("output");
-    if (std::string_view(role.name) == "reading" && own_output != request.roles.end()) return own_output->second;
+    if (std::string_view(role.name) == "signal" && own_output != request.roles.end()) return own_output->second;
     if (exists(role.name)) return role.name;
     const auto fallback = system().roles.find(role.name);
     return fallback == system().roles.end() ? role.name : fallback->second;

@@ -13,8 +13,7 @@ namespace {
 double value_at(const Model& model, const Curve& curve, double x) {
   const CurvePoint point = curve.spline.at(x);
   double value = 0.0;
-  for (int j = 0; j < 4; ++j)
-    value += point.w[static_cast<std::size_t>(j)] * model.parameters[static_cast<std::size_t>(curve.first + point.first + j)].value;
+  for (int j = 0; j < 4; ++j) value += point.w[j] * model.parameters[curve.first + point.first + j].value;
   return value;
 }
 
@@ -30,20 +29,20 @@ double set_curve(Model& model, const std::string& name, const std::vector<double
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!std::isfinite(value[i]) || x[i] < curve->spline.lowest() || x[i] > curve->spline.highest()) continue;
     const CurvePoint point = curve->spline.at(x[i]);
-    for (std::size_t j = 0; j < 4; ++j) {
-      const auto row = point.first + static_cast<int>(j);
+    for (int j = 0; j < 4; ++j) {
+      const int row = point.first + j;
       b[row] += point.w[j] * value[i];
-      for (std::size_t k = 0; k < 4; ++k) N(row, point.first + static_cast<int>(k)) += point.w[j] * point.w[k];
+      for (int k = 0; k < 4; ++k) N(row, point.first + k) += point.w[j] * point.w[k];
     }
     ++inside;
   }
   if (inside < 2) throw RunError("curve " + name + ": fewer than two points of its table lie inside its knots");
   const Eigen::MatrixXd omega = curve->spline.roughness();
-  constexpr double vanishing = 1e-9;
-  N += vanishing * (N.trace() / omega.trace()) * omega;
+  constexpr double relative_regularisation = 1e-9;
+  N += relative_regularisation * (N.trace() / omega.trace()) * omega;
   N.diagonal().array() += 1e-14 * N.trace();
   const Eigen::VectorXd c = N.ldlt().solve(b);
-  for (int j = 0; j < size; ++j) model.parameters[static_cast<std::size_t>(curve->first + j)].value = c[j];
+  for (int j = 0; j < size; ++j) model.parameters[curve->first + j].value = c[j];
   double worst = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::isfinite(value[i]) && x[i] >= curve->spline.lowest() && x[i] <= curve->spline.highest())

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/declared_system.h"
@@ -36,8 +37,8 @@ class Compiler {
   SystemSpec& spec() { return d_.spec; }
 
   void check_sizes() {
-    const auto limit = [&](std::size_t have, int most, const char* what) {
-      if (have > static_cast<std::size_t>(most))
+    const auto limit = [&](std::size_t have, std::size_t most, const char* what) {
+      if (have > most)
         throw InputError(d_.where, std::to_string(have) + " " + what + "; at most " + std::to_string(most) + " are possible");
     };
     limit(spec().states.size(), kMaxStates, "states");
@@ -50,11 +51,11 @@ class Compiler {
 
   void number_leaves() {
     Leaves& n = out_->leaves;
-    n.nx = static_cast<int>(spec().states.size());
-    n.nu = static_cast<int>(spec().inputs.size());
-    n.nk = static_cast<int>(spec().constants.size());
-    n.np = n.nu + static_cast<int>(spec().quantities.size());
-    own_ports_ = static_cast<int>(spec().dynamic_ports.size());
+    n.nx = int_size(spec().states);
+    n.nu = int_size(spec().inputs);
+    n.nk = int_size(spec().constants);
+    n.np = n.nu + int_size(spec().quantities);
+    own_ports_ = int_size(spec().dynamic_ports);
     n.nf = own_ports_ + n.nx;
     for (const auto& state : spec().states)
       spec().dynamic_ports.push_back({"d" + state.name + "/dt", rate_unit(state.unit), "added to the rate of " + state.name, state.name});
@@ -65,7 +66,7 @@ class Compiler {
     note_names(spec().inputs);
     note_names(spec().constants);
     note_names(spec().quantities);
-    for (int i = 0; i < own_ports_; ++i) names_.push_back(spec().dynamic_ports[static_cast<std::size_t>(i)].name);
+    for (int i = 0; i < own_ports_; ++i) names_.push_back(spec().dynamic_ports[i].name);
     names_.emplace_back("t");
     names_.emplace_back("pi");
   }
@@ -76,7 +77,7 @@ class Compiler {
 
   /// Formulas never see a state outside its range, not even inside a step.
   int state_node(int i) {
-    const StateSpec& state = spec().states[static_cast<std::size_t>(i)];
+    const StateSpec& state = spec().states[i];
     int node = g().leaf(out_->leaves.x(i));
     if (std::isfinite(state.lower)) node = g().make(Op::max, node, g().constant(state.lower));
     if (std::isfinite(state.upper)) node = g().make(Op::min, node, g().constant(state.upper));
@@ -90,7 +91,7 @@ class Compiler {
   }
 
   std::optional<Meaning> find(const std::string& name) {
-    const auto at = [](const auto& list, int i) -> const auto& { return list[static_cast<std::size_t>(i)]; };
+    const auto at = [](const auto& list, int i) -> const auto& { return list[i]; };
     if (name == "t") return Meaning{g().leaf(out_->leaves.t()), formula::measure_of("s")};
     if (const int i = index_of(spec().states, name); i >= 0)
       return Meaning{at(state_nodes_, i), formula::measure_of(at(spec().states, i).unit)};
@@ -112,7 +113,7 @@ class Compiler {
                                  return port ? "'" + shown(name) + "' is a port: it can stand in equations only" : std::string();
                                }};
     const int origin = next_origin_;
-    next_origin_ += static_cast<int>(f.syntax.nodes.size());
+    next_origin_ += int_size(f.syntax.nodes);
     out_->texts.push_back(f.syntax);
     out_->first_origin.push_back(origin);
     const Meaning made = formula::build(f.syntax, names, g(), origin);
@@ -122,34 +123,30 @@ class Compiler {
 
   /// Built when first asked for, so that quantities may stand in any order.
   int quantity_node(int i) {
-    int& node = quantity_nodes_[static_cast<std::size_t>(i)];
+    int& node = quantity_nodes_[i];
     if (node == in_work)
-      throw InputError(d_.quantities[static_cast<std::size_t>(i)].syntax.source.where,
-                       "quantity " + spec().quantities[static_cast<std::size_t>(i)].name + " depends on itself");
+      throw InputError(d_.quantities[i].syntax.source.where, "quantity " + spec().quantities[i].name + " depends on itself");
     if (node == unbuilt) {
       node = in_work;
-      const int own = build(d_.quantities[static_cast<std::size_t>(i)], false);
-      quantity_nodes_[static_cast<std::size_t>(i)] = g().add(own, g().leaf(out_->leaves.P(out_->leaves.nu + i)));
+      const int own = build(d_.quantities[i], false);
+      quantity_nodes_[i] = g().add(own, g().leaf(out_->leaves.P(out_->leaves.nu + i)));
     }
-    return quantity_nodes_[static_cast<std::size_t>(i)];
+    return quantity_nodes_[i];
   }
   void build_quantities() {
-    for (std::size_t i = 0; i < quantity_nodes_.size(); ++i) static_cast<void>(quantity_node(static_cast<int>(i)));
+    for (int i = 0; i < int_size(quantity_nodes_); ++i) static_cast<void>(quantity_node(i));
   }
 
   void build_equations() {
     const Leaves& n = out_->leaves;
     auto& states = spec().states;
-    for (std::size_t j = 0; j < states.size(); ++j) {
+    for (int j = 0; j < int_size(states); ++j) {
       const int node = build(d_.equations[j], true);
-      const auto same = std::find(state_nodes_.begin(), state_nodes_.end(), node);
-      kinematic_.push_back(same != state_nodes_.end() && static_cast<std::size_t>(same - state_nodes_.begin()) != j);
-      if (kinematic_.back()) {
-        StateSpec& rate = states[static_cast<std::size_t>(same - state_nodes_.begin())];
-        if (rate.rate_of < 0) rate.rate_of = static_cast<int>(j);
-      }
+      const int same = place_of(state_nodes_, node);
+      kinematic_.push_back(same >= 0 && same != j);
+      if (kinematic_.back() && states[same].rate_of < 0) states[same].rate_of = j;
       equation_nodes_.push_back(node);
-      out_->rate_nodes.push_back(g().add(node, g().leaf(n.F(own_ports_ + static_cast<int>(j)))));
+      out_->rate_nodes.push_back(g().add(node, g().leaf(n.F(own_ports_ + j))));
       note_inputs(node);
     }
     for (std::size_t j = 0; j < states.size(); ++j) {
@@ -167,28 +164,27 @@ class Compiler {
     const Leaves& n = out_->leaves;
     std::vector<std::string> names;
     for (int leaf : g().leaves_of(node)) {
-      if (leaf >= n.u(0) && leaf < n.t()) names.push_back(spec().inputs[static_cast<std::size_t>(leaf - n.u(0))].name);
+      if (leaf >= n.u(0) && leaf < n.t()) names.push_back(spec().inputs[leaf - n.u(0)].name);
     }
     return names;
   }
 
   void build_outputs() {
     const Leaves& n = out_->leaves;
-    for (std::size_t o = 0; o < d_.outputs.size(); ++o) {
+    for (int o = 0; o < int_size(d_.outputs); ++o) {
       int node = build(d_.outputs[o], false);
       for (int i = 0; i < n.np; ++i) node = g().substitute(node, n.P(i), g().constant(0.0));
-      const auto same = std::find(state_nodes_.begin(), state_nodes_.end(), node);
-      if (same != state_nodes_.end()) spec().outputs[o].observes = static_cast<int>(same - state_nodes_.begin());
+      if (const int same = place_of(state_nodes_, node); same >= 0) spec().outputs[o].observes = same;
       output_nodes_.push_back(node);
       note_inputs(node);
-      note_readable(static_cast<int>(o), node);
+      note_readable(o, node);
     }
   }
 
   /// An output that is a straight line of one state, as theta + offset: the state can be read from it.
   void note_readable(int output, int node) {
     const Leaves& n = out_->leaves;
-    if (spec().outputs[static_cast<std::size_t>(output)].observes >= 0) return;
+    if (spec().outputs[output].observes >= 0) return;
     int state = -1;
     for (int leaf : g().leaves_of(node)) {
       if (leaf >= n.k(0) && leaf < n.P(0)) continue;
@@ -207,7 +203,7 @@ class Compiler {
 
   void check_parameters() {
     for (int k = 0; k < out_->leaves.nk; ++k) {
-      ConstantSpec& constant = spec().constants[static_cast<std::size_t>(k)];
+      ConstantSpec& constant = spec().constants[k];
       const int leaf = out_->leaves.k(k);
       const auto used_by = [&](const std::vector<int>& nodes) {
         return std::any_of(nodes.begin(), nodes.end(), [&](int node) { return uses(node, leaf); });
@@ -228,17 +224,17 @@ class Compiler {
     const Leaves& n = out_->leaves;
     std::vector<QuantitySpec> all;
     for (int i = 0; i < n.nx; ++i) {
-      const StateSpec& state = spec().states[static_cast<std::size_t>(i)];
-      add_quantity({state.name, state.unit, "state", {}, true}, state_nodes_[static_cast<std::size_t>(i)], all);
+      const StateSpec& state = spec().states[i];
+      add_quantity({state.name, state.unit, "state", {}, true}, state_nodes_[i], all);
     }
     for (int i = 0; i < n.nu; ++i) {
-      const InputSpec& input = spec().inputs[static_cast<std::size_t>(i)];
+      const InputSpec& input = spec().inputs[i];
       add_quantity({input.name + "_given", input.unit, "input as recorded", {input.name}, true, false}, g().leaf(n.u(i)), all);
     }
-    spec().base_quantities = static_cast<int>(all.size());
+    spec().base_quantities = int_size(all);
     for (int i = 0; i < n.nu; ++i) {
-      const InputSpec& input = spec().inputs[static_cast<std::size_t>(i)];
-      add_quantity({input.name, input.unit, "input", {input.name}, true}, input_nodes_[static_cast<std::size_t>(i)], all);
+      const InputSpec& input = spec().inputs[i];
+      add_quantity({input.name, input.unit, "input", {input.name}, true}, input_nodes_[i], all);
       spec().quantity_ports.push_back({input.name, input.unit, "added to the input", input.name});
     }
     for (std::size_t i = 0; i < spec().quantities.size(); ++i) {
@@ -248,7 +244,7 @@ class Compiler {
       add_quantity(q, quantity_nodes_[i], all);
     }
     spec().quantities = std::move(all);
-    if (spec().quantities.size() + spec().outputs.size() > static_cast<std::size_t>(kMaxQuantities))
+    if (int_size(spec().quantities) + int_size(spec().outputs) > kMaxQuantities)
       throw InputError(d_.where, "states, inputs, quantities and outputs are together too many");
     set_roles(d_, own_ports_);
   }

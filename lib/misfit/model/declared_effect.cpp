@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 #include "misfit/data/study_parts.h"
 #include "misfit/formula/build.h"
@@ -31,28 +32,28 @@ class FormulaEffect final : public Effect {
     Registers r;
     fill(in, r);
     value_.run(r.data());
-    out[0] = r[static_cast<std::size_t>(value_.place(0))];
+    out[0] = r[value_.place(0)];
   }
   void linearise(const Reads<double, double>& in, double* out, double* J, bool constants_too) const override {
     Registers r;
     fill(in, r);
     slopes_.run(r.data());
-    out[0] = r[static_cast<std::size_t>(slopes_.place(0))];
+    out[0] = r[slopes_.place(0)];
     const std::size_t width = spec_.quantities.size() + spec_.coefficients.size() + (constants_too ? spec_.constants.size() : 0);
-    for (std::size_t i = 0; i < width; ++i) J[i] = r[static_cast<std::size_t>(slopes_.place(i + 1))];
+    for (std::size_t i = 0; i < width; ++i) J[i] = r[slopes_.place(i + 1)];
   }
   [[nodiscard]] double fastest_rate(const Reads<double, double>& in) const override {
     if (conjugate_ < 0) return 0.0;
     Registers r;
     fill(in, r);
     steep_.run(r.data());
-    const double rate = std::abs(r[static_cast<std::size_t>(steep_.place(0))]);
+    const double rate = std::abs(r[steep_.place(0)]);
     return std::isfinite(rate) ? rate : 0.0;
   }
   void diffusion(const Reads<double, double>& /*in*/, double* /*out*/) const override {}
 
  private:
-  using Registers = std::array<double, static_cast<std::size_t>(formula::kMaxRegisters)>;
+  using Registers = std::array<double, formula::kMaxRegisters>;
   void fill(const Reads<double, double>& in, Registers& r) const {
     double* to = r.data();
     to = std::copy_n(in.q, spec_.quantities.size(), to);
@@ -160,9 +161,9 @@ class FormulaEffectBuilder {
         constants.push_back(e.text);
       }
     }
-    nq_ = static_cast<int>(roles().size());
-    nc_ = static_cast<int>(spec().coefficients.size());
-    nk_ = static_cast<int>(spec().constants.size());
+    nq_ = int_size(roles());
+    nc_ = int_size(spec().coefficients);
+    nk_ = int_size(spec().constants);
     if (nq_ + nc_ + nk_ > kMaxWidth)
       throw InputError(study_.where, "effect '" + shown(study_.name) + "' reads more than " + std::to_string(kMaxWidth) + " numbers");
   }
@@ -171,16 +172,14 @@ class FormulaEffectBuilder {
   std::optional<Meaning> meaning(const std::string& name) {
     if (name == "t") return Meaning{graph_.leaf(nq_ + nc_ + nk_), formula::measure_of("s")};
     for (int i = 0; i < nq_; ++i) {
-      const Role& role = roles()[static_cast<std::size_t>(i)];
+      const Role& role = roles()[i];
       if (name == role.name) return Meaning{graph_.leaf(i), formula::measure_of(role.unit)};
     }
     for (int i = 0; i < nc_; ++i) {
-      if (name == spec().coefficients[static_cast<std::size_t>(i)].name)
-        return Meaning{graph_.leaf(nq_ + i), measures_[static_cast<std::size_t>(i)]};
+      if (name == spec().coefficients[i].name) return Meaning{graph_.leaf(nq_ + i), measures_[i]};
     }
     for (int i = 0; i < nk_; ++i) {
-      if (name == spec().constants[static_cast<std::size_t>(i)])
-        return Meaning{graph_.leaf(nq_ + nc_ + i), formula::measure_of(*find_constant(name))};
+      if (name == spec().constants[i]) return Meaning{graph_.leaf(nq_ + nc_ + i), formula::measure_of(*find_constant(name))};
     }
     return std::nullopt;
   }
@@ -210,17 +209,17 @@ class FormulaEffectBuilder {
         if (found == names.end())
           throw InputError(study_.where,
                            "effect '" + shown(study_.name) + "': strengths: no parameter '" + shown(name) + "'" + suggest(name, names));
-        chosen[static_cast<std::size_t>(found - names.begin())] = true;
+        chosen[found - names.begin()] = true;
       }
     } else {
       chosen = linear_strengths(node);
     }
     int off = node;
     bool any = false;
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
+    for (int i = 0; i < int_size(chosen); ++i) {
       if (!chosen[i]) continue;
       coefficients[i].kind = CoefficientKind::strength;
-      off = graph_.substitute(off, nq_ + static_cast<int>(i), graph_.constant(0.0));
+      off = graph_.substitute(off, nq_ + i, graph_.constant(0.0));
       any = true;
     }
     if (!coefficients.empty() && !(any && graph_.is(off, 0.0))) {
@@ -232,13 +231,12 @@ class FormulaEffectBuilder {
 
   std::vector<bool> linear_strengths(int node) {
     const int nc = nc_;
-    std::vector<bool> linear(static_cast<std::size_t>(nc), false), alone = linear;
+    std::vector<bool> linear(nc, false), alone = linear;
     for (int i = 0; i < nc; ++i) {
       const int leaf = nq_ + i;
       const int slope = graph_.derivatives(node, {graph_.leaf(leaf)}).front();
-      linear[static_cast<std::size_t>(i)] = !depends(slope, leaf);
-      alone[static_cast<std::size_t>(i)] =
-          linear[static_cast<std::size_t>(i)] && graph_.is(graph_.substitute(node, leaf, graph_.constant(0.0)), 0.0);
+      linear[i] = !depends(slope, leaf);
+      alone[i] = linear[i] && graph_.is(graph_.substitute(node, leaf, graph_.constant(0.0)), 0.0);
     }
     return std::find(alone.begin(), alone.end(), true) != alone.end() ? alone : linear;
   }
@@ -246,8 +244,8 @@ class FormulaEffectBuilder {
   void check_used(int node) {
     for (int i = 0; i < nc_; ++i) {
       if (!depends(node, nq_ + i))
-        throw InputError(study_.where, "effect '" + shown(study_.name) + "': nothing depends on its parameter '" +
-                                           spec().coefficients[static_cast<std::size_t>(i)].name + "'");
+        throw InputError(study_.where,
+                         "effect '" + shown(study_.name) + "': nothing depends on its parameter '" + spec().coefficients[i].name + "'");
     }
   }
 
@@ -262,7 +260,7 @@ class FormulaEffectBuilder {
     for (const auto& port : system_.dynamic_ports) {
       if (port.name != declared_.port || port.name != "d" + port.conjugate + "/dt") continue;
       for (int i = 0; i < nq_; ++i) {
-        if (port.conjugate != roles()[static_cast<std::size_t>(i)].name) continue;
+        if (port.conjugate != roles()[i].name) continue;
         effect_->conjugate_ = i;
         effect_->steep_ = Program(graph_, graph_.derivatives(node, {graph_.leaf(i)}, true), leaves);
       }

@@ -26,7 +26,7 @@ class Roles {
                                    : moving != s.states.end() ? moving->name
                                                               : s.states.front().name;
     set_motion(by_default, quantities);
-    s.roles["output"] = s.roles["reading"] = role("output", outputs.front(), outputs);
+    s.roles["output"] = s.roles["signal"] = role("output", outputs.front(), outputs);
     if (!s.inputs.empty()) s.roles["input"] = role("input", s.inputs.front().name, quantities);
     for (auto& p : s.dynamic_ports) {
       if (p.conjugate.empty()) p.conjugate = by_default;
@@ -43,9 +43,9 @@ class Roles {
     SystemSpec& s = d_.spec;
     const std::string moving = role("rate", by_default, quantities);
     const int rate = index_of(s.states, moving);
-    const int level = rate < 0 ? -1 : s.states[static_cast<std::size_t>(rate)].rate_of;
+    const int level = rate < 0 ? -1 : s.states[rate].rate_of;
     if (level >= 0 || d_.roles->has("rate")) s.roles["rate"] = moving;
-    s.roles["level"] = role("level", level < 0 ? moving : s.states[static_cast<std::size_t>(level)].name, quantities);
+    s.roles["level"] = role("level", level < 0 ? moving : s.states[level].name, quantities);
     if (level >= 0) s.roles["displacement"] = s.roles["level"];
   }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/model/declared.h"
 #include "misfit/model/limits.h"
@@ -12,9 +13,9 @@
 namespace misfit::declared {
 namespace {
 
-using Registers = std::array<double, static_cast<std::size_t>(formula::kMaxRegisters)>;  // not initialised: the program fills what it reads
+using Registers = std::array<double, formula::kMaxRegisters>;  // not initialised: the program fills what it reads
 
-constexpr std::array<double, static_cast<std::size_t>(kMaxPorts)> no_forces{};
+constexpr std::array<double, kMaxPorts> no_forces{};
 
 class DeclaredSystem final : public System {
  public:
@@ -83,13 +84,13 @@ class DeclaredSystem final : public System {
   bool read_states(const double* y, const double* k, double* x) const override {
     const std::array<double, kMaxStates> zero{};
     std::array<double, kMaxOutputs> y0{};
-    std::array<double, static_cast<std::size_t>(kMaxOutputs * kMaxStates)> slope{};
+    std::array<double, kMaxOutputs * kMaxStates> slope{};
     linearise_outputs({zero.data(), zero.data(), 0.0, k}, y0.data(), slope.data(), nullptr);
     bool known = true;
     for (const auto& [output, state] : c_->readable) {
-      const double by = slope[static_cast<std::size_t>(output) * spec_.states.size() + static_cast<std::size_t>(state)];
+      const double by = slope[output * spec_.states.size() + state];
       known = known && by != 0.0;
-      x[state] = known ? (y[output] - y0[static_cast<std::size_t>(output)]) / by : 0.0;
+      x[state] = known ? (y[output] - y0[output]) / by : 0.0;
     }
     return known && !c_->readable.empty();
   }
@@ -97,7 +98,7 @@ class DeclaredSystem final : public System {
   /// From the Jacobian, every smoothed jump at its steepest: the largest |J_ii| and sqrt|J_ij J_ji|. A state near a bound is taken a
   /// twentieth of its scale inside, where a root has a slope.
   [[nodiscard]] double fastest_rate(const Point& at) const override {
-    const int n = static_cast<int>(spec_.states.size());
+    const int n = int_size(spec_.states);
     std::array<double, kMaxStates> x{}, dx{};
     for (std::size_t i = 0; i < spec_.states.size(); ++i) {
       const StateSpec& state = spec_.states[i];
@@ -107,14 +108,14 @@ class DeclaredSystem final : public System {
       if (std::isfinite(state.upper)) x[i] = std::min(x[i], state.upper - inside * state.scale);
     }
     Registers r;
-    std::array<double, static_cast<std::size_t>(kMaxStates * kMaxStates)> J;
+    std::array<double, kMaxStates * kMaxStates> J;
     run(c_->rates_steep, {x.data(), at.u, at.t, at.k}, no_forces.data(), no_forces.data(), r);
     write(c_->rates_steep.value, r, dx.data());
-    block(c_->rates_steep.by_x, r, static_cast<std::size_t>(n * n), J.data());
+    block(c_->rates_steep.by_x, r, spec_.states.size() * spec_.states.size(), J.data());
     double fastest = c_->spec.fastest_rate;
     for (int i = 0; i < n; ++i) {
       for (int j = i; j < n; ++j) {
-        const double both = std::sqrt(std::abs(J[static_cast<std::size_t>(i * n + j)] * J[static_cast<std::size_t>(j * n + i)]));
+        const double both = std::sqrt(std::abs(J[i * n + j] * J[j * n + i]));
         if (std::isfinite(both)) fastest = std::max(fastest, both);
       }
     }
@@ -148,7 +149,7 @@ class DeclaredSystem final : public System {
     tape.program.run(r.data());
   }
   static void write(const std::vector<Tape::Entry>& entries, const Registers& r, double* to) {
-    for (const Tape::Entry& e : entries) to[e.place] = r[static_cast<std::size_t>(e.from)];
+    for (const Tape::Entry& e : entries) to[e.place] = r[e.from];
   }
   static void block(const std::vector<Tape::Entry>& entries, const Registers& r, std::size_t size, double* to) {
     if (to == nullptr) return;
@@ -161,7 +162,7 @@ class DeclaredSystem final : public System {
     if (needed == 0U) return;
     const Leaves& n = c_->leaves;
     for (int i = 0; i < n.nx; ++i) {
-      const StateSpec& state = spec_.states[static_cast<std::size_t>(i)];
+      const StateSpec& state = spec_.states[i];
       q[i] = std::min(std::max(at.x[i], state.lower), state.upper);
     }
     for (int i = 0; i < n.nu; ++i) {
@@ -186,10 +187,10 @@ class DeclaredSystem final : public System {
   std::string text_of(int origin) const {
     if (origin < 0) return {};
     const auto next = std::upper_bound(c_->first_origin.begin(), c_->first_origin.end(), origin);
-    const auto which = static_cast<std::size_t>(next - c_->first_origin.begin()) - 1;
+    const auto which = next - c_->first_origin.begin() - 1;
     const formula::Syntax& syntax = c_->texts[which];
-    const auto& e = syntax.nodes[static_cast<std::size_t>(origin - c_->first_origin[which])];
-    return syntax.source.text.substr(static_cast<std::size_t>(e.begin), static_cast<std::size_t>(e.end - e.begin));
+    const auto& e = syntax.nodes[origin - c_->first_origin[which]];
+    return syntax.source.text.substr(e.begin, e.end - e.begin);
   }
 
   /// "x1 is -0.2 V, u is 3 V", or "k1 = 0.05 V^0.5/s": what a node depends on.
@@ -203,13 +204,13 @@ class DeclaredSystem final : public System {
     };
     for (int leaf : leaves) {
       if (!constants && leaf < n.u(0)) {
-        const StateSpec& state = spec_.states[static_cast<std::size_t>(leaf)];
+        const StateSpec& state = spec_.states[leaf];
         say(state.name, " is ", at.x[leaf], state.unit);
       } else if (!constants && leaf < n.t()) {
-        const InputSpec& input = spec_.inputs[static_cast<std::size_t>(leaf - n.u(0))];
+        const InputSpec& input = spec_.inputs[leaf - n.u(0)];
         say(input.name, " is ", at.u[leaf - n.u(0)], input.unit);
       } else if (leaf >= n.k(0) && leaf < n.P(0) && constants) {
-        const ConstantSpec& constant = spec_.constants[static_cast<std::size_t>(leaf - n.k(0))];
+        const ConstantSpec& constant = spec_.constants[leaf - n.k(0)];
         say(constant.name, " = ", at.k[leaf - n.k(0)], constant.unit);
       }
     }

@@ -6,19 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "misfit/core/lists.h"
 #include "misfit/formula/program.h"
 #include "misfit/model/declared_text.h"
 
 namespace misfit::declared {
-
-/// Place in a list of specifications; −1: none is called so.
-template <class List>
-int index_of(const List& list, const std::string& name) {
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (list[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
 
 /// Several formulas and, where wanted, their derivatives as one program, and where its results go.
 struct Tape {

@@ -1,3 +1,4 @@
+#include "misfit/core/lists.h"
 #include "misfit/model/declared_system.h"
 
 namespace misfit::declared {
@@ -13,7 +14,7 @@ class Tapes {
     std::vector<int> roots = nodes;
     std::vector<std::pair<std::vector<Tape::Entry>*, Tape::Entry>> entries;
     Tape out;
-    for (std::size_t row = 0; row < nodes.size(); ++row) out.value.push_back({static_cast<int>(row), static_cast<int>(row)});
+    for (int row = 0; row < int_size(nodes); ++row) out.value.push_back({row, row});
     struct Block {
       unsigned flag;
       int first, count;
@@ -24,11 +25,11 @@ class Tapes {
       if ((wanted & block.flag) == 0U) continue;
       std::vector<int> leaves;
       for (int i = 0; i < block.count; ++i) leaves.push_back(c_.graph.leaf(block.first + i));
-      for (std::size_t row = 0; row < nodes.size(); ++row) {
+      for (int row = 0; row < int_size(nodes); ++row) {
         const std::vector<int> slopes = c_.graph.derivatives(nodes[row], leaves, (wanted & steepest) != 0U);
-        for (std::size_t i = 0; i < slopes.size(); ++i) {
+        for (int i = 0; i < int_size(slopes); ++i) {
           if (c_.graph.is(slopes[i], 0.0)) continue;
-          block.into->push_back({static_cast<int>(row) * block.count + static_cast<int>(i), static_cast<int>(roots.size())});
+          block.into->push_back({row * block.count + i, int_size(roots)});
           roots.push_back(slopes[i]);
         }
       }
@@ -39,7 +40,7 @@ class Tapes {
       throw InputError(where_, error.what());
     }
     for (auto* list : {&out.value, &out.by_x, &out.by_F, &out.by_k, &out.by_P}) {
-      for (auto& entry : *list) entry.from = out.program.place(static_cast<std::size_t>(entry.from));
+      for (auto& entry : *list) entry.from = out.program.place(entry.from);
     }
     return out;
   }

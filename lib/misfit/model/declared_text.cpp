@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/declared_keys.h"
@@ -156,18 +157,17 @@ class Reader {
     auto& states = out_.spec.states;
     std::vector<std::string> names;
     for (const auto& state : states) names.push_back(state.name);
-    for (std::size_t j = 0; j < states.size(); ++j) {
+    for (int j = 0; j < int_size(states); ++j) {
       if (rate_of_[j].empty()) continue;
-      const auto found = std::find(names.begin(), names.end(), rate_of_[j]);
-      if (found == names.end())
+      const int of = place_of(names, rate_of_[j]);
+      if (of < 0)
         throw InputError(rate_of_where_[j], "rate_of: there is no state '" + shown(rate_of_[j]) + "'" + suggest(rate_of_[j], names));
-      const auto of = static_cast<std::size_t>(found - names.begin());
       if (of == j) throw InputError(rate_of_where_[j], "a state cannot be its own rate");
       const auto wanted = formula::measure_of(rate_unit(states[of].unit));
       if (!formula::measure_of(states[j].unit).fits(wanted))
         throw InputError(rate_of_where_[j],
                          "the rate of '" + states[of].name + "' has [" + wanted.text() + "], not [" + states[j].unit + "]");
-      states[j].rate_of = static_cast<int>(of);
+      states[j].rate_of = of;
     }
   }
 
@@ -181,12 +181,12 @@ class Reader {
       if (std::find(names.begin(), names.end(), key) == names.end())
         section->fail(key, "there is no state '" + shown(key) + "'" + suggest(key, names));
     }
-    for (std::size_t j = 0; j < states.size(); ++j) {
+    for (int j = 0; j < int_size(states); ++j) {
       if (section->has(states[j].name)) {
         out_.equations.push_back(formula_of(*section, states[j].name.c_str(), "equation " + states[j].name, rate_unit(states[j].unit)));
         continue;
       }
-      const auto rate = std::find_if(states.begin(), states.end(), [&](const StateSpec& s) { return s.rate_of == static_cast<int>(j); });
+      const auto rate = std::find_if(states.begin(), states.end(), [&](const StateSpec& s) { return s.rate_of == j; });
       if (rate == states.end()) section->fail(states[j].name, "the equation of state '" + shown(states[j].name) + "' is missing");
       out_.equations.push_back(
           {formula::parse({rate->name, "equation " + states[j].name, out_.where}), formula::measure_of(rate_unit(states[j].unit))});

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/core/lists.h"
 #include "misfit/math/bspline.h"
 #include "misfit/math/scalar.h"
 #include "misfit/model/index_names.h"
@@ -73,7 +74,7 @@ struct CoefficientSpec {
   /// The coefficient of this name of another effect of the model, number or curve, with that one's parameters: for effects that change what
   /// another adds (a wake that weakens the static moment). InputError where no effect of the model has it. Declared as a shape; of the rest
   /// of this specification only name, unit and doc count, and value and bounds in the worked examples and laws.
-  bool borrowed = false;
+  bool shared = false;
 };
 
 /// Memory of an effect: z' = drift [unit/s], and if stochastic white noise of spectral density diffusion² is added.
@@ -168,23 +169,23 @@ class EffectOf final : public Effect {
 
  private:
   static consteval int quantities() {
-    if constexpr (requires { E::quantities; }) return static_cast<int>(std::size(E::quantities));
+    if constexpr (requires { E::quantities; }) return int_size(E::quantities);
     return 0;
   }
   static consteval int coefficients() {
-    if constexpr (requires { E::coefficients; }) return static_cast<int>(std::size(E::coefficients));
+    if constexpr (requires { E::coefficients; }) return int_size(E::coefficients);
     return 0;
   }
   static consteval int constants() {
-    if constexpr (requires { E::constants; }) return static_cast<int>(std::size(E::constants));
+    if constexpr (requires { E::constants; }) return int_size(E::constants);
     return 0;
   }
   static consteval int states() {
-    if constexpr (requires { E::states; }) return static_cast<int>(std::size(E::states));
+    if constexpr (requires { E::states; }) return int_size(E::states);
     return 0;
   }
   static constexpr int NQ = quantities();
-  static constexpr int NP = static_cast<int>(std::size(E::ports));
+  static constexpr int NP = int_size(E::ports);
   static constexpr int NC = coefficients();
   static constexpr int NK = constants();
   static constexpr int NZ = states();
@@ -211,21 +212,21 @@ class EffectOf final : public Effect {
       call<double, double>(in, out);
     } else {
       using T = Jet<W>;
-      std::array<T, static_cast<std::size_t>(W)> seeds;
-      for (int i = 0; i < NQ; ++i) seeds[static_cast<std::size_t>(i)] = T(in.q[i], i);
-      for (int i = 0; i < NC; ++i) seeds[static_cast<std::size_t>(NQ + i)] = T(in.c[i], NQ + i);
-      for (int i = 0; i < NZ; ++i) seeds[static_cast<std::size_t>(NQ + NC + i)] = T(in.z[i], NQ + NC + i);
-      std::array<T, static_cast<std::size_t>(NO)> results;
+      std::array<T, W> seeds;
+      for (int i = 0; i < NQ; ++i) seeds[i] = T(in.q[i], i);
+      for (int i = 0; i < NC; ++i) seeds[NQ + i] = T(in.c[i], NQ + i);
+      for (int i = 0; i < NZ; ++i) seeds[NQ + NC + i] = T(in.z[i], NQ + NC + i);
+      std::array<T, NO> results;
       const T* s = seeds.data();
       if constexpr (W > NQ + NC + NZ) {
-        for (int i = 0; i < NK; ++i) seeds[static_cast<std::size_t>(NQ + NC + NZ + i)] = T(in.k[i], NQ + NC + NZ + i);
+        for (int i = 0; i < NK; ++i) seeds[NQ + NC + NZ + i] = T(in.k[i], NQ + NC + NZ + i);
         call<T, T>({s, s + NQ, s + NQ + NC, s + NQ + NC + NZ, in.t}, results.data());
       } else {
         call<T, double>({s, s + NQ, s + NQ + NC, in.k, in.t}, results.data());
       }
       for (int o = 0; o < NO; ++o) {
-        out[o] = results[static_cast<std::size_t>(o)].a;
-        for (int i = 0; i < W; ++i) J[o * W + i] = results[static_cast<std::size_t>(o)].v[i];
+        out[o] = results[o].a;
+        for (int i = 0; i < W; ++i) J[o * W + i] = results[o].v[i];
       }
     }
   }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/lists.h"
+
 namespace misfit {
 namespace {
 
-constexpr std::size_t at_least_one(int n) { return static_cast<std::size_t>(n > 0 ? n : 1); }
+constexpr std::size_t at_least_one(int n) { return n > 0 ? n : 1; }
 
 }  // namespace
 
@@ -15,10 +17,10 @@ Evaluator::Evaluator(const Model& model) : model_(&model), system_(model.system.
   n_ = model.states();
   nx_ = model.system_states();
   ny_ = model.outputs();
-  nf_ = static_cast<int>(spec.dynamic_ports.size());
-  np_ = static_cast<int>(spec.quantity_ports.size());
-  nq_ = static_cast<int>(spec.quantities.size());
-  nk_ = static_cast<int>(spec.constants.size());
+  nf_ = int_size(spec.dynamic_ports);
+  np_ = int_size(spec.quantity_ports);
+  nq_ = int_size(spec.quantities);
+  nk_ = int_size(spec.constants);
   flatten();
   const auto size = [](int rows, int columns) { return at_least_one(rows * columns); };
   q_rows_.assign(size(nq_ + ny_, kRowStride), 0.0);
@@ -39,17 +41,17 @@ Evaluator::Evaluator(const Model& model) : model_(&model), system_(model.system.
 
 void Evaluator::flatten() {
   const std::vector<int> free = model_->free_parameters();
-  columns_ = static_cast<int>(free.size());
+  columns_ = int_size(free);
   column_of_.assign(model_->parameters.size(), -1);
-  for (int c = 0; c < columns_; ++c) column_of_[static_cast<std::size_t>(free[static_cast<std::size_t>(c)])] = c;
-  for (int k = 0; k < nk_; ++k) free_constants_ = free_constants_ || column_of_[static_cast<std::size_t>(k)] >= 0;
+  for (int c = 0; c < columns_; ++c) column_of_[free[c]] = c;
+  for (int k = 0; k < nk_; ++k) free_constants_ = free_constants_ || column_of_[k] >= 0;
   for (const auto& bound : model_->effects) flatten_effect(bound);
   quantity_effects_ = !quantity_.empty();
   general_ = quantity_effects_ || free_constants_;
   general_rates_ = quantity_effects_;
   constants_in_rates_ = rates_move_with_constants();
   for (int k = 0; constants_in_rates_ && k < nk_; ++k) {
-    const int column = column_of_[static_cast<std::size_t>(k)];
+    const int column = column_of_[k];
     if (column >= 0) free_constants_in_rates_.push_back({k, column});
   }
   find_twins();
@@ -65,15 +67,13 @@ void Evaluator::flatten() {
 bool Evaluator::rates_move_with_constants() const {
   const SystemSpec& spec = system_->spec();
   bool sensor_free = false;
-  const auto free = [&](int k) { return column_of_[static_cast<std::size_t>(k)] >= 0; };
+  const auto free = [&](int k) { return column_of_[k] >= 0; };
   for (int k = 0; k < nk_; ++k) {
     if (!free(k)) continue;
-    if (!spec.constants[static_cast<std::size_t>(k)].of_sensor) return true;
+    if (!spec.constants[k].of_sensor) return true;
     sensor_free = true;
   }
-  const auto of_sensor = [&](int quantity) {
-    return quantity >= 0 && quantity < nq_ && spec.quantities[static_cast<std::size_t>(quantity)].of_sensor;
-  };
+  const auto of_sensor = [&](int quantity) { return quantity >= 0 && quantity < nq_ && spec.quantities[quantity].of_sensor; };
   for (const auto& bound : model_->effects) {
     if (!sensor_free || bound.kind == PortKind::sensor) continue;
     for (int k : bound.constants) {
@@ -83,7 +83,7 @@ bool Evaluator::rates_move_with_constants() const {
       if (of_sensor(quantity)) return true;
     }
     for (const auto& c : bound.coefficients) {
-      if (c.curve >= 0 && of_sensor(model_->curves[static_cast<std::size_t>(c.curve)].quantity)) return true;
+      if (c.curve >= 0 && of_sensor(model_->curves[c.curve].quantity)) return true;
     }
   }
   return false;
@@ -97,23 +97,24 @@ void Evaluator::find_twins() {
   std::size_t most_entries = 0;
   for (const auto& use : dynamic_) {
     for (int i = 0; i < use.nc; ++i) {
-      const int curve = use.curve[static_cast<std::size_t>(i)];
+      const int curve = use.curve[i];
       if (curve >= 0 && std::find(dynamic_curves_.begin(), dynamic_curves_.end(), curve) == dynamic_curves_.end())
         dynamic_curves_.push_back(curve);
     }
-    most_entries += static_cast<std::size_t>(use.nc * use.outputs);
+    const std::size_t outputs = use.outputs;
+    most_entries += outputs * use.nc;
   }
   entries_.reserve(most_entries);
   curve_entries_.reserve(most_entries);
-  slot_entries_.reserve(4 * most_entries * static_cast<std::size_t>(n_));
+  slot_entries_.reserve(4 * most_entries * n_);
   std::sort(dynamic_curves_.begin(), dynamic_curves_.end());
   for (int k : dynamic_curves_) {
-    const Curve& curve = curves[static_cast<std::size_t>(k)];
-    CurveState& state = curve_[static_cast<std::size_t>(k)];
+    const Curve& curve = curves[k];
+    CurveState& state = curve_[k];
     state.quantity = curve.quantity;
-    for (int i = 0; i < curve.spline.size(); ++i) state.free = state.free || column_of_[static_cast<std::size_t>(curve.first + i)] >= 0;
+    for (int i = 0; i < curve.spline.size(); ++i) state.free = state.free || column_of_[curve.first + i] >= 0;
     for (int earlier : dynamic_curves_) {
-      const Curve& other = curves[static_cast<std::size_t>(earlier)];
+      const Curve& other = curves[earlier];
       const bool alike =
           earlier < k && other.quantity == curve.quantity && !curve.over_sine && !other.over_sine && curve.spline.same_inside(other.spline);
       if (alike && state.twin < 0) state.twin = earlier;
@@ -128,16 +129,16 @@ void Evaluator::flatten_effect(const BoundEffect& bound) {
   const EffectSpec& spec = bound.effect->spec();
   Use use{};
   use.effect = bound.effect;
-  use.nq = static_cast<int>(spec.quantities.size());
-  use.nc = static_cast<int>(spec.coefficients.size());
-  use.nz = static_cast<int>(spec.states.size());
-  use.nk = static_cast<int>(spec.constants.size());
-  use.ports = static_cast<int>(spec.ports.size());
+  use.nq = int_size(spec.quantities);
+  use.nc = int_size(spec.coefficients);
+  use.nz = int_size(spec.states);
+  use.nk = int_size(spec.constants);
+  use.ports = int_size(spec.ports);
   use.outputs = use.ports + use.nz;
   use.width = use.nq + use.nc + use.nz + (free_constants_ ? use.nk : 0);
   use.first_state = bound.first_state;
   const auto note = [&](int quantity) {
-    if (quantity >= 0 && quantity < nq_) needed_ |= std::uint64_t{1} << static_cast<unsigned>(quantity);
+    if (quantity >= 0 && quantity < nq_) needed_ |= std::uint64_t{1} << quantity;
   };
   for (std::size_t i = 0; i < bound.quantities.size(); ++i) note(use.quantity[i] = bound.quantities[i]);
   std::copy(bound.ports.begin(), bound.ports.end(), use.port.begin());
@@ -145,7 +146,7 @@ void Evaluator::flatten_effect(const BoundEffect& bound) {
   for (std::size_t i = 0; i < bound.coefficients.size(); ++i) {
     use.parameter[i] = bound.coefficients[i].parameter;
     use.curve[i] = bound.coefficients[i].curve;
-    if (use.curve[i] >= 0) note(model_->curves[static_cast<std::size_t>(use.curve[i])].quantity);
+    if (use.curve[i] >= 0) note(model_->curves[use.curve[i]].quantity);
   }
   auto& list = bound.kind == PortKind::quantity ? quantity_ : bound.kind == PortKind::dynamic ? dynamic_ : sensor_;
   list.push_back(use);
@@ -168,20 +169,20 @@ double Evaluator::curve_value(const Curve& curve, double at) const {
 void Evaluator::gather(const Use& use, const double* own, double* values) const {
   double* v = values;
   for (int i = 0; i < use.nq; ++i) {
-    const int quantity = use.quantity[static_cast<std::size_t>(i)];
-    *v++ = quantity < 0 ? 0.0 : q_[static_cast<std::size_t>(quantity)];
+    const int quantity = use.quantity[i];
+    *v++ = quantity < 0 ? 0.0 : q_[quantity];
   }
   for (int i = 0; i < use.nc; ++i) {
-    const int curve = use.curve[static_cast<std::size_t>(i)];
+    const int curve = use.curve[i];
     if (curve < 0) {
-      *v++ = p_[static_cast<std::size_t>(use.parameter[static_cast<std::size_t>(i)])];
+      *v++ = p_[use.parameter[i]];
     } else {
-      const Curve& c = model_->curves[static_cast<std::size_t>(curve)];
-      *v++ = curve_value(c, q_[static_cast<std::size_t>(c.quantity)]);
+      const Curve& c = model_->curves[curve];
+      *v++ = curve_value(c, q_[c.quantity]);
     }
   }
   for (int i = 0; i < use.nz; ++i) *v++ = own[use.first_state + i];
-  for (int i = 0; i < use.nk; ++i) *v++ = p_[static_cast<std::size_t>(use.constant[static_cast<std::size_t>(i)])];
+  for (int i = 0; i < use.nk; ++i) *v++ = p_[use.constant[i]];
 }
 
 Reads<double, double> Evaluator::reads(const Use& use, const double* values, double t) const {
@@ -194,10 +195,10 @@ void Evaluator::add_value(const Use& use, const double* own, double t, double* t
   gather(use, own, values.data());
   use.effect->evaluate(reads(use, values.data(), t), out.data());
   for (int o = 0; o < use.ports; ++o) {
-    const int port = use.port[static_cast<std::size_t>(o)];
-    if (port >= 0) targets[port] += out[static_cast<std::size_t>(o)];
+    const int port = use.port[o];
+    if (port >= 0) targets[port] += out[o];
   }
-  for (int i = 0; i < use.nz; ++i) drifts[use.first_state + i] = out[static_cast<std::size_t>(use.ports + i)];
+  for (int i = 0; i < use.nz; ++i) drifts[use.first_state + i] = out[use.ports + i];
 }
 
 void Evaluator::base_and_derived(const Point& at, const double* own) {

@@ -19,19 +19,19 @@ class Slots {
  public:
   Slots() { slot_of_.fill(-1); }
   [[nodiscard]] int count() const { return count_; }
-  [[nodiscard]] int column(int slot) const { return column_[static_cast<std::size_t>(slot)]; }
+  [[nodiscard]] int column(int slot) const { return column_[slot]; }
   int slot(int column) {
-    auto& known = slot_of_[static_cast<std::size_t>(column)];
+    auto& known = slot_of_[column];
     if (known < 0) {
       known = count_;
-      column_[static_cast<std::size_t>(count_++)] = column;
+      column_[count_++] = column;
     }
     return known;
   }
   /// Whether a slot remembered from before, perhaps from other Slots, is that column here.
-  [[nodiscard]] bool holds(int slot, int column) const { return slot < count_ && column_[static_cast<std::size_t>(slot)] == column; }
+  [[nodiscard]] bool holds(int slot, int column) const { return slot < count_ && column_[slot] == column; }
   void clear() {
-    for (int s = 0; s < count_; ++s) slot_of_[static_cast<std::size_t>(column_[static_cast<std::size_t>(s)])] = -1;
+    for (int s = 0; s < count_; ++s) slot_of_[column_[s]] = -1;
     count_ = 0;
   }
 
@@ -42,7 +42,7 @@ class Slots {
 };
 
 /// Derivative rows: columns 0 … states−1 for the state, then one column per slot. Fixed stride.
-inline constexpr int kRowStride = padded(kMaxStates + kMaxColumns);
+inline constexpr std::ptrdiff_t kRowStride = padded(kMaxStates + kMaxColumns);
 
 /// The assembled right-hand side x' = f(x, u, t; p) and outputs y = h(x, u, t; p) with first derivatives, by the chain rule over effects
 /// that are each linearised on their own (lib/misfit/README.md (1) to (5); its index spaces: 8.3). One object per thread: it holds scratch
@@ -76,7 +76,7 @@ class Evaluator {
   /// Whether every output is a state as it stands (OutputSpec::observes, no effect on a sensor port), so that nothing need be evaluated.
   [[nodiscard]] bool outputs_are_states() const { return !observed_.empty(); }
   /// State that output o is; only if outputs_are_states().
-  [[nodiscard]] int observed(int o) const { return observed_[static_cast<std::size_t>(o)]; }
+  [[nodiscard]] int observed(int o) const { return observed_[o]; }
 
   /// y and, last, the shift of the sample time [s] (outputs() + 1 values).
   void predict(const double* x, const double* u, double t, double* y);

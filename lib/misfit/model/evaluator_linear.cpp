@@ -8,8 +8,8 @@
 namespace misfit {
 namespace {
 
-double* row_of(std::vector<double>& rows, int i) { return rows.data() + static_cast<std::ptrdiff_t>(i) * kRowStride; }
-const double* row_of(const std::vector<double>& rows, int i) { return rows.data() + static_cast<std::ptrdiff_t>(i) * kRowStride; }
+double* row_of(std::vector<double>& rows, int i) { return rows.data() + i * kRowStride; }
+const double* row_of(const std::vector<double>& rows, int i) { return rows.data() + i * kRowStride; }
 
 void add_scaled(double weight, const double* from, int count, double* to) {
   for (int i = 0; i < count; ++i) to[i] += weight * from[i];
@@ -35,22 +35,22 @@ void Evaluator::add_linear(const Use& use, const double* own, double t, Slots& s
                            double* drift_rows) {
   std::array<double, kMaxWidth> values;
   std::array<double, kMaxWidth> out;
-  std::array<double, static_cast<std::size_t>(kMaxWidth * kMaxWidth)> J;
+  std::array<double, kMaxWidth * kMaxWidth> J;
   std::array<CurvePoint, kMaxWidth> points;
   double* v = values.data();
   for (int i = 0; i < use.nq; ++i) {
-    const int quantity = use.quantity[static_cast<std::size_t>(i)];
-    *v++ = quantity < 0 ? 0.0 : q_[static_cast<std::size_t>(quantity)];
+    const int quantity = use.quantity[i];
+    *v++ = quantity < 0 ? 0.0 : q_[quantity];
   }
   std::array<double, kMaxWidth> slope;
   for (int i = 0; i < use.nc; ++i) {
-    const auto index = static_cast<std::size_t>(i);
+    const std::size_t index = i;
     if (use.curve[index] < 0) {
-      *v++ = p_[static_cast<std::size_t>(use.parameter[index])];
+      *v++ = p_[use.parameter[index]];
       continue;
     }
-    const Curve& curve = model_->curves[static_cast<std::size_t>(use.curve[index])];
-    const double at = q_[static_cast<std::size_t>(curve.quantity)];
+    const Curve& curve = model_->curves[use.curve[index]];
+    const double at = q_[curve.quantity];
     points[index] = curve.over_sine ? curve.spline.over_sine(at) : curve.spline.at(at);
     const CurvePoint& point = points[index];
     const double* c = p_.data() + curve.first + point.first;
@@ -58,46 +58,46 @@ void Evaluator::add_linear(const Use& use, const double* own, double t, Slots& s
     slope[index] = point.d[0] * c[0] + point.d[1] * c[1] + point.d[2] * c[2] + point.d[3] * c[3];
   }
   for (int i = 0; i < use.nz; ++i) *v++ = own[use.first_state + i];
-  for (int i = 0; i < use.nk; ++i) *v++ = p_[static_cast<std::size_t>(use.constant[static_cast<std::size_t>(i)])];
+  for (int i = 0; i < use.nk; ++i) *v++ = p_[use.constant[i]];
   use.effect->linearise(reads(use, values.data(), t), out.data(), J.data(), free_constants_);
 
   for (int o = 0; o < use.outputs; ++o) {
     double* row = nullptr;
     if (o < use.ports) {
-      const int port = use.port[static_cast<std::size_t>(o)];
+      const int port = use.port[o];
       if (port < 0) continue;
-      targets[port] += out[static_cast<std::size_t>(o)];
-      row = rows + static_cast<std::ptrdiff_t>(port) * kRowStride;
+      targets[port] += out[o];
+      row = rows + port * kRowStride;
     } else {
       const int state = use.first_state + o - use.ports;
-      drifts[state] = out[static_cast<std::size_t>(o)];
-      row = drift_rows + static_cast<std::ptrdiff_t>(state) * kRowStride;
+      drifts[state] = out[o];
+      row = drift_rows + state * kRowStride;
     }
     const double* j = J.data() + static_cast<std::ptrdiff_t>(o) * use.width;
     for (int i = 0; i < use.nq; ++i, ++j) {
-      const int quantity = use.quantity[static_cast<std::size_t>(i)];
+      const int quantity = use.quantity[i];
       if (quantity >= 0 && *j != 0.0) chain_quantity(*j, quantity, slots.count(), row);
     }
     for (int i = 0; i < use.nc; ++i, ++j) {
-      const auto index = static_cast<std::size_t>(i);
+      const std::size_t index = i;
       if (*j == 0.0) continue;
       if (use.curve[index] < 0) {
-        const int column = column_of_[static_cast<std::size_t>(use.parameter[index])];
+        const int column = column_of_[use.parameter[index]];
         if (column >= 0) row[n_ + slots.slot(column)] += *j;
         continue;
       }
-      const Curve& curve = model_->curves[static_cast<std::size_t>(use.curve[index])];
+      const Curve& curve = model_->curves[use.curve[index]];
       chain_quantity(*j * slope[index], curve.quantity, slots.count(), row);
       const int first = curve.first + points[index].first;
       for (int w = 0; w < 4; ++w) {
-        const int column = column_of_[static_cast<std::size_t>(first + w)];
-        if (column >= 0) row[n_ + slots.slot(column)] += *j * points[index].w[static_cast<std::size_t>(w)];
+        const int column = column_of_[first + w];
+        if (column >= 0) row[n_ + slots.slot(column)] += *j * points[index].w[w];
       }
     }
     for (int i = 0; i < use.nz; ++i, ++j) row[nx_ + use.first_state + i] += *j;
     if (!free_constants_) continue;
     for (int i = 0; i < use.nk; ++i, ++j) {
-      const int column = column_of_[static_cast<std::size_t>(use.constant[static_cast<std::size_t>(i)])];
+      const int column = column_of_[use.constant[i]];
       if (column >= 0 && *j != 0.0) row[n_ + slots.slot(column)] += *j;
     }
   }
@@ -111,15 +111,14 @@ void Evaluator::base_and_derived_linear(const Point& at, const double* own, Slot
   const int width = n_ + columns_;
   const auto rows_from_blocks = [&](bool with_ports) {
     for (int i = 0; i < nq_; ++i) {
-      if ((needed_ >> static_cast<unsigned>(i) & 1U) == 0U) continue;
+      if ((needed_ >> i & 1U) == 0U) continue;
       double* row = row_of(q_rows_, i);
       std::fill(row, row + width, 0.0);
       std::copy_n(q_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
-      for (int P = 0; with_ports && P < np_; ++P)
-        add_scaled(q_P_[static_cast<std::size_t>(i * np_ + P)], row_of(P_rows_, P), n_ + slots.count(), row);
+      for (int P = 0; with_ports && P < np_; ++P) add_scaled(q_P_[i * np_ + P], row_of(P_rows_, P), n_ + slots.count(), row);
       for (int k = 0; free_constants_ && k < nk_; ++k) {
-        const int column = column_of_[static_cast<std::size_t>(k)];
-        const double weight = q_k_[static_cast<std::size_t>(i * nk_ + k)];
+        const int column = column_of_[k];
+        const double weight = q_k_[i * nk_ + k];
         if (column >= 0 && weight != 0.0) row[n_ + slots.slot(column)] += weight;
       }
     }
@@ -140,8 +139,8 @@ void Evaluator::base_and_derived_linear(const Point& at, const double* own, Slot
 void Evaluator::linearise_rates(const double* x, const double* u, double t, Slots& slots, double* dx, double* D) {
   const Point at{x, u, t, p_.data()};
   if (linearise_rates_sparsely(x, u, t, slots, dx, D)) {
-    for (int i = 0; i < n_; ++i) std::fill_n(D + static_cast<std::ptrdiff_t>(i) * kRowStride + n_, columns_, 0.0);
-    for (const Entry& entry : slot_entries_) D[static_cast<std::ptrdiff_t>(entry.row) * kRowStride + n_ + entry.slot] += entry.value;
+    for (int i = 0; i < n_; ++i) std::fill_n(D + i * kRowStride + n_, columns_, 0.0);
+    for (const Entry& entry : slot_entries_) D[entry.row * kRowStride + n_ + entry.slot] += entry.value;
     return;
   }
   const double* own = x + nx_;
@@ -149,28 +148,28 @@ void Evaluator::linearise_rates(const double* x, const double* u, double t, Slot
   std::fill(F_.begin(), F_.begin() + nf_, 0.0);
   const int width = n_ + columns_;
   for (int i = 0; i < nf_; ++i) std::fill_n(row_of(F_rows_, i), width, 0.0);
-  for (int i = nx_; i < n_; ++i) std::fill_n(D + static_cast<std::ptrdiff_t>(i) * kRowStride, width, 0.0);
-  double* own_rows = D + static_cast<std::ptrdiff_t>(nx_) * kRowStride;
+  for (int i = nx_; i < n_; ++i) std::fill_n(D + i * kRowStride, width, 0.0);
+  double* own_rows = D + nx_ * kRowStride;
   for (const auto& use : dynamic_) add_linear(use, own, t, slots, F_.data(), F_rows_.data(), dx + nx_, own_rows);
   if (n_ > nx_) own_drifts_linear(at, own, slots, dx + nx_, own_rows);
 
   RateDerivatives d{r_x_.data(), quantity_effects_ ? r_P_.data() : nullptr, r_F_.data(), free_constants_ ? r_k_.data() : nullptr};
   system_->linearise_rates(at, P_.data(), F_.data(), dx, d);
   for (int i = 0; i < nx_; ++i) {
-    double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
+    double* row = D + i * kRowStride;
     std::copy_n(r_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
     std::fill(row + nx_, row + n_ + slots.count(), 0.0);
     for (int f = 0; f < nf_; ++f) {
-      const double weight = r_F_[static_cast<std::size_t>(i * nf_ + f)];
+      const double weight = r_F_[i * nf_ + f];
       if (weight != 0.0) add_scaled(weight, row_of(F_rows_, f), n_ + slots.count(), row);
     }
     for (int P = 0; quantity_effects_ && P < np_; ++P) {
-      const double weight = r_P_[static_cast<std::size_t>(i * np_ + P)];
+      const double weight = r_P_[i * np_ + P];
       if (weight != 0.0) add_scaled(weight, row_of(P_rows_, P), n_ + slots.count(), row);
     }
     for (int k = 0; free_constants_ && k < nk_; ++k) {
-      const int column = column_of_[static_cast<std::size_t>(k)];
-      const double weight = r_k_[static_cast<std::size_t>(i * nk_ + k)];
+      const int column = column_of_[k];
+      const double weight = r_k_[i * nk_ + k];
       if (column >= 0 && weight != 0.0) {
         const int before = slots.count();
         const int slot = slots.slot(column);
@@ -183,7 +182,7 @@ void Evaluator::linearise_rates(const double* x, const double* u, double t, Slot
 
 /// A constant that only the rates know was met after earlier rows were written.
 void Evaluator::clear_new_slot(int slot, int rows, double* D) const {
-  for (int i = 0; i <= rows; ++i) D[static_cast<std::ptrdiff_t>(i) * kRowStride + n_ + slot] = 0.0;
+  for (int i = 0; i <= rows; ++i) D[i * kRowStride + n_ + slot] = 0.0;
 }
 
 void Evaluator::own_drifts_linear(const Point& at, const double* own, Slots& slots, double* drifts, double* own_rows) {
@@ -211,8 +210,8 @@ void Evaluator::outputs_as_quantities(const Point& at, Slots& slots) {
     std::fill_n(row, n_ + columns_, 0.0);
     std::copy_n(y_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
     for (int k = 0; free_constants_ && k < nk_; ++k) {
-      const int column = column_of_[static_cast<std::size_t>(k)];
-      const double weight = y_k_[static_cast<std::size_t>(i * nk_ + k)];
+      const int column = column_of_[k];
+      const double weight = y_k_[i * nk_ + k];
       if (column >= 0 && weight != 0.0) row[n_ + slots.slot(column)] += weight;
     }
   }
@@ -222,8 +221,8 @@ void Evaluator::outputs_as_quantities(const Point& at, Slots& slots) {
 void Evaluator::linearise_outputs_simply(const Point& at, const Slots& slots, double* y, double* D) {
   system_->linearise_outputs(at, y, y_x_.data(), nullptr);
   for (int i = 0; i <= ny_; ++i) {
-    double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
-    for (int x = 0; x < n_; ++x) row[x] = i < ny_ && x < nx_ ? y_x_[static_cast<std::size_t>(i * nx_ + x)] : 0.0;
+    double* row = D + i * kRowStride;
+    for (int x = 0; x < n_; ++x) row[x] = i < ny_ && x < nx_ ? y_x_[i * nx_ + x] : 0.0;
     std::fill_n(row + n_, slots.count(), 0.0);
   }
   y[ny_] = 0.0;
@@ -239,11 +238,11 @@ void Evaluator::linearise_outputs(const double* x, const double* u, double t, Sl
   outputs_as_quantities(at, slots);
   const int width = n_ + columns_;
   for (int i = 0; i < ny_; ++i) {
-    y[i] = q_[static_cast<std::size_t>(nq_ + i)];
-    std::copy_n(row_of(q_rows_, nq_ + i), width, D + static_cast<std::ptrdiff_t>(i) * kRowStride);
+    y[i] = q_[nq_ + i];
+    std::copy_n(row_of(q_rows_, nq_ + i), width, D + i * kRowStride);
   }
   y[ny_] = 0.0;
-  std::fill_n(D + static_cast<std::ptrdiff_t>(ny_) * kRowStride, width, 0.0);
+  std::fill_n(D + ny_ * kRowStride, width, 0.0);
   std::array<double, kMaxStates> drifts{};
   for (const auto& use : sensor_) {
     std::fill(scratch_.begin(), scratch_.end(), 0.0);

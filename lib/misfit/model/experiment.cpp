@@ -17,10 +17,10 @@ namespace {
 std::vector<double> delayed(const std::vector<double>& t, const std::vector<double>& values, double delay, Hold hold) {
   std::vector<double> out;
   std::size_t k = 0;  // of the last sample not after t − delay
-  constexpr double rounding = 1e-9;
+  constexpr double relative_rounding = 1e-9;
   for (const double now : t) {
     const double then = now - delay;
-    while (k + 1 < t.size() && t[k + 1] <= then + rounding * (t[k + 1] - t[k])) ++k;
+    while (k + 1 < t.size() && t[k + 1] <= then + relative_rounding * (t[k + 1] - t[k])) ++k;
     const bool between = hold == Hold::first_order && k + 1 < t.size() && then > t[k];
     const double share = between ? (then - t[k]) / (t[k + 1] - t[k]) : 0.0;
     out.push_back(share > 0.0 ? values[k] + share * (values[k + 1] - values[k]) : values[k]);
@@ -54,15 +54,15 @@ std::size_t bridge(const std::vector<double>& t, std::vector<double>& y) {
 /// either side, and more than five times as far as these neighbours differ from each other, so that a burst or a jump of the motion itself
 /// is never taken for one.
 std::size_t set_spikes_aside(std::vector<double>& y) {
-  constexpr double sigmas = 15.0, apart = 5.0;
+  constexpr double wild_sigmas = 15.0, wild_times_neighbours = 5.0;
   const auto distance = [&](std::size_t i) { return y[i] - (4.0 * (y[i - 1] + y[i + 1]) - y[i - 2] - y[i + 2]) / 6.0; };
   std::vector<double> distances;
   for (std::size_t i = 2; i + 2 < y.size(); ++i) distances.push_back(distance(i));
-  const double limit = sigmas * mad_sigma(distances);
+  const double limit = wild_sigmas * mad_sigma(distances);
   std::vector<std::size_t> wild;
   for (std::size_t i = 2; i + 2 < y.size(); ++i) {
     const double between = std::max({std::abs(y[i - 2] - y[i - 1]), std::abs(y[i - 1] - y[i + 1]), std::abs(y[i + 1] - y[i + 2])});
-    if (std::abs(distance(i)) > std::max(limit, apart * between)) wild.push_back(i);
+    if (std::abs(distance(i)) > std::max(limit, wild_times_neighbours * between)) wild.push_back(i);
   }
   for (std::size_t i : wild) y[i] = std::nan("");
   return wild.size();
@@ -174,7 +174,7 @@ class Reader {
                                            " s lies outside the recording, " + format_value(first) + " to " + format_value(last) + " s");
       }
     }
-    out_.exclude = static_cast<std::size_t>(std::max(study_.exclude, 0L));
+    out_.exclude = std::max(study_.exclude, 0L);
     if (out_.exclude >= out_.samples())
       throw InputError(study_.where,
                        "exclude = " + std::to_string(study_.exclude) + " leaves no sample of " + std::to_string(out_.samples()));
@@ -183,7 +183,7 @@ class Reader {
   void count_missing() {
     for (const auto& channel : out_.measured) {
       const auto missing = std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isfinite(v); });
-      if (missing == static_cast<long>(channel.values.size()))
+      if (missing == std::ssize(channel.values))
         throw RunError("experiment '" + shown(study_.name) + "': channel " + channel.name + " has no value at all: all samples are lost");
       if (missing > 0)
         out_.notes.push_back("channel " + channel.name + ": " + std::to_string(missing) + " of " + std::to_string(channel.values.size()) +
@@ -192,8 +192,8 @@ class Reader {
     std::vector<double> steps;
     for (std::size_t i = 1; i < out_.t.size(); ++i) steps.push_back(out_.t[i] - out_.t[i - 1]);
     const double usual = median(steps);
-    constexpr double gap = 1.5;
-    const auto gaps = std::count_if(steps.begin(), steps.end(), [&](double s) { return s > gap * usual; });
+    constexpr double gap_in_steps = 1.5;
+    const auto gaps = std::count_if(steps.begin(), steps.end(), [&](double s) { return s > gap_in_steps * usual; });
     if (gaps > 0)
       out_.notes.push_back(std::to_string(gaps) + " gaps in time, the longest " +
                            format_value(*std::max_element(steps.begin(), steps.end())) + " s");

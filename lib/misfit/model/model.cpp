@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "misfit/core/lists.h"
+
 namespace misfit {
 
 std::vector<double> Model::values() const {
@@ -12,8 +14,8 @@ std::vector<double> Model::values() const {
 
 std::vector<int> Model::free_parameters() const {
   std::vector<int> out;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].free) out.push_back(static_cast<int>(i));
+  for (int i = 0; i < int_size(parameters); ++i) {
+    if (parameters[i].free) out.push_back(i);
   }
   return out;
 }
@@ -37,12 +39,7 @@ std::vector<double> Model::values_at(const Eigen::VectorXd& theta) const {
   return out;
 }
 
-int Model::find_parameter(const std::string& name) const {
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
+int Model::find_parameter(const std::string& name) const { return index_of(parameters, name); }
 
 const Curve* Model::find_curve(const std::string& name) const {
   for (const auto& curve : curves) {
@@ -56,8 +53,8 @@ std::vector<std::string> Model::needed_inputs() const {
   std::set<std::string> names(by_equations.begin(), by_equations.end());
   const auto& quantities = system->spec().quantities;
   const auto note = [&](int index) {
-    if (index < 0 || index >= static_cast<int>(quantities.size())) return;
-    for (const auto& input : quantities[static_cast<std::size_t>(index)].inputs) names.insert(input);
+    if (index < 0 || index >= int_size(quantities)) return;
+    for (const auto& input : quantities[index].inputs) names.insert(input);
   };
   for (const auto& effect : effects) {
     for (int index : effect.quantities) note(index);

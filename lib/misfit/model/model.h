@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/core/lists.h"
 #include "misfit/math/bspline.h"
 #include "misfit/model/registry.h"
 
@@ -105,10 +106,10 @@ struct Model {
   std::vector<std::string> own_state_names;  ///< "effect.state"
   std::vector<std::string> own_state_units;
 
-  [[nodiscard]] int system_states() const { return static_cast<int>(system->spec().states.size()); }
-  [[nodiscard]] int states() const { return system_states() + static_cast<int>(own_states.size()); }
-  [[nodiscard]] int outputs() const { return static_cast<int>(system->spec().outputs.size()); }
-  [[nodiscard]] int inputs() const { return static_cast<int>(system->spec().inputs.size()); }
+  [[nodiscard]] int system_states() const { return int_size(system->spec().states); }
+  [[nodiscard]] int states() const { return system_states() + int_size(own_states); }
+  [[nodiscard]] int outputs() const { return int_size(system->spec().outputs); }
+  [[nodiscard]] int inputs() const { return int_size(system->spec().inputs); }
   [[nodiscard]] std::vector<double> values() const;        ///< of all parameters
   [[nodiscard]] std::vector<int> free_parameters() const;  ///< index into `parameters` of each column
   [[nodiscard]] Eigen::VectorXd theta() const;             ///< values of the free parameters, in that order

@@ -195,7 +195,7 @@ std::optional<ModelRequest> regression_form(const ModelRequest& request, const R
   std::erase_if(form.effects, [&](const EffectRequest& effect) {
     const auto& coefficients = registry.effect(effect.kind, effect.where).spec().coefficients;
     const bool known = std::all_of(coefficients.begin(), coefficients.end(), [&](const CoefficientSpec& c) {
-      if (c.borrowed) return true;
+      if (c.shared) return true;
       const auto renamed = spec.coefficient_names.find(c.name);
       const std::string name = renamed == spec.coefficient_names.end() ? c.name : renamed->second;
       return name == spec.static_curve || name == spec.damping_curve;

@@ -80,7 +80,7 @@ class SystemOf final : public System {
   static void block(const T& jet, int first, int count, double* row) {
     for (int i = 0; i < count; ++i) row[i] = jet.v[first + i];
   }
-  static constexpr std::size_t at_least_one(int n) { return static_cast<std::size_t>(n > 0 ? n : 1); }
+  static constexpr std::size_t at_least_one(int n) { return n > 0 ? n : 1; }
 
   template <int W>
   MISFIT_FLATTEN void differentiate_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
@@ -96,7 +96,7 @@ class SystemOf final : public System {
     } else {
       plain(ports.data(), P, S::NP);
     }
-    std::array<T, static_cast<std::size_t>(S::NQ)> out;
+    std::array<T, S::NQ> out;
     if constexpr (with_k) {
       std::array<T, at_least_one(S::NK)> k;
       seed(k.data(), at.k, S::NK, S::NX + S::NP);
@@ -105,8 +105,8 @@ class SystemOf final : public System {
       system_.template quantities<T, double>(x.data(), at.u, at.t, at.k, ports.data(), needed, out.data());
     }
     for (int i = 0; i < S::NQ; ++i) {
-      if ((needed >> static_cast<unsigned>(i) & 1U) == 0U) continue;
-      const T& jet = out[static_cast<std::size_t>(i)];
+      if ((needed >> i & 1U) == 0U) continue;
+      const T& jet = out[i];
       q[i] = jet.a;
       block(jet, 0, S::NX, d.x + i * S::NX);
       if constexpr (with_P) {
@@ -140,7 +140,7 @@ class SystemOf final : public System {
       system_.template rates<T, double>(x.data(), at.u, at.t, at.k, ports.data(), forces.data(), out.data());
     }
     for (int i = 0; i < S::NX; ++i) {
-      const T& jet = out[static_cast<std::size_t>(i)];
+      const T& jet = out[i];
       dx[i] = jet.a;
       block(jet, 0, S::NX, d.x + i * S::NX);
       block(jet, S::NX, S::NF, d.F + i * S::NF);
@@ -156,7 +156,7 @@ class SystemOf final : public System {
     using T = Jet<W>;
     std::array<T, at_least_one(S::NX)> x;
     seed(x.data(), at.x, S::NX, 0);
-    std::array<T, static_cast<std::size_t>(S::NY)> out;
+    std::array<T, S::NY> out;
     if constexpr (W > S::NX) {
       std::array<T, at_least_one(S::NK)> k;
       seed(k.data(), at.k, S::NK, S::NX);
@@ -165,7 +165,7 @@ class SystemOf final : public System {
       system_.template outputs<T, double>(x.data(), at.u, at.t, at.k, out.data());
     }
     for (int i = 0; i < S::NY; ++i) {
-      const T& jet = out[static_cast<std::size_t>(i)];
+      const T& jet = out[i];
       y[i] = jet.a;
       block(jet, 0, S::NX, y_x + i * S::NX);
       if constexpr (W > S::NX) block(jet, S::NX, S::NK, y_k + i * S::NK);

@@ -8,9 +8,10 @@ namespace misfit {
 namespace {
 
 /// Inputs within an interval: held or straight, as each input's Hold says.
-void inputs_at(const Model& model, const double* u0, const double* u1, double fraction, double* u) {
+void inputs_at(const Model& model, const Interval& within, double fraction, double* u) {
   const auto& specs = model.system->spec().inputs;
-  for (std::size_t i = 0; i < specs.size(); ++i) u[i] = specs[i].hold == Hold::zero_order ? u0[i] : u0[i] + fraction * (u1[i] - u0[i]);
+  for (std::size_t i = 0; i < specs.size(); ++i)
+    u[i] = specs[i].hold == Hold::zero_order ? within.u0[i] : within.u0[i] + fraction * (within.u1[i] - within.u0[i]);
 }
 
 /// One realisation in progress.
@@ -28,8 +29,8 @@ class RandomRun {
     const double parts = std::clamp(std::ceil(stepper_.fastest_rate() * h / largest_product), 1.0, most);
     std::array<double, kMaxInputs> from{}, to{};
     for (double part = 0.0; part < parts; part += 1.0) {
-      inputs_at(model_, whole.u0, whole.u1, part / parts, from.data());
-      inputs_at(model_, whole.u0, whole.u1, (part + 1.0) / parts, to.data());
+      inputs_at(model_, whole, part / parts, from.data());
+      inputs_at(model_, whole, (part + 1.0) / parts, to.data());
       add_noise(x, 0.5 * h / parts);
       if (!stepper_.step(x, {whole.t0 + h * part / parts, whole.t0 + h * (part + 1.0) / parts, from.data(), to.data()})) return false;
       add_noise(x, 0.5 * h / parts);
@@ -40,7 +41,7 @@ class RandomRun {
  private:
   void add_noise(double* x, double h) {
     for (int i = nx_; i < model_.states(); ++i) {
-      const double intensity = intensity_[static_cast<std::size_t>(i - nx_)];
+      const double intensity = intensity_[i - nx_];
       if (intensity > 0.0) x[i] += intensity * std::sqrt(h) * normal_(random_);
     }
   }
@@ -62,21 +63,22 @@ bool has_random_states(Evaluator& evaluator, const double* x, const double* u, d
   return std::any_of(intensity.begin(), intensity.end(), [](double value) { return value > 0.0; });
 }
 
-void run_randomly(Stepper& stepper, const Signals& signals, const InputTable& inputs, const double* x0, std::mt19937_64& random,
-                  Segment& out, const std::vector<double>& further) {
+void run_randomly(const Simulation& simulation, const double* x0, std::mt19937_64& random, Segment& out,
+                  const std::vector<double>& further) {
+  const auto& [stepper, signals, inputs] = simulation;
   RandomRun run(stepper, random, further);
   std::array<double, kMaxStates> x{};
   std::copy_n(x0, stepper.states(), x.begin());
   out.first = 0;
   out.last = signals.samples();
   out.finite = false;
-  out.y.resize(static_cast<Eigen::Index>(out.last), stepper.evaluator().outputs());
+  out.y.resize(out.last, stepper.evaluator().outputs());
   Segment one;
   for (std::size_t i = 0; i < out.last; ++i) {
     out.failed_at = i;
-    run_segment(stepper, signals, inputs, i, i + 1, x.data(), false, one);  // for what sample i shows, where its time is shifted as well
+    run_segment(simulation, {i, i + 1, x.data()}, one);  // for what sample i shows, where its time is shifted as well
     if (!one.finite) return;
-    out.y.row(static_cast<Eigen::Index>(i)) = one.y.row(0);
+    out.y.row(i) = one.y.row(0);
     if (i + 1 == out.last) break;
     out.failed_at = i + 1;
     if (!run.advance(x.data(), {signals.t[i], signals.t[i + 1], inputs.at(i), inputs.at(i + 1)})) return;

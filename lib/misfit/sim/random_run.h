@@ -17,7 +17,7 @@ namespace misfit {
 /// each interval. The state starts at x0 as given: gusts from 0 need some time constants to reach their size.
 /// `further`: noise intensity added to that of each own state [unit/sqrt(s)] (in squares); empty: none. For a random force whose noise the
 /// model does not carry itself.
-void run_randomly(Stepper& stepper, const Signals& signals, const InputTable& inputs, const double* x0, std::mt19937_64& random,
-                  Segment& out, const std::vector<double>& further = {});
+void run_randomly(const Simulation& simulation, const double* x0, std::mt19937_64& random, Segment& out,
+                  const std::vector<double>& further = {});
 
 }  // namespace misfit

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 
 namespace misfit {
@@ -14,7 +15,7 @@ namespace {
 constexpr std::array<double, 4> stage_at = {0.0, 0.5, 0.5, 1.0};
 constexpr std::array<double, 4> stage_weight = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
 
-constexpr std::ptrdiff_t row_at(int i) { return static_cast<std::ptrdiff_t>(i) * kRowStride; }
+constexpr std::ptrdiff_t row_at(int i) { return i * kRowStride; }
 
 /// kRowPadding columns of a row at once.
 using Block = Eigen::Array<double, kRowPadding, 1>;
@@ -26,11 +27,10 @@ Eigen::Map<Block> block(double* at) { return Eigen::Map<Block>(at); }
 Stepper::Stepper(const Model& model) : evaluator_(model), n_(model.states()), nu_(model.inputs()) {
   for (const auto& input : model.system->spec().inputs) zero_order_.push_back(input.hold == Hold::zero_order);
   const auto& states = model.system->spec().states;
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    if (std::isfinite(states[i].lower) || std::isfinite(states[i].upper))
-      ranges_.push_back({static_cast<int>(i), states[i].lower, states[i].upper});
+  for (int i = 0; i < int_size(states); ++i) {
+    if (std::isfinite(states[i].lower) || std::isfinite(states[i].upper)) ranges_.push_back({i, states[i].lower, states[i].upper});
   }
-  const auto size = static_cast<std::size_t>(n_) * kRowStride;
+  const auto size = n_ * kRowStride;
   L_.assign(size, 0.0);
   X_.assign(size, 0.0);
   Y_.assign(size, 0.0);
@@ -67,7 +67,7 @@ void Stepper::note_failure(const double* x, const Interval& interval) {
     sum = at;
     for (std::size_t s = 0; s < 4; ++s) {
       stage = at;
-      for (std::size_t i = 0; s > 0 && i < static_cast<std::size_t>(n_); ++i) stage[i] += h * stage_at[s] * dx[i];
+      for (int i = 0; s > 0 && i < n_; ++i) stage[i] += h * stage_at[s] * dx[i];
       const double fraction = (part + stage_at[s]) / parts;
       inputs_at(interval, fraction, u.data());
       const double t = interval.t0 + fraction * (interval.t1 - interval.t0);
@@ -82,7 +82,7 @@ void Stepper::note_failure(const double* x, const Interval& interval) {
         failure_ += why;
         return;
       }
-      for (std::size_t i = 0; i < static_cast<std::size_t>(n_); ++i) sum[i] += h * stage_weight[s] * dx[i];
+      for (int i = 0; i < n_; ++i) sum[i] += h * stage_weight[s] * dx[i];
     }
     at = sum;
     keep_in_range(at.data(), nullptr, 0);
@@ -100,7 +100,7 @@ int Stepper::substeps(double h) const {
 
 void Stepper::inputs_at(const Interval& interval, double fraction, double* u) const {
   for (int i = 0; i < nu_; ++i) {
-    const bool held = zero_order_[static_cast<std::size_t>(i)];
+    const bool held = zero_order_[i];
     u[i] = held ? interval.u0[i] : interval.u0[i] + fraction * (interval.u1[i] - interval.u0[i]);
   }
 }
@@ -116,12 +116,12 @@ bool Stepper::step(double* x, const Interval& interval) {
     std::copy_n(x, n_, stage.begin());
     for (std::size_t s = 0; s < 4; ++s) {
       if (s > 0) {
-        for (int i = 0; i < n_; ++i) stage[static_cast<std::size_t>(i)] = x[i] + h * stage_at[s] * dx[static_cast<std::size_t>(i)];
+        for (int i = 0; i < n_; ++i) stage[i] = x[i] + h * stage_at[s] * dx[i];
       }
       const double fraction = (part + stage_at[s]) / parts;
       inputs_at(interval, fraction, u.data());
       evaluator_.rates(stage.data(), u.data(), interval.t0 + fraction * (interval.t1 - interval.t0), dx.data());
-      for (int i = 0; i < n_; ++i) sum[static_cast<std::size_t>(i)] += h * stage_weight[s] * dx[static_cast<std::size_t>(i)];
+      for (int i = 0; i < n_; ++i) sum[i] += h * stage_weight[s] * dx[i];
     }
     std::copy_n(sum.begin(), n_, x);
     if (!ranges_.empty()) keep_in_range(x, nullptr, 0);
@@ -141,20 +141,20 @@ void Stepper::advance_rows(double h, std::size_t stage, int width, bool sparse, 
   const double to_next = last ? 0.0 : h * stage_at[stage + 1];
   const double* sum_before = first ? D : sum_.data();
   double* sum = last ? D : sum_.data();
-  constexpr auto rows = static_cast<std::size_t>(N > 0 ? N : kMaxStates);
+  constexpr int rows = N > 0 ? N : kMaxStates;
   std::array<double, rows * rows> A;
   for (int i = 0; i < n; ++i) {
     double* row = L_.data() + row_at(i);
-    for (int j = 0; j < n; ++j) A[static_cast<std::size_t>(i * n + j)] = row[j];
+    for (int j = 0; j < n; ++j) A[i * n + j] = row[j];
     if (!sparse) std::fill_n(row, n, 0.0);  // what is left is [0 | B]
   }
   std::array<Block, rows> x;
   for (int c = 0; c < width; c += kRowPadding) {
-    for (int j = 0; j < n; ++j) x[static_cast<std::size_t>(j)] = block(X + row_at(j) + c);
+    for (int j = 0; j < n; ++j) x[j] = block(X + row_at(j) + c);
     for (int i = 0; i < n; ++i) {
       const std::ptrdiff_t at = row_at(i) + c;
-      Block K = A[static_cast<std::size_t>(i * n)] * x[0];
-      for (int j = 1; j < n; ++j) K += A[static_cast<std::size_t>(i * n + j)] * x[static_cast<std::size_t>(j)];
+      Block K = A[i * n + 0] * x[0];
+      for (int j = 1; j < n; ++j) K += A[i * n + j] * x[j];
       if (!sparse) K += block(L_.data() + at);
       if (!last) block(next + at) = block(D + at) + to_next * K;
       block(sum + at) = block(sum_before + at) + to_sum * K;
@@ -172,7 +172,7 @@ template <int N>
 void Stepper::substep_linear(double* x, const Interval& interval, double from, double to, Slots& slots, double* D) {
   const int n = N > 0 ? N : n_;
   const double h = (to - from) * (interval.t1 - interval.t0);
-  std::array<double, static_cast<std::size_t>(N > 0 ? N : kMaxStates)> stage, sum, dx{};
+  std::array<double, (N > 0 ? N : kMaxStates)> stage, sum, dx{};
   std::array<double, kMaxInputs> u;
   std::copy_n(x, n, stage.begin());
   std::copy_n(x, n, sum.begin());
@@ -182,7 +182,7 @@ void Stepper::substep_linear(double* x, const Interval& interval, double from, d
     const double fraction = from + stage_at[s] * (to - from);
     if (s == 0 || stage_at[s] != stage_at[s - 1]) inputs_at(interval, fraction, u.data());
     if (s > 0) {
-      for (int i = 0; i < n; ++i) stage[static_cast<std::size_t>(i)] = x[i] + h * stage_at[s] * dx[static_cast<std::size_t>(i)];
+      for (int i = 0; i < n; ++i) stage[i] = x[i] + h * stage_at[s] * dx[i];
     }
     const int before = n + slots.count();
     const double t = interval.t0 + fraction * (interval.t1 - interval.t0);
@@ -202,7 +202,7 @@ void Stepper::substep_linear(double* x, const Interval& interval, double from, d
     advance_rows<N>(h, s, width, sparse, X, next, D);
     X = next;
     next = X == X_.data() ? Y_.data() : X_.data();
-    for (int i = 0; i < n; ++i) sum[static_cast<std::size_t>(i)] += h * stage_weight[s] * dx[static_cast<std::size_t>(i)];
+    for (int i = 0; i < n; ++i) sum[i] += h * stage_weight[s] * dx[i];
   }
   std::copy_n(sum.begin(), n, x);
 }
@@ -212,12 +212,12 @@ bool Stepper::step_linear(double* x, const Interval& interval, Slots& slots, dou
   std::array<double, kMaxStates> start;
   std::copy_n(x, n_, start.begin());
   for (int i = 0; i < n_; ++i) {
-    double* row = D + static_cast<std::ptrdiff_t>(i) * kRowStride;
+    double* row = D + i * kRowStride;
     for (int j = 0; j < n_; ++j) row[j] = i == j ? 1.0 : 0.0;
   }
   const int parts = substeps(interval.t1 - interval.t0);
   for (int part = 0; part < parts; ++part) {
-    const double from = static_cast<double>(part) / parts, to = static_cast<double>(part + 1) / parts;
+    const double from = 1.0 * part / parts, to = 1.0 * (part + 1) / parts;
     // The number of states of the usual systems is given to the compiler; 0: any.
     if (n_ == 2) {
       substep_linear<2>(x, interval, from, to, slots, D);

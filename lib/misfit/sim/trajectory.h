@@ -14,16 +14,28 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 struct InputTable {
   int inputs = 0;
   std::vector<double> values;  ///< samples × max(inputs, 1)
-  [[nodiscard]] const double* at(std::size_t sample) const {
-    return values.data() + sample * static_cast<std::size_t>(inputs > 0 ? inputs : 1);
-  }
+  [[nodiscard]] const double* at(std::size_t sample) const { return values.data() + sample * (inputs > 0 ? inputs : 1); }
 };
 [[nodiscard]] InputTable input_table(const Signals& signals, int inputs);
 
+/// What is run: a model on the inputs of a recording. The parameters are those the stepper's evaluator holds.
+struct Simulation {
+  Stepper& stepper;
+  const Signals& signals;
+  const InputTable& inputs;
+};
+
+/// Samples first … last − 1, from the state x0 at the first.
+struct Stretch {
+  std::size_t first = 0, last = 0;
+  const double* x0 = nullptr;
+  bool sensitivities = false;  ///< derivatives too
+  std::size_t batch = 0;       ///< run_in_batches: samples handed over at once; 0: all
+};
+
 /// Predicted outputs y (outputs + 1 places) at sample i, at the shifted time where an effect shifts it: the state is carried there by the
 /// step map itself. False if it cannot be carried there.
-[[nodiscard]] bool predict_at(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x,
-                              double* y);
+[[nodiscard]] bool predict_at(const Simulation& simulation, std::size_t i, const double* x, double* y);
 
 /// What a run over samples first … last − 1 predicts. Sample `last` (if it exists) is where the next segment starts.
 struct Segment {
@@ -36,18 +48,14 @@ struct Segment {
   std::size_t failed_at = 0;
 };
 
-/// Runs the model over a segment. The parameters are those the stepper's evaluator holds. Derivatives only if `sensitivities`. Matrices are
-/// resized only when their size changes: reuse `out` to avoid allocation.
-void run_segment(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last, const double* x0,
-                 bool sensitivities, Segment& out);
+/// Runs the model over a stretch. Matrices are resized only when their size changes: reuse `out` to avoid allocation.
+void run_segment(const Simulation& simulation, const Stretch& stretch, Segment& out);
 
-/// The same in batches of so many samples, for those who need every row once and no longer: `out` (first, last, y, y_rows) is handed to
-/// `take`, which may change it, and then reused; `end` and `finite` are those of the whole run.
-void run_in_batches(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last,
-                    const double* x0, bool sensitivities, std::size_t batch, Segment& out, const std::function<void(Segment&)>& take);
+/// The same in batches, for those who need every row once and no longer: `out` (first, last, y, y_rows) is handed to `take`, which may
+/// change it, and then reused; `end` and `finite` are those of the whole run.
+void run_in_batches(const Simulation& simulation, const Stretch& stretch, Segment& out, const std::function<void(Segment&)>& take);
 
-/// States at every sample first … last − 1 (samples × states), without derivatives; stops early (fewer rows) where a state is not finite.
-[[nodiscard]] RowMatrix run_states(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t first, std::size_t last,
-                                   const double* x0);
+/// States at every sample (samples × states), without derivatives; stops early (fewer rows) where a state is not finite.
+[[nodiscard]] RowMatrix run_states(const Simulation& simulation, const Stretch& stretch);
 
 }  // namespace misfit

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "misfit/core/lists.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -64,7 +65,7 @@ class Fitter {
     Location out;
     for (int pass = 0; pass < (shape_ ? 3 : 2); ++pass) {
       gather();
-      if (static_cast<int>(pixels_.size()) < 3 * unknowns_ || !start_levels() || !iterate(pass)) return out;
+      if (int_size(pixels_) < 3 * unknowns_ || !start_levels() || !iterate(pass)) return out;
     }
     out.converged = true;
     finish(out);
@@ -102,7 +103,7 @@ class Fitter {
     const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
     if (solver.info() != Eigen::Success || solver.rcond() < 1e-10) return false;
     const Eigen::Vector3d solution = solver.solve(right);
-    for (int k = 0; k < 3; ++k) marker_.levels[static_cast<std::size_t>(k)] = solution(k);
+    for (int k = 0; k < 3; ++k) marker_.levels[k] = solution(k);
     return solution.allFinite();
   }
 
@@ -116,7 +117,7 @@ class Fitter {
       p.slope(2) = 1.0;
       double by_edge = 0.0;
       for (int k = 0; k + 1 < levels_; ++k) {
-        const auto i = static_cast<std::size_t>(k);
+        const std::size_t i = k;
         const double level = marker_.levels[i + 1];
         p.model += level * s.value[i];
         p.slope(0) -= level * s.by_x[i];
@@ -140,7 +141,7 @@ class Fitter {
     std::vector<double> sizes;
     sizes.reserve(pixels_.size());
     for (const Pixel& p : pixels_) sizes.push_back(std::abs(p.residual));
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    const auto middle = sizes.begin() + sizes.size() / 2;
     std::nth_element(sizes.begin(), middle, sizes.end());
     const double limit = 2.0 * std::max(1.4826 * *middle, 1.0);
     for (Pixel& p : pixels_) p.weight = std::abs(p.residual) <= limit ? 1.0 : limit / std::abs(p.residual);
@@ -174,7 +175,7 @@ class Fitter {
   void apply(const Vector& step) {
     at_.column += step(0);
     at_.row += step(1);
-    for (int k = 0; k < levels_; ++k) marker_.levels[static_cast<std::size_t>(k)] += step(2 + k);
+    for (int k = 0; k < levels_; ++k) marker_.levels[k] += step(2 + k);
     if (ground_) {
       tilt_x_ += step(2 + levels_);
       tilt_y_ += step(3 + levels_);
@@ -248,7 +249,7 @@ class Fitter {
     std::array<double, sectors> mean_model{};
     const auto sector = [](const Pixel& p) {
       const double turn = std::atan2(p.y, p.x) / (2.0 * 3.14159265358979323846) + 0.5;
-      return static_cast<std::size_t>(std::clamp(static_cast<int>(turn * sectors), 0, sectors - 1));
+      return std::clamp(static_cast<int>(turn * sectors), 0, sectors - 1);
     };
     for (const Pixel& p : pixels_) {
       const std::size_t s = sector(p);

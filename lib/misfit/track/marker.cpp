@@ -50,10 +50,9 @@ void set_picture(ShapeValue& s, const Image& picture, double x, double y) {
     for (int i = 0; i < 4; ++i) {
       const int c = std::clamp(static_cast<int>(c0) - 1 + i, 0, picture.width - 1);
       const double grey = picture(c, r);
-      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-      s.value[0] += wx[a] * wy[b] * grey;
-      s.by_x[0] += dx[a] * wy[b] * grey;
-      s.by_y[0] += wx[a] * dy[b] * grey;
+      s.value[0] += wx[i] * wy[j] * grey;
+      s.by_x[0] += dx[i] * wy[j] * grey;
+      s.by_y[0] += wx[i] * dy[j] * grey;
     }
   }
 }

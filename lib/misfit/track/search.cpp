@@ -10,8 +10,8 @@ namespace {
 struct Grid {
   int width = 0, height = 0;
   std::vector<float> values;
-  [[nodiscard]] const float* row(int j) const { return values.data() + static_cast<std::ptrdiff_t>(j) * width; }
-  float* row(int j) { return values.data() + static_cast<std::ptrdiff_t>(j) * width; }
+  [[nodiscard]] const float* row(std::ptrdiff_t j) const { return values.data() + j * width; }
+  float* row(std::ptrdiff_t j) { return values.data() + j * width; }
 };
 
 /// Block of pixels behind a grid point, chosen so that the smaller side of the marker spans about eight points.
@@ -22,11 +22,11 @@ struct Pitch {
 Pitch pitch_of(const Marker& marker, int row_step) {
   const double size = 2.0 * std::min(marker.reach_x(), marker.reach_y()) + 1.0;
   const int pitch = std::clamp(static_cast<int>(size / 8.0), 1, 8);
-  return {pitch, std::max(1, static_cast<int>(std::lround(static_cast<double>(pitch) / row_step - 0.01)))};
+  return {pitch, std::max(1, static_cast<int>(std::lround(pitch / row_step - 0.01)))};
 }
 
 Grid shrink(const Image& image, int first_column, int first_row, int width, int height, const Pitch& pitch) {
-  Grid grid{width, height, std::vector<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0F)};
+  Grid grid{width, height, std::vector<float>(std::size_t{1} * width * height, 0.0F)};
   const float scale = 1.0F / static_cast<float>(pitch.x * pitch.y);
   for (int j = 0; j < height; ++j) {
     float* out = grid.row(j);
@@ -84,9 +84,9 @@ Grid kernel_of(const Marker& marker, int row_step, const Pitch& pitch) {
 /// Sums over the kernel's box at every place, by running sums.
 struct BoxSums {
   std::vector<double> sum, square;  ///< (width + 1) x (height + 1) integral images
-  int width;
+  std::size_t width;
   explicit BoxSums(const Grid& grid) : width(grid.width + 1) {
-    const auto size = static_cast<std::size_t>(width) * static_cast<std::size_t>(grid.height + 1);
+    const std::size_t size = width * (grid.height + 1);
     sum.assign(size, 0.0);
     square.assign(size, 0.0);
     for (int j = 0; j < grid.height; ++j) {
@@ -101,9 +101,7 @@ struct BoxSums {
       }
     }
   }
-  [[nodiscard]] std::size_t index(int i, int j) const {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
-  }
+  [[nodiscard]] std::size_t index(int i, int j) const { return j * width + i; }
   [[nodiscard]] double box(const std::vector<double>& of, int i, int j, int w, int h) const {
     return of[index(i + w, j + h)] - of[index(i, j + h)] - of[index(i + w, j)] + of[index(i, j)];
   }
@@ -114,7 +112,7 @@ constexpr double least_deviation = 2.0;  // [grey levels] a box flatter than tha
 Grid correlate(const Grid& grid, const Grid& kernel) {
   Grid out{grid.width - kernel.width + 1, grid.height - kernel.height + 1, {}};
   if (out.width < 1 || out.height < 1) return {};
-  out.values.assign(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height), 0.0F);
+  out.values.assign(std::size_t{1} * out.width * out.height, 0.0F);
   const BoxSums sums(grid);
   const auto n = static_cast<double>(kernel.values.size());
   for (int j = 0; j < out.height; ++j) {

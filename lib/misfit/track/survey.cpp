@@ -111,8 +111,8 @@ void Survey::learn() {
 
 bool Survey::similar(const Location& a, const Location& b) const {
   const double contrast = a.levels[1] / b.levels[1];
-  constexpr double least = 0.6;
-  const bool alike = contrast > least && contrast < 1.0 / least;
+  constexpr double least_contrast_ratio = 0.6;
+  const bool alike = contrast > least_contrast_ratio && contrast < 1.0 / least_contrast_ratio;
   if (!alike) return false;
   return options_.marker.kind == MarkerKind::picture || std::abs(a.outer - b.outer) < std::max(0.8, 0.15 * b.outer);
 }
@@ -205,7 +205,7 @@ FieldEvidence Survey::evidence() const {
       pairs.push_back({f.frame, std::nullopt, std::nullopt});
       quality = {0.0, 0.0};
     }
-    const auto parity = static_cast<std::size_t>(f.parity);
+    const std::size_t parity = f.parity;
     if (f.location.explained <= quality[parity]) continue;
     quality[parity] = f.location.explained;
     (f.parity == 0 ? pairs.back().even : pairs.back().odd) = f.location.at;

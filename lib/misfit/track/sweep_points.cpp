@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "misfit/core/error.h"
+#include "misfit/core/lists.h"
 
 namespace misfit {
 namespace {
@@ -13,10 +14,10 @@ double square(const PixelPoint& a, const PixelPoint& b) { return std::pow(a.colu
 
 /// The choice of markers (or none, at the price of `reach`) for the three expected places with the least sum of squares.
 SweepPoints nearest(const std::array<PixelPoint, 3>& expected, const std::vector<PixelPoint>& found, double reach) {
-  const int n = static_cast<int>(found.size());
+  const int n = int_size(found);
   double best = 1e300;
   SweepPoints out;
-  const auto price = [&](std::size_t k, int m) { return m == n ? reach * reach : square(expected[k], found[static_cast<std::size_t>(m)]); };
+  const auto price = [&](std::size_t k, int m) { return m == n ? reach * reach : square(expected[k], found[m]); };
   const auto clash = [n](int a, int b) { return a == b && a != n; };
   for (int a = 0; a <= n; ++a) {
     for (int b = 0; b <= n; ++b) {
@@ -26,8 +27,7 @@ SweepPoints nearest(const std::array<PixelPoint, 3>& expected, const std::vector
         best = sum;
         const std::array<int, 3> chosen{a, b, c};
         for (std::size_t k = 0; k < 3; ++k)
-          out[k] = chosen[k] == n || price(k, chosen[k]) > reach * reach ? std::nullopt
-                                                                         : std::optional(found[static_cast<std::size_t>(chosen[k])]);
+          out[k] = chosen[k] == n || price(k, chosen[k]) > reach * reach ? std::nullopt : std::optional(found[chosen[k]]);
       }
     }
   }

@@ -183,9 +183,9 @@ void add_locking(std::vector<TrackedSample>& samples, int row_step) {
 }  // namespace
 
 double pixel_locking(const std::vector<double>& positions, double pitch) {
-  constexpr double assumed = 0.1, largest = 0.3;
+  constexpr double assumed_noise = 0.1, largest_noise = 0.3;
   const auto n = static_cast<double>(positions.size());
-  if (positions.size() < 200 || !(mad_sigma(positions) > 10.0 * pitch)) return assumed;
+  if (positions.size() < 200 || !(mad_sigma(positions) > 10.0 * pitch)) return assumed_noise;
   std::vector<double> phase;
   for (double p : positions) phase.push_back(p / pitch - std::floor(p / pitch));
   std::sort(phase.begin(), phase.end());
@@ -196,7 +196,7 @@ double pixel_locking(const std::vector<double>& positions, double pitch) {
     squares += lack * lack;
   }
   const double variance = squares / n - sum * sum / (n * n) - 1.0 / (12.0 * n);
-  return std::min(largest, pitch * std::sqrt(2.0 * std::max(0.0, variance)));
+  return std::min(largest_noise, pitch * std::sqrt(2.0 * std::max(0.0, variance)));
 }
 
 std::vector<TrackedSample> Tracker::finish() {

@@ -38,7 +38,7 @@ int memory_in(const std::vector<std::vector<double>>& pool) {
     }
     pairs[k].setConstant(static_cast<double>(n - k));
   }
-  return memory_of(products, pairs, 1);
+  return correlation_length(products, pairs, 1);
 }
 
 }  // namespace

@@ -41,8 +41,7 @@ double grey_at(const Field& field, double column, double row, double size) {
 
 }  // namespace
 
-Canvas::Canvas(int width, int height)
-    : width_(width), height_(height), bgr_(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 24) {}
+Canvas::Canvas(int width, int height) : width_(width), height_(height), bgr_(std::size_t{3} * width * height, 24) {}
 
 void Canvas::paste(const Field& field, double left, double top, double width, double height, int x, int y, double scale) {
   for (int j = 0; j < std::lround(height * scale); ++j) {
@@ -51,7 +50,7 @@ void Canvas::paste(const Field& field, double left, double top, double width, do
       if (x + i < 0 || y + j < 0 || x + i >= width_ || y + j >= height_) continue;
       if (column < -0.5 || row < -0.5 || column > field.image.width - 0.5 || row > field.frame_height() - 0.5) continue;
       const auto grey = static_cast<std::uint8_t>(grey_at(field, column, row, 1.0 / scale));
-      const std::size_t at = 3 * (static_cast<std::size_t>(y + j) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x + i));
+      const std::size_t at = 3 * (std::size_t{1} * (y + j) * width_ + x + i);
       for (std::size_t k = 0; k < 3; ++k) bgr_[at + k] = grey;
     }
   }

@@ -56,7 +56,7 @@ void write_check_video(const std::filesystem::path& from, const std::filesystem:
   Video video(from);
   CheckVideo out(to, video.facts(), track, fields, radius);
   while (auto frame = video.next()) {
-    const auto sample = static_cast<std::size_t>(frame->number) * static_cast<std::size_t>(fields);
+    const std::size_t sample = frame->number * fields;
     if (fields == 1) {
       out.add({std::move(frame->image), 0, 1}, sample);
     } else {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/lists.h"
 #include "misfit/video/canvas.h"
 
 namespace misfit {
@@ -64,12 +65,12 @@ void write_contact_sheet(const std::filesystem::path& path, const std::vector<Sh
     widest = std::max(widest, shot.field.image.width);
     highest = std::max(highest, shot.field.frame_height());
   }
-  const double scale = static_cast<double>(tile) / widest;
+  const double scale = 1.0 * tile / widest;
   const int height = static_cast<int>(std::lround(highest * scale));
-  const int rows = (static_cast<int>(shots.size()) + columns - 1) / columns, across = std::min(columns, static_cast<int>(shots.size()));
+  const int rows = (int_size(shots) + columns - 1) / columns, across = std::min(columns, int_size(shots));
   Canvas canvas(gap + across * (tile + gap), gap + rows * (height + caption + gap));
-  for (std::size_t k = 0; k < shots.size(); ++k) {
-    const int i = static_cast<int>(k) % columns, j = static_cast<int>(k) / columns;
+  for (int k = 0; k < int_size(shots); ++k) {
+    const int i = k % columns, j = k / columns;
     add_tile(canvas, shots[k], gap + i * (tile + gap), gap + j * (height + caption + gap), scale, tile, height);
   }
   canvas.write_png(path);

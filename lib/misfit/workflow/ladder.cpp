@@ -143,7 +143,7 @@ StageInputs inputs_of_ladder(const Session& session) {
 std::string not_predicted(const Effect& effect, const std::optional<Candidate>& from) {
   const auto& coefficients = effect.spec().coefficients;
   const bool strength = std::any_of(coefficients.begin(), coefficients.end(),
-                                    [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.borrowed; });
+                                    [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.shared; });
   const std::string name = effect.spec().key;
   if (!strength) return "no drop is predicted for " + name + ": it has no coefficient that switches it off, so no score test exists";
   if (!from) return "no drop is predicted for " + name + ": it is driven by noise, or a more specific effect replaces it";

@@ -43,7 +43,7 @@ std::map<std::string, double> start_found(const Effect& effect, const Candidate&
   std::map<std::string, double> start;
   for (const auto& c : effect.spec().coefficients) {
     const bool scanned_shape = c.scan.count != 0 && c.kind == CoefficientKind::shape;
-    if (c.borrowed || (!scanned_shape && !from.actual_drop)) continue;
+    if (c.shared || (!scanned_shape && !from.actual_drop)) continue;
     for (const auto& [name, estimate] : from.parameters) {
       if (name == c.name || name.ends_with(std::string(".") + c.name)) start[c.name] = estimate.value;
     }
@@ -85,7 +85,7 @@ std::vector<std::string> unsuited_effects(const Session& session, const ModelReq
   std::vector<std::string> names;
   for (const auto& effect : model.effects) {
     const auto& coefficients = session.registry.effect(effect.kind).spec().coefficients;
-    if (std::any_of(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& c) { return c.borrowed; }) &&
+    if (std::any_of(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& c) { return c.shared; }) &&
         model.effects.size() > 1)
       continue;  // it needs the others, and is judged with them when the new study is read
     ModelRequest alone = model;

@@ -120,9 +120,9 @@ Table simulate(const Case& c, const Session& session) {
   std::mt19937_64 random(session.study.seed);
   Segment run;
   if (has_random_states(stepper.evaluator(), c.initial.data(), inputs.at(0), c.signals.t.front())) {
-    run_randomly(stepper, c.signals, inputs, c.initial.data(), random, run);
+    run_randomly({stepper, c.signals, inputs}, c.initial.data(), random, run);
   } else {
-    run_segment(stepper, c.signals, inputs, 0, c.signals.samples(), c.initial.data(), false, run);
+    run_segment({stepper, c.signals, inputs}, {0, c.signals.samples(), c.initial.data()}, run);
   }
   if (!run.finite) throw RunError("simulation diverged (non-finite state) at t = " + format_value(c.signals.t[run.failed_at]) + " s");
   Table table;
@@ -151,9 +151,9 @@ Table simulate(const Case& c, const Session& session) {
 
 }  // namespace
 
-Simulation simulate_stage(Session& session) {
+SimulatedRecord simulate_stage(Session& session) {
   const Case c = session.study.simulate ? from_section(session) : from_fit(session);
-  Simulation out{simulate(c, session), c.model.system->spec().key, session.folder.file("simulation.csv")};
+  SimulatedRecord out{simulate(c, session), c.model.system->spec().key, session.folder.file("simulation.csv")};
   session.redo_stage("simulate", session.inputs(session.study.text, {}), {"simulation.csv"},
                      [&](const std::filesystem::path& dir) { write_csv(dir / "simulation.csv", out.table); });
   return out;

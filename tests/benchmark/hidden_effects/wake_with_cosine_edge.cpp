@@ -51,7 +51,7 @@ struct WakeWithCosineEdge {
        .lower = -1e6,
        .upper = 1e6,
        .doc = "static moment coefficient over the sine of alpha_T",
-       .borrowed = true},
+       .shared = true},
   };
 
   template <class T, class K>

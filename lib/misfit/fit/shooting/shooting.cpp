@@ -86,7 +86,8 @@ void Shooting::fill_rows(const Piece& piece, double* r, double** J) const {
 bool Shooting::evaluate(Piece& piece, double defect_weight, const double* const* blocks, double* r, double** J) {
   set_theta(blocks[0]);
   Segment& s = piece.segment;
-  run_segment(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last, blocks[1], J != nullptr, s);
+  run_segment({*stepper_, experiments_[piece.experiment], inputs_[piece.experiment]}, {piece.first, piece.last, blocks[1], J != nullptr},
+              s);
   if (!s.finite) {
     note_failure(s, piece.experiment);
     return false;
@@ -207,8 +208,8 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
 
 void Shooting::remember(std::vector<Piece>& pieces, const LeastSquares& problem) {
   for (const auto& piece : pieces) {
-    const RowMatrix states = run_states(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last,
-                                        problem.block(piece.block).data());
+    const RowMatrix states = run_states({*stepper_, experiments_[piece.experiment], inputs_[piece.experiment]},
+                                        {piece.first, piece.last, problem.block(piece.block).data()});
     history_[piece.experiment].middleRows(piece.first, states.rows()) = states;
   }
 }
@@ -226,7 +227,7 @@ std::vector<RowMatrix> Shooting::predict_segments() {
     out.emplace_back(history_[e].rows(), model_.outputs());
     for (Eigen::Index i = 0; i < history_[e].rows(); ++i) {
       const auto sample = static_cast<std::size_t>(i);
-      const bool known = predict_at(*stepper_, experiments_[e], inputs_[e], sample, history_[e].row(i).data(), y.data());
+      const bool known = predict_at({*stepper_, experiments_[e], inputs_[e]}, sample, history_[e].row(i).data(), y.data());
       if (!known) std::fill(y.begin(), y.end(), std::nan(""));
       for (Eigen::Index o = 0; o < out[e].cols(); ++o) out[e](i, o) = y[o];
     }
@@ -239,7 +240,7 @@ std::vector<Segment> Shooting::run(bool sensitivities) {
   set_theta(model_.theta().data());
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     const Eigen::VectorXd x0 = initial_state(e);
-    run_segment(*stepper_, experiments_[e], inputs_[e], 0, experiments_[e].samples(), x0.data(), sensitivities, out[e]);
+    run_segment({*stepper_, experiments_[e], inputs_[e]}, {0, experiments_[e].samples(), x0.data(), sensitivities}, out[e]);
     if (!out[e].finite) note_failure(out[e], e);
   }
   return out;

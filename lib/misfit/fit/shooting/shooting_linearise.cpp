@@ -31,7 +31,7 @@ bool Shooting::linearise_segments(std::size_t length, NormalEquations& out) {
   ++linearisations_;
   for (Piece& piece : cut(length)) {
     const Eigen::VectorXd x0 = history_[piece.experiment].row(piece.first);
-    run_segment(*stepper_, experiments_[piece.experiment], inputs_[piece.experiment], piece.first, piece.last, x0.data(), true,
+    run_segment({*stepper_, experiments_[piece.experiment], inputs_[piece.experiment]}, {piece.first, piece.last, x0.data(), true},
                 piece.segment);
     if (!piece.segment.finite) return false;
     const Eigen::Index rows = piece.segment.y.size();
@@ -91,7 +91,7 @@ bool Shooting::linearise(NormalEquations& out) {
       out.rss += r.squaredNorm();
     };
     constexpr std::size_t batch = 128;  // samples whose rows stay in the cache until they are summed
-    run_in_batches(*stepper_, experiments_[e], inputs_[e], 0, experiments_[e].samples(), x0.data(), true, batch, run_, add);
+    run_in_batches({*stepper_, experiments_[e], inputs_[e]}, {0, experiments_[e].samples(), x0.data(), true, batch}, run_, add);
     if (!run_.finite) {
       note_failure(run_, e);
       return false;
