@@ -14,20 +14,20 @@ const std::vector<KeyGroup>& groups() {
   static const std::vector<KeyGroup> all{
       {"pump",
        "A pump.",
-       {{.name = "force", .type = KeyType::number, .meaning = "Force.", .unit = "N", .fallback = "\"2 kN\"", .least = 0, .above = true},
+       {{.name = "force", .type = KeyType::number, .unit = "N", .fallback = "\"2 kN\"", .least = 0, .above = true, .meaning = "Force."},
         {.name = "angle",
          .type = KeyType::number,
-         .meaning = "Of the blades.",
          .unit = "rad",
          .otherwise = "none",
          .least = 0,
-         .most = 0.5},
-        {.name = "kind", .type = KeyType::choice, .meaning = "Its kind.", .fallback = "\"gear\"", .choices = {"gear", "vane"}},
-        {.name = "stages", .type = KeyType::integer, .meaning = "Count.", .fallback = "1", .least = 1, .most = 9},
-        {.name = "gap", .type = KeyType::number, .meaning = "Of a vane.", .unit = "m", .fallback = "0.1", .needs = {"vanes"}},
-        {.name = "vanes", .type = KeyType::texts, .meaning = "Their names.", .otherwise = "none", .choices = {"a", "b"}},
-        {.name = "SENSOR", .type = KeyType::flag, .meaning = "On or off.", .otherwise = "off", .any = true}}},
-      {"pipe", "Pipes.", {{.name = "file", .type = KeyType::file, .meaning = "Its table.", .otherwise = "required"}}, true}};
+         .most = 0.5,
+         .meaning = "Of the blades."},
+        {.name = "kind", .type = KeyType::choice, .fallback = "\"gear\"", .choices = {"gear", "vane"}, .meaning = "Its kind."},
+        {.name = "stages", .type = KeyType::integer, .fallback = "1", .least = 1, .most = 9, .meaning = "Count."},
+        {.name = "gap", .type = KeyType::number, .unit = "m", .fallback = "0.1", .needs = {"vanes"}, .meaning = "Of a vane."},
+        {.name = "vanes", .type = KeyType::texts, .otherwise = "none", .choices = {"a", "b"}, .meaning = "Their names."},
+        {.name = "SENSOR", .type = KeyType::flag, .otherwise = "off", .any = true, .meaning = "On or off."}}},
+      {"pipe", "Pipes.", {{.name = "file", .type = KeyType::file, .otherwise = "required", .meaning = "Its table."}}, true}};
   return all;
 }
 

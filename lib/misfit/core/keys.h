@@ -19,7 +19,6 @@ enum class KeyType { text, choice, flag, integer, number, number_with_sigma, num
 struct Key {
   std::string name;  ///< in capitals where `any`
   KeyType type = KeyType::text;
-  std::string meaning;
   std::string unit = {};                                    ///< of numbers: SI, or in words ("of the state"); empty: none
   std::string fallback = {};                                ///< the default as TOML; empty: `otherwise` holds
   std::string otherwise = {};                               ///< what holds where the key is absent, in words ("required", "none")
@@ -30,6 +29,7 @@ struct Key {
   std::string form = {};                  ///< how it is written, where the type does not say it
   std::vector<std::string> needs = {};    ///< it has a meaning only beside one of these keys
   bool any = false;                       ///< stands for any name: of a state, a parameter, a curve
+  std::string meaning;
 };
 
 /// One table of the file: "uncertainty", "curves.NAME" for every table in [curves].
