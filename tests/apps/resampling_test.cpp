@@ -122,7 +122,7 @@ TEST(Resampling, AMethodThatDeclinesIsNamedAndTheOthersGoOn) {
   flight.change("perturb = .*", "bootstrap = 5");
   const Outcome outcome = flight.run("uncertainty");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  expect_parts(outcome.out, {"block bootstrap of equation_error", "output_error is not resampled: declined"});
+  expect_parts(outcome.out, {"block bootstrap of", "equation_error: 5 runs", "output_error is not resampled: declined"});
   EXPECT_EQ(flight.result("bootstrap.json").size(), 1U);
   const Outcome alone = flight.run("uncertainty", {"--method", "output_error"});
   EXPECT_EQ(alone.status, 1);
