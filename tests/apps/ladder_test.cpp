@@ -49,10 +49,10 @@ TEST_F(Climbing, AnEffectIsOneLineMoreAndThePathsStillLead) {
 }
 
 TEST_F(Climbing, TheErrorBeforeAndAfterIsPrintedInItsUnit) {
-  expect_parts(coning.out, {"rung 1: coning added to parachute_planar", "before", "after", "one step ahead, eta", "deg", "held out",
-                            "random force", "N m", "drop:", "actual", "gain of the held-out log-likelihood", "the ladder"});
-  expect_parts(spherical.out, {"rung 2: system:parachute_spherical added to parachute_planar", "32 steps ahead, P_y", "px", "no drop",
-                               "effect 'coning' is left out"});
+  expect_parts(coning.out, {"Rung 1: coning added to parachute_planar", "before", "after", "RMS of eta, one step ahead", "deg", "held out",
+                            "random force", "N m", "Drop:", "actual", "gain of the held-out log-likelihood", "Model ladder"});
+  expect_parts(spherical.out, {"Rung 2: system:parachute_spherical added to parachute_planar", "RMS of P_y, 32 steps ahead", "px",
+                               "no drop", "effect 'coning' is left out"});
   expect_parts(spherical.err, {"continuing from rung 1"});
 }
 
@@ -80,7 +80,7 @@ TEST_F(Climbing, AnotherSystemLeavesOutWhatDoesNotSuitItAsAComment) {
 }
 
 TEST_F(Climbing, AnEffectWithoutStrengthIsAddedWithoutAPredictionAndThatIsSaid) {
-  expect_parts(coning.out, {"no drop is predicted for coning: it has no coefficient that switches it off", "rung 1: no drop is predicted"});
+  expect_parts(coning.out, {"no drop is predicted for coning: it has no coefficient that switches it off", "Rung 1: no drop is predicted"});
   EXPECT_FALSE(fs::exists(study->out("candidates.json"))) << "nothing was searched";
   const json rung = study->result("ladder.json").at(1);
   EXPECT_TRUE(rung.at("predicted_drop").is_null());
@@ -113,7 +113,7 @@ TEST(AddAfterAWholeSearch, TakesItsPredictionAndTheReportKeepsWhatWasFound) {
     if (candidate.at("effect") == "strut_wake") predicted = candidate.at("predicted_drop").get<double>();
   }
   EXPECT_EQ(study.result("ladder.json").at(1).at("predicted_drop").get<double>(), predicted);
-  expect_parts(content(study.out("report.html")), {"<h2>Residual diagnostics", "<h2>Candidate effects", "(rung 0)"});
+  expect_parts(content(study.out("report.html")), {"<h2>Residual diagnostics", "<h2>Candidate effects", "(rung 0, the study"});
   fs::remove(study.out("report.html"));
   const Outcome from_elsewhere = program::run({"report", fs::relative(study.path("study.toml")).string()});
   ASSERT_EQ(from_elsewhere.status, 0) << from_elsewhere.err;

@@ -51,7 +51,7 @@ TEST(RigOfTheFlight, LengthMovesTheTrimAndApparentMassTheSlope) {
   EXPECT_EQ(first_line(flight.out("uncertainty.csv")), "curve,alpha_T[deg],mean[-],sigma[-],low[-],high[-],nominal[-],runs");
   EXPECT_TRUE(fs::exists(flight.out("figures/uncertainty_C_m.svg")));
   EXPECT_TRUE(fs::exists(flight.out("figures/variance_shares.svg")));
-  expect_parts(outcome.out, {"sliding_bin, 250 runs", "normal, 3 sigma = 0.1524 m", "share of the variance", "deg", "px/m"});
+  expect_parts(outcome.out, {"(sliding_bin) is repeated 250 times", "normal, 3 sigma = 0.1524 m", "share of the variance", "deg", "px/m"});
 }
 
 TEST(RigOfTheFlight, IsDoneOnceAndShownInTheReport) {

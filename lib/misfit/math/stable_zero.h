@@ -31,6 +31,6 @@ struct ZeroCrossing {
 ///   by more than their sigmas widen the result).
 /// Assumes independent errors. nullopt: no such crossing of the means or of the parabola. Without sigmas, equal weights
 /// and the scatter alone give sigma (0 if nothing is left over to estimate it).
-[[nodiscard]] std::optional<ZeroCrossing> stable_zero(const WeightedPoints& points);
+[[nodiscard]] std::optional<ZeroCrossing> stable_zero(const WeightedPoints& given);
 
 }  // namespace misfit

@@ -54,7 +54,8 @@ TableBlock parameter_table(const Fit& fit) {
   std::vector<Row> others;
   TableBlock table{columns("parameter|value")};
   for (const auto& [name, estimate] : fit.parameters) {
-    if (!is_curve_coefficient(name)) table.rows.push_back({name, shown(estimate) + (estimate.sigma > 0.0 ? "" : " (sigma not available)")});
+    if (!is_curve_coefficient(name))
+      table.rows.push_back({name, Row(name, estimate).shown() + (estimate.sigma > 0.0 ? "" : " (sigma not available)")});
   }
   add_rows(others, "noise of ", fit.noise);
   add_rows(others, "random force, ", fit.force);

@@ -49,6 +49,8 @@ TableBlock subjects_table(const std::string& what, const std::vector<Subject>& s
   return table;
 }
 
+std::string shown(const Estimate& e) { return in_display_unit(e.value, e.unit, e.sigma); }
+
 std::string shown(const std::optional<Estimate>& e) { return e ? shown(*e) : kMissing; }
 
 std::string shown_drop(const std::optional<double>& value) {

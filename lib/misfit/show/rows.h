@@ -44,8 +44,8 @@ struct Subject {
 /// In the place of what is not there.
 inline constexpr const char* kMissing = "–";
 
-/// An estimate as it is shown: "12.03 ± 0.21 deg".
-[[nodiscard]] inline std::string shown(const Estimate& e) { return Row("", e).shown(); }
+/// An estimate in a table with others: "12.03 ± 0.21 deg".
+[[nodiscard]] std::string shown(const Estimate& e);
 /// kMissing without a value, as the next two.
 [[nodiscard]] std::string shown(const std::optional<Estimate>& e);
 /// With one decimal and, for a change, its sign.

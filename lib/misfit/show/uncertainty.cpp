@@ -18,6 +18,13 @@ std::string sigma_text(double sigma, const std::string& si) {
   return std::isfinite(sigma) ? with_display_unit(fmt::format("{:.2g}", display_value(sigma, si)), si) : kMissing;
 }
 
+/// To the place that its sigma is known to.
+std::string without_sigma(double value, double sigma, const std::string& si) {
+  const std::string both = format_value(display_value(value, si), display_value(sigma, si));
+  const bool power_of_ten = both.starts_with('(');  // (1.20 ± 0.10)e7
+  return power_of_ten ? in_display_unit(value, si) : with_display_unit(both.substr(0, both.find(" ±")), si);
+}
+
 TableBlock perturbed_table(const Uncertainty& u) {
   TableBlock table{columns("perturbed|nominal|sigma|distribution")};
   for (const PerturbedParameter& p : u.perturbed)
@@ -26,10 +33,11 @@ TableBlock perturbed_table(const Uncertainty& u) {
 }
 
 TableBlock number_table(const Uncertainty& u) {
-  TableBlock table{columns("result|nominal ± sigma (noise)|mean ± propagated sigma|3-sigma band|>runs")};
+  TableBlock table{columns("result|nominal ± sigma (noise)|mean|propagated sigma|3-sigma band|>runs")};
   for (const SpreadNumber& n : u.numbers) {
     const bool spread = std::isfinite(n.sigma);
-    table.rows.push_back({n.name, in_display_unit(n.nominal, n.unit, n.nominal_sigma), in_display_unit(n.mean, n.unit, n.sigma),
+    table.rows.push_back({n.name, in_display_unit(n.nominal, n.unit, n.nominal_sigma), without_sigma(n.mean, n.sigma, n.unit),
+                          sigma_text(n.sigma, n.unit),
                           spread ? interval_in_display_unit(n.mean - 3.0 * n.sigma, n.mean + 3.0 * n.sigma, n.unit, n.sigma) : kMissing,
                           std::to_string(n.count)});
   }
@@ -80,8 +88,7 @@ void add_failures(const std::string& of, const std::map<std::string, std::size_t
 /// The end of an interval, to a tenth of the sigma; it has no sigma of its own.
 std::string end_of(double value, double sigma, const std::string& si, bool found = true) {
   constexpr double fine = 0.1;
-  const std::string both = format_value(display_value(value, si), fine * display_value(sigma, si));
-  return found ? with_display_unit(both.substr(0, both.find(" ±")), si) : "not reached";
+  return found ? without_sigma(value, fine * sigma, si) : "not reached";
 }
 
 void add_bootstraps(const std::vector<Bootstrap>& bootstraps, Blocks& out) {
