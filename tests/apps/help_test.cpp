@@ -55,8 +55,9 @@ TEST(Help, OfStudyHasSystemsWithTheirOptionsAndConstants) {
 TEST(Effect, IsPrintedInFullByItsKey) {
   const Outcome outcome = run({"effects", "coulomb_friction"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  expect_parts(outcome.out, {"coulomb_friction\n  formula", "symbols", "parameter", "friction", "strength", "bounds", "adds to", "valid",
-                             "source", "[effects]\n    coulomb_friction = {}\n", "kind = \"coulomb_friction\""});
+  expect_parts(outcome.out,
+               {"coulomb_friction\n  formula", "symbols", "parameter", "friction", "strength", "bounds", "adds to", "valid", "source",
+                "[effects]\n    coulomb_friction = {}\n", "to act elsewhere: coulomb_friction = { rate = \"NAME\", port = \"NAME\" }"});
   EXPECT_EQ(json::parse(run({"effects", "coulomb_friction", "--json"}).out).size(), 1U);
 }
 
@@ -180,7 +181,7 @@ std::vector<std::string> undescribed(std::span<const KeyGroup> groups, const fs:
   for (const TomlNode& node : misfit::toml_outline(content(file))) {
     const TomlPath above(node.path.begin(), node.path.end() - 1);
     const Key* key = misfit::config::find_key(groups, node.path);
-    const bool values = node.kind == TomlNode::Kind::array && node.path.front() != "experiment";
+    const bool values = node.kind == TomlNode::Kind::array && node.path.size() > 1;
     if (closed.contains(above) || values || (key != nullptr && key->type == KeyType::number_with_sigma)) closed.insert(node.path);
     if (node.kind == TomlNode::Kind::table || closed.contains(above) || key != nullptr) continue;
     if (node.kind == TomlNode::Kind::array && node.path.size() == 1) continue;

@@ -326,6 +326,8 @@ void Section::fail(std::string_view key, const std::string& message) const {
   throw InputError(where(key), path.empty() ? message : shown(path) + ": " + message);
 }
 
+void Section::fail_value(std::string_view key, const std::string& expected) const { state_->fail(key, *state_->take(key), expected); }
+
 std::string content_of(const std::string& text, const std::vector<std::string>& without) {
   std::ostringstream out;
   append(parse_document(text, ""), "", without, out);

@@ -85,7 +85,9 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-bool fits(const TomlPath& path, const std::vector<std::string>& pattern) {
+/// A parameter's name may be EFFECT.COEFFICIENT, which TOML reads as a table in a table.
+bool fits(const TomlPath& path, std::vector<std::string> pattern) {
+  if (pattern.front() == "parameters" && path.size() == pattern.size() + 1) pattern.emplace_back("NAME");
   return std::equal(path.begin(), path.end(), pattern.begin(), pattern.end(),
                     [](const std::string& key, const std::string& wanted) { return wanted == "NAME" || key == wanted; });
 }
@@ -157,10 +159,10 @@ const KeyGroup& group_of(std::span<const KeyGroup> groups, std::string_view path
 
 const Key* find_key(std::span<const KeyGroup> groups, const TomlPath& path) {
   const Key* any = nullptr;
+  TomlPath table(path.begin(), path.end() - 1);
+  const bool several = std::any_of(groups.begin(), groups.end(), [&](const KeyGroup& g) { return g.several && g.path == path.front(); });
+  if (several && table.size() > 1 && table[1].find_first_not_of("0123456789") == std::string::npos) table.erase(table.begin() + 1);
   for (const KeyGroup& group : groups) {
-    TomlPath table(path.begin(), path.end() - 1);
-    const bool element = group.several && table.size() > 1 && table[1].find_first_not_of("0123456789") == std::string::npos;
-    if (element) table.erase(table.begin() + 1);
     if (!fits(table, parts_of(group.path))) continue;
     for (const Key& key : group.keys) {
       if (key.name == path.back() && !key.any) return &key;

@@ -59,7 +59,7 @@ ExperimentStudy wholly_held_out(const Section& section, const Study& study, cons
 
 void read_validation(const Section& section, ExperimentStudy& experiment) {
   if (section.is_array("validation")) return read_interval(section, experiment);
-  if (section.has("validation") && !section.is_text("validation")) section.fail("validation", validation_forms);
+  if (section.has("validation") && !section.is_text("validation")) section.fail_value("validation", validation_forms);
   const auto given = section.text("validation");
   if (!given) return;
   const std::string& text = *given;

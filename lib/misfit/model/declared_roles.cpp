@@ -28,6 +28,7 @@ class Roles {
     set_motion(by_default, quantities);
     s.roles["output"] = s.roles["signal"] = role("output", outputs.front(), outputs);
     if (!s.inputs.empty()) s.roles["input"] = role("input", s.inputs.front().name, quantities);
+    if (s.inputs.empty() && d_.roles->text("input")) throw InputError(d_.roles->where("input"), "[roles] input: the system has no inputs");
     for (auto& p : s.dynamic_ports) {
       if (p.conjugate.empty()) p.conjugate = by_default;
       if (index_of(s.quantities, p.conjugate) < 0)
