@@ -35,7 +35,7 @@ TEST_F(OnAShortFlight, FilterErrorPredictsThePixelsAndKnowsTheRandomForce) {
   EXPECT_FALSE(fit.at("validation_loglik").is_null());
   EXPECT_EQ(first_line(study->out("fit/filter_error/prediction.csv")).substr(0, 53),
             "t[s],P_y_measured[px],P_y_predicted[px],P_y_sigma[px]");
-  expect_parts(fitted.out, {"random force moment_y", "N m", "trim"});
+  expect_parts(fitted.out, {"random force, moment_y", "N m", "trim"});
 }
 
 TEST_F(OnAShortFlight, TheCameraComesFromItsCalibration) {
