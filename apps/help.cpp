@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "misfit/core/text.h"
+#include "misfit/data/estimators.h"
 #include "misfit/data/study_keys.h"
 #include "misfit/formula/syntax.h"
 #include "misfit/model/declared_keys.h"
@@ -62,7 +63,7 @@ std::string effects_text(const Registry& registry) {
 
 /// lib/misfit/README.md, 2, in twelve words.
 std::string words_text() {
-  const std::vector<std::pair<const char*, const char*>> words = {
+  const std::vector<std::pair<const char*, std::string>> words = {
       {"study", "a folder with study.toml and data: one question put to one or more recordings"},
       {"system", "the skeleton of a model: states, inputs, outputs, quantities, ports, constants"},
       {"quantity", "a named function of state and input that effects read, with a unit: alpha_T [rad]"},
@@ -70,7 +71,8 @@ std::string words_text() {
       {"effect", "one physical cause: reads quantities, owns parameters, adds to ports"},
       {"strength, shape", "kinds of parameter: with all strengths 0 an effect is off; shapes are the rest"},
       {"curve", "a parameter as a function of a quantity: a cubic spline with a roughness penalty"},
-      {"missing force", "the random force per degree of freedom that would explain the data, estimated by filter_error"},
+      {"missing force",
+       std::string("the random force per degree of freedom that would explain the data, estimated by ") + random_force_estimator().name},
       {"drop", "2 log likelihood ratio: by how much an effect improves the fit"},
       {"candidate", "an effect, or an unknown curve, that the model may lack"},
       {"alias", "a candidate that imitates what is missing: it explains much, but leaves a curve of its own quantities"},

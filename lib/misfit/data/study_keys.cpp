@@ -34,7 +34,8 @@ KeyGroup study_group() {
       {.name = "question", .fallback = "\"\"", .meaning = "Question that the study is to answer; stands below the title."},
       {.name = "methods", .type = Type::texts, .fallback = text_list(default_estimators()),
        .choices = estimator_names(),
-       .meaning = "Estimators, in this order of work; filter_error serves diagnose and discover and is run there if it is not named."},
+       .meaning = std::string("Estimators, in this order of work; ") + random_force_estimator().name +
+          " serves diagnose and discover and is run there if it is not named."},
       {.name = "seed", .type = Type::integer, .fallback = "1", .least = 0, .meaning = "Of all random numbers."}}};
 }
 
@@ -256,7 +257,8 @@ KeyGroup sliding_bin_group() {
     return Key{.name = name, .type = Type::number, .unit = "rad", .fallback = fallback, .least = 0.0, .most = 30.0 * degree,
                .above = true, .meaning = meaning};
   };
-  return {"sliding_bin", "Bins of the method sliding_bin.",
+  const std::string method = estimators::sliding_bin.name;
+  return {method, "Bins of the method " + method + ".",
      {angle("width", "Width of a bin.", "\"1.5 deg\""), angle("step", "By which the bin slides.", "\"0.1 deg\"")}};
 }
 

@@ -1,5 +1,6 @@
 #include "misfit/model/declared_keys.h"
 
+#include "misfit/data/estimators.h"
 #include "misfit/data/study_keys.h"
 
 namespace misfit::declared {
@@ -83,7 +84,7 @@ KeyGroup role_group() {
       {.name = "input", .otherwise = "the first input", .meaning = "Input or quantity."},
       {.name = "output", .otherwise = "the first output", .meaning = "Output that sensor effects change."},
       {.name = "force_ports", .type = Type::texts, .otherwise = "equations of motion, else all equations",
-       .meaning = "Dynamic ports of the random force that filter_error estimates."}}};
+       .meaning = std::string("Dynamic ports of the random force that ") + random_force_estimator().name + " estimates."}}};
 }
 
 // clang-format on
