@@ -44,6 +44,29 @@ Eigen::VectorXd damping_of(const Model& model) {
   return out;
 }
 
+/// Worked by hand. A sigma of 0.05 about -0.2, at -0.1: -(0.1/0.05)^2/2 = -2, slope -0.1/0.0025 = -40. A penalty of 3 on (1, 2) with
+/// omega = (2 -1; -1 2): c'Oc = 6, so -9 and a slope of -3 O c = (0, -9).
+TEST(GaussianPrior, OfAWorkedExample) {
+  Penalty penalty;
+  penalty.first = 1;
+  penalty.omega = (Eigen::Matrix2d() << 2.0, -1.0, -1.0, 2.0).finished();
+  penalty.rank = 2;
+  penalty.lambda = 3.0;
+  const GaussianPrior prior{{Eigen::Vector3d(400.0, 0.0, 0.0), Eigen::Vector3d(-0.2, 0.0, 0.0)}, {penalty}};
+  const Eigen::VectorXd theta = Eigen::Vector3d(-0.1, 1.0, 2.0);
+  EXPECT_NEAR(prior.log_density(theta), -2.0 - 9.0, 1e-12);
+  EXPECT_LT((prior.gradient(theta) - Eigen::Vector3d(-40.0, 0.0, -9.0)).norm(), 1e-12);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(3, 3);
+  prior.add_precision(information);
+  EXPECT_LT((information - (Eigen::Matrix3d() << 400.0, 0.0, 0.0, 0.0, 6.0, -3.0, 0.0, -3.0, 6.0).finished()).norm(), 1e-12);
+  EXPECT_NEAR(penalty.log_normalisation(), 1.0986122886681098, 1e-15);  // ln 3
+  Parameter parameter;
+  parameter.value = -0.1;
+  parameter.prior_mean = -0.2;
+  parameter.prior_sigma = 0.05;
+  EXPECT_NEAR(log_prior(parameter), -2.0, 1e-12);
+}
+
 TEST(GaussianPrior, GradientAndPrecisionAreDerivativesOfItsDensity) {
   const std::vector<Signals> experiments = noisy_motion();
   const Model model = model_of(experiments, -0.2, 0.05);

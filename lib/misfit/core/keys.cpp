@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
+#include "misfit/core/units.h"
 
 namespace misfit::config {
 namespace {
@@ -21,19 +21,21 @@ std::string defaults_text(const KeyGroup& group) {
   return text;
 }
 
-/// Angles in degrees: 30 deg for 0.5236 rad.
+/// With its unit, an angle in degrees: "30 deg" for 0.5236 rad. 0 needs none.
 std::string limit_text(double limit, const std::string& unit) {
-  if (unit == "rad") return fmt::format("{:.10g} deg", limit * 180.0 / std::numbers::pi);
-  return fmt::format("{:.10g}", limit) + (unit.empty() || unit.starts_with("of ") ? "" : " " + unit);
+  if (limit == 0.0 || unit.empty() || unit.starts_with("of ")) return fmt::format("{:.10g}", limit);
+  const std::string shown_unit = display_unit(unit);
+  return fmt::format("{:.10g} {}", convert(limit, unit, shown_unit), shown_unit);
 }
 
 /// "above 0 and at most 30 deg", "1 to 100", "at least 0"; empty if everything is allowed.
 std::string limits_text(const Key& key) {
   const bool bounded = std::isfinite(key.most);
-  if (!std::isfinite(key.least)) return bounded ? "at most " + limit_text(key.most, key.unit) : "";
-  if (!bounded) return fmt::format("{} {:.10g}", key.above ? "above" : "at least", key.least);
-  return key.above ? fmt::format("above {:.10g} and at most {}", key.least, limit_text(key.most, key.unit))
-                   : fmt::format("{:.10g} to {}", key.least, limit_text(key.most, key.unit));
+  const std::string most = limit_text(key.most, key.unit);
+  if (!std::isfinite(key.least)) return bounded ? "at most " + most : "";
+  const std::string least = limit_text(key.least, key.unit);
+  if (!bounded) return (key.above ? "above " : "at least ") + least;
+  return key.above ? "above " + least + " and at most " + most : least + " to " + most;
 }
 
 std::string choices_text(const std::vector<std::string>& choices) {
@@ -85,9 +87,9 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-/// A parameter's name may be EFFECT.COEFFICIENT, which TOML reads as a table in a table.
-bool fits(const TomlPath& path, std::vector<std::string> pattern) {
-  if (pattern.front() == "parameters" && path.size() == pattern.size() + 1) pattern.emplace_back("NAME");
+bool fits(const TomlPath& path, const KeyGroup& group) {
+  std::vector<std::string> pattern = parts_of(group.path);
+  if (group.dotted && path.size() == pattern.size() + 1) pattern.emplace_back("NAME");
   return std::equal(path.begin(), path.end(), pattern.begin(), pattern.end(),
                     [](const std::string& key, const std::string& wanted) { return wanted == "NAME" || key == wanted; });
 }
@@ -163,7 +165,7 @@ const Key* find_key(std::span<const KeyGroup> groups, const TomlPath& path) {
   const bool several = std::any_of(groups.begin(), groups.end(), [&](const KeyGroup& g) { return g.several && g.path == path.front(); });
   if (several && table.size() > 1 && table[1].find_first_not_of("0123456789") == std::string::npos) table.erase(table.begin() + 1);
   for (const KeyGroup& group : groups) {
-    if (!fits(table, parts_of(group.path))) continue;
+    if (!fits(table, group)) continue;
     for (const Key& key : group.keys) {
       if (key.name == path.back() && !key.any) return &key;
       if (key.any && any == nullptr) any = &key;

@@ -39,6 +39,7 @@ struct KeyGroup {
   std::vector<Key> keys;
   bool several = false;      ///< [[experiment]]
   std::string variant = {};  ///< tells tables of one path apart: "formula"
+  bool dotted = false;       ///< the last NAME may have a point, A.B, which without quotation marks is a table in a table
 
   /// The key of that name, else the one for any name; std::logic_error if there is none: a reader asks only for what stands here.
   [[nodiscard]] const Key& key(std::string_view name) const;

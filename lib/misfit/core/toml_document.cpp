@@ -111,4 +111,10 @@ std::string toml_number(double value) { return fmt::format("{}", value); }
 
 std::string toml_list(const std::vector<std::string>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 
+std::string toml_texts(const std::vector<std::string>& texts) {
+  std::vector<std::string> values;
+  for (const std::string& text : texts) values.push_back(toml_string(text));
+  return toml_list(values);
+}
+
 }  // namespace misfit

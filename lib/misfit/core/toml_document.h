@@ -48,5 +48,6 @@ class TomlDocument {
 /// Numbers so that they read back to themselves; lists of them and of texts.
 [[nodiscard]] std::string toml_number(double value);
 [[nodiscard]] std::string toml_list(const std::vector<std::string>& values);  ///< of values that are TOML
+[[nodiscard]] std::string toml_texts(const std::vector<std::string>& texts);  ///< a list of strings
 
 }  // namespace misfit

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace misfit {
+
+inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< [rad]
 
 /// A unit as factor to SI and exponents of (m, kg, s, A, K, px). Angles are dimensionless: rad = 1, deg = pi/180; so are
 /// "-", "" and "%" (0.01). No offsets: temperatures are differences or kelvin.

@@ -36,10 +36,10 @@ void restore_parameters(const std::map<std::string, StoredParameter>& stored, Fi
 template <class Archive>
 void interval_in_degrees(Archive& json, MaybeConst<Estimate> auto& trim) {
   auto interval = trim.interval;
-  if (interval) interval = {interval->first / degree, interval->second / degree};
+  if (interval) interval = {interval->first / kDegree, interval->second / kDegree};
   json.if_there("interval", interval);
   if constexpr (Archive::reading) {
-    if (interval) trim.interval = {interval->first * degree, interval->second * degree};
+    if (interval) trim.interval = {interval->first * kDegree, interval->second * kDegree};
   }
 }
 
@@ -78,7 +78,7 @@ void fields(Archive& json, MaybeConst<ChannelPrediction> auto& p) {
 template <class Archive>
 void fields(Archive& json, MaybeConst<Fit> auto& fit) {
   std::map<std::string, StoredParameter> parameters = stored_parameters(fit);
-  std::optional<double> plain_sigma = plain_sigma_of(fit, trim_key, degree);
+  std::optional<double> plain_sigma = plain_sigma_of(fit, trim_key, kDegree);
   json("method", fit.method), json("status", NameOf(fit.status, fit_status_names)), json("message", fit.message);
   json("warnings", fit.warnings), json("driven", fit.driven), json("parameters", parameters);
   json("noise", fit.noise), json("force", fit.force), json("loglik", fit.loglik);
@@ -98,7 +98,7 @@ void fields(Archive& json, MaybeConst<Fit> auto& fit) {
   json("predictions", fit.predictions), json("names", fit.names), json("covariance", fit.covariance);
   if constexpr (Archive::reading) {
     restore_parameters(parameters, fit);
-    if (plain_sigma) fit.plain_sigmas[trim_key] = *plain_sigma * degree;
+    if (plain_sigma) fit.plain_sigmas[trim_key] = *plain_sigma * kDegree;
   }
 }
 

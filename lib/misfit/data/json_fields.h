@@ -22,7 +22,6 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -358,15 +357,13 @@ void fields(Archive& json, MaybeConst<Estimate> auto& e) {
   json.if_there("interval", e.interval);
 }
 
-inline constexpr double degree = std::numbers::pi / 180.0;  // [rad]
-
 /// {"value","sigma"} in degrees of an angle in radians.
 template <class Archive>
 void trim_fields(Archive& json, MaybeConst<Estimate> auto& trim) {
-  double value = trim.value / degree, sigma = trim.sigma / degree;
+  double value = trim.value / kDegree, sigma = trim.sigma / kDegree;
   json("value", value);
   json("sigma", Sigma(sigma));
-  if constexpr (Archive::reading) trim = {value * degree, sigma * degree, "rad"};
+  if constexpr (Archive::reading) trim = {value * kDegree, sigma * kDegree, "rad"};
 }
 
 /// {"value","sigma","unit"} in the unit that people read.

@@ -1,9 +1,7 @@
 #include "misfit/data/study_keys.h"
 
-#include <numbers>
-
 #include "misfit/core/toml_document.h"
-#include "misfit/core/toml_text.h"
+#include "misfit/core/units.h"
 #include "misfit/data/estimators.h"
 #include "misfit/math/camera.h"
 
@@ -14,16 +12,9 @@ using config::Key;
 using config::KeyGroup;
 using Type = config::KeyType;
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double most_runs = 100'000'000, most_block = 10'000'000, most_excluded = 1'000'000'000;
 
 const std::vector<std::string> markers{"ring", "bright", "dark"};
-
-std::string text_list(const std::vector<std::string>& texts) {
-  std::vector<std::string> values;
-  for (const std::string& text : texts) values.push_back(toml_string(text));
-  return toml_list(values);
-}
 
 // A key is a line of attributes and a line of meaning.
 // clang-format off
@@ -32,7 +23,7 @@ KeyGroup study_group() {
   return {"study", "What the study is called and how it is estimated.",
      {{.name = "name", .otherwise = "name of the folder", .meaning = "Title of the report."},
       {.name = "question", .fallback = "\"\"", .meaning = "Question that the study is to answer; stands below the title."},
-      {.name = "methods", .type = Type::texts, .fallback = text_list(default_estimators()),
+      {.name = "methods", .type = Type::texts, .fallback = toml_texts(default_estimators()),
        .choices = estimator_names(),
        .meaning = std::string("Estimators, in this order of work; ") + random_force_estimator().name +
           " serves diagnose and discover and is run there if it is not named."},
@@ -174,7 +165,7 @@ std::vector<KeyGroup> effect_groups() {
 }
 
 KeyGroup parameters_group() {
-  return {"parameters.NAME",
+  KeyGroup group{"parameters.NAME",
      "A parameter of the model: a coefficient, a constant of [geometry], or a curve as a whole. EFFECT.PARAMETER, in quotation marks, "
      "where two effects have one of the same name.",
      {{.name = "free", .type = Type::flag, .otherwise = "as the effect or system says", .meaning = "Estimated, or kept at its value."},
@@ -186,6 +177,8 @@ KeyGroup parameters_group() {
       {.name = "sigma", .type = Type::number, .unit = "of the parameter", .otherwise = "none, or that of [geometry] or the calibration",
        .least = 0.0, .above = true,
        .meaning = "Standard deviation of a Gaussian prior about the value."}}};
+  group.dotted = true;
+  return group;
 }
 
 KeyGroup curves_group() {
@@ -254,7 +247,7 @@ std::vector<KeyGroup> perturbation_groups() {
 
 KeyGroup sliding_bin_group() {
   const auto angle = [](const char* name, const char* meaning, const char* fallback) {
-    return Key{.name = name, .type = Type::number, .unit = "rad", .fallback = fallback, .least = 0.0, .most = 30.0 * degree,
+    return Key{.name = name, .type = Type::number, .unit = "rad", .fallback = fallback, .least = 0.0, .most = 30.0 * kDegree,
                .above = true, .meaning = meaning};
   };
   const std::string method = estimators::sliding_bin.name;

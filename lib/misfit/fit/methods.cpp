@@ -15,6 +15,12 @@ namespace {
 
 using Experiments = std::vector<Signals>;
 
+/// The fitted model with its roughness as chosen.
+FittedModel with_own_roughness(FittedModel fitted) {
+  fitted.model = with_roughness(std::move(fitted.model), fitted.penalties);
+  return fitted;
+}
+
 // sliding_bin
 
 Estimation run_sliding_bin(const EstimationTask& task) {
@@ -35,7 +41,7 @@ Estimation run_equation_error(const EstimationTask& task) {
 }
 
 Fit refit_equation_error(const FittedMethod& from, const Experiments& experiments) {
-  return equation_error(with_roughness(from.fitted.model, from.fitted.penalties), experiments).fit;
+  return equation_error(with_own_roughness(from.fitted).model, experiments).fit;
 }
 
 // output_error
@@ -62,9 +68,7 @@ OutputErrorStart quick_output_error() {
 }
 
 Fit refit_output_error(const FittedMethod& from, const Experiments& experiments) {
-  FittedModel start = from.fitted;
-  start.model = with_roughness(std::move(start.model), start.penalties);
-  return output_error(start, experiments, quick_output_error()).fit;
+  return output_error(with_own_roughness(from.fitted), experiments, quick_output_error()).fit;
 }
 
 Maximisation maximise_output_error(const FittedMethod& from, const Experiments& experiments, SearchStart begin) {
@@ -110,9 +114,7 @@ FilterOptions warm_filter(const FittedMethod& from) {
 }
 
 Fit refit_filter_error(const FittedMethod& from, const Experiments& experiments) {
-  FittedModel start = from.fitted;
-  start.model = with_roughness(std::move(start.model), start.penalties);
-  return filter_error(start, experiments, warm_filter(from)).fit;
+  return filter_error(with_own_roughness(from.fitted), experiments, warm_filter(from)).fit;
 }
 
 /// Verified: the noise at its restricted likelihood, as in the fit. Without that the two blocks drift to another maximum in turn.
@@ -170,7 +172,7 @@ Maximisation maximise_near(const FittedMethod& from, const Experiments& experime
 
 Maximisation maximise_from(const FittedMethod& from, const std::vector<double>& values, const Experiments& experiments) {
   FittedMethod start = from;
-  start.fitted.model = with_roughness(std::move(start.fitted.model), start.fitted.penalties);
+  start.fitted = with_own_roughness(std::move(start.fitted));
   for (std::size_t i = 0; i < values.size(); ++i) start.fitted.model.parameters[i].value = values[i];
   return maximise(start, experiments, SearchStart::values);
 }

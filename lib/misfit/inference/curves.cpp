@@ -6,11 +6,10 @@
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
+#include "misfit/core/units.h"
 
 namespace misfit {
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 /// A curve as weights on columns at one place: value = weights · θ + constant (constant from coefficients that are fixed).
 struct Weights {
@@ -31,7 +30,7 @@ void add_term(const Model& model, const std::vector<int>& column_of, const Curve
 
 std::vector<double> grid_over(double lowest, double highest, const std::string& unit) {
   const double range = highest - lowest;
-  const double step = unit == "rad" && range < 2.0 ? 0.1 * degree : range / 200.0;
+  const double step = unit == "rad" && range < 2.0 ? 0.1 * kDegree : range / 200.0;
   const double margin = 0.1 * range;  // a little outside, drawn dashed with the widening band
   std::vector<double> x;
   double first = std::ceil((lowest - margin) / step) * step;

@@ -11,8 +11,6 @@
 namespace misfit {
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180.0;
-
 constexpr std::array<RigEntry, 9> entries = {{{"R", &RigGeometry::R},
                                               {"R_cp", &RigGeometry::R_cp},
                                               {"V", &RigGeometry::V},
@@ -105,7 +103,7 @@ void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& reque
   for (const auto& [name, curve] : study.curves) {
     CurveRequest out{curve.of, {}, curve.roughness, curve.where};
     const std::string unit = unit_of(spec, curve.of);
-    const double bare = !unit.empty() && parse_unit(unit).angle ? degree : 1.0;
+    const double bare = !unit.empty() && parse_unit(unit).angle ? kDegree : 1.0;
     for (const config::Number& knot : curve.knots.value_or(std::vector<config::Number>{})) {
       if (!unit.empty() && !knot.unit.empty() && !parse_unit(knot.unit).same_dimension(parse_unit(unit)))
         throw InputError(knot.where, "[curves] " + name + ": knots need [" + unit + "], not [" + knot.unit + "]");

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
+#include "misfit/core/units.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
 
 namespace misfit::report {
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 using Keep = bool (*)(const CalibrationResidual&);
 using Value = double (*)(const CalibrationResidual&);
@@ -27,7 +26,7 @@ struct Which {
 void fill(Series& s, const Calibration& c, const Which& which, Keep keep, Value value) {
   for (const CalibrationResidual& r : c.residuals) {
     if (r.coordinate != which.coordinate || (which.point != 0 && r.point != which.point) || !keep(r)) continue;
-    s.x.push_back(r.theta / degree);
+    s.x.push_back(r.theta / kDegree);
     s.y.push_back(value(r));
   }
 }

@@ -141,11 +141,10 @@ std::optional<FittedBatch> fit_batch(const SessionOptions& options, const std::v
   std::optional<RunFolder> folder;
   on_first_rank([&] {
     folder.emplace(job.folder(), RunOrigin{options.command, options.seed.value_or(1), {}, {job.studies(), options.force}});
-    if (options.listener.note && !folder->lost_record().empty()) options.listener.note(folder->lost_record());
+    if (!folder->lost_record().empty()) options.listener.hear(folder->lost_record());
   });
   const StoredJobs jobs{job.folder() / "checkpoints", job.digest(), job.size(), options.threads};
-  const ProgressFn progress =
-      options.listener.progress ? options.listener.progress(fmt::format("batch of {} studies", job.size())) : ProgressFn();
+  const ProgressFn progress = options.listener.begin(fmt::format("batch of {} studies", job.size()));
   const JobResults results = finished(run_stored_jobs(
       jobs, [&](std::size_t k) { return job.run(k); }, progress, &interrupted()));
   stop_if_interrupted();

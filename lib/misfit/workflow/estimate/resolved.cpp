@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "misfit/core/files.h"
 #include "misfit/core/toml_document.h"
 #include "misfit/core/toml_text.h"
+#include "misfit/core/units.h"
 #include "misfit/core/version.h"
 #include "misfit/data/study_edit.h"
 #include "misfit/data/study_keys.h"
@@ -26,10 +26,10 @@ class Resolved {
   std::string run() {
     document_.put_first("study");
     document_.set({"study", "name"}, toml_string(session_.study.name));
-    document_.set({"study", "methods"}, texts(session_.methods()));
+    document_.set({"study", "methods"}, toml_texts(session_.methods()));
     document_.set({"study", "seed"}, std::to_string(session_.study.seed));
     fill_defaults(study_keys(), document_);
-    if (session_.study.camera.from_sweep()) document_.set({"camera", "offer"}, texts(session_.study.camera.offer));
+    if (session_.study.camera.from_sweep()) document_.set({"camera", "offer"}, toml_texts(session_.study.camera.offer));
     set_experiments();
     for (const Parameter& p : prepared_.model.parameters) {
       if (p.curve < 0) set_parameter(p);
@@ -42,12 +42,6 @@ class Resolved {
   }
 
  private:
-  static std::string texts(const std::vector<std::string>& names) {
-    std::vector<std::string> values;
-    for (const auto& name : names) values.push_back(toml_string(name));
-    return toml_list(values);
-  }
-
   /// Held out: of a recording that is held out as a whole, and so in a file of its own, the study says it already.
   void set_experiments() {
     const std::vector<ExperimentStudy>& all = session_.study.experiments;
@@ -108,11 +102,10 @@ class Resolved {
 
   /// In degrees for an angle; in radians where no number of degrees reads back to it.
   static std::string knot_text(double knot, bool angle) {
-    constexpr double degree = std::numbers::pi / 180.0;
     if (!angle) return toml_number(knot);
-    const double near = knot / degree;
+    const double near = knot / kDegree;
     for (const double degrees : {near, std::nextafter(near, INFINITY), std::nextafter(near, -INFINITY)}) {
-      if (degrees * degree == knot) return toml_number(degrees);
+      if (degrees * kDegree == knot) return toml_number(degrees);
     }
     return toml_string(toml_number(knot) + " rad");
   }

@@ -203,14 +203,18 @@ bool Session::copied_from_parent(const std::string& stage, const StageInputs& in
   return true;
 }
 
-void Session::note(const std::string& line) const {
-  if (options.listener.note) options.listener.note(line);
+void Listener::hear(const std::string& line) const {
+  if (note) note(line);
 }
 
-ProgressFn Session::progress(const std::string& name) const {
-  if (options.listener.progress) return options.listener.progress(name);
+ProgressFn Listener::begin(const std::string& name) const {
+  if (progress) return progress(name);
   return [](std::size_t, std::size_t) {};
 }
+
+void Session::note(const std::string& line) const { options.listener.hear(line); }
+
+ProgressFn Session::progress(const std::string& name) const { return options.listener.begin(name); }
 
 std::string digest_of(const StageInputs& inputs) {
   std::string text;

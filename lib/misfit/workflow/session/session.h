@@ -20,6 +20,10 @@ struct Listener {
   std::function<void(const std::string& line)> note;  ///< what is made again, and why; where work continues
   /// Work of this name begins; what is returned is called with (done, total) as it goes on, and destroyed when it has ended.
   std::function<ProgressFn(const std::string& name)> progress;
+
+  void hear(const std::string& line) const;  ///< a note
+  /// Work of this name begins: to be called with (done, total) as long as it goes on.
+  [[nodiscard]] ProgressFn begin(const std::string& name) const;
 };
 
 /// A study and how to work on it.
