@@ -39,19 +39,19 @@ Correlogram first_order(int measurements, int every, double phi, int lags) {
 
 TEST(MemoryOf, WhiteMeasurementsIsTheLeast) {
   const Correlogram white = first_order(2000, 1, 0.0, 400);
-  EXPECT_EQ(memory_of(white.products, white.pairs, 13), 13);
+  EXPECT_EQ(correlation_length(white.products, white.pairs, 13), 13);
 }
 
 TEST(MemoryOf, FirstOrderNoiseIsAsLongAsItsCorrelationStandsOut) {
   const Correlogram one = first_order(2000, 1, 0.9, 400);
   // By chance sqrt(Σ ρ²/n) = sqrt(9.5/2000) = 0.07; 1.75 sqrt(log10 2000) = 3.2 of them are 0.22 = 0.9^14.
-  EXPECT_NEAR(memory_of(one.products, one.pairs, 5), 14, 5);
+  EXPECT_NEAR(correlation_length(one.products, one.pairs, 5), 14, 5);
 }
 
 TEST(MemoryOf, MeasurementsFarApartIsThatOfTheMeasurementsInSamples) {
   const Correlogram each = first_order(600, 1, 0.9, 100), far = first_order(600, 50, 0.9, 5000);
-  const int measurements = memory_of(each.products, each.pairs, 9);
-  EXPECT_EQ(memory_of(far.products, far.pairs, 9), 50 * measurements);
+  const int measurements = correlation_length(each.products, each.pairs, 9);
+  EXPECT_EQ(correlation_length(far.products, far.pairs, 9), 50 * measurements);
 }
 
 }  // namespace

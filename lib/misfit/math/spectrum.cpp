@@ -56,7 +56,7 @@ bool stands_out(const LagProducts& products, const LagProducts& pairs, std::size
 
 }  // namespace
 
-int memory_of(const LagProducts& products, const LagProducts& pairs, int least) {
+int correlation_length(const LagProducts& products, const LagProducts& pairs, int least) {
   constexpr int in_a_row = 20;
   const auto lags = static_cast<int>(products.size()) - 1;
   Eigen::MatrixXd spread = Eigen::MatrixXd::Ones(products.front().rows(), products.front().cols());

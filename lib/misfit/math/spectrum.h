@@ -26,7 +26,7 @@ using LagProducts = std::vector<Eigen::MatrixXd>;
 /// the correlogram of a series with memory has memory itself. Lags without pairs (channels read at every k-th sample only) are passed over,
 /// `least` counts those that have some. At most half of the lags given. `products`: of residuals, `pairs`: how many
 /// pairs are behind each of them.
-[[nodiscard]] int memory_of(const LagProducts& products, const LagProducts& pairs, int least);
+[[nodiscard]] int correlation_length(const LagProducts& products, const LagProducts& pairs, int least);
 
 /// Flat-top lag window of [P1]: 1 up to m, straight down to 0 at 2 m.
 [[nodiscard]] double flat_top(int lag, int m);

@@ -41,7 +41,7 @@ int memory_in(const std::vector<std::vector<double>>& pool) {
     }
     pairs[static_cast<std::size_t>(k)].setConstant(static_cast<double>(n - k));
   }
-  return memory_of(products, pairs, 1);
+  return correlation_length(products, pairs, 1);
 }
 
 }  // namespace

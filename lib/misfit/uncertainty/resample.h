@@ -37,8 +37,8 @@ struct BlockLength {
 /// that (two share what one and a part would leave). A stencil reaches over a block's ends, so each brings up to `kReach` further samples
 /// at either end, which are not counted.
 ///
-/// Block length, unless given: five times the lag up to which the residuals' correlation stands out (memory_of()), at least n^(1/3); for
-/// rows 50 samples more. At most an eighth of the samples, given or not: note() says so.
+/// Block length, unless given: five times the lag up to which the residuals' correlation stands out (correlation_length()), at least
+/// n^(1/3); for rows 50 samples more. At most an eighth of the samples, given or not: note() says so.
 class Resampler {
  public:
   static constexpr std::size_t kReach = 4;
