@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "misfit/core/table.h"
+#include "misfit/fit/regression/equation_error.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/shooting/shooting.h"
 #include "misfit/inference/curves.h"
@@ -70,7 +71,7 @@ void linearisation_against_hand_kernel() {
   const double sigma = fitted.fit.noise.at("alpha_T").value;
   RowMatrix history = RowMatrix::Zero(static_cast<Eigen::Index>(signals.samples()), 2);
   history.row(0) = x0;
-  Shooting shooting(model, world.experiments, {sigma}, {1.0, 1.0}, {history});
+  Shooting shooting(model, world.experiments, {{sigma}, {1.0, 1.0}}, {history});
 
   benchmark_data::HandKernel<coefficients>::Normal N;
   benchmark_data::HandKernel<coefficients>::Row g;

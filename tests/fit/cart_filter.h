@@ -55,7 +55,7 @@ struct Cart {
     FilterRunner runner(model, jacobian != nullptr);
     runner.set_parameters(model.model.values());
     FilterTrace trace;
-    EXPECT_TRUE(runner.run(data, noise, trace, jacobian, keep_P));
+    EXPECT_TRUE(runner.run(data, noise, trace, {jacobian, keep_P}));
     return trace;
   }
 };

@@ -56,9 +56,9 @@ TEST(FilterRun, SmootherGivesTheConditionalMeanAndVariance) {
 TEST(RunLinear, AtTheSameNoiseRepeatsTheRun) {
   const Cart cart(200);
   const FilterTrace trace = cart.run();
-  std::vector<double> e, S;
-  run_linear(cart.model, cart.data, trace, cart.noise, e, S);
-  EXPECT_NEAR(-minus_loglik(cart.data, e, S), trace.loglik, 1e-8 * std::abs(trace.loglik));
+  const Innovations innovations = run_linear(cart.model, cart.data, trace, cart.noise);
+  const auto& [e, S] = innovations;
+  EXPECT_NEAR(-minus_loglik(cart.data, innovations), trace.loglik, 1e-8 * std::abs(trace.loglik));
   for (std::size_t i = 0; i < e.size(); ++i) EXPECT_NEAR(e[i], trace.e[i], 1e-10) << i;
 }
 
@@ -76,9 +76,7 @@ TEST(RunLinear, DerivativesByNoiseAreThoseOfWholeRuns) {
       std::vector<double> logs = at.value;
       logs[i] += side == 0 ? -h : h;
       cart.noise = unpack(logs);
-      std::vector<double> e, S;
-      run_linear(cart.model, cart.data, trace, cart.noise, e, S);
-      linear[side] = -minus_loglik(cart.data, e, S);
+      linear[side] = -minus_loglik(cart.data, run_linear(cart.model, cart.data, trace, cart.noise));
       cart.model.model.parameters[static_cast<std::size_t>(cart.model.time_parameter)].value = cart.noise.force_time;
       whole[side] = cart.run().loglik;
       cart.model.model.parameters[static_cast<std::size_t>(cart.model.time_parameter)].value = noise.force_time;

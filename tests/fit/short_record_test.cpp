@@ -150,7 +150,7 @@ ColouredCovariance of_a_constant(double memory, unsigned seed) {
   rows.r.array() -= rows.r.mean();
   rows.r /= std::sqrt(rows.r.squaredNorm() / (n - 1.0));
   const Eigen::MatrixXd plain = Eigen::MatrixXd::Constant(1, 1, 1.0 / static_cast<double>(n));
-  return memory_of_residuals({rows}, plain, 1, n - 1.0);
+  return residual_covariance({rows}, plain, 1, n - 1.0);
 }
 
 TEST(ShortRecords, MemoryWidensWhereItIsSeenAndNeverNarrows) {

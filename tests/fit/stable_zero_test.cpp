@@ -46,7 +46,7 @@ TEST(StableZero, OutsideWhatWasVisitedIsNone) {
 
 TEST(OtherTrims, AreToldWhereTheCurveLeavesZeroBetweenThem) {
   Fit fit = fit_of(two_trims, 16.0);
-  tell_other_trims(fit);
+  warn_of_other_trims(fit);
   ASSERT_EQ(fit.warnings.size(), 1U);
   EXPECT_THAT(fit.warnings.front(), testing::HasSubstr("C_m has 2 stable zeros"));
   EXPECT_THAT(fit.warnings.front(), testing::HasSubstr("10.0"));
@@ -55,13 +55,13 @@ TEST(OtherTrims, AreToldWhereTheCurveLeavesZeroBetweenThem) {
 
 TEST(OtherTrims, ThatTheBandDoesNotTellApartAreOne) {
   Fit fit = fit_of(two_trims, 16.0, 1e-3);
-  tell_other_trims(fit);
+  warn_of_other_trims(fit);
   EXPECT_TRUE(fit.warnings.empty()) << fit.warnings.front();
 }
 
 TEST(OtherTrims, ThereAreNoneOnACurveThatFalls) {
   Fit fit = fit_of([](double a) { return 0.01 * (12.03 - a); }, 12.0);
-  tell_other_trims(fit);
+  warn_of_other_trims(fit);
   EXPECT_TRUE(fit.warnings.empty());
 }
 

@@ -54,7 +54,7 @@ Eigen::MatrixXd together(const Model& model, double sign) {
 TEST(WeakDirections, AreSilentWhereEverythingIsKnownByItself) {
   const Model model = with_free_mass();
   Fit fit;
-  tell_weak_directions(model, separate(model), fit);
+  warn_of_collinearity(model, separate(model), fit);
   EXPECT_TRUE(fit.warnings.empty());
   EXPECT_TRUE(fit.facts.empty());
 }
@@ -63,7 +63,7 @@ TEST(WeakDirections, AParameterAndACurveThatActAsARatioAreSaidToDoSo) {
   const Model model = with_free_mass();
   for (const double sign : {1.0, -1.0}) {
     Fit fit;
-    tell_weak_directions(model, separate(model) + together(model, sign), fit);
+    warn_of_collinearity(model, separate(model) + together(model, sign), fit);
     ASSERT_EQ(fit.warnings.size(), 1U);
     EXPECT_THAT(fit.warnings.front(),
                 HasSubstr(std::string("m_a and the scale of C_m are nearly collinear: their ") + (sign > 0.0 ? "ratio" : "product")));
@@ -74,7 +74,7 @@ TEST(WeakDirections, AParameterAndACurveThatActAsARatioAreSaidToDoSo) {
 TEST(WeakDirections, CollinearButWellKnownIsNotWorthSaying) {
   const Model model = with_free_mass();
   Fit fit;
-  tell_weak_directions(model, 0.01 * (separate(model) + together(model, 1.0)), fit);
+  warn_of_collinearity(model, 0.01 * (separate(model) + together(model, 1.0)), fit);
   EXPECT_TRUE(fit.warnings.empty());
 }
 
@@ -92,7 +92,7 @@ TEST(WeakDirections, TheSameGroupIsSaidOnce) {
     const Eigen::VectorXd along = 0.3 * values;
     const Eigen::MatrixXd across = 0.003 * values.asDiagonal() * Eigen::MatrixXd::NullaryExpr(n, n, [&] { return normal(random); });
     Fit fit;
-    tell_weak_directions(model, along * along.transpose() + across * across.transpose(), fit);
+    warn_of_collinearity(model, along * along.transpose() + across * across.transpose(), fit);
     groups += static_cast<std::size_t>(std::count_if(fit.warnings.begin(), fit.warnings.end(),
                                                      [](const std::string& w) { return w.find("are collinear") != std::string::npos; }));
     EXPECT_EQ(std::set<std::string>(fit.warnings.begin(), fit.warnings.end()).size(), fit.warnings.size());
@@ -103,7 +103,7 @@ TEST(WeakDirections, TheSameGroupIsSaidOnce) {
 TEST(WeakDirections, AParameterThatOnlyItsPriorKnowsIsAFact) {
   const Model model = with_free_mass(0.0089);
   Fit fit;
-  tell_weak_directions(model, separate(model), fit);  // 3 % of 0.294 is 0.0088
+  warn_of_collinearity(model, separate(model), fit);  // 3 % of 0.294 is 0.0088
   EXPECT_THAT(fit.facts["prior_only"], HasSubstr("m_a"));
 }
 
@@ -113,12 +113,12 @@ TEST(WeakDirections, AParameterThatLeftItsPriorThoughTheDataTellLessOfItIsNoSucc
   mass.prior_mean = mass.value - 0.02;
   Fit fit;
   fit.status = FitStatus::converged;
-  refuse_runaways(model, separate(model), fit);
+  reject_prior_conflicts(model, separate(model), fit);
   EXPECT_EQ(fit.status, FitStatus::failed);
   EXPECT_THAT(fit.message, testing::AllOf(HasSubstr("m_a has run to 0.294"), HasSubstr("kg"), HasSubstr("[geometry]")));
   Fit well_told;  // the data know it to a tenth of what the prior does: they may move it
   well_told.status = FitStatus::converged;
-  refuse_runaways(model, 0.01 * separate(model), well_told);
+  reject_prior_conflicts(model, 0.01 * separate(model), well_told);
   EXPECT_EQ(well_told.status, FitStatus::converged);
 }
 
@@ -127,7 +127,7 @@ TEST(WeakDirections, AParameterAtItsBoundIsNamedWithItsBound) {
   Parameter& mass = model.parameters[static_cast<std::size_t>(model.find_parameter("m_a"))];
   mass.lower = mass.value;
   Fit fit;
-  tell_weak_directions(model, separate(model), fit);
+  warn_of_collinearity(model, separate(model), fit);
   EXPECT_THAT(fit.warnings, testing::ElementsAre(HasSubstr("m_a ends at its bound, 0.294 kg")));
 }
 
@@ -140,10 +140,10 @@ TEST(WeakDirections, AShapeOfEitherSignIsJudgedByItsTypicalSizeNotByItsNearnessT
   shape.scale = 1.0;
   Fit positive, either;
   shape.lower = 0.0;
-  tell_weak_directions(model, covariance, positive);
+  warn_of_collinearity(model, covariance, positive);
   EXPECT_THAT(positive.warnings, testing::ElementsAre(HasSubstr("m_a is hardly determined by these data: 0.0010 ± 0.0088 kg")));
   shape.lower = -3.0;
-  tell_weak_directions(model, covariance, either);
+  warn_of_collinearity(model, covariance, either);
   EXPECT_TRUE(either.warnings.empty());
 }
 
@@ -152,7 +152,7 @@ TEST(WeakDirections, AValueLostInItsSigmaIsKnownToSoMuchNotToAShareOfItself) {
   const Eigen::MatrixXd covariance = separate(model) + together(model, 1.0);
   model.parameters[static_cast<std::size_t>(model.find_parameter("m_a"))].value = 0.0;
   Fit fit;
-  tell_weak_directions(model, covariance, fit);
+  warn_of_collinearity(model, covariance, fit);
   ASSERT_FALSE(fit.warnings.empty());
   EXPECT_THAT(fit.warnings.front(), testing::AllOf(HasSubstr("are correlated"), HasSubstr("± 0.08864 kg")));
 }

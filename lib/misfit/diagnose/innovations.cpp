@@ -139,7 +139,7 @@ std::vector<MissingForce> missing_force_of(const FilterEstimate& estimate) {
   Evaluator evaluator(estimate.forced.model);
   for (const auto& data : estimate.data) {
     FilterTrace trace;
-    if (!runner.run(data, estimate.noise, trace, nullptr, true)) continue;
+    if (!runner.run(data, estimate.noise, trace, {.keep_P = true})) continue;
     const Smoothing smoothed = smooth_states(trace, data, estimate.noise);
     MissingForce force;
     force.experiment = data.signals->name;

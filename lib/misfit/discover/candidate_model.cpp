@@ -179,7 +179,7 @@ Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const Ca
   FilterJacobian jacobian;
   for (const auto& known : estimate.data) {
     const FilterData data = filter_data_like(forced, known);
-    if (!runner.run(data, estimate.noise, trace, &jacobian)) return {};
+    if (!runner.run(data, estimate.noise, trace, {&jacobian})) return {};
     out.middleRows(at, jacobian.r.size()) = jacobian.J;
     at += jacobian.r.size();
   }

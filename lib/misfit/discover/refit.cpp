@@ -127,7 +127,7 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
     if (!runner.run(data[e], without.noise, traces[e])) return {screening.result.chi2, std::nullopt, {}};
   }
   constexpr int steps_of_noise = 3;
-  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, without.around, work.threads, steps_of_noise);
+  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, {without.around, work.threads, steps_of_noise});
   const double objective = -noise.minus_loglik + log_prior(model, same_roughness(model, without));
   const double drop = 2.0 * (objective - without.objective - prior_of_off(*screening.candidate_model));
   OneStep out{std::max(drop, screening.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing

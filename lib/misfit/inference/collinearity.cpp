@@ -15,6 +15,7 @@ struct Direction {
   std::string name, unit;
   double value = 0.0;
   Eigen::VectorXd weights;
+  double sigma = 0.0;
 };
 
 std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& covariance) {
@@ -52,16 +53,16 @@ std::string percent(double share) {
 }
 
 /// How well it is known: as a share of its value, unless that is lost in it.
-std::string known_to(const Direction& d, double sigma) {
-  return sigma < std::abs(d.value) ? percent(sigma / std::abs(d.value)) : "± " + in_display_unit(sigma, d.unit);
+std::string known_to(const Direction& d) {
+  return d.sigma < std::abs(d.value) ? percent(d.sigma / std::abs(d.value)) : "± " + in_display_unit(d.sigma, d.unit);
 }
 
-/// Two directions of sigmas a, b and their correlation, in words.
-std::string pair_in_words(const Direction& one, const Direction& other, double sigma_one, double sigma_other, double correlation) {
+/// Two directions and their correlation.
+std::string pair_in_words(const Direction& one, const Direction& other, double correlation) {
   const std::string &first = one.name, &second = other.name;
   constexpr double alike = 1.25;
-  const bool known = sigma_one < std::abs(one.value) && sigma_other < std::abs(other.value);
-  const double a = known ? sigma_one / std::abs(one.value) : 1.0, b = known ? sigma_other / std::abs(other.value) : 1.0;
+  const bool known = one.sigma < std::abs(one.value) && other.sigma < std::abs(other.value);
+  const double a = known ? one.sigma / std::abs(one.value) : 1.0, b = known ? other.sigma / std::abs(other.value) : 1.0;
   const bool even = known && a < alike * b && b < alike * a;
   const double together = std::sqrt(std::max(a * a + b * b - 2.0 * std::abs(correlation) * a * b, 0.0));
   if (even) {
@@ -70,15 +71,15 @@ std::string pair_in_words(const Direction& one, const Direction& other, double s
            ", individually they are known only to " + percent(a) + " and " + percent(b);
   }
   return first + " and " + second + " are correlated (correlation " + format_value(std::round(1000.0 * correlation) / 1000.0) +
-         "): separately they are known only to " + known_to(one, sigma_one) + " and " + known_to(other, sigma_other);
+         "): separately they are known only to " + known_to(one) + " and " + known_to(other);
 }
 
 std::string group_in_words(const std::vector<std::string>& names) {
   return join_words(names) + " are collinear: a combination of them is known much better than each";
 }
 
-void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& covariance, Fit& fit) {
-  const auto n = static_cast<Eigen::Index>(all.size());
+void report_collinear(std::vector<Direction> all, const Eigen::MatrixXd& covariance, Fit& fit) {
+  const Eigen::Index n = std::ssize(all);
   if (n < 2) return;
   Eigen::MatrixXd weights(n, covariance.rows());
   for (Eigen::Index i = 0; i < n; ++i) weights.row(i) = all[i].weights;
@@ -87,20 +88,22 @@ void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& co
   const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * joint * sigma.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
   if (solver.info() != Eigen::Success) return;
-  constexpr double collinear = 0.02, takes_part = 0.25, worth_saying = 0.05;
+  for (Eigen::Index i = 0; i < n; ++i) all[i].sigma = sigma[i];
+  constexpr double collinear = 0.02, least_share = 0.25;  // eigenvalue of the correlation matrix; of the largest entry of its vector
+  constexpr double least_relative_sigma = 0.05;
   for (Eigen::Index k = 0; k < n && solver.eigenvalues()[k] < collinear; ++k) {
     const Eigen::VectorXd v = solver.eigenvectors().col(k);
     std::vector<std::string> names;
     std::vector<double> relative;
     std::vector<Eigen::Index> places;
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (std::abs(v[i]) < takes_part * v.cwiseAbs().maxCoeff()) continue;
+      if (std::abs(v[i]) < least_share * v.cwiseAbs().maxCoeff()) continue;
       const Direction& d = all[i];
       names.push_back(d.name);
-      relative.push_back(sigma[i] / std::max(std::abs(d.value), 1e-300));
+      relative.push_back(d.sigma / std::max(std::abs(d.value), 1e-300));
       places.push_back(i);
     }
-    if (names.size() < 2 || *std::max_element(relative.begin(), relative.end()) < worth_saying) continue;
+    if (names.size() < 2 || *std::max_element(relative.begin(), relative.end()) < least_relative_sigma) continue;
     if (names.size() > 2) {  // two directions in which the same parameters are weak are one thing to say
       const std::string words = group_in_words(names);
       if (std::find(fit.warnings.begin(), fit.warnings.end(), words) == fit.warnings.end()) fit.warnings.push_back(words);
@@ -108,7 +111,7 @@ void tell_collinear(const std::vector<Direction>& all, const Eigen::MatrixXd& co
     }
     const Direction &one = all[places[0]], &other = all[places[1]];
     const double sign = one.value * other.value < 0.0 ? -1.0 : 1.0;
-    fit.warnings.push_back(pair_in_words(one, other, sigma[places[0]], sigma[places[1]], sign * correlation(places[0], places[1])));
+    fit.warnings.push_back(pair_in_words(one, other, sign * correlation(places[0], places[1])));
   }
 }
 
@@ -123,9 +126,9 @@ std::optional<double> bound_reached(const Parameter& p) {
 
 }  // namespace
 
-void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
+void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
   if (covariance.rows() == 0 || !covariance.allFinite()) return;
-  tell_collinear(directions_of(model, covariance), covariance, fit);
+  report_collinear(directions_of(model, covariance), covariance, fit);
   const std::vector<int> free = model.free_parameters();
   std::string prior_only;
   for (std::size_t c = 0; c < free.size(); ++c) {
@@ -133,8 +136,8 @@ void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance,
     const Eigen::Index at = c;
     if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
     const double sigma = std::sqrt(covariance(at, at));
-    constexpr double nothing_new = 0.95;
-    if (p.prior_sigma && sigma > nothing_new * *p.prior_sigma) {
+    constexpr double prior_alone = 0.95;  // of its sigma
+    if (p.prior_sigma && sigma > prior_alone * *p.prior_sigma) {
       prior_only += (prior_only.empty() ? "" : ", ") + p.name;
     } else if (p.kind == CoefficientKind::shape && sigma > (p.lower >= 0.0 ? std::abs(p.value) : p.scale)) {
       fit.warnings.push_back(p.name + " is hardly determined by these data: " + in_display_unit(p.value, p.unit, sigma));
@@ -146,14 +149,14 @@ void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance,
   if (!prior_only.empty()) fit.facts["prior_only"] = "these data say nothing of " + prior_only + " beyond the prior";
 }
 
-void refuse_runaways(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
-  constexpr double far = 2.0, tells_little = 0.5;  // of the prior's sigma
+void reject_prior_conflicts(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
+  constexpr double far_off = 2.0, uncertain = 0.5;  // of the prior's sigma
   const std::vector<int> free = model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c) {
     const Parameter& p = model.parameters[free[c]];
     const double sigma = std::sqrt(std::max(covariance(c, c), 0.0));
     if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
-    if (std::abs(p.value - p.prior_mean) < far * *p.prior_sigma || sigma < tells_little * *p.prior_sigma) continue;
+    if (std::abs(p.value - p.prior_mean) < far_off * *p.prior_sigma || sigma < uncertain * *p.prior_sigma) continue;
     fit.status = FitStatus::failed;
     fit.message =
         p.name + " has run to " + in_display_unit(p.value, p.unit, sigma) + ", away from its prior " +

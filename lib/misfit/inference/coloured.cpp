@@ -38,7 +38,7 @@ class Sandwich {
     pairs_ = products_;
     for (const auto& e : experiments) {
       const Eigen::Index samples = e.r.size() / channels, most = size_ - lags_;
-      for (Eigen::Index first = 0; first < samples; first += most) take(e, first, std::min(most, samples - first));
+      for (Eigen::Index first = 0; first < samples; first += most) accumulate(e, first, std::min(most, samples - first));
     }
     const auto least = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(all))));
     out_.lags = correlation_length(products_, pairs_, least);
@@ -56,13 +56,13 @@ class Sandwich {
       out_.excess = excess(density);
       out_.covariance = plain_ + plain_ * out_.excess * plain_;
       if (round == rounds) break;
-      deficit = taken(density, by_plain, leverage(out_.covariance));
+      deficit = bias_correction(density, by_plain, leverage(out_.covariance));
     }
     return out_;
   }
 
  private:
-  void take(const ResidualRows& e, Eigen::Index first, Eigen::Index samples) {
+  void accumulate(const ResidualRows& e, Eigen::Index first, Eigen::Index samples) {
     Stretch stretch;
     stretch.place = &e.place;
     std::vector<Eigen::VectorXcd> residuals, masks;
@@ -141,7 +141,7 @@ class Sandwich {
           const Eigen::VectorXd even =
               s.real[a].cwiseProduct(real).rowwise().sum() + s.imaginary[a].cwiseProduct(imaginary).rowwise().sum();
           const Eigen::VectorXd odd = s.real[a].cwiseProduct(imaginary).rowwise().sum() - s.imaginary[a].cwiseProduct(real).rowwise().sum();
-          set(density, a, b, even, odd);
+          for (Eigen::Index f = 0; f < even.size(); ++f) density[f](a, b) = {even[f], odd[f]};
         }
       }
       out.push_back(std::move(density));
@@ -149,15 +149,16 @@ class Sandwich {
     return out;
   }
 
-  /// What the fit took out of the products by lag.
-  LagProducts taken(const Densities& density, const std::vector<Densities>& by_plain, const std::vector<Densities>& by_covariance) const {
+  /// What the fit took out of the products by lag: residuals are smaller than the noise, and remember less.
+  LagProducts bias_correction(const Densities& density, const std::vector<Densities>& by_plain,
+                              const std::vector<Densities>& by_covariance) const {
     const auto half = static_cast<std::size_t>(size_ / 2 + 1);
-    Densities crossed(half, Eigen::MatrixXcd::Zero(channels_, channels_)), put_in = crossed;
+    Densities Pi_R(half, Eigen::MatrixXcd::Zero(channels_, channels_)), S_Sigma_S = Pi_R;
     for (std::size_t s = 0; s < stretches_.size(); ++s) {
       for (std::size_t f = 0; f < half; ++f) {
         const Eigen::MatrixXcd one = by_plain[s][f] * density[f];
-        crossed[f] += one + one.adjoint();
-        put_in[f] += by_covariance[s][f];
+        Pi_R[f] += one + one.adjoint();
+        S_Sigma_S[f] += by_covariance[s][f];
       }
     }
     LagProducts out(2 * out_.lags + 1, Eigen::MatrixXd::Zero(channels_, channels_));
@@ -168,29 +169,25 @@ class Sandwich {
     };
     for (Eigen::Index a = 0; a < channels_; ++a) {
       for (Eigen::Index b = 0; b < channels_; ++b) {
-        const Eigen::VectorXd out_of = series(crossed, a, b), into = series(put_in, a, b);
+        const Eigen::VectorXd lags_Pi_R = series(Pi_R, a, b), lags_S_Sigma_S = series(S_Sigma_S, a, b);
         for (std::size_t k = 0; k < out.size() && k < pairs_.size(); ++k) {
-          const auto lag = static_cast<Eigen::Index>(k);
           const double share = pairs_.front()(a, a) > 0.0 ? pairs_[k](a, b) / pairs_.front()(a, a) : 0.0;
-          out[k](a, b) = share * out_of[lag] - into[lag];
+          out[k](a, b) = share * lags_Pi_R[k] - lags_S_Sigma_S[k];
         }
       }
     }
     return out;
   }
 
-  static void set(Densities& density, Eigen::Index a, Eigen::Index b, const Eigen::VectorXd& real, const Eigen::VectorXd& imaginary) {
-    for (Eigen::Index f = 0; f < real.size(); ++f) density[f](a, b) = {real[f], imaginary[f]};
-  }
-
-  /// Real and imaginary part of conj(density) less 1 on the diagonal, by their share of a sum over the whole spectrum.
-  void weigh(const Densities& density, Eigen::Index a, Eigen::Index b, Eigen::VectorXd& even, Eigen::VectorXd& odd) const {
-    for (Eigen::Index f = 0; f < even.size(); ++f) {
-      const double weight = (f == 0 || f == even.size() - 1 ? 1.0 : 2.0) / static_cast<double>(size_);
+  /// conj(density) less 1 on the diagonal, by its share of a sum over the whole spectrum.
+  [[nodiscard]] Eigen::VectorXcd weighted(const Densities& density, Eigen::Index a, Eigen::Index b) const {
+    Eigen::VectorXcd out(std::ssize(density));
+    for (Eigen::Index f = 0; f < out.size(); ++f) {
+      const double weight = (f == 0 || f == out.size() - 1 ? 1.0 : 2.0) / static_cast<double>(size_);
       const std::complex<double> g = std::conj(density[f](a, b));
-      even[f] = weight * (g.real() - (a == b ? 1.0 : 0.0));
-      odd[f] = weight * g.imag();
+      out[f] = {weight * (g.real() - (a == b ? 1.0 : 0.0)), weight * g.imag()};
     }
+    return out;
   }
 
   /// Σ_ij S_iᵀ (ℛ(i − j) − 1 at equal i, j and channel) S_j over all unknowns.
@@ -202,8 +199,8 @@ class Sandwich {
       for (std::size_t a = 0; a < s.real.size(); ++a) {
         Eigen::MatrixXd real = Eigen::MatrixXd::Zero(half, here.cols()), imaginary = real;
         for (std::size_t b = 0; b < s.real.size(); ++b) {
-          Eigen::VectorXd even(half), odd(half);
-          weigh(density, a, b, even, odd);
+          const Eigen::VectorXcd line = weighted(density, a, b);
+          const Eigen::VectorXd even = line.real(), odd = line.imag();
           real += even.asDiagonal() * s.real[b];
           imaginary += even.asDiagonal() * s.imaginary[b];
           if (a == b) continue;
@@ -263,7 +260,7 @@ ColouredCovariance white_covariance(const Eigen::MatrixXd& plain, Eigen::Index c
   return out;
 }
 
-ColouredCovariance memory_of_residuals(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels,
+ColouredCovariance residual_covariance(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels,
                                        double degrees) {
   if (degrees >= kShortRecord) return coloured_covariance(experiments, plain, channels);
   double measurements = 0.0;

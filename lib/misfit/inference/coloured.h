@@ -62,7 +62,7 @@ struct ColouredCovariance {
 
 /// coloured_covariance(); of a short record (kShortRecord) of so many degrees of freedom, only where the residuals are not white, and then
 /// only what widens.
-[[nodiscard]] ColouredCovariance memory_of_residuals(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain,
+[[nodiscard]] ColouredCovariance residual_covariance(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain,
                                                      Eigen::Index channels, double degrees);
 
 /// What was done, for a reader: "allows for residuals with memory (…): correlations up to lag 24 samples count, the largest

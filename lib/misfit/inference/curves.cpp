@@ -17,17 +17,6 @@ struct Weights {
   double value = 0.0;
 };
 
-void add_term(const Model& model, const std::vector<int>& column_of, const Curve& curve, int derivative, double factor, double x,
-              Weights& out) {
-  const CurvePoint point = curve.spline.at(x);
-  for (int j = 0; j < 4; ++j) {
-    const auto parameter = static_cast<std::size_t>(curve.first + point.first + j);
-    const double w = factor * (derivative == 0 ? point.w : point.d)[j];
-    out.value += w * model.parameters[parameter].value;
-    if (column_of[parameter] >= 0) out.on_columns[column_of[parameter]] += w;
-  }
-}
-
 std::vector<double> grid_over(double lowest, double highest, const std::string& unit) {
   const double range = highest - lowest;
   const double step = unit == "rad" && range < 2.0 ? 0.1 * kDegree : range / 200.0;
@@ -58,24 +47,50 @@ struct Combination {
   std::vector<DerivedCurve::Term> terms;
 };
 
-CurveEstimate evaluate(const Model& model, const std::vector<int>& column_of, const Eigen::MatrixXd& covariance, const RowMatrix& visited,
-                       const Combination& c) {
-  CurveEstimate out;
-  out.name = c.name;
-  out.of = c.of;
-  out.unit = c.unit;
-  const Curve* lead = model.find_curve(c.terms.front().curve);
-  out.of_unit = lead->of_unit;
-  out.x = grid_over(lead->spline.lowest(), lead->spline.highest(), lead->of_unit);
-  out.count = counts_at(out.x, visited, *lead);
-  for (double x : out.x) {
-    Weights w{Eigen::VectorXd::Zero(covariance.rows()), 0.0};
-    for (const auto& term : c.terms) add_term(model, column_of, *model.find_curve(term.curve), term.derivative, term.factor(x), x, w);
-    out.value.push_back(w.value);
-    out.sigma.push_back(std::sqrt(std::max(w.on_columns.dot(covariance * w.on_columns), 0.0)));
+/// Curves of a model with bands from the joint covariance of its free parameters.
+class CurveBands {
+ public:
+  CurveBands(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited)
+      : model_(model), covariance_(covariance), visited_(visited), column_of_(model.parameters.size(), -1) {
+    int column = 0;
+    for (const int parameter : model.free_parameters()) column_of_[parameter] = column++;
   }
-  return out;
-}
+
+  [[nodiscard]] CurveEstimate evaluate(const Combination& c) const {
+    const Curve* lead = model_.find_curve(c.terms.front().curve);
+    CurveEstimate out;
+    out.name = c.name;
+    out.of = c.of;
+    out.unit = c.unit;
+    out.of_unit = lead->of_unit;
+    out.x = grid_over(lead->spline.lowest(), lead->spline.highest(), lead->of_unit);
+    out.count = counts_at(out.x, visited_, *lead);
+    for (double x : out.x) {
+      Weights w{Eigen::VectorXd::Zero(covariance_.rows()), 0.0};
+      for (const auto& term : c.terms) add(term, x, w);
+      out.value.push_back(w.value);
+      out.sigma.push_back(std::sqrt(std::max(w.on_columns.dot(covariance_ * w.on_columns), 0.0)));
+    }
+    return out;
+  }
+
+ private:
+  void add(const DerivedCurve::Term& term, double x, Weights& out) const {
+    const Curve& curve = *model_.find_curve(term.curve);
+    const CurvePoint point = curve.spline.at(x);
+    for (int j = 0; j < 4; ++j) {
+      const int parameter = curve.first + point.first + j;
+      const double w = term.factor(x) * (term.derivative == 0 ? point.w : point.d)[j];
+      out.value += w * model_.parameters[parameter].value;
+      if (column_of_[parameter] >= 0) out.on_columns[column_of_[parameter]] += w;
+    }
+  }
+
+  const Model& model_;
+  const Eigen::MatrixXd& covariance_;
+  const RowMatrix& visited_;
+  std::vector<int> column_of_;
+};
 
 }  // namespace
 
@@ -88,6 +103,16 @@ RowMatrix visited_quantities(const Model& model, const Signals& signals, const R
   for (std::size_t i = 0; i < states.ok.size(); ++i) {
     if (!states.ok[i]) continue;
     evaluator.quantities(states.x.row(i).data(), inputs.at(i), signals.t[i], out.row(row++).data());
+  }
+  return out;
+}
+
+RowMatrix visited_quantities(const Model& model, const std::vector<Signals>& experiments, const std::vector<ReconstructedStates>& states) {
+  RowMatrix out = visited_quantities(model, experiments.front(), states.front());
+  for (std::size_t e = 1; e < experiments.size(); ++e) {
+    const RowMatrix more = visited_quantities(model, experiments[e], states[e]);
+    out.conservativeResize(out.rows() + more.rows(), out.cols());
+    out.bottomRows(more.rows()) = more;
   }
   return out;
 }
@@ -138,27 +163,22 @@ void choose_all_knots(ModelRequest& request, const Registry& registry, const std
 
 void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited, Fit& fit) {
   const std::vector<int> free = model.free_parameters();
-  std::vector<int> column_of(model.parameters.size(), -1);
   fit.names.clear();
   fit.covariance = covariance;
-  for (std::size_t c = 0; c < free.size(); ++c) {
+  for (Eigen::Index c = 0; c < std::ssize(free); ++c) {
     const Parameter& p = model.parameters[free[c]];
-    column_of[free[c]] = static_cast<int>(c);
     fit.names.push_back(p.name);
-    const Eigen::Index i = c;
-    fit.parameters[p.name] = {p.value, std::sqrt(std::max(covariance(i, i), 0.0)), p.unit};
+    fit.parameters[p.name] = {p.value, std::sqrt(std::max(covariance(c, c), 0.0)), p.unit};
   }
+  const CurveBands bands(model, covariance, visited);
   fit.curves.clear();
-  for (const auto& curve : model.curves) {
-    const Combination own{curve.name, curve.of, curve.unit, {{curve.name, 0, [](double) { return 1.0; }}}};
-    fit.curves.push_back(evaluate(model, column_of, covariance, visited, own));
-  }
+  for (const auto& curve : model.curves)
+    fit.curves.push_back(bands.evaluate({curve.name, curve.of, curve.unit, {{curve.name, 0, [](double) { return 1.0; }}}}));
   const std::vector<double> values = model.values();
   for (const auto& derived : model.system->derived_curves(values.data())) {
     const bool possible =
         std::all_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return model.find_curve(term.curve) != nullptr; });
-    if (possible)
-      fit.curves.push_back(evaluate(model, column_of, covariance, visited, {derived.name, derived.of, derived.unit, derived.terms}));
+    if (possible) fit.curves.push_back(bands.evaluate({derived.name, derived.of, derived.unit, derived.terms}));
   }
   for (auto& curve : fit.curves) {
     curve.trimmed = curve.name == model.system->spec().static_curve;
@@ -166,46 +186,64 @@ void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMa
   }
 }
 
-void describe_both(const Model& model, const Eigen::MatrixXd& plain, const Eigen::MatrixXd& coloured, const RowMatrix& visited, Fit& fit) {
-  describe(model, plain, visited, fit);
+void keep_plain_sigmas(Fit& fit) {
   for (const auto& name : fit.names) fit.plain_sigmas[name] = fit.parameters.at(name).sigma;
   if (fit.trim) fit.plain_sigmas["trim"] = fit.trim->sigma;
-  describe(model, coloured, visited, fit);
 }
 
 namespace {
 
-/// Change of the rates by the static curve, its coefficients taken from 0 to 1, with constant `k` moved by `shift`: the largest row.
-double gain_of(const Model& model, const Curve& curve, std::size_t k, double shift, const double* x, const double* u, double t) {
-  Evaluator evaluator(model);
-  std::vector<double> values = model.values();
-  values[k] += shift;
-  std::vector<double> dx(model.states()), off = dx;
-  for (int i = 0; i < curve.spline.size(); ++i) values[curve.first + i] = 1.0;
-  evaluator.set_parameters(values.data());
-  evaluator.rates(x, u, t, dx.data());
-  for (int i = 0; i < curve.spline.size(); ++i) values[curve.first + i] = 0.0;
-  evaluator.set_parameters(values.data());
-  evaluator.rates(x, u, t, off.data());
-  double largest = 0.0;
-  for (std::size_t i = 0; i < dx.size(); ++i) largest = std::max(largest, std::abs(dx[i] - off[i]));
-  return largest;
-}
+struct Instant {
+  const double *x, *u;  ///< state, inputs
+  double t;
+};
+
+/// What a unit of the static curve does to the rates at one state.
+class GainOfCurve {
+ public:
+  GainOfCurve(const Model& model, const Curve& curve, const Instant& at)
+      : evaluator_(model), values_(model.values()), curve_(curve), at_(at) {}
+
+  /// With constant `k` moved by `shift`: the largest row.
+  [[nodiscard]] double with(std::size_t k, double shift) {
+    const double before = values_[k];
+    values_[k] += shift;
+    const std::vector<double> on = rates_at(1.0), off = rates_at(0.0);
+    values_[k] = before;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < on.size(); ++i) largest = std::max(largest, std::abs(on[i] - off[i]));
+    return largest;
+  }
+
+ private:
+  std::vector<double> rates_at(double level) {
+    std::fill_n(values_.begin() + curve_.first, curve_.spline.size(), level);
+    evaluator_.set_parameters(values_.data());
+    std::vector<double> dx(evaluator_.states());
+    evaluator_.rates(at_.x, at_.u, at_.t, dx.data());
+    return dx;
+  }
+
+  Evaluator evaluator_;
+  std::vector<double> values_;
+  const Curve& curve_;
+  Instant at_;
+};
 
 }  // namespace
 
 std::vector<std::string> scale_uncertainties(const Model& model, const double* x, const double* u, double t) {
+  constexpr double least_share = 1e-3;
   std::vector<std::string> out;
   const Curve* curve = model.find_curve(model.system->spec().static_curve);
   if (curve == nullptr) return out;
+  GainOfCurve gain(model, *curve, {x, u, t});
   for (std::size_t k = 0; k < model.system->spec().constants.size(); ++k) {
     const Parameter& p = model.parameters[k];
     if (p.free || !p.prior_sigma) continue;
-    const double nominal = gain_of(model, *curve, k, 0.0, x, u, t);
-    const double moved = gain_of(model, *curve, k, *p.prior_sigma, x, u, t);
-    constexpr double worth_saying = 1e-3;
+    const double nominal = gain.with(k, 0.0), moved = gain.with(k, *p.prior_sigma);
     const double share = std::abs(nominal / moved - 1.0);  // for the same motion the curve goes with the reciprocal
-    if (!(nominal > 0.0) || !(moved > 0.0) || share < worth_saying) continue;
+    if (!(nominal > 0.0) || !(moved > 0.0) || share < least_share) continue;
     out.push_back(curve->name + " is only known as well as its scale: " + p.name + " = " + format_value(p.value, *p.prior_sigma) + " " +
                   p.unit + " alone makes every " + curve->name + " uncertain by " + format_value(std::round(1000.0 * share) / 10.0) +
                   " %, which is not in its band");
@@ -251,7 +289,7 @@ std::vector<StableZero> stable_zeros(const CurveEstimate& curve) {
 }
 
 /// Does the curve leave 0 between two of its stable zeros, below and then above, by more than its band?
-bool told_apart(const CurveEstimate& curve, const StableZero& a, const StableZero& b) {
+bool separated(const CurveEstimate& curve, const StableZero& a, const StableZero& b) {
   constexpr double sigmas = 3.0;
   bool below = false, above = false;
   for (std::size_t i = a.after; i < b.after; ++i) {
@@ -269,12 +307,12 @@ std::optional<Estimate> stable_zero(const CurveEstimate& curve) {
   return most == zeros.end() ? std::nullopt : std::optional(most->at);
 }
 
-void tell_other_trims(Fit& fit) {
+void warn_of_other_trims(Fit& fit) {
   for (const auto& curve : fit.curves) {
     if (!curve.trimmed || !curve.informative) continue;
     std::vector<StableZero> apart;
     for (const auto& zero : stable_zeros(curve)) {
-      if (apart.empty() || told_apart(curve, apart.back(), zero)) apart.push_back(zero);
+      if (apart.empty() || separated(curve, apart.back(), zero)) apart.push_back(zero);
     }
     if (apart.size() < 2) continue;
     std::string where;

@@ -12,6 +12,9 @@ namespace misfit {
 
 /// Values of every quantity of the system along measured motion: samples × quantities, only samples where the states are known.
 [[nodiscard]] RowMatrix visited_quantities(const Model& model, const Signals& signals, const ReconstructedStates& states);
+/// The same of all experiments, one after the other.
+[[nodiscard]] RowMatrix visited_quantities(const Model& model, const std::vector<Signals>& experiments,
+                                           const std::vector<ReconstructedStates>& states);
 
 /// Equally spaced breakpoints over the visited range of a quantity (0.1 % to 99.9 % of the samples), `intervals` of them, fewer where the
 /// range holds too few samples (at least 30 per interval on average); the first is kept above 0 for odd and even curves. RunError if
@@ -26,8 +29,9 @@ void choose_all_knots(ModelRequest& request, const Registry& registry, const std
 /// gives the counts.
 void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited, Fit& fit);
 
-/// The same with `coloured`, which allows for residuals with memory, and beside it the sigmas of parameters and trim by `plain`.
-void describe_both(const Model& model, const Eigen::MatrixXd& plain, const Eigen::MatrixXd& coloured, const RowMatrix& visited, Fit& fit);
+/// Keeps the sigmas of parameters and trim that describe() gave for white residuals, before it is called with the covariance that allows
+/// for autocorrelated ones.
+void keep_plain_sigmas(Fit& fit);
 
 /// What fixed constants of known uncertainty do to the scale of the static curve, in words: "C_m scales with … : m_a = 0.294 ± 0.033 kg
 /// alone makes it uncertain by 6.6 %". From the change of the gain of the curve in the equation of motion by one sigma of each constant, at
@@ -43,6 +47,6 @@ void mark_not_informative(const Model& model, const std::string& curve, const st
 
 /// A warning where the curve that gives the trim has further stable zeros among the values visited: those between which it goes below
 /// and above 0 by more than three of its sigmas.
-void tell_other_trims(Fit& fit);
+void warn_of_other_trims(Fit& fit);
 
 }  // namespace misfit

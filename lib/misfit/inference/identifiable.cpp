@@ -9,7 +9,7 @@
 namespace misfit {
 namespace {
 
-constexpr double nothing = 1e-10;  // of the largest eigenvalue: rounding of the sums leaves about 1e-14
+constexpr double singular = 1e-10;  // of the largest eigenvalue: rounding of the sums leaves about 1e-14
 
 struct Column {
   const Parameter* parameter;
@@ -69,13 +69,13 @@ std::string undetermined(const Model& model, const NormalEquations& problem) {
   Eigen::VectorXd size(N.rows());
   for (Eigen::Index a = 0; a < N.rows(); ++a) size[a] = 1.0 / std::sqrt(problem.N(columns[a].at, columns[a].at));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(N);
-  if (solver.info() != Eigen::Success || solver.eigenvalues()[0] > nothing * solver.eigenvalues().maxCoeff()) return {};
+  if (solver.info() != Eigen::Success || solver.eigenvalues()[0] > singular * solver.eigenvalues().maxCoeff()) return {};
   const Eigen::VectorXd direction = solver.eigenvectors().col(0);
-  constexpr double takes_part = 0.1;
+  constexpr double least_share = 0.1;
   std::vector<std::string> names;
   std::vector<double> relative;
   for (Eigen::Index a = 0; a < direction.size(); ++a) {
-    if (std::abs(direction[a]) < takes_part * direction.cwiseAbs().maxCoeff()) continue;
+    if (std::abs(direction[a]) < least_share * direction.cwiseAbs().maxCoeff()) continue;
     const Parameter& p = *columns[a].parameter;
     names.push_back(p.name);
     relative.push_back(direction[a] * size[a] / p.value);

@@ -23,11 +23,11 @@ namespace misfit {
 /// of either sign: than their typical size); and parameters that end at a bound. A curve's scale: its coefficients all times 1 + s,
 /// estimated with the least variance. Into facts, as "prior_only": parameters of which the
 /// data say nothing beyond their prior (sigma above 0.95 of the prior's). `covariance`: of the free parameters.
-void tell_weak_directions(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
+void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
 
 /// A converged fit in which a parameter ends more than two of its prior's sigmas from the prior's mean, while its own sigma is above half
 /// of the prior's, becomes a failed one, in words: consistent data move it so far only if they tell more of it than the prior does. What
 /// sends it there is the curves' roughness, which prefers small curves where a parameter makes up for a curve's scale.
-void refuse_runaways(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
+void reject_prior_conflicts(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
 
 }  // namespace misfit

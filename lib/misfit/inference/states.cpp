@@ -16,8 +16,14 @@ struct LocalFit {
   bool ok = false;
 };
 
+struct Series {
+  const std::vector<double>&t, &y;
+  double h;  ///< usual step
+};
+
 /// Points within `reach` usual steps.
-LocalFit quadratic_within(const std::vector<double>& t, const std::vector<double>& y, std::size_t i, double h, std::size_t reach) {
+LocalFit quadratic_within(const Series& series, std::size_t i, std::size_t reach) {
+  const auto& [t, y, h] = series;
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   int points = 0;
@@ -38,19 +44,17 @@ LocalFit quadratic_within(const std::vector<double>& t, const std::vector<double
   return {c[0], c[1] / h, 2.0 * c[2] / (h * h), true};
 }
 
-LocalFit local_quadratic(const std::vector<double>& t, const std::vector<double>& y, std::size_t i, double h) {
+LocalFit local_quadratic(const Series& series, std::size_t i) {
   constexpr std::size_t usual = 2, farthest = 4;
   for (std::size_t reach = usual; reach <= farthest; ++reach) {
-    const LocalFit fit = quadratic_within(t, y, i, h, reach);
+    const LocalFit fit = quadratic_within(series, i, reach);
     if (fit.ok) return fit;
   }
   return {};
 }
 
-/// Fills state and rate of one series of values.
-void add_series(const Model& model, const Signals& signals, int state, const std::vector<double>& values, double h,
-                ReconstructedStates& out) {
-  const auto& states = model.system->spec().states;
+/// Fills state and rate from one series of values.
+void add_series(const std::vector<StateSpec>& states, int state, const Series& series, ReconstructedStates& out) {
   int rate = -1;
   for (std::size_t j = 0; j < states.size(); ++j) {
     if (states[j].rate_of == state) rate = static_cast<int>(j);
@@ -58,7 +62,7 @@ void add_series(const Model& model, const Signals& signals, int state, const std
   out.shown[state] = true;
   if (rate >= 0) out.shown[rate] = true;
   for (Eigen::Index i = 0; i < out.x.rows(); ++i) {
-    const LocalFit fit = local_quadratic(signals.t, values, i, h);
+    const LocalFit fit = local_quadratic(series, i);
     if (!fit.ok) {
       out.ok[i] = false;
       continue;
@@ -109,11 +113,11 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
   out.shown.assign(model.states(), false);
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     if (spec.outputs[o].observes >= 0 && o < signals.measured.size())
-      add_series(model, signals, spec.outputs[o].observes, signals.measured[o].values, h, out);
+      add_series(spec.states, spec.outputs[o].observes, {signals.t, signals.measured[o].values, h}, out);
   }
   if (!spec.readable_states.empty() && signals.measured.size() == spec.outputs.size()) {
     const std::vector<std::vector<double>> values = read_all(model, signals);
-    for (std::size_t r = 0; r < values.size(); ++r) add_series(model, signals, spec.readable_states[r], values[r], h, out);
+    for (std::size_t r = 0; r < values.size(); ++r) add_series(spec.states, spec.readable_states[r], {signals.t, values[r], h}, out);
   }
   for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
     if (!out.shown[j]) out.x.col(j).setConstant(start_of(model.state_specs[j]));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "misfit/core/error.h"
 #include "misfit/core/stopwatch.h"
@@ -92,18 +93,24 @@ struct Squares {
   [[nodiscard]] double root() const { return std::sqrt(sum / count); }
 };
 
-/// One channel of one experiment; adds its errors to `fitted` and `held_out`.
-ChannelPrediction predict_channel(const FilterData& data, const FilterTrace& trace, const OutputSpec& output, std::size_t o,
-                                  Squares& fitted, Squares& held_out) {
+struct ChannelErrors {
+  Squares fitted, held_out;
+};
+
+/// Output `o` of one experiment; adds its errors.
+ChannelPrediction predict_channel(const FilterEstimate& estimate, std::size_t experiment, std::size_t o, ChannelErrors& errors) {
+  const FilterData& data = estimate.data[experiment];
+  const FilterTrace& trace = estimate.traces[experiment];
+  const OutputSpec& output = estimate.model.system->spec().outputs[o];
   const Signals& signals = *data.signals;
   ChannelPrediction p{signals.name, output.name, output.unit, signals.t, signals.measured[o].values, {}, {}, {}};
   for (std::size_t k = 0; k < signals.samples(); ++k) {
-    const std::size_t at = k * static_cast<std::size_t>(trace.ny) + o;
+    const std::size_t at = trace.place(k, o);
     p.predicted.push_back(trace.y[at]);
     p.sigma.push_back(std::sqrt(trace.y_variance[at]));
     p.held_out.push_back(signals.held_out(k));
-    if (data.use[at] == SampleRole::counted) fitted.add(p.measured[k] - trace.y[at]);
-    if (data.use[at] == SampleRole::validation) held_out.add(p.measured[k] - trace.y[at]);
+    if (data.use[at] == SampleRole::counted) errors.fitted.add(p.measured[k] - trace.y[at]);
+    if (data.use[at] == SampleRole::validation) errors.held_out.add(p.measured[k] - trace.y[at]);
   }
   return p;
 }
@@ -111,54 +118,70 @@ ChannelPrediction predict_channel(const FilterData& data, const FilterTrace& tra
 void add_predictions(const FilterEstimate& estimate, Fit& fit) {
   const auto& outputs = estimate.model.system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
-    Squares fitted, held_out;
-    for (std::size_t e = 0; e < estimate.data.size(); ++e)
-      fit.predictions.push_back(predict_channel(estimate.data[e], estimate.traces[e], outputs[o], o, fitted, held_out));
-    if (fitted.count > 0.0) fit.rms[outputs[o].name] = {fitted.root(), 0.0, outputs[o].unit};
-    if (held_out.count > 0.0) fit.validation_rms[outputs[o].name] = {held_out.root(), 0.0, outputs[o].unit};
+    ChannelErrors errors;
+    for (std::size_t e = 0; e < estimate.data.size(); ++e) fit.predictions.push_back(predict_channel(estimate, e, o, errors));
+    if (errors.fitted.count > 0.0) fit.rms[outputs[o].name] = {errors.fitted.root(), 0.0, outputs[o].unit};
+    if (errors.held_out.count > 0.0) fit.validation_rms[outputs[o].name] = {errors.held_out.root(), 0.0, outputs[o].unit};
   }
 }
 
+/// Range of a channel's known values but for the outermost 0.5 % on either side; nullopt of fewer than 100.
+std::optional<std::pair<double, double>> usual_range(const std::vector<double>& values) {
+  constexpr std::size_t fewest = 100, tail = 200;
+  std::vector<double> known;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(known), [](double value) { return std::isfinite(value); });
+  std::sort(known.begin(), known.end());
+  if (known.size() < fewest) return std::nullopt;
+  return std::pair(known[known.size() / tail], known[known.size() - 1 - known.size() / tail]);
+}
+
+struct Gaps {
+  std::size_t missing = 0;  ///< samples at which a channel is missing
+  std::size_t extreme = 0;  ///< of these, those where the motion is predicted beyond the usual range of a missing channel
+};
+
+/// nullopt where a channel has too few values to say what is usual.
+std::optional<Gaps> gaps_of(const FilterData& data, const FilterTrace& trace) {
+  const Signals& signals = *data.signals;
+  std::vector<std::pair<double, double>> ranges;
+  for (const Signal& channel : signals.measured) {
+    const auto range = usual_range(channel.values);
+    if (!range) return std::nullopt;
+    ranges.push_back(*range);
+  }
+  Gaps out;
+  for (std::size_t k = data.first; k < signals.samples(); ++k) {
+    bool gap = false, outside = false;
+    for (int o = 0; o < trace.ny; ++o) {
+      if (std::isfinite(signals.measured[o].values[k])) continue;
+      const double predicted = trace.y[trace.place(k, o)];
+      gap = true;
+      outside = outside || predicted < ranges[o].first || predicted > ranges[o].second;
+    }
+    out.missing += gap ? 1 : 0;
+    out.extreme += gap && outside ? 1 : 0;
+  }
+  return out;
+}
+
 /// Says how much is missing, and whether it is missing where the motion is extreme: then the gaps are not random.
-void describe_gaps(const FilterEstimate& estimate, Fit& fit) {
-  const auto& outputs = estimate.model.system->spec().outputs;
-  const std::size_t ny = outputs.size();
+void report_gaps(const FilterEstimate& estimate, Fit& fit) {
+  constexpr double by_chance = 0.02, clearly_more = 5.0;
+  constexpr std::size_t fewest_extreme = 5;
   for (std::size_t e = 0; e < estimate.data.size(); ++e) {
-    const FilterTrace& trace = estimate.traces[e];
     const Signals& signals = *estimate.data[e].signals;
-    std::size_t missing = 0, extreme = 0;
-    std::vector<double> lowest(ny), highest(ny);
-    for (std::size_t o = 0; o < ny; ++o) {
-      std::vector<double> known;
-      for (double value : signals.measured[o].values) {
-        if (std::isfinite(value)) known.push_back(value);
-      }
-      std::sort(known.begin(), known.end());
-      if (known.size() < 100) return;
-      lowest[o] = known[known.size() / 200];
-      highest[o] = known[known.size() - 1 - known.size() / 200];
-    }
-    for (std::size_t k = estimate.data[e].first; k < signals.samples(); ++k) {
-      bool gap = false, outside = false;
-      for (std::size_t o = 0; o < ny; ++o) {
-        if (std::isfinite(signals.measured[o].values[k])) continue;
-        gap = true;
-        outside = outside || trace.y[k * ny + o] < lowest[o] || trace.y[k * ny + o] > highest[o];
-      }
-      missing += gap ? 1 : 0;
-      extreme += gap && outside ? 1 : 0;
-    }
-    if (missing == 0) continue;
-    const double share = 100.0 * static_cast<double>(missing) / static_cast<double>(signals.samples());
-    fit.facts["gaps: " + signals.name] =
-        std::to_string(missing) + " samples (" + format_value(share) + " %) are missing; the filter predicts across them";
-    constexpr double by_chance = 0.02;
-    if (static_cast<double>(extreme) > 5.0 * by_chance * static_cast<double>(missing) && extreme >= 5) {
-      fit.warnings.push_back("experiment '" + signals.name + "': the gaps are not random: in " + std::to_string(extreme) + " of " +
-                             std::to_string(missing) +
-                             " missing samples the motion is predicted beyond 99 % of what was measured (it left the picture): extreme "
-                             "motion is under-represented");
-    }
+    const std::optional<Gaps> gaps = gaps_of(estimate.data[e], estimate.traces[e]);
+    if (!gaps) return;
+    if (gaps->missing == 0) continue;
+    const auto missing = static_cast<double>(gaps->missing);
+    fit.facts["gaps: " + signals.name] = std::to_string(gaps->missing) + " samples (" +
+                                         format_value(100.0 * missing / static_cast<double>(signals.samples())) +
+                                         " %) are missing; the filter predicts across them";
+    if (gaps->extreme < fewest_extreme || static_cast<double>(gaps->extreme) <= clearly_more * by_chance * missing) continue;
+    fit.warnings.push_back("experiment '" + signals.name + "': the gaps are not random: in " + std::to_string(gaps->extreme) + " of " +
+                           std::to_string(gaps->missing) +
+                           " missing samples the motion is predicted beyond 99 % of what was measured (it left the picture): extreme "
+                           "motion is under-represented");
   }
 }
 
@@ -187,7 +210,7 @@ Eigen::MatrixXd covariance_of(const FilterEstimate& estimate) {
 void test_innovations(const FilterEstimate& estimate, Fit& fit) {
   const auto& outputs = estimate.model.system->spec().outputs;
   constexpr int last_lag = 20;
-  constexpr double improbable = 1e-4, worth_saying = 0.05;
+  constexpr double improbable = 1e-4, least_correlation = 0.05;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     for (std::size_t e = 0; e < estimate.data.size(); ++e) {
       const FilterTrace& trace = estimate.traces[e];
@@ -197,7 +220,7 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
         if (estimate.data[e].use[at] == SampleRole::counted && trace.S[at] > 0.0) innovations[k] = trace.e[at] / std::sqrt(trace.S[at]);
       }
       const WhitenessTest test = whiteness(on_even_grid(estimate.data[e].signals->t, innovations), 1, last_lag);
-      if (!(test.p_value < improbable) || std::abs(test.largest) < worth_saying) continue;
+      if (!(test.p_value < improbable) || std::abs(test.largest) < least_correlation) continue;
       fit.warnings.push_back("the innovations of " + outputs[o].name + " in '" + estimate.data[e].signals->name +
                              "' are not white (Ljung-Box " + p_equals(test.p_value) + ", largest autocorrelation " +
                              format_value(std::round(1000.0 * test.largest) / 1000.0) + " at lag " + std::to_string(test.largest_lag) +
@@ -208,11 +231,11 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
 
 /// What is estimated beside the free parameters: initial states of the system in every experiment, and the noise.
 double unknowns_beside_parameters(const FilterEstimate& estimate) {
-  const auto states = static_cast<double>(estimate.model.system_states()) * static_cast<double>(estimate.data.size());
-  return states + static_cast<double>(pack(estimate.noise, estimate.model.system->spec(), estimate.around).value.size());
+  const std::size_t states = estimate.model.system_states() * estimate.data.size();
+  return static_cast<double>(states + estimate.noise_fit.logs.size());
 }
 
-/// Readings in the likelihood, and how many of them are left when everything estimated is taken off.
+/// Measurements in the likelihood, and how many of them are left when everything estimated is taken off.
 struct Degrees {
   double measurements = 0.0, unknowns = 0.0;
   [[nodiscard]] double left() const { return measurements - unknowns; }
@@ -262,7 +285,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
     describe(estimate.model, short_record_factor(estimate) * covariance_of(estimate), visited_by_filter(estimate), fit);
   add_noise(estimate, threads, fit);
   add_predictions(estimate, fit);
-  describe_gaps(estimate, fit);
+  report_gaps(estimate, fit);
   test_innovations(estimate, fit);
   fit.facts["effective_parameters"] = format_value(estimate.edf);
   fit.facts["left_by_exact_derivatives"] = estimate.newton_decrement ? "one more Newton step on the exact likelihood would raise it by " +
@@ -281,9 +304,9 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   const std::vector<std::string> scales =
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
-  tell_weak_directions(estimate.model, fit.covariance, fit);
-  tell_other_trims(fit);
-  refuse_runaways(estimate.model, fit.covariance, fit);
+  warn_of_collinearity(estimate.model, fit.covariance, fit);
+  warn_of_other_trims(fit);
+  reject_prior_conflicts(estimate.model, fit.covariance, fit);
   allow_for_length(estimate, fit);
   fit.linearisations = estimate.linearisations;
   return fit;

@@ -81,7 +81,7 @@ class Estimation {
       FilterNoise start = out_.noise;
       for (std::size_t o = 0; o < start.channels.size(); ++o)
         start.channels[o].jitter_frequency = share * out_.around.channels[o].jitter_frequency;
-      const NoiseFit fit = fit_noise(at_.runs(), start, out_.around, options_.threads, iterations);
+      const NoiseFit fit = fit_noise(at_.runs(), start, {out_.around, options_.threads, iterations});
       if (fit.minus_loglik < best.minus_loglik) best = fit;
     }
     return best;

@@ -9,12 +9,11 @@ namespace {
 constexpr double log_two_pi = 1.8378770664093453;
 
 template <int M, int NY>
-void run_linear_as(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise,
-                   std::vector<double>& e, std::vector<double>& S) {
+Innovations run_linear_as(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise) {
   const int n = trace.n, ny = trace.ny;
   const std::vector<double>& t = data.signals->t;
-  e.assign(trace.samples * ny, 0.0);
-  S.assign(trace.samples * ny, 0.0);
+  Innovations out{std::vector<double>(trace.samples * ny, 0.0), std::vector<double>(trace.samples * ny, 0.0)};
+  auto& [e, S] = out;
   Kalman<M, NY> kalman(n, ny);
   start_covariance(model, data, noise, kalman);
   NoiseSteps steps(noise);
@@ -49,22 +48,19 @@ void run_linear_as(const FilterModel& model, const FilterData& data, const Filte
     kalman.predict(phi, steps.at(h), model.kind, model.force_states);
     kalman.x.noalias() = phi * correction + shifted;
   }
+  return out;
 }
 
 }  // namespace
 
-void run_linear(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise,
-                std::vector<double>& e, std::vector<double>& S) {
-  if (trace.n == 6 && trace.ny == 2) {
-    run_linear_as<6, 2>(model, data, trace, noise, e, S);
-  } else if (trace.n == 3 && trace.ny == 1) {
-    run_linear_as<3, 1>(model, data, trace, noise, e, S);
-  } else {
-    run_linear_as<Eigen::Dynamic, Eigen::Dynamic>(model, data, trace, noise, e, S);
-  }
+Innovations run_linear(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise) {
+  if (trace.n == 6 && trace.ny == 2) return run_linear_as<6, 2>(model, data, trace, noise);
+  if (trace.n == 3 && trace.ny == 1) return run_linear_as<3, 1>(model, data, trace, noise);
+  return run_linear_as<Eigen::Dynamic, Eigen::Dynamic>(model, data, trace, noise);
 }
 
-double minus_loglik(const FilterData& data, const std::vector<double>& e, const std::vector<double>& S) {
+double minus_loglik(const FilterData& data, const Innovations& innovations) {
+  const auto& [e, S] = innovations;
   double sum = 0.0;
   for (std::size_t i = 0; i < e.size(); ++i) {
     if (data.use[i] == SampleRole::counted) sum += 0.5 * (log_two_pi + std::log(S[i]) + e[i] * e[i] / S[i]);

@@ -7,10 +7,14 @@
 namespace misfit {
 namespace {
 
-void push(NoiseVector& out, const std::string& name, double value, double lower, double upper) {
+struct Bounds {
+  double lower, upper;
+};
+
+void push(NoiseVector& out, const std::string& name, double value, const Bounds& bounds) {
   out.names.push_back(name);
-  out.lower.push_back(std::log(lower));
-  out.upper.push_back(std::log(upper));
+  out.lower.push_back(std::log(bounds.lower));
+  out.upper.push_back(std::log(bounds.upper));
   out.value.push_back(std::clamp(std::log(std::max(value, 1e-300)), out.lower.back(), out.upper.back()));
 }
 
@@ -40,17 +44,18 @@ NoiseStep::Jitter jitter_step(const ChannelNoise& noise, double h) {
 }  // namespace
 
 NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around) {
+  constexpr double shortest_memory = 0.15;  // of the usual correlation time: shorter than a sample is white
   NoiseVector out;
-  push(out, "force", noise.force, 1e-3 * around.force, 1e3 * around.force);
-  push(out, "force_time", noise.force_time, 0.15 * around.force_time, 1e2 * around.force_time);  // shorter than a sample is white
+  push(out, "force", noise.force, {1e-3 * around.force, 1e3 * around.force});
+  push(out, "force_time", noise.force_time, {shortest_memory * around.force_time, 1e2 * around.force_time});
   for (std::size_t o = 0; o < noise.channels.size(); ++o) {
     const ChannelNoise& channel = noise.channels[o];
     const ChannelNoise& usual = around.channels[o];
     const std::string& name = spec.outputs[o].name;
-    push(out, name, channel.white, 1e-2 * usual.white, 1e2 * usual.white);
-    push(out, name + "_jitter", channel.jitter, 1e-3 * usual.white, 1e2 * usual.white);
-    push(out, name + "_jitter_frequency", channel.jitter_frequency, 0.5 * usual.jitter_frequency, 3.3 * usual.jitter_frequency);
-    push(out, name + "_jitter_damping", channel.jitter_damping, 0.01, 0.99);
+    push(out, name, channel.white, {1e-2 * usual.white, 1e2 * usual.white});
+    push(out, name + "_jitter", channel.jitter, {1e-3 * usual.white, 1e2 * usual.white});
+    push(out, name + "_jitter_frequency", channel.jitter_frequency, {0.5 * usual.jitter_frequency, 3.3 * usual.jitter_frequency});
+    push(out, name + "_jitter_damping", channel.jitter_damping, {0.01, 0.99});
   }
   return out;
 }

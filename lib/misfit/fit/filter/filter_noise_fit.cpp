@@ -9,16 +9,11 @@
 namespace misfit {
 namespace {
 
-/// Innovations and variances of all experiments, one after the other.
-struct Stack {
-  std::vector<double> e, S;
-};
-
-Stack run_all(const LinearisedRuns& runs, const FilterNoise& noise) {
-  Stack out;
-  std::vector<double> e, S;
+/// All experiments, one after the other.
+Innovations run_all(const LinearisedRuns& runs, const FilterNoise& noise) {
+  Innovations out;
   for (std::size_t k = 0; k < runs.data->size(); ++k) {
-    run_linear(*runs.model, (*runs.data)[k], (*runs.traces)[k], noise, e, S);
+    const auto [e, S] = run_linear(*runs.model, (*runs.data)[k], (*runs.traces)[k], noise);
     out.e.insert(out.e.end(), e.begin(), e.end());
     out.S.insert(out.S.end(), S.begin(), S.end());
   }
@@ -33,7 +28,7 @@ std::vector<bool> counted(const LinearisedRuns& runs) {
   return out;
 }
 
-double cost(const Stack& s, const std::vector<bool>& counts) {
+double cost(const Innovations& s, const std::vector<bool>& counts) {
   constexpr double log_two_pi = 1.8378770664093453;
   double sum = 0.0;
   for (std::size_t i = 0; i < s.e.size(); ++i) {
@@ -55,7 +50,7 @@ class Scoring {
   NoiseFit run(int max_iterations) {
     NoiseFit out;
     std::vector<double> at = vector_.value;
-    Stack present = run_all(runs_, unpack(at));
+    Innovations present = run_all(runs_, unpack(at));
     double best = cost(present, counts_);
     double damping = 1e-3;
     bool fresh = false;  // derivatives are those at `at`
@@ -67,7 +62,7 @@ class Scoring {
       for (int attempt = 0; attempt < 6 && !moved; ++attempt) {
         const std::vector<double> next = step(at, damping, expected);
         if (expected < 1e-3) break;
-        Stack there = run_all(runs_, unpack(next));
+        Innovations there = run_all(runs_, unpack(next));
         const double value = cost(there, counts_);
         if (value < best) {
           moved = true;
@@ -100,10 +95,10 @@ class Scoring {
     return at[i] < vector_.lower[i] + near || at[i] > vector_.upper[i] - near;
   }
 
-  void derivatives(const std::vector<double>& at, const Stack& here) {
+  void derivatives(const std::vector<double>& at, const Innovations& here) {
     constexpr double difference = 1e-4;
     const std::size_t n = at.size();
-    std::vector<Stack> moved(n);
+    std::vector<Innovations> moved(n);
     run_jobs(n, threads_, [&](std::size_t i) {
       std::vector<double> there = at;
       there[i] += there[i] + difference < vector_.upper[i] ? difference : -difference;
@@ -157,9 +152,9 @@ class Scoring {
 
 }  // namespace
 
-NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const FilterNoise& around, int threads, int max_iterations) {
-  const NoiseVector vector = pack(start, runs.model->model.system->spec(), around);
-  return Scoring(runs, vector, threads).run(max_iterations);
+NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const NoiseSearch& search) {
+  const NoiseVector vector = pack(start, runs.model->model.system->spec(), search.around);
+  return Scoring(runs, vector, search.threads).run(search.max_iterations);
 }
 
 Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around, int threads) {

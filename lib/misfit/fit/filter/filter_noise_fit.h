@@ -25,8 +25,12 @@ struct NoiseFit {
 /// Maximum likelihood of the noise with the runs' trajectories held: Fisher scoring with derivatives of innovations and variances by
 /// differences of the whole linear filter (step 1e-4 in the logarithm), Levenberg damping. `around` sets the bounds (pack()). The answer
 /// does not depend on `threads`.
-[[nodiscard]] NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const FilterNoise& around, int threads,
-                                 int max_iterations = 12);
+struct NoiseSearch {
+  const FilterNoise& around;
+  int threads = 0;
+  int max_iterations = 12;
+};
+[[nodiscard]] NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const NoiseSearch& search);
 
 /// The Fisher information of fit_noise at any logarithms (pack()), counted measurements only; parameters are held.
 [[nodiscard]] Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around,

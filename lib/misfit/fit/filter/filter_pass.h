@@ -9,39 +9,39 @@
 
 namespace misfit {
 
-/// What a pass of the filter is asked for besides the trace; null: not wanted.
-struct FilterPassOptions {
-  FilterJacobian* jacobian = nullptr;
-  std::vector<std::size_t>* rejected = nullptr;
-  bool keep_P = false;
+/// What a pass of the filter works on.
+struct FilterPassInput {
+  const FilterModel& model;
+  const FilterData& data;
+  const FilterNoise& noise;
+  FilterRunOptions options;
 };
 
 /// One pass of the extended Kalman filter over one experiment, sample by sample. M, NY as in Kalman.
 template <int M, int NY>
 class FilterPass {
  public:
-  FilterPass(const FilterModel& model, Stepper& stepper, const FilterData& data, const FilterNoise& noise, FilterTrace& trace,
-             const FilterPassOptions& options)
-      : model_(model),
+  FilterPass(const FilterPassInput& input, Stepper& stepper, FilterTrace& trace)
+      : model_(input.model),
         stepper_(stepper),
         evaluator_(stepper.evaluator()),
-        data_(data),
-        signals_(*data.signals),
-        noise_(noise),
+        data_(input.data),
+        signals_(*input.data.signals),
+        noise_(input.noise),
         trace_(trace),
-        options_(options),
+        options_(input.options),
         n_(stepper.states()),
         ny_(evaluator_.outputs()),
         N_(n_),
         kalman_(n_, ny_),
-        steps_(noise),
+        steps_(input.noise),
         D_(N_ * kRowStride),
         O_((ny_ + 1) * kRowStride),
         a_(StateVector::Zero(n_)) {
-    start_covariance(model, data, noise, kalman_);
-    if (options.jacobian != nullptr) begin_derivatives();
-    std::copy_n(data.start.data(), n_, x_.begin());
-    stepper_.prepare(x_.data(), data.inputs.at(data.first), signals_.t[data.first]);
+    start_covariance(model_, data_, noise_, kalman_);
+    if (options_.jacobian != nullptr) begin_derivatives();
+    std::copy_n(data_.start.data(), n_, x_.begin());
+    stepper_.prepare(x_.data(), data_.inputs.at(data_.first), signals_.t[data_.first]);
   }
 
   bool run() {
@@ -221,7 +221,7 @@ class FilterPass {
   const Signals& signals_;
   const FilterNoise& noise_;
   FilterTrace& trace_;
-  FilterPassOptions options_;
+  FilterRunOptions options_;
   int n_, ny_;
   std::size_t N_;
   Kalman<M, NY> kalman_;

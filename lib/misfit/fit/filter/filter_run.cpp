@@ -9,23 +9,22 @@
 namespace misfit {
 namespace {
 
-void resize(FilterTrace& trace, int n, int ny, std::size_t samples, bool keep_P) {
+void resize(FilterTrace& trace, int n, int ny, std::size_t samples) {
   trace.n = n;
   trace.ny = ny;
   trace.samples = samples;
-  const std::size_t N = n, NY = ny;
-  trace.Phi.assign(samples * N * N, 0.0);
-  trace.H.assign(samples * NY * N, 0.0);
-  trace.z.assign(samples * NY, 0.0);
-  trace.correction.assign(samples * N, 0.0);
-  trace.predicted.assign(samples * N, 0.0);
-  trace.K.assign(samples * NY * N, 0.0);
-  trace.Kj.assign(samples * NY * 2 * NY, 0.0);
-  trace.e.assign(samples * NY, 0.0);
-  trace.S.assign(samples * NY, 0.0);
-  trace.y.assign(samples * NY, std::nan(""));
-  trace.y_variance.assign(samples * NY, std::nan(""));
-  trace.P.assign(keep_P ? samples * N * (N + 2 * NY) : 0, 0.0);
+  trace.Phi.assign(samples * n * n, 0.0);
+  trace.H.assign(samples * ny * n, 0.0);
+  trace.z.assign(samples * ny, 0.0);
+  trace.correction.assign(samples * n, 0.0);
+  trace.predicted.assign(samples * n, 0.0);
+  trace.K.assign(samples * ny * n, 0.0);
+  trace.Kj.assign(samples * ny * 2 * ny, 0.0);
+  trace.e.assign(samples * ny, 0.0);
+  trace.S.assign(samples * ny, 0.0);
+  trace.y.assign(samples * ny, std::nan(""));
+  trace.y_variance.assign(samples * ny, std::nan(""));
+  trace.P.clear();
   trace.finite = false;
   trace.loglik = trace.validation_loglik = 0.0;
   trace.counted = trace.validated = 0;
@@ -75,22 +74,20 @@ FilterRunner::FilterRunner(const FilterModel& model, bool derivatives)
 
 void FilterRunner::set_parameters(const std::vector<double>& values) { stepper_.evaluator().set_parameters(values.data()); }
 
-bool FilterRunner::run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, FilterJacobian* jacobian, bool keep_P) {
-  return run_with(data, noise, trace, {jacobian, nullptr, keep_P});
+bool FilterRunner::run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterRunOptions& options) {
+  const int n = stepper_.states(), ny = stepper_.evaluator().outputs();
+  resize(trace, n, ny, data.signals->samples());
+  if (options.keep_P) trace.P.assign(trace.samples * n * (n + 2 * ny), 0.0);
+  const FilterPassInput input{*model_, data, noise, options};
+  const auto pass = [&]<int M, int NY>() { return FilterPass<M, NY>(input, stepper_, trace).run(); };
+  if (n == 6 && ny == 2) return pass.template operator()<6, 2>();
+  if (n == 3 && ny == 1) return pass.template operator()<3, 1>();
+  return pass.template operator()<Eigen::Dynamic, Eigen::Dynamic>();
 }
 
 bool FilterRunner::run_gated(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, std::vector<std::size_t>& rejected) {
   rejected.clear();
-  return run_with(data, noise, trace, {nullptr, &rejected, false});
-}
-
-bool FilterRunner::run_with(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterPassOptions& options) {
-  const int n = stepper_.states(), ny = stepper_.evaluator().outputs();
-  resize(trace, n, ny, data.signals->samples(), options.keep_P);
-  const auto pass = [&]<int M, int NY>() { return FilterPass<M, NY>(*model_, stepper_, data, noise, trace, options).run(); };
-  if (n == 6 && ny == 2) return pass.template operator()<6, 2>();
-  if (n == 3 && ny == 1) return pass.template operator()<3, 1>();
-  return pass.template operator()<Eigen::Dynamic, Eigen::Dynamic>();
+  return run(data, noise, trace, {.rejected = &rejected});
 }
 
 }  // namespace misfit

@@ -79,7 +79,12 @@ struct FilterJacobian {
 inline constexpr double kOutlierGate = 5.0;  ///< sigmas: beyond, a measurement is set aside as an outlier (5.7e-7 of good ones)
 inline constexpr int kLongestWildRun = 3;    ///< more in a row are not wild: the model has lost the motion, which is what we look for
 
-struct FilterPassOptions;  // filter_pass.h
+/// What a run of the filter is asked for besides the trace; null: not wanted.
+struct FilterRunOptions {
+  FilterJacobian* jacobian = nullptr;
+  bool keep_P = false;
+  std::vector<std::size_t>* rejected = nullptr;  ///< run_gated()
+};
 
 /// Runs the filter. One object per thread and experiment set; keeps pointers to model and data.
 class FilterRunner {
@@ -88,16 +93,14 @@ class FilterRunner {
   FilterRunner(const FilterModel& model, bool derivatives);
 
   void set_parameters(const std::vector<double>& values);  ///< all of FilterModel::model, force_time included
-  /// Fills `trace`; `jacobian` may be null. Returns trace.finite.
-  bool run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, FilterJacobian* jacobian = nullptr, bool keep_P = false);
+  /// Fills `trace`. Returns trace.finite.
+  bool run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterRunOptions& options = {});
   /// Passes over measurements more than kOutlierGate sigmas from their prediction as it comes to them, so that a wild one does not spoil
   /// the predictions by which its neighbours are judged; without updates the prediction's sigma grows and with it the gate. Runs longer
   /// than kLongestWildRun are used after all: there the model fails, not the sensor. `rejected`: sample · ny + channel of each.
   bool run_gated(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, std::vector<std::size_t>& rejected);
 
  private:
-  bool run_with(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterPassOptions& options);
-
   const FilterModel* model_;
   Model own_;
   Stepper stepper_;
@@ -105,11 +108,13 @@ class FilterRunner {
 
 /// The same filter, linear about `trace`, with other noise: innovations and variances of every used measurement (0 elsewhere).
 /// The correlation time may be another one than in `trace`: the force then decays and acts as `noise` says.
-void run_linear(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise,
-                std::vector<double>& e, std::vector<double>& S);
+struct Innovations {
+  std::vector<double> e, S;
+};
+[[nodiscard]] Innovations run_linear(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise);
 
 /// −log of the Gaussian density of counted measurements.
-[[nodiscard]] double minus_loglik(const FilterData& data, const std::vector<double>& e, const std::vector<double>& S);
+[[nodiscard]] double minus_loglik(const FilterData& data, const Innovations& innovations);
 
 /// What all data, later ones included, say of the states: mean and variance of each model state at every sample [DK]. Needs trace.P.
 struct Smoothing {

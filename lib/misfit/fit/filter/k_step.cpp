@@ -16,14 +16,15 @@ constexpr std::size_t lengths = std::size(kLadderSteps);
 struct Errors {
   std::vector<std::vector<double>> squares, counts;
   std::vector<std::size_t> runs = std::vector<std::size_t>(lengths, 0), diverged = runs;
-  explicit Errors(std::size_t channels) : squares(channels, std::vector<double>(lengths, 0.0)), counts(squares) {}
+  SampleRole counted;  ///< which measurements are compared
+  Errors(std::size_t channels, SampleRole role) : squares(channels, std::vector<double>(lengths, 0.0)), counts(squares), counted(role) {}
 };
 
 /// Free runs of one experiment: from the filtered state of every third sample (neighbours say the same) as far as the longest length.
 class FreeRuns {
  public:
-  FreeRuns(Stepper& stepper, const FilterData& data, const FilterTrace& trace, SampleRole counted, Errors& errors)
-      : stepper_(stepper), data_(data), trace_(trace), signals_(*data.signals), counted_(counted), errors_(errors) {}
+  FreeRuns(Stepper& stepper, const FilterData& data, const FilterTrace& trace, Errors& errors)
+      : stepper_(stepper), data_(data), trace_(trace), signals_(*data.signals), errors_(errors) {}
 
   void run() {
     constexpr std::size_t stride = 3;
@@ -51,7 +52,7 @@ class FreeRuns {
     std::array<double, kMaxOutputs + 1> y{};
     if (!predict_at({stepper_, signals_, data_.inputs}, k, x, y.data())) return false;
     for (std::size_t o = 0; o < errors_.squares.size(); ++o) {
-      if (data_.use[k * errors_.squares.size() + o] != counted_) continue;
+      if (data_.use[k * errors_.squares.size() + o] != errors_.counted) continue;
       errors_.squares[o][length] += std::pow(signals_.measured[o].values[k] - y[o], 2);
       errors_.counts[o][length] += 1.0;
     }
@@ -62,7 +63,6 @@ class FreeRuns {
   const FilterData& data_;
   const FilterTrace& trace_;
   const Signals& signals_;
-  SampleRole counted_;
   Errors& errors_;
 };
 
@@ -90,9 +90,8 @@ KStepErrors k_step_errors(const FilterEstimate& estimate, bool validation) {
   const auto& outputs = estimate.model.system->spec().outputs;
   const Model fixed = all_fixed(estimate.forced.model);
   Stepper stepper(fixed);
-  Errors errors(outputs.size());
-  for (std::size_t e = 0; e < estimate.data.size(); ++e)
-    FreeRuns(stepper, estimate.data[e], estimate.traces[e], validation ? SampleRole::validation : SampleRole::counted, errors).run();
+  Errors errors(outputs.size(), validation ? SampleRole::validation : SampleRole::counted);
+  for (std::size_t e = 0; e < estimate.data.size(); ++e) FreeRuns(stepper, estimate.data[e], estimate.traces[e], errors).run();
   KStepErrors out;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     for (std::size_t l = 0; l < lengths; ++l) {

@@ -61,7 +61,7 @@ bool LikelihoodAscent::linearise() {
   runner.set_parameters(values());
   double loglik = 0.0;
   for (std::size_t e = 0; e < out.data.size(); ++e) {
-    if (!runner.run(out.data[e], out.noise, out.traces[e], &out.jacobians[e])) {
+    if (!runner.run(out.data[e], out.noise, out.traces[e], {&out.jacobians[e]})) {
       failed_experiment_ = e;
       return false;
     }
@@ -158,7 +158,7 @@ void LikelihoodAscent::iterate(int most, double tolerance) {
     const bool choosing = std::any_of(out.penalties.begin(), out.penalties.end(), [](const Penalty& p) { return p.chosen; });
     const double edf = out.edf;
     const double not_gained = gauss_newton_step();
-    try_noise(fit_noise(runs(), out.noise, out.around, threads_, k < 3 ? 3 : kRefinements));
+    try_noise(fit_noise(runs(), out.noise, {out.around, threads_, k < 3 ? 3 : kRefinements}));
     const bool settled = !choosing || std::abs(out.edf - edf) < 0.05;
     if (k > 0 && settled && std::abs(objective - before) < tolerance) {
       out.converged = not_gained < kDecrementOfOneSigma;

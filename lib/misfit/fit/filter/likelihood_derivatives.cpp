@@ -16,29 +16,47 @@ double log_density(const FilterTrace& trace, std::size_t i) {
   return trace.S[i] > 0.0 ? -0.5 * (std::log(trace.S[i]) + trace.e[i] * trace.e[i] / trace.S[i]) : 0.0;
 }
 
-/// Adds to `nonlinear` the measurements whose log density departs from a straight line by more than `most` between the three runs.
-void find_nonlinear(const FilterData& data, const FilterTrace& here, const FilterTrace& plus, const FilterTrace& minus, double most,
-                    std::vector<std::size_t>& nonlinear) {
-  for (std::size_t i = 0; i < data.use.size(); ++i) {
-    if (data.use[i] != SampleRole::counted) continue;
-    if (!(std::abs(log_density(plus, i) + log_density(minus, i) - 2.0 * log_density(here, i)) <= most)) nonlinear.push_back(i);
-  }
-}
+using Runs = std::vector<FilterTrace>;  ///< one per experiment
 
-/// Whitened derivatives of innovations (first half) and of variances (second half) of the counted measurements, all experiments in order.
-void whitened(const std::vector<FilterData>& data, const std::vector<FilterTrace>& here, const std::vector<FilterTrace>& plus,
-              const std::vector<FilterTrace>& minus, double per_step, Eigen::Ref<Eigen::VectorXd> column) {
-  const Eigen::Index rows = column.size() / 2;
-  Eigen::Index row = 0;
+/// Runs at a point and, a step away, above and below it.
+struct ThreeRuns {
+  const Runs &here, &above, &below;
+};
+
+/// Per experiment the measurements whose log density departs from a straight line by more than `most` between the three runs.
+std::vector<std::vector<std::size_t>> nonlinear_measurements(const std::vector<FilterData>& data, const ThreeRuns& runs, double most) {
+  std::vector<std::vector<std::size_t>> out(data.size());
   for (std::size_t e = 0; e < data.size(); ++e) {
     for (std::size_t i = 0; i < data[e].use.size(); ++i) {
       if (data[e].use[i] != SampleRole::counted) continue;
-      const double S = here[e].S[i];
-      column[row] = (plus[e].e[i] - minus[e].e[i]) * per_step / std::sqrt(S);
-      column[rows + row++] = (plus[e].S[i] - minus[e].S[i]) * per_step / (std::numbers::sqrt2 * S);
+      const double bend = log_density(runs.above[e], i) + log_density(runs.below[e], i) - 2.0 * log_density(runs.here[e], i);
+      if (!(std::abs(bend) <= most)) out[e].push_back(i);
+    }
+  }
+  return out;
+}
+
+/// Whitened derivatives of innovations (first half) and of variances (second half) of the counted measurements, all experiments in order.
+void fill_whitened(const std::vector<FilterData>& data, const ThreeRuns& runs, double span, Eigen::Ref<Eigen::VectorXd> column) {
+  const Eigen::Index rows = column.size() / 2;
+  const double per_step = 1.0 / span;
+  Eigen::Index row = 0;
+  for (std::size_t e = 0; e < data.size(); ++e) {
+    const FilterTrace &above = runs.above[e], &below = runs.below[e];
+    for (std::size_t i = 0; i < data[e].use.size(); ++i) {
+      if (data[e].use[i] != SampleRole::counted) continue;
+      const double S = runs.here[e].S[i];
+      column[row] = (above.e[i] - below.e[i]) * per_step / std::sqrt(S);
+      column[rows + row++] = (above.S[i] - below.S[i]) * per_step / (std::numbers::sqrt2 * S);
     }
   }
 }
+
+/// Runs on both sides of the estimate, a step `h` away, with their log-likelihoods (not finite where the model cannot be run).
+struct Pair {
+  double h = 0.0, plus = 0.0, minus = 0.0;
+  Runs above, below;
+};
 
 struct OneDerivative {
   bool finite = false;  ///< a run beside succeeded
@@ -92,61 +110,59 @@ class Differences {
   /// To one side; `information`: minus the second derivatives of the log-likelihood over parameters and noise, about.
   OneDerivative upwards(Eigen::Index i, const Eigen::MatrixXd& information, const Eigen::Ref<Eigen::VectorXd>& column) const {
     const Eigen::Index n = theta_.size();
-    Runs above(estimate_.data.size());
-    double there = 0.0, h = longest, curvature = 0.0;
+    Pair pair;
+    pair.above.resize(estimate_.data.size());
+    pair.minus = -std::numeric_limits<double>::infinity();
+    double curvature = 0.0;
     if (i < n) {
       const auto along = axes_.along.col(i);
+      pair.h = longest;
       curvature = along.dot(information.topLeftCorner(n, n) * along);
-      there = objective_.loglik_at(theta_ + h * along, estimate_.noise, &above);
+      pair.plus = objective_.loglik_at(theta_ + pair.h * along, estimate_.noise, &pair.above);
     } else {
-      std::vector<double> logs = estimate_.noise_fit.logs;
-      h = noise_step;
+      pair.h = noise_step;
       curvature = information(i, i);
-      logs[i - n] += h;
-      there = objective_.loglik_at(theta_, unpack(logs), &above);
+      pair.plus = loglik_with_noise(i - n, pair.h, pair.above);
     }
-    OneDerivative out = between(there, -std::numeric_limits<double>::infinity(), h, above, above, column);
-    out.slope += 0.5 * h * curvature;
+    OneDerivative out = between(pair, column);
+    out.slope += 0.5 * pair.h * curvature;
     return out;
   }
 
-  OneDerivative by_noise(std::size_t i, const Eigen::Ref<Eigen::VectorXd>& column) const {
-    constexpr double h = noise_step;
-    std::vector<double> there = estimate_.noise_fit.logs;
-    Runs above(estimate_.data.size()), below = above;
-    there[i] += h;
-    const double plus = objective_.loglik_at(theta_, unpack(there), &above);
-    there[i] -= 2.0 * h;
-    const double minus = objective_.loglik_at(theta_, unpack(there), &below);
-    return between(plus, minus, h, above, below, column);
+  OneDerivative by_noise(Eigen::Index i, const Eigen::Ref<Eigen::VectorXd>& column) const {
+    Pair pair{noise_step, 0.0, 0.0, Runs(estimate_.data.size()), Runs(estimate_.data.size())};
+    pair.plus = loglik_with_noise(i, pair.h, pair.above);
+    pair.minus = loglik_with_noise(i, -pair.h, pair.below);
+    return between(pair, column);
   }
 
  private:
-  using Runs = std::vector<FilterTrace>;
+  double loglik_with_noise(Eigen::Index i, double step, Runs& runs) const {
+    std::vector<double> logs = estimate_.noise_fit.logs;
+    logs[i] += step;
+    return objective_.loglik_at(theta_, unpack(logs), &runs);
+  }
 
   OneDerivative with_step(const Eigen::VectorXd& step, double h, const Eigen::Ref<Eigen::VectorXd>& column) const {
-    Runs above(estimate_.data.size()), below = above;
-    const double plus = objective_.loglik_at(theta_ + step, estimate_.noise, &above);
-    const double minus = objective_.loglik_at(theta_ - step, estimate_.noise, &below);
-    OneDerivative out = between(plus, minus, h, above, below, column);
-    out.nonlinear.resize(above.size());
-    if (!out.finite) return out;
-    if (!std::isfinite(plus) || !std::isfinite(minus)) return out;
+    Pair pair{h, 0.0, 0.0, Runs(estimate_.data.size()), Runs(estimate_.data.size())};
+    pair.plus = objective_.loglik_at(theta_ + step, estimate_.noise, &pair.above);
+    pair.minus = objective_.loglik_at(theta_ - step, estimate_.noise, &pair.below);
+    OneDerivative out = between(pair, column);
+    out.nonlinear.resize(estimate_.data.size());
     constexpr double most_curved = 0.05;  // of a log density
-    for (std::size_t e = 0; e < above.size(); ++e)
-      find_nonlinear(estimate_.data[e], estimate_.traces[e], above[e], below[e], most_curved * h / longest, out.nonlinear[e]);
+    if (std::isfinite(pair.plus) && std::isfinite(pair.minus))
+      out.nonlinear = nonlinear_measurements(estimate_.data, {estimate_.traces, pair.above, pair.below}, most_curved * h / longest);
     return out;
   }
 
-  OneDerivative between(double plus, double minus, double h, const Runs& above, const Runs& below,
-                        Eigen::Ref<Eigen::VectorXd> column) const {
+  OneDerivative between(const Pair& pair, Eigen::Ref<Eigen::VectorXd> column) const {
     column.setZero();
-    const bool up = std::isfinite(plus), down = std::isfinite(minus);
+    const bool up = std::isfinite(pair.plus), down = std::isfinite(pair.minus);
     if (!up && !down) return {};
-    const double span = (up ? h : 0.0) + (down ? h : 0.0);
+    const double span = (up ? pair.h : 0.0) + (down ? pair.h : 0.0);
     const Runs& here = estimate_.traces;
-    whitened(estimate_.data, here, up ? above : here, down ? below : here, 1.0 / span, column);
-    return {true, true, ((up ? plus : here_) - (down ? minus : here_)) / span, {}};
+    fill_whitened(estimate_.data, {here, up ? pair.above : here, down ? pair.below : here}, span, column);
+    return {true, true, ((up ? pair.plus : here_) - (down ? pair.minus : here_)) / span, {}};
   }
 
   static constexpr double longest = 0.05, noise_step = 1e-3;

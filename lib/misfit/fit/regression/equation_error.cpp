@@ -80,7 +80,8 @@ class Regressor {
     rows_ = dynamic_states(model, states_.front().shown);
   }
   const std::vector<int>& rows() const { return rows_; }
-  const ReconstructedStates& states(std::size_t e) const { return states_[e]; }
+  const std::vector<Signals>& experiments() const { return experiments_; }
+  const std::vector<ReconstructedStates>& states() const { return states_; }
   bool smeared() const {
     return std::any_of(between_.begin(), between_.end(), [](const Between& b) { return b.smeared; });
   }
@@ -124,7 +125,11 @@ class Regressor {
         if (!std::isfinite(r)) continue;
         residuals[i] = r;
         const double* d = D.data() + row * kRowStride + n;
-        if (out.rows.size() > e) keep(d, slots, r, i * rows_.size() + channel, out.rows[e]);
+        if (out.rows.size() > e) {
+          const Eigen::Index at = i * rows_.size() + channel;
+          out.rows[e].r[at] = r;
+          for (int a = 0; a < slots.count(); ++a) out.rows[e].J(at, slots.column(a)) = d[a];
+        }
         for (int a = 0; a < slots.count(); ++a) {
           out.sums.g[slots.column(a)] += d[a] * r;
           for (int b = 0; b < slots.count(); ++b) out.sums.N(slots.column(a), slots.column(b)) += d[a] * d[b];
@@ -134,11 +139,6 @@ class Regressor {
       }
       out.residuals.push_back(std::move(residuals));
     }
-  }
-
-  static void keep(const double* d, const Slots& slots, double r, Eigen::Index at, ResidualRows& rows) {
-    rows.r[at] = r;
-    for (int a = 0; a < slots.count(); ++a) rows.J(at, slots.column(a)) = d[a];
   }
 
   const std::vector<Signals>& experiments_;
@@ -197,7 +197,7 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
 void test_residuals(const Regressor& regressor, const std::vector<Signals>& experiments, double sigma2, FittedModel& out) {
   const Regression regression = regressor.linearise(out.model);
   const double step = usual_step(experiments.front().t);
-  const double frequency = motion_frequency(out.model, regressor.states(0));
+  const double frequency = motion_frequency(out.model, regressor.states().front());
   const double half_period = frequency > 0.0 ? 3.14159265358979 / frequency : 20.0 * step;
   constexpr int beyond_stencil = 5;
   const int last_lag = std::max(beyond_stencil + 5, static_cast<int>(half_period / step));
@@ -210,41 +210,48 @@ void test_residuals(const Regressor& regressor, const std::vector<Signals>& expe
   for (auto r = regression.residuals.begin(); r != regression.residuals.end(); r += rows) out.equation_residuals.emplace_back(r, r + rows);
 }
 
-void describe_all(const Regressor& regressor, const std::vector<Signals>& experiments, const PenalisedFit& smoothed, FittedModel& out) {
-  RowMatrix visited = visited_quantities(out.model, experiments.front(), regressor.states(0));
-  for (std::size_t e = 1; e < experiments.size(); ++e) {
-    const RowMatrix more = visited_quantities(out.model, experiments[e], regressor.states(e));
-    visited.conservativeResize(visited.rows() + more.rows(), visited.cols());
-    visited.bottomRows(more.rows()) = more;
-  }
-  Regression regression = regressor.linearise(out.model, true);
-  const double weight = 1.0 / std::sqrt(smoothed.sigma2);
-  for (ResidualRows& rows : regression.rows) {
-    rows.J *= weight;
-    rows.r *= weight;
-  }
+/// Parameters, curves and trim with a covariance that allows for autocorrelated residuals, and what white ones would give beside it.
+/// Returned: usable samples less the effective number of parameters.
+double describe_estimates(const Regressor& regressor, const Regression& regression, const PenalisedFit& smoothed, FittedModel& out) {
   const double degrees = regression.sums.count - smoothed.edf;
-  const ColouredCovariance coloured = memory_of_residuals(regression.rows, smoothed.covariance, regressor.rows().size(), degrees);
-  regression.sums.prior = regularised_priors(out.model);
+  const ColouredCovariance coloured = residual_covariance(regression.rows, smoothed.covariance, regressor.rows().size(), degrees);
+  const RowMatrix visited = visited_quantities(out.model, regressor.experiments(), regressor.states());
   out.plain_covariance = with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2);
-  describe_both(out.model, out.plain_covariance, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess),
-                visited, out.fit);
+  describe(out.model, out.plain_covariance, visited, out.fit);
+  keep_plain_sigmas(out.fit);
+  describe(out.model, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess), visited, out.fit);
   if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
-  const ReconstructedStates& states = regressor.states(0);
-  const auto known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
-  const InputTable inputs = input_table(experiments.front(), out.model.inputs());
-  const std::size_t sample = known;
-  out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(sample), experiments.front().t[sample]);
+  return degrees;
+}
+
+void add_remarks(const Regressor& regressor, const NormalEquations& sums, FittedModel& out) {
+  const ReconstructedStates& states = regressor.states().front();
+  const Signals& first = regressor.experiments().front();
+  const InputTable inputs = input_table(first, out.model.inputs());
+  const std::size_t known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+  out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(known), first.t[known]);
   if (regressor.smeared()) {
     out.fit.warnings.emplace_back(
         "an input steps at nearly every sample: the derivatives of this method smear what it does, so that its parameters are biased "
         "by more than their sigmas; methods that run the model are not");
   }
-  if (const std::string which = undetermined_beside_priors(out.model, regression.sums); !which.empty()) out.fit.warnings.push_back(which);
-  tell_weak_directions(out.model, out.fit.covariance, out.fit);
-  tell_other_trims(out.fit);
-  refuse_runaways(out.model, out.fit.covariance, out.fit);
+  if (const std::string which = undetermined_beside_priors(out.model, sums); !which.empty()) out.fit.warnings.push_back(which);
+  warn_of_collinearity(out.model, out.fit.covariance, out.fit);
+  warn_of_other_trims(out.fit);
+  reject_prior_conflicts(out.model, out.fit.covariance, out.fit);
+}
+
+void describe_all(const Regressor& regressor, const PenalisedFit& smoothed, FittedModel& out) {
+  Regression regression = regressor.linearise(out.model, true);
+  regression.sums.prior = regularised_priors(out.model);
+  const double weight = 1.0 / std::sqrt(smoothed.sigma2);
+  for (ResidualRows& rows : regression.rows) {
+    rows.J *= weight;
+    rows.r *= weight;
+  }
+  const double degrees = describe_estimates(regressor, regression, smoothed, out);
+  add_remarks(regressor, regression.sums, out);
   if (degrees < kFewestDegrees) {
     withhold_sigmas(format_value(regression.sums.count) + " usable samples for " + format_value(std::round(10.0 * smoothed.edf) / 10.0) +
                         " unknowns are too few to tell how far off the values are: no sigma is given",
@@ -265,7 +272,7 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
                       "' and their rates, so its equations cannot be regressed";
     return out;
   }
-  if (const std::string hidden = hidden_states(model, regressor.states(0).shown); !hidden.empty()) {
+  if (const std::string hidden = hidden_states(model, regressor.states().front().shown); !hidden.empty()) {
     out.fit.status = FitStatus::declined;
     out.fit.message = "no channel shows " + hidden + " of system '" + model.system->spec().key + "', so its equations cannot be regressed";
     return out;
@@ -273,7 +280,7 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
   PenalisedFit smoothed;
   if (!solve(regressor, out, smoothed)) return out;
   test_residuals(regressor, experiments, smoothed.sigma2, out);
-  describe_all(regressor, experiments, smoothed, out);
+  describe_all(regressor, smoothed, out);
   if (out.fit.driven) {
     out.fit.warnings.push_back(
         "the motion is driven (" + out.fit.facts["whiteness"] +

@@ -71,7 +71,7 @@ struct Pass {
 };
 
 /// Autocorrelation by lag for the sigmas: what is beyond `last_lag` is taken as 0.
-std::vector<double> memory(const std::vector<double>& residuals, int last_lag) {
+std::vector<double> correlation_up_to(const std::vector<double>& residuals, int last_lag) {
   std::vector<double> rho = autocorrelation(residuals, last_lag);
   for (double& r : rho) {
     if (!std::isfinite(r)) r = 0.0;
@@ -119,7 +119,7 @@ Pass run(const BinForm& form, const Signals& signals, const SlidingBinOptions& o
   pass.whiteness = whiteness(on_even_grid(signals.t, residuals), beyond_stencil, last_lag);
   pass.residual_rms = rms(residuals);
   pass.driven = looks_driven(pass.whiteness) && has_force(regression, pass.residual_rms);
-  const std::vector<double> rho = memory(residuals, pass.driven ? last_lag : beyond_stencil - 1);
+  const std::vector<double> rho = correlation_up_to(residuals, pass.driven ? last_lag : beyond_stencil - 1);
   pass.bins = regression.slide(layout, rho);
   pass.all = regression.all(rho);
   pass.damping_of_acceleration = acceleration_alone(regression).all({}).damping;
@@ -127,20 +127,33 @@ Pass run(const BinForm& form, const Signals& signals, const SlidingBinOptions& o
   return pass;
 }
 
-CurveEstimate curve(const BinForm& form, const std::vector<BinSolution>& bins, const std::string& name, double BinSolution::*value,
-                    double BinSolution::*sigma) {
-  const Curve& own = *form.model.find_curve(form.model.system->spec().static_curve);
-  const Parameter& coefficient =
-      form.model.parameters[name == own.name ? form.static_coefficients.front() : form.damping_coefficients.front()];
+/// One of the two curves that the bins give.
+struct BinCurve {
+  std::string name;
+  double BinSolution::*value;
+  double BinSolution::*sigma;
+  std::vector<int> coefficients;  ///< parameters
+};
+
+BinCurve static_curve(const BinForm& form) {
+  return {form.model.system->spec().static_curve, &BinSolution::value, &BinSolution::value_sigma, form.static_coefficients};
+}
+
+BinCurve damping_curve(const BinForm& form) {
+  return {form.model.system->spec().damping_curve, &BinSolution::damping, &BinSolution::damping_sigma, form.damping_coefficients};
+}
+
+CurveEstimate curve(const BinForm& form, const std::vector<BinSolution>& bins, const BinCurve& which) {
+  const Curve& lead = *form.model.find_curve(form.model.system->spec().static_curve);
   CurveEstimate out;
-  out.name = name;
-  out.of = own.of;
-  out.of_unit = own.of_unit;
-  out.unit = coefficient.unit;
+  out.name = which.name;
+  out.of = lead.of;
+  out.of_unit = lead.of_unit;
+  out.unit = form.model.parameters[which.coefficients.front()].unit;
   for (const auto& bin : bins) {
     out.x.push_back(bin.level);
-    out.value.push_back(bin.*value);
-    out.sigma.push_back(bin.*sigma);
+    out.value.push_back(bin.*which.value);
+    out.sigma.push_back(bin.*which.sigma);
     out.count.push_back(bin.count);
   }
   return out;
@@ -148,24 +161,38 @@ CurveEstimate curve(const BinForm& form, const std::vector<BinSolution>& bins, c
 
 std::string name_of(Stencils stencils) { return stencils == Stencils::fourth_order ? "fourth-order" : "second-order four-point"; }
 
-/// The largest difference of the two measurements, in the sigmas of `a`, at equal bins.
-std::string largest_difference(const SlidBins& a, const SlidBins& b, const std::string& name, double BinSolution::*value,
-                               double BinSolution::*sigma) {
+/// The largest difference of the two passes, in the sigmas of `a`, at equal bins.
+std::string largest_difference(const SlidBins& a, const SlidBins& b, const BinCurve& which) {
   double largest = 0.0, in_sigmas = 0.0;
   for (const auto& bin : a.bins) {
     const auto other = std::min_element(b.bins.begin(), b.bins.end(), [&](const auto& p, const auto& q) {
       return std::abs(p.level - bin.level) < std::abs(q.level - bin.level);
     });
-    const double difference = std::abs(bin.*value - (*other).*value);
+    const double difference = std::abs(bin.*which.value - (*other).*which.value);
     if (difference <= largest) continue;
     largest = difference;
-    in_sigmas = difference / (bin.*sigma);
+    in_sigmas = difference / (bin.*which.sigma);
   }
-  return name + " by at most " + format_value(largest) + " (" + format_value(in_sigmas) + " sigma)";
+  return which.name + " by at most " + format_value(largest) + " (" + format_value(in_sigmas) + " sigma)";
 }
 
-void tell_bins(const BinForm& form, const SlidingBinOptions& options, const Pass& pass, const Pass& other, Fit& fit) {
-  const auto& spec = form.model.system->spec();
+Stencils other_stencils(Stencils stencils) {
+  return stencils == Stencils::fourth_order ? Stencils::second_order_four_point : Stencils::fourth_order;
+}
+
+/// What the other stencils give.
+std::string stencils_in_words(const BinForm& form, Stencils stencils, const SlidBins& bins, const SlidBins& by_others) {
+  std::string text = name_of(stencils) + " stencils";
+  if (by_others.bins.empty()) return text;
+  const BinCurve lead = static_curve(form);
+  text += "; with the " + name_of(other_stencils(stencils)) + " ones the results differ: " + largest_difference(bins, by_others, lead) +
+          ", " + largest_difference(bins, by_others, damping_curve(form));
+  const CurveEstimate other = curve(form, by_others.bins, lead);
+  if (const auto trim = stable_zero(other)) text += ", trim " + in_display_unit(trim->value, other.of_unit, trim->sigma);
+  return text;
+}
+
+void report_bins(const SlidingBinOptions& options, const Pass& pass, Fit& fit) {
   const std::string unit = fit.curves.front().of_unit;
   fit.facts["bins"] = std::to_string(pass.bins.bins.size()) + " bins of " + in_display_unit(options.width, unit) + " every " +
                       in_display_unit(options.step, unit) + " over " + std::to_string(pass.usable) +
@@ -174,19 +201,9 @@ void tell_bins(const BinForm& form, const SlidingBinOptions& options, const Pass
                       " where level or rate do not vary";
   fit.facts["average"] = options.three_point_average ? "the channel was averaged over three samples"
                                                      : "the channel was taken as given, without a three-point average";
-  const Stencils second = options.stencils == Stencils::fourth_order ? Stencils::second_order_four_point : Stencils::fourth_order;
-  std::string text = name_of(options.stencils) + " stencils";
-  if (!other.bins.bins.empty()) {
-    text += "; with the " + name_of(second) + " ones the results differ: " +
-            largest_difference(pass.bins, other.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma) + ", " +
-            largest_difference(pass.bins, other.bins, spec.damping_curve, &BinSolution::damping, &BinSolution::damping_sigma);
-    const auto trim = stable_zero(curve(form, other.bins.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma));
-    if (trim) text += ", trim " + in_display_unit(trim->value, unit, trim->sigma);
-  }
-  fit.facts["stencils"] = text;
 }
 
-void tell_damping(const BinForm& form, const Pass& pass, Fit& fit) {
+void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
   const auto& spec = form.model.system->spec();
   const std::string name = spec.damping_curve, level_unit = spec.states[form.level].unit;
   fit.facts["whiteness"] = "residuals of the bins at " + in_words(pass.whiteness);
@@ -253,18 +270,17 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   Fit fit;
   fit.method = estimators::sliding_bin.name;
   fit.status = FitStatus::converged;
-  fit.curves = {curve(*form, pass.bins.bins, spec.static_curve, &BinSolution::value, &BinSolution::value_sigma),
-                curve(*form, pass.bins.bins, spec.damping_curve, &BinSolution::damping, &BinSolution::damping_sigma)};
+  fit.curves = {curve(*form, pass.bins.bins, static_curve(*form)), curve(*form, pass.bins.bins, damping_curve(*form))};
   fit.curves.front().trimmed = true;
   fit.trim = stable_zero(fit.curves.front());
   fit.message = "linear regression solved in " + std::to_string(pass.bins.bins.size()) + " bins";
   if (options.curves_only) return fit;
-  const Pass other =
-      run(*form, signals, options, options.stencils == Stencils::fourth_order ? Stencils::second_order_four_point : Stencils::fourth_order);
+  const Pass other = run(*form, signals, options, other_stencils(options.stencils));
   fit.noise["equation_residual"] = {pass.residual_rms, 0.0, rate_unit(spec.states[form->rate].unit)};
   fit.driven = pass.driven;
-  tell_bins(*form, options, pass, other, fit);
-  tell_damping(*form, pass, fit);
+  report_bins(options, pass, fit);
+  fit.facts["stencils"] = stencils_in_words(*form, options.stencils, pass.bins, other.bins);
+  report_damping(*form, pass, fit);
   if (!form->taken_as_known.empty()) {
     std::string names;
     for (const auto& name : form->taken_as_known) names += (names.empty() ? "" : ", ") + name;

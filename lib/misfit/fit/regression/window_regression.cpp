@@ -20,7 +20,7 @@ class RunningSums {
   RunningSums(const BinRegression& regression, const std::vector<double>& rho)
       : all_(regression), rho_(rho), centre_(0.5 * (regression.equations_.front().x + regression.equations_.back().x)) {}
 
-  void move(std::size_t first, std::size_t last) {
+  void move(std::ptrdiff_t first, std::ptrdiff_t last) {
     if (first >= last_) {  // nothing is kept: start clean
       sums_.setZero();
       pairs_.setZero();
@@ -47,28 +47,32 @@ class RunningSums {
     const Row4 z = row(i);
     sums_ += sign * z * z.transpose();
     level_ += sign * (Wide{all_.equations_[i].x} - Wide{centre_});
-    const std::ptrdiff_t sample = all_.equations_[i].sample;
-    for (std::size_t lag = 1; lag < rho_.size(); ++lag) {
-      const auto apart = static_cast<std::ptrdiff_t>(lag);
-      for (const std::ptrdiff_t other : {sample - apart, sample + apart}) add_pair(i, z, other, lag, sign);
+    const Row3 a = z.head<3>();
+    for (std::ptrdiff_t lag = 1; lag < std::ssize(rho_); ++lag) {
+      for (const std::ptrdiff_t offset : {-lag, lag}) {
+        const std::ptrdiff_t j = partner(i, offset);
+        if (j < 0) continue;
+        const Row3 b = row(j).head<3>();
+        pairs_ += sign * Wide{rho_[lag]} * (a * b.transpose() + b * a.transpose());
+      }
     }
   }
 
-  void add_pair(std::size_t i, const Row4& z, std::ptrdiff_t other, std::size_t lag, Wide sign) {
-    if (other < 0 || other >= static_cast<std::ptrdiff_t>(all_.place_.size())) return;
-    const std::ptrdiff_t place = all_.place_[other];
-    if (place < static_cast<std::ptrdiff_t>(first_) || place >= static_cast<std::ptrdiff_t>(last_)) return;
-    const std::size_t j = place;
-    const double apart = std::abs(all_.equations_[i].t - all_.equations_[j].t);
-    if (std::abs(apart - static_cast<double>(lag) * all_.step_) > 0.5 * all_.step_) return;  // a gap in time lies between
-    const Row3 a = z.head<3>(), b = row(j).head<3>();
-    pairs_ += sign * Wide{rho_[lag]} * (a * b.transpose() + b * a.transpose());
+  /// The equation `offset` samples away in time, if it is inside the window and no gap in time lies between; −1: none.
+  [[nodiscard]] std::ptrdiff_t partner(std::size_t i, std::ptrdiff_t offset) const {
+    const auto sample = static_cast<std::ptrdiff_t>(all_.equations_[i].sample) + offset;
+    if (sample < 0 || sample >= std::ssize(all_.place_)) return -1;
+    const std::ptrdiff_t place = all_.place_[sample];
+    if (place < first_ || place >= last_) return -1;
+    const double apart = std::abs(all_.equations_[i].t - all_.equations_[place].t);
+    const double expected = static_cast<double>(std::abs(offset)) * all_.step_;
+    return std::abs(apart - expected) > 0.5 * all_.step_ ? -1 : place;
   }
 
   const BinRegression& all_;
   const std::vector<double>& rho_;
   double centre_;
-  std::size_t first_ = 0, last_ = 0;
+  std::ptrdiff_t first_ = 0, last_ = 0;
   Eigen::Matrix<Wide, 4, 4> sums_ = Eigen::Matrix<Wide, 4, 4>::Zero();
   Eigen::Matrix<Wide, 3, 3> pairs_ = Eigen::Matrix<Wide, 3, 3>::Zero();
   Wide level_ = 0.0L;

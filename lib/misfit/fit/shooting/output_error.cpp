@@ -46,11 +46,11 @@ class Estimator {
       : experiments_(experiments),
         options_(options),
         start_driven_(start.fit.driven),
-        setting_(options.keep_roughness ? with_noise(start, look_at(start.model, experiments, options))
-                                        : look_at(start.model, experiments, options)),
+        setting_(options.keep_roughness ? with_noise(start, setting_of(start.model, experiments, options))
+                                        : setting_of(start.model, experiments, options)),
         penalties_(options.keep_roughness ? kept(start.penalties)
                                           : curve_penalties(start.model)),  // not those of a regression, whose noise is another one
-        shooting_(start.model, experiments, setting_.sigma, setting_.state_scale, start_states(setting_)),
+        shooting_(start.model, experiments, {setting_.sigma, setting_.state_scale}, start_states(setting_)),
         initial_states_(start.initial_states) {}
 
   FittedModel run() {
@@ -172,7 +172,7 @@ class Estimator {
       if (!solve({0, 10.0, 1e8, most_iterations, 1e-7})) return failed(last_.message);
       const PenalisedFit smoothed = smooth_present(shooting_, penalties_, linearised);
       if (!smoothed.ok) return failed(shooting_.failure().empty() ? singular_message(linearised) : "");
-      const std::vector<double> sigma = channel_sigmas(shooting_, shooting_.run(false), experiments_, smoothed.edf);
+      const std::vector<double> sigma = channel_sigmas({shooting_, shooting_.run(false), experiments_}, smoothed.edf);
       const bool same_roughness = !any_chosen(penalties_) || std::abs(smoothed.edf - before) < 0.1;
       settled_ = same_roughness && std::equal(sigma.begin(), sigma.end(), shooting_.sigma().begin(),
                                               [](double now, double then) { return std::abs(now / then - 1.0) < 0.01; });
@@ -188,9 +188,9 @@ class Estimator {
   /// A search in a long valley ends by its tolerance some way before the minimum: on to it, if a step of more than 1e-6 sigma is left. Not
   /// for fits by the thousand.
   void add_digits(const NormalEquations& linearised, const PenalisedFit& smoothed) {
-    constexpr double enough = 1e-6;
+    constexpr double negligible_step = 1e-6;  // of a sigma
     const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
-    if ((smoothed.theta - linearised.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < enough || !options_.coloured) return;
+    if ((smoothed.theta - linearised.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < negligible_step || !options_.coloured) return;
     const Shooting::State before = shooting_.state();
     const LeastSquares::Summary then = last_;
     if (solve({0, 10.0, 1e8, 100, 1e-13})) {
@@ -208,7 +208,7 @@ class Estimator {
   }
 
   std::string at_the_end(const std::string& which) {
-    return said_of_the_end(which, last_.converged, shooting_, shooting_.run(false), experiments_);
+    return why_undetermined(which, last_.converged, {shooting_, shooting_.run(false), experiments_});
   }
 
   /// On motion that is driven a failure to simulate is what had to be expected: then the method declines, in words.
@@ -228,54 +228,68 @@ class Estimator {
     return out;
   }
 
+  /// The Gaussian at the estimate, and the runs there.
+  struct Ending {
+    NormalEquations linearised;
+    PenalisedFit smoothed;
+    std::vector<Segment> runs;
+    [[nodiscard]] double degrees() const { return linearised.count - smoothed.edf; }
+  };
+
   FittedModel finish(const LeastSquares::Summary& summary) {
     FittedModel out{{}, shooting_.model(), penalties_, {}};
     Fit& fit = out.fit;
     fit.method = estimators::output_error.name;
     fit.status = summary.converged && settled_ ? FitStatus::converged : FitStatus::not_converged;
     fit.message = summary.converged && !settled_ ? "noise variances and smoothing parameters have not converged" : summary.message;
-    NormalEquations linearised;
-    if (!shooting_.linearise(linearised)) return failed("");
+    Ending end;
+    if (!shooting_.linearise(end.linearised)) return failed("");
     std::vector<Penalty> penalties = kept(penalties_);
-    const PenalisedFit smoothed = estimate_smoothing(linearised, penalties, 1.0);
-    if (!smoothed.ok) return failed(singular_message(linearised));
-    if (const std::string which = undetermined(out.model, linearised); !which.empty()) return failed(at_the_end(which));
-    const Eigen::Index columns = out.model.free_parameters().size();
-    const double degrees = linearised.count - smoothed.edf;
-    const std::vector<Segment> runs = shooting_.run(true);
-    const auto& outputs = out.model.system->spec().outputs;
+    end.smoothed = estimate_smoothing(end.linearised, penalties, 1.0);
+    if (!end.smoothed.ok) return failed(singular_message(end.linearised));
+    if (const std::string which = undetermined(out.model, end.linearised); !which.empty()) return failed(at_the_end(which));
+    end.runs = shooting_.run(true);
+    set_noise(end.degrees(), fit);
+    const Eigen::MatrixXd covariance = describe_estimates(end, out);
+    predictions_of({shooting_, end.runs, experiments_}, covariance, fit);
+    errors_of(experiments_, fit);
+    set_initial_states(out);
+    fit.facts["effective_parameters"] = format_value(end.smoothed.edf);
+    add_remarks(end, covariance, out);
+    fit.linearisations = shooting_.linearisations();
+    return out;
+  }
+
+  void set_noise(double degrees, Fit& fit) const {
+    const auto& outputs = shooting_.model().system->spec().outputs;
+    const double degrees_each = std::max(degrees / static_cast<double>(outputs.size()), 1.0);
     for (std::size_t o = 0; o < outputs.size(); ++o) {
       const double sigma = shooting_.sigma()[o];
-      fit.noise[outputs[o].name] = {sigma, sigma / std::sqrt(2.0 * std::max(degrees / static_cast<double>(outputs.size()), 1.0)),
-                                    outputs[o].unit};
+      fit.noise[outputs[o].name] = {sigma, sigma / std::sqrt(2.0 * degrees_each), outputs[o].unit};
     }
-    RowMatrix visited = visited_quantities(out.model, experiments_.front(), setting_.states.front());
-    for (std::size_t e = 1; e < experiments_.size(); ++e) {
-      const RowMatrix more = visited_quantities(out.model, experiments_[e], setting_.states[e]);
-      const Eigen::Index old = visited.rows();
-      visited.conservativeResize(old + more.rows(), visited.cols());
-      visited.bottomRows(more.rows()) = more;
-    }
-    const Eigen::MatrixXd covariance = allowing_for_memory(linearised, smoothed.covariance, runs, visited, degrees, out);
-    predictions_of(shooting_, runs, experiments_, covariance, fit);
-    errors_of(experiments_, fit);
-    for (std::size_t e = 0; e < experiments_.size(); ++e) out.initial_states.push_back(shooting_.initial_state(e));
-    fit.facts["effective_parameters"] = format_value(smoothed.edf);
+  }
+
+  void set_initial_states(FittedModel& out) const {
     for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      out.initial_states.push_back(shooting_.initial_state(e));
       if (shooting_.held_out(e))
-        fit.facts["held out: " + experiments_[e].name] = "all its samples are held out: its initial state is taken from its first samples";
+        out.fit.facts["held out: " + experiments_[e].name] =
+            "all its samples are held out: its initial state is taken from its first samples";
     }
+  }
+
+  void add_remarks(const Ending& end, const Eigen::MatrixXd& covariance, FittedModel& out) const {
+    Fit& fit = out.fit;
+    const Eigen::Index columns = out.model.theta().size();
     const InputTable inputs = input_table(experiments_.front(), out.model.inputs());
     const std::vector<std::string> scales =
         scale_uncertainties(out.model, out.initial_states.front().data(), inputs.at(0), experiments_.front().t.front());
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
-    tell_weak_directions(out.model, covariance.topLeftCorner(columns, columns), fit);
-    tell_other_trims(fit);
-    judge(out.model, setting_, smoothed.edf / static_cast<double>(outputs.size()), fit);
-    refuse_runaways(out.model, covariance.topLeftCorner(columns, columns), fit);
-    if (degrees < kFewestDegrees) withhold_sigmas(too_few(linearised.count, smoothed.edf), fit);
-    fit.linearisations = shooting_.linearisations();
-    return out;
+    warn_of_collinearity(out.model, covariance.topLeftCorner(columns, columns), fit);
+    warn_of_other_trims(fit);
+    classify_motion(out.model, setting_, end.smoothed.edf / static_cast<double>(out.model.outputs()), fit);
+    reject_prior_conflicts(out.model, covariance.topLeftCorner(columns, columns), fit);
+    if (end.degrees() < kFewestDegrees) withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
   }
 
   static std::string too_few(double count, double unknowns) {
@@ -283,20 +297,24 @@ class Estimator {
            " unknowns (free parameters and initial states) are too few to tell how far off the values are: no sigma is given";
   }
 
-  /// Of all unknowns; tells parameters, curves and trim with it, and what the plain one would give.
-  Eigen::MatrixXd allowing_for_memory(const NormalEquations& linearised, const Eigen::MatrixXd& plain, const std::vector<Segment>& runs,
-                                      const RowMatrix& visited, double degrees, FittedModel& out) const {
-    const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
+  /// Parameters, curves and trim with the covariance of all unknowns, which is returned: allowing for autocorrelated residuals, and what
+  /// white ones would give beside it.
+  Eigen::MatrixXd describe_estimates(const Ending& end, FittedModel& out) const {
+    const RowMatrix visited = visited_quantities(out.model, experiments_, setting_.states);
+    const Eigen::MatrixXd& plain = end.smoothed.covariance;
+    const Eigen::Index columns = out.model.theta().size();
     if (!options_.coloured) {
       describe(out.model, plain.topLeftCorner(columns, columns), visited, out.fit);
       return plain;
     }
-    const std::vector<ResidualRows> rows = residual_rows(shooting_, runs, experiments_);
+    const double degrees = end.degrees();
     const ColouredCovariance coloured =
-        memory_of_residuals(residual_rows(shooting_, runs, experiments_), plain, out.model.outputs(), degrees);
-    Eigen::MatrixXd covariance = with_uncertain_roughness(linearised, penalties_, 1.0, coloured.excess);
-    out.plain_covariance = with_uncertain_roughness(linearised, penalties_, 1.0).topLeftCorner(columns, columns);
-    describe_both(out.model, out.plain_covariance, covariance.topLeftCorner(columns, columns), visited, out.fit);
+        residual_covariance(residual_rows({shooting_, end.runs, experiments_}), plain, out.model.outputs(), degrees);
+    Eigen::MatrixXd covariance = with_uncertain_roughness(end.linearised, penalties_, 1.0, coloured.excess);
+    out.plain_covariance = with_uncertain_roughness(end.linearised, penalties_, 1.0).topLeftCorner(columns, columns);
+    describe(out.model, out.plain_covariance, visited, out.fit);
+    keep_plain_sigmas(out.fit);
+    describe(out.model, covariance.topLeftCorner(columns, columns), visited, out.fit);
     if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
     out.fit.facts["covariance"] = in_words(coloured);
     const auto& outputs = out.model.system->spec().outputs;

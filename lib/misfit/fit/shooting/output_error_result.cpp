@@ -21,8 +21,8 @@ constexpr double pi = std::numbers::pi;
 constexpr double follows = 0.5;  // of the motion's own size: a model that leaves less explains most of it
 
 /// Predicted − measured of output o, per experiment and sample; NaN where it does not count.
-std::vector<std::vector<double>> channel_residuals(const Shooting& shooting, const std::vector<Segment>& runs,
-                                                   const std::vector<Signals>& experiments, std::size_t o) {
+std::vector<std::vector<double>> channel_residuals(const EndOfSearch& end, std::size_t o) {
+  const auto& [shooting, runs, experiments] = end;
   std::vector<std::vector<double>> out;
   for (std::size_t e = 0; e < runs.size(); ++e) {
     out.emplace_back(experiments[e].samples(), std::nan(""));
@@ -50,19 +50,18 @@ Squares squares_of(const std::vector<std::vector<double>>& residuals) {
 
 }  // namespace
 
-std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
-                                   double edf) {
-  std::vector<double> sigma = shooting.sigma();
+std::vector<double> channel_sigmas(const EndOfSearch& end, double edf) {
+  std::vector<double> sigma = end.shooting.sigma();
   const double share = edf / static_cast<double>(sigma.size());
   for (std::size_t o = 0; o < sigma.size(); ++o) {
-    const auto [squares, count] = squares_of(channel_residuals(shooting, runs, experiments, o));
+    const auto [squares, count] = squares_of(channel_residuals(end, o));
     if (count > share + 1.0 && squares > 0.0) sigma[o] = std::sqrt(squares / (count - share));
   }
   return sigma;
 }
 
-std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vector<Segment>& runs,
-                                        const std::vector<Signals>& experiments) {
+std::vector<ResidualRows> residual_rows(const EndOfSearch& end) {
+  const auto& [shooting, runs, experiments] = end;
   std::vector<ResidualRows> out;
   const std::size_t ny = shooting.model().outputs();
   for (std::size_t e = 0; e < runs.size(); ++e) {
@@ -84,8 +83,8 @@ std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vec
   return out;
 }
 
-void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
-                    const Eigen::MatrixXd& covariance, Fit& fit) {
+void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, Fit& fit) {
+  const auto& [shooting, runs, experiments] = end;
   const auto& outputs = shooting.model().system->spec().outputs;
   const Eigen::Index ny = outputs.size();
   const Eigen::Index n = shooting.model().states();
@@ -153,12 +152,11 @@ double motion_size(const std::vector<double>& values) {
   return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
 }
 
-std::string said_of_the_end(const std::string& which, bool converged, const Shooting& shooting, const std::vector<Segment>& runs,
-                            const std::vector<Signals>& experiments) {
-  const auto& outputs = shooting.model().system->spec().outputs;
+std::string why_undetermined(const std::string& which, bool converged, const EndOfSearch& end) {
+  const auto& outputs = end.shooting.model().system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
-    const auto [squares, count] = squares_of(channel_residuals(shooting, runs, experiments, o));
-    const double rms = std::sqrt(squares / std::max(count, 1.0)), size = motion_size(experiments.front().measured[o].values);
+    const auto [squares, count] = squares_of(channel_residuals(end, o));
+    const double rms = std::sqrt(squares / std::max(count, 1.0)), size = motion_size(end.experiments.front().measured[o].values);
     if (converged && rms < follows * size) continue;
     return "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
            ", motion RMS " + in_display_unit(size, outputs[o].unit) + "): there " + which.substr(0, which.find_first_of(":;")) +
@@ -183,7 +181,7 @@ std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
 
 }  // namespace
 
-void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit) {
+void classify_motion(const Model& model, const Setting& setting, double unknowns, Fit& fit) {
   const ChannelPrediction& p = fit.predictions.front();
   const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
   const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period), unknowns);

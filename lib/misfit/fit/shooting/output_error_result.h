@@ -8,17 +8,21 @@
 // What output error makes of a finished run: not for use outside.
 namespace misfit::output_error_parts {
 
+/// Where a search ended: the problem, one run per experiment from its initial state, and the measurements.
+struct EndOfSearch {
+  const Shooting& shooting;
+  const std::vector<Segment>& runs;
+  const std::vector<Signals>& experiments;
+};
+
 /// Per-channel residuals of the estimation part → standard deviations with the effective number of parameters taken off.
-[[nodiscard]] std::vector<double> channel_sigmas(const Shooting& shooting, const std::vector<Segment>& runs,
-                                                 const std::vector<Signals>& experiments, double edf);
+[[nodiscard]] std::vector<double> channel_sigmas(const EndOfSearch& end, double edf);
 
 /// Residuals and their derivatives by (parameters, initial states of each experiment) in units of sigma, from runs with derivatives.
-[[nodiscard]] std::vector<ResidualRows> residual_rows(const Shooting& shooting, const std::vector<Segment>& runs,
-                                                      const std::vector<Signals>& experiments);
+[[nodiscard]] std::vector<ResidualRows> residual_rows(const EndOfSearch& end);
 
 /// Channels of every experiment with sigma from noise and `covariance` of (parameters, initial states of each experiment).
-void predictions_of(const Shooting& shooting, const std::vector<Segment>& runs, const std::vector<Signals>& experiments,
-                    const Eigen::MatrixXd& covariance, Fit& fit);
+void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, Fit& fit);
 
 /// RMS and Gaussian log-likelihood of estimation and validation part, from the predictions and fit.noise.
 void errors_of(const std::vector<Signals>& experiments, Fit& fit);
@@ -28,10 +32,9 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 
 /// What the information matrix where the search ended cannot tell (`which`, a sentence) is said of the data only if the model follows them
 /// there: the search has converged and leaves less than half of the motion. Else it is said of that place.
-[[nodiscard]] std::string said_of_the_end(const std::string& which, bool converged, const Shooting& shooting,
-                                          const std::vector<Segment>& runs, const std::vector<Signals>& experiments);
+[[nodiscard]] std::string why_undetermined(const std::string& which, bool converged, const EndOfSearch& end);
 
 /// Says whether a deterministic model followed the motion, and marks the fit where it did not.
-void judge(const Model& model, const Setting& setting, double unknowns, Fit& fit);
+void classify_motion(const Model& model, const Setting& setting, double unknowns, Fit& fit);
 
 }  // namespace misfit::output_error_parts

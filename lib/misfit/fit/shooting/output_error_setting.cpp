@@ -6,7 +6,7 @@
 
 namespace misfit::output_error_parts {
 
-Setting look_at(const Model& model, const std::vector<Signals>& experiments, const OutputErrorStart& options) {
+Setting setting_of(const Model& model, const std::vector<Signals>& experiments, const OutputErrorStart& options) {
   Setting s;
   const auto& spec = model.system->spec();
   s.step = usual_step(experiments.front().t);

@@ -18,7 +18,7 @@ struct Setting {
   std::vector<ReconstructedStates> states;
 };
 
-[[nodiscard]] Setting look_at(const Model& model, const std::vector<Signals>& experiments, const OutputErrorStart& options);
+[[nodiscard]] Setting setting_of(const Model& model, const std::vector<Signals>& experiments, const OutputErrorStart& options);
 
 /// States at every sample to begin with: read from the measurement, gaps bridged linearly between the known neighbours.
 [[nodiscard]] std::vector<RowMatrix> start_states(const Setting& setting);

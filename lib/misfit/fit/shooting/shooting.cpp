@@ -9,12 +9,11 @@
 
 namespace misfit {
 
-Shooting::Shooting(Model model, const std::vector<Signals>& experiments, std::vector<double> sigma, std::vector<double> state_scale,
-                   std::vector<RowMatrix> start_states)
+Shooting::Shooting(Model model, const std::vector<Signals>& experiments, ShootingScales scales, std::vector<RowMatrix> start_states)
     : model_(std::move(model)),
       experiments_(experiments),
-      sigma_(std::move(sigma)),
-      state_scale_(std::move(state_scale)),
+      sigma_(std::move(scales.sigma)),
+      state_scale_(std::move(scales.state_scale)),
       history_(std::move(start_states)),
       free_(model_.free_parameters()),
       values_(model_.values()),
@@ -83,7 +82,7 @@ void Shooting::fill_rows(const Piece& piece, double* r, double** J) const {
   }
 }
 
-bool Shooting::evaluate(Piece& piece, double defect_weight, const double* const* blocks, double* r, double** J) {
+bool Shooting::evaluate(Piece& piece, const double* const* blocks, double* r, double** J) {
   set_theta(blocks[0]);
   Segment& s = piece.segment;
   run_segment({*stepper_, experiments_[piece.experiment], inputs_[piece.experiment]}, {piece.first, piece.last, blocks[1], J != nullptr},
@@ -98,7 +97,7 @@ bool Shooting::evaluate(Piece& piece, double defect_weight, const double* const*
   const std::size_t first = s.y.size();
   if (J != nullptr && J[2] != nullptr) std::fill_n(J[2], (first + n) * n, 0.0);
   for (int j = 0; j < n; ++j) {
-    const double weight = defect_weight / state_scale_[j];
+    const double weight = piece.defect_weight / state_scale_[j];
     const std::size_t row = first + j;
     r[row] = weight * (s.end[j] - blocks[2][j]);
     if (J == nullptr) continue;
@@ -168,13 +167,10 @@ struct StateBounds {
 
 }  // namespace
 
-LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vector<Penalty>& penalties) {
-  failure_.clear();
-  LeastSquares problem;
-  const int theta_block = add_parameters(problem, model_, free_);
-  std::vector<Piece> pieces = cut(pass.length);
+/// One residual block per piece, over parameters and its own initial state, with its defect to the next piece's initial state.
+void Shooting::add_pieces(LeastSquares& problem, int theta_block, std::vector<Piece>& pieces) {
   const StateBounds bounds(model_);
-  for (auto& piece : pieces) {
+  for (Piece& piece : pieces) {
     const auto start = history_[piece.experiment].row(piece.first);
     piece.block = bounds.any ? problem.add_block({start.begin(), start.end()}, bounds.least, bounds.most)
                              : problem.add_block({start.begin(), start.end()});
@@ -185,10 +181,18 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
     std::vector<int> blocks{theta_block, piece.block};
     if (piece.next >= 0) blocks.push_back(piece.next);
     const int residuals = static_cast<int>((piece.last - piece.first) * model_.outputs()) + (piece.next >= 0 ? model_.states() : 0);
-    problem.add_residuals(blocks, residuals, [this, &piece, weight = pass.defect_weight](const double* const* x, double* r, double** J) {
-      return evaluate(piece, weight, x, r, J);
-    });
+    problem.add_residuals(blocks, residuals,
+                          [this, &piece](const double* const* x, double* r, double** J) { return evaluate(piece, x, r, J); });
   }
+}
+
+LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vector<Penalty>& penalties) {
+  failure_.clear();
+  LeastSquares problem;
+  const int theta_block = add_parameters(problem, model_, free_);
+  std::vector<Piece> pieces = cut(pass.length);
+  for (Piece& piece : pieces) piece.defect_weight = pass.defect_weight;
+  add_pieces(problem, theta_block, pieces);
   add_initial(problem, pieces);
   add_priors(problem, theta_block, penalties);
   LeastSquares::Options options;

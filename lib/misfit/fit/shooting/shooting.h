@@ -24,13 +24,15 @@ struct ShootingPass {
   double tolerance = 1e-6;  ///< relative change of the cost
 };
 
+struct ShootingScales {
+  std::vector<double> sigma;        ///< standard deviation of each output's residual [output unit]
+  std::vector<double> state_scale;  ///< size that counts as one sigma of a defect, per state
+};
+
 /// The unknowns of output error — free parameters and segment initial states — and how to improve them.
 class Shooting {
  public:
-  /// `sigma`: standard deviation of each output's residual [output unit]; `state_scale`: size that counts as one sigma of a defect, per
-  /// state.
-  Shooting(Model model, const std::vector<Signals>& experiments, std::vector<double> sigma, std::vector<double> state_scale,
-           std::vector<RowMatrix> start_states);
+  Shooting(Model model, const std::vector<Signals>& experiments, ShootingScales scales, std::vector<RowMatrix> start_states);
 
   /// One solve by Ceres. The histories (states at every sample) are replaced by what the solved segments pass through.
   LeastSquares::Summary solve(const ShootingPass& pass, const std::vector<Penalty>& penalties);
@@ -73,16 +75,18 @@ class Shooting {
  private:
   struct Piece {
     std::size_t experiment, first, last;
+    double defect_weight = 0.0;
     int block = -1, next = -1;  ///< parameter blocks: own initial state, initial state of the next piece (−1: none)
     Segment segment{};
   };
   void set_theta(const double* theta);
-  bool evaluate(Piece& piece, double defect_weight, const double* const* blocks, double* r, double** J);
+  bool evaluate(Piece& piece, const double* const* blocks, double* r, double** J);
   void fill_rows(const Piece& piece, double* r, double** J) const;
   [[nodiscard]] NormalEquations empty_sums(Eigen::Index unknowns) const;
   [[nodiscard]] double weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r) const;
   [[nodiscard]] double counted(const Piece& piece) const;
   std::vector<Piece> cut(std::size_t length) const;
+  void add_pieces(LeastSquares& problem, int theta_block, std::vector<Piece>& pieces);
   void add_initial(LeastSquares& problem, const std::vector<Piece>& pieces) const;
   /// Stiffness by which an initial state is held [1/unit²]: fixed to its value, or shared with the first experiment.
   [[nodiscard]] double holding(std::size_t state) const;
