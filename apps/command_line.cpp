@@ -34,33 +34,6 @@ extern "C" void on_interrupt(int) {
 
 using Verb = int (*)(const Options&, const Registry&);
 
-struct VerbEntry {
-  const char* name;
-  const char* doc;
-  Verb call;
-  bool study_required;
-};
-
-constexpr VerbEntry verbs[] = {
-    {"run", "run all stages of the study and write the report; stages whose inputs have not changed are skipped", run_verb, true},
-    {"track", "follow the marker through the video: track.csv, contact sheet, lost samples and their reasons", track_verb, true},
-    {"calibrate", "estimate camera height, scale and the further parameters that the static sweep supports", calibrate_verb, true},
-    {"attitude", "compute the angles of the axis from the track", attitude_verb, true},
-    {"fit", "estimate the model's curves and parameters", fit_verb, true},
-    {"diagnose", "residual diagnostics: unexplained force against states, inputs and time; whiteness tests", diagnose_verb, true},
-    {"discover", "rank the effects the model may be missing; continues from the last model of the ladder", discover_verb, true},
-    {"add", "add an effect (or system:KIND) to the last rung: writes and fits a new study, prints the error before and after", add_verb,
-     true},
-    {"compare", "compare methods with each other and with reference curves, simulated with measured motion", compare_verb, true},
-    {"uncertainty", "propagate geometry, camera and mass uncertainty to the results (Monte Carlo, on threads or under mpirun)",
-     uncertainty_verb, true},
-    {"report", "write the figures and one self-contained page", report_verb, true},
-    {"simulate", "simulate the model as described in [simulate], or as fitted", simulate_verb, true},
-    {"batch", "fit many studies as one job, on threads or under mpirun; tabulate how their results vary", batch_verb, true},
-    {"init", "write a first study for a CSV file: column roles, linear model, figures", init_verb, true},
-    {"effects", "list the effects of the program, or of a study; with the key of an effect, print it in full", effects_verb, false},
-};
-
 void add_method(CLI::App& verb, Options& options) {
   verb.add_option("--method", options.session.methods, "only these methods")->type_name("NAME")->check(CLI::IsMember(estimator_names()));
 }
@@ -86,48 +59,106 @@ void add_running(CLI::App& verb, Options& options) {
   verb.add_flag("--json", options.json, "print the result as JSON");
 }
 
-void add_options(CLI::App& verb, Options& options, bool study_required) {
-  if (verb.get_name() == "init") {
-    verb.add_option("data", options.session.study, "CSV file with a header line")->type_name("DATA.csv")->required();
-    verb.add_flag("--force", options.session.force, "overwrite an existing study (never the data)");
-    verb.add_option("--out", options.session.out, "folder of the study (default: named after the data file, in the current directory)")
-        ->type_name("DIR");
-    verb.add_flag("--json", options.json, "print what was found as JSON");
-    return;
-  }
-  if (verb.get_name() == "batch") {
-    verb.add_option("studies", options.studies, "lists with one study per line, folders to search for study.toml, studies")
-        ->type_name("LIST|FOLDER…")
-        ->required();
-    verb.add_option("--out", options.session.out, "folder of the results (default: batch/ beside the list or in the folder)")
-        ->type_name("DIR");
-    verb.add_flag("--force", options.session.force, "overwrite files that misfit did not write (never data, never through links)");
-    add_method(verb, options);
-    add_running(verb, options);
-    return;
-  }
-  if (verb.get_name() == "effects") {
-    verb.add_option("what", options.session.study, "key of an effect, or a study: study.toml, or the folder that holds it")
-        ->type_name("KEY|STUDY");
-    verb.add_option("effect", options.effect, "effect of that study")->type_name("KEY");
-    verb.add_flag("--json", options.json, "print the effects as JSON");
-    return;
-  }
-  auto* study = verb.add_option("study", options.session.study, "study.toml, or the folder that holds it")->type_name("STUDY");
-  if (study_required) study->required();
-  if (verb.get_name() == "add")
-    verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
-  if (verb.get_name() == "uncertainty")
-    verb.add_option("--runs", options.session.runs, "overrides the study's number of runs")
-        ->type_name("N")
-        ->check(CLI::Range(1, 100'000'000));
-  if (verb.get_name() == "discover")
-    verb.add_flag("--auto", options.automatic, "add the accepted effect and search again, until none is accepted");
-  verb.add_option("--out", options.session.out, "run folder (default: out/ beside the study)")->type_name("DIR");
+void add_study(CLI::App& verb, Options& options) {
+  verb.add_option("study", options.session.study, "study.toml, or the folder that holds it")->type_name("STUDY")->required();
+}
+
+void add_force(CLI::App& verb, Options& options) {
   verb.add_flag("--force", options.session.force, "overwrite files that misfit did not write (never data, never through links)");
+}
+
+void add_work(CLI::App& verb, Options& options) {
+  verb.add_option("--out", options.session.out, "run folder (default: out/ beside the study)")->type_name("DIR");
+  add_force(verb, options);
   add_method(verb, options);
   add_running(verb, options);
 }
+
+// The options of each verb.
+void study_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  add_work(verb, options);
+}
+
+void track_options(CLI::App& verb, Options& options) {
+  study_options(verb, options);
+  verb.add_option("--check-video", options.check_video, "also write the video with the track drawn on it (.avi, .mp4 or .mkv)")
+      ->type_name("FILE");
+}
+
+void discover_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  verb.add_flag("--auto", options.automatic, "add the accepted effect and search again, until none is accepted");
+  add_work(verb, options);
+}
+
+void add_verb_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
+  add_work(verb, options);
+}
+
+void uncertainty_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  verb.add_option("--runs", options.session.runs, "overrides the study's number of runs")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100'000'000));
+  add_work(verb, options);
+}
+
+void batch_options(CLI::App& verb, Options& options) {
+  verb.add_option("studies", options.studies, "lists with one study per line, folders to search for study.toml, studies")
+      ->type_name("LIST|FOLDER…")
+      ->required();
+  verb.add_option("--out", options.session.out, "folder of the results (default: batch/ beside the list or in the folder)")
+      ->type_name("DIR");
+  add_force(verb, options);
+  add_method(verb, options);
+  add_running(verb, options);
+}
+
+void init_options(CLI::App& verb, Options& options) {
+  verb.add_option("data", options.session.study, "CSV file with a header line")->type_name("DATA.csv")->required();
+  verb.add_flag("--force", options.session.force, "overwrite an existing study (never the data)");
+  verb.add_option("--out", options.session.out, "folder of the study (default: named after the data file, in the current directory)")
+      ->type_name("DIR");
+  verb.add_flag("--json", options.json, "print what was found as JSON");
+}
+
+void effects_options(CLI::App& verb, Options& options) {
+  verb.add_option("what", options.session.study, "key of an effect, or a study: study.toml, or the folder that holds it")
+      ->type_name("KEY|STUDY");
+  verb.add_option("effect", options.effect, "effect of that study")->type_name("KEY");
+  verb.add_flag("--json", options.json, "print the effects as JSON");
+}
+
+struct VerbEntry {
+  const char* name;
+  const char* doc;
+  Verb call;
+  void (*add_options)(CLI::App&, Options&);
+};
+
+constexpr VerbEntry verbs[] = {
+    {"run", "run all stages of the study and write the report; stages whose inputs have not changed are skipped", run_verb, study_options},
+    {"track", "follow the marker through the video: track.csv, contact sheet, lost samples and their reasons", track_verb, track_options},
+    {"calibrate", "estimate camera height, scale and the further parameters that the static sweep supports", calibrate_verb, study_options},
+    {"attitude", "compute the angles of the axis from the track", attitude_verb, study_options},
+    {"fit", "estimate the model's curves and parameters", fit_verb, study_options},
+    {"diagnose", "residual diagnostics: unexplained force against states, inputs and time; whiteness tests", diagnose_verb, study_options},
+    {"discover", "rank the effects the model may be missing; continues from the last model of the ladder", discover_verb, discover_options},
+    {"add", "add an effect (or system:KIND) to the last rung: writes and fits a new study, prints the error before and after", add_verb,
+     add_verb_options},
+    {"compare", "compare methods with each other and with reference curves, simulated with measured motion", compare_verb, study_options},
+    {"uncertainty", "propagate geometry, camera and mass uncertainty to the results (Monte Carlo, on threads or under mpirun)",
+     uncertainty_verb, uncertainty_options},
+    {"report", "write the figures and one self-contained page", report_verb, study_options},
+    {"simulate", "simulate the model as described in [simulate], or as fitted", simulate_verb, study_options},
+    {"batch", "fit many studies as one job, on threads or under mpirun; tabulate how their results vary", batch_verb, batch_options},
+    {"init", "write a first study for a CSV file: column roles, linear model, figures", init_verb, init_options},
+    {"effects", "list the effects of the program, or of a study; with the key of an effect, print it in full", effects_verb,
+     effects_options},
+};
 
 std::string command_text(int argc, char** argv) {
   std::string out = "misfit";
@@ -176,17 +207,27 @@ void refuse_ranks(const std::string& verb) {
     throw InputError("'" + verb + "' cannot run under mpirun; only uncertainty, batch and discover can");
 }
 
-int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out) {
-  if (argc > 1 && std::string_view(argv[1]) == "help") {
-    const auto text = help_on(argc, argv, registry);
-    if (text) {
-      std::cout << *text;
-      return 0;
-    }
-    std::string own_help = "--help";
-    std::array<char*, 3> of_verb = {argv[0], argv[2], own_help.data()};
-    return dispatch(3, of_verb.data(), registry, out);
+void refuse_unknown_verb(const std::string& verb) {
+  std::vector<std::string> names = verb_names();
+  names.emplace_back("help");
+  if (std::find(names.begin(), names.end(), verb) == names.end())
+    throw InputError("unknown verb '" + shown(verb) + "'" + suggest(verb, names));
+}
+
+int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out);
+
+int print_help(int argc, char** argv, const Registry& registry, PrintableStream& out) {
+  if (const auto text = help_on(argc, argv, registry)) {
+    std::cout << *text;
+    return 0;
   }
+  std::string own_help = "--help";
+  std::array<char*, 3> of_verb = {argv[0], argv[2], own_help.data()};
+  return dispatch(3, of_verb.data(), registry, out);
+}
+
+int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out) {
+  if (argc > 1 && std::string_view(argv[1]) == "help") return print_help(argc, argv, registry, out);
   CLI::App app{"misfit — find out what your model is missing"};
   app.set_version_flag("--version", std::string("misfit ") + version() + " (" + commit() + ")");
   app.require_subcommand(1);
@@ -195,18 +236,10 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
   std::map<const CLI::App*, Verb> calls;
   for (const auto& entry : verbs) {
     CLI::App* verb = app.add_subcommand(entry.name, entry.doc);
-    add_options(*verb, options, entry.study_required);
-    if (entry.call == track_verb)
-      verb->add_option("--check-video", options.check_video, "also write the video with the track drawn on it (.avi, .mp4 or .mkv)")
-          ->type_name("FILE");
+    entry.add_options(*verb, options);
     calls[verb] = entry.call;
   }
-  if (argc > 1 && argv[1][0] != '-') {
-    std::vector<std::string> names = verb_names();
-    names.emplace_back("help");
-    if (std::find(names.begin(), names.end(), argv[1]) == names.end())
-      throw InputError(std::string("unknown verb '") + shown(argv[1]) + "'" + suggest(argv[1], names));
-  }
+  if (argc > 1 && argv[1][0] != '-') refuse_unknown_verb(argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
