@@ -41,25 +41,6 @@ const ColumnSurvey& column(const RecordingSurvey& s, const std::string& name) {
   throw std::logic_error("no column " + name);
 }
 
-TEST(RecordingHeader, NamesAndUnitsAreToldApart) {
-  const auto expect = [](const char* header, const char* name, const char* unit) {
-    const NameAndUnit read = read_header(header);
-    EXPECT_EQ(read.name, name) << header;
-    EXPECT_EQ(read.unit, unit) << header;
-  };
-  expect("t_s", "t", "s");
-  expect("u_V", "u", "V");
-  expect("omega1_radps", "omega1", "rad/s");
-  expect("theta[deg]", "theta", "deg");
-  expect("Druck (kPa)", "Druck", "kPa");
-  expect("v_m_s", "v", "m/s");
-  expect("torque_Nm", "torque", "N m");
-  expect("x1", "x1", "");
-  expect("a_b", "a_b", "");
-  EXPECT_EQ(read_header("Flow [l/min]").not_understood, "l/min");
-  EXPECT_EQ(read_header("1st \xC3\xA4ngle").name, "c1st_ngle");
-}
-
 TEST(Recording, TimeInputAndOutputAreFoundWithTheirReasons) {
   const RecordingSurvey s = survey(
       rows("k,t_ms,valve,level_cm", 200, [](int k) { return fmt::format("{},{},{},{}", k, 250 * k, k / 20 % 2, std::sin(0.1 * k)); }));

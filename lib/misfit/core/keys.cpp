@@ -22,20 +22,19 @@ std::string defaults_text(const KeyGroup& group) {
 }
 
 /// With its unit, an angle in degrees: "30 deg" for 0.5236 rad. 0 needs none.
-std::string limit_text(double limit, const std::string& unit) {
-  if (limit == 0.0 || unit.empty() || unit.starts_with("of ")) return fmt::format("{:.10g}", limit);
-  const std::string shown_unit = display_unit(unit);
-  return fmt::format("{:.10g} {}", convert(limit, unit, shown_unit), shown_unit);
+std::string limit_text(double limit, const Key& key) {
+  if (limit == 0.0 || key.unit.empty() || key.unit.starts_with("of ")) return fmt::format("{:.10g}", limit);
+  const std::string shown_unit = display_unit(key.unit);
+  return fmt::format("{:.10g} {}", shown_unit == key.unit ? limit : convert(limit, key.unit, shown_unit), shown_unit);
 }
 
 /// "above 0 and at most 30 deg", "1 to 100", "at least 0"; empty if everything is allowed.
 std::string limits_text(const Key& key) {
   const bool bounded = std::isfinite(key.most);
-  const std::string most = limit_text(key.most, key.unit);
-  if (!std::isfinite(key.least)) return bounded ? "at most " + most : "";
-  const std::string least = limit_text(key.least, key.unit);
+  if (!std::isfinite(key.least)) return bounded ? "at most " + limit_text(key.most, key) : "";
+  const std::string least = limit_text(key.least, key);
   if (!bounded) return (key.above ? "above " : "at least ") + least;
-  return key.above ? "above " + least + " and at most " + most : least + " to " + most;
+  return key.above ? "above " + least + " and at most " + limit_text(key.most, key) : least + " to " + limit_text(key.most, key);
 }
 
 std::string choices_text(const std::vector<std::string>& choices) {

@@ -138,7 +138,7 @@ KeyGroup experiment_group() {
 KeyGroup columns_group() {
   return {"experiment.columns", "Which column of the file is which signal.",
      {{.name = "SIGNAL", .otherwise = "the signal's name", .any = true,
-       .meaning = "Header of the column; units behind it in brackets, as y[deg]."}}};
+       .meaning = "Header of the column; its unit behind it in brackets, y[deg], else at the end of its name, y_deg."}}};
 }
 
 std::vector<KeyGroup> effect_groups() {

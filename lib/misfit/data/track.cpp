@@ -24,11 +24,9 @@ void check_names(const ColumnMap& columns) {
   }
 }
 
-/// The column of an optional signal: NaN in every row where the file has none and the map asks for none.
-std::vector<double> optional_column(const Table& table, const ColumnMap& columns, const std::string& name, const std::string& unit) {
-  const std::string header = columns.header(name);
-  if (header == name && table.find(name) == nullptr) return std::vector<double>(table.rows(), missing);
-  return table.values(header, unit);
+/// The file has no column of that signal, and the map asks for none.
+bool absent(const Table& table, const ColumnMap& columns, const std::string& name) {
+  return columns.header(name) == name && table.find(name) == nullptr;
 }
 
 struct Raw {
@@ -38,7 +36,7 @@ struct Raw {
 
 class TrackBuilder {
  public:
-  explicit TrackBuilder(const Table& table) : table_(table) {}
+  TrackBuilder(const Table& table, std::vector<std::string> notes) : table_(table) { track_.notes = std::move(notes); }
 
   void add_row(const Raw& raw, std::size_t i) {
     const double t = raw.t[i];
@@ -91,22 +89,22 @@ const std::vector<std::string>& track_signals() {
   return names;
 }
 
-std::string ColumnMap::header(const std::string& name) const {
-  const auto it = std::find_if(header_of.begin(), header_of.end(), [&](const auto& entry) { return entry.first == name; });
-  return it == header_of.end() ? name : it->second;
-}
-
 Track read_track(const std::filesystem::path& path, const ColumnMap& columns) {
   check_names(columns);
   const Table table = read_csv(path);
   Raw raw;
-  raw.t = table.values(columns.header("t"), "s");
-  raw.P_y = table.values(columns.header("P_y"), "px");
-  raw.P_z = table.values(columns.header("P_z"), "px");
-  raw.sigma = optional_column(table, columns, "sigma", "px");
+  std::vector<std::string> notes;
+  const auto required = [&](const char* name, const char* unit) { return columns.values(table, name, unit, notes); };
+  const auto optional = [&](const char* name, const char* unit) {
+    return absent(table, columns, name) ? std::vector<double>(table.rows(), missing) : required(name, unit);
+  };
+  raw.t = required("t", "s");
+  raw.P_y = required("P_y", "px");
+  raw.P_z = required("P_z", "px");
+  raw.sigma = optional("sigma", "px");
   raw.has_ok = table.find(columns.header("ok")) != nullptr;
-  raw.ok = optional_column(table, columns, "ok", "-");
-  TrackBuilder builder(table);
+  raw.ok = optional("ok", "-");
+  TrackBuilder builder(table, std::move(notes));
   for (std::size_t i = 0; i < table.rows(); ++i) builder.add_row(raw, i);
   return builder.finish();
 }

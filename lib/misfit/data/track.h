@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "misfit/data/column_map.h"
+
 namespace misfit {
 
 /// The apex in the image over time. All vectors have one entry per sample; lost samples keep their row.
@@ -14,12 +16,6 @@ struct Track {
   std::vector<double> sigma;       ///< [px] standard deviation of one coordinate; NaN when not known
   std::vector<bool> ok;            ///< false: lost, not to be used
   std::vector<std::string> notes;  ///< what was dropped and why, in words
-};
-
-/// Which header holds which signal (name → header); names absent from the map are looked for under their own name.
-struct ColumnMap {
-  std::vector<std::pair<std::string, std::string>> header_of;
-  [[nodiscard]] std::string header(const std::string& name) const;
 };
 
 /// Names that the map of a track may have.

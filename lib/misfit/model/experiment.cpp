@@ -83,7 +83,7 @@ class Reader {
     read_time();
     const SystemSpec& spec = model_.system->spec();
     for (const auto& output : spec.outputs)
-      out_.measured.push_back({output.name, output.unit, kept(table_.values(header(output.name), output.unit)), 0.0});
+      out_.measured.push_back({output.name, output.unit, kept(values_of(output.name, output.unit)), 0.0});
     for (auto& channel : out_.measured) {
       const std::size_t wild = set_spikes_aside(channel.values);
       if (wild > 0) out_.notes.push_back("channel " + channel.name + ": " + std::to_string(wild) + " isolated outliers rejected");
@@ -101,6 +101,9 @@ class Reader {
 
  private:
   std::string header(const std::string& name) const { return study_.columns.header(name); }
+  std::vector<double> values_of(const std::string& name, const std::string& unit) {
+    return study_.columns.values(table_, name, unit, out_.notes);
+  }
   std::vector<double> kept(const std::vector<double>& column) const {
     std::vector<double> values;
     for (std::size_t row : rows_) values.push_back(column[row]);
@@ -109,7 +112,7 @@ class Reader {
   Source line(std::size_t row) const { return {table_.source, row < table_.line.size() ? table_.line[row] : 0, 0}; }
 
   void read_time() {
-    const std::vector<double> t = table_.values(header("t"), "s");
+    const std::vector<double> t = values_of("t", "s");
     for (std::size_t i = 0; i < t.size(); ++i) {
       if (!std::isfinite(t[i])) continue;
       if (!rows_.empty() && !(t[i] > t[rows_.back()])) {
@@ -139,12 +142,12 @@ class Reader {
     if (!base.empty() && table_.find(header(input.name)) == nullptr) {
       if (table_.find(header(base)) == nullptr) static_cast<void>(table_.at(header(input.name)));  // throws, naming the nearest
       const std::string base_unit = input.unit.ends_with("/s") ? input.unit.substr(0, input.unit.size() - 2) : input.unit;
-      std::vector<double> level = kept(table_.values(header(base), base_unit));
+      std::vector<double> level = kept(values_of(base, base_unit));
       if (base_unit == "rad") level = unwrapped(level);
       values = central_rate(out_.t, level);
       out_.notes.push_back("input " + input.name + " differentiated from " + base);
     } else {
-      values = kept(table_.values(header(input.name), input.unit));
+      values = kept(values_of(input.name, input.unit));
       if (angle) values = unwrapped(values);
     }
     std::vector<bool> missing;

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "misfit/core/column_header.h"
 #include "misfit/core/error.h"
 #include "misfit/core/loose_csv.h"
 #include "misfit/core/shown.h"

@@ -51,11 +51,4 @@ struct RecordingSurvey {
 /// `reserved`: names that no input, output or rate may have ("t" is always one).
 [[nodiscard]] RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved = {});
 
-/// "omega1_radps" → {"omega1", "rad/s"}; "theta[deg]" → {"theta", "deg"}; "Flow (l/min)" → {"Flow", ""} as litres are not known.
-struct NameAndUnit {
-  std::string name, unit;      ///< unit empty if the header names none that is known
-  std::string not_understood;  ///< a unit in brackets that is not known
-};
-[[nodiscard]] NameAndUnit read_header(const std::string& header);
-
 }  // namespace misfit

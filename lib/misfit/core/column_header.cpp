@@ -1,4 +1,4 @@
-// read_header of recording.h.
+#include "misfit/core/column_header.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,6 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/units.h"
-#include "misfit/recording/recording.h"
 
 namespace misfit {
 namespace {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace misfit {
+
+/// "omega1_radps" → {"omega1", "rad/s"}; "theta[deg]" → {"theta", "deg"}; "Flow (l/min)" → {"Flow", ""} as litres are not known.
+struct NameAndUnit {
+  std::string name, unit;      ///< unit empty if the header names none that is known
+  std::string not_understood;  ///< a unit in brackets that is not known
+};
+[[nodiscard]] NameAndUnit read_header(const std::string& header);
+
+}  // namespace misfit

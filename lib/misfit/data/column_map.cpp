@@ -1,0 +1,37 @@
+#include "misfit/data/column_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "misfit/core/column_header.h"
+#include "misfit/core/shown.h"
+#include "misfit/core/table.h"
+#include "misfit/core/units.h"
+
+namespace misfit {
+
+std::string ColumnMap::header(const std::string& name) const {
+  const auto it = std::find_if(header_of.begin(), header_of.end(), [&](const auto& entry) { return entry.first == name; });
+  return it == header_of.end() ? name : it->second;
+}
+
+std::vector<double> ColumnMap::values(const Table& table, const std::string& name, const std::string& unit,
+                                      std::vector<std::string>& notes) const {
+  const Column& column = table.at(header(name));
+  const std::string column_unit = read_header(column.name).unit;
+  const bool own_unit = !column.unit.empty() || header(name) == name;
+  if (own_unit || column_unit == unit) return table.values(header(name), unit);
+  if (column_unit.empty() || !parse_unit(column_unit).same_dimension(parse_unit(unit))) {
+    if (!unit_symbols(unit).empty())
+      notes.push_back(fmt::format("column '{}' has no unit for {}: its values are taken as {}", shown(column.name), name, unit));
+    return column.values;
+  }
+  const double factor = convert(1.0, column_unit, unit);
+  std::vector<double> out = column.values;
+  for (double& value : out) value *= factor;
+  notes.push_back(fmt::format("column '{}' is read in {}, as its name says", shown(column.name), column_unit));
+  return out;
+}
+
+}  // namespace misfit
