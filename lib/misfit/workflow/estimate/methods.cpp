@@ -23,7 +23,7 @@ void add_scale(const Prepared& form, Fit& fit) {
 
 void add_notes(const Prepared& prepared, Fit& fit) {
   for (const auto& experiment : prepared.experiments) {
-    for (const auto& note : experiment.notes) fit.facts["data: " + experiment.name + ": " + note] = note;
+    if (!experiment.notes.empty()) fit.facts["data: " + experiment.name] = fmt::format("{}", fmt::join(experiment.notes, "; "));
   }
 }
 
@@ -47,7 +47,11 @@ MethodRun Methods::run(const std::string& method) {
 }
 
 const Prepared& Methods::prepared() {
-  if (!prepared_) prepared_ = prepare(session_);
+  if (prepared_) return *prepared_;
+  prepared_ = prepare(session_);
+  for (const Signals& experiment : prepared_->experiments) {
+    for (const std::string& note : experiment.notes) session_.note(experiment.name + ": " + note);
+  }
   return *prepared_;
 }
 
