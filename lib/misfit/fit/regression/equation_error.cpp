@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
@@ -10,10 +11,10 @@
 #include "misfit/data/estimators.h"
 #include "misfit/inference/coloured.h"
 #include "misfit/inference/curves.h"
+#include "misfit/inference/driven.h"
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/short_record.h"
 #include "misfit/math/bounded.h"
-#include "misfit/math/whiteness.h"
 
 namespace misfit {
 namespace {
@@ -193,19 +194,39 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
   return smoothed.ok;
 }
 
-/// Are the residuals white beyond the stencils, up to half a period of the motion?
-void test_residuals(const Regressor& regressor, const std::vector<Signals>& experiments, double sigma2, FittedModel& out) {
+std::vector<double> derivative(const ReconstructedStates& states, int state) {
+  std::vector<double> out;
+  for (Eigen::Index i = 0; i < states.dx.rows(); ++i) out.push_back(states.dx(i, state));
+  return out;
+}
+
+std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
+  return a;
+}
+
+/// What the first experiment's first equation of motion leaves.
+DrivenTest test_first_equation(const Regressor& regressor, const Regression& regression, const Model& model) {
+  const Signals& signals = regressor.experiments().front();
+  const ReconstructedStates& states = regressor.states().front();
+  const int row = regressor.rows().front();
+  const double frequency = motion_frequency(model, states);
+  constexpr int usual_lags = 20, beyond_stencil = 5;
+  const double half_period = frequency > 0.0 ? std::numbers::pi / frequency / usual_step(signals.t) : usual_lags;
+  const std::vector<double> acceleration = derivative(states, row);
+  const std::vector<Signals> noisier{with_noise(model.system->spec(), signals)};
+  const std::vector<double>& residual = regression.residuals.front();
+  const std::vector<double> of_noise = difference(Regressor(model, noisier).linearise(model).residuals.front(), residual);
+  return test_driven({signals.t, residual, acceleration, of_noise, static_cast<int>(half_period), beyond_stencil});
+}
+
+void test_residuals(const Regressor& regressor, double sigma2, FittedModel& out) {
   const Regression regression = regressor.linearise(out.model);
-  const double step = usual_step(experiments.front().t);
-  const double frequency = motion_frequency(out.model, regressor.states().front());
-  const double half_period = frequency > 0.0 ? 3.14159265358979 / frequency : 20.0 * step;
-  constexpr int beyond_stencil = 5;
-  const int last_lag = std::max(beyond_stencil + 5, static_cast<int>(half_period / step));
-  const WhitenessTest test = whiteness(on_even_grid(experiments.front().t, regression.residuals.front()), beyond_stencil, last_lag);
-  out.fit.driven = looks_driven(test);
+  const DrivenTest test = test_first_equation(regressor, regression, out.model);
+  out.fit.driven = test.driven();
+  out.fit.facts["whiteness"] = "equation " + in_words(test);
   const std::string unit = rate_unit(out.model.system->spec().states[regressor.rows().front()].unit);
   out.fit.noise["equation_residual"] = {std::sqrt(sigma2), 0.0, unit};
-  out.fit.facts["whiteness"] = "equation residuals at " + in_words(test);
   const std::ptrdiff_t rows = regressor.rows().size();
   for (auto r = regression.residuals.begin(); r != regression.residuals.end(); r += rows) out.equation_residuals.emplace_back(r, r + rows);
 }
@@ -279,7 +300,7 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
   }
   PenalisedFit smoothed;
   if (!solve(regressor, out, smoothed)) return out;
-  test_residuals(regressor, experiments, smoothed.sigma2, out);
+  test_residuals(regressor, smoothed.sigma2, out);
   describe_all(regressor, smoothed, out);
   if (out.fit.driven) {
     out.fit.warnings.push_back(

@@ -12,7 +12,7 @@
 #include "misfit/data/estimators.h"
 #include "misfit/fit/regression/bin_equations.h"
 #include "misfit/inference/curves.h"
-#include "misfit/math/whiteness.h"
+#include "misfit/inference/driven.h"
 
 namespace misfit {
 namespace {
@@ -63,10 +63,10 @@ struct Pass {
   SlidBins bins;
   BinSolution all;
   TelescopedSum sum;
-  WhitenessTest whiteness;
+  DrivenTest test;
+  bool driven = false;
   double damping_of_acceleration = 0.0;  ///< over all data, had nothing been known: `all` less what the known terms add
   double residual_rms = 0.0;
-  bool driven = false;
   std::size_t usable = 0;
 };
 
@@ -93,18 +93,27 @@ double rms(const std::vector<double>& values) {
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
-/// On data without noise the residuals are what bins and stencils smooth away (2 to 4 % of the acceleration on the validation motion): they
-/// have memory, but no force is behind them. Below a tenth nothing is called driven.
-bool has_force(const BinRegression& regression, double residual_rms) {
-  constexpr double smoothed_away = 0.1;
-  std::vector<double> accelerations;
-  for (const auto& e : regression.equations()) accelerations.push_back(e.y);
-  return residual_rms > smoothed_away * rms(accelerations);
+/// Per sample, NaN where there is none: the measured acceleration, or what is left of it by the terms that are known.
+std::vector<double> accelerations(const BinRegression& regression, std::size_t samples, bool less_known) {
+  std::vector<double> out(samples, std::nan(""));
+  for (const BinEquation& e : regression.equations()) out[e.sample] = less_known ? e.y : e.y + e.known;
+  return out;
 }
 
-Pass run(const BinForm& form, const Signals& signals, const SlidingBinOptions& options, Stencils stencils) {
+/// What noise as large as the measured one adds to the equations.
+std::vector<double> of_noise(const BinForm& form, const Signals& signals, const SlidingBinOptions& options,
+                             const BinRegression& regression) {
+  const Signals noisier = with_noise(form.model.system->spec(), signals);
+  const ReconstructedStates states = stencil_states(form, noisier, options.stencils, options.three_point_average);
+  std::vector<double> out = accelerations(BinRegression(bin_equations(form, noisier, states)), signals.samples(), true);
+  const std::vector<double> without = accelerations(regression, signals.samples(), true);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] -= without[i];
+  return out;
+}
+
+Pass run(const BinForm& form, const Signals& signals, const SlidingBinOptions& options) {
   Pass pass;
-  const ReconstructedStates states = stencil_states(form, signals, stencils, options.three_point_average);
+  const ReconstructedStates states = stencil_states(form, signals, options.stencils, options.three_point_average);
   const BinRegression regression(bin_equations(form, signals, states));
   const BinLayout layout{options.width, options.step, options.minimum_samples};
   pass.usable = regression.equations().size();
@@ -113,13 +122,12 @@ Pass run(const BinForm& form, const Signals& signals, const SlidingBinOptions& o
   const std::vector<double> residuals = regression.residuals(pass.bins.bins, options.width, signals.samples());
   const double frequency = motion_frequency(form.model, states);
   constexpr int beyond_stencil = 2 * kStencilReach + 1;
-  constexpr int fewest_lags = 5;
   const double half_period = frequency > 0.0 ? std::numbers::pi / frequency / usual_step(signals.t) : 0.0;
-  const int last_lag = std::max(beyond_stencil + fewest_lags, static_cast<int>(half_period));
-  pass.whiteness = whiteness(on_even_grid(signals.t, residuals), beyond_stencil, last_lag);
+  pass.test = test_driven({signals.t, residuals, accelerations(regression, signals.samples(), false),
+                           of_noise(form, signals, options, regression), static_cast<int>(half_period), beyond_stencil});
   pass.residual_rms = rms(residuals);
-  pass.driven = looks_driven(pass.whiteness) && has_force(regression, pass.residual_rms);
-  const std::vector<double> rho = correlation_up_to(residuals, pass.driven ? last_lag : beyond_stencil - 1);
+  pass.driven = options.driven.value_or(pass.test.driven());
+  const std::vector<double> rho = correlation_up_to(residuals, pass.driven ? pass.test.whiteness.last_lag : beyond_stencil - 1);
   pass.bins = regression.slide(layout, rho);
   pass.all = regression.all(rho);
   pass.damping_of_acceleration = acceleration_alone(regression).all({}).damping;
@@ -206,7 +214,7 @@ void report_bins(const SlidingBinOptions& options, const Pass& pass, Fit& fit) {
 void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
   const auto& spec = form.model.system->spec();
   const std::string name = spec.damping_curve, level_unit = spec.states[form.level].unit;
-  fit.facts["whiteness"] = "residuals of the bins at " + in_words(pass.whiteness);
+  fit.facts["whiteness"] = "bins: " + in_words(pass.test);
   const std::string sum = "sum of acceleration times rate over " + std::to_string(pass.sum.count) +
                           " samples: " + format_value(pass.sum.value, pass.sum.sigma) + " " + level_unit + "^2/s^3, " +
                           (pass.sum.zero() ? "within" : "beyond") + " 2 sigma of 0";
@@ -226,8 +234,12 @@ void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
     mark_not_informative(form.model, name, "driven motion: the sum of acceleration times rate telescopes to zero", fit);
     fit.warnings.push_back(name + " of this method is not informative, the motion being driven: " + telescopes +
                            ", and by bins it is a third moment of the motion");
+  } else if (pass.test.deterministic()) {
+    fit.warnings.push_back(telescopes + ". The motion is deterministic (" + fit.facts["whiteness"] + "), so the bins hold");
   } else {
-    fit.warnings.push_back(telescopes + ". The motion looks deterministic, so the bins hold");
+    mark_not_informative(form.model, name, "the equation leaves most of the acceleration unexplained", fit);
+    fit.warnings.push_back(name + " of this method is not informative: " + telescopes +
+                           ", and the equation does not explain the acceleration (" + fit.facts["whiteness"] + ")");
   }
 }
 
@@ -264,7 +276,7 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   std::string why;
   const std::optional<BinForm> form = bin_form(model, signals, why);
   if (!form) return declined(why);
-  const Pass pass = run(*form, signals, options, options.stencils);
+  const Pass pass = run(*form, signals, options);
   if (pass.bins.bins.empty()) return declined(why_no_bins(*form, options, pass));
   const auto& spec = model.system->spec();
   Fit fit;
@@ -275,7 +287,9 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   fit.trim = stable_zero(fit.curves.front());
   fit.message = "linear regression solved in " + std::to_string(pass.bins.bins.size()) + " bins";
   if (options.curves_only) return fit;
-  const Pass other = run(*form, signals, options, other_stencils(options.stencils));
+  SlidingBinOptions with_others = options;
+  with_others.stencils = other_stencils(options.stencils);
+  const Pass other = run(*form, signals, with_others);
   fit.noise["equation_residual"] = {pass.residual_rms, 0.0, rate_unit(spec.states[form->rate].unit)};
   fit.driven = pass.driven;
   report_bins(options, pass, fit);

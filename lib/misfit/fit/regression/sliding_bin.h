@@ -17,6 +17,7 @@ struct SlidingBinOptions {
   std::size_t minimum_samples = 30;     ///< bins with fewer are left out and counted; at least 4
   bool three_point_average = true;      ///< average the channel over three samples first, as [P] did; false where it is averaged already
   bool curves_only = false;             ///< curves and trim with white sigmas, nothing told of them: for fits by the thousand
+  std::optional<bool> driven = {};      ///< the motion is driven, as equation_error() says of it; else by the residuals of the bins
   Stencils stencils = Stencils::second_order_four_point;  ///< "second order ... (four-point stencils)" [P]; the other reading is run too
                                                           ///< and its differences are told in facts["stencils"]
 };
@@ -43,10 +44,9 @@ struct SlidingBinOptions {
 ///
 /// On any stationary motion Σ x'' x' = Σ (x'²/2)' telescopes: the acceleration adds nothing to the damping over all data, whatever
 /// the truth; what stands there is what the known terms (gravity, coning) add (facts["all_data"] gives both). Where the motion is driven
-/// (residuals remember the lags of the dynamics, looks_driven, and exceed a tenth of the acceleration) and that sum is within 2 sigma of 0,
-/// damping is marked not informative. A deterministic limit cycle telescopes as well, but there Eq. 8 holds at every sample and bins are
-/// right (the paper's validation): they stay informative, and a warning says that
-/// the average over all data says nothing.
+/// (driven.h) and that sum is within 2 sigma of 0, damping is marked not informative, and also where the equation leaves more than a fifth
+/// of the averaged acceleration. A deterministic limit cycle telescopes as well, but there Eq. 8 holds at every sample and bins are right
+/// (the paper's validation): they stay informative, and a warning says that the average over all data says nothing.
 ///
 /// Declines (status, message) where the model has no such form, too few samples are usable or the level does not move. InputError for
 /// widths, steps or counts that make no sense.

@@ -46,6 +46,7 @@ class Estimator {
       : experiments_(experiments),
         options_(options),
         start_driven_(start.fit.driven),
+        regression_says_driven_(options.from_regression && !start.fit.method.empty() ? std::optional(start.fit.driven) : std::nullopt),
         setting_(options.keep_roughness ? with_noise(start, setting_of(start.model, experiments, options))
                                         : setting_of(start.model, experiments, options)),
         penalties_(options.keep_roughness ? kept(start.penalties)
@@ -287,7 +288,8 @@ class Estimator {
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
     warn_of_collinearity(out.model, covariance.topLeftCorner(columns, columns), fit);
     warn_of_other_trims(fit);
-    classify_motion(out.model, setting_, end.smoothed.edf / static_cast<double>(out.model.outputs()), fit);
+    const double unknowns = end.smoothed.edf / static_cast<double>(out.model.outputs());
+    classify_motion(out.model, {setting_, unknowns, regression_says_driven_}, fit);
     reject_prior_conflicts(out.model, covariance.topLeftCorner(columns, columns), fit);
     if (end.degrees() < kFewestDegrees) withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
   }
@@ -325,6 +327,7 @@ class Estimator {
   const std::vector<Signals>& experiments_;
   OutputErrorStart options_;
   bool start_driven_;
+  std::optional<bool> regression_says_driven_;
   Setting setting_;
   std::vector<Penalty> penalties_;
   Shooting shooting_;

@@ -181,7 +181,8 @@ std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
 
 }  // namespace
 
-void classify_motion(const Model& model, const Setting& setting, double unknowns, Fit& fit) {
+void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit) {
+  const auto& [setting, unknowns, driven] = motion;
   const ChannelPrediction& p = fit.predictions.front();
   const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
   const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period), unknowns);
@@ -190,8 +191,9 @@ void classify_motion(const Model& model, const Setting& setting, double unknowns
   fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
                            ", measurement noise about " + in_display_unit(noise, p.unit);
   constexpr double clearly_above_noise = 2.0;
-  fit.driven = looks_driven(test) && rms > clearly_above_noise * noise;
-  if (!fit.driven || rms < follows * size) {
+  const bool above_noise = rms > clearly_above_noise * noise, coloured = looks_driven(test) && above_noise;
+  fit.driven = above_noise && driven.value_or(coloured);
+  if (!coloured || rms < follows * size) {
     if (clearly_coloured(test)) {
       fit.warnings.push_back(
           "residuals are not white (" + fit.facts["whiteness"] + "; " + fit.facts["explained"] +
@@ -201,11 +203,13 @@ void classify_motion(const Model& model, const Setting& setting, double unknowns
     return;
   }
   fit.status = FitStatus::declined;
-  fit.message = "the motion is driven by something this deterministic model does not have: it cannot follow the measured motion (" +
-                fit.facts["explained"] + "; " + fit.facts["whiteness"] + "). The method that can estimate such motion is " +
-                random_force_estimator().name + ". Solver: " + fit.message;
+  const std::string why = fit.driven ? "the motion is driven by something this deterministic model does not have: it" : "the model";
+  const std::string what_now = fit.driven ? std::string("The method that can estimate such motion is ") + random_force_estimator().name
+                                          : "Begin with other values, or add what the model lacks";
+  fit.message = why + " cannot follow the measured motion (" + fit.facts["explained"] + "; " + fit.facts["whiteness"] + "). " + what_now +
+                ". Solver: " + fit.message;
   for (const auto& curve : model.curves)
-    mark_not_informative(model, curve.name, "driven motion: a deterministic trajectory cannot follow it", fit);
+    mark_not_informative(model, curve.name, "the simulated trajectory does not follow the measured motion", fit);
   fit.trim.reset();
 }
 

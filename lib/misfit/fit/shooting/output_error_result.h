@@ -34,7 +34,12 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 /// there: the search has converged and leaves less than half of the motion. Else it is said of that place.
 [[nodiscard]] std::string why_undetermined(const std::string& which, bool converged, const EndOfSearch& end);
 
+struct MotionFacts {
+  const Setting& setting;
+  double unknowns = 0.0;       ///< per channel
+  std::optional<bool> driven;  ///< by the regression, where there is one: so that all methods say the same
+};
 /// Says whether a deterministic model followed the motion, and marks the fit where it did not.
-void classify_motion(const Model& model, const Setting& setting, double unknowns, Fit& fit);
+void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit);
 
 }  // namespace misfit::output_error_parts

@@ -73,7 +73,10 @@ FittedMethod Methods::run_in_regression_form(const Estimator& method) {
                               session_.model.request.system, method.info.name);
     return out;
   }
-  out = method.run({form->model, form->experiments, {}, bin_options(session_), session_.options.threads}).at;
+  SlidingBinOptions bins = bin_options(session_);
+  const Fit& regressed = regression().fit;
+  if (regressed.status != FitStatus::declined && regressed.status != FitStatus::failed) bins.driven = regressed.driven;
+  out = method.run({form->model, form->experiments, {}, bins, session_.options.threads}).at;
   if (form->experiments.size() > 1)
     fit.warnings.push_back("only the first experiment, '" + form->experiments.front().name + "', is used by this method");
   for (const auto& name : left_out) fit.warnings.push_back("effect '" + name + "' is not in the equation of this method");

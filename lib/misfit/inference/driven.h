@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/data/signals.h"
+#include "misfit/math/whiteness.h"
+#include "misfit/model/system.h"
+
+namespace misfit {
+
+/// What the equations of motion leave of the measured accelerations; one entry per sample, NaN where not used. Any unit, the same for all.
+struct EquationResiduals {
+  const std::vector<double>& t;      ///< [s]
+  std::vector<double> residual;      ///< less what the model explains
+  std::vector<double> acceleration;  ///< as measured
+  std::vector<double> of_noise;      ///< what the measurement noise adds to it, one draw (with_noise())
+  int half_period = 0;               ///< of the motion, in samples
+  int stencil_reach = 0;             ///< lags below this are the stencils' own
+};
+
+/// Is the motion driven by a force that the model lacks (lib/misfit/README.md, 5.8)? Single accelerations are mostly noise of the measured
+/// positions; averaged over half a period, a noise of second differences nearly cancels and a force stays. What noise leaves there
+/// is found by adding some and looking.
+struct DrivenTest {
+  WhitenessTest whiteness;   ///< of the residuals, from the stencils' reach to half a period
+  int averaged = 0;          ///< samples
+  double share = 0.0;        ///< median size of averaged residuals over that of averaged accelerations
+  double times_noise = 0.0;  ///< median size of averaged residuals over that of averaged noise
+  /// Averaged residuals are above four times what measurement noise makes and above a fifth of the averaged acceleration (what curves of
+  /// few coefficients or bins smooth away is below).
+  [[nodiscard]] bool driven() const;
+  /// They are at most a fifth of the averaged acceleration. Neither this nor driven(): noise hides the motion.
+  [[nodiscard]] bool deterministic() const { return share <= kSmallShare; }
+
+  static constexpr double kSmallShare = 0.2;
+};
+
+[[nodiscard]] DrivenTest test_driven(const EquationResiduals& equation);
+
+/// "equation residuals averaged over 8 samples are 0.85 of the averaged acceleration and 14 times what measurement noise makes of it; at
+/// lags 5 to 15 …".
+[[nodiscard]] std::string in_words(const DrivenTest& test);
+
+/// The signals with one draw of white noise more on each channel, as large as it already has (measurement_noise()), from a fixed seed; on
+/// inputs as well that run smoothly between their samples, for they were measured.
+[[nodiscard]] Signals with_noise(const SystemSpec& system, const Signals& signals);
+
+}  // namespace misfit
