@@ -121,7 +121,10 @@ INSTANTIATE_TEST_SUITE_P(
                 track + "name = \"" + std::string(150, 'n') + "\"\n" + track + "name = \"" + std::string(150, 'n') + "\"\n",
                 {"study.toml:8", "two experiments are called"}},
         Hostile{"ParameterKey", "[parameters." + long_text() + "]\nfree = 1\nx = 2\n", {"study.toml:5", "unknown key"}},
-        Hostile{"InitialKind", "[initial]\nx = { kind = \"" + long_text() + "\" }\n", {"study.toml:4", "free"}}),
+        Hostile{"InitialKind", "[initial]\nx = { kind = \"" + long_text() + "\" }\n", {"study.toml:4", "free"}},
+        Hostile{"NoiseOfZero", "[noise]\nx = 0\n", {"study.toml:4", "above 0"}},
+        Hostile{"NoiseWithoutValue", "[noise]\nx = { fixed = true }\n", {"study.toml:4", "value", "is missing"}},
+        Hostile{"NoiseOfAnUnknownUnit", "[noise]\nx = \"1 " + long_text() + "\"\n", {"study.toml:4", "unknown unit"}}),
     name_of);
 
 using LargeStudy = StudyFolder;

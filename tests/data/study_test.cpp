@@ -155,7 +155,7 @@ TEST_F(StudyFolder, AParameterOfAnEffectNeedsNoQuotes) {
 }
 
 TEST_F(StudyFolder, AnUnknownSectionOrKeyNamesTheNearest) {
-  expect_parts(error_with("[geometri]\nD = 1\n"), {"study.toml:3:2", "[geometri]", "did you mean 'geometry'", "sliding_bin"});
+  expect_parts(error_with("[geometri]\nD = 1\n"), {"study.toml:3:2", "[geometri]", "did you mean 'geometry'", "reference"});
   expect_parts(error_with("[study]\nsede = 1\n"), {"study.toml:4:1", "'sede' in [study]", "did you mean 'seed'"});
   expect_parts(error_with("[camera]\nsweap = \"static_sweep.csv\"\n"), {"study.toml:4:1", "'sweap'", "'sweep'"});
   expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\nexlude = 1\n"),

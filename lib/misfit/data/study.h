@@ -80,6 +80,13 @@ struct InitialStudy {
   Source where;
 };
 
+/// [noise] OUTPUT: what is known of its white measurement noise.
+struct NoiseStudy {
+  config::Number sigma;  ///< as written (unit checked by the model)
+  bool fixed = true;     ///< false: where the estimation starts
+  Source where;
+};
+
 struct ParameterStudy {
   std::optional<bool> free;
   std::optional<config::Section> section;  ///< holds value, bounds, sigma with the unit that the model will name
@@ -141,6 +148,7 @@ struct Study {
   std::vector<EffectStudy> effects;  ///< in file order
   std::map<std::string, ParameterStudy> parameters;
   std::map<std::string, InitialStudy> initial;
+  std::map<std::string, NoiseStudy> noise;
   std::map<std::string, CurveStudy> curves;
   std::map<std::string, std::filesystem::path> reference;  ///< curve → file
   std::optional<SimulateStudy> simulate;

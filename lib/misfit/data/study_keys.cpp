@@ -206,6 +206,16 @@ std::vector<KeyGroup> initial_groups() {
          .meaning = "Start of the estimation, or the value where it is fixed."}}}};
 }
 
+std::vector<KeyGroup> noise_groups() {
+  return {{"noise", "What is known of the measurement noise; an output that is not named here: estimated, with a start from the data.",
+       {{.name = "OUTPUT", .type = Type::other, .unit = "of the output", .otherwise = "estimated", .form = "number or table", .any = true,
+         .meaning = "A number: the standard deviation of its white noise, held in every method that weighs outputs by it."}}},
+      {"noise.NAME", "The same, held or as a start.",
+       {{.name = "value", .type = Type::number, .unit = "of the output", .otherwise = "required", .least = 0.0, .above = true,
+         .meaning = "Standard deviation."},
+        {.name = "fixed", .type = Type::flag, .fallback = "true", .meaning = "Held, or estimated from there."}}}};
+}
+
 KeyGroup reference_group() {
   return {"reference", "Curves from elsewhere, drawn and compared, never fitted.",
      {{.name = "CURVE", .type = Type::file, .otherwise = "none", .any = true,
@@ -282,6 +292,7 @@ std::vector<KeyGroup> all_groups() {
   add(effect_groups());
   add({parameters_group(), curves_group()});
   add(initial_groups());
+  add(noise_groups());
   add({reference_group()});
   add({uncertainty_group()});
   add(perturbation_groups());

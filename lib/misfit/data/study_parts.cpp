@@ -124,6 +124,26 @@ InitialStudy read_one_initial(const Section& initial, const std::string& key) {
 
 }  // namespace
 
+void read_noise(const Section& root, Study& study) {
+  const auto noise = root.table("noise");
+  if (!noise) return;
+  for (const std::string& output : noise->keys()) {
+    NoiseStudy& out = study.noise[output];
+    out.where = noise->where(output);
+    if (noise->is_table(output)) {
+      const DescribedSection table = described(*noise, output, "noise.NAME");
+      if (!table.has("value")) table.fail("value", "is missing: a standard deviation");
+      out.sigma = number_as_written(table, "value");
+      out.fixed = *table.flag("fixed");
+      table.finish();
+    } else {
+      out.sigma = number_as_written(*noise, output);
+    }
+    if (!(out.sigma.value > 0.0)) noise->fail(output, fmt::format("{} must be above 0: a standard deviation", out.sigma.value));
+  }
+  noise->finish();
+}
+
 void read_initial(const Section& root, Study& study) {
   const auto initial = root.table("initial");
   if (!initial) return;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/inference/solved_states.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -119,6 +120,8 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
     const std::vector<std::vector<double>> values = read_all(model, signals);
     for (std::size_t r = 0; r < values.size(); ++r) add_series(spec.states, spec.readable_states[r], {signals.t, values[r], h}, out);
   }
+  const SolvedStates solved = solve_outputs(model, signals, out.shown);
+  for (std::size_t s = 0; s < solved.states.size(); ++s) add_series(spec.states, solved.states[s], {signals.t, solved.values[s], h}, out);
   for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
     if (!out.shown[j]) out.x.col(j).setConstant(start_of(model.state_specs[j]));
   }

@@ -19,8 +19,8 @@ struct ReconstructedStates {
 
 /// Quadratic least squares over five neighbouring samples, or, where fewer than four of them are there, over seven or nine (uneven times
 /// and missing samples allowed; never stretched over a gap of more than five usual steps): value, slope, second derivative. A state is
-/// shown if an output observes it, if System::read_states() gives it, or if it is the rate of one that is. Own states of effects start at
-/// their declared initial value.
+/// shown if an output observes it, if System::read_states() gives it, if solve_outputs() finds it, or if it is the rate of one that is. Own
+/// states of effects start at their declared initial value.
 [[nodiscard]] ReconstructedStates reconstruct_states(const Model& model, const Signals& signals);
 
 /// What a state is taken to be before anything shows it: its declared start, else one scale inside its range, else 0.

@@ -30,6 +30,7 @@ Assembler::Assembler(const ModelRequest& request, const Registry& registry) : re
 
 Model Assembler::run() {
   add_states();
+  add_noise();
   add_constants();
   name_coefficients();
   for (std::size_t i = 0; i < request_.effects.size(); ++i) bind(i);
@@ -87,6 +88,18 @@ void Assembler::add_states() {
     }
     if (state.initial == Initial::fixed && !std::isfinite(state.start))
       throw InputError(request.where, "[initial] " + name + " is fixed and needs a value");
+  }
+}
+
+void Assembler::add_noise() {
+  model_.known_noise.assign(system().outputs.size(), {});
+  std::vector<std::string> names;
+  for (const auto& output : system().outputs) names.push_back(output.name);
+  for (const auto& [name, request] : request_.noise) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      throw InputError(request.where, "[noise]: system '" + system().key + "' has no output '" + shown(name) + "'" + suggest(name, names));
+    model_.known_noise[found - names.begin()] = {request.sigma, request.fixed};
   }
 }
 

@@ -28,6 +28,7 @@ class Assembler {
   const SystemSpec& system() const { return model_.system->spec(); }
   const Effect& effect(std::size_t i) const { return registry_.effect(request_.effects[i].kind, request_.effects[i].where); }
   void add_states();
+  void add_noise();
   void add_constants();
   static void check_bounds(const Parameter& p, const Source& where);
   void apply_request(Parameter& p);

@@ -6,6 +6,10 @@
 
 namespace misfit {
 
+bool Model::noise_held() const {
+  return std::all_of(known_noise.begin(), known_noise.end(), [](const KnownNoise& noise) { return noise.fixed; });
+}
+
 std::vector<double> Model::values() const {
   std::vector<double> out;
   for (const auto& p : parameters) out.push_back(p.value);

@@ -51,6 +51,12 @@ struct ModelRequest {
     Source where;
   };
   std::map<std::string, InitialRequest> initial;  ///< of states of the system
+  struct NoiseRequest {
+    double sigma = 0.0;  ///< SI
+    bool fixed = true;
+    Source where;
+  };
+  std::map<std::string, NoiseRequest> noise;  ///< of outputs
 };
 
 /// One row of the parameter table.
@@ -93,6 +99,12 @@ struct BoundEffect {
   int first_state = 0;  ///< of its own states, counted after the system's
 };
 
+/// What is known of the white measurement noise of an output.
+struct KnownNoise {
+  double sigma = 0.0;  ///< [unit of the output]; 0: nothing
+  bool fixed = false;  ///< held in every fit; else a start
+};
+
 /// A system, its effects and the parameter table. Sensor ports are the outputs, in order, then `sample_time`; predicted outputs can be read
 /// as quantities by effects on sensor ports: index = system's quantities + output.
 struct Model {
@@ -102,6 +114,7 @@ struct Model {
   std::vector<Curve> curves;
   /// States of the system with what the study says of their initial values; own states of effects are not among them.
   std::vector<StateSpec> state_specs;
+  std::vector<KnownNoise> known_noise;  ///< per output
   std::vector<OwnStateSpec> own_states;
   std::vector<std::string> own_state_names;  ///< "effect.state"
   std::vector<std::string> own_state_units;
@@ -110,6 +123,7 @@ struct Model {
   [[nodiscard]] int states() const { return system_states() + int_size(own_states); }
   [[nodiscard]] int outputs() const { return int_size(system->spec().outputs); }
   [[nodiscard]] int inputs() const { return int_size(system->spec().inputs); }
+  [[nodiscard]] bool noise_held() const;                   ///< of every output: nothing of it is estimated
   [[nodiscard]] std::vector<double> values() const;        ///< of all parameters
   [[nodiscard]] std::vector<int> free_parameters() const;  ///< index into `parameters` of each column
   [[nodiscard]] Eigen::VectorXd theta() const;             ///< values of the free parameters, in that order

@@ -87,6 +87,17 @@ void read_initial(const Study& study, const SystemSpec& spec, ModelRequest& requ
   }
 }
 
+void read_noise(const Study& study, const SystemSpec& spec, ModelRequest& request) {
+  for (const auto& [name, noise] : study.noise) {
+    request.noise[name] = {noise.sigma.value, noise.fixed, noise.where};
+    for (const auto& output : spec.outputs) {
+      const bool unlike =
+          output.name == name && !noise.sigma.unit.empty() && !parse_unit(noise.sigma.unit).same_dimension(parse_unit(output.unit));
+      if (unlike) throw InputError(noise.where, "[noise] " + name + " needs [" + output.unit + "], not [" + noise.sigma.unit + "]");
+    }
+  }
+}
+
 /// Of a quantity or output; empty if the system has neither of that name.
 std::string unit_of(const SystemSpec& spec, const std::string& quantity) {
   for (const auto& q : spec.quantities) {
@@ -177,6 +188,7 @@ StudyModel read_model(const Study& study, const Registry& registry) {
   }
   read_starts(study, units, request);
   read_initial(study, spec, request);
+  read_noise(study, spec, request);
   read_curves(study, spec, request);
   return out;
 }
@@ -189,6 +201,7 @@ std::optional<ModelRequest> regression_form(const ModelRequest& request, const R
   form.options = {own.regression.flags, {}};
   const SystemSpec spec = registry.system(form.system).make(form.options)->spec();
   form.parameters.clear();
+  form.noise.clear();
   form.curves.clear();
   std::erase_if(form.effects, [&](const EffectRequest& effect) {
     const auto& coefficients = registry.effect(effect.kind, effect.where).spec().coefficients;

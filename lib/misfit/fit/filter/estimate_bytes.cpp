@@ -6,8 +6,8 @@ namespace misfit {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<ChannelNoise> auto& data) {
-  auto& [white, jitter, jitter_frequency, jitter_damping] = data;
-  bytes(white, jitter, jitter_frequency, jitter_damping);
+  auto& [white, jitter, jitter_frequency, jitter_damping, held] = data;
+  bytes(white, jitter, jitter_frequency, jitter_damping, held);
 }
 
 template <class Bytes>

@@ -239,6 +239,8 @@ class Estimation {
 
   [[nodiscard]] std::string how_it_ended() const {
     const std::optional<double>& left = out_.newton_decrement;
+    constexpr double quadratic = 100.0;  // [log-likelihood] a promise of more is beyond what its derivatives know
+    if (left && *left >= quadratic) return "no maximum was reached: the likelihood still rises steeply";
     if (left && *left >= kDecrementOfOneSigma) {
       return "the exact derivatives of the likelihood say that it could still rise by " + format_value(*left) +
              (out_.converged ? ", less than two sigmas of one parameter would" : "");

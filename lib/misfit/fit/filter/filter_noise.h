@@ -18,6 +18,7 @@ struct ChannelNoise {
   double jitter = 0.0;            ///< stationary sigma of the resonance [unit]
   double jitter_frequency = 1.0;  ///< [Hz]
   double jitter_damping = 0.3;    ///< of critical
+  bool held = false;              ///< white is known and all there is
 };
 
 /// The random force: one Ornstein–Uhlenbeck process per force port, of one common strength and correlation time, independent.

@@ -47,9 +47,10 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
       std::min(std::max(share_of_rate / h, above_motion * motion_frequency(model.model, states) / (2.0 * std::numbers::pi)), 0.3 / h);
   const auto& outputs = model.model.system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
-    double white = measurement_noise(first.measured[o].values);
+    const KnownNoise& known = model.model.known_noise[o];
+    double white = known.sigma > 0.0 ? known.sigma : measurement_noise(first.measured[o].values);
     if (!(white > 0.0)) white = outputs[o].noise > 0.0 ? outputs[o].noise : 1.0;
-    out.channels.push_back({white, white, jitter_frequency, 0.3});
+    out.channels.push_back({white, known.fixed ? 1e-3 * white : white, jitter_frequency, 0.3, known.fixed});
   }
   return out;
 }

@@ -266,7 +266,8 @@ class Estimator {
     const double degrees_each = std::max(degrees / static_cast<double>(outputs.size()), 1.0);
     for (std::size_t o = 0; o < outputs.size(); ++o) {
       const double sigma = shooting_.sigma()[o];
-      fit.noise[outputs[o].name] = {sigma, sigma / std::sqrt(2.0 * degrees_each), outputs[o].unit};
+      const double sigma_of_it = shooting_.model().known_noise[o].fixed ? 0.0 : sigma / std::sqrt(2.0 * degrees_each);
+      fit.noise[outputs[o].name] = {sigma, sigma_of_it, outputs[o].unit};
     }
   }
 
@@ -288,10 +289,11 @@ class Estimator {
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
     warn_of_collinearity(out.model, covariance.topLeftCorner(columns, columns), fit);
     warn_of_other_trims(fit);
+    warn_of_other_noise(out.model, fit);
     const double unknowns = end.smoothed.edf / static_cast<double>(out.model.outputs());
     classify_motion(out.model, {setting_, unknowns, regression_says_driven_}, fit);
     reject_prior_conflicts(out.model, covariance.topLeftCorner(columns, columns), fit);
-    if (end.degrees() < kFewestDegrees) withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
+    if (end.degrees() < kFewestDegrees && !out.model.noise_held()) withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
   }
 
   static std::string too_few(double count, double unknowns) {
@@ -317,7 +319,7 @@ class Estimator {
     describe(out.model, out.plain_covariance, visited, out.fit);
     keep_plain_sigmas(out.fit);
     describe(out.model, covariance.topLeftCorner(columns, columns), visited, out.fit);
-    if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
+    if (degrees < kShortRecord && !out.model.noise_held()) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
     out.fit.facts["covariance"] = in_words(coloured);
     const auto& outputs = out.model.system->spec().outputs;
     for (std::size_t o = 0; o < outputs.size(); ++o) out.fit.noise.at(outputs[o].name).sigma *= std::sqrt(coloured.squared_correlations[o]);

@@ -54,16 +54,29 @@ std::vector<double> channel_sigmas(const EndOfSearch& end, double edf) {
   std::vector<double> sigma = end.shooting.sigma();
   const double share = edf / static_cast<double>(sigma.size());
   for (std::size_t o = 0; o < sigma.size(); ++o) {
+    if (end.shooting.model().known_noise[o].fixed) continue;
     const auto [squares, count] = squares_of(channel_residuals(end, o));
     if (count > share + 1.0 && squares > 0.0) sigma[o] = std::sqrt(squares / (count - share));
   }
   return sigma;
 }
 
+/// RMS of a channel's residuals in units of its sigma where that is held, so that only their correlation counts; else 1.
+std::vector<double> held_sizes(const EndOfSearch& end) {
+  std::vector<double> out;
+  for (std::size_t o = 0; o < end.shooting.sigma().size(); ++o) {
+    const auto [squares, count] = squares_of(channel_residuals(end, o));
+    const bool held = end.shooting.model().known_noise[o].fixed && squares > 0.0;
+    out.push_back(held ? std::sqrt(squares / count) / end.shooting.sigma()[o] : 1.0);
+  }
+  return out;
+}
+
 std::vector<ResidualRows> residual_rows(const EndOfSearch& end) {
   const auto& [shooting, runs, experiments] = end;
   std::vector<ResidualRows> out;
   const std::size_t ny = shooting.model().outputs();
+  const std::vector<double> sizes = held_sizes(end);
   for (std::size_t e = 0; e < runs.size(); ++e) {
     ResidualRows rows{runs[e].y_rows, Eigen::VectorXd(runs[e].y_rows.rows()), {}};
     for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
@@ -72,7 +85,7 @@ std::vector<ResidualRows> residual_rows(const EndOfSearch& end) {
         const bool used = shooting.counts(e, i, o);
         const double weight = used ? 1.0 / shooting.sigma()[o] : 0.0;
         rows.J.row(at) *= weight;
-        rows.r[at] = used ? weight * (runs[e].y(i, o) - experiments[e].measured[o].values[i]) : std::nan("");
+        rows.r[at] = used ? weight / sizes[o] * (runs[e].y(i, o) - experiments[e].measured[o].values[i]) : std::nan("");
       }
     }
     const Eigen::Index n = shooting.model().states(), columns = rows.J.cols() - n;
@@ -180,6 +193,19 @@ std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
 }
 
 }  // namespace
+
+void warn_of_other_noise(const Model& model, Fit& fit) {
+  constexpr double most = 1.5;
+  const auto& outputs = model.system->spec().outputs;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    const auto rms = fit.rms.find(outputs[o].name);
+    if (!model.known_noise[o].fixed || rms == fit.rms.end()) continue;
+    const double ratio = rms->second.value / model.known_noise[o].sigma;
+    if (ratio > 1.0 / most && ratio < most) continue;
+    fit.warnings.push_back("residuals of " + outputs[o].name + " are " + format_value(ratio) +
+                           " times as large as the measurement noise that the study holds, on which the standard errors rest");
+  }
+}
 
 void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit) {
   const auto& [setting, unknowns, driven] = motion;

@@ -18,7 +18,8 @@ struct EndOfSearch {
 /// Per-channel residuals of the estimation part → standard deviations with the effective number of parameters taken off.
 [[nodiscard]] std::vector<double> channel_sigmas(const EndOfSearch& end, double edf);
 
-/// Residuals and their derivatives by (parameters, initial states of each experiment) in units of sigma, from runs with derivatives.
+/// Residuals and their derivatives by (parameters, initial states of each experiment) in units of sigma, from runs with derivatives; the
+/// residuals of an output whose noise is held in units of their own RMS.
 [[nodiscard]] std::vector<ResidualRows> residual_rows(const EndOfSearch& end);
 
 /// Channels of every experiment with sigma from noise and `covariance` of (parameters, initial states of each experiment).
@@ -33,6 +34,9 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 /// What the information matrix where the search ended cannot tell (`which`, a sentence) is said of the data only if the model follows them
 /// there: the search has converged and leaves less than half of the motion. Else it is said of that place.
 [[nodiscard]] std::string why_undetermined(const std::string& which, bool converged, const EndOfSearch& end);
+
+/// Where the noise of an output is held and its residuals are of another size: a warning.
+void warn_of_other_noise(const Model& model, Fit& fit);
 
 struct MotionFacts {
   const Setting& setting;

@@ -18,7 +18,8 @@ Setting setting_of(const Model& model, const std::vector<Signals>& experiments, 
   if (options.frequency > 0.0) s.frequency = options.frequency;
   if (!(s.frequency > 0.0)) s.frequency = std::max(spec.fastest_rate, 1e-3 / s.step);
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
-    double sigma = experiments.front().measured[o].sigma;
+    double sigma = model.known_noise[o].sigma;
+    if (!(sigma > 0.0)) sigma = experiments.front().measured[o].sigma;
     if (!(sigma > 0.0)) sigma = measurement_noise(experiments.front().measured[o].values);
     if (!(sigma > 0.0)) sigma = spec.outputs[o].noise > 0.0 ? spec.outputs[o].noise : 1.0;
     s.sigma.push_back(sigma);

@@ -1,0 +1,96 @@
+// What is known of the measurement noise: held, or where its estimation starts.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/shooting/output_error.h"
+#include "misfit/fit/trajectory_start.h"
+#include "tests/model/declared_texts.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_models;
+
+const std::string decay_text = R"toml(
+[states]
+x = { unit = "V", scale = 1.0 }
+[parameters]
+a = { unit = "1/s", value = 0.5, bounds = [0.0, 100.0], free = true }
+[equations]
+x = "-a*x"
+[outputs]
+y = { unit = "V", formula = "x", noise = 0.01 }
+)toml";
+
+constexpr double noise = 0.01;
+
+std::vector<Signals> decay(std::size_t samples) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  Signals s;
+  s.name = "decay";
+  s.measured = {{"y", "V", {}, 0.0}};
+  for (std::size_t i = 0; i < samples; ++i) {
+    s.t.push_back(3.0 * static_cast<double>(i) / static_cast<double>(samples));
+    s.measured[0].values.push_back(std::exp(-s.t.back()) + noise * normal(random));
+  }
+  return {s};
+}
+
+Fit fitted(bool filter, std::size_t samples, std::optional<KnownNoise> known) {
+  const auto registry = registry_with(decay_text);
+  Model model = assemble(request_of("text"), *registry);
+  if (known) model.known_noise = {*known};
+  const std::vector<Signals> experiments = decay(samples);
+  const TrajectoryStart start = trajectory_start(model, experiments);
+  OutputErrorStart options;
+  options.from_regression = start.regressed;
+  FilterOptions one;
+  one.threads = 1;
+  return filter ? filter_error(start.from, experiments, one).fit : output_error(start.from, experiments, options).fit;
+}
+
+class KnownNoiseOfAnOutput : public testing::TestWithParam<bool> {};
+
+TEST_P(KnownNoiseOfAnOutput, IsHeldAndScalesTheStandardErrors) {
+  constexpr std::size_t samples = 600;
+  const Fit estimated = fitted(GetParam(), samples, {}), held = fitted(GetParam(), samples, KnownNoise{3.0 * noise, true});
+  ASSERT_EQ(held.status, FitStatus::converged) << held.message;
+  EXPECT_DOUBLE_EQ(held.noise.at("y").value, 3.0 * noise);
+  EXPECT_DOUBLE_EQ(held.noise.at("y").sigma, 0.0);
+  EXPECT_NEAR(estimated.noise.at("y").value, noise, 0.1 * noise);
+  EXPECT_NEAR(held.parameters.at("a").value, estimated.parameters.at("a").value, 0.5 * estimated.parameters.at("a").sigma);
+  EXPECT_NEAR(held.parameters.at("a").sigma / estimated.parameters.at("a").sigma, 3.0, 0.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, KnownNoiseOfAnOutput, testing::Bool());
+
+TEST(KnownNoise, AsAStartChangesNothing) {
+  constexpr std::size_t samples = 600;
+  const Fit estimated = fitted(false, samples, {}), begun = fitted(false, samples, KnownNoise{2.0 * noise, false});
+  EXPECT_NEAR(begun.noise.at("y").value, estimated.noise.at("y").value, 1e-6 * noise);
+  EXPECT_NEAR(begun.parameters.at("a").value, estimated.parameters.at("a").value, 1e-3 * estimated.parameters.at("a").sigma);
+}
+
+TEST(KnownNoise, OfAnotherSizeThanTheResidualsIsSaid) {
+  const auto of_size = [](double sigma) { return fitted(false, 600, KnownNoise{sigma, true}).warnings; };
+  const auto said = [](const std::vector<std::string>& warnings) {
+    return std::any_of(warnings.begin(), warnings.end(),
+                       [](const std::string& w) { return w.find("that the study holds") != std::string::npos; });
+  };
+  EXPECT_TRUE(said(of_size(3.0 * noise)));
+  EXPECT_FALSE(said(of_size(noise)));
+}
+
+TEST(KnownNoise, GivesSigmasWhereTooFewSamplesShowIt) {
+  constexpr std::size_t samples = 3;
+  EXPECT_EQ(fitted(false, samples, {}).parameters.at("a").sigma, 0.0);
+  EXPECT_GT(fitted(false, samples, KnownNoise{noise, true}).parameters.at("a").sigma, 0.0);
+}
+
+}  // namespace
+}  // namespace misfit
