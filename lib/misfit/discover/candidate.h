@@ -8,7 +8,8 @@ namespace misfit {
 /// its best cell (without sigma), where a refit would start.
 [[nodiscard]] Candidate named_candidate(const ScreeningResult& screening, double families);
 
-/// "vortex_shedding (physics): 8 cells, 700 effective, 0.2 to 12 Hz", and above which frequency it was not looked for where that is so.
+/// "vortex_shedding (physics): 8 cells, 700 effective tests, 0.2 to 12 Hz", and above which frequency it was not looked for where that is
+/// so.
 [[nodiscard]] std::string what_was_tried(const ScreeningResult& screening);
 
 /// The same of an unknown curve.

@@ -105,7 +105,7 @@ class Search {
     const auto worth_it = [&](const RankedCandidate& e) {
       return !e.candidate.described && e.candidate.p_value <= 5.0 * options_.p_accept && e.candidate.predicted_drop >= 0.5 * best;
     };
-    const std::size_t most = options_.most_refits;
+    const std::size_t most = options_.max_refits;
     const std::size_t count = std::min<std::size_t>(most, std::count_if(ranked_.begin(), ranked_.end(), worth_it));
     std::vector<RankedCandidate*> chosen;
     std::vector<const ScreeningResult*> effects;
