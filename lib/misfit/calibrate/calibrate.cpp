@@ -130,10 +130,10 @@ void note_outliers(Calibration& calibration, std::size_t points) {
 
 /// Points that do not follow the angles determine no scale.
 void check_scale(const SweepFit& fit) {
-  constexpr double least_sigmas = 3.0, least_scale = 0.1;  // px/m: the rig would be smaller than a pixel
+  constexpr double min_sigmas = 3.0, min_scale = 0.1;  // px/m: the rig would be smaller than a pixel
   const std::size_t scale = camera_parameter("K");
   const double K = camera_entry(fit.camera, scale), sigma = fit.sigma(scale);
-  if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > std::max(least_scale, least_sigmas * sigma)) return;
+  if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > std::max(min_scale, min_sigmas * sigma)) return;
   throw RunError("the points do not follow the angles: the scale K = " + format_value(K, sigma) +
                  " px/m does not differ significantly from zero; check that points, angles and geometry belong together");
 }

@@ -117,12 +117,12 @@ class ColumnClassifier {
   }
 
   void find_time() {
-    constexpr double mostly = 0.5;
+    constexpr double min_forward_share = 0.5;
     std::string counter;
     for (const bool by_name : {true, false}) {
       for (std::size_t i = 0; i < out_.columns.size() && time_ == none; ++i) {
         ColumnSurvey& c = out_.columns[i];
-        if (c.use != ColumnUse::unused || !(forward(i) > mostly)) continue;
+        if (c.use != ColumnUse::unused || !(forward(i) > min_forward_share)) continue;
         const Unit unit = parse_unit(c.unit);
         const bool of_time = unit.same_dimension(parse_unit("s"));
         if (by_name ? is_called_time(c.name) && (of_time || c.unit == "-") : of_time) time_ = i;
@@ -156,8 +156,8 @@ class ColumnClassifier {
   void find_segments() {
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       ColumnSurvey& c = out_.columns[i];
-      constexpr double nearly_always = 0.95;
-      if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i))) || c.held < nearly_always) continue;
+      constexpr double min_held_share = 0.95;
+      if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i))) || c.held < min_held_share) continue;
       c.use = ColumnUse::segment;
       c.why = "whole numbers that stay: a count of pieces";
       out_.remarks.push_back(fmt::format("column '{}' numbers pieces {} to {}, time runs on across them: kept together as one recording",
@@ -171,13 +171,13 @@ class ColumnClassifier {
       if (out_.columns[i].use == ColumnUse::unused) open.push_back(i);
     }
     if (open.empty()) fail(0, "no column but time changes: nothing was measured");
-    constexpr double stands = 0.5;
+    constexpr double held_share = 0.5;
     for (const std::size_t i : open) {
       ColumnSurvey& c = out_.columns[i];
       if (open.size() > 1 && is_called_input(c.name)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
-      } else if (open.size() > 1 && c.held > stands) {
+      } else if (open.size() > 1 && c.held > held_share) {
         c.use = ColumnUse::input;
         c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
