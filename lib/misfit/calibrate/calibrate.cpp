@@ -168,7 +168,7 @@ Calibration calibrate_once(const Sweep& sweep, const RigGeometry& geometry, cons
   return calibration;
 }
 
-/// What was no candidate and the sweep asks for all the same: in the tests, not in the camera.
+/// Parameters that were no candidates but are significant in the sweep: in the tests, not in the camera.
 void test_disabled_parameters(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options, Calibration& calibration) {
   CalibrateOptions everything = options;
   everything.candidates = optional_camera_parameters();
@@ -181,8 +181,8 @@ void test_disabled_parameters(const Sweep& sweep, const RigGeometry& geometry, c
   for (CameraTest test : calibrate_once(sweep, geometry, everything).tests) {
     if (!test.selected || enabled(test.name)) continue;
     test.selected = false;
-    calibration.notes.push_back("the sweep asks for " + test.name + " (drop " + format_value(test.drop) +
-                                "), which is not enabled by [camera] offer");
+    calibration.notes.push_back(test.name + " is significant in the sweep (drop " + format_value(test.drop) +
+                                "), but not enabled by [camera] offer");
     calibration.tests.push_back(std::move(test));
   }
 }

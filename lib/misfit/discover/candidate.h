@@ -4,7 +4,7 @@
 
 namespace misfit {
 
-/// What the screen says of an effect, as a candidate among so many families: score, p-value, strengths after one step, and the shapes of
+/// Screening result of an effect as a candidate among `families`: score, p-value, strengths after one Gauss–Newton step, and the shapes of
 /// its best cell (without sigma), where a refit would start.
 [[nodiscard]] Candidate named_candidate(const ScreeningResult& screening, double families);
 

@@ -60,7 +60,7 @@ class Search {
   }
 
  private:
-  /// Of the time that a search takes, about: measured on 79 s of flight.
+  /// Approximate shares of a search's time, measured on 79 s of flight.
   static constexpr double end_of_screen = 0.45, end_of_curves = 0.5, end_of_refits = 0.9;
 
   /// Progress of a part of the search that goes from one share of the whole to another.
@@ -95,7 +95,7 @@ class Search {
     });
   }
 
-  /// All whose predicted drop is above half the best, if the screen says that there is anything.
+  /// Refits all whose predicted drop is above half of the best, if any candidate is significant in the screening.
   void refit_best() {
     double best = 0.0;
     for (const auto& e : ranked_) {

@@ -57,8 +57,8 @@ double neighbour(const CandidateModel& candidate_model, std::size_t shape, doubl
   return best;
 }
 
-/// Looks between the best cell and its neighbours, twice as finely each time: a shape between two cells would otherwise seem weaker than
-/// it is.
+/// Tests values between the best cell and its neighbours, halving the distance each time: the score of a shape between two cells is lower
+/// at the cells.
 void refine_cell(const FilterEstimate& estimate, const ScoreTest& score, ScreeningResult& best) {
   const CandidateModel& candidate_model = *best.candidate_model;
   const std::vector<double> grid = best.cell;

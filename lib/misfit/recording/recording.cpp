@@ -130,7 +130,7 @@ class ColumnClassifier {
       }
     }
     if (time_ == none)
-      fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, and runs forward") +
+      fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, and increases") +
                   (counter.empty() ? "" : " ('" + counter + "' counts rows, but over which interval?)") + "; write one as t[s]");
     ColumnSurvey& c = out_.columns[time_];
     c.use = ColumnUse::time;
@@ -139,7 +139,7 @@ class ColumnClassifier {
       c.unit = std::string("s");
       out_.remarks.push_back(unit_found(time_, "taken as seconds"));
     }
-    c.why = "runs forward" + (c.unit == "s" ? std::string() : ", in " + c.unit);
+    c.why = "increases steadily" + (c.unit == "s" ? std::string() : ", in " + c.unit);
     const double factor = convert(1.0, c.unit, "s");
     for (const double v : values(time_)) t_.push_back(factor * v);
   }
@@ -159,9 +159,10 @@ class ColumnClassifier {
       constexpr double min_held_share = 0.95;
       if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i))) || c.held < min_held_share) continue;
       c.use = ColumnUse::segment;
-      c.why = "whole numbers that stay: a count of pieces";
-      out_.remarks.push_back(fmt::format("column '{}' numbers pieces {} to {}, time runs on across them: kept together as one recording",
-                                         c.header, format_value(c.low), format_value(c.high)));
+      c.why = "constant whole numbers: a number of the recording";
+      out_.remarks.push_back(
+          fmt::format("column '{}' numbers recordings {} to {}, time continues across them: kept together as one recording", c.header,
+                      format_value(c.low), format_value(c.high)));
     }
   }
 
@@ -190,7 +191,7 @@ class ColumnClassifier {
     if (any) return;
     ColumnSurvey& last = out_.columns[open.back()];
     last.use = ColumnUse::output;
-    last.why = "every column looks like an input; the last is taken as what was measured";
+    last.why = "every column looks like an input; the last is taken as the output";
   }
 
   /// An output that is another's derivative: correlated to better than 0.99 with its central difference, with a slope within 10 % of 1.

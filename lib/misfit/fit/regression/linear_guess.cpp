@@ -122,7 +122,7 @@ LinearGuess guess_linear(const GuessData& data) {
   out.rest = spread.mean;
   const double length = data.t.back() - data.t.front();
   out.tau = 0.1 * length;
-  out.why = "no linear model could be read off the data: tau is a tenth of the record";
+  out.why = "no linear model could be estimated from the data: tau is a tenth of the record";
   if (!(spread.sigma > 0.0) || data.t.size() < 3) return out;
   std::vector<double> steps;
   for (std::size_t k = 1; k < data.t.size(); ++k) steps.push_back(data.t[k] - data.t[k - 1]);
@@ -145,15 +145,15 @@ LinearGuess guess_linear(const GuessData& data) {
     out.stiffness = omega * omega;
     out.damping = std::max(2.0 * zeta * omega, 1e-3 * omega);
     set_static(*r, spread, out);
-    out.why = fmt::format("it swings: about {:.3g} Hz, {:.3g} % of critical damping", omega / (2.0 * std::numbers::pi),
-                          100.0 * std::max(zeta, 0.0));
+    out.why = fmt::format("oscillatory: natural frequency about {:.3g} Hz, damping ratio {:.3g}", omega / (2.0 * std::numbers::pi),
+                          std::max(zeta, 0.0));
     return out;
   }
   const double modulus = std::abs(slow);
   if (!(slow.real() > 0.0) || !(modulus < 0.9999)) return out;
   out.tau = -h / std::log(modulus);
   set_static(*r, spread, out);
-  out.why = fmt::format("it does not swing: a time constant of about {:.3g} s", out.tau);
+  out.why = fmt::format("not oscillatory: time constant about {:.3g} s", out.tau);
   return out;
 }
 
