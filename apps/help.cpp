@@ -79,7 +79,8 @@ std::string words_text() {
       {"candidate", "an effect, or an unknown curve, that the model may lack"},
       {"cell", "one combination of the shapes at which a candidate is tested; effective: how many independent tests the cells are worth"},
       {"alias",
-       "a candidate that imitates the missing effect: it explains much, but with it a curve of a quantity that it reads is still missing"},
+       "a candidate that imitates the missing effect: it explains much, but with it a curve of a quantity that it reads is still "
+       "significant"},
       {"ladder, rung", "the sequence of models, each with one effect more; a rung is one of them"}};
   std::string out;
   for (const auto& [word, meaning] : words) {

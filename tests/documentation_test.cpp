@@ -38,6 +38,7 @@ struct Sources {
   Sources() {
     for (const char* folder : {"lib", "apps", "models", "tests"}) {
       for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+        if (entry.is_directory()) words.insert(entry.path().filename().string() + "_tests");  // its executable
         if (!entry.is_regular_file() || entry.path().extension() == ".md") continue;
         files.push_back(entry.path().lexically_relative(root).generic_string());
         if (entry.path().filename() == "documentation_test.cpp") continue;
