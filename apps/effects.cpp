@@ -98,15 +98,22 @@ std::string parameters_table(const EffectSpec& spec) {
   return rows.size() > 1 ? "\n" + align_columns(rows) + "\n" : "";
 }
 
-/// Roles of any unit are what a study most often binds.
+/// How a study adds it. Roles of any unit are what a study most often binds.
 std::string study_line(const EffectSpec& spec) {
   std::string roles;
   for (const auto* list : {&spec.quantities, &spec.ports}) {
     for (const Role& role : *list)
       if (!role.optional) roles += fmt::format("{}{} = \"NAME\"", roles.empty() ? "" : ", ", role.name);
   }
-  return fmt::format("  in a study\n    [effects]\n    {}\n    # to act elsewhere: {} = {{ {} }}\n", effect_line(spec.key, spec.key, {}),
-                     spec.key, roles);
+  const std::string line = effect_line(spec.key, spec.key, {});
+  std::string out = fmt::format("  in a study\n    [effects]\n    {}\n    # to act elsewhere: {} = {{ {} }}\n", line, spec.key, roles);
+  const auto own = std::find_if(spec.coefficients.begin(), spec.coefficients.end(), [](const CoefficientSpec& c) { return !c.shared; });
+  if (own != spec.coefficients.end())
+    out += fmt::format(
+        "    # another start: {0} = {{ start = {{ {1} = {2:g} }} }}\n    # free, fixed, bounds, prior: [parameters] {1} = {{ … }}, "
+        "see misfit help study\n",
+        spec.key, own->name, own->value);
+  return out;
 }
 
 std::string full_text(const EffectSpec& spec) {

@@ -61,7 +61,7 @@ std::string effects_text(const Registry& registry) {
   return out;
 }
 
-/// lib/misfit/README.md, 2, in twelve words.
+/// The words of lib/misfit/README.md, 2, that a user meets.
 std::string words_text() {
   const std::vector<std::pair<const char*, std::string>> words = {
       {"study", "a folder with study.toml and data: one question put to one or more recordings"},
@@ -73,9 +73,14 @@ std::string words_text() {
       {"curve", "a parameter as a function of a quantity: a cubic spline with a roughness penalty"},
       {"missing force",
        std::string("the random force per degree of freedom that would explain the data, estimated by ") + random_force_estimator().name},
+      {"driven", "motion excited by more than the model has: residuals are correlated, or a random force is estimated"},
+      {"jitter", "the coloured part of a channel's measurement noise: a damped resonance with a standard deviation and a frequency"},
       {"drop", "2 log likelihood ratio: by how much an effect improves the fit"},
       {"candidate", "an effect, or an unknown curve, that the model may lack"},
-      {"alias", "a candidate that imitates what is missing: it explains much, but leaves a curve of its own quantities"},
+      {"cell", "one combination of the shapes at which a candidate is tested; effective: how many independent tests the cells are worth"},
+      {"alias",
+       "a candidate that imitates the missing effect: it explains much, but with it a curve of a quantity that it reads is still "
+       "significant"},
       {"ladder, rung", "the sequence of models, each with one effect more; a rung is one of them"}};
   std::string out;
   for (const auto& [word, meaning] : words) {

@@ -17,7 +17,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// The time left is told by what was done since the first call: what an earlier run had done took no time in this one.
+  /// The remaining time is estimated from the work done since the first call: work of an earlier run took no time in this one.
   void update(std::size_t done, std::size_t total);
 
  private:

@@ -5,7 +5,7 @@ namespace {
 
 using namespace misfit;
 
-/// A sensor that cannot tell the sign: a rectifier, a speed from a toothed wheel, a magnitude.
+/// A sensor that measures without the sign: a rectifier, a speed from a toothed wheel, a magnitude.
 struct SensorAbsolute {
   static constexpr const char* formula = "y = h + folded (|h| - h), |h| rounded over fold_width";
   static constexpr const char* symbols = "h predicted output [output], folded share [-] (1: the size alone is read), fold_width [output]";

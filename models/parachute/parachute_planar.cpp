@@ -7,7 +7,7 @@ using namespace misfit;
 /// Motion in the plane through tunnel axis and parachute axis; the clock angle phi(t) is an input, from the measurement:
 /// lib/misfit/README.md (8) to (11); the paper is its [1].
 ///   I eta'' = M,  I = (m + m_a) R_cp² (+ port `inertia`)
-///   felt wind: w_eta = V sin(eta) + R_cp eta',  w_phi = R_cp phi' sin(eta),  w_x = V cos(eta)
+///   relative wind: w_eta = V sin(eta) + R_cp eta',  w_phi = R_cp phi' sin(eta),  w_x = V cos(eta)
 ///   alpha_T = atan2(sqrt(w_eta² + w_phi²), w_x);  in-plane component of (v̂ × n): w_eta/|w|
 /// With induced_angle = false: alpha_T = eta, the paper's Eq. 8; then alpha_T carries the sign of eta.
 /// The wind follows the dynamic pressure, V_felt = V sqrt(q/qbar), so that a port on the pressure changes both.
@@ -54,14 +54,14 @@ struct ParachutePlanar {
       q[alpha_T] = x[tilt];
       q[wind_cross_axis] = T(1.0);  // alpha_T carries the sign: C_m enters undivided (QuantitySpec::carries_sign)
     } else if (wants(needed, alpha_T) || wants(needed, wind_cross_axis)) {
-      felt_wind(x, u, k, q);
+      relative_wind(x, u, k, q);
     }
   }
 
   /// Regular everywhere but at alpha_T = 0 exactly, where the derivative of the (even) angle is taken as 0; every use of alpha_T there is
   /// even or odd-over-sine, so nothing is lost.
   template <class T, class K>
-  static void felt_wind(const T* x, const double* u, const K* k, T* q) {
+  static void relative_wind(const T* x, const double* u, const K* k, T* q) {
     using std::atan2;
     using std::cos;
     using std::sin;

@@ -12,7 +12,7 @@ using namespace misfit;
 /// With s = sin(eta) and, where s > 0, theta^ = (n n_x − x^)/s (tilt grows) and phi^ = (n_z ŷ − n_y ẑ)/s (clock angle grows), a pair of
 /// in-plane and lateral moments (M_p, M_l) moves n along M_p theta^ + M_l phi^; moments about fixed axes act through tau × n. A moment
 /// along n does nothing, so tau_x is never needed. At s = 0 theta^ = ẑ, phi^ = ŷ: any pair of unit vectors serves there, because what is
-/// regular enters as a vector. Felt wind at the centre of pressure: v = (V, wind_y, wind_z) − R_cp n'.
+/// regular enters as a vector. Relative wind at the centre of pressure: v = (V, wind_y, wind_z) − R_cp n'.
 struct ParachuteSpherical {
   [[maybe_unused]] static constexpr int NU = 0;
   static constexpr int NX = 4, NP = 4, NF = 4, NQ = 17, NK = 18, NY = 2;
@@ -70,7 +70,7 @@ struct ParachuteSpherical {
       a.phi_y = toward_z;
       a.phi_z = -toward_y;
     } else {
-      // To first order theta^ = ẑ - n_z x^ and phi^ = ŷ - n_y x^: their x parts count in the derivatives of the felt wind.
+      // To first order theta^ = ẑ - n_z x^ and phi^ = ŷ - n_y x^: their x parts count in the derivatives of the relative wind.
       a.sine = n[z];
       a.theta_y = a.phi_z = T(0.0);
       a.theta_z = a.phi_y = T(1.0);
@@ -111,12 +111,12 @@ struct ParachuteSpherical {
     // The root only where the pressure is changed: it costs as much as everything else here.
     q[wind_speed] = vanishes(P[pressure_port]) ? T(k[V]) : T(k[V] * sqrt(T(q[dynamic_pressure] / k[qbar])));
     if (wants(needed, alpha_T) || wants(needed, wind_cross_axis) || wants(needed, wind_cross_axis_lateral))
-      felt_wind(n, a, n_x_rate, k, P, q);
+      relative_wind(n, a, n_x_rate, k, P, q);
   }
 
   /// Components of (v × n)/|v| about the axes of in-plane and lateral rotation; alpha_T between n and v.
   template <class T, class K>
-  static void felt_wind(const T* n, const Axis<T>& a, const T& n_x_rate, const K* k, const T* P, T* q) {
+  static void relative_wind(const T* n, const Axis<T>& a, const T& n_x_rate, const K* k, const T* P, T* q) {
     using std::atan2;
     using std::sqrt;
     const T v_x = q[wind_speed] - k[R_cp] * n_x_rate;
@@ -200,7 +200,7 @@ struct ParachuteSpherical {
             {.name = "dynamic_pressure", .unit = "Pa", .doc = "free-stream dynamic pressure", .explains = false},
             {.name = "wind_speed", .unit = "m/s", .doc = "free-stream speed along x", .explains = false},
             {.name = "inertia", .unit = "kg m^2", .doc = "(m + m_a) R_cp^2", .explains = false},
-            {.name = "alpha_T", .unit = "rad", .doc = "total angle of attack, between axis and felt wind"},
+            {.name = "alpha_T", .unit = "rad", .doc = "total angle of attack, between axis and relative wind"},
             {.name = "wind_cross_axis",
              .unit = "-",
              .doc = "in-plane component of (wind direction x axis)",

@@ -4,7 +4,7 @@ namespace {
 
 using namespace misfit;
 
-/// Moment proportional to the rotation rate. Where the system has the felt wind in alpha_T the coefficient is C_mq; in the paper's form
+/// Moment proportional to the rotation rate. Where the system has the relative wind in alpha_T the coefficient is C_mq; in the paper's form
 /// (lib/misfit/README.md, [1], Eq. 8, alpha_T the state itself) the same formula carries the paper's C_m_alphadot = C_mq + (2 R_cp/D)
 /// C_m_alpha cos(alpha_T).
 struct PitchDamping {

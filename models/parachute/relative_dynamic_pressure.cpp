@@ -8,7 +8,7 @@ using namespace misfit;
 struct RelativeDynamicPressure {
   static constexpr const char* formula =
       "M = relative_pressure (v^2/V^2 - 1) x static moment, v^2/V^2 - 1 = 2 r sin(eta) omega_in-plane + r^2 |omega|^2, r = R_cp/V";
-  static constexpr const char* symbols = "v felt wind, V wind speed [m/s], omega rotation rates [rad/s], C_m of the static moment [-]";
+  static constexpr const char* symbols = "v relative wind, V wind speed [m/s], omega rotation rates [rad/s], C_m of the static moment [-]";
   static constexpr const char* valid = "quasi-steady; planar systems miss the lateral part of |omega|";
   static constexpr const char* size = "omega = 1 rad/s at eta = 12 deg: 4.5 % of the static moment";
   static constexpr const char* source =
@@ -29,7 +29,7 @@ struct RelativeDynamicPressure {
   static constexpr const char* constants[] = {"S", "D", "R_cp"};
   enum Coefficient { relative_pressure, C_m };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "relative_pressure", .unit = "-", .lower = -10.0, .upper = 10.0, .scale = 1.0, .doc = "0: free stream; 1: felt wind"},
+      {.name = "relative_pressure", .unit = "-", .lower = -10.0, .upper = 10.0, .scale = 1.0, .doc = "0: free stream; 1: relative wind"},
       {.name = "C_m",
        .kind = CoefficientKind::shape,
        .unit = "-",

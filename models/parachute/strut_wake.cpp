@@ -14,7 +14,7 @@ struct StrutWake {
       "M_in-plane = -depth w q S D C_m(alpha_T), M_lateral = q S D sin(eta) push w sin(Delta)/width, w = exp(-(1 - cos Delta)/width^2) "
       "sin^4(eta)/(sin^4(eta) + 0.02^4), Delta = phi - wake_phi";
   static constexpr const char* symbols =
-      "C_m of the static moment [-], along the felt wind as that is; phi clock angle, wake_phi, width [rad]; eta tilt; depth, push [-]";
+      "C_m of the static moment [-], along the relative wind as that is; phi clock angle, wake_phi, width [rad]; eta tilt; depth, push [-]";
   static constexpr const char* valid = "quasi-steady; one strut; the wake reaches as far out as the tilts that are visited";
   static constexpr const char* size = "push = 0.15 at eta = 12 deg and one width from the centre: 43 N m, more than the random moment";
   static constexpr const char* source =

@@ -5,7 +5,7 @@ namespace {
 using namespace misfit;
 
 /// Vortices shed by the strut or the backshell shake the canopy at one frequency, in axes fixed in the tunnel. The Strouhal number f d/V
-/// tells by what: about 0.2 for a round strut of diameter d, so d = 0.2 V/f.
+/// is about 0.2 for a round strut of diameter d: d = 0.2 V/f identifies the strut.
 struct VortexShedding {
   static constexpr const char* formula =
       "M_y = q S D [y_cosine cos(2 pi f t) + y_sine sin(2 pi f t)], M_z the same with z_cosine, z_sine; Strouhal number f d/V";

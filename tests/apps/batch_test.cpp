@@ -139,11 +139,11 @@ TEST_F(ThreeTests, WhatTheMachineRefusesIsNoRow) {
 }
 
 TEST_F(ThreeTests, WhatIsNoListIsRefused) {
-  const auto refused = [&](const std::string& argument, std::initializer_list<const char*> told) {
+  const auto refused = [&](const std::string& argument, std::initializer_list<const char*> expected) {
     const Outcome outcome = program::run({"batch", argument});
     EXPECT_EQ(outcome.status, 2) << argument;
     EXPECT_EQ(outcome.out, "");
-    expect_parts(outcome.err, told);
+    expect_parts(outcome.err, expected);
   };
   refused(path("lst.txt").string(), {"no such file"});
   refused(path("test1/alpha_history.csv").string(), {"alpha_history.csv:1", "neither", "t[s]"});

@@ -14,11 +14,11 @@ namespace {
 using namespace program;
 using Cells = std::vector<std::string>;
 
-void expect_refused(const StudyCopy& study, int status, std::initializer_list<const char*> told) {
+void expect_refused(const StudyCopy& study, int status, std::initializer_list<const char*> expected) {
   const Outcome outcome = study.run();
   EXPECT_EQ(outcome.status, status) << outcome.err;
   EXPECT_EQ(outcome.out, "");
-  expect_parts(outcome.err, told);
+  expect_parts(outcome.err, expected);
   EXPECT_FALSE(fs::exists(study.out("report.html")));
 }
 

@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
 struct Typed {
   const char* name;
   std::vector<std::string> options;
-  std::vector<const char*> told;
+  std::vector<const char*> expected;
 };
 
 void PrintTo(const Typed& typed, std::ostream* out) { *out << typed.name; }
@@ -169,7 +169,7 @@ TEST_P(HostileCommandLine, IsRefusedInOneMessage) {
   EXPECT_EQ(outcome.out, "");
   expect_one_message(outcome);
   EXPECT_FALSE(has_control(outcome.err)) << outcome.err;
-  for (const char* part : GetParam().told) expect_parts(outcome.err, {part});
+  for (const char* part : GetParam().expected) expect_parts(outcome.err, {part});
   EXPECT_FALSE(fs::exists(tank.path("out")));
 }
 
@@ -192,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(EachWord, HostileCommandLine,
 struct Listed {
   const char* name;
   std::string list;
-  std::vector<const char*> told;
+  std::vector<const char*> expected;
 };
 
 void PrintTo(const Listed& listed, std::ostream* out) { *out << listed.name; }
@@ -205,7 +205,7 @@ TEST_P(HostileList, IsRefusedInOneMessage) {
   EXPECT_EQ(outcome.status, 2);
   expect_one_message(outcome);
   EXPECT_FALSE(has_control(outcome.err)) << outcome.err;
-  for (const char* part : GetParam().told) expect_parts(outcome.err, {part});
+  for (const char* part : GetParam().expected) expect_parts(outcome.err, {part});
 }
 
 INSTANTIATE_TEST_SUITE_P(EachLine, HostileList,

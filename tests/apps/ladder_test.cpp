@@ -123,7 +123,7 @@ TEST(AddAfterAWholeSearch, TakesItsPredictionAndTheReportKeepsWhatWasFound) {
 struct Refusal {
   const char* name;
   const char* effect;
-  std::vector<const char*> told;
+  std::vector<const char*> expected;
 };
 
 class WrongAddition : public testing::TestWithParam<Refusal> {};
@@ -133,7 +133,7 @@ TEST_P(WrongAddition, IsRefusedInWordsAndLeavesNoRung) {
   const Outcome outcome = study.add(GetParam().effect);
   EXPECT_EQ(outcome.status, 2) << outcome.out;
   EXPECT_EQ(outcome.out, "");
-  for (const char* part : GetParam().told) expect_parts(outcome.err, {part});
+  for (const char* part : GetParam().expected) expect_parts(outcome.err, {part});
   EXPECT_FALSE(fs::exists(study.out("rungs")));
   EXPECT_FALSE(fs::exists(study.out("ladder.json")));
 }

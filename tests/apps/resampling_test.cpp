@@ -80,10 +80,10 @@ TEST(Resampling, MoreRunsGoOnFromThoseThatAreThere) {
 
 TEST(Resampling, OfAWrongNameIsRefusedBeforeAnythingIsComputed) {
   const ForcedMotion study("bootstrap = 20\nprofile = [\"sine\", \"cosin\"]");
-  const auto refused = [&](std::initializer_list<const char*> told) {
+  const auto refused = [&](std::initializer_list<const char*> expected) {
     const Outcome outcome = study.uncertainty({});
     EXPECT_EQ(outcome.status, 2) << outcome.out;
-    expect_parts(outcome.err, told);
+    expect_parts(outcome.err, expected);
     EXPECT_FALSE(fs::exists(study.out("bootstrap_equation_error")));
   };
   refused({"study.toml:", "'cosin'", "did you mean 'cosine'"});

@@ -67,7 +67,7 @@ TEST_F(RunOnValidation, LeavesEverythingTheContractNames) {
             "t[s],alpha_T_measured[deg],alpha_T_predicted[deg],alpha_T_sigma[deg],held_o");
 }
 
-TEST_F(RunOnValidation, TellsWhatItLeavesToAnotherVerb) {
+TEST_F(RunOnValidation, SaysThatUncertaintyIsAnotherVerb) {
   const std::string hint = "misfit uncertainty " + study->path("study.toml").string();
   EXPECT_NE(outcome.out.find(hint), std::string::npos) << outcome.out;
   ASSERT_EQ(study->run("uncertainty", {"--method", "sliding_bin", "--runs", "20"}).status, 0);

@@ -85,7 +85,7 @@ TEST(RigOfTheFlight, ReadingsOfItsNumbersAreApplied) {
   }
 }
 
-/// The calibration is far better than Table 2; a longer distance to the camera alone is mended by calibrating again.
+/// The calibration is far better than Table 2; a longer distance to the camera alone is corrected by calibrating again.
 TEST(RigOfTheFlight, TheCalibrationsOwnCovarianceAndCalibratingAgain) {
   const Flight flight;
   flight.change("perturb = .*", "camera = \"calibration\"");
@@ -100,12 +100,13 @@ TEST(RigOfTheFlight, TheCalibrationsOwnCovarianceAndCalibratingAgain) {
   EXPECT_GT(share_of(flight.number("trim"), "R1"), 0.0);
 }
 
-void expect_refused(const Flight& flight, const std::string& table, std::initializer_list<const char*> told, const std::string& more = "") {
+void expect_refused(const Flight& flight, const std::string& table, std::initializer_list<const char*> expected,
+                    const std::string& more = "") {
   flight.perturb(table, more);
   const Outcome outcome = flight.uncertainty();
   EXPECT_EQ(outcome.status, 2) << outcome.out;
   EXPECT_EQ(outcome.out, "");
-  expect_parts(outcome.err, told);
+  expect_parts(outcome.err, expected);
   if (!more.empty()) flight.change("\n" + more.substr(0, more.find(' ')) + " = .*", "");
 }
 

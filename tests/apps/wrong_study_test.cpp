@@ -10,7 +10,7 @@ struct Mistake {
   const char* name;
   const char* pattern;  ///< in study.toml of validation …
   const char* by;       ///< … replaced by this
-  std::vector<const char*> told;
+  std::vector<const char*> expected;
 };
 
 void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
@@ -24,7 +24,7 @@ TEST_P(WrongStudy, IsRefusedAtItsPlaceAndLeavesNoResult) {
   EXPECT_EQ(outcome.status, 2) << outcome.out;
   EXPECT_EQ(outcome.out, "");
   EXPECT_TRUE(std::regex_search(outcome.err, std::regex(R"(study\.toml:\d+:\d+: )"))) << outcome.err;
-  for (const char* part : GetParam().told) expect_parts(outcome.err, {part});
+  for (const char* part : GetParam().expected) expect_parts(outcome.err, {part});
   EXPECT_FALSE(fs::exists(study.out("fit")));
 }
 

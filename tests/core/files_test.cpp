@@ -78,8 +78,8 @@ int overfull(const fs::path& folder, const std::string& words) {
   } catch (const RunError& error) {
     const std::string message = error.what();
     const auto entries = std::distance(fs::directory_iterator(folder), fs::directory_iterator());
-    const bool told = message.find(words) != std::string::npos && message.find("result.csv") != std::string::npos;
-    return told && read_file(file) == "old" && entries == 1 ? ok : wrong;
+    const bool expected = message.find(words) != std::string::npos && message.find("result.csv") != std::string::npos;
+    return expected && read_file(file) == "old" && entries == 1 ? ok : wrong;
   }
 }
 
@@ -115,18 +115,18 @@ TEST(WhatTheMachineRefuses, IsToldFromAWrongRequest) {
     const rlimit limit{static_cast<rlim_t>(next), static_cast<rlim_t>(next)};
     ::close(next);
     if (::setrlimit(RLIMIT_NOFILE, &limit) != 0) return wrong;
-    int told = 0;
+    int expected = 0;
     try {
       (void)read_file(file);
     } catch (const MachineError& error) {
-      told += std::string(error.what()).find("x: cannot be read: Too many open files") != std::string::npos ? 1 : 0;
+      expected += std::string(error.what()).find("x: cannot be read: Too many open files") != std::string::npos ? 1 : 0;
     }
     try {
       make_writable_folder(folder.path());
     } catch (const WriteError& error) {
-      told += std::string(error.what()).find("cannot be written to: Too many open files") != std::string::npos ? 1 : 0;
+      expected += std::string(error.what()).find("cannot be written to: Too many open files") != std::string::npos ? 1 : 0;
     }
-    return told == 2 ? ok : wrong;
+    return expected == 2 ? ok : wrong;
   });
   EXPECT_EQ(status, ok);
 }

@@ -13,7 +13,7 @@ namespace {
 struct Hostile {
   const char* name;
   std::string text;  ///< begins on line 3 of the study
-  std::vector<const char*> told;
+  std::vector<const char*> expected;
 };
 
 void PrintTo(const Hostile& hostile, std::ostream* out) { *out << hostile.name; }
@@ -23,7 +23,7 @@ class HostileStudy : public StudyFolder, public testing::WithParamInterface<Host
 TEST_P(HostileStudy, IsRefusedAtItsPlace) {
   const std::string message = error_with(GetParam().text);
   expect_parts(message, {"study.toml:"});
-  for (const char* part : GetParam().told) expect_parts(message, {part});
+  for (const char* part : GetParam().expected) expect_parts(message, {part});
   const auto characters = std::count_if(message.begin(), message.end(), [](char c) { return (c & '\xC0') != '\x80'; });
   EXPECT_LE(characters, 300) << message.substr(0, 500);
   const auto control = std::find_if(message.begin(), message.end(), [](char c) { return c >= '\0' && c < ' '; });

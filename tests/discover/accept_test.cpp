@@ -97,7 +97,7 @@ TEST(Refit, FromOneStepOnEndsWhereTheEstimateWithTheEffectDoes) {
   EXPECT_LE(onwards.estimate.linearisations, plain.estimate.linearisations);
 }
 
-TEST(Accept, ALikenessGivesWayToWhatLeavesNothing) {
+TEST(Accept, AnAliasIsPassedOverForAnEffectWithoutLackOfFit) {
   const World world = with_friction(1.5);
   std::vector<RankedCandidate> ranked = {world.entry("hysteresis"), world.entry("coulomb_friction")};
   ASSERT_TRUE(leaves_something(ranked[0], world));
@@ -107,12 +107,12 @@ TEST(Accept, ALikenessGivesWayToWhatLeavesNothing) {
   EXPECT_TRUE(ranked.front().candidate.accepted) << ranked.front().candidate.why;
   const Candidate& alias = of(ranked, "hysteresis");
   EXPECT_FALSE(alias.accepted);
-  EXPECT_GT(alias.held_out_gain.value_or(0.0), 0.0) << "it holds out, and is refused for what it leaves";
+  EXPECT_GT(alias.held_out_gain.value_or(0.0), 0.0) << "refused for its lack of fit alone";
   EXPECT_THAT(alias.why, testing::StartsWith("lack of fit remains"));
 }
 
 /// Beside the friction, which alone explains all, hysteresis is not needed: it must not be accepted on the friction's account.
-TEST(Accept, WhatTheSecondEffectMakesNeedlessIsNotAccepted) {
+TEST(Accept, AnAliasNotSignificantBesideTheSecondEffectIsNotAccepted) {
   const World world = with_friction(1.5);
   std::vector<RankedCandidate> ranked = {world.entry("hysteresis"), world.entry("coulomb_friction", false)};
   const auto left = world.accept(ranked);
@@ -131,9 +131,9 @@ TEST(Accept, OneOfTwoIsAcceptedWhereTheOtherExplainsTheRest) {
   EXPECT_THAT(ranked[0].candidate.why, testing::HasSubstr("coulomb_friction explains what remains"));
 }
 
-/// hasty_friction is the same formula: whichever stands first, no one can tell them apart; what stands before them and is refused does not
+/// hasty_friction is the same formula: whichever comes first, the two are indistinguishable; a refused candidate before them does not
 /// change that.
-TEST(Accept, TheOneChosenIsTestedForInseparableOnes) {
+TEST(Accept, TheAcceptedOneIsGroupedWithIndistinguishableOnes) {
   const World world = with_friction(0.2);
   std::vector<RankedCandidate> ranked = {world.entry("quadratic_drag"), world.entry("coulomb_friction"), world.entry("hasty_friction")};
   EXPECT_FALSE(world.accept(ranked).has_value());
@@ -145,8 +145,8 @@ TEST(Accept, TheOneChosenIsTestedForInseparableOnes) {
   EXPECT_THAT(of(ranked, "quadratic_drag").group, testing::IsEmpty());
 }
 
-/// An effect that cannot be put beside the other has not been tested against it.
-TEST(Accept, WhatCannotBeRunBesideTheOtherIsNotCalledInseparable) {
+/// An effect that cannot be in one model with the other has not been tested against it.
+TEST(Accept, AnEffectThatCannotBeTestedBesideTheOtherIsNotGroupedWithIt) {
   const World world = with_friction(0.2);
   std::vector<RankedCandidate> ranked = {world.entry("coulomb_friction"), world.entry("hasty_friction")};
   ranked[1].candidate.effect = "offered_nowhere";

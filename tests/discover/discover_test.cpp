@@ -228,7 +228,7 @@ TEST(Screen, SaysWhichFrequenciesItLookedAt) {
   s.cells = 8;
   s.cells_effective = 500.0;
   s.frequencies = {0.2, 0.01, 1001, 10.2};
-  EXPECT_EQ(what_was_tried(s), "vortex_shedding (physics): 8 cells, 500 effective, 0.2 to 10.2 Hz");
+  EXPECT_EQ(what_was_tried(s), "vortex_shedding (physics): 8 cells, 500 effective tests, 0.2 to 10.2 Hz");
   s.frequencies.wanted = 22.5;
   EXPECT_THAT(what_was_tried(s), testing::HasSubstr("0.2 to 10.2 Hz, not up to 22.5 Hz: too many unevenly spaced samples"));
 }
@@ -239,7 +239,7 @@ TEST(CandidateModels, ARolledCameraIsHardlySeenInTheMotion) {
   for (const auto& s : candidate_models(flight.estimate, flight.request, registry(), nullptr)) {
     if (s.effect != "camera_roll") continue;
     const ScoreResult result = ScoreTest(flight.estimate).test(sensitivity_columns(flight.estimate, s, {}));
-    EXPECT_GT(result.sigma[0], 1.0 * degree) << "only the camera's height tells up from down";
+    EXPECT_GT(result.sigma[0], 1.0 * degree) << "only the camera's height distinguishes up from down";
   }
 }
 

@@ -110,17 +110,17 @@ TEST(ColouredCovariance, SquaredCorrelationsAreThoseByWhichAVarianceScatters) {
   constexpr double phi = 0.7;
   constexpr int seeds = 60;
   const RowMatrix J = waves(n);
-  double told = 0.0, mean = 0.0, squares = 0.0;
+  double reported = 0.0, mean = 0.0, squares = 0.0;
   for (unsigned seed = 1; seed <= seeds; ++seed) {
     std::mt19937_64 random(seed);
     const Regression regression = solved(J, first_order(random, n, phi), Eigen::MatrixXd::Zero(4, 4));
-    told += coloured_covariance({regression.rows}, regression.plain, 1).squared_correlations[0] / seeds;
+    reported += coloured_covariance({regression.rows}, regression.plain, 1).squared_correlations[0] / seeds;
     const double variance = regression.rows.r.squaredNorm() / (n - 4);
     mean += variance / seeds;
     squares += variance * variance / seeds;
   }
-  EXPECT_NEAR(told, (1.0 + phi * phi) / (1.0 - phi * phi), 0.5);
-  EXPECT_NEAR((squares - mean * mean) / (2.0 / n), told, 1.2) << "a variance of 60 draws is known to 18 %";
+  EXPECT_NEAR(reported, (1.0 + phi * phi) / (1.0 - phi * phi), 0.5);
+  EXPECT_NEAR((squares - mean * mean) / (2.0 / n), reported, 1.2) << "a variance of 60 draws is known to 18 %";
 }
 
 TEST(ColouredCovariance, APriorsShareIsKnownExactly) {

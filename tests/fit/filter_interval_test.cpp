@@ -11,7 +11,7 @@ namespace {
 
 using namespace testing_cart;
 
-/// The cart with nothing unknown but its noise, at noise that it is told.
+/// The cart with nothing unknown but its noise, at given noise.
 struct Known {
   Cart cart{1500};
   FilterEstimate estimate;
@@ -56,7 +56,7 @@ TEST(NoiseIntervals, AreTheEndsOfThePathInManySteps) {
     EXPECT_NEAR(std::log(found[j]->second / value), std::log(known.end(j, 1.96) / value), 0.03) << j;
   }
   const double sigma = std::sqrt(known.estimate.joint_covariance(1, 1));
-  ASSERT_GT(sigma, 0.05) << "or there would be nothing to tell apart";
+  ASSERT_GT(sigma, 0.05) << "or there would be nothing to distinguish";
   const double down = -std::log(found[1]->first / known.cart.noise.force_time),
                up = std::log(found[1]->second / known.cart.noise.force_time);
   EXPECT_GT(up, 1.02 * down) << "a longer correlation time is less well known, even of its own size";

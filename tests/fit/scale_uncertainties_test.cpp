@@ -17,7 +17,7 @@ TEST(ScaleUncertainties, TheCoefficientGoesWithTheInertia) {
   const std::vector<double> u(static_cast<std::size_t>(model.inputs()), 0.0);
   const std::vector<std::string> words = scale_uncertainties(model, x.data(), u.data(), 0.0);
   ASSERT_EQ(words.size(), 1U);
-  EXPECT_THAT(words[0], testing::HasSubstr("m_a = 0.294 ± 0.033 kg alone makes every C_m uncertain by 6.6 %"));
+  EXPECT_THAT(words[0], testing::HasSubstr("m_a = 0.294 ± 0.033 kg, which is fixed, makes every C_m uncertain by 6.6 % (1 sigma)"));
 }
 
 }  // namespace

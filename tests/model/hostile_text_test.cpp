@@ -23,7 +23,7 @@ struct Hostile {
   const char* name;
   const char* what;  ///< of the study or the system …
   std::string by;    ///< … is replaced by this
-  std::vector<const char*> told;
+  std::vector<const char*> expected;
 };
 
 void PrintTo(const Hostile& hostile, std::ostream* out) { *out << hostile.name; }
@@ -60,7 +60,7 @@ class HostileStudyOfASystem : public HostileText {};
 class HostileSystem : public HostileText {};
 
 void expect_told(const std::string& message, const Hostile& hostile) {
-  for (const char* part : hostile.told) expect_parts(message, {part});
+  for (const char* part : hostile.expected) expect_parts(message, {part});
   const auto characters = std::count_if(message.begin(), message.end(), [](char c) { return (c & '\xC0') != '\x80'; });
   EXPECT_LE(characters, 300) << message.substr(0, 500);
   const auto control = std::find_if(message.begin(), message.end(), [](char c) { return c >= '\0' && c < ' '; });

@@ -1,9 +1,12 @@
 #include "misfit/report/figures.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -166,6 +169,31 @@ TEST(Figures, WhiteResidualsStayInTheBandAndAnAlternatingOneDoesNot) {
   const Figure alternating = autocorrelation_figure("output_error", c, 4);
   EXPECT_NEAR(find(alternating, "residual")->y[0], -3999.0 / 4000.0, 1e-9);  // 1/n before the sum of n − lag products
   EXPECT_NEAR(find(alternating, "residual")->y[1], 3998.0 / 4000.0, 1e-9);
+}
+
+TEST(Figures, ResidualHistogramIsTheDensityOfTheEstimationPartInSigmas) {
+  ChannelPrediction c{"flight", "P_z", "px", {}, {}, {}, {}, {}};
+  const std::vector<double> sigmas = {0.1, 0.1, -0.1, -4.9, 7.0, nan, 0.1};  // the last is held out
+  for (std::size_t i = 0; i < sigmas.size(); ++i) {
+    c.t.push_back(static_cast<double>(i));
+    c.predicted.push_back(10.0);
+    c.sigma.push_back(2.0);
+    c.measured.push_back(10.0 + 2.0 * sigmas[i]);
+    c.held_out.push_back(i + 1 == sigmas.size());
+  }
+  const Figure figure = residual_histogram_figure("filter_error", c);
+  const Series& boxes = *find(figure, "residual");
+  const double each = 1.0 / (0.25 * 5.0);  // bins of 0.25, five residuals
+  std::map<double, double> filled;         // lower edge → density
+  for (std::size_t k = 0; k < boxes.y.size(); ++k) {
+    if (boxes.y[k] > 0.0) filled[boxes.lo[k]] = boxes.y[k] / each;
+  }
+  EXPECT_THAT(filled, testing::ElementsAre(testing::Pair(-5.0, testing::DoubleNear(1.0, 1e-12)),
+                                           testing::Pair(-0.25, testing::DoubleNear(1.0, 1e-12)),
+                                           testing::Pair(0.0, testing::DoubleNear(2.0, 1e-12))));
+  EXPECT_THAT(figure.notes, testing::ElementsAre("1 of 5 residuals are beyond ± 5 sigma"));
+  const Series& normal = *find(figure, "normal");
+  EXPECT_NEAR(*std::max_element(normal.y.begin(), normal.y.end()), 0.398942, 1e-6);
 }
 
 TEST(Figures, HistogramCountsEveryFiniteSampleOnce) {

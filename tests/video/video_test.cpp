@@ -45,7 +45,7 @@ std::string error_of(const fs::path& file) {
   return "no error";
 }
 
-/// In a process of its own: reads `file` and keeps every frame until memory ends. Exit status 0: that was told as such.
+/// In a process of its own: reads `file` and keeps every frame until memory ends. Exit status 0: the error said so.
 [[noreturn]] void read_until_memory_ends(const fs::path& file) {
   constexpr int separate = 1 << 16;  // [bytes] from here on every piece of memory counts towards the limit
   ::mallopt(M_MMAP_THRESHOLD, separate);

@@ -61,7 +61,7 @@ TEST(Film, BlurOfTwoPixels) {
   expect_honest(s);
 }
 
-/// Every line is then half of each field: which of the two pictures of the marker was first cannot be told.
+/// Every line is then half of each field: which of the two pictures of the marker was first cannot be determined.
 TEST(Film, FieldsBlendedByABlurAreRefused) {
   try {
     spoilt("blur of 2 px over woven fields", [](Image& frame, std::size_t) { frame = blurred(frame, 2.0, 2.0); });

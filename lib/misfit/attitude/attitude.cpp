@@ -39,7 +39,7 @@ void note_losses(Attitude& a, const AxisSamples& axes, const std::vector<bool>& 
   const auto gaps = std::count(even.begin(), even.end(), false);
   if (gaps > 0) a.notes.push_back(std::to_string(gaps) + " steps differ from the usual one and count as gaps");
   const std::size_t without = std::count_if(a.alpha_T.begin(), a.alpha_T.end(), [](double v) { return std::isnan(v); });
-  a.notes.push_back(count_of(without, n, "have no alpha_T, which needs seven in a row"));
+  a.notes.push_back(count_of(without, n, "have no alpha_T, which is computed from seven successive samples"));
 }
 
 // Measurement noise per sample: the track's where it knows it, else the estimate.

@@ -130,10 +130,10 @@ void note_outliers(Calibration& calibration, std::size_t points) {
 
 /// Points that do not follow the angles determine no scale.
 void check_scale(const SweepFit& fit) {
-  constexpr double least_sigmas = 3.0, least_scale = 0.1;  // px/m: the rig would be smaller than a pixel
+  constexpr double min_sigmas = 3.0, min_scale = 0.1;  // px/m: the rig would be smaller than a pixel
   const std::size_t scale = camera_parameter("K");
   const double K = camera_entry(fit.camera, scale), sigma = fit.sigma(scale);
-  if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > std::max(least_scale, least_sigmas * sigma)) return;
+  if (std::isfinite(K) && std::isfinite(sigma) && std::isfinite(fit.rss) && K > std::max(min_scale, min_sigmas * sigma)) return;
   throw RunError("the points do not follow the angles: the scale K = " + format_value(K, sigma) +
                  " px/m does not differ significantly from zero; check that points, angles and geometry belong together");
 }
@@ -168,7 +168,7 @@ Calibration calibrate_once(const Sweep& sweep, const RigGeometry& geometry, cons
   return calibration;
 }
 
-/// What was no candidate and the sweep asks for all the same: in the tests, not in the camera.
+/// Parameters that were no candidates but are significant in the sweep: in the tests, not in the camera.
 void test_disabled_parameters(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options, Calibration& calibration) {
   CalibrateOptions everything = options;
   everything.candidates = optional_camera_parameters();
@@ -181,8 +181,8 @@ void test_disabled_parameters(const Sweep& sweep, const RigGeometry& geometry, c
   for (CameraTest test : calibrate_once(sweep, geometry, everything).tests) {
     if (!test.selected || enabled(test.name)) continue;
     test.selected = false;
-    calibration.notes.push_back("the sweep asks for " + test.name + " (drop " + format_value(test.drop) +
-                                "), which is not enabled by [camera] offer");
+    calibration.notes.push_back(test.name + " is significant in the sweep (drop " + format_value(test.drop) +
+                                "), but not enabled by [camera] offer");
     calibration.tests.push_back(std::move(test));
   }
 }

@@ -13,7 +13,7 @@
 
 namespace misfit {
 
-/// Optional camera parameters that a sweep may take in, each with the parameters it frees ("image_centre": centre_y, centre_z).
+/// Optional camera parameters that may be estimated from a sweep, each with the parameters it frees ("image_centre": centre_y, centre_z).
 [[nodiscard]] const std::vector<std::string>& optional_camera_parameters();
 
 struct CalibrateOptions {

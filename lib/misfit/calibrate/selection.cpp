@@ -43,7 +43,8 @@ bool acceptable(const SelectionTask& task, const CameraTest& test, const SweepFi
   return test.p_value < task.threshold && with.determined && with.inside && with.converged;
 }
 
-// One round: tests every group that is out against `selection.fit`, and takes in the best acceptable one. False if none is.
+// One round of forward selection: tests every group not yet selected against `selection.fit` and adds the best acceptable one. False if
+// none is.
 bool free_best(const SelectionTask& task, Members& in, Selection& selection) {
   std::size_t best = in.size();
   SweepFit best_fit;

@@ -72,12 +72,12 @@ LeastSquares::Evaluate point_cost(const SweepPoint& point, double l_b, const Swe
 
 // Covariance and rank from the Jacobian at the solution. Columns are brought to length 1 first, since px, m and rad have no common size.
 void add_covariance(SweepFit& fit, const Eigen::MatrixXd& J) {
-  constexpr double least_singular_value = 1e-7;
+  constexpr double min_singular_value = 1e-7;
   const Eigen::VectorXd length = J.colwise().norm();
   if (J.rows() <= J.cols() || !(length.minCoeff() > 1e-12 * length.maxCoeff())) return;
   const Eigen::MatrixXd scaled = J * length.cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
-  if (!(svd.singularValues().minCoeff() > least_singular_value)) return;
+  if (!(svd.singularValues().minCoeff() > min_singular_value)) return;
   const Eigen::MatrixXd half = length.cwiseInverse().asDiagonal() * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
   fit.covariance = fit.sigma_px * fit.sigma_px * half * half.transpose();
   fit.determined = true;

@@ -117,8 +117,8 @@ void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
     const Estimate difference{one.value - other->second.value, std::hypot(one.sigma, other->second.sigma), one.unit};
     if (!(difference.sigma > 0.0)) continue;
     ParameterDifference d{name, a.method, b.method, difference, std::abs(difference.value) / difference.sigma, ""};
-    constexpr double worth_saying = 3.0;
-    if (d.sigmas > worth_saying) {
+    constexpr double min_sigmas = 3.0;
+    if (d.sigmas > min_sigmas) {
       d.sentence = sentence(name, {a.method, b.method}, difference, d.sigmas) + ": they cannot both be right";
       for (const Fit* fit : {&a, &b}) {
         if (differentiates(fit->method))

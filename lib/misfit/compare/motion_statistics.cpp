@@ -17,7 +17,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<double, 13> shares{0.01, 0.025, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.975, 0.99};
-constexpr std::size_t fewest = 20;  // samples that a statistic needs
+constexpr std::size_t min_samples = 20;  // samples that a statistic needs
 
 std::vector<double> finite_sorted(const std::vector<double>& values) {
   std::vector<double> out;
@@ -91,7 +91,7 @@ std::vector<double> distribution(const std::vector<double>& values) {
   const std::vector<double> sorted = finite_sorted(values);
   const Moments m = moments(sorted);
   std::vector<double> out{m.mean, m.sd};
-  for (double share : shares) out.push_back(sorted.size() < fewest ? nan : quantile(sorted, share));
+  for (double share : shares) out.push_back(sorted.size() < min_samples ? nan : quantile(sorted, share));
   return out;
 }
 
@@ -243,7 +243,7 @@ double overall_p_value(const MotionDistances& distances) {
 }
 
 void conclude_motion(SimulatedMotion& motion) {
-  constexpr double clear = 0.01 + 1e-9;
+  constexpr double significant = 0.01 + 1e-9;
   std::size_t groups = 0, numbers = 0, outside = 0;
   std::vector<std::string> departing;
   for (const MotionSeries& s : motion.series) {
@@ -251,12 +251,12 @@ void conclude_motion(SimulatedMotion& motion) {
       ++groups;
       numbers += g.numbers.size();
       outside += std::count_if(g.numbers.begin(), g.numbers.end(), [](const MotionNumber& n) { return n.outside; });
-      if (g.p_value <= clear)
+      if (g.p_value <= significant)
         departing.push_back(fmt::format("the {} of {} ({}): {}; {}", g.name, s.name, s.experiment, p_equals(g.p_value), worst_of(g)));
     }
   }
   if (groups == 0) return;
-  if (motion.p_value <= clear) {
+  if (motion.p_value <= significant) {
     motion.sentences.push_back(
         fmt::format("the fitted model does not reproduce the statistics of the measured motion: {} over {} groups of statistics of {} "
                     "simulated motions",

@@ -21,7 +21,7 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-constexpr std::size_t most_columns = 20'000;
+constexpr std::size_t max_columns = 20'000;
 
 bool is_nan_word(std::string_view text) {
   if (text.starts_with('-')) text.remove_prefix(1);
@@ -120,8 +120,8 @@ class CsvReader {
       fail(number, "fields must be separated by commas");
     const bool all_numbers = std::all_of(fields_.begin(), fields_.end(), [](std::string_view f) { return !f.empty() && parse_number(f); });
     if (all_numbers) fail(number, "no header line: the first line holds numbers, it must name the columns, as in t[s],y[m]");
-    if (fields_.size() > most_columns)
-      fail(number, std::to_string(fields_.size()) + " columns; at most " + std::to_string(most_columns) + " are possible");
+    if (fields_.size() > max_columns)
+      fail(number, std::to_string(fields_.size()) + " columns; at most " + std::to_string(max_columns) + " are possible");
     std::unordered_map<std::string, std::string> headers;  // by bare name
     for (const std::string_view field : fields_) {
       if (field.empty()) fail(number, "column " + std::to_string(table_.columns.size() + 1) + " has no name in the header");
@@ -136,7 +136,7 @@ class CsvReader {
     }
   }
 
-  /// Two units do not make two columns: which of them a name means could not be told.
+  /// Columns that differ only in their unit are refused: a name would be ambiguous.
   [[noreturn]] void refuse_twice(int line, const std::string& name, const std::string& earlier, const std::string& header) const {
     const std::string both = "'" + shown(earlier) + "' and '" + shown(header) + "'";
     fail(line, "the header names column " + (earlier == header ? "'" + shown(header) + "' twice" : "'" + shown(name) + "' twice: " + both));

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 std::string system_message(int code) { return std::generic_category().message(code); }
 
-/// Does this errno tell of the machine's state (disk, memory, limits) and not of what was asked for?
+/// Is this errno caused by the machine's state (disk, memory, limits) and not by what was asked for?
 bool of_machine(int code) {
   constexpr std::array codes{EIO, ENOSPC, EDQUOT, EMFILE, ENFILE, ENOMEM, ENOBUFS, ESTALE, ETIMEDOUT};
   return std::find(codes.begin(), codes.end(), code) != codes.end();

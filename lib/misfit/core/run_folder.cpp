@@ -59,15 +59,15 @@ Content content_from(const json& run) {
 
 /// nullopt where there is no such file (`why` empty), or it is not as misfit writes it (`why` says so).
 std::optional<Content> content_of(const fs::path& path, std::string& why) {
-  constexpr std::size_t most_words = 120;
+  constexpr std::size_t max_words = 120;
   std::error_code none;
   if (!fs::exists(path, none)) return std::nullopt;
   try {
     return content_from(json::parse(read_file(path)));
   } catch (const json::exception& error) {
-    why = "cannot be understood (" + std::string(error.what()).substr(0, most_words) + ")";
+    why = "cannot be understood (" + std::string(error.what()).substr(0, max_words) + ")";
   } catch (const InputError& error) {
-    why = "cannot be read (" + std::string(error.what()).substr(0, most_words) + ")";
+    why = "cannot be read (" + std::string(error.what()).substr(0, max_words) + ")";
   }
   return std::nullopt;
 }

@@ -12,7 +12,7 @@ using config::Key;
 using config::KeyGroup;
 using Type = config::KeyType;
 
-constexpr double most_runs = 100'000'000, most_block = 10'000'000, most_excluded = 1'000'000'000;
+constexpr double max_runs = 100'000'000, max_block = 10'000'000, max_excluded = 1'000'000'000;
 
 const std::vector<std::string> markers{"ring", "bright", "dark"};
 
@@ -128,7 +128,7 @@ KeyGroup experiment_group() {
       {.name = "video", .type = Type::file, .otherwise = "none", .meaning = "Video in which the marker is followed."},
       {.name = "columns", .type = Type::table, .otherwise = "headers are called as the signals",
        .meaning = "Signal = header of its column: { t = \"t_s\", y = \"y_V\" }."},
-      {.name = "exclude", .type = Type::integer, .fallback = "0", .least = 0, .most = most_excluded,
+      {.name = "exclude", .type = Type::integer, .fallback = "0", .least = 0, .most = max_excluded,
        .meaning = "Samples at the beginning that do not count: a transient of the rig."},
       {.name = "validation", .type = Type::file, .otherwise = "nothing is held out",
        .form = "\"last 25 %\", [t0, t1] or a file ending in .csv",
@@ -226,21 +226,22 @@ const std::vector<std::string> readings{"3 sigma", "2 sigma", "sigma", "uniform"
 
 KeyGroup uncertainty_group() {
   return {"uncertainty", "Monte Carlo over geometry, camera and mass; bootstrap, profiles, random starts (misfit uncertainty).",
-     {{.name = "runs", .type = Type::integer, .fallback = "1000", .least = 1, .most = most_runs, .meaning = "Monte Carlo runs."},
+     {{.name = "runs", .type = Type::integer, .fallback = "1000", .least = 1, .most = max_runs, .meaning = "Monte Carlo runs."},
       {.name = "perturb", .type = Type::table, .otherwise = "nothing",
        .meaning = "What is perturbed and how far: { V = \"0.5 m/s\", P_y = \"10 px\" }."},
       {.name = "readings", .type = Type::choice, .otherwise = "\"3 sigma\"", .choices = readings,
        .form = R"("3 sigma", "2 sigma", "sigma", "uniform" or table)",
-       .meaning = "What these numbers are: of a normal distribution, or the bounds of a uniform one. One for all, or a table."},
+       .meaning = "What the numbers of perturb are: 3, 2 or 1 standard deviations of a normal distribution, or the bounds of a uniform "
+                  "one. One for all, or a table."},
       {.name = "camera", .type = Type::choice, .otherwise = "not perturbed, but for what perturb names", .choices = {"calibration"},
        .meaning = "calibration: the camera's parameters too, with their joint covariance."},
       {.name = "recalibrate", .type = Type::flag, .fallback = "false",
        .meaning = "The camera is calibrated again in every run, from the sweep with the perturbed geometry."},
-      {.name = "bootstrap", .type = Type::integer, .otherwise = "no bootstrap", .least = 2, .most = most_runs,
+      {.name = "bootstrap", .type = Type::integer, .otherwise = "no bootstrap", .least = 2, .most = max_runs,
        .meaning = "Replicas of the block bootstrap, for every method."},
-      {.name = "block", .type = Type::integer, .otherwise = "from the residuals' autocorrelation", .least = 1, .most = most_block,
+      {.name = "block", .type = Type::integer, .otherwise = "from the residuals' autocorrelation", .least = 1, .most = max_block,
        .meaning = "Samples of a block of the bootstrap."},
-      {.name = "starts", .type = Type::integer, .otherwise = "none", .least = 1, .most = most_runs,
+      {.name = "starts", .type = Type::integer, .otherwise = "none", .least = 1, .most = max_runs,
        .meaning = "Random starts of every method that has a likelihood."},
       {.name = "profile", .type = Type::texts, .otherwise = "none", .meaning = "Parameters whose profile likelihood is computed."}}};
 }
@@ -250,7 +251,7 @@ std::vector<KeyGroup> perturbation_groups() {
        {{.name = "NAME", .type = Type::number, .unit = "of the number", .otherwise = "not perturbed", .least = 0.0, .above = true,
          .any = true,
          .meaning = "A name of [geometry] or [camera], a parameter, or P_y, P_z: an offset of all pixels."}}},
-      {"uncertainty.readings", "Where not all are read alike.",
+      {"uncertainty.readings", "Where not all have the same distribution.",
        {{.name = "NAME", .type = Type::choice, .fallback = "\"3 sigma\"", .choices = readings, .any = true,
          .meaning = "Of an entry of perturb."}}}};
 }

@@ -20,7 +20,7 @@ PerturbStudy read_one(const Section& perturb, const std::string& name) {
   return out;
 }
 
-/// One reading for all, or a table of those that differ from "3 sigma".
+/// One distribution for all numbers of perturb, or a table of those that differ from "3 sigma".
 void read_readings(const DescribedSection& section, UncertaintyStudy& study) {
   if (!section.has("readings")) return;
   if (!section.is_table("readings")) {

@@ -43,12 +43,12 @@ std::vector<double> positions(const Table& table, const std::string& name) {
 
 Sweep read_sweep(const std::filesystem::path& path) {
   const Table table = read_csv(path);
-  constexpr std::size_t most_rows = 5000;
-  if (table.rows() > most_rows) {
+  constexpr std::size_t max_rows = 5000;
+  if (table.rows() > max_rows) {
     throw InputError({table.source, 0, 0},
                      fmt::format("{} rows; at most {} are possible: a sweep has one row for each angle at which the rig "
                                  "stood still",
-                                 table.rows(), most_rows));
+                                 table.rows(), max_rows));
   }
   Sweep sweep;
   sweep.source = path.string();

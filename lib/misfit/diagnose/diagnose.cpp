@@ -24,7 +24,7 @@ std::string place(double value, const std::string& unit) {
   return format_value(std::round(10.0 * convert(value, unit, shown)) / 10.0) + " " + shown;
 }
 
-/// The run of neighbouring hats of one sign that says most, in words.
+/// A sentence on the most significant run of neighbouring hats of one sign.
 std::string where_it_fails(const ForceMap& map) {
   std::size_t best_from = 0, best_to = 0;
   double best = 0.0;
@@ -88,7 +88,7 @@ std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& 
   return maps;
 }
 
-/// Cells of the two quantities whose maps say most.
+/// Cells of the two quantities whose maps are most significant.
 std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
                                const std::vector<Features>& features, const std::vector<ForceMap>& maps) {
   std::vector<PairMap> out;

@@ -59,8 +59,8 @@ ScoreTest::ScoreTest(const FilterEstimate& estimate) {
     r_.segment(at, jacobian.r.size()) = jacobian.r;
     at += jacobian.r.size();
   }
-  any_ = theta.size() > 0;
-  if (!any_) return;
+  has_parameters_ = theta.size() > 0;
+  if (!has_parameters_) return;
   const GaussianPrior prior = estimate.regularised_prior();
   Eigen::MatrixXd information = J_.transpose() * J_;
   prior.add_precision(information);
@@ -69,51 +69,52 @@ ScoreTest::ScoreTest(const FilterEstimate& estimate) {
 }
 
 Eigen::VectorXd ScoreTest::adjusted_step(const Eigen::MatrixXd& C, const Eigen::VectorXd& amplitude) const {
-  if (!any_) return {};
+  if (!has_parameters_) return {};
   return information_.solve(gradient_ - J_.transpose() * (C * amplitude));
 }
 
 Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& C) const {
-  if (!any_) return C;
+  if (!has_parameters_) return C;
   return C - J_ * information_.solve(J_.transpose() * C);
 }
 
 namespace {
 
-/// Columns that the free parameters do not describe already; `independent`: the least share of one that they leave.
-std::vector<Eigen::Index> known_columns(const Eigen::MatrixXd& V, const Eigen::VectorXd& own, double& independent) {
+/// Columns that are not linear combinations of the free parameters' columns; `independent`: the smallest 1 − R² among all.
+/// `unadjusted`: diagonal of CᵀC.
+std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& V, const Eigen::VectorXd& unadjusted, double& independent) {
   constexpr double rounding = 1e-8;
-  std::vector<Eigen::Index> known;
+  std::vector<Eigen::Index> columns;
   independent = 1.0;
-  for (Eigen::Index i = 0; i < own.size(); ++i) {
-    if (!(own[i] > 0.0) || !std::isfinite(V(i, i))) continue;
-    const double share = V(i, i) / own[i];
+  for (Eigen::Index i = 0; i < unadjusted.size(); ++i) {
+    if (!(unadjusted[i] > 0.0) || !std::isfinite(V(i, i))) continue;
+    const double share = V(i, i) / unadjusted[i];
     independent = std::min(independent, share);
-    if (share > rounding) known.push_back(i);
+    if (share > rounding) columns.push_back(i);
   }
-  if (known.empty()) independent = 0.0;
-  return known;
+  if (columns.empty()) independent = 0.0;
+  return columns;
 }
 
-/// sᵀ V⁻¹ s with amplitudes V⁻¹ s over the known columns, in the directions of the correlation matrix that are more than rounding.
-void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::vector<Eigen::Index>& known, ScoreResult& out) {
-  const Eigen::MatrixXd A = V(known, known);
+/// sᵀ V⁻¹ s with amplitudes V⁻¹ s over the given columns, in the eigenvectors of the correlation matrix whose eigenvalue is not rounding.
+void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::vector<Eigen::Index>& columns, ScoreResult& out) {
+  const Eigen::MatrixXd A = V(columns, columns);
   const Eigen::VectorXd scale = A.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = scale.asDiagonal() * A * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  const Eigen::VectorXd turned = eigen.eigenvectors().transpose() * (scale.asDiagonal() * Eigen::VectorXd(s(known)));
+  const Eigen::VectorXd rotated = eigen.eigenvectors().transpose() * (scale.asDiagonal() * Eigen::VectorXd(s(columns)));
   Eigen::VectorXd amplitude = Eigen::VectorXd::Zero(A.rows()), variance = Eigen::VectorXd::Zero(A.rows());
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
-    constexpr double known_direction = 1e-6;  // of the correlation matrix: below, columns are multiples of each other
+    constexpr double min_eigenvalue = 1e-6;  // below, columns are linearly dependent
     const double value = eigen.eigenvalues()[i];
-    if (value < known_direction) continue;
+    if (value < min_eigenvalue) continue;
     ++out.dof;
-    out.chi2 += turned[i] * turned[i] / value;
-    amplitude += eigen.eigenvectors().col(i) * (turned[i] / value);
+    out.chi2 += rotated[i] * rotated[i] / value;
+    amplitude += eigen.eigenvectors().col(i) * (rotated[i] / value);
     variance += eigen.eigenvectors().col(i).cwiseAbs2() / value;
   }
-  out.amplitude(known) = scale.cwiseProduct(amplitude);
-  out.sigma(known) = scale.cwiseProduct(variance.cwiseSqrt());
+  out.amplitude(columns) = scale.cwiseProduct(amplitude);
+  out.sigma(columns) = scale.cwiseProduct(variance.cwiseSqrt());
 }
 
 }  // namespace
@@ -123,8 +124,8 @@ ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors
   out.amplitude = out.sigma = Eigen::VectorXd::Zero(C.cols());
   Eigen::MatrixXd V = C.transpose() * C;
   Eigen::VectorXd s = -C.transpose() * r_;
-  const Eigen::VectorXd own = V.diagonal();
-  if (any_) {
+  const Eigen::VectorXd unadjusted = V.diagonal();
+  if (has_parameters_) {
     const Eigen::MatrixXd cross = J_.transpose() * C;
     const Eigen::MatrixXd solved = information_.solve(cross);
     V -= cross.transpose() * solved;
@@ -134,8 +135,8 @@ ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors
     V.diagonal() += priors->precision;
     s += priors->gradient(Eigen::VectorXd::Zero(s.size()));
   }
-  const std::vector<Eigen::Index> known = known_columns(V, own, out.independent);
-  if (!known.empty()) solve_score(V, s, known, out);
+  const std::vector<Eigen::Index> columns = independent_columns(V, unadjusted, out.independent);
+  if (!columns.empty()) solve_score(V, s, columns, out);
   return out;
 }
 

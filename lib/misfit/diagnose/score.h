@@ -12,7 +12,7 @@ namespace misfit {
 
 struct ScoreResult {
   double chi2 = 0.0;          ///< sᵀ V⁻¹ s: also the predicted drop, one Gauss–Newton step [R]
-  int dof = 0;                ///< columns that the data know of
+  int dof = 0;                ///< rank of the columns' information, free parameters projected out
   Eigen::VectorXd amplitude;  ///< one Gauss–Newton step; 0 where unknown
   Eigen::VectorXd sigma;      ///< of each
   double independent = 0.0;   ///< smallest 1 − R² of a column on the free ones: below 0.01 the model already describes it
@@ -26,26 +26,26 @@ class ScoreTest {
   [[nodiscard]] Eigen::Index rows() const { return r_.size(); }
   /// C: rows × columns, ∂(predicted − measured)/√S by each added coefficient at its off value.
   [[nodiscard]] ScoreResult test(const Eigen::MatrixXd& C, const ColumnPriors* priors = nullptr) const;
-  /// What one Gauss–Newton step over all of them moves the free parameters by, the added coefficients going to `amplitude`.
+  /// Change of the free parameters in one joint Gauss–Newton step in which the added coefficients change from 0 to `amplitude`.
   [[nodiscard]] Eigen::VectorXd adjusted_step(const Eigen::MatrixXd& C, const Eigen::VectorXd& amplitude) const;
-  /// C − J I22⁻¹ Jᵀ C …: what of the columns the free parameters cannot imitate (for correlations between candidates).
+  /// C − J I22⁻¹ Jᵀ C: the part of the columns orthogonal to those of the free parameters (for correlations between candidates).
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& C) const;
 
  private:
   RowMatrix J_;
   Eigen::VectorXd r_, gradient_;  ///< of log density with priors, by the free parameters
   Eigen::LDLT<Eigen::MatrixXd> information_;
-  bool any_ = false;
+  bool has_parameters_ = false;
 };
 
-/// Columns for forces on dynamic ports that are given functions of the filter's own path.
+/// Columns for forces on dynamic ports that are given functions of the filtered states.
 class ForceSensitivity {
  public:
   explicit ForceSensitivity(const FilterEstimate& estimate);
 
   /// Quantities at the filtered state of each sample, all experiments one after the other (0 before the first used sample).
   [[nodiscard]] const RowMatrix& quantities() const { return quantities_; }
-  /// Quantities at the end of the step from each sample, as predicted: a force over the step must know nothing of the next measurement.
+  /// Quantities predicted at the end of the step from each sample: a force over the step must not depend on the next measurement.
   [[nodiscard]] const RowMatrix& quantities_ahead() const { return ahead_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<bool>& used() const { return used_; }

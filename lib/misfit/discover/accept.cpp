@@ -15,7 +15,7 @@ constexpr double tied_drops = 6.0;  // refitted drops nearer than this do not di
 
 std::string label(const Candidate& c) { return effect_at(c.effect, c.roles); }
 
-/// Scores of other effects in the model that holds a refitted one.
+/// Score tests of other effects in the model to which a refitted one has been added.
 class ConditionalScores {
  public:
   ConditionalScores(const Refit& in, const SearchContext& context)
@@ -45,13 +45,14 @@ class ConditionalScores {
   ScoreTest score_;
 };
 
-/// Once the refitted effect is in, has `other` no significant score? Not so where the two cannot be in one model: that says nothing.
+/// Has `other` no significant score in the model with the refitted effect? False where the two cannot be in one model: nothing is tested.
 bool adds_nothing(const ConditionalScores& in, const RankedCandidate& other, double p_accept) {
   const auto found = in.score(other);
   return found && (found->result.dof == 0 || !(chi_square_tail(found->result.chi2, found->result.dof) < p_accept));
 }
 
-/// The other known effect with the least likely score in the model that holds `in`, be it silent before, if it is significant there.
+/// The other known effect with the lowest p in the model that holds `in`, whether or not it was significant without `in`; none if it is
+/// not significant there.
 struct SecondEffect {
   const RankedCandidate* entry = nullptr;
   ScreeningResult score;
@@ -70,7 +71,7 @@ SecondEffect second_effect_given(const RankedCandidate& in, const ConditionalSco
   return best;
 }
 
-/// Is `in` still needed beside the other? 2 [log L(both) − log L(other alone)], as any refitted drop family-wise.
+/// Is `in` significant beside the other? Drop 2 [log L(both) − log L(other alone)] with its family-wise p, as for any refitted drop.
 bool needed_given(const RankedCandidate& in, const Refit& both, const RankedCandidate& other, const SearchContext& context) {
   std::optional<Refit> fitted;
   if (!other.refit) fitted = refit({context.estimate, context.experiments, context.registry, context.options.threads}, *other.screening);
@@ -86,7 +87,7 @@ CandidateModel with_quantities(CandidateModel candidate_model, const std::vector
   return candidate_model;
 }
 
-/// Step 3, for one alias: another known effect with which nothing remains after `in`.
+/// Step 3 of accept_best(), for one alias: another known effect that removes the lack of fit which `in` leaves.
 const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked,
                                          const SearchContext& context) {
   const DiscoverOptions& options = context.options;
@@ -99,13 +100,13 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   const std::vector<int>&strengths = in.screening->candidate_model->strengths, &others = second.score.candidate_model->strengths;
   if (ends_at_bound(model, strengths) || ends_at_bound(model, others)) return nullptr;
   if (!needed_given(in, both, *second.entry, context)) return nullptr;
-  // Measured against the drop of `in` alone, as what it left by itself was: the second is added to explain just that remainder, and
-  // the better it does the less may be left, not the more.
+  // The threshold stays a share of the drop of `in` alone, as in step 2: with the drop of both, a better second effect would allow more
+  // lack of fit.
   const CandidateModel reads = with_quantities(*second.score.candidate_model, in.screening->candidate_model->quantities);
   return remaining_lack_of_fit(both.estimate, reads, in.refit->drop, options) ? nullptr : second.entry;
 }
 
-/// Step 1: why it cannot be accepted; empty: nothing speaks against it by itself.
+/// Step 1: the reason why it cannot be accepted; empty if there is none.
 std::string refusal(RankedCandidate& e, const SearchContext& context) {
   Candidate& c = e.candidate;
   if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
@@ -115,7 +116,7 @@ std::string refusal(RankedCandidate& e, const SearchContext& context) {
   return *c.held_out_gain > 0.0 ? "" : "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
 }
 
-/// Step 5: groups the front with what these data cannot distinguish from it.
+/// Step 5: groups the best candidate with those that these data cannot distinguish from it.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   if (ranked.empty() || !ranked.front().refit) return;
   RankedCandidate& best = ranked.front();
@@ -140,29 +141,30 @@ void explain_others(std::vector<RankedCandidate>& ranked) {
   for (std::size_t k = 1; k < ranked.size(); ++k) {
     Candidate& other = ranked[k].candidate;
     if (!other.why.empty() || !ranked[k].refit) continue;
-    const bool alike = std::find(other.group.begin(), other.group.end(), label(best)) != other.group.end();
-    const bool more = ranked[k].refit->drop > ranked.front().refit->drop;
-    other.why = alike  ? "these data cannot distinguish it from " + label(best)
-                : more ? "less significant than " + label(best) + " for its number of parameters; tested again with that in the model"
-                       : "explains less than " + label(best) + "; tested again with that in the model";
+    const bool indistinguishable = std::find(other.group.begin(), other.group.end(), label(best)) != other.group.end();
+    const bool larger_drop = ranked[k].refit->drop > ranked.front().refit->drop;
+    other.why = indistinguishable ? "these data cannot distinguish it from " + label(best)
+                : larger_drop ? "less significant than " + label(best) + " for its number of parameters; tested again once that is added"
+                              : "explains less than " + label(best) + "; tested again once that is added";
   }
 }
 
 using Place = std::vector<RankedCandidate>::iterator;
 
-/// Holds out by itself, but leaves a curve of what it reads: it may only imitate what is missing.
+/// A candidate that step 1 does not refuse but with which a curve of a quantity that it reads is still significant: it may only imitate the
+/// missing effect.
 struct Alias {
   Place at;
-  UnknownCurve left;
+  UnknownCurve remaining;
 };
 
-/// What is accepted, or the end of the list; with the second effect that it needs, if it leaves something by itself.
+/// The accepted candidate, or the end of the list; and the second effect that explains what it leaves, if it leaves something.
 struct Choice {
   Place at;
   const RankedCandidate* second = nullptr;
 };
 
-/// Steps 1 and 2: the first that is not refused and leaves nothing. Those before it that are not refused are aliases.
+/// Steps 1 and 2: the first candidate that is not refused and without lack of fit. Those before it that are not refused are aliases.
 Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vector<Alias>& aliases, const SearchContext& context) {
   std::vector<int> read;  // by the aliases
   for (auto e = ranked.begin(); e != ranked.end() && e->refit; ++e) {
@@ -171,15 +173,15 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
     const CandidateModel& candidate_model = *e->screening->candidate_model;
     const auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), e->refit->drop, context.options);
     if (!left) return {e};
-    e->candidate.why = "lack of fit remains: with it in the model an unknown " + left->port + "(" + left->quantity + ") still has " +
-                       p_equals(left->p_value);
+    e->candidate.why = "lack of fit remains: with it in the model an unknown curve " + left->port + "(" + left->quantity +
+                       ") is still significant, " + p_equals(left->p_value);
     aliases.push_back({e, *left});
     read.insert(read.end(), candidate_model.quantities.begin(), candidate_model.quantities.end());
   }
   return {ranked.end()};
 }
 
-/// Step 3: the first alias with which a second effect leaves nothing.
+/// Step 3: the first alias whose lack of fit a second effect removes.
 Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases, const SearchContext& context) {
   for (const Alias& alias : aliases) {
     if (const RankedCandidate* second = explaining_effect(*alias.at, ranked, context)) return {alias.at, second};
@@ -196,17 +198,17 @@ void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   std::rotate(ranked.begin(), choice.at, choice.at + 1);
 }
 
-/// What the first alias leaves, else what a significant front that was refused leaves.
-std::optional<UnknownCurve> left_by_the_best(const std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases,
-                                             const SearchContext& context) {
-  if (!aliases.empty()) return aliases.front().left;
+/// The curve that remains with the first alias, else with the best candidate if that is significant but was refused.
+std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases,
+                                                const SearchContext& context) {
+  if (!aliases.empty()) return aliases.front().remaining;
   if (ranked.empty() || !ranked.front().refit || !(ranked.front().candidate.p_value < context.options.p_accept)) return std::nullopt;
   const RankedCandidate& best = ranked.front();
   return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, best.refit->drop, context.options);
 }
 
-/// Step 7: what depends on a quantity in a way that no named effect has. What the best candidate leaves describes it better than an unknown
-/// curve if that candidate explains more than the curve does.
+/// Step 7: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if
+/// that candidate is more significant than any unknown curve, else the most significant unknown curve.
 std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>& ranked, const std::optional<UnknownCurve>& left,
                                              const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
   const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
@@ -229,7 +231,7 @@ std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, con
   find_groups(ranked, context);                 // 5
   if (accepted) explain_others(ranked);         // 6
   if (accepted) return std::nullopt;
-  return unexplained_force(ranked, left_by_the_best(ranked, aliases, context), unknown, context);  // 7
+  return unexplained_force(ranked, remaining_with_best(ranked, aliases, context), unknown, context);  // 7
 }
 
 }  // namespace misfit

@@ -31,17 +31,18 @@ struct SearchContext {
 /// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, one of its strengths ends
 ///    at a bound, or the held-out measurements do not become more likely. The first reason that holds is noted.
 /// 2. Unknown curves are screened again with the candidate in the model (`remaining_lack_of_fit`). If none remains of a quantity that the
-///    candidate, or an alias before it, reads, it is accepted: the first such in the list. Else it is an alias of what is missing.
-/// 3. If every one that is not refused is an alias: accepted is the first with which a second known effect leaves nothing, as long as each
-/// is
+///    candidate, or an alias before it, reads, it is accepted: the first such in the list. Else it is an alias: an effect that may only
+///    imitate the missing one.
+/// 3. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, if each is
 ///    needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
-/// 4. The accepted one comes to the front of the list.
-/// 5. The front is grouped with what these data cannot distinguish from it (`find_groups`): a refitted drop within 6, and neither has a
-///    significant score once the other is in the model.
+/// 4. The accepted one becomes the first of the list.
+/// 5. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 6, and neither has
+///    a significant score once the other is in the model.
 /// 6. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
-/// 7. Else what remains may depend on a quantity in a way that no named effect has (`unexplained_force`): what the first alias, or a
-///    significant front that was refused, leaves, if the front has a lower p than the best unknown curve; else that curve, if its
-///    family-wise p is below p_accept and no refitted front has a lower p. That is returned.
+/// 7. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
+///    remains with the first alias, or with the best candidate if that is significant but was refused, provided that the best candidate has
+///    a lower p than every unknown curve; else the best unknown curve, if its family-wise p is below p_accept and no refitted first
+///    candidate has a lower p.
 [[nodiscard]] std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                                      const SearchContext& context);
 

@@ -14,8 +14,8 @@ void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const 
   for (const auto& s : screening) {
     if (s.candidate_model->family != "sensor" || !s.candidate_model->has_priors || !s.runs) continue;
     const ScoreResult free = score.test(s.columns);
-    constexpr double good_part = 0.4;
-    if (free.chi2 < good_part * out.candidates.front().score) continue;
+    constexpr double min_share = 0.4;  // of the accepted effect's chi2
+    if (free.chi2 < min_share * out.candidates.front().score) continue;
     std::string numbers, allowed;
     for (std::size_t i = 0; i < s.candidate_model->strengths.size(); ++i) {
       const Parameter& p = s.candidate_model->model.parameters[s.candidate_model->strengths[i]];
@@ -39,8 +39,8 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
     curve.p_value = sidak(curve.p_value, static_cast<double>(after.size()));
     const auto& read = candidate_model.quantities;
     const bool reads = std::find(read.begin(), read.end(), curve.quantity_index) != read.end();
-    constexpr double good_part = 0.2;
-    if (!reads || curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < good_part * drop) continue;
+    constexpr double min_share = 0.2;  // of the candidate's drop
+    if (!reads || curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < min_share * drop) continue;
     if (!worst || curve.log_p < worst->log_p) worst = curve;
   }
   return worst;

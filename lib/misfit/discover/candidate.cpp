@@ -9,9 +9,9 @@
 namespace misfit {
 
 Candidate named_candidate(const ScreeningResult& s, double families) {
-  constexpr double described_below = 0.01;           // 1 − R² of the columns with those of the free parameters
-  constexpr double rounding_of_independence = 1e-6;  // what is left of the columns then is rounding
-  constexpr double p_beyond_doubt = 1e-4;
+  constexpr double described_below = 0.01;  // 1 − R² of the columns with those of the free parameters
+  constexpr double rounding = 1e-6;         // what is left of the columns then is rounding
+  constexpr double clearly_significant = 1e-4;
   const CandidateModel& candidate_model = *s.candidate_model;
   Candidate c;
   c.effect = candidate_model.effect;
@@ -25,9 +25,9 @@ Candidate named_candidate(const ScreeningResult& s, double families) {
     return c;
   }
   c.p_value = sidak(s.p_value, families);
-  // A little of a strong effect can be more than the data can miss: that is no imitation.
-  const bool hidden_in_it = s.result.independent < rounding_of_independence || !(c.p_value < p_beyond_doubt);
-  c.described = s.result.independent < described_below && hidden_in_it && !candidate_model.has_priors;
+  // Of a very significant effect even the 1 % that the free parameters cannot describe is seen in the data: it is tested.
+  const bool could_be_imitated = s.result.independent < rounding || !(c.p_value < clearly_significant);
+  c.described = s.result.independent < described_below && could_be_imitated && !candidate_model.has_priors;
   for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i) {
     const Parameter& p = candidate_model.model.parameters[candidate_model.strengths[i]];
     const Eigen::Index k = i;
@@ -45,7 +45,7 @@ Candidate named_candidate(const ScreeningResult& s, double families) {
 std::string what_was_tried(const ScreeningResult& s) {
   std::string out = effect_at(s.candidate_model->effect, s.candidate_model->roles) + " (" + s.candidate_model->family +
                     "): " + std::to_string(s.cells) + (s.cells == 1 ? " cell" : " cells") + ", " +
-                    format_value(std::round(s.cells_effective)) + " effective";
+                    format_value(std::round(s.cells_effective)) + " effective tests";
   const FrequencyGrid& scanned = s.frequencies;
   if (scanned.count == 0) return out;
   const double last = scanned.at(scanned.count - 1);

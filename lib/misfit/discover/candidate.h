@@ -4,11 +4,12 @@
 
 namespace misfit {
 
-/// What the screen says of an effect, as a candidate among so many families: score, p-value, strengths after one step, and the shapes of
+/// Screening result of an effect as a candidate among `families`: score, p-value, strengths after one Gauss–Newton step, and the shapes of
 /// its best cell (without sigma), where a refit would start.
 [[nodiscard]] Candidate named_candidate(const ScreeningResult& screening, double families);
 
-/// "vortex_shedding (physics): 8 cells, 700 effective, 0.2 to 12 Hz", and above which frequency it was not looked for where that is so.
+/// "vortex_shedding (physics): 8 cells, 700 effective tests, 0.2 to 12 Hz", and above which frequency it was not looked for where that is
+/// so.
 [[nodiscard]] std::string what_was_tried(const ScreeningResult& screening);
 
 /// The same of an unknown curve.

@@ -186,9 +186,8 @@ Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const Ca
   return out;
 }
 
-/// A sensor effect turns or shifts what the states mean, and the gains with them: held gains would take their mismatch for information (a
-/// camera that rolls looked nine times better known than it is, lens distortion three times). Differences of whole runs, the gains free to
-/// follow.
+/// A sensor effect changes what the states mean, and with them the Kalman gains: with gains held the information is overestimated (sigma of
+/// a camera roll nine times too small, of lens distortion three times). Hence differences of whole filter runs, gains included.
 Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
   FilterRunner runner(forced, false);
   std::vector<double> values = forced.model.values();

@@ -9,7 +9,7 @@
 
 namespace misfit {
 
-/// An effect put to the model as a question: its strengths are free and 0, everything else is held; shapes stand at one of the cells.
+/// A candidate effect assembled into the model: its strengths are free and 0, everything else is held; shapes have the values of a cell.
 struct CandidateModel {
   std::string effect, family;                ///< family: "physics", "generic", "sensor"
   std::map<std::string, std::string> roles;  ///< as a study would bind them; empty: the defaults

@@ -60,7 +60,7 @@ class Search {
   }
 
  private:
-  /// Of the time that a search takes, about: measured on 79 s of flight.
+  /// Approximate shares of a search's time, measured on 79 s of flight.
   static constexpr double end_of_screen = 0.45, end_of_curves = 0.5, end_of_refits = 0.9;
 
   /// Progress of a part of the search that goes from one share of the whole to another.
@@ -95,7 +95,7 @@ class Search {
     });
   }
 
-  /// All whose predicted drop is above half the best, if the screen says that there is anything.
+  /// Refits all whose predicted drop is above half of the best, if any candidate is significant in the screening.
   void refit_best() {
     double best = 0.0;
     for (const auto& e : ranked_) {
@@ -105,7 +105,7 @@ class Search {
     const auto worth_it = [&](const RankedCandidate& e) {
       return !e.candidate.described && e.candidate.p_value <= 5.0 * options_.p_accept && e.candidate.predicted_drop >= 0.5 * best;
     };
-    const std::size_t most = options_.most_refits;
+    const std::size_t most = options_.max_refits;
     const std::size_t count = std::min<std::size_t>(most, std::count_if(ranked_.begin(), ranked_.end(), worth_it));
     std::vector<RankedCandidate*> chosen;
     std::vector<const ScreeningResult*> effects;

@@ -24,7 +24,7 @@ struct Even {
 /// No places: it is not evenly sampled, or has so many gaps that the transform would be mostly zeros.
 Even even_places(const std::vector<double>& t, double highest) {
   constexpr double largest_phase_error = 0.01;  // [rad]: a line loses half of its square of its power
-  constexpr double most_grid_steps_per_sample = 8.0;
+  constexpr double max_grid_steps_per_sample = 8.0;
   Even out;
   if (t.size() < 3) return out;
   std::vector<double> steps;
@@ -34,7 +34,7 @@ Even even_places(const std::vector<double>& t, double highest) {
   std::vector<Eigen::Index> place = {0};
   for (const double h : steps) {
     last += std::llround(std::min(h / usual, 1e9));
-    if (last == place.back() || static_cast<double>(last) > most_grid_steps_per_sample * static_cast<double>(steps.size())) return out;
+    if (last == place.back() || static_cast<double>(last) > max_grid_steps_per_sample * static_cast<double>(steps.size())) return out;
     place.push_back(last);
   }
   const double step = length_of(t) / static_cast<double>(last);
@@ -88,8 +88,8 @@ FrequencyGrid frequency_grid(const SampleTimes& times, double from, double to, s
   for (const auto& t : times) {
     if (even_places(t, grid.wanted).place.empty()) uneven += t.size();
   }
-  constexpr double most_rotations = 4e9;  // some 10 s of work
-  const double affordable = most_rotations / static_cast<double>(std::max<std::size_t>(uneven * series, 1));
+  constexpr double max_rotations = 4e9;  // some 10 s of work
+  const double affordable = max_rotations / static_cast<double>(std::max<std::size_t>(uneven * series, 1));
   grid.count = static_cast<std::size_t>(std::clamp((grid.wanted - grid.first) / grid.step, 0.0, affordable));
   return grid;
 }

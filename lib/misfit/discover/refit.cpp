@@ -25,16 +25,16 @@ std::vector<Penalty> same_roughness(const Model& model, const FilterEstimate& fr
   return out;
 }
 
-/// log prior of the effect being off: its strengths at 0.
+/// log prior density at all strengths 0 (effect off).
 double prior_of_off(const CandidateModel& candidate_model) {
   return candidate_model.priors.log_density(Eigen::VectorXd::Zero(candidate_model.priors.mean.size()));
 }
 
-/// What exact derivatives say the objective lacks of its maximum: to be added where the search ended at one. Far from it a Newton step
-/// promises whatever the curvature there says.
+/// Rise of the objective that the Newton decrement of the exact derivatives predicts; 0 where the search has not converged: far from the
+/// maximum the decrement means nothing.
 double still_to_gain(const FilterEstimate& estimate) { return estimate.converged ? estimate.newton_decrement.value_or(0.0) : 0.0; }
 
-/// A maximum, and of two the higher.
+/// Converged before not converged, then the higher objective.
 bool better(const FilterEstimate& a, const FilterEstimate& b) {
   return a.converged != b.converged ? a.converged : a.objective > b.objective;
 }
@@ -72,7 +72,7 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
     const int column = place_of(free, at), strength = place_of(candidate_model.strengths, at);
     const bool known = column >= 0 && estimate.covariance.size() > 0;
     double sigma = known ? std::sqrt(std::max(estimate.covariance(column, column), 0.0)) : 0.0;
-    // With the gains held the covariance believes too much of a sensor effect (sensitivity_columns): the screen's is from whole runs.
+    // With Kalman gains held the covariance of a sensor effect is too small (sensitivity_columns); screening uses whole runs.
     const bool screened = strength >= 0 && strength < screening.result.sigma.size();
     if (candidate_model.family == "sensor" && screened) sigma = screening.result.sigma[strength];
     const Parameter& p = estimate.model.parameters[at];

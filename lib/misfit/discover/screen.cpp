@@ -57,8 +57,8 @@ double neighbour(const CandidateModel& candidate_model, std::size_t shape, doubl
   return best;
 }
 
-/// Looks between the best cell and its neighbours, twice as finely each time: a shape between two cells would otherwise seem weaker than
-/// it is.
+/// Tests values between the best cell and its neighbours, halving the distance each time: the score of a shape between two cells is lower
+/// at the cells.
 void refine_cell(const FilterEstimate& estimate, const ScoreTest& score, ScreeningResult& best) {
   const CandidateModel& candidate_model = *best.candidate_model;
   const std::vector<double> grid = best.cell;
@@ -84,10 +84,10 @@ void refine_cell(const FilterEstimate& estimate, const ScoreTest& score, Screeni
 
 /// The strongest of the lines, as frequencies.
 std::vector<double> peaks(const FrequencyGrid& grid, const std::vector<double>& power) {
-  constexpr std::size_t most_frequencies = 8;
+  constexpr std::size_t max_frequencies = 8;
   std::vector<std::size_t> order(grid.count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::ptrdiff_t first = std::min(grid.count, most_frequencies);
+  const std::ptrdiff_t first = std::min(grid.count, max_frequencies);
   std::partial_sort(order.begin(), order.begin() + first, order.end(),
                     [&](std::size_t a, std::size_t b) { return power[a] != power[b] ? power[a] > power[b] : a < b; });
   std::vector<double> out;
@@ -172,9 +172,9 @@ std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<Can
       best.cells_effective = std::max(0.5 * static_cast<double>(frequencies[s].count), 1.0);  // two steps of a half width each are one line
     }
     if (!best.runs || best.result.dof == 0) return;
-    constexpr double worth_refining = 0.1;
+    constexpr double max_p_refined = 0.1;
     if (!candidate_models[s].shapes.empty() &&
-        sidak(chi_square_tail(best.result.chi2, best.result.dof), best.cells_effective) < worth_refining)
+        sidak(chi_square_tail(best.result.chi2, best.result.dof), best.cells_effective) < max_p_refined)
       refine_cell(work.estimate, work.score, best);
     best.log_p = log_score_tail(candidate_models[s], best.result.chi2);
     best.p_value = sidak(std::exp(best.log_p), best.cells_effective);

@@ -16,7 +16,7 @@ struct CellScore {
 [[nodiscard]] CellScore score_cell(const FilterEstimate& estimate, const ScoreTest& score, const CandidateModel& candidate_model,
                                    const std::vector<double>& at);
 
-/// What the score test says of a candidate model, at its best cell.
+/// Result of the score test of a candidate model, at its best cell.
 struct ScreeningResult {
   const CandidateModel* candidate_model = nullptr;
   std::vector<double> cell;  ///< shapes, then the frequency if it has one

@@ -130,18 +130,20 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
     if (wanted.size() > 1 && std::find(wanted.begin(), wanted.end(), c.effect) != wanted.end()) c.group = wanted;
   }
   const std::string disagreement =
-      "the calibration sweep asks for " + join_words(wanted) + ", which the camera of this study does not have";
+      "the calibration sweep shows significant " + join_words(wanted) + ", which the camera of this study does not have";
   const std::string flight = physics_evidence(out, p_accept);
   for (auto& c : out.candidates) {
     if (!c.accepted) continue;
     c.accepted = false;
-    c.why = "the calibration sweep asks for " + join_words(wanted) + ": recalibrate with them enabled, then rerun discover (" + c.why + ")";
+    c.why = "the calibration sweep shows significant " + join_words(wanted) + ": recalibrate with them enabled, then rerun discover (" +
+            c.why + ")";
   }
   if (flight.empty()) {
     out.verdict = "The camera model is incomplete: " + disagreement + ". Recalibrate with them enabled, then rerun discover.";
   } else {
-    out.verdict = "Sweep and flight disagree: " + disagreement + ", and the flight gives evidence of " + flight +
-                  ". Recalibrate with them enabled, then rerun discover: a wrong camera can look like physics.";
+    out.verdict =
+        "Sweep and flight disagree: " + disagreement + ", and the flight gives evidence of " + flight +
+        ". Recalibrate with them enabled, then rerun discover: the error of a wrong camera model can be described by a physical effect.";
   }
 }
 

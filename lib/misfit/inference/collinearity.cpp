@@ -36,10 +36,10 @@ std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& 
     for (Eigen::Index i = 0; i < size; ++i) c[i] = model.parameters[curve.first + i].value;
     Eigen::MatrixXd inverse;
     if (!invert_scaled(covariance.block(first, first, size, size), inverse)) continue;
-    const Eigen::VectorXd towards = inverse * c;
-    if (!(towards.dot(c) > 0.0)) continue;
+    const Eigen::VectorXd weighted = inverse * c;
+    if (!(weighted.dot(c) > 0.0)) continue;
     Direction scale{"the scale of " + curve.name, "-", 1.0, Eigen::VectorXd::Zero(covariance.rows())};
-    scale.weights.segment(first, size) = towards / towards.dot(c);
+    scale.weights.segment(first, size) = weighted / weighted.dot(c);
     out.push_back(std::move(scale));
   }
   return out;
@@ -47,31 +47,31 @@ std::vector<Direction> directions_of(const Model& model, const Eigen::MatrixXd& 
 
 std::string percent(double share) {
   const double value = 100.0 * share;
-  constexpr double least = 0.05;  // what one digit shows
-  if (value < least) return "better than 0.1 %";
+  constexpr double smallest_shown = 0.05;
+  if (value < smallest_shown) return "better than 0.1 %";
   return format_value(value < 10.0 ? std::round(10.0 * value) / 10.0 : std::round(value)) + " %";
 }
 
-/// How well it is known: as a share of its value, unless that is lost in it.
-std::string known_to(const Direction& d) {
+/// Its sigma: relative to its value unless it exceeds that.
+std::string sigma_text(const Direction& d) {
   return d.sigma < std::abs(d.value) ? percent(d.sigma / std::abs(d.value)) : "± " + in_display_unit(d.sigma, d.unit);
 }
 
 /// Two directions and their correlation.
 std::string pair_in_words(const Direction& one, const Direction& other, double correlation) {
   const std::string &first = one.name, &second = other.name;
-  constexpr double alike = 1.25;
+  constexpr double max_ratio = 1.25;
   const bool known = one.sigma < std::abs(one.value) && other.sigma < std::abs(other.value);
   const double a = known ? one.sigma / std::abs(one.value) : 1.0, b = known ? other.sigma / std::abs(other.value) : 1.0;
-  const bool even = known && a < alike * b && b < alike * a;
+  const bool equally_uncertain = known && a < max_ratio * b && b < max_ratio * a;
   const double together = std::sqrt(std::max(a * a + b * b - 2.0 * std::abs(correlation) * a * b, 0.0));
-  if (even) {
+  if (equally_uncertain) {
     const std::string kind = correlation > 0.0 ? "ratio" : "product";
     return first + " and " + second + " are nearly collinear: their " + kind + " is known to " + percent(together) +
            ", individually they are known only to " + percent(a) + " and " + percent(b);
   }
   return first + " and " + second + " are correlated (correlation " + format_value(std::round(1000.0 * correlation) / 1000.0) +
-         "): separately they are known only to " + known_to(one) + " and " + known_to(other);
+         "): separately they are known only to " + sigma_text(one) + " and " + sigma_text(other);
 }
 
 std::string group_in_words(const std::vector<std::string>& names) {
@@ -89,22 +89,22 @@ void report_collinear(std::vector<Direction> all, const Eigen::MatrixXd& covaria
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
   if (solver.info() != Eigen::Success) return;
   for (Eigen::Index i = 0; i < n; ++i) all[i].sigma = sigma[i];
-  constexpr double collinear = 0.02, least_share = 0.25;  // eigenvalue of the correlation matrix; of the largest entry of its vector
-  constexpr double least_relative_sigma = 0.05;
+  constexpr double collinear = 0.02, min_share = 0.25;  // eigenvalue of the correlation matrix; of the largest entry of its vector
+  constexpr double min_relative_sigma = 0.05;
   for (Eigen::Index k = 0; k < n && solver.eigenvalues()[k] < collinear; ++k) {
     const Eigen::VectorXd v = solver.eigenvectors().col(k);
     std::vector<std::string> names;
     std::vector<double> relative;
     std::vector<Eigen::Index> places;
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (std::abs(v[i]) < least_share * v.cwiseAbs().maxCoeff()) continue;
+      if (std::abs(v[i]) < min_share * v.cwiseAbs().maxCoeff()) continue;
       const Direction& d = all[i];
       names.push_back(d.name);
       relative.push_back(d.sigma / std::max(std::abs(d.value), 1e-300));
       places.push_back(i);
     }
-    if (names.size() < 2 || *std::max_element(relative.begin(), relative.end()) < least_relative_sigma) continue;
-    if (names.size() > 2) {  // two directions in which the same parameters are weak are one thing to say
+    if (names.size() < 2 || *std::max_element(relative.begin(), relative.end()) < min_relative_sigma) continue;
+    if (names.size() > 2) {  // two weak directions of the same parameters give one warning
       const std::string words = group_in_words(names);
       if (std::find(fit.warnings.begin(), fit.warnings.end(), words) == fit.warnings.end()) fit.warnings.push_back(words);
       continue;
@@ -117,9 +117,9 @@ void report_collinear(std::vector<Direction> all, const Eigen::MatrixXd& covaria
 
 /// The bound at which a parameter ended, if it did.
 std::optional<double> bound_reached(const Parameter& p) {
-  constexpr double close = 1e-6;
+  constexpr double tolerance = 1e-6;
   for (const double bound : {p.lower, p.upper}) {
-    if (std::isfinite(bound) && std::abs(p.value - bound) <= close * p.scale) return bound;
+    if (std::isfinite(bound) && std::abs(p.value - bound) <= tolerance * p.scale) return bound;
   }
   return std::nullopt;
 }
@@ -136,8 +136,8 @@ void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance,
     const Eigen::Index at = c;
     if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
     const double sigma = std::sqrt(covariance(at, at));
-    constexpr double prior_alone = 0.95;  // of its sigma
-    if (p.prior_sigma && sigma > prior_alone * *p.prior_sigma) {
+    constexpr double min_share_of_prior = 0.95;
+    if (p.prior_sigma && sigma > min_share_of_prior * *p.prior_sigma) {
       prior_only += (prior_only.empty() ? "" : ", ") + p.name;
     } else if (p.kind == CoefficientKind::shape && sigma > (p.lower >= 0.0 ? std::abs(p.value) : p.scale)) {
       fit.warnings.push_back(p.name + " is hardly determined by these data: " + in_display_unit(p.value, p.unit, sigma));
@@ -146,24 +146,23 @@ void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance,
       fit.warnings.push_back(p.name + " ends at its bound, " + in_display_unit(*bound, p.unit) +
                              ": the best value may lie beyond, and its sigma does not describe an interval there");
   }
-  if (!prior_only.empty()) fit.facts["prior_only"] = "these data say nothing of " + prior_only + " beyond the prior";
+  if (!prior_only.empty()) fit.facts["prior_only"] = "these data add no information to the prior of " + prior_only;
 }
 
 void reject_prior_conflicts(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
-  constexpr double far_off = 2.0, uncertain = 0.5;  // of the prior's sigma
+  constexpr double max_prior_sigmas = 2.0, max_share_of_prior = 0.5;
   const std::vector<int> free = model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c) {
     const Parameter& p = model.parameters[free[c]];
     const double sigma = std::sqrt(std::max(covariance(c, c), 0.0));
     if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
-    if (std::abs(p.value - p.prior_mean) < far_off * *p.prior_sigma || sigma < uncertain * *p.prior_sigma) continue;
+    if (std::abs(p.value - p.prior_mean) < max_prior_sigmas * *p.prior_sigma || sigma < max_share_of_prior * *p.prior_sigma) continue;
     fit.status = FitStatus::failed;
-    fit.message =
-        p.name + " has run to " + in_display_unit(p.value, p.unit, sigma) + ", away from its prior " +
-        in_display_unit(p.prior_mean, p.unit, *p.prior_sigma) +
-        ": prior and data conflict through the scale of a curve, of which the roughness prefers the smaller one. Fix it and give its "
-        "sigma ([geometry] " +
-        p.name + " = { value, sigma }), so that it is propagated instead of estimated";
+    fit.message = p.name + " has run to " + in_display_unit(p.value, p.unit, sigma) + ", away from its prior " +
+                  in_display_unit(p.prior_mean, p.unit, *p.prior_sigma) +
+                  ": it compensates the scale of a curve, and the roughness penalty is smaller for a smaller curve. Fix it and give its "
+                  "sigma ([geometry] " +
+                  p.name + " = { value, sigma }), so that it is propagated instead of estimated";
   }
 }
 

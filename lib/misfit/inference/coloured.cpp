@@ -13,7 +13,7 @@
 namespace misfit {
 namespace {
 
-constexpr Eigen::Index longest_transform = 16384, most_lags = 2048;
+constexpr Eigen::Index longest_transform = 16384, max_lags = 2048;
 
 /// A stretch of an experiment, transformed: real and imaginary part of each channel's derivatives, frequencies × columns.
 struct Stretch {
@@ -32,7 +32,7 @@ class Sandwich {
       longest = std::max(longest, e.r.size() / channels);
       all += e.r.size() / channels;
     }
-    lags_ = std::min(most_lags, longest / 3);
+    lags_ = std::min(max_lags, longest / 3);
     size_ = power_of_two(std::min(longest + lags_, longest_transform));
     products_.assign(lags_ + 1, Eigen::MatrixXd::Zero(channels, channels));
     pairs_ = products_;
@@ -228,7 +228,7 @@ ColouredCovariance coloured_covariance(const std::vector<ResidualRows>& experime
 }
 
 bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::Index channels, double unknowns) {
-  constexpr double unusual = 0.05;
+  constexpr double coloured_p = 0.05;
   constexpr int lags = 10;
   for (Eigen::Index a = 0; a < channels; ++a) {
     std::vector<std::vector<double>> series;
@@ -236,7 +236,7 @@ bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::In
       series.emplace_back();
       for (Eigen::Index i = a; i < e.r.size(); i += channels) series.back().push_back(e.r[i]);
     }
-    if (whiteness(joined_series(series), 1, lags, unknowns / static_cast<double>(channels)).p_value < unusual) return false;
+    if (whiteness(joined_series(series), 1, lags, unknowns / static_cast<double>(channels)).p_value < coloured_p) return false;
   }
   return true;
 }

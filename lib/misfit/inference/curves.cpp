@@ -233,7 +233,7 @@ class GainOfCurve {
 }  // namespace
 
 std::vector<std::string> scale_uncertainties(const Model& model, const double* x, const double* u, double t) {
-  constexpr double least_share = 1e-3;
+  constexpr double min_share = 1e-3;
   std::vector<std::string> out;
   const Curve* curve = model.find_curve(model.system->spec().static_curve);
   if (curve == nullptr) return out;
@@ -243,10 +243,10 @@ std::vector<std::string> scale_uncertainties(const Model& model, const double* x
     if (p.free || !p.prior_sigma) continue;
     const double nominal = gain.with(k, 0.0), moved = gain.with(k, *p.prior_sigma);
     const double share = std::abs(nominal / moved - 1.0);  // for the same motion the curve goes with the reciprocal
-    if (!(nominal > 0.0) || !(moved > 0.0) || share < least_share) continue;
-    out.push_back(curve->name + " is only known as well as its scale: " + p.name + " = " + format_value(p.value, *p.prior_sigma) + " " +
-                  p.unit + " alone makes every " + curve->name + " uncertain by " + format_value(std::round(1000.0 * share) / 10.0) +
-                  " %, which is not in its band");
+    if (!(nominal > 0.0) || !(moved > 0.0) || share < min_share) continue;
+    out.push_back("the band of " + curve->name + " does not include the uncertainty of its scale: " + p.name + " = " +
+                  format_value(p.value, *p.prior_sigma) + " " + p.unit + ", which is fixed, makes every " + curve->name + " uncertain by " +
+                  format_value(std::round(1000.0 * share) / 10.0) + " % (1 sigma)");
   }
   return out;
 }

@@ -20,8 +20,8 @@ struct EquationResiduals {
 };
 
 /// Is the motion driven by a force that the model lacks (lib/misfit/README.md, 5.8)? Single accelerations are mostly noise of the measured
-/// positions; averaged over half a period, a noise of second differences nearly cancels and a force stays. What noise leaves there
-/// is found by adding some and looking.
+/// positions; averaged over half a period, a noise of second differences nearly cancels and a force stays. The level of
+/// the averaged noise is estimated from one added draw of it.
 struct DrivenTest {
   WhitenessTest whiteness;   ///< of the residuals, from the stencils' reach to half a period
   int averaged = 0;          ///< samples

@@ -15,7 +15,7 @@ struct FittedModel {
   Model model;
   std::vector<Penalty> penalties;               ///< with the roughness weights that were chosen
   std::vector<Eigen::VectorXd> initial_states;  ///< per experiment, at its first sample; empty where the method has none
-  Eigen::MatrixXd plain_covariance{};           ///< of the free parameters, had the residuals been white; empty where not told apart
+  Eigen::MatrixXd plain_covariance{};           ///< of the free parameters as if residuals were white; empty where not computed
   /// Of a regression: experiment, equation, sample → what the model says of the rate less what was measured; NaN where not used.
   std::vector<std::vector<std::vector<double>>> equation_residuals{};
 };

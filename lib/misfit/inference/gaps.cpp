@@ -12,15 +12,15 @@ namespace misfit {
 namespace {
 
 const char* const part = "_part_";
-constexpr double usual_steps = 10.0, radians = 50.0;
+constexpr double min_gap_steps = 10.0, min_gap_radians = 50.0;
 constexpr std::size_t fewest_samples = 5;
 
 /// The model's fastest rate over the samples at which its states are known; 0 if it says nothing.
 double rate_of_model(const Model& model, const Signals& signals, const ReconstructedStates& states) {
   Evaluator evaluator(model);
   const InputTable inputs = input_table(signals, model.inputs());
-  constexpr std::size_t looks = 20;
-  const std::size_t stride = std::max<std::size_t>(1, signals.samples() / looks);
+  constexpr std::size_t evaluated_samples = 20;
+  const std::size_t stride = std::max<std::size_t>(1, signals.samples() / evaluated_samples);
   double fastest = 0.0;
   for (std::size_t i = 0; i < signals.samples(); i += stride) {
     const double rate = evaluator.fastest_rate(states.x.row(i).data(), inputs.at(i), signals.t[i]);
@@ -46,8 +46,8 @@ double rate_of_data(const Model& model, const Signals& signals, const Reconstruc
       slopes += std::pow(states.dx(i, outputs[o].observes), 2);
     }
     const double noise = measurement_noise(signals.measured[o].values);
-    constexpr double of_a_slope = 0.1;  // sum of squares of the weights of five even samples
-    const double share = std::isfinite(noise) ? of_a_slope * noise * noise / (step * step) : 0.0;
+    constexpr double slope_variance_factor = 0.1;  // sum of squares of the weights of five even samples
+    const double share = std::isfinite(noise) ? slope_variance_factor * noise * noise / (step * step) : 0.0;
     const double variance = n > 2.0 ? squares / n - sum * sum / (n * n) : 0.0;
     if (variance > 0.0) fastest = std::max(fastest, std::sqrt(std::max(slopes / n - share, 0.0) / variance));
   }
@@ -76,13 +76,13 @@ std::vector<std::size_t> cuts_of(const Model& model, const Signals& signals) {
   const double usual = usual_step(signals.t);
   std::vector<std::size_t> long_steps;
   for (std::size_t i = 1; i < signals.samples(); ++i) {
-    if (signals.t[i] - signals.t[i - 1] > usual_steps * usual) long_steps.push_back(i);
+    if (signals.t[i] - signals.t[i - 1] > min_gap_steps * usual) long_steps.push_back(i);
   }
   if (!long_steps.empty()) {
     const ReconstructedStates states = reconstruct_states(model, signals);
     const double fastest = std::max(rate_of_model(model, signals, states), rate_of_data(model, signals, states));
     for (const std::size_t i : long_steps) {
-      if (fastest * (signals.t[i] - signals.t[i - 1]) > radians) cuts.push_back(i);
+      if (fastest * (signals.t[i] - signals.t[i - 1]) > min_gap_radians) cuts.push_back(i);
     }
   }
   cuts.push_back(signals.samples());

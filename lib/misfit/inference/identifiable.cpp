@@ -9,14 +9,14 @@
 namespace misfit {
 namespace {
 
-constexpr double singular = 1e-10;  // of the largest eigenvalue: rounding of the sums leaves about 1e-14
+constexpr double singular_eigenvalue = 1e-10;  // relative to the largest; rounding of the sums leaves about 1e-14
 
 struct Column {
   const Parameter* parameter;
   Eigen::Index at;
 };
 
-/// N of the columns, all scaled to unit diagonal, the initial states projected out.
+/// Schur complement of the initial states in N (scaled to unit diagonal), for these columns.
 Eigen::MatrixXd reduced(const NormalEquations& problem, const std::vector<Column>& columns, Eigen::Index free) {
   const auto n = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index states = problem.N.rows() - free;
@@ -33,18 +33,18 @@ Eigen::MatrixXd reduced(const NormalEquations& problem, const std::vector<Column
   return N - C * all.bottomRightCorner(states, states).completeOrthogonalDecomposition().solve(C.transpose());
 }
 
-/// "a and b: only their product acts", from the relative changes that leave everything as it is.
+/// "a and b: only their product acts", from the relative changes of them that leave all residuals unchanged.
 std::string in_words(const std::vector<std::string>& names, const std::vector<double>& relative) {
   std::string out = "these data do not determine " + join_words(names) + " separately: ";
-  constexpr double alike = 0.02;
+  constexpr double tolerance = 0.02;
   const bool pair = names.size() == 2 && std::isfinite(relative[0]) && std::isfinite(relative[1]) && relative[0] != 0.0;
   const double ratio = pair ? relative[1] / relative[0] : 0.0;
-  if (std::abs(ratio + 1.0) < alike) {
+  if (std::abs(ratio + 1.0) < tolerance) {
     out += "only their product acts";
-  } else if (std::abs(ratio - 1.0) < alike) {
+  } else if (std::abs(ratio - 1.0) < tolerance) {
     out += "only their ratio acts";
   } else {
-    out += "one of them makes up for the others";
+    out += "a change of one can be compensated by the others";
   }
   return out + "; fix one of them, or give it a prior with sigma";
 }
@@ -63,19 +63,19 @@ std::string undetermined(const Model& model, const NormalEquations& problem) {
     if (acts) columns.push_back({&p, at});
     if (!acts) idle.push_back(p.name);
   }
-  if (!idle.empty()) return "nothing in these data depends on " + join_words(idle) + "; fix it, or take it out of the model";
+  if (!idle.empty()) return "nothing in these data depends on " + join_words(idle) + "; fix it, or remove it from the model";
   if (columns.size() < 2) return {};
   const Eigen::MatrixXd N = reduced(problem, columns, free.size());
   Eigen::VectorXd size(N.rows());
   for (Eigen::Index a = 0; a < N.rows(); ++a) size[a] = 1.0 / std::sqrt(problem.N(columns[a].at, columns[a].at));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(N);
-  if (solver.info() != Eigen::Success || solver.eigenvalues()[0] > singular * solver.eigenvalues().maxCoeff()) return {};
+  if (solver.info() != Eigen::Success || solver.eigenvalues()[0] > singular_eigenvalue * solver.eigenvalues().maxCoeff()) return {};
   const Eigen::VectorXd direction = solver.eigenvectors().col(0);
-  constexpr double least_share = 0.1;
+  constexpr double min_share = 0.1;
   std::vector<std::string> names;
   std::vector<double> relative;
   for (Eigen::Index a = 0; a < direction.size(); ++a) {
-    if (std::abs(direction[a]) < least_share * direction.cwiseAbs().maxCoeff()) continue;
+    if (std::abs(direction[a]) < min_share * direction.cwiseAbs().maxCoeff()) continue;
     const Parameter& p = *columns[a].parameter;
     names.push_back(p.name);
     relative.push_back(direction[a] * size[a] / p.value);

@@ -8,26 +8,27 @@
 
 namespace misfit {
 
-/// Which free parameters these data cannot tell, in words: a parameter that no residual depends on, or several of which only a combination
-/// acts — named as product or ratio where it is one. From the eigenvectors of the normal matrix N (columns scaled to unit diagonal, priors
-/// included, curves held by their roughness left out; further columns of N, initial states, are projected out) with eigenvalues below 1e-10
-/// of the largest. Empty if every parameter is determined.
+/// Which free parameters these data do not determine, as a sentence: a parameter that no residual depends on, or several of which only a
+/// combination acts — named as product or ratio where it is one. From the eigenvectors of the normal matrix N (columns scaled to unit
+/// diagonal, priors included, curves held by their roughness left out; further columns of N, initial states, are projected out) with
+/// eigenvalues below 1e-10 of the largest. Empty if every parameter is determined.
 [[nodiscard]] std::string undetermined(const Model& model, const NormalEquations& problem);
 
 /// The same where `problem` carries the very wide priors of regularised_priors(): only those that the model states count.
 [[nodiscard]] std::string undetermined_beside_priors(const Model& model, NormalEquations problem);
 
-/// What these data tell only weakly, in words, into warnings: parameters, and curves as a whole (their scale), that make up for each other
-/// — smallest eigenvalues below 0.02 of their correlation matrix (a pair: |correlation| above 0.98) where one of them is known to no better
-/// than 5 % — with how well their ratio or product is known and how well they themselves are; shapes known to no better than 100 % (those
-/// of either sign: than their typical size); and parameters that end at a bound. A curve's scale: its coefficients all times 1 + s,
-/// estimated with the least variance. Into facts, as "prior_only": parameters of which the
-/// data say nothing beyond their prior (sigma above 0.95 of the prior's). `covariance`: of the free parameters.
+/// Weakly determined directions, as warnings: parameters, and curves as a whole (their scale), that compensate each other — smallest
+/// eigenvalues below 0.02 of their correlation matrix (a pair: |correlation| above 0.98) where one of them is known to no better than 5 % —
+/// with how well their ratio or product is known and how well they themselves are; shapes known to no better than 100 % (those of either
+/// sign: than their typical size); and parameters that end at a bound. A curve's scale: its coefficients all times 1 + s, estimated with
+/// the least variance. Into facts, as "prior_only": parameters to whose prior the data add no information (sigma above 0.95 of the
+/// prior's). `covariance`: of the free parameters.
 void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
 
 /// A converged fit in which a parameter ends more than two of its prior's sigmas from the prior's mean, while its own sigma is above half
-/// of the prior's, becomes a failed one, in words: consistent data move it so far only if they tell more of it than the prior does. What
-/// sends it there is the curves' roughness, which prefers small curves where a parameter makes up for a curve's scale.
+/// of the prior's, is marked as failed, with the reason: data that agree with the prior move a parameter so far only if they determine it
+/// better than the prior does. The cause is the roughness penalty, which is smaller for smaller curves, where a parameter compensates the
+/// scale of a curve.
 void reject_prior_conflicts(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
 
 }  // namespace misfit

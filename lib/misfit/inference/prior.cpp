@@ -90,8 +90,8 @@ std::vector<Penalty> curve_penalties(const Model& model) {
     p.rank = curve.spline.size() - 2;
     p.chosen = !curve.roughness.has_value();
     const double range = curve.spline.highest() - curve.spline.lowest();
-    constexpr double turns_of_slope = 10.0;  // start loose: more structure than a parabola of typical size
-    p.lambda = curve.roughness.value_or(std::pow(range, 3) / std::pow(turns_of_slope * curve.scale, 2));
+    constexpr double curvature_factor = 10.0;  // start loose: more structure than a parabola of typical size
+    p.lambda = curve.roughness.value_or(std::pow(range, 3) / std::pow(curvature_factor * curve.scale, 2));
     penalties.push_back(std::move(p));
   }
   return penalties;

@@ -7,7 +7,7 @@
 namespace misfit {
 namespace {
 
-/// Where a curve is a straight line to all that the data can tell: a higher weight would only cost digits (λ Ω c of a line is rounding).
+/// At this λ the data cannot distinguish the curve from a straight line: a higher one would only cost digits (λ Ω c of a line is rounding).
 double max_lambda(const NormalEquations& problem, const Penalty& p, double sigma2) {
   constexpr double lambda_of_a_line = 1e9;  // over the mean information per mean stiffness
   const auto size = p.omega.rows();
@@ -82,12 +82,12 @@ double updated_lambda(const Penalty& p, const PenalisedFit& fit, double largest)
 }  // namespace
 
 PenalisedFit estimate_smoothing(const NormalEquations& problem, std::vector<Penalty>& penalties, double sigma2_given) {
-  constexpr int most_rounds = 60;
+  constexpr int max_rounds = 60;
   constexpr double negligible_change = 1e-3;  // of the logarithms of λ and σ²
   PenalisedFit out;
   double sigma2 = sigma2_given > 0.0 ? sigma2_given : std::max(problem.rss / std::max(problem.count, 1.0), 1e-300);
   PenaltyBasis basis = penalty_eigenbasis(problem.N.rows(), penalties);
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     if (!solve_penalised(problem, basis, sigma2, out)) return out;
     double change = 0.0;
     for (std::size_t k = 0; k < penalties.size(); ++k) {

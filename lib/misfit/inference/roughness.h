@@ -49,7 +49,7 @@ struct PenaltyBasis {
 };
 [[nodiscard]] PenaltyBasis penalty_eigenbasis(Eigen::Index columns, const std::vector<Penalty>& penalties);
 
-/// Inverse of `information` + λ Ω of all penalties (neither is turned), taken in the eigenvectors. False as above.
+/// Inverse of `information` + λ Ω of all penalties (neither is rotated), computed in the basis of the eigenvectors. False as above.
 [[nodiscard]] bool invert_with(const Eigen::MatrixXd& information, const PenaltyBasis& basis, Eigen::MatrixXd& inverse);
 
 /// Maximises the marginal likelihood over the λ marked `chosen` and σ² for the linearised problem [FS], updating `penalties`. With

@@ -60,13 +60,13 @@ class LambdaAverage {
 
   /// In steps of sqrt(10) down and up from the best λ, until the weight is negligible.
   [[nodiscard]] std::vector<LambdaPoint> points_of(std::size_t k) const {
-    constexpr int most_steps = 40;
+    constexpr int max_steps = 40;
     constexpr double negligible = 10.0;  // of the logarithm of the weight
     const double step = std::sqrt(10.0), best = penalties_[k].lambda;
     std::vector<LambdaPoint> points;
     for (const double factor : {1.0 / step, step}) {
       double highest = -1e300;
-      for (int i = factor < 1.0 ? 0 : 1; i < most_steps; ++i) {
+      for (int i = factor < 1.0 ? 0 : 1; i < max_steps; ++i) {
         std::optional<LambdaPoint> point = at(k, best * std::pow(factor, i));
         if (!point) break;
         const double weight = point->log_weight;

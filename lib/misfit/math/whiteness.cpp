@@ -51,7 +51,7 @@ std::vector<double> pairs_of(const std::vector<double>& residuals, std::size_t l
   return out;
 }
 
-constexpr double least_pairs = 10.0;
+constexpr double min_pairs = 10.0;
 
 /// Variance of the statistic over these lags: 2 of each, and what the lags share.
 double variance_of(const std::vector<std::size_t>& lags, const std::vector<double>& pairs) {
@@ -97,7 +97,7 @@ std::vector<double> autocorrelation(const std::vector<double>& residuals, int ma
   for (std::size_t k = 0; k <= lags; ++k) {
     const double variance = sums[0] / std::max(pairs[0], 1.0);
     const double share = (length - static_cast<double>(k)) / length;  // 1/n before the sum, not 1/(n − k)
-    rho.push_back(pairs[k] >= least_pairs && variance > 0.0 ? share * sums[k] / pairs[k] / variance : nan_value);
+    rho.push_back(pairs[k] >= min_pairs && variance > 0.0 ? share * sums[k] / pairs[k] / variance : nan_value);
   }
   return rho;
 }
@@ -107,8 +107,8 @@ WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int
   WhitenessTest test;
   test.first_lag = first_lag;
   test.last_lag = static_cast<int>(std::min({static_cast<double>(std::max(first_lag, last_lag)), n / 4.0, 10.0 + 2.0 * std::sqrt(n)}));
-  constexpr double of_an_unknown = 10.0;  // fewest values
-  if (n < of_an_unknown * fitted) test.last_lag = 0;
+  constexpr double min_values_per_parameter = 10.0;
+  if (n < min_values_per_parameter * fitted) test.last_lag = 0;
   if (test.last_lag < first_lag) return test;
   const std::vector<double> rho = autocorrelation(residuals, test.last_lag);
   const std::vector<double> pairs = pairs_of(residuals, 2 * test.last_lag);
@@ -132,19 +132,19 @@ WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int
 }
 
 std::string in_words(const WhitenessTest& test) {
-  if (test.last_lag < test.first_lag) return "too few samples to tell whether they remember";
+  if (test.last_lag < test.first_lag) return "too few samples to test for autocorrelation";
   return "lags " + std::to_string(test.first_lag) + " to " + std::to_string(test.last_lag) + " samples: largest autocorrelation " +
          format_value(test.largest) + " at lag " + std::to_string(test.largest_lag) + ", Ljung-Box " + p_equals(test.p_value);
 }
 
 bool clearly_coloured(const WhitenessTest& test) {
-  constexpr double improbable = 1e-3;
-  return test.p_value < improbable;
+  constexpr double max_p = 1e-3;
+  return test.p_value < max_p;
 }
 
 bool looks_driven(const WhitenessTest& test) {
-  constexpr double improbable = 1e-6, strong = 0.15;
-  return test.p_value < improbable && std::abs(test.largest) > strong;
+  constexpr double max_p = 1e-6, min_autocorrelation = 0.15;
+  return test.p_value < max_p && std::abs(test.largest) > min_autocorrelation;
 }
 
 }  // namespace misfit

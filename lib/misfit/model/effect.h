@@ -47,7 +47,8 @@ struct Role {
 /// Where discovery looks for a shape before the refit refines it.
 struct ScanSpec {
   double from = 0.0, to = 0.0;  ///< [unit], or shares of what `over` names
-  int count = 0;  ///< values, ends included; 0: not scanned (the default value serves); −1: a frequency [Hz], steps of 1/(4T)
+  int count =
+      0;  ///< values, ends included; −1: a frequency [Hz], steps of 1/(4T); 0: not scanned: allowed for fixed and shared shapes only
   /// For effects of any unit, which cannot know sizes beforehand. "level" (a role): 0 to 1 stand for the ends of the range that it visits;
   /// "|level|": shares of its largest size; "step": multiples of the sampling interval, in equal ratios. "": plain numbers.
   const char* over = "";

@@ -94,7 +94,7 @@ bool Evaluator::rates_move_with_constants() const {
 void Evaluator::find_twins() {
   const auto& curves = model_->curves;
   curve_.resize(curves.size());
-  std::size_t most_entries = 0;
+  std::size_t max_entries = 0;
   for (const auto& use : dynamic_) {
     for (int i = 0; i < use.nc; ++i) {
       const int curve = use.curve[i];
@@ -102,11 +102,11 @@ void Evaluator::find_twins() {
         dynamic_curves_.push_back(curve);
     }
     const std::size_t outputs = use.outputs;
-    most_entries += outputs * use.nc;
+    max_entries += outputs * use.nc;
   }
-  entries_.reserve(most_entries);
-  curve_entries_.reserve(most_entries);
-  slot_entries_.reserve(4 * most_entries * n_);
+  entries_.reserve(max_entries);
+  curve_entries_.reserve(max_entries);
+  slot_entries_.reserve(4 * max_entries * n_);
   std::sort(dynamic_curves_.begin(), dynamic_curves_.end());
   for (int k : dynamic_curves_) {
     const Curve& curve = curves[k];

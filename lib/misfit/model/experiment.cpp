@@ -50,22 +50,22 @@ std::size_t bridge(const std::vector<double>& t, std::vector<double>& y) {
   return filled;
 }
 
-/// Sets isolated wild values to missing and returns how many. Wild: more than 15 robust sigmas from the cubic through two neighbours on
-/// either side, and more than five times as far as these neighbours differ from each other, so that a burst or a jump of the motion itself
-/// is never taken for one.
-std::size_t set_spikes_aside(std::vector<double>& y) {
-  constexpr double wild_sigmas = 15.0, wild_times_neighbours = 5.0;
+/// Sets isolated outliers to missing and returns their number. Outlier: more than 15 robust sigmas from the cubic through two neighbours on
+/// either side, and more than five times the largest difference of these neighbours, so that a burst or a jump of the motion itself is not
+/// rejected.
+std::size_t reject_isolated_outliers(std::vector<double>& y) {
+  constexpr double max_sigmas = 15.0, min_times_neighbours = 5.0;
   const auto distance = [&](std::size_t i) { return y[i] - (4.0 * (y[i - 1] + y[i + 1]) - y[i - 2] - y[i + 2]) / 6.0; };
   std::vector<double> distances;
   for (std::size_t i = 2; i + 2 < y.size(); ++i) distances.push_back(distance(i));
-  const double limit = wild_sigmas * mad_sigma(distances);
-  std::vector<std::size_t> wild;
+  const double limit = max_sigmas * mad_sigma(distances);
+  std::vector<std::size_t> outliers;
   for (std::size_t i = 2; i + 2 < y.size(); ++i) {
     const double between = std::max({std::abs(y[i - 2] - y[i - 1]), std::abs(y[i - 1] - y[i + 1]), std::abs(y[i + 1] - y[i + 2])});
-    if (std::abs(distance(i)) > std::max(limit, wild_times_neighbours * between)) wild.push_back(i);
+    if (std::abs(distance(i)) > std::max(limit, min_times_neighbours * between)) outliers.push_back(i);
   }
-  for (std::size_t i : wild) y[i] = std::nan("");
-  return wild.size();
+  for (std::size_t i : outliers) y[i] = std::nan("");
+  return outliers.size();
 }
 
 /// The input's name without "_rate"; empty if it is no rate.
@@ -85,8 +85,8 @@ class Reader {
     for (const auto& output : spec.outputs)
       out_.measured.push_back({output.name, output.unit, kept(values_of(output.name, output.unit)), 0.0});
     for (auto& channel : out_.measured) {
-      const std::size_t wild = set_spikes_aside(channel.values);
-      if (wild > 0) out_.notes.push_back("channel " + channel.name + ": " + std::to_string(wild) + " isolated outliers rejected");
+      const std::size_t outliers = reject_isolated_outliers(channel.values);
+      if (outliers > 0) out_.notes.push_back("channel " + channel.name + ": " + std::to_string(outliers) + " isolated outliers rejected");
     }
     const std::vector<std::string> needed = model_.needed_inputs();
     for (const auto& input : spec.inputs) {

@@ -117,12 +117,12 @@ class ColumnClassifier {
   }
 
   void find_time() {
-    constexpr double mostly = 0.5;
+    constexpr double min_forward_share = 0.5;
     std::string counter;
     for (const bool by_name : {true, false}) {
       for (std::size_t i = 0; i < out_.columns.size() && time_ == none; ++i) {
         ColumnSurvey& c = out_.columns[i];
-        if (c.use != ColumnUse::unused || !(forward(i) > mostly)) continue;
+        if (c.use != ColumnUse::unused || !(forward(i) > min_forward_share)) continue;
         const Unit unit = parse_unit(c.unit);
         const bool of_time = unit.same_dimension(parse_unit("s"));
         if (by_name ? is_called_time(c.name) && (of_time || c.unit == "-") : of_time) time_ = i;
@@ -130,7 +130,7 @@ class ColumnClassifier {
       }
     }
     if (time_ == none)
-      fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, and runs forward") +
+      fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, and increases") +
                   (counter.empty() ? "" : " ('" + counter + "' counts rows, but over which interval?)") + "; write one as t[s]");
     ColumnSurvey& c = out_.columns[time_];
     c.use = ColumnUse::time;
@@ -139,7 +139,7 @@ class ColumnClassifier {
       c.unit = std::string("s");
       out_.remarks.push_back(unit_found(time_, "taken as seconds"));
     }
-    c.why = "runs forward" + (c.unit == "s" ? std::string() : ", in " + c.unit);
+    c.why = "increases steadily" + (c.unit == "s" ? std::string() : ", in " + c.unit);
     const double factor = convert(1.0, c.unit, "s");
     for (const double v : values(time_)) t_.push_back(factor * v);
   }
@@ -156,12 +156,13 @@ class ColumnClassifier {
   void find_segments() {
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       ColumnSurvey& c = out_.columns[i];
-      constexpr double nearly_always = 0.95;
-      if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i))) || c.held < nearly_always) continue;
+      constexpr double min_held_share = 0.95;
+      if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i))) || c.held < min_held_share) continue;
       c.use = ColumnUse::segment;
-      c.why = "whole numbers that stay: a count of pieces";
-      out_.remarks.push_back(fmt::format("column '{}' numbers pieces {} to {}, time runs on across them: kept together as one recording",
-                                         c.header, format_value(c.low), format_value(c.high)));
+      c.why = "constant whole numbers: a number of the recording";
+      out_.remarks.push_back(
+          fmt::format("column '{}' numbers recordings {} to {}, time continues across them: kept together as one recording", c.header,
+                      format_value(c.low), format_value(c.high)));
     }
   }
 
@@ -171,13 +172,13 @@ class ColumnClassifier {
       if (out_.columns[i].use == ColumnUse::unused) open.push_back(i);
     }
     if (open.empty()) fail(0, "no column but time changes: nothing was measured");
-    constexpr double stands = 0.5;
+    constexpr double held_share = 0.5;
     for (const std::size_t i : open) {
       ColumnSurvey& c = out_.columns[i];
       if (open.size() > 1 && is_called_input(c.name)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
-      } else if (open.size() > 1 && c.held > stands) {
+      } else if (open.size() > 1 && c.held > held_share) {
         c.use = ColumnUse::input;
         c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
@@ -190,7 +191,7 @@ class ColumnClassifier {
     if (any) return;
     ColumnSurvey& last = out_.columns[open.back()];
     last.use = ColumnUse::output;
-    last.why = "every column looks like an input; the last is taken as what was measured";
+    last.why = "every column looks like an input; the last is taken as the output";
   }
 
   /// An output that is another's derivative: correlated to better than 0.99 with its central difference, with a slope within 10 % of 1.

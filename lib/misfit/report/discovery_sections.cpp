@@ -31,17 +31,17 @@ Subject of_study(const ReportInput& input) {
 
 /// Maps worth a picture: those that stand out, at least three, at most eight. They come sorted.
 std::size_t maps_to_draw(const std::vector<ForceMap>& maps) {
-  constexpr double stands_out = 0.01;
+  constexpr double significant = 0.01;
   constexpr std::ptrdiff_t least = 3, most = 8;
-  const auto found = std::count_if(maps.begin(), maps.end(), [](const ForceMap& map) { return map.p_corrected < stands_out; });
+  const auto found = std::count_if(maps.begin(), maps.end(), [](const ForceMap& map) { return map.p_corrected < significant; });
   return std::min(std::ssize(maps), std::clamp(found, least, most));
 }
 
 void draw_maps(const Diagnosis& d, const Put& draw) {
   const std::size_t drawn = maps_to_draw(d.maps);
   for (std::size_t k = 0; k < drawn; ++k) draw(map_figure(d.maps[k]));
-  constexpr std::size_t most_pairs = 2;
-  for (std::size_t k = 0; k < std::min(most_pairs, d.pairs.size()); ++k) draw(pair_figure(d.pairs[k]));
+  constexpr std::size_t max_pairs = 2;
+  for (std::size_t k = 0; k < std::min(max_pairs, d.pairs.size()); ++k) draw(pair_figure(d.pairs[k]));
 }
 
 void draw_innovations(const Diagnosis& d, const Put& draw) {

@@ -52,9 +52,9 @@ Figure batch_figure(const Batch& batch, const std::string& method, std::size_t m
   figure.title = "Results of all studies, " + method;
   figure.caption = "Value ± 1 sigma of each study, and the mean. A small p: the studies scatter by more than their sigmas explain.";
   const std::vector<std::string> studies = studies_of(batch);
-  constexpr std::size_t few = 12;
-  figure.x_label = studies.size() <= few ? "study" : "study, in the order of the list";
-  for (std::size_t i = 0; i < studies.size() && studies.size() <= few; ++i)
+  constexpr std::size_t max_labelled = 12;
+  figure.x_label = studies.size() <= max_labelled ? "study" : "study, in the order of the list";
+  for (std::size_t i = 0; i < studies.size() && studies.size() <= max_labelled; ++i)
     figure.x_marks.push_back({static_cast<double>(i) + 1.0, studies[i]});
   figure.x_range = {0.5, static_cast<double>(studies.size()) + 0.5};
   std::vector<const BatchSummary*> numbers;

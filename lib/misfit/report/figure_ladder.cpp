@@ -43,14 +43,14 @@ void add_box(Series& series, double x, double value, double width) {
 }
 
 /// Series are handed out by reference while others are added: room for all of them from the start.
-constexpr std::size_t most_series = 16;
+constexpr std::size_t max_series = 16;
 
 Panel& panel_for(std::vector<Panel>& panels, const std::string& label, const std::string& unit) {
   for (Panel& panel : panels) {
     if (panel.y_label == label && panel.y_unit == unit) return panel;
   }
   panels.push_back({label, unit, {}, std::nullopt, 0.0, 150.0, false, {}});
-  panels.back().series.reserve(most_series);
+  panels.back().series.reserve(max_series);
   return panels.back();
 }
 
@@ -145,11 +145,11 @@ void add_errors(const Rung& rung, std::vector<Panel>& near, std::vector<Panel>& 
 
 void add_trim(const Rung& rung, std::vector<Panel>& panels) {
   if (!rung.trim) return;
-  constexpr double wide = 1.96;
+  constexpr double two_sided = 1.96;
   const std::string unit = display_unit(rung.trim->unit);
   const double factor = convert(1.0, rung.trim->unit, unit);
   Series& series = series_for(panel_for(panels, "trim", unit), "trim", "trim, 95 % interval", Style::error_bars, palette(0));
-  add_point(series, rung.id, rung.trim->value * factor, wide * rung.trim->sigma * factor);
+  add_point(series, rung.id, rung.trim->value * factor, two_sided * rung.trim->sigma * factor);
 }
 
 /// From 0 for what is an amount; with some room for all.
@@ -166,8 +166,8 @@ void set_range(Panel& panel) {
       }
     }
   }
-  constexpr double least_drop = 10.0;  // less is nothing, and is not to look like much
-  if (panel.y_label == "drop") high = std::max(high, least_drop);
+  constexpr double min_drop = 10.0;  // less is nothing, and is not to look like much
+  if (panel.y_label == "drop") high = std::max(high, min_drop);
   if (!(high > low)) return;
   const double room = 0.08 * (high - low);
   panel.y_range = {low == 0.0 ? 0.0 : low - room, high + room};

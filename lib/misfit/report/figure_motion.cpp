@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
@@ -99,6 +100,34 @@ Panel residual_panel(const ChannelPrediction& c, const std::string& unit) {
   return panel;
 }
 
+constexpr double kHistogramEnd = 5.0;  // [sigma]
+
+/// Share of the values per bin over its width; values beyond the ends count in the total.
+Series density_boxes(const std::vector<double>& values) {
+  constexpr int bins = 40;
+  constexpr double width = 2.0 * kHistogramEnd / bins;
+  Series s{"residual", "residuals / sigma", Style::boxes, palette(0), {}, std::vector<double>(bins, 0.0), {}, {}};
+  const double each = 1.0 / (width * static_cast<double>(values.size()));
+  for (const double v : values) {
+    if (std::abs(v) < kHistogramEnd) s.y[static_cast<std::size_t>((v + kHistogramEnd) / width)] += each;
+  }
+  for (int k = 0; k < bins; ++k) {
+    s.lo.push_back(-kHistogramEnd + width * k);
+    s.hi.push_back(s.lo.back() + width);
+    s.x.push_back(s.lo.back() + 0.5 * width);
+  }
+  return s;
+}
+
+Series standard_normal() {
+  Series s{"normal", "standard normal distribution", Style::line, black, {}, {}, {}, {}, 1.4};
+  for (double x = -kHistogramEnd; x <= kHistogramEnd + 1e-9; x += 0.1) {
+    s.x.push_back(x);
+    s.y.push_back(std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi));
+  }
+  return s;
+}
+
 }  // namespace
 
 Interval typical_interval(const std::vector<double>& t, const std::vector<double>& values, double length) {
@@ -160,6 +189,25 @@ Figure autocorrelation_figure(const std::string& method, const ChannelPrediction
   }
   panel.series.push_back(std::move(rho));
   figure.panels.push_back(std::move(panel));
+  return figure;
+}
+
+Figure residual_histogram_figure(const std::string& method, const ChannelPrediction& channel) {
+  std::vector<double> r = normalised_residuals(channel);
+  std::erase_if(r, [](double v) { return !std::isfinite(v); });
+  const auto beyond = std::count_if(r.begin(), r.end(), [](double v) { return std::abs(v) >= kHistogramEnd; });
+  Figure figure;
+  figure.name = "residual_histogram_" + as_key(method) + "_" + file_name_for(channel.experiment) + "_" + file_name_for(channel.channel);
+  figure.title = fmt::format("Residuals of {} ({}, {}): distribution", channel.channel, method, channel.experiment);
+  figure.caption =
+      "Density of the residuals over their predicted sigma (boxes) and of the standard normal distribution (line), which a correct model "
+      "gives: heavy tails indicate outliers, another width a wrong sigma.";
+  figure.x_label = "residual / sigma";
+  figure.x_unit = std::string("-");
+  Panel panel{"density", "-", {}, std::nullopt, 0.0, 220.0, false};
+  panel.series = {density_boxes(r), standard_normal()};
+  figure.panels.push_back(std::move(panel));
+  if (beyond > 0) figure.notes.push_back(fmt::format("{} of {} residuals are beyond ± {} sigma", beyond, r.size(), kHistogramEnd));
   return figure;
 }
 

@@ -39,6 +39,10 @@ struct Interval {
 /// residuals keep to at 95 % of the lags. `max_lag` samples.
 [[nodiscard]] Figure autocorrelation_figure(const std::string& method, const ChannelPrediction& channel, std::size_t max_lag = 60);
 
+/// Histogram of the residuals of one channel over their predicted sigma (estimation part) with the density of the standard normal
+/// distribution. Residuals beyond ± 5 are counted in a note.
+[[nodiscard]] Figure residual_histogram_figure(const std::string& method, const ChannelPrediction& channel);
+
 /// P_y, P_z and sigma of a track over time, with its losses.
 [[nodiscard]] Figure track_figure(const std::string& experiment, const Track& track);
 

@@ -90,6 +90,7 @@ void prediction_section(const ReportInput& input, Page& page, const Draw& draw) 
       draw(motion_figure(fit.method, channel, std::nullopt));
       if (!channel.t.empty() && channel.t.back() - channel.t.front() > 2.0 * zoom_seconds) draw(motion_figure(fit.method, channel, zoom));
       draw(autocorrelation_figure(fit.method, channel));
+      draw(residual_histogram_figure(fit.method, channel));
     }
   }
 }

@@ -9,6 +9,12 @@
 namespace misfit::report {
 namespace {
 
+/// A method with a random force estimates what drives the motion; with the others the residuals show it.
+std::string driven_sentence(const Fit& fit) {
+  if (fit.force.empty()) return fit.method + ": residuals are not white: an unmodelled input drives the motion";
+  return fit.method + ": the motion is driven by forces that the model does not describe, estimated as a random force (see Parameters)";
+}
+
 std::vector<std::string> findings(const ReportInput& input) {
   std::vector<std::string> sentences;
   for (const Fit& fit : input.fits) {
@@ -18,7 +24,7 @@ std::vector<std::string> findings(const ReportInput& input) {
       sentences.push_back(
           fmt::format("{} finds the trim at {}", fit.method, in_display_unit(fit.trim->value, fit.trim->unit, fit.trim->sigma)));
     }
-    if (fit.driven) sentences.push_back(fit.method + ": residuals are not white: an unmodelled input drives the motion");
+    if (fit.driven) sentences.push_back(driven_sentence(fit));
   }
   for (const Fit& fit : input.fits) {
     for (const CurveEstimate& curve : fit.curves) {

@@ -11,7 +11,7 @@
 namespace misfit {
 namespace {
 
-constexpr std::size_t most_columns = 4;
+constexpr std::size_t max_columns = 4;
 
 /// The trim first.
 std::vector<BatchSummary> in_order(const Batch& batch) {
@@ -24,7 +24,7 @@ TableBlock study_table(const Batch& batch) {
   TableBlock table{columns("study|method|status"), {}, {40, "batch.csv"}};
   std::vector<std::string> names;
   for (const BatchSummary& s : in_order(batch)) {
-    if (names.size() < most_columns && std::find(names.begin(), names.end(), s.name) == names.end()) names.push_back(s.name);
+    if (names.size() < max_columns && std::find(names.begin(), names.end(), s.name) == names.end()) names.push_back(s.name);
   }
   for (const std::string& name : names) table.columns.push_back({name});
   for (const BatchRow& row : batch.rows) {

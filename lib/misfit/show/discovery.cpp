@@ -207,10 +207,10 @@ Blocks blocks_of(const Ladder& ladder, const Rung& rung, const Fit& fit) {
   Blocks out;
   out.heading(fmt::format("Rung {}: {} added to {}", rung.id, rung.added, before.system));
   out.table(BeforeAndAfter(before, rung).table);
-  constexpr double explains_nothing = 1.0;  // of the drop
+  constexpr double negligible_drop = 1.0;  // of the drop
   if (rung.actual_drop) {
     out.paragraph(drop_sentence(rung));
-    if (*rung.actual_drop < explains_nothing) out.paragraph("The added effect explains nothing in these data.", Tone::warning);
+    if (*rung.actual_drop < negligible_drop) out.paragraph("The added effect explains nothing in these data.", Tone::warning);
   }
   if (!rung.note.empty()) out.paragraph(as_sentence(rung.note));
   std::vector<std::string> parameters;

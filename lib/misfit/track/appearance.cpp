@@ -6,10 +6,10 @@
 namespace misfit {
 namespace {
 
-constexpr double least_contrast = 12.0;                    // [grey levels]
-constexpr double least_outer = 3.2, largest_outer = 18.0;  // [px] markers of 8 to 30 px, and a little
-constexpr double least_explained = 0.6;
-constexpr double least_sector = 0.45;
+constexpr double min_contrast = 12.0;                    // [grey levels]
+constexpr double min_outer = 3.2, largest_outer = 18.0;  // [px] markers of 8 to 30 px, and a little
+constexpr double min_explained = 0.6;
+constexpr double min_sector = 0.45;
 constexpr double largest_sigma = 0.6;  // [px]
 constexpr double contrast_jump = 1.8;
 
@@ -43,11 +43,10 @@ std::string words(Loss loss) {
 }
 
 bool possible(const Location& found, MarkerKind kind) {
-  if (!found.converged || !found.inside || found.explained < least_explained || found.weakest_sector < least_sector) return false;
+  if (!found.converged || !found.inside || found.explained < min_explained || found.weakest_sector < min_sector) return false;
   if (kind == MarkerKind::picture) return found.levels[1] > 0.2;
   const double contrast = kind == MarkerKind::dark ? -found.levels[1] : found.levels[1];
-  if (contrast < least_contrast || found.outer < least_outer || found.outer > largest_outer || found.edge > 0.75 * found.outer)
-    return false;
+  if (contrast < min_contrast || found.outer < min_outer || found.outer > largest_outer || found.edge > 0.75 * found.outer) return false;
   if (kind != MarkerKind::ring) return true;
   return hole_like(found.levels) && found.inner > 0.2 * found.outer && found.inner < 0.85 * found.outer;
 }
@@ -63,8 +62,8 @@ Loss judge(const Location& found, const Appearance& look, double contrast) {
     const double learnt = look.marker.levels[2] / look.marker.levels[1], now = found.levels[2] / found.levels[1];
     if (now / learnt < 0.6 || now / learnt > 1.6) return Loss::other_look;
   }
-  const double limit = std::max(least_explained, look.explained - std::max(0.12, 5.0 * look.explained_spread));
-  if (found.weakest_sector < least_sector) return Loss::covered;
+  const double limit = std::max(min_explained, look.explained - std::max(0.12, 5.0 * look.explained_spread));
+  if (found.weakest_sector < min_sector) return Loss::covered;
   if (found.explained < limit) return Loss::other_look;
   if (found.sigma > largest_sigma) return Loss::vague;
   return Loss::none;

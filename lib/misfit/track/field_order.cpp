@@ -7,13 +7,13 @@
 namespace misfit {
 namespace {
 
-constexpr double least_motion = 1.0;  // [px per frame]
-constexpr std::size_t least_pairs = 6;
+constexpr double min_motion = 1.0;  // [px per frame]
+constexpr std::size_t min_pairs = 6;
 
 double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
 
 FieldOrder order_of(const FieldEvidence& e) {
-  if (e.motion < least_motion) return FieldOrder::unknown;
+  if (e.motion < min_motion) return FieldOrder::unknown;
   if (e.asymmetry > 0.25) return FieldOrder::top_first;
   if (e.asymmetry < -0.25) return FieldOrder::bottom_first;
   if (e.combing < 0.25) return FieldOrder::progressive;
@@ -55,13 +55,13 @@ FieldEvidence field_evidence(const std::vector<FieldPair>& pairs) {
   out.order = order_of(out);
   const bool clear =
       out.order == FieldOrder::progressive ? out.combing < 0.15 && std::abs(out.asymmetry) < 0.15 : std::abs(out.asymmetry) > 0.33;
-  out.decisive = out.order != FieldOrder::unknown && clear && out.pairs >= least_pairs;
+  out.decisive = out.order != FieldOrder::unknown && clear && out.pairs >= min_pairs;
   return out;
 }
 
 std::string FieldEvidence::text() const {
   if (pairs == 0) return "the marker was not found in both fields of two successive frames";
-  if (order == FieldOrder::unknown && motion < least_motion)
+  if (order == FieldOrder::unknown && motion < min_motion)
     return fmt::format("the marker hardly moves ({:.2f} px per frame): the order of fields cannot be seen and does not matter", motion);
   return fmt::format(
       "in {} pairs of frames the marker moves {:.1f} px per frame; between the fields of a frame it moves {:.2f} of that "

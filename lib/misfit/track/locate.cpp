@@ -11,14 +11,14 @@
 namespace misfit {
 namespace {
 
-constexpr int most_unknowns = 10;  // centre, three levels, slope of the ground in x and y, outer, inner, edge
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_unknowns, 1>;
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_unknowns, most_unknowns>;
+constexpr int max_unknowns = 10;  // centre, three levels, slope of the ground in x and y, outer, inner, edge
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_unknowns, 1>;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_unknowns, max_unknowns>;
 
 constexpr int sectors = 8;
-constexpr double least_sigma = 0.01;                                         // [px] no edge is the formula of marker.h to better than that
-constexpr int alike_columns = 4, alike_lines = 2;                            // how far residuals of texture and compression are alike
-constexpr double least_outer = 2.0, largest_outer = 30.0, least_edge = 0.6;  // [px]
+constexpr double min_sigma = 0.01;                                       // [px] no edge is the formula of marker.h to better than that
+constexpr int alike_columns = 4, alike_lines = 2;                        // how far residuals of texture and compression are alike
+constexpr double min_outer = 2.0, largest_outer = 30.0, min_edge = 0.6;  // [px]
 
 /// Pixels taken into account: image columns and rows, ends included.
 struct Window {
@@ -181,10 +181,10 @@ class Fitter {
       tilt_y_ += step(3 + levels_);
     }
     if (!shape_) return;
-    marker_.outer = std::clamp(marker_.outer + step(first_shape_), least_outer, largest_outer);
+    marker_.outer = std::clamp(marker_.outer + step(first_shape_), min_outer, largest_outer);
     if (marker_.kind == MarkerKind::ring)
       marker_.inner = std::clamp(marker_.inner + step(first_shape_ + 1), 0.15 * marker_.outer, 0.9 * marker_.outer);
-    marker_.edge = std::clamp(marker_.edge + step(unknowns_ - 1), least_edge, 0.8 * marker_.outer);
+    marker_.edge = std::clamp(marker_.edge + step(unknowns_ - 1), min_edge, 0.8 * marker_.outer);
   }
 
   void finish(Location& out) {
@@ -239,7 +239,7 @@ class Fitter {
     double left = 0.0;
     for (const Pixel& p : pixels_) left += p.weight * p.residual * p.residual;
     const double plain = 0.5 * (classical(0, 0) + classical(1, 1)) * left / (n - unknowns_);
-    return std::sqrt(std::max(variance, plain) + least_sigma * least_sigma);
+    return std::sqrt(std::max(variance, plain) + min_sigma * min_sigma);
   }
 
   /// For each sector the least-squares factor of the model about its mean; a factor whose own uncertainty excuses it counts as so much

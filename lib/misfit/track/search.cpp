@@ -107,7 +107,7 @@ struct BoxSums {
   }
 };
 
-constexpr double least_deviation = 2.0;  // [grey levels] a box flatter than that shows nothing
+constexpr double min_deviation = 2.0;  // [grey levels] a box flatter than that shows nothing
 
 Grid correlate(const Grid& grid, const Grid& kernel) {
   Grid out{grid.width - kernel.width + 1, grid.height - kernel.height + 1, {}};
@@ -127,7 +127,7 @@ Grid correlate(const Grid& grid, const Grid& kernel) {
     for (int i = 0; i < out.width; ++i) {
       const double s = sums.box(sums.sum, i, j, kernel.width, kernel.height), q = sums.box(sums.square, i, j, kernel.width, kernel.height);
       const double variance = q - s * s / n;
-      to[i] = variance > least_deviation * least_deviation * n ? static_cast<float>(to[i] / std::sqrt(variance)) : 0.0F;
+      to[i] = variance > min_deviation * min_deviation * n ? static_cast<float>(to[i] / std::sqrt(variance)) : 0.0F;
     }
   }
   return out;

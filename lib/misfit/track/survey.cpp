@@ -10,13 +10,13 @@
 namespace misfit {
 namespace {
 
-constexpr double least_score = 0.5;  // of the correlation, before the fit
+constexpr double min_score = 0.5;  // of the correlation, before the fit
 constexpr std::size_t candidates_per_scale = 5;
 constexpr double start_radius = 40.0;  // [px] about a given start
 constexpr double still_radius = 1.5;   // [px]
-constexpr long frames_wanted = 30, frames_at_most = 60;
-constexpr long patient_frames = 40, stride_after = 20;  // nothing found in the first ones: every twentieth frame from there on
-constexpr std::size_t found_wanted = 12;                // fields, before one size is believed
+constexpr long min_frames = 30, max_frames = 60;
+constexpr long max_empty_frames = 40, stride_after = 20;  // nothing found in the first ones: every twentieth frame from there on
+constexpr std::size_t min_found = 12;                     // fields, before one size is believed
 
 double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
 
@@ -88,13 +88,13 @@ void Survey::look(const Field& field, long number) {
   }
   std::vector<Location> all;
   for (const Marker& marker : markers_to_try())
-    merge(all, fit_all(field, marker, search(field, marker, region, least_score, candidates_per_scale)));
+    merge(all, fit_all(field, marker, search(field, marker, region, min_score, candidates_per_scale)));
   for (const Location& l : all) found_.push_back({l, number, field.first_row});
 }
 
 void Survey::add(const Image& frame, long number) {
   ++seen_;
-  if (found_.empty() && seen_ > patient_frames && seen_ % stride_after != 0) return;
+  if (found_.empty() && seen_ > max_empty_frames && seen_ % stride_after != 0) return;
   ++searched_;
   for (int parity : {0, 1}) look(field_of(frame, parity), number);
   if (!learnt_) learn();
@@ -103,16 +103,16 @@ void Survey::add(const Image& frame, long number) {
 /// One size is believed once it was found often enough; from there on only it is searched for.
 void Survey::learn() {
   const Group group = best_group();
-  if (group.members.size() < found_wanted) return;
+  if (group.members.size() < min_found) return;
   std::vector<Location> members;
   for (std::size_t k : moving(group)) members.push_back(found_[k].location);
-  if (members.size() >= found_wanted / 2) learnt_ = appearance_of(members, options_.marker);
+  if (members.size() >= min_found / 2) learnt_ = appearance_of(members, options_.marker);
 }
 
 bool Survey::similar(const Location& a, const Location& b) const {
   const double contrast = a.levels[1] / b.levels[1];
-  constexpr double least_contrast_ratio = 0.6;
-  const bool alike = contrast > least_contrast_ratio && contrast < 1.0 / least_contrast_ratio;
+  constexpr double min_contrast_ratio = 0.6;
+  const bool alike = contrast > min_contrast_ratio && contrast < 1.0 / min_contrast_ratio;
   if (!alike) return false;
   return options_.marker.kind == MarkerKind::picture || std::abs(a.outer - b.outer) < std::max(0.8, 0.15 * b.outer);
 }
@@ -214,14 +214,14 @@ FieldEvidence Survey::evidence() const {
 }
 
 bool Survey::enough() const {
-  if (!learnt_ || searched_ < frames_wanted) return false;
-  return searched_ >= frames_at_most || evidence().decisive;
+  if (!learnt_ || searched_ < min_frames) return false;
+  return searched_ >= max_frames || evidence().decisive;
 }
 
 std::vector<Location> find_markers(const Field& field, const Marker& marker, std::size_t most, const std::optional<Region>& region) {
   const Region where = region.value_or(whole(field));
   std::vector<Location> all;
-  for (const Marker& m : scales(marker)) merge(all, fit_all(field, m, search(field, m, where, least_score, 2 * most + 4)));
+  for (const Marker& m : scales(marker)) merge(all, fit_all(field, m, search(field, m, where, min_score, 2 * most + 4)));
   std::stable_sort(all.begin(), all.end(), [](const Location& a, const Location& b) { return a.explained > b.explained; });
   if (all.size() > most) all.resize(most);
   return all;

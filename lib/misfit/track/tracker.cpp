@@ -8,16 +8,16 @@
 namespace misfit {
 namespace {
 
-constexpr double least_score = 0.45;  // of the correlation, before the fit
+constexpr double min_score = 0.45;  // of the correlation, before the fit
 constexpr std::size_t candidates = 4;
 constexpr double gate_sigmas = 5.0;
-constexpr double least_gate = 5.0;                    // [px]
-constexpr double first_acceleration = 3.0;            // [px per field²] until seen
-constexpr int patient_fields = 90, stride_after = 3;  // lost for long: every third field is searched
-constexpr double start_radius = 40.0;                 // [px]
-constexpr std::size_t least_run = 3;                  // fields: shorter finds are not believed
-constexpr double least_acceleration = 0.5;
-constexpr double forget = 0.99, forget_contrast = 0.9;
+constexpr double min_gate = 5.0;                         // [px]
+constexpr double first_acceleration = 3.0;               // [px per field²] until seen
+constexpr int max_missed_fields = 90, stride_after = 3;  // lost for long: every third field is searched
+constexpr double start_radius = 40.0;                    // [px]
+constexpr std::size_t min_run = 3;                       // fields: shorter finds are not believed
+constexpr double min_acceleration = 0.5;
+constexpr double forgetting_factor = 0.99, contrast_forgetting = 0.9;
 
 double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
 
@@ -34,7 +34,7 @@ PixelPoint Tracker::expected() const {
 /// The way covered in n fields is uncertain by n velocity_sigma and n (n + 1)/2 accelerations, as these last.
 double Tracker::gate() const {
   const double n = missed_ + 1.0;
-  const double floor = std::max(least_gate, 0.5 * (options_.look.marker.reach_x() + options_.look.marker.reach_y()));
+  const double floor = std::max(min_gate, 0.5 * (options_.look.marker.reach_x() + options_.look.marker.reach_y()));
   return std::max(floor, gate_sigmas * (0.5 * n * (n + 1.0) * acceleration_ + n * velocity_sigma_));
 }
 
@@ -52,7 +52,8 @@ void Tracker::correct(const Location& found) {
   const PixelPoint before = expected();
   if (missed_ == 0 && velocity_sigma_ <= acceleration_) {  // the innovation is then the acceleration
     const double square = 0.5 * (std::pow(found.at.column - before.column, 2.0) + std::pow(found.at.row - before.row, 2.0));
-    acceleration_ = std::max(least_acceleration, std::sqrt(forget * acceleration_ * acceleration_ + (1.0 - forget) * square));
+    acceleration_ =
+        std::max(min_acceleration, std::sqrt(forgetting_factor * acceleration_ * acceleration_ + (1.0 - forgetting_factor) * square));
   }
   velocity_ = {(found.at.column - last_.column) / n, (found.at.row - last_.row) / n};
   velocity_sigma_ = 0.5 * (n - 1.0) * acceleration_;
@@ -72,7 +73,7 @@ std::optional<Location> Tracker::look(const Field& field, Loss& why) {
   const PixelPoint middle = expected();
   const double radius = gate();
   const bool everywhere = !held_ || radius > 0.35 * field.image.width;
-  if (everywhere && missed_ > patient_fields && missed_ % stride_after != 0) return std::nullopt;
+  if (everywhere && missed_ > max_missed_fields && missed_ % stride_after != 0) return std::nullopt;
   if (!everywhere)
     region = intersection(region, {middle.column - radius, middle.row - radius, middle.column + radius, middle.row + radius});
   if (samples_.empty() && options_.start) {
@@ -81,7 +82,7 @@ std::optional<Location> Tracker::look(const Field& field, Loss& why) {
   }
   std::optional<Location> best;
   double best_merit = -1.0;
-  for (const Match& c : search(field, options_.look.marker, region, least_score, candidates)) {
+  for (const Match& c : search(field, options_.look.marker, region, min_score, candidates)) {
     const Location found = locate(field, options_.look.marker, c.at);
     const Loss loss = judge(found, options_.look, contrast_);
     if (loss != Loss::none) {
@@ -104,7 +105,7 @@ std::optional<Location> Tracker::look(const Field& field, Loss& why) {
 const TrackedSample& Tracker::lose(Loss why) {
   ++missed_;
   samples_.push_back({why, {}, 0.0, 0.0});
-  if (held_ && missed_ > patient_fields) held_ = false;
+  if (held_ && missed_ > max_missed_fields) held_ = false;
   return samples_.back();
 }
 
@@ -129,7 +130,7 @@ const TrackedSample& Tracker::add(const Field& field, bool copy) {
     correct(*found);
   }
   missed_ = 0;
-  contrast_ = forget_contrast * contrast_ + (1.0 - forget_contrast) * found->levels[1];
+  contrast_ = contrast_forgetting * contrast_ + (1.0 - contrast_forgetting) * found->levels[1];
   return samples_.back();
 }
 
@@ -159,11 +160,11 @@ void drop_bends(std::vector<TrackedSample>& samples) {
 }
 
 void drop_short_runs(std::vector<TrackedSample>& samples) {
-  if (samples.size() < 3 * least_run) return;
+  if (samples.size() < 3 * min_run) return;
   for (std::size_t i = 0; i < samples.size();) {
     std::size_t j = i;
     while (j < samples.size() && samples[j].loss == Loss::none) ++j;
-    if (j > i && j - i < least_run)
+    if (j > i && j - i < min_run)
       for (std::size_t k = i; k < j; ++k) samples[k] = {Loss::implausible, {}, 0.0, 0.0};
     i = std::max(j, i + 1);
   }

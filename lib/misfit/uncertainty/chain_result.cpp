@@ -10,7 +10,7 @@ namespace misfit {
 namespace {
 
 constexpr char succeeded = '+', failed = '-';
-constexpr std::size_t most_reasons = 20;
+constexpr std::size_t max_reasons = 20;
 constexpr const char* other_reasons = "other reasons";
 
 }  // namespace
@@ -38,7 +38,7 @@ std::optional<std::vector<ChainResult>> stored_runs(const std::function<ChainRes
 }
 
 void count_failure(const std::string& reason, std::map<std::string, std::size_t>& failures) {
-  const bool room = failures.size() < most_reasons || failures.contains(reason);
+  const bool room = failures.size() < max_reasons || failures.contains(reason);
   ++failures[room ? reason : other_reasons];
 }
 

@@ -30,10 +30,10 @@ class Search {
       : request_(request), direction_(direction), limit_(limit_95 * scale_of(request)), held_(request.from_best()) {}
 
   Side run() {
-    constexpr int most_steps = 20;
+    constexpr int max_steps = 20;
     double inside = request_.best, inside_root = 0.0;
     double step = 0.5 * request_.sigma;
-    for (int k = 0; k < most_steps; ++k) {
+    for (int k = 0; k < max_steps; ++k) {
       const double next = kept_inside(inside + direction_ * step);
       if (next == inside) return ended(inside, "the bound of " + request_.parameter + " is reached first");
       const std::optional<double> root = root_at(next);

@@ -66,8 +66,8 @@ void Resampler::choose_length(const BlockLength& length) {
   const auto root = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(counted_))));
   int wanted = length.samples;
   if (wanted == 0) {
-    constexpr int memories = 5, extra_for_rows = 50;
-    wanted = std::max(pool_.size() < min_samples ? root : memories * memory_in(pool_), root);
+    constexpr int memories_per_block = 5, extra_for_rows = 50;
+    wanted = std::max(pool_.size() < min_samples ? root : memories_per_block * memory_in(pool_), root);
     if (what_ == Resampled::rows) wanted += extra_for_rows;
   }
   block_ = std::min(wanted, std::max(1, static_cast<int>(counted_ / 8)));

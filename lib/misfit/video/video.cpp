@@ -137,7 +137,8 @@ Video::Video(const std::filesystem::path& path) : state_(std::make_unique<State>
   facts.declared = stream.declared;
   if (facts.width <= 0 || facts.height <= 0) throw RunError(path.string() + ": not a video: its pictures have no size");
   if (!(facts.rate > 0.0) || facts.rate > 1e5)
-    throw RunError(fmt::format("{}: the file declares {} frames per second: times cannot be told", path.string(), facts.rate));
+    throw RunError(
+        fmt::format("{}: the file declares {} frames per second: no time can be assigned to its frames", path.string(), facts.rate));
   state_->start(path);
 }
 

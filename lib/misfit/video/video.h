@@ -31,7 +31,7 @@ struct VideoFacts {
   bool finished = false;  ///< the end was reached
 };
 
-/// Decodes a video in a thread of its own. Time comes from index and rate; the container's timestamps only tell where frames were left out.
+/// Decodes a video in a thread of its own. Time comes from index and rate; the container's timestamps only show where frames were left out.
 class Video {
  public:
   /// InputError: no such file, an empty file. RunError: not a video (what cannot be decoded), no frame rate, no frame at all.

@@ -91,8 +91,8 @@ std::string name_of(const fs::path& file, int above) {
   return name;
 }
 
-/// Studies of the same name take in the folders above, one by one, until they differ: names depend on which studies there are, not on their
-/// order.
+/// Studies of the same name are prefixed by the folders above, one by one, until they differ: names depend on which studies there are, not
+/// on their order.
 void give_names(std::vector<BatchEntry>& entries) {
   std::vector<int> above(entries.size(), 0);
   constexpr int deepest = 200;

@@ -23,7 +23,7 @@ constexpr const char* ladder_name = "ladder.json";
 const char* const method = random_force_estimator().name;
 constexpr std::string_view system_prefix = "system:";
 
-/// filter_error's fit and estimate; RunError in its words if it declined.
+/// filter_error's fit and estimate; RunError with its message if it declined.
 std::shared_ptr<const FilterWork> fitted(Session& session) {
   if (filter_declined(session)) refuse_declined(session);
   return filter_work(session);
@@ -33,7 +33,7 @@ void append_note(std::string& note, const std::string& words) {
   if (!words.empty()) note += (note.empty() ? "" : "; ") + words;
 }
 
-/// What the fit says of the model, without what made it.
+/// The fit's results, without the parent and the added effect.
 Rung rung_of(const Session& session, const FilterWork& work) {
   Rung rung;
   rung.system = session.model.request.system;
@@ -78,7 +78,7 @@ std::vector<Penalty> shared_penalties(const FilterEstimate& child, const FilterE
   return penalties;
 }
 
-/// Measurements that both models use and neither has rejected: an effect may need inputs that are missing where the other model goes on.
+/// Measurements that both models use and neither has rejected: an effect may read inputs with gaps that the other model does not read.
 std::vector<std::vector<SampleRole>> common_use(const FilterEstimate& a, const FilterEstimate& b) {
   std::vector<std::vector<SampleRole>> use;
   for (std::size_t e = 0; e < a.data.size(); ++e) {
@@ -135,7 +135,7 @@ StageInputs inputs_of_ladder(const Session& session) {
   }
   if (session.study.system_file) files.push_back(*session.study.system_file);
   auto out = session.inputs(session.study.text, files);
-  out.erase("program");  // another build refits the rungs, it does not take them down
+  out.erase("program");  // a new build refits the rungs; it does not start a new ladder
   return out;
 }
 
@@ -240,7 +240,7 @@ std::unique_ptr<Session> ModelLadder::open(const NewStudy& study, const fs::path
 const Rung& ModelLadder::add(const std::string& effect, const std::optional<Candidate>& from) {
   Session& parent_session = last();
   const NewStudy study = new_study(effect, from);
-  const Rung parent = last_rung();  // a study that no rung can be added to is refused by now: fit the parent
+  const Rung parent = last_rung();  // new_study() has refused what cannot be added: only now is the parent fitted
   const auto parent_work = fitted(parent_session);
   auto child = open(study, parent_session.folder.path());
   const auto work = fitted(*child);
@@ -267,7 +267,7 @@ void report_ladder(ModelLadder& ladder) {
   try {
     session.note("report: " + report_stage(session, fit_stage(session)).lexically_normal().string());
   } catch (const RunError& error) {
-    session.note(std::string("no report: ") + error.what());  // the rung stands without it
+    session.note(std::string("no report: ") + error.what());  // the rung is valid without a report
   }
 }
 

@@ -56,7 +56,7 @@ class ModelLadder {
 /// that the prediction is one. nullopt for a change of system, which no discovery ranks. InputError as ModelLadder::add.
 [[nodiscard]] std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect);
 
-/// The best accepted candidate that a study can take in one line.
+/// The best accepted candidate that is an effect of the library, so that one line adds it to a study.
 [[nodiscard]] std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Registry& registry);
 
 /// What happens while a ladder is extended. Empty functions: nobody listens.

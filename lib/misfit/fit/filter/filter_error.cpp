@@ -67,7 +67,7 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
   }
   fit.force["correlation_time"] = as_estimate(1, "s");
   fit.force["correlation_time"].interval = intervals[1];
-  if (!(sigmas[0] > 0.0)) fit.facts["random_force"] = "the data ask for no random force: the motion is not driven";
+  if (!(sigmas[0] > 0.0)) fit.facts["random_force"] = "the estimated random force is 0: the motion is not driven";
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     const std::string& name = spec.outputs[o].name;
     const std::string& unit = spec.outputs[o].unit;
@@ -264,10 +264,11 @@ void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
     add_student_intervals(degrees.left(), fit);
     return;
   }
-  withhold_sigmas(format_value(degrees.measurements) + " measurements for " + format_value(std::round(10.0 * degrees.unknowns) / 10.0) +
-                      " unknowns (free parameters, initial states, noise and random force) are too few to tell how far off the values "
-                      "are: no sigma is given",
-                  fit);
+  withhold_sigmas(
+      format_value(degrees.measurements) + " measurements for " + format_value(std::round(10.0 * degrees.unknowns) / 10.0) +
+          " unknowns (free parameters, initial states, noise and random force) are too few to estimate the uncertainty of the values "
+          "are: no sigma is given",
+      fit);
 }
 
 }  // namespace
@@ -288,9 +289,9 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   report_gaps(estimate, fit);
   test_innovations(estimate, fit);
   fit.facts["effective_parameters"] = format_value(estimate.edf);
-  fit.facts["left_by_exact_derivatives"] = estimate.newton_decrement ? "one more Newton step on the exact likelihood would raise it by " +
-                                                                           format_value(*estimate.newton_decrement)
-                                                                     : "not verified";
+  fit.facts["newton_decrement"] = estimate.newton_decrement ? "one more Newton step on the exact likelihood would raise it by " +
+                                                                  format_value(*estimate.newton_decrement)
+                                                            : "not verified";
   if (!estimate.nonlinear.empty()) {
     const auto [first_at, last_at] = std::minmax_element(estimate.nonlinear.begin(), estimate.nonlinear.end());
     fit.warnings.push_back(std::to_string(estimate.nonlinear.size()) + " measurements between t = " + format_value(*first_at) + " and " +

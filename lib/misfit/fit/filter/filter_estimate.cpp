@@ -11,7 +11,7 @@
 #include "misfit/fit/filter/likelihood_ascent.h"
 #include "misfit/fit/filter/likelihood_derivatives.h"
 #include "misfit/fit/filter/restricted_likelihood.h"
-#include "misfit/math/learned_curvature.h"
+#include "misfit/math/bfgs.h"
 
 namespace misfit {
 namespace {
@@ -35,8 +35,7 @@ class Estimation {
   /// [log-likelihood] Coarse where refine_jointly() follows.
   [[nodiscard]] double tolerance() const { return options_.verify ? 0.2 : 0.02; }
 
-  /// A filter that is too sure of itself loses the motion: its noise is raised until innovations are as large as it expects them, within a
-  /// factor of two.
+  /// A filter whose assumed noise is too small diverges: noise is raised until the RMS of the whitened innovations is at most 2.
   void begin() {
     constexpr int most_raises = 12;
     constexpr double most_variance = 4.0;  // of whitened innovations, which should have 1
@@ -62,7 +61,8 @@ class Estimation {
     return count > 0.0 ? squares / count : 0.0;
   }
 
-  /// First about the curves that fit under the assumed noise; these can be too wild to be run with another, then about the start's.
+  /// Estimates the noise after one Gauss–Newton step of the parameters under the assumed noise; if the filter diverges there with the
+  /// estimated noise, at the start's parameters.
   void search_noise() {
     const Eigen::VectorXd start = at_.theta;
     at_.gauss_newton_step();
@@ -72,7 +72,7 @@ class Estimation {
     at_.try_noise(best_noise());
   }
 
-  /// From three frequencies of the resonance: the likelihood has a maximum per line it could sit on.
+  /// From three start values of the jitter's frequency: the likelihood has a local maximum at each spectral line of the measurement noise.
   NoiseFit best_noise() const {
     constexpr int iterations = 6;
     NoiseFit best;
@@ -87,7 +87,8 @@ class Estimation {
     return best;
   }
 
-  /// What was estimated with outliers among the data may have called good measurements wild: again, until none comes or goes.
+  /// Gates the measurements and estimates again until the rejected set no longer changes: outliers in the data bias the first estimates, by
+  /// which good measurements may have been rejected too.
   void reject_outliers() {
     constexpr int most_rounds = 4;
     const std::vector<FilterData> all = out_.data;
@@ -118,11 +119,11 @@ class Estimation {
   }
 
   /// Newton steps over parameters and log noise together, each in these steps:
-  ///   1. `differentiate`: first derivatives and information of the exact likelihood; to one side only after a short step that gained what
-  ///      it promised.
-  ///   2. `exclude_nonlinear` (no use given): measurements at which the filter's linearisation breaks still move it, but no longer count;
-  ///      iterate and begin again.
-  ///   3. `restrict_likelihood`: what the parameters' being estimated does to slope and information of the noise.
+  ///   1. `differentiate`: gradient and Fisher information of the exact likelihood; one-sided differences only after a short step whose
+  ///      gain was as predicted ("promised").
+  ///   2. `exclude_nonlinear` (no use given): measurements at which the filter's linearisation fails still update the state, but no longer
+  ///      count in the likelihood; iterate and begin again.
+  ///   3. `restrict_likelihood`: correction of the noise's gradient and information for the estimated parameters (REML).
   ///   4. `invert_joint`: covariance of parameters and noise with roughness and priors.
   ///   5. `step_jointly`: a Newton step inside the bounds that raises the exact objective.
   /// Ends when no step rises, or after a step of less than a sigma.
@@ -136,7 +137,7 @@ class Estimation {
       one_sided = false;
       if (!options_.use && exclude_nonlinear(exact.nonlinear)) {
         iterate_again();
-        learned_ = {};
+        bfgs_ = {};
         continue;
       }
       restrict_likelihood();
@@ -174,7 +175,7 @@ class Estimation {
     return any;
   }
 
-  /// −½ log det N is all but straight in the logarithms of the noise: its slope is kept until one of these has changed by a tenth.
+  /// −½ log det N is nearly linear in the logarithms of the noise: its gradient is reused until one of these has changed by 0.1.
   void restrict_likelihood() {
     constexpr double least_change = 0.1;
     const std::vector<double>& logs = out_.noise_fit.logs;
@@ -185,7 +186,7 @@ class Estimation {
     restricted_at_ = logs;
   }
 
-  /// Where so little is known of the noise that nothing would be left after the information loss, an approximation, it is not taken off.
+  /// The information loss is an approximation: it is not subtracted where the matrix would not stay positive definite.
   bool invert_joint(const LikelihoodDerivatives& exact) {
     const Eigen::MatrixXd whole = joint_information(out_, exact);
     Eigen::MatrixXd less = whole;
@@ -201,14 +202,14 @@ class Estimation {
     return false;
   }
 
-  /// With the curvature that the steps before have shown, else with that of the information: near kinks one learns nonsense.
+  /// With the BFGS inverse of the steps before; if that does not rise (near a kink its updates are wrong), with the inverse information.
   std::optional<double> step_jointly(const LikelihoodDerivatives& exact) {
     Eigen::VectorXd gradient = exact.gradient;
     gradient.tail(restricted_.slope.size()) += restricted_.slope;
-    learned_.look(at_.joint(), gradient);
-    std::optional<double> gained = at_.joint_step(gradient, learned_.inverse(out_.joint_covariance), restricted_.slope);
-    if (gained || !learned_.anything()) return gained;
-    learned_ = {};
+    bfgs_.update(at_.joint(), gradient);
+    std::optional<double> gained = at_.joint_step(gradient, bfgs_.inverse(out_.joint_covariance), restricted_.slope);
+    if (gained || !bfgs_.has_updates()) return gained;
+    bfgs_ = {};
     return at_.joint_step(gradient, out_.joint_covariance, restricted_.slope);
   }
 
@@ -242,16 +243,16 @@ class Estimation {
     constexpr double quadratic = 100.0;  // [log-likelihood] a promise of more is beyond what its derivatives know
     if (left && *left >= quadratic) return "no maximum was reached: the likelihood still rises steeply";
     if (left && *left >= kDecrementOfOneSigma) {
-      return "the exact derivatives of the likelihood say that it could still rise by " + format_value(*left) +
-             (out_.converged ? ", less than two sigmas of one parameter would" : "");
+      return "by its exact derivatives the log-likelihood could still rise by " + format_value(*left) +
+             (out_.converged ? ", less than a change of one parameter by two sigmas is worth" : "");
     }
     if (out_.converged) return "the likelihood no longer rises";
-    if (options_.verify && !left) return "whether the likelihood still rises could not be verified: " + unverified_;
+    if (options_.verify && !left) return "whether the likelihood is at its maximum could not be verified: " + unverified_;
     return "iteration limit: the likelihood may still rise";
   }
 
   FilterOptions options_;
-  LearnedCurvature learned_;
+  BfgsInverse bfgs_;
   RestrictedLikelihood restricted_;
   std::vector<double> restricted_at_;  ///< the logarithms where it was taken
   std::string unverified_ = "too many samples where the linearisation of the filter fails";

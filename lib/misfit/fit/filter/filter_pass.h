@@ -81,7 +81,7 @@ class FilterPass {
 
   [[nodiscard]] const double* output_row(int o) const { return O_.data() + static_cast<std::ptrdiff_t>(o) * kRowStride; }
 
-  /// Outputs, their rows and their variances before any measurement of the sample is taken in.
+  /// Outputs, their rows and their variances before the update by any measurement of the sample.
   void predict_outputs(std::size_t k) {
     const auto NY_ = static_cast<std::size_t>(ny_);
     std::copy_n(x_.begin(), n_, trace_.predicted.begin() + (k * N_));
@@ -148,7 +148,7 @@ class FilterPass {
       aside.erase(aside.begin() + i);
       --kept;
     }
-    run = -1;  // lost: all are taken in until one is within the gate
+    run = -1;  // lost: all measurements are used until one is within the gate
     return false;
   }
 

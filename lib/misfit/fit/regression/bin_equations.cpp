@@ -51,8 +51,8 @@ void list_known(const Model& model, BinForm& form) {
   for (int i : model.free_parameters()) {
     const Parameter& p = model.parameters[i];
     const std::string name = p.curve >= 0 ? model.curves[p.curve].name : p.name;
-    const bool told = !form.taken_as_known.empty() && form.taken_as_known.back() == name;
-    if (!own(i) && !told) form.taken_as_known.push_back(name);
+    const bool listed = !form.taken_as_known.empty() && form.taken_as_known.back() == name;
+    if (!own(i) && !listed) form.taken_as_known.push_back(name);
   }
 }
 

@@ -167,7 +167,7 @@ Eigen::VectorXd inside_bounds(const Model& model, const std::vector<int>& free, 
 bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed) {
   const std::vector<int> free = out.model.free_parameters();
   constexpr int rounds = 12;
-  constexpr double still = 1e-2;  // of a sigma
+  constexpr double converged_step = 1e-2;  // of a sigma
   bool settled = false;
   for (int round = 0; round < rounds && !settled; ++round) {
     Regression regression = regressor.linearise(out.model);
@@ -184,7 +184,7 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
     if (!smoothed.ok) break;
     const Eigen::VectorXd there = inside_bounds(out.model, free, smoothed);
     const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
-    settled = round > 0 && (there - regression.sums.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < still;
+    settled = round > 0 && (there - regression.sums.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < converged_step;
     out.model.set_theta(there);
   }
   out.fit.status = !smoothed.ok ? FitStatus::failed : settled ? FitStatus::converged : FitStatus::not_converged;
@@ -275,7 +275,7 @@ void describe_all(const Regressor& regressor, const PenalisedFit& smoothed, Fitt
   add_remarks(regressor, regression.sums, out);
   if (degrees < kFewestDegrees) {
     withhold_sigmas(format_value(regression.sums.count) + " usable samples for " + format_value(std::round(10.0 * smoothed.edf) / 10.0) +
-                        " unknowns are too few to tell how far off the values are: no sigma is given",
+                        " unknowns are too few to estimate the uncertainty of the values: no sigma is given",
                     out.fit);
   }
 }

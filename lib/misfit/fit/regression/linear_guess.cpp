@@ -122,15 +122,15 @@ LinearGuess guess_linear(const GuessData& data) {
   out.rest = spread.mean;
   const double length = data.t.back() - data.t.front();
   out.tau = 0.1 * length;
-  out.why = "no linear model could be read off the data: tau is a tenth of the record";
+  out.why = "no linear model could be estimated from the data: tau is a tenth of the record";
   if (!(spread.sigma > 0.0) || data.t.size() < 3) return out;
   std::vector<double> steps;
   for (std::size_t k = 1; k < data.t.size(); ++k) steps.push_back(data.t[k] - data.t[k - 1]);
   const double step = median(steps);
   const double swing = 2.0 * length / static_cast<double>(std::max<std::size_t>(crossings(data.y, spread), 1));
-  constexpr double per_swing = 10.0;
-  const auto d =
-      static_cast<std::size_t>(std::clamp(std::round(swing / per_swing / step), 1.0, static_cast<double>(data.t.size()) / 20.0 + 1.0));
+  constexpr double samples_per_period = 10.0;
+  const auto d = static_cast<std::size_t>(
+      std::clamp(std::round(swing / samples_per_period / step), 1.0, static_cast<double>(data.t.size()) / 20.0 + 1.0));
   const auto r = regress(data, d, step, spread);
   if (!r) return out;
   const double h = step * static_cast<double>(d);
@@ -139,21 +139,21 @@ LinearGuess guess_linear(const GuessData& data) {
   if (!(std::abs(slow) < 1.02) || std::abs(slow) < 1e-6) return out;
   const std::complex<double> pole = std::log(slow) / h;
   const double omega = std::abs(pole), zeta = -pole.real() / omega;
-  constexpr double nearly_critical = 0.9;
-  if (std::abs(slow.imag()) > 1e-9 && zeta < nearly_critical) {
+  constexpr double max_damping_ratio = 0.9;
+  if (std::abs(slow.imag()) > 1e-9 && zeta < max_damping_ratio) {
     out.order = 2;
     out.stiffness = omega * omega;
     out.damping = std::max(2.0 * zeta * omega, 1e-3 * omega);
     set_static(*r, spread, out);
-    out.why = fmt::format("it swings: about {:.3g} Hz, {:.3g} % of critical damping", omega / (2.0 * std::numbers::pi),
-                          100.0 * std::max(zeta, 0.0));
+    out.why = fmt::format("oscillatory: natural frequency about {:.3g} Hz, damping ratio {:.3g}", omega / (2.0 * std::numbers::pi),
+                          std::max(zeta, 0.0));
     return out;
   }
   const double modulus = std::abs(slow);
   if (!(slow.real() > 0.0) || !(modulus < 0.9999)) return out;
   out.tau = -h / std::log(modulus);
   set_static(*r, spread, out);
-  out.why = fmt::format("it does not swing: a time constant of about {:.3g} s", out.tau);
+  out.why = fmt::format("not oscillatory: time constant about {:.3g} s", out.tau);
   return out;
 }
 

@@ -58,7 +58,7 @@ TelescopedSum telescoped_sum(const BinForm& form, const Signals& signals, const 
   return out;
 }
 
-/// One pass of the whole method with one reading of the stencils.
+/// One pass of the whole method with one interpretation of the stencils.
 struct Pass {
   SlidBins bins;
   BinSolution all;
@@ -258,7 +258,8 @@ std::string why_no_bins(const BinForm& form, const SlidingBinOptions& options, c
            " have all the neighbours that its derivatives need; a bin needs " + std::to_string(options.minimum_samples);
   }
   if (pass.bins.too_many) {
-    return channel + " runs over more than " + std::to_string(SlidBins::most) + " steps of the bins: a wild sample, or use larger steps";
+    return channel + " runs over more than " + std::to_string(SlidBins::most) +
+           " steps of the bins: an outlier in the data, or steps that are too small";
   }
   if (pass.bins.undetermined > 0) {
     return channel + " does not move enough: in no bin with " + std::to_string(options.minimum_samples) +

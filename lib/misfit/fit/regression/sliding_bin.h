@@ -16,10 +16,10 @@ struct SlidingBinOptions {
   double step = 0.0017453292519943296;  ///< by which it slides [unit of the level]: 0.1 deg, as in [P]'s example
   std::size_t minimum_samples = 30;     ///< bins with fewer are left out and counted; at least 4
   bool three_point_average = true;      ///< average the channel over three samples first, as [P] did; false where it is averaged already
-  bool curves_only = false;             ///< curves and trim with white sigmas, nothing told of them: for fits by the thousand
-  std::optional<bool> driven = {};      ///< the motion is driven, as equation_error() says of it; else by the residuals of the bins
-  Stencils stencils = Stencils::second_order_four_point;  ///< "second order ... (four-point stencils)" [P]; the other reading is run too
-                                                          ///< and its differences are told in facts["stencils"]
+  bool curves_only = false;             ///< curves and trim with white sigmas, no warnings or facts: for thousands of fits
+  std::optional<bool> driven = {};      ///< is the motion driven: the result of equation_error(); absent: from the residuals of the bins
+  Stencils stencils = Stencils::second_order_four_point;  ///< "second order ... (four-point stencils)" [P]; the other interpretation is
+                                                          ///< run too, its differences are in facts["stencils"]
 };
 
 /// The paper's method, to the letter [P]: rate and acceleration of the measured level by finite differences; in bins that slide over the

@@ -105,7 +105,7 @@ class Estimator {
     return true;
   }
 
-  /// Six times as long; less where the states handed over do not carry that far.
+  /// Segments six times as long; by a smaller factor where the simulation from the present initial states fails.
   bool lengthen(ShootingPass& pass) {
     for (const double factor : {6.0, 3.0, 2.0, 1.5, 1.25}) {
       const Shooting::State before = shooting_.state();
@@ -161,8 +161,8 @@ class Estimator {
     }
   }
 
-  /// One trajectory. Whenever the roughness is chosen anew, the last lengthening comes first again: a single trajectory alone would creep
-  /// along the curved valley of equal phase.
+  /// One trajectory. Whenever the roughness is chosen anew, the last segmented pass is repeated first: a single trajectory alone converges
+  /// slowly along the curved valley of parameters that give the same phase.
   FittedModel whole_trajectory(const ShootingPass& lengthened) {
     NormalEquations linearised;
     constexpr int most_rounds = 8, most_iterations = 200;
@@ -170,7 +170,7 @@ class Estimator {
     settled_ = false;
     for (int round = 0; round < most_rounds; ++round) {
       if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
-      if (!solve({0, 10.0, 1e8, most_iterations, 1e-7})) return failed(last_.message);
+      if (!solve({.initial_radius = 1e8, .max_iterations = most_iterations, .tolerance = 1e-7})) return failed(last_.message);
       const PenalisedFit smoothed = smooth_present(shooting_, penalties_, linearised);
       if (!smoothed.ok) return failed(shooting_.failure().empty() ? singular_message(linearised) : "");
       const std::vector<double> sigma = channel_sigmas({shooting_, shooting_.run(false), experiments_}, smoothed.edf);
@@ -180,21 +180,21 @@ class Estimator {
       before = smoothed.edf;
       shooting_.set_sigma(sigma);
       if (!settled_) continue;
-      add_digits(linearised, smoothed);
+      tighten_convergence(linearised, smoothed);
       break;
     }
     return finish(last_);
   }
 
-  /// A search in a long valley ends by its tolerance some way before the minimum: on to it, if a step of more than 1e-6 sigma is left. Not
-  /// for fits by the thousand.
-  void add_digits(const NormalEquations& linearised, const PenalisedFit& smoothed) {
+  /// In a long valley the solver stops by its tolerance before the minimum: solved again with a tighter one if a step of more than 1e-6
+  /// sigma is left. Not for resampling, with its thousands of fits.
+  void tighten_convergence(const NormalEquations& linearised, const PenalisedFit& smoothed) {
     constexpr double negligible_step = 1e-6;  // of a sigma
     const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
     if ((smoothed.theta - linearised.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < negligible_step || !options_.coloured) return;
     const Shooting::State before = shooting_.state();
     const LeastSquares::Summary then = last_;
-    if (solve({0, 10.0, 1e8, 100, 1e-13})) {
+    if (solve({.initial_radius = 1e8, .max_iterations = 100, .tolerance = 1e-13})) {
       last_ = then;
       return;
     }
@@ -212,7 +212,7 @@ class Estimator {
     return why_undetermined(which, last_.converged, {shooting_, shooting_.run(false), experiments_});
   }
 
-  /// On motion that is driven a failure to simulate is what had to be expected: then the method declines, in words.
+  /// No deterministic model can follow driven motion: there the method declines, with the reason, instead of failing.
   FittedModel failed(const std::string& why) {
     FittedModel out{{}, shooting_.model(), penalties_, {}};
     out.fit.method = estimators::output_error.name;
@@ -221,7 +221,7 @@ class Estimator {
     out.fit.message = shooting_.failure().empty() ? why : shooting_.failure() + (why.empty() ? "" : " (" + why + ")");
     if (start_driven_) {
       out.fit.message =
-          "the motion is driven by something this deterministic model does not have, and it cannot follow it: " + out.fit.message +
+          "the motion is driven by a force that this deterministic model does not have, so it cannot follow it: " + out.fit.message +
           ". The method that can estimate such motion is " + random_force_estimator().name;
       show_segments(out.fit);
     }
@@ -229,7 +229,7 @@ class Estimator {
     return out;
   }
 
-  /// The Gaussian at the estimate, and the runs there.
+  /// Normal equations, Gaussian posterior and simulated segments at the estimate.
   struct Ending {
     NormalEquations linearised;
     PenalisedFit smoothed;
@@ -298,7 +298,7 @@ class Estimator {
 
   static std::string too_few(double count, double unknowns) {
     return format_value(count) + " measurements for " + format_value(std::round(10.0 * unknowns) / 10.0) +
-           " unknowns (free parameters and initial states) are too few to tell how far off the values are: no sigma is given";
+           " unknowns (free parameters and initial states) are too few to estimate the uncertainty of the values: no sigma is given";
   }
 
   /// Parameters, curves and trim with the covariance of all unknowns, which is returned: allowing for autocorrelated residuals, and what

@@ -31,8 +31,8 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 /// Standard deviation of the known values.
 [[nodiscard]] double motion_size(const std::vector<double>& values);
 
-/// What the information matrix where the search ended cannot tell (`which`, a sentence) is said of the data only if the model follows them
-/// there: the search has converged and leaves less than half of the motion. Else it is said of that place.
+/// Parameters that the information matrix does not determine (`which`, a sentence): the sentence holds for the data only if the search has
+/// converged and the residuals are less than half of the motion; else it is said of the point where the search ended.
 [[nodiscard]] std::string why_undetermined(const std::string& which, bool converged, const EndOfSearch& end);
 
 /// Where the noise of an output is held and its residuals are of another size: a warning.

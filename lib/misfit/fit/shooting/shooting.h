@@ -41,7 +41,7 @@ class Shooting {
   /// Residuals are in units of sigma. False if the run leaves the finite numbers.
   bool linearise(NormalEquations& out);
   /// The same with every segment of `length` samples on its own, its initial state (from the history) projected out: columns are the free
-  /// parameters. Tells how rough the curves may be before the trajectory hangs together.
+  /// parameters. For choosing the roughness before one trajectory fits the whole record.
   bool linearise_segments(std::size_t length, NormalEquations& out);
   /// Predictions over the whole of each experiment from its initial state, with derivatives if asked.
   [[nodiscard]] std::vector<Segment> run(bool sensitivities);

@@ -39,7 +39,7 @@ bool Shooting::linearise_segments(std::size_t length, NormalEquations& out) {
     RowMatrix theta_rows(rows, columns), state_rows(rows, n);
     double* J[2] = {theta_rows.data(), state_rows.data()};
     fill_rows(piece, r.data(), J);
-    // The segment's own initial state is projected out: what is left tells of the parameters alone.
+    // The segment's own initial state is projected out: what is left depends on the parameters alone.
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> states(state_rows);
     const Eigen::MatrixXd Q = Eigen::MatrixXd(states.householderQ() * Eigen::MatrixXd::Identity(rows, states.rank()));
     r -= Q * (Q.transpose() * r);

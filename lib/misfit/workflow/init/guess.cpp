@@ -48,9 +48,9 @@ struct Room {
   int states = kMaxStates, outputs = kMaxOutputs, parameters = kMaxConstants;
 
   bool take(const GuessedOutput& output, std::size_t inputs) {
-    const bool swings = output.guess.order == 2;
-    const int of_states = swings ? 2 : 1, of_outputs = swings && !output.rate.empty() ? 2 : 1;
-    const int of_parameters = (swings ? 3 : 2) + static_cast<int>(inputs);
+    const bool oscillatory = output.guess.order == 2;
+    const int of_states = oscillatory ? 2 : 1, of_outputs = oscillatory && !output.rate.empty() ? 2 : 1;
+    const int of_parameters = (oscillatory ? 3 : 2) + static_cast<int>(inputs);
     if (of_states > states || of_outputs > outputs || of_parameters > parameters) return false;
     states -= of_states;
     outputs -= of_outputs;

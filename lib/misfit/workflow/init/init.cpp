@@ -15,11 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// About ten swings where the model swings, else some hundred samples [s].
+/// About ten periods where the model oscillates, else some hundred samples [s].
 double length_of_zoom(const GuessedModel& model, double step) {
-  constexpr double swings = 10.0, samples = 800.0;
+  constexpr double periods = 10.0, samples = 800.0;
   for (const auto& output : model.outputs) {
-    if (output.guess.order == 2) return swings * 2.0 * std::numbers::pi / std::sqrt(output.guess.stiffness);
+    if (output.guess.order == 2) return periods * 2.0 * std::numbers::pi / std::sqrt(output.guess.stiffness);
   }
   return samples * step;
 }

@@ -41,7 +41,7 @@ std::string parameters_of(const GuessedModel& model, const GuessedOutput& output
   std::string text = fmt::format("# {}: {}.\n", output.name, g.why);
   if (g.order == 2) {
     text += parameter(output.stiffness, "1/s^2", g.stiffness, positive_bounds(g.stiffness), "square of the natural frequency");
-    text += parameter(output.damping, "1/s", g.damping, positive_bounds(g.damping), "rate over which the motion slows");
+    text += parameter(output.damping, "1/s", g.damping, positive_bounds(g.damping), "twice the damping ratio times the natural frequency");
   } else {
     text += parameter(output.tau, "s", g.tau, positive_bounds(g.tau), "time constant");
   }

@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_markers = 8;  // per picture: the three points and things alike
-constexpr double max_drift = 3.0;        // [px] within which a marker stays while the rig stands
+constexpr std::size_t max_markers = 8;  // per picture: the three points and things alike
+constexpr double max_drift = 3.0;       // [px] within which a marker stays while the rig stands
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// A picture with the markers in it.
@@ -34,7 +34,7 @@ struct MarkerDetections {
 void detect_markers(const Image& image, const Marker& marker, MarkerDetections& detections) {
   detections.image = image;
   detections.markers.clear();
-  for (const Location& l : find_markers({image, 0, 1}, marker, most_markers)) {
+  for (const Location& l : find_markers({image, 0, 1}, marker, max_markers)) {
     detections.markers.push_back(l.at);
     detections.radius = std::max({detections.radius, l.outer, 5.0});
   }

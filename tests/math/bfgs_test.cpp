@@ -1,4 +1,4 @@
-#include "misfit/math/learned_curvature.h"
+#include "misfit/math/bfgs.h"
 
 #include <gtest/gtest.h>
 
@@ -8,47 +8,47 @@
 namespace misfit {
 namespace {
 
-TEST(LearnedCurvature, NothingSeenIsWhatWasExpected) {
-  const Eigen::MatrixXd expected = Eigen::Vector2d(3.0, 0.5).asDiagonal();
-  EXPECT_EQ(LearnedCurvature().inverse(expected), expected);
+TEST(BfgsInverse, WithoutUpdatesIsTheInitialOne) {
+  const Eigen::MatrixXd initial = Eigen::Vector2d(3.0, 0.5).asDiagonal();
+  EXPECT_EQ(BfgsInverse().inverse(initial), initial);
 }
 
-/// −½ xᵀAx looked at along as many directions as it has: the inverse of A, whatever was expected (conjugate directions).
-TEST(LearnedCurvature, OfAQuadraticIsItsOwnAfterConjugateSteps) {
+/// −½ xᵀAx with updates along three conjugate directions: the inverse of A, whatever the initial one.
+TEST(BfgsInverse, IsExactForAQuadraticAfterConjugateSteps) {
   Eigen::Matrix3d A;
   A << 4.0, 1.0, 0.5, 1.0, 3.0, -0.7, 0.5, -0.7, 2.0;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(A);
-  LearnedCurvature learned;
+  BfgsInverse bfgs;
   Eigen::VectorXd x = Eigen::Vector3d(1.0, -2.0, 0.3);
-  learned.look(x, -A * x);
+  bfgs.update(x, -A * x);
   for (Eigen::Index k = 0; k < 3; ++k) {
     x += (0.3 + static_cast<double>(k)) * axes.eigenvectors().col(k);
-    learned.look(x, -A * x);
+    bfgs.update(x, -A * x);
   }
-  const Eigen::MatrixXd inverse = learned.inverse(100.0 * Eigen::MatrixXd::Identity(3, 3));
+  const Eigen::MatrixXd inverse = bfgs.inverse(100.0 * Eigen::MatrixXd::Identity(3, 3));
   EXPECT_LT((inverse - A.inverse()).norm(), 1e-10 * inverse.norm());
 }
 
-TEST(LearnedCurvature, WhatBendsUpwardsTeachesNothing) {
-  LearnedCurvature learned;
-  const Eigen::MatrixXd expected = Eigen::MatrixXd::Identity(2, 2);
-  learned.look(Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.0, 0.0));
-  learned.look(Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(2.0, 0.0));
-  EXPECT_EQ(learned.inverse(expected), expected);
+TEST(BfgsInverse, IgnoresStepsAlongWhichTheObjectiveIsConvex) {
+  BfgsInverse bfgs;
+  const Eigen::MatrixXd initial = Eigen::MatrixXd::Identity(2, 2);
+  bfgs.update(Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.0, 0.0));
+  bfgs.update(Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(2.0, 0.0));
+  EXPECT_EQ(bfgs.inverse(initial), initial);
 }
 
 /// Steps up Rosenbrock's ridge, (1 − x)² + 100 (y − x²)² from below, until it gains less than 1e-8; each halved until it rises.
-int steps_up_the_ridge(bool learning) {
+int steps_up_the_ridge(bool with_bfgs) {
   const auto height = [](const Eigen::VectorXd& x) { return -std::pow(1.0 - x[0], 2) - 100.0 * std::pow(x[1] - x[0] * x[0], 2); };
-  const Eigen::MatrixXd expected = Eigen::MatrixXd::Identity(2, 2) / 200.0;
-  LearnedCurvature learned;
+  const Eigen::MatrixXd initial = Eigen::MatrixXd::Identity(2, 2) / 200.0;
+  BfgsInverse bfgs;
   Eigen::VectorXd x = Eigen::Vector2d(-1.2, 1.0);
   constexpr int most = 5000;
   for (int k = 0; k < most; ++k) {
     const double off = x[1] - x[0] * x[0];
     const Eigen::VectorXd gradient = Eigen::Vector2d(2.0 * (1.0 - x[0]) + 400.0 * x[0] * off, -200.0 * off);
-    learned.look(x, gradient);
-    const Eigen::VectorXd step = (learning ? learned.inverse(expected) : expected) * gradient;
+    bfgs.update(x, gradient);
+    const Eigen::VectorXd step = (with_bfgs ? bfgs.inverse(initial) : initial) * gradient;
     double share = 1.0;
     while (height(x + share * step) <= height(x) && share > 1e-12) share *= 0.5;
     if (height(x + share * step) - height(x) < 1e-8) return (x - Eigen::Vector2d(1.0, 1.0)).norm() < 1e-2 ? k : most;
@@ -57,7 +57,7 @@ int steps_up_the_ridge(bool learning) {
   return most;
 }
 
-TEST(LearnedCurvature, ClimbsABentRidgeInFewSteps) {
+TEST(BfgsInverse, ClimbsACurvedRidgeInFewSteps) {
   EXPECT_LT(steps_up_the_ridge(true), 60);
   EXPECT_GT(steps_up_the_ridge(false), 600);
 }
