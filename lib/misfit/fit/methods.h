@@ -12,13 +12,21 @@
 
 namespace misfit {
 
+/// An estimate of a model that another one contains: that one has the same parameters and curves first, then its own.
+struct ContainedFit {
+  std::vector<double> values;     ///< of all parameters, Model::parameters
+  std::vector<double> roughness;  ///< λ by curve, Model::curves; 0: none
+  FilterNoise noise, around;
+};
+
 /// What a method is given.
 struct EstimationTask {
   const Model& model;  ///< in the system's regression form for methods that solve that (EstimatorInfo::regression_form)
   const std::vector<Signals>& experiments;
   std::function<const FittedModel&()> regression = {};  ///< equation_error() of the same, where somebody has it
   SlidingBinOptions bins = {};
-  int threads = 0;  ///< 0: one per core; does not change the answer
+  int threads = 0;                             ///< 0: one per core; does not change the answer
+  std::optional<ContainedFit> contained = {};  ///< of a method with a random force: to start from, among others
 };
 
 /// A fit as others start from it: of replicas of its data, or of the same data with a parameter held. Roughness stays as it was chosen.

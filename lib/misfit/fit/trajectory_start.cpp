@@ -1,5 +1,6 @@
 #include "misfit/fit/trajectory_start.h"
 
+#include "misfit/fit/filter/runnable_start.h"
 #include "misfit/fit/regression/equation_error.h"
 
 namespace misfit {
@@ -11,17 +12,11 @@ void damping_to_zero(Model& model) {
   for (int i = 0; i < damping->spline.size(); ++i) model.parameters[damping->first + i].value = 0.0;
 }
 
-FittedModel with_shapes_kept(const Model& asked, const std::vector<Signals>& experiments,
-                             const std::function<const FittedModel&()>& whole) {
-  Model kept = asked;
-  bool any = false;
-  for (auto& p : kept.parameters) {
-    const bool shape = p.free && p.curve < 0 && p.kind == CoefficientKind::shape;
-    if (shape) p.free = false;
-    any = any || shape;
-  }
-  if (!any) return whole ? whole() : equation_error(asked, experiments);
-  FittedModel start = equation_error(kept, experiments);
+/// Equation error with the parameters of `kept` held where `asked` has them, and free again afterwards.
+FittedModel with_kept(const Model& asked, const std::vector<Signals>& experiments, const std::vector<int>& kept) {
+  Model held = asked;
+  for (int i : kept) held.parameters[i].free = false;
+  FittedModel start = equation_error(held, experiments);
   for (std::size_t i = 0; i < asked.parameters.size(); ++i) start.model.parameters[i].free = asked.parameters[i].free;
   std::vector<Penalty> penalties = curve_penalties(start.model);
   for (std::size_t k = 0; k < penalties.size(); ++k) penalties[k].lambda = start.penalties[k].lambda;
@@ -29,15 +24,38 @@ FittedModel with_shapes_kept(const Model& asked, const std::vector<Signals>& exp
   return start;
 }
 
-}  // namespace
+std::vector<int> free_shapes(const Model& model) {
+  std::vector<int> out;
+  for (int i : model.free_parameters()) {
+    const Parameter& p = model.parameters[i];
+    if (p.curve < 0 && p.kind == CoefficientKind::shape) out.push_back(i);
+  }
+  return out;
+}
 
-TrajectoryStart trajectory_start(const Model& asked, const std::vector<Signals>& experiments,
-                                 const std::function<const FittedModel&()>& whole) {
-  TrajectoryStart out{with_shapes_kept(asked, experiments, whole), false};
+TrajectoryStart begun_at(FittedModel from) {
+  TrajectoryStart out{std::move(from), false};
   const FitStatus status = out.from.fit.status;
   out.regressed = status != FitStatus::declined && status != FitStatus::failed;
   if (out.regressed && out.from.fit.driven) damping_to_zero(out.from.model);
   return out;
+}
+
+}  // namespace
+
+TrajectoryStart trajectory_start(const Model& asked, const std::vector<Signals>& experiments,
+                                 const std::function<const FittedModel&()>& whole) {
+  const std::vector<int> kept = free_shapes(asked);
+  if (!kept.empty()) return begun_at(with_kept(asked, experiments, kept));
+  return begun_at(whole ? whole() : equation_error(asked, experiments));
+}
+
+std::optional<TrajectoryStart> trajectory_start_as_given(const Model& asked, const std::vector<Signals>& experiments) {
+  const std::vector<int> strengths = free_strengths(asked);
+  if (strengths.empty()) return std::nullopt;
+  std::vector<int> kept = free_shapes(asked);
+  kept.insert(kept.end(), strengths.begin(), strengths.end());
+  return begun_at(with_kept(asked, experiments, kept));
 }
 
 }  // namespace misfit

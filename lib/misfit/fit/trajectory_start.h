@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "misfit/data/signals.h"
@@ -20,5 +21,9 @@ struct TrajectoryStart {
 /// called only where no shape is free.
 [[nodiscard]] TrajectoryStart trajectory_start(const Model& asked, const std::vector<Signals>& experiments,
                                                const std::function<const FittedModel&()>& whole = {});
+
+/// The same with the strengths of effects, too, held where the study puts them, which is off where it does not say: what the regression
+/// makes of an effect can be far from what the motion says of it. nullopt: the model has no effect with such a number that is free.
+[[nodiscard]] std::optional<TrajectoryStart> trajectory_start_as_given(const Model& asked, const std::vector<Signals>& experiments);
 
 }  // namespace misfit

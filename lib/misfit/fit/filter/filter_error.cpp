@@ -292,6 +292,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   fit.facts["newton_decrement"] = estimate.newton_decrement ? "one more Newton step on the exact likelihood would raise it by " +
                                                                   format_value(*estimate.newton_decrement)
                                                             : "not verified";
+  fit.warnings.insert(fit.warnings.end(), estimate.notes.begin(), estimate.notes.end());
   if (!estimate.nonlinear.empty()) {
     const auto [first_at, last_at] = std::minmax_element(estimate.nonlinear.begin(), estimate.nonlinear.end());
     fit.warnings.push_back(std::to_string(estimate.nonlinear.size()) + " measurements between t = " + format_value(*first_at) + " and " +
@@ -314,10 +315,14 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
 }
 
 FilterError filter_error(const FittedModel& start, const std::vector<Signals>& experiments, const FilterOptions& options) {
+  return filter_error(std::vector<FilterStart>{{start.model, curve_penalties(start.model)}}, experiments, options);
+}
+
+FilterError filter_error(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments, const FilterOptions& options) {
   const Stopwatch clock;
   FilterError out;
   try {
-    out.estimate = estimate_filter(start.model, curve_penalties(start.model), experiments, options);
+    out.estimate = estimate_filter(starts, experiments, options);
     out.fit = filter_fit(*out.estimate, options.threads);
   } catch (const RunError& error) {
     out.fit.method = estimators::filter_error.name;

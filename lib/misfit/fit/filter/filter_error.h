@@ -16,5 +16,8 @@ struct FilterError {
 };
 [[nodiscard]] FilterError filter_error(const FittedModel& start, const std::vector<Signals>& experiments,
                                        const FilterOptions& options = {});
+/// The same from several starts of one model.
+[[nodiscard]] FilterError filter_error(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
+                                       const FilterOptions& options = {});
 
 }  // namespace misfit

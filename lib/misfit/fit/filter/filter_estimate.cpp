@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <optional>
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 #include "misfit/fit/filter/likelihood_ascent.h"
 #include "misfit/fit/filter/likelihood_derivatives.h"
+#include "misfit/fit/filter/noise_survey.h"
 #include "misfit/fit/filter/restricted_likelihood.h"
+#include "misfit/fit/filter/runnable_start.h"
 #include "misfit/math/bfgs.h"
 
 namespace misfit {
@@ -18,29 +22,66 @@ namespace {
 
 class Estimation {
  public:
-  Estimation(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments, const FilterOptions& options)
-      : options_(options), at_(start, std::move(penalties), experiments, options) {}
+  Estimation(const FilterStart& start, const std::vector<Signals>& experiments, const FilterOptions& options)
+      : options_(options),
+        noise_given_(start.noise || options.noise),
+        at_(start.model, start.penalties, experiments, begun(start, options)) {}
 
-  FilterEstimate run() {
+  /// As far as the first rounds of the blocks in turn. RunError: the model can be run from no start.
+  void approach(int rounds) {
     begin();
-    if (!options_.noise) search_noise();
-    at_.iterate(25, tolerance());  // refine_jointly() steps over both blocks at once
-    if (!options_.use) reject_outliers();
-    if (options_.verify) refine_jointly();
-    conclude();
-    return std::move(out_);
+    set_floor();
+    if (!noise_given_) search_noise();
+    at_.iterate(rounds, tolerance());  // refine_jointly() steps over both blocks at once
+    rounds_left_ -= rounds;
   }
 
+  void finish() {
+    if (!out_.converged && rounds_left_ > 0) at_.iterate(rounds_left_, tolerance());
+    if (!options_.noise) survey_noise();
+    if (!options_.use) reject_outliers();
+    if (options_.verify) refine_jointly();
+    return_to_floor();
+    conclude();
+  }
+
+  FilterEstimate take() { return std::move(out_); }
+
+  /// [log-likelihood] By which starts of one model are compared (marginal_loglik), parameters and noise as they are.
+  [[nodiscard]] double height() const { return marginal_loglik(at_.normal_equations(), out_.penalties, at_.objective); }
+
+  static constexpr int all_rounds = 25;
+
  private:
+  static FilterOptions begun(const FilterStart& start, FilterOptions options) {
+    if (start.noise) options.noise = start.noise;
+    return options;
+  }
+
   /// [log-likelihood] Coarse where refine_jointly() follows.
   [[nodiscard]] double tolerance() const { return options_.verify ? 0.2 : 0.02; }
 
-  /// A filter whose assumed noise is too small diverges: noise is raised until the RMS of the whitened innovations is at most 2.
   void begin() {
+    if (runs_with_raised_noise()) return;
+    const std::string why = at_.failure();
+    for (const RunnableStart& start : runnable_starts(out_.model)) {
+      at_.theta = start.model.theta();
+      out_.noise = out_.around;
+      out_.forced.set_force_time(out_.noise.force_time);
+      noise_given_ = false;
+      if (!runs_with_raised_noise()) continue;
+      out_.notes.push_back("the model cannot be run from its start (" + why + "); the search began elsewhere: " + start.words);
+      return;
+    }
+    throw RunError(why);
+  }
+
+  /// A filter whose assumed noise is too small diverges: noise is raised until the RMS of the whitened innovations is at most 2.
+  bool runs_with_raised_noise() {
     constexpr int most_raises = 12;
     constexpr double most_variance = 4.0;  // of whitened innovations, which should have 1
     bool runs = at_.linearise();
-    for (int k = 0; k < most_raises && !options_.noise; ++k) {
+    for (int k = 0; k < most_raises && !noise_given_; ++k) {
       if (runs && innovation_variance() <= most_variance) break;
       out_.noise.force *= 2.0;
       for (auto& channel : out_.noise.channels) {
@@ -49,7 +90,33 @@ class Estimation {
       }
       runs = at_.linearise();
     }
-    if (!runs) throw RunError(at_.failure());
+    return runs;
+  }
+
+  /// Where noise, measurements and roughness are given, the end is compared with the start: of two models each is to end at its maximum on
+  /// the same, and the larger one never below the smaller one from which it began.
+  void set_floor() {
+    if (!noise_given_ || !options_.use || options_.choose_roughness) return;
+    floor_.emplace(Floor{at_.theta, pack(out_.noise, out_.model.system->spec(), out_.around).value, at_.objective});
+  }
+
+  /// A noise step may lose a little, and the noise's restricted likelihood has its maximum elsewhere: an end below the start is replaced by
+  /// what plain Newton steps, each of which rises, reach from the start.
+  void return_to_floor() {
+    constexpr int most_steps = 5;
+    if (!floor_ || at_.objective >= floor_->objective || !at_.move_to(floor_->theta, floor_->logs)) return;
+    const Eigen::MatrixXd information = out_.noise_fit.information;
+    out_.noise_fit = fit_noise(at_.runs(), out_.noise, {out_.around, options_.threads, 0});
+    out_.noise_fit.information = information;
+    out_.noise_fit.logs = floor_->logs;
+    const Eigen::Index q = std::ssize(floor_->logs);
+    restricted_ = {Eigen::VectorXd::Zero(q), Eigen::MatrixXd::Zero(q, q)};
+    LikelihoodDerivatives exact;
+    for (int k = 0; k < most_steps && options_.verify; ++k) {
+      if (!differentiate(false, exact) || !invert_joint(exact)) return;
+      if (!at_.joint_step(exact.gradient, out_.joint_covariance, restricted_.slope)) return;
+      if (*out_.newton_decrement < kDecrementOfOneSigma) return;
+    }
   }
 
   [[nodiscard]] double innovation_variance() const {
@@ -85,6 +152,22 @@ class Estimation {
       if (fit.minus_loglik < best.minus_loglik) best = fit;
     }
     return best;
+  }
+
+  /// The likelihood has a maximum per correlation time at which the random force can stand in for something else (jitter, the motion's own
+  /// memory): the highest is climbed, others nearly as high are named.
+  void survey_noise() {
+    constexpr double clearly_higher = 0.5, nearly = 5.0;  // [log-likelihood]
+    const std::vector<NoiseFit> maxima = noise_maxima(at_.runs(), out_.noise, {out_.around, options_.threads});
+    if (maxima.empty()) return;
+    const double present = minus_loglik(at_.runs(), out_.noise);
+    if (maxima.front().minus_loglik < present - clearly_higher && at_.try_noise(maxima.front())) at_.iterate(all_rounds, tolerance());
+    for (const NoiseFit& other : maxima) {
+      const double below = other.minus_loglik - maxima.front().minus_loglik;
+      if (&other == &maxima.front() || below > nearly) continue;
+      out_.notes.push_back("the likelihood has another maximum at a correlation time of the random force of about " +
+                           format_value(other.noise.force_time) + " s, lower by " + format_value(2.0 * below) + " in 2 log L");
+    }
   }
 
   /// Gates the measurements and estimates again until the rejected set no longer changes: outliers in the data bias the first estimates, by
@@ -251,7 +334,17 @@ class Estimation {
     return "iteration limit: the likelihood may still rise";
   }
 
+  /// Where a comparison begins.
+  struct Floor {
+    Eigen::VectorXd theta;
+    std::vector<double> logs;
+    double objective;
+  };
+
   FilterOptions options_;
+  bool noise_given_;
+  int rounds_left_ = all_rounds;
+  std::optional<Floor> floor_;
   BfgsInverse bfgs_;
   RestrictedLikelihood restricted_;
   std::vector<double> restricted_at_;  ///< the logarithms where it was taken
@@ -260,11 +353,61 @@ class Estimation {
   FilterEstimate& out_ = at_.out;
 };
 
+/// What comes of each start of one model after a few rounds; those that are clearly lower, or as high as a higher one and so at the same
+/// maximum, are dropped. None: the model can be run from no start.
+std::vector<std::unique_ptr<Estimation>> promising(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
+                                                   const FilterOptions& options) {
+  constexpr int first_rounds = 6;
+  constexpr double clearly_lower = 10.0, same = 0.5;  // [log-likelihood]
+  std::vector<std::pair<double, std::unique_ptr<Estimation>>> tried;
+  for (const FilterStart& start : starts) {
+    auto search = std::make_unique<Estimation>(start, experiments, options);
+    try {
+      search->approach(first_rounds);
+    } catch (const RunError&) {
+      continue;
+    }
+    const double height = search->height();
+    if (std::isfinite(height)) tried.emplace_back(height, std::move(search));
+  }
+  std::stable_sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::unique_ptr<Estimation>> out;
+  double last = 0.0;
+  for (auto& [height, search] : tried) {
+    if (!out.empty() && (height < tried.front().first - clearly_lower || last - height < same)) continue;
+    last = height;
+    out.push_back(std::move(search));
+  }
+  constexpr std::size_t most = 2;
+  out.resize(std::min(out.size(), most));
+  return out;
+}
+
 }  // namespace
+
+FilterEstimate estimate_filter(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
+                               const FilterOptions& options) {
+  std::optional<FilterEstimate> best;
+  double highest = -std::numeric_limits<double>::infinity();
+  if (starts.size() > 1) {
+    for (auto& search : promising(starts, experiments, options)) {
+      search->finish();
+      if (const double height = search->height(); height > highest) {
+        highest = height;
+        best = search->take();
+      }
+    }
+  }
+  if (best) return std::move(*best);
+  Estimation only(starts.front(), experiments, options);
+  only.approach(Estimation::all_rounds);
+  only.finish();
+  return only.take();
+}
 
 FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
                                const FilterOptions& options) {
-  return Estimation(start, std::move(penalties), experiments, options).run();
+  return estimate_filter({{start, std::move(penalties), {}}}, experiments, options);
 }
 
 }  // namespace misfit

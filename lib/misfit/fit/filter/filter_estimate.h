@@ -19,6 +19,13 @@ struct FilterOptions {
   bool verify = true;                                       ///< derivatives of the exact likelihood at the end, and steps by them
 };
 
+/// Where a search for the maximum begins.
+struct FilterStart {
+  Model model;
+  std::vector<Penalty> penalties;
+  std::optional<FilterNoise> noise = {};  ///< nullopt: FilterOptions::noise
+};
+
 /// The maximum of the penalised likelihood with everything that diagnosis and discovery need of it.
 struct FilterEstimate {
   Model model;         ///< the caller's, with the estimates
@@ -38,6 +45,7 @@ struct FilterEstimate {
   double edf = 0.0;
   bool converged = false;
   std::string message;
+  std::vector<std::string> notes;  ///< on where the search began, and what it found besides
   int outliers = 0;
   std::vector<double> nonlinear;  ///< times [s] of measurements that move the filter but do not count: its linearisation breaks there
   int linearisations = 0;
@@ -50,7 +58,8 @@ struct FilterEstimate {
 
 /// Maximum likelihood of parameters, roughness and noise, in these steps (`Estimation::run`):
 ///   1. `begin`: the filter is run from the start; where no noise is given, the usual one is raised until innovations are about as large as
-///      it expects them.
+///      it expects them. A start from which it cannot be run is replaced by one from which it can (runnable_starts(), noise raised again);
+///      a note says so.
 ///   2. `search_noise` (no noise given): one Gauss–Newton step of the parameters, then the noise from three frequencies of its resonance.
 ///   3. `LikelihoodAscent::iterate`: in turn, until neither gains, the parameters by Gauss–Newton on innovations with the gains held per
 ///      iteration [MI], roughness by marginal likelihood (estimate_smoothing), and the noise by Fisher scoring about the runs (fit_noise).
@@ -58,8 +67,14 @@ struct FilterEstimate {
 ///   5. `refine_jointly` (if verified): Newton steps over parameters and noise together by derivatives of the exact likelihood
 ///      (lib/misfit/README.md, 5.7); its own steps are listed there.
 ///   6. `conclude`: covariance, effective parameters, and in words whether the likelihood still rises.
-/// Penalties: those of `start`. RunError if the states cannot be read from the channels or the model cannot be run from its start.
+/// Penalties: those of `start`. RunError if the states cannot be read from the channels or the model can be run from no start.
+/// A start that is given noise, uses and roughness is also a floor: the search does not end below it.
 [[nodiscard]] FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
+                                             const FilterOptions& options = {});
+
+/// The same from several starts of one model: step 3 for a few rounds from each, then on from the best, and from a second one that is not
+/// clearly lower; of these the end with the higher marginal likelihood (marginal_loglik()).
+[[nodiscard]] FilterEstimate estimate_filter(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
                                              const FilterOptions& options = {});
 
 }  // namespace misfit

@@ -29,6 +29,8 @@ class LikelihoodAscent {
   /// their sum rises, lengthened where it gains more than it promised. `out.newton_decrement` is what it promises. What it gained; nullopt:
   /// it promises less than 0.02, or no length of it rises.
   std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope);
+  /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
+  bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
   [[nodiscard]] Eigen::VectorXd joint() const;  ///< the free parameters, then the logarithms of the noise
 
   [[nodiscard]] std::vector<double> values() const { return out.forced.model.values_at(theta); }
@@ -41,8 +43,6 @@ class LikelihoodAscent {
   double objective = 0.0;  ///< at `theta` and `out.noise`
 
  private:
-  /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
-  bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
 
   int threads_;
