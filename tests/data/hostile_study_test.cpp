@@ -123,6 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"ParameterKey", "[parameters." + long_text() + "]\nfree = 1\nx = 2\n", {"study.toml:5", "unknown key"}},
         Hostile{"InitialKind", "[initial]\nx = { kind = \"" + long_text() + "\" }\n", {"study.toml:4", "free"}},
         Hostile{"NoiseOfZero", "[noise]\nx = 0\n", {"study.toml:4", "above 0"}},
+        Hostile{"ForceTimeBelowZero", "[force]\ncorrelation_time = -1\n", {"study.toml:4", "at least 0"}},
+        Hostile{"ForceKey", "[force]\ncorrelation = 1\n", {"study.toml:4", "correlation_time"}},
         Hostile{"NoiseWithoutValue", "[noise]\nx = { fixed = true }\n", {"study.toml:4", "value", "is missing"}},
         Hostile{"NoiseOfAnUnknownUnit", "[noise]\nx = \"1 " + long_text() + "\"\n", {"study.toml:4", "unknown unit"}}),
     name_of);

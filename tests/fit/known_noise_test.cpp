@@ -92,5 +92,21 @@ TEST(KnownNoise, GivesSigmasWhereTooFewSamplesShowIt) {
   EXPECT_GT(fitted(false, samples, KnownNoise{noise, true}).parameters.at("a").sigma, 0.0);
 }
 
+TEST(KnownForceTime, IsHeld) {
+  const auto registry = registry_with(decay_text);
+  Model model = assemble(request_of("text"), *registry);
+  const std::vector<Signals> experiments = decay(600);
+  const double step = experiments.front().t[1];
+  FilterOptions one;
+  one.threads = 1;
+  for (const auto& [given, held] : {std::pair{0.2, 0.2}, std::pair{0.0, 0.3 * step}}) {
+    model.force_time = given;
+    const Fit fit = filter_error(trajectory_start(model, experiments).from, experiments, one).fit;
+    ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+    EXPECT_NEAR(fit.force.at("correlation_time").value, held, 1e-9);
+    EXPECT_EQ(fit.force.at("correlation_time").sigma, 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace misfit

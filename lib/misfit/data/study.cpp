@@ -75,6 +75,7 @@ Study read_study(const fs::path& path) {
   study_parts::read_parameters(root, study);
   study_parts::read_initial(root, study);
   study_parts::read_noise(root, study);
+  study_parts::read_force(root, study);
   study_parts::read_curves(root, study);
   study_parts::read_reference(root, study);
   study_parts::read_uncertainty(root, study);

@@ -149,6 +149,7 @@ struct Study {
   std::map<std::string, ParameterStudy> parameters;
   std::map<std::string, InitialStudy> initial;
   std::map<std::string, NoiseStudy> noise;
+  std::optional<double> force_time;  ///< [force] correlation_time [s], held; 0: white
   std::map<std::string, CurveStudy> curves;
   std::map<std::string, std::filesystem::path> reference;  ///< curve → file
   std::optional<SimulateStudy> simulate;

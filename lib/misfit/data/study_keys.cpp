@@ -216,6 +216,12 @@ std::vector<KeyGroup> noise_groups() {
         {.name = "fixed", .type = Type::flag, .fallback = "true", .meaning = "Held, or estimated from there."}}}};
 }
 
+KeyGroup force_group() {
+  return {"force", std::string("The random force of ") + random_force_estimator().name + ", an Ornstein-Uhlenbeck process on every port.",
+     {{.name = "correlation_time", .type = Type::number, .unit = "s", .otherwise = "estimated", .least = 0.0,
+       .meaning = "Held at this; 0: a white force (a memory of 0.3 samples)."}}};
+}
+
 KeyGroup reference_group() {
   return {"reference", "Curves from elsewhere, drawn and compared, never fitted.",
      {{.name = "CURVE", .type = Type::file, .otherwise = "none", .any = true,
@@ -294,6 +300,7 @@ std::vector<KeyGroup> all_groups() {
   add({parameters_group(), curves_group()});
   add(initial_groups());
   add(noise_groups());
+  add({force_group()});
   add({reference_group()});
   add({uncertainty_group()});
   add(perturbation_groups());

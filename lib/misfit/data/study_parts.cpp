@@ -124,6 +124,13 @@ InitialStudy read_one_initial(const Section& initial, const std::string& key) {
 
 }  // namespace
 
+void read_force(const Section& root, Study& study) {
+  if (!root.has("force")) return;
+  const DescribedSection force = described(root, "force");
+  study.force_time = force.value("correlation_time");
+  force.finish();
+}
+
 void read_noise(const Section& root, Study& study) {
   const auto noise = root.table("noise");
   if (!noise) return;

@@ -24,6 +24,7 @@ void read_video(const config::Section& root, Study& study);
 void read_sweep_images(const config::DescribedSection& camera, Study& study);
 void read_initial(const config::Section& root, Study& study);
 void read_noise(const config::Section& root, Study& study);
+void read_force(const config::Section& root, Study& study);
 void read_effects(const config::Section& root, Study& study);
 void read_parameters(const config::Section& root, Study& study);
 void read_curves(const config::Section& root, Study& study);

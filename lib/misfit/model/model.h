@@ -57,6 +57,7 @@ struct ModelRequest {
     Source where;
   };
   std::map<std::string, NoiseRequest> noise;  ///< of outputs
+  std::optional<double> force_time;           ///< of the random force [s], held; 0: white
 };
 
 /// One row of the parameter table.
@@ -115,6 +116,7 @@ struct Model {
   /// States of the system with what the study says of their initial values; own states of effects are not among them.
   std::vector<StateSpec> state_specs;
   std::vector<KnownNoise> known_noise;  ///< per output
+  std::optional<double> force_time;     ///< correlation time of the random force [s], held; 0: white
   std::vector<OwnStateSpec> own_states;
   std::vector<std::string> own_state_names;  ///< "effect.state"
   std::vector<std::string> own_state_units;

@@ -88,6 +88,7 @@ void read_initial(const Study& study, const SystemSpec& spec, ModelRequest& requ
 }
 
 void read_noise(const Study& study, const SystemSpec& spec, ModelRequest& request) {
+  request.force_time = study.force_time;
   for (const auto& [name, noise] : study.noise) {
     request.noise[name] = {noise.sigma.value, noise.fixed, noise.where};
     for (const auto& output : spec.outputs) {

@@ -38,7 +38,7 @@ class Estimation {
 
   void finish() {
     if (!out_.converged && rounds_left_ > 0) at_.iterate(rounds_left_, tolerance());
-    if (!options_.noise) survey_noise();
+    if (!options_.noise && !out_.around.time_held) survey_noise();
     if (!options_.use) reject_outliers();
     if (options_.verify) refine_jointly();
     return_to_floor();

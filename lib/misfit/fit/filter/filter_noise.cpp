@@ -47,7 +47,8 @@ NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterN
   constexpr double shortest_memory = 0.15;  // of the usual correlation time: shorter than a sample is white
   NoiseVector out;
   push(out, "force", noise.force, {1e-3 * around.force, 1e3 * around.force});
-  push(out, "force_time", noise.force_time, {shortest_memory * around.force_time, 1e2 * around.force_time});
+  const Bounds memory{(around.time_held ? 1.0 : shortest_memory) * around.force_time, (around.time_held ? 1.0 : 1e2) * around.force_time};
+  push(out, "force_time", noise.force_time, memory);
   for (std::size_t o = 0; o < noise.channels.size(); ++o) {
     const ChannelNoise& channel = noise.channels[o];
     const ChannelNoise& usual = around.channels[o];

@@ -26,6 +26,7 @@ struct FilterNoise {
   double force = 0.0;       ///< stationary sigma [port unit]
   double force_time = 0.1;  ///< correlation time [s]
   std::vector<ChannelNoise> channels;
+  bool time_held = false;  ///< the correlation time is known
 };
 
 /// Logarithms in a fixed order: force, force_time, then per channel white, jitter, jitter_frequency, jitter_damping. Bounds keep a

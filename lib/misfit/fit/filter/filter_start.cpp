@@ -38,9 +38,12 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   FilterNoise out;
   const Signals& first = *data.front().signals;
   const double h = usual_step(first.t);
-  out.force_time = samples_of_memory * h;
+  constexpr double memory_of_white = 0.3;  // samples: correlated by 4 % at the next
+  out.time_held = model.model.force_time.has_value();
+  out.force_time = out.time_held ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * h;
   const ReconstructedStates states = reconstruct_states(model.model, first);
-  out.force = share_of_motion * force_size(model, data.front(), states);
+  const double of_equal_intensity = std::sqrt(samples_of_memory * h / out.force_time);
+  out.force = share_of_motion * force_size(model, data.front(), states) * of_equal_intensity;
   // Well above the motion, which the model itself must explain: pack() lets the frequency down to half of this.
   constexpr double above_motion = 3.0;
   const double jitter_frequency =
