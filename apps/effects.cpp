@@ -108,11 +108,12 @@ std::string study_line(const EffectSpec& spec) {
   const std::string line = effect_line(spec.key, spec.key, {});
   std::string out = fmt::format("  in a study\n    [effects]\n    {}\n    # to act elsewhere: {} = {{ {} }}\n", line, spec.key, roles);
   const auto own = std::find_if(spec.coefficients.begin(), spec.coefficients.end(), [](const CoefficientSpec& c) { return !c.shared; });
-  if (own != spec.coefficients.end())
+  if (own != spec.coefficients.end()) {
     out += fmt::format(
         "    # another start: {0} = {{ start = {{ {1} = {2:g} }} }}\n    # free, fixed, bounds, prior: [parameters] {1} = {{ … }}, "
         "see misfit help study\n",
         spec.key, own->name, own->value);
+  }
   return out;
 }
 

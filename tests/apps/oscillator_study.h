@@ -98,7 +98,7 @@ inline std::map<std::string, std::string> results_in(const fs::path& folder) {
     const std::string name = entry.path().lexically_relative(folder).string(), file = entry.path().filename().string();
     if (!entry.is_regular_file() || file == "run.json" || file == ".run.json" || file.ends_with(".bin")) continue;
     if (file == "report.html") {
-      out[name] = "";  // tells how long the stages took
+      out[name] = "";  // contains how long the stages took
       continue;
     }
     out[name] = std::regex_replace(content(entry.path()), times, "");

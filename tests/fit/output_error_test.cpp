@@ -211,7 +211,7 @@ TEST(OutputError, TwoExperimentsShareTheirParameters) {
   EXPECT_NEAR(both.fit.trim->value / degree, 12.0, 3.0 * both.fit.trim->sigma / degree);
 }
 
-/// A canopy that swings through the axis: its curves are odd or even, so that both sides tell of the positive one.
+/// A canopy that swings through the axis: its curves are odd or even, so that both sides determine the positive one.
 TEST(Knots, OfMotionThroughZeroAreThoseOfItsSize) {
   std::vector<double> t, alpha;
   for (int i = 0; i < 1200; ++i) {

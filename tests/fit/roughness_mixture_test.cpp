@@ -10,16 +10,16 @@
 namespace misfit {
 namespace {
 
-/// Readings of a curve with unit noise at equal distances over its knots.
-struct Readings {
+/// Measurements of a curve with unit noise at equal distances over its knots.
+struct CurveMeasurements {
   CubicSpline spline;
   Eigen::MatrixXd A;
 };
 
-Readings measurements() {
+CurveMeasurements measurements() {
   std::vector<double> knots;
   for (int i = 0; i <= 14; ++i) knots.push_back(static_cast<double>(i));
-  Readings out{CubicSpline(knots), {}};
+  CurveMeasurements out{CubicSpline(knots), {}};
   constexpr Eigen::Index n = 150;
   out.A = Eigen::MatrixXd::Zero(n, out.spline.size());
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -29,7 +29,7 @@ Readings measurements() {
   return out;
 }
 
-NormalEquations problem_of(const Readings& r, const Eigen::VectorXd& y) {
+NormalEquations problem_of(const CurveMeasurements& r, const Eigen::VectorXd& y) {
   NormalEquations out;
   out.N = r.A.transpose() * r.A;
   out.theta = Eigen::VectorXd::Zero(r.A.cols());
@@ -40,7 +40,7 @@ NormalEquations problem_of(const Readings& r, const Eigen::VectorXd& y) {
   return out;
 }
 
-Penalty penalty_of(const Readings& r, double lambda, bool chosen) {
+Penalty penalty_of(const CurveMeasurements& r, double lambda, bool chosen) {
   Penalty p;
   p.omega = r.spline.roughness();
   p.rank = r.spline.size() - 2;
@@ -58,7 +58,7 @@ NormalEquations at_maximum(const NormalEquations& problem, const PenalisedFit& s
 }
 
 TEST(UncertainRoughness, AGivenRoughnessLeavesTheCovarianceAsItIs) {
-  const Readings r = measurements();
+  const CurveMeasurements r = measurements();
   const NormalEquations problem = problem_of(r, Eigen::VectorXd::LinSpaced(r.A.rows(), -3.0, 3.0));
   std::vector<Penalty> penalties{penalty_of(r, 10.0, false)};
   const PenalisedFit smoothed = estimate_smoothing(problem, penalties, 1.0);
@@ -71,7 +71,7 @@ TEST(UncertainRoughness, AGivenRoughnessLeavesTheCovarianceAsItIs) {
 /// Curves drawn from what the penalty says of them, the size of C'' uniform from nothing to what shows well: bands that take the chosen
 /// weight for known are too narrow, those that do not hold what they say.
 TEST(UncertainRoughness, BandsHoldWhatTheySay) {
-  const Readings r = measurements();
+  const CurveMeasurements r = measurements();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(r.spline.roughness());
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -106,7 +106,7 @@ TEST(UncertainRoughness, BandsHoldWhatTheySay) {
 
 /// Where the data show a straight line the weight runs away and the plain band is that of a line.
 TEST(UncertainRoughness, AStraightLineKeepsTheBandOfTheBendsItMayHave) {
-  const Readings r = measurements();
+  const CurveMeasurements r = measurements();
   // Noise turned sign by sign: nothing in it bends.
   Eigen::VectorXd y(r.A.rows());
   for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = i % 2 == 0 ? 1.0 : -1.0;
@@ -123,7 +123,7 @@ TEST(UncertainRoughness, AStraightLineKeepsTheBandOfTheBendsItMayHave) {
 /// A curve so stiff that it is a line, beside a parameter that is known a million times less well than the line and almost stands in for
 /// it: all that is known of both is what a line in its place would give, written down with two columns.
 struct StiffBesideWeak {
-  Readings r = measurements();
+  CurveMeasurements r = measurements();
   Eigen::MatrixXd X, line;  ///< columns of curve and parameter; of the line's two numbers and the parameter
   double lambda = 1e16;
 
