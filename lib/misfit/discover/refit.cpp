@@ -107,6 +107,16 @@ Model start_model(const FilterEstimate& without, const ScreeningResult& screenin
   return model;
 }
 
+/// The estimate with the effect in it, off: a start below which no search ends.
+Model off_model(const RefitWork& work, const ScreeningResult& screening) {
+  Model model = start_model(work.without, screening, work.registry);
+  for (int strength : screening.candidate_model->strengths) {
+    Parameter& p = model.parameters[strength];
+    p.value = std::clamp(0.0, p.lower, p.upper);
+  }
+  return model;
+}
+
 OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningResult& screening) {
   const FilterEstimate& without = work.without;
   Model model = start_model(without, screening, work.registry);
@@ -152,6 +162,8 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   };
   if (from.model) climb(*from.model, from.noise);
   if (!out.ok || !out.estimate.converged) climb(start_model(without, screening, work.registry), without.noise);
+  const double off = without.objective + prior_of_off(*screening.candidate_model);
+  if (!out.ok || !out.estimate.converged || out.estimate.objective < off) climb(off_model(work, screening), without.noise);
   if (!out.ok) return out;
   out.drop = 2.0 * (out.estimate.objective + still_to_gain(out.estimate) - without.objective - still_to_gain(without) -
                     prior_of_off(*screening.candidate_model));

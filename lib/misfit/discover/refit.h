@@ -27,6 +27,9 @@ struct RefitWork {
 /// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
 [[nodiscard]] Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry);
 
+/// The same with its strengths at 0.
+[[nodiscard]] Model off_model(const RefitWork& work, const ScreeningResult& screening);
+
 /// One Gauss–Newton step of all parameters from the estimate with the effect at its screened strength: the model is run there once and the
 /// noise fitted about that run, since what is explained leaves the random force.
 struct OneStep {
@@ -37,7 +40,8 @@ struct OneStep {
 [[nodiscard]] OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningResult& screening);
 
 /// `from`: where to start, if it ended anywhere. Where no maximum is reached from there, and without it: from the estimate with the effect
-/// added to it, which an effect that the other parameters must make room for can throw out of the finite numbers.
+/// added to it, which an effect that the other parameters must make room for can throw out of the finite numbers; where that, too, reaches
+/// none, or one below the estimate: from the estimate with the effect in it but off, below which the search does not end.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// Gain of the held-out log-likelihood. Where the study holds nothing out, both models are fitted again without the last quarter of every

@@ -5,6 +5,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
+#include "misfit/fit/filter/contained_start.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/filter/runnable_start.h"
 #include "misfit/fit/regression/equation_error.h"
@@ -89,33 +90,10 @@ Maximisation maximise_output_error(const FittedMethod& from, const Experiments& 
 
 // filter_error
 
-FilterStart from_contained(const Model& asked, const ContainedFit& contained) {
-  Model model = asked;
-  for (std::size_t i = 0; i < contained.values.size(); ++i) {
-    Parameter& p = model.parameters[i];
-    if (p.free) p.value = std::clamp(contained.values[i], p.lower, p.upper);
-  }
-  std::vector<Penalty> penalties = curve_penalties(model);
-  for (Penalty& p : penalties) {
-    const std::size_t curve = p.curve;
-    if (p.chosen && curve < contained.roughness.size() && contained.roughness[curve] > 0.0) p.lambda = contained.roughness[curve];
-  }
-  return {std::move(model), std::move(penalties), contained.noise};
-}
-
 /// From the contained fit with what is new off, and as the study has it; then by regression with the effects as the study has them where
 /// it says so, with the effects off, and with what the regression makes of them.
 std::vector<FilterStart> filter_starts(const EstimationTask& task) {
-  std::vector<FilterStart> out;
-  if (task.contained && task.contained->values.size() <= task.model.parameters.size()) {
-    const FilterStart as_given = from_contained(task.model, *task.contained);
-    FilterStart without = as_given;
-    const Model off = with_strengths_off(task.model).model;
-    for (std::size_t i = task.contained->values.size(); i < off.parameters.size(); ++i)
-      without.model.parameters[i].value = off.parameters[i].value;
-    out.push_back(without);
-    if (without.model.values() != as_given.model.values()) out.push_back(as_given);
-  }
+  std::vector<FilterStart> out = task.contained ? starts_from(*task.contained, task.model) : std::vector<FilterStart>{};
   const auto add = [&](const Model& model) { out.push_back({model, curve_penalties(model)}); };
   const RunnableStart off = with_strengths_off(task.model);
   if (!off.words.empty()) add(trajectory_start_as_given(task.model, task.experiments)->from.model);
@@ -127,7 +105,10 @@ std::vector<FilterStart> filter_starts(const EstimationTask& task) {
 Estimation run_filter_error(const EstimationTask& task) {
   FilterOptions options;
   options.threads = task.threads;
-  if (task.contained) options.around = task.contained->around;
+  if (task.contained && contains(task.model, *task.contained)) {
+    options.around = unpack(task.contained->usual_noise);
+    options.use = same_use(*task.contained, task.experiments);
+  }
   FilterError result = filter_error(filter_starts(task), task.experiments, options);
   Estimation out{{estimators::filter_error.name, {std::move(result.fit), task.model, {}, {}}, {}, {}, {}}, std::move(result.estimate)};
   if (!out.filter) return out;

@@ -5,19 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "misfit/data/contained_fit.h"
 #include "misfit/data/estimators.h"
 #include "misfit/fit/filter/filter_estimate.h"
 #include "misfit/fit/regression/sliding_bin.h"
 #include "misfit/inference/fitted_model.h"
 
 namespace misfit {
-
-/// An estimate of a model that another one contains: that one has the same parameters and curves first, then its own.
-struct ContainedFit {
-  std::vector<double> values;     ///< of all parameters, Model::parameters
-  std::vector<double> roughness;  ///< λ by curve, Model::curves; 0: none
-  FilterNoise noise, around;
-};
 
 /// What a method is given.
 struct EstimationTask {

@@ -9,8 +9,10 @@
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
+#include "misfit/data/contained_fit.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/data/estimators.h"
+#include "misfit/fit/filter/contained_start.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/filter/k_step.h"
 
@@ -96,19 +98,20 @@ struct Gain {
 };
 
 /// 2 [log L(with) − log L(without)] on the same measurements and with the same weights of roughness, each at its own maximum, priors
-/// counted.
+/// counted. The child's is looked for from its fit and from the parent's with what is new off, so that it is never below that.
 Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   FilterOptions options;
   options.threads = threads;
   options.around = parent.estimate->around;
   options.choose_roughness = false;
   options.use = common_use(*parent.estimate, *child.estimate);
-  const auto again = [&](const FilterWork& work, std::vector<Penalty> penalties) {
-    options.noise = work.estimate->noise;
-    return estimate_filter(work.estimate->model, std::move(penalties), work.prepared.experiments, options);
-  };
-  const FilterEstimate without = again(parent, parent.estimate->penalties);
-  const FilterEstimate with = again(child, shared_penalties(*child.estimate, *parent.estimate));
+  const FilterStart parents{parent.estimate->model, parent.estimate->penalties, parent.estimate->noise};
+  const FilterEstimate without = estimate_filter({parents}, parent.prepared.experiments, options);
+  const std::vector<Penalty> penalties = shared_penalties(*child.estimate, *parent.estimate);
+  std::vector<FilterStart> starts = {{child.estimate->model, penalties, child.estimate->noise}};
+  const std::vector<FilterStart> off = starts_from(contained_fit(without), child.prepared.model);
+  if (!off.empty()) starts.push_back({off.front().model, penalties, off.front().noise});
+  const FilterEstimate with = estimate_filter(starts, child.prepared.experiments, options);
   Gain gain{2.0 * (with.objective - without.objective), std::nullopt};
   if (parent.fit.validation_loglik) gain.held_out = with.validation_loglik - without.validation_loglik;
   return gain;
@@ -226,14 +229,17 @@ ModelLadder::NewStudy ModelLadder::new_study(const std::string& effect, const st
   return out;
 }
 
-std::unique_ptr<Session> ModelLadder::open(const NewStudy& study, const fs::path& parent) {
-  root_.do_stage("rung/" + std::to_string(study.id), {{"settings", hash_text(study.text)}}, {study.place + "/study.toml"},
-                 [&](const fs::path& dir) {
-                   make_writable_folder(dir / study.place);
-                   write_atomically(dir / study.place / "study.toml", study.text);
-                 });
+std::unique_ptr<Session> ModelLadder::open(const NewStudy& study, const Session& parent, const FilterWork& parent_work) {
+  std::vector<std::string> files = {study.place + "/study.toml"};
+  if (!study.system) files.push_back(study.place + "/" + kContainedFitFile);
+  StageInputs inputs = {{"settings", hash_text(study.text)}};
+  root_.redo_stage("rung/" + std::to_string(study.id), inputs, files, [&](const fs::path& dir) {
+    make_writable_folder(dir / study.place);
+    write_atomically(dir / files.front(), study.text);
+    if (!study.system) write_contained_fit(dir / files.back(), contained_fit(*parent_work.estimate));
+  });
   auto child = std::make_unique<Session>(options_for(options_, root_.folder.file(study.place) / "study.toml"), registry_);
-  child->parent = parent;
+  child->parent = parent.folder.path();
   return child;
 }
 
@@ -242,7 +248,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   const NewStudy study = new_study(effect, from);
   const Rung parent = last_rung();  // new_study() has refused what cannot be added: only now is the parent fitted
   const auto parent_work = fitted(parent_session);
-  auto child = open(study, parent_session.folder.path());
+  auto child = open(study, parent_session, *parent_work);
   const auto work = fitted(*child);
   Rung rung = rung_of(*child, *work);
   rung.id = study.id;

@@ -42,7 +42,8 @@ class ModelLadder {
     std::vector<std::string> left_out;  ///< effects that do not suit its system
   };
   [[nodiscard]] NewStudy new_study(const std::string& effect, const std::optional<Candidate>& from);
-  [[nodiscard]] std::unique_ptr<Session> open(const NewStudy& study, const std::filesystem::path& parent);
+  /// Written to its folder with the parent's estimate beside it, to begin with where it has the parent's system.
+  [[nodiscard]] std::unique_ptr<Session> open(const NewStudy& study, const Session& parent, const FilterWork& parent_work);
   void append(Rung rung);
 
   SessionOptions options_;

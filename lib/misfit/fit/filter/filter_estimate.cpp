@@ -45,10 +45,17 @@ class Estimation {
     conclude();
   }
 
+  /// What was wrong with the start; empty: it is the given one.
+  [[nodiscard]] const std::string& replaced() const { return replaced_; }
+
   FilterEstimate take() { return std::move(out_); }
 
   /// [log-likelihood] By which starts of one model are compared (marginal_loglik), parameters and noise as they are.
-  [[nodiscard]] double height() const { return marginal_loglik(at_.normal_equations(), out_.penalties, at_.objective); }
+  [[nodiscard]] double height() const {
+    return chooses_roughness() ? marginal_loglik(at_.normal_equations(), out_.penalties, at_.objective) : at_.objective;
+  }
+  /// Below which it does not end; −infinity where the start is none (set_floor()).
+  [[nodiscard]] double floor() const { return floor_ ? floor_->objective : -std::numeric_limits<double>::infinity(); }
 
   static constexpr int all_rounds = 25;
 
@@ -56,6 +63,10 @@ class Estimation {
   static FilterOptions begun(const FilterStart& start, FilterOptions options) {
     if (start.noise) options.noise = start.noise;
     return options;
+  }
+
+  [[nodiscard]] bool chooses_roughness() const {
+    return std::any_of(out_.penalties.begin(), out_.penalties.end(), [](const Penalty& p) { return p.chosen; });
   }
 
   /// [log-likelihood] Coarse where refine_jointly() follows.
@@ -70,7 +81,7 @@ class Estimation {
       out_.forced.set_force_time(out_.noise.force_time);
       noise_given_ = false;
       if (!runs_with_raised_noise()) continue;
-      out_.notes.push_back("the model cannot be run from its start (" + why + "); the search began elsewhere: " + start.words);
+      replaced_ = "the model cannot be run from its start (" + why + "); the search began elsewhere: " + start.words;
       return;
     }
     throw RunError(why);
@@ -96,7 +107,7 @@ class Estimation {
   /// Where noise, measurements and roughness are given, the end is compared with the start: of two models each is to end at its maximum on
   /// the same, and the larger one never below the smaller one from which it began.
   void set_floor() {
-    if (!noise_given_ || !options_.use || options_.choose_roughness) return;
+    if (!noise_given_ || !options_.use || chooses_roughness()) return;
     floor_.emplace(Floor{at_.theta, pack(out_.noise, out_.model.system->spec(), out_.around).value, at_.objective});
   }
 
@@ -343,6 +354,7 @@ class Estimation {
 
   FilterOptions options_;
   bool noise_given_;
+  std::string replaced_;
   int rounds_left_ = all_rounds;
   std::optional<Floor> floor_;
   BfgsInverse bfgs_;
@@ -353,13 +365,12 @@ class Estimation {
   FilterEstimate& out_ = at_.out;
 };
 
-/// What comes of each start of one model after a few rounds; those that are clearly lower, or as high as a higher one and so at the same
-/// maximum, are dropped. None: the model can be run from no start.
-std::vector<std::unique_ptr<Estimation>> promising(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
-                                                   const FilterOptions& options) {
+using Searches = std::vector<std::pair<double, std::unique_ptr<Estimation>>>;  ///< with their heights
+
+/// A few rounds from each start; the highest first. Those from which the model cannot be run are left out.
+Searches begin_all(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments, const FilterOptions& options) {
   constexpr int first_rounds = 6;
-  constexpr double clearly_lower = 10.0, same = 0.5;  // [log-likelihood]
-  std::vector<std::pair<double, std::unique_ptr<Estimation>>> tried;
+  Searches out;
   for (const FilterStart& start : starts) {
     auto search = std::make_unique<Estimation>(start, experiments, options);
     try {
@@ -368,41 +379,71 @@ std::vector<std::unique_ptr<Estimation>> promising(const std::vector<FilterStart
       continue;
     }
     const double height = search->height();
-    if (std::isfinite(height)) tried.emplace_back(height, std::move(search));
+    if (std::isfinite(height)) out.emplace_back(height, std::move(search));
   }
-  std::stable_sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<std::unique_ptr<Estimation>> out;
-  double last = 0.0;
-  for (auto& [height, search] : tried) {
-    if (!out.empty() && (height < tried.front().first - clearly_lower || last - height < same)) continue;
-    last = height;
-    out.push_back(std::move(search));
-  }
-  constexpr std::size_t most = 2;
-  out.resize(std::min(out.size(), most));
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   return out;
+}
+
+/// False: the model cannot be run where it ended.
+bool finished(Estimation& search) {
+  try {
+    search.finish();
+    return true;
+  } catch (const RunError&) {
+    return false;
+  }
+}
+
+FilterEstimate from_one(const FilterStart& start, const std::vector<Signals>& experiments, const FilterOptions& options) {
+  Estimation search(start, experiments, options);
+  search.approach(Estimation::all_rounds);
+  search.finish();
+  FilterEstimate out = search.take();
+  if (!search.replaced().empty()) out.notes.push_back(search.replaced());
+  return out;
+}
+
+/// Log density of measurements that count in `a` and not in `b`: what one has set aside as outliers must not decide which is higher.
+double not_shared(const FilterEstimate& a, const FilterEstimate& b) {
+  double sum = 0.0;
+  for (std::size_t e = 0; e < a.data.size(); ++e) {
+    for (std::size_t i = 0; i < a.data[e].use.size(); ++i) {
+      if (a.data[e].use[i] == SampleRole::counted && b.data[e].use[i] != SampleRole::counted) sum += log_density(a.traces[e], i);
+    }
+  }
+  return sum;
+}
+
+/// Worth going on beside the highest: neither clearly lower, nor as high and so at the same maximum.
+bool may_end_higher(const Searches& searches, std::size_t k) {
+  constexpr double clearly_lower = 10.0, same = 0.5;  // [log-likelihood]
+  constexpr std::size_t most = 2;
+  const double below = searches.front().first - searches[k].first;
+  return k == 0 || (k < most && below <= clearly_lower && below >= same);
 }
 
 }  // namespace
 
 FilterEstimate estimate_filter(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
                                const FilterOptions& options) {
+  if (starts.size() == 1) return from_one(starts.front(), experiments, options);
+  const Searches searches = begin_all(starts, experiments, options);
+  const bool all_replaced = std::all_of(searches.begin(), searches.end(), [](const auto& s) { return !s.second->replaced().empty(); });
   std::optional<FilterEstimate> best;
   double highest = -std::numeric_limits<double>::infinity();
-  if (starts.size() > 1) {
-    for (auto& search : promising(starts, experiments, options)) {
-      search->finish();
-      if (const double height = search->height(); height > highest) {
-        highest = height;
-        best = search->take();
-      }
-    }
+  for (std::size_t k = 0; k < searches.size(); ++k) {
+    Estimation& search = *searches[k].second;
+    if ((!may_end_higher(searches, k) && !(search.floor() > highest)) || !finished(search)) continue;
+    const double height = search.height();
+    FilterEstimate there = search.take();
+    if (all_replaced) there.notes.push_back(search.replaced());
+    if (best && height - not_shared(there, *best) <= highest - not_shared(*best, there)) continue;
+    highest = height;
+    best = std::move(there);
   }
   if (best) return std::move(*best);
-  Estimation only(starts.front(), experiments, options);
-  only.approach(Estimation::all_rounds);
-  only.finish();
-  return only.take();
+  return from_one(starts.front(), experiments, options);
 }
 
 FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,

@@ -11,11 +11,6 @@
 namespace misfit {
 namespace {
 
-/// What each counted measurement adds to the log-likelihood, constants left out.
-double log_density(const FilterTrace& trace, std::size_t i) {
-  return trace.S[i] > 0.0 ? -0.5 * (std::log(trace.S[i]) + trace.e[i] * trace.e[i] / trace.S[i]) : 0.0;
-}
-
 using Runs = std::vector<FilterTrace>;  ///< one per experiment
 
 /// Runs at a point and, a step away, above and below it.
@@ -191,6 +186,12 @@ Eigen::Index counted_measurements(const FilterEstimate& estimate) {
 }
 
 }  // namespace
+
+double log_density(const FilterTrace& trace, std::size_t place) {
+  constexpr double log_two_pi = 1.8378770664093453;
+  if (!(trace.S[place] > 0.0)) return 0.0;
+  return -0.5 * (log_two_pi + std::log(trace.S[place]) + trace.e[place] * trace.e[place] / trace.S[place]);
+}
 
 double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise) const {
   return loglik_at(theta, noise) + estimate_->prior().log_density(theta);

@@ -9,6 +9,9 @@
 
 namespace misfit {
 
+/// What a measurement adds to the log-likelihood; 0 where it was not used.
+[[nodiscard]] double log_density(const FilterTrace& trace, std::size_t place);
+
 /// The penalised log-likelihood of an estimate's data at any parameters: the filter run anew, nothing held.
 class ExactObjective {
  public:

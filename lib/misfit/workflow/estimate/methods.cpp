@@ -27,6 +27,13 @@ void add_notes(const Prepared& prepared, Fit& fit) {
   }
 }
 
+/// What the rung began with that this study belongs to.
+std::optional<ContainedFit> contained_fit_of(const Session& session) {
+  const std::filesystem::path file = session.study.folder / kContainedFitFile;
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return read_contained_fit(file);
+}
+
 }  // namespace
 
 MethodRun Methods::run(const std::string& method) {
@@ -35,7 +42,8 @@ MethodRun Methods::run(const std::string& method) {
   auto work = std::make_shared<FilterWork>();
   work->prepared = prepared();
   const auto regression = [this]() -> const FittedModel& { return this->regression(); };
-  Estimation result = method_of_study.run({work->prepared.model, work->prepared.experiments, regression, {}, session_.options.threads});
+  Estimation result = method_of_study.run(
+      {work->prepared.model, work->prepared.experiments, regression, {}, session_.options.threads, contained_fit_of(session_)});
   Fit& fit = result.at.fitted.fit;
   add_notes(work->prepared, fit);
   if (method_of_study.info.deterministic) return {std::move(result.at), nullptr};

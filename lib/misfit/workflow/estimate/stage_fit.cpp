@@ -23,6 +23,7 @@ void resolved_stage(Session& session, Methods& methods) {
 StageInputs inputs_of_fit(const Session& session, const std::string& method, const std::vector<std::string>& without) {
   std::vector<fs::path> files = files_of_attitude(session);
   if (session.study.system_file) files.push_back(*session.study.system_file);
+  if (const fs::path contained = session.study.folder / kContainedFitFile; fs::exists(contained)) files.push_back(contained);
   for (const ExperimentStudy& experiment : session.study.experiments) {
     if (experiment.data) files.push_back(*experiment.data);
   }

@@ -1,0 +1,88 @@
+#include "misfit/fit/filter/contained_start.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "misfit/fit/filter/runnable_start.h"
+
+namespace misfit {
+namespace {
+
+constexpr std::array letters = {std::pair(SampleRole::none, '-'), std::pair(SampleRole::update, 'u'), std::pair(SampleRole::counted, 'c'),
+                                std::pair(SampleRole::validation, 'v')};
+
+char letter_of(SampleRole role) {
+  return std::find_if(letters.begin(), letters.end(), [&](const auto& pair) { return pair.first == role; })->second;
+}
+
+/// What no role has as its letter is left out.
+SampleRole role_of(char letter) {
+  const auto* found = std::find_if(letters.begin(), letters.end(), [&](const auto& pair) { return pair.second == letter; });
+  return found == letters.end() ? SampleRole::none : found->first;
+}
+
+/// One of the two may have an effect's name before it.
+bool same_parameter(const std::string& a, const std::string& b) { return a == b || a.ends_with("." + b) || b.ends_with("." + a); }
+
+}  // namespace
+
+bool contains(const Model& model, const ContainedFit& contained) {
+  const bool room = contained.values.size() <= model.parameters.size() && contained.roughness.size() <= model.curves.size();
+  return room && contained.noise.size() == 2 + 4 * model.system->spec().outputs.size() &&
+         std::equal(contained.names.begin(), contained.names.end(), model.parameters.begin(),
+                    [](const std::string& name, const Parameter& p) { return same_parameter(name, p.name); });
+}
+
+ContainedFit contained_fit(const FilterEstimate& estimate) {
+  ContainedFit out;
+  for (const Parameter& p : estimate.model.parameters) out.names.push_back(p.name);
+  out.values = estimate.model.values();
+  out.roughness.assign(estimate.model.curves.size(), 0.0);
+  for (const Penalty& p : estimate.penalties) out.roughness[p.curve] = p.lambda;
+  for (const FilterData& data : estimate.data) {
+    out.use.emplace_back();
+    for (SampleRole role : data.use) out.use.back() += letter_of(role);
+  }
+  const SystemSpec& spec = estimate.model.system->spec();
+  out.noise = pack(estimate.noise, spec, estimate.around).value;
+  out.usual_noise = pack(estimate.around, spec, estimate.around).value;
+  return out;
+}
+
+std::vector<FilterStart> starts_from(const ContainedFit& contained, const Model& model) {
+  if (!contains(model, contained)) return {};
+  FilterStart with{model, {}, unpack(contained.noise)};
+  for (std::size_t i = 0; i < contained.values.size(); ++i) {
+    Parameter& p = with.model.parameters[i];
+    if (p.free) p.value = std::clamp(contained.values[i], p.lower, p.upper);
+  }
+  with.penalties = curve_penalties(with.model);
+  for (Penalty& p : with.penalties) {
+    const std::size_t curve = p.curve;
+    if (p.chosen && curve < contained.roughness.size() && contained.roughness[curve] > 0.0) p.lambda = contained.roughness[curve];
+  }
+  FilterStart without = with;
+  const Model off = with_strengths_off(model).model;
+  for (std::size_t i = contained.values.size(); i < off.parameters.size(); ++i) without.model.parameters[i].value = off.parameters[i].value;
+  if (without.model.values() == with.model.values()) return {without};
+  return {without, with};
+}
+
+std::optional<std::vector<std::vector<SampleRole>>> same_use(const ContainedFit& contained, const std::vector<Signals>& experiments) {
+  if (contained.use.size() != experiments.size()) return std::nullopt;
+  std::vector<std::vector<SampleRole>> out;
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    const std::vector<Signal>& channels = experiments[e].measured;
+    const std::string& use = contained.use[e];
+    if (use.size() != experiments[e].samples() * channels.size()) return std::nullopt;
+    out.emplace_back();
+    for (std::size_t i = 0; i < use.size(); ++i) {
+      const bool measured = std::isfinite(channels[i % channels.size()].values[i / channels.size()]);
+      out.back().push_back(measured ? role_of(use[i]) : SampleRole::none);
+    }
+  }
+  return out;
+}
+
+}  // namespace misfit

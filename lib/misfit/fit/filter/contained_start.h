@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "misfit/data/contained_fit.h"
+#include "misfit/fit/filter/filter_estimate.h"
+
+namespace misfit {
+
+[[nodiscard]] ContainedFit contained_fit(const FilterEstimate& estimate);
+
+/// Has the model the parameters, curves and channels of the fit, these first?
+[[nodiscard]] bool contains(const Model& model, const ContainedFit& contained);
+
+/// `model` at the values of the fit: what is its own off, and as it is in `model` where that differs. Empty: it does not contain it.
+[[nodiscard]] std::vector<FilterStart> starts_from(const ContainedFit& contained, const Model& model);
+
+/// FilterOptions::use as of the fit, without what is missing in these experiments; nullopt where they are others.
+[[nodiscard]] std::optional<std::vector<std::vector<SampleRole>>> same_use(const ContainedFit& contained,
+                                                                           const std::vector<Signals>& experiments);
+
+}  // namespace misfit
