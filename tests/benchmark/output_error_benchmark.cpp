@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "misfit/core/table.h"
+#include "misfit/fit/regression/equation_error.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/shooting/shooting.h"
 #include "misfit/inference/curves.h"

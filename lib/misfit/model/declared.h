@@ -9,7 +9,8 @@
 namespace misfit {
 
 /// A system declared as text (TOML). Keys:
-///   [system]     doc, source, fastest_rate [1/s]
+///   [system]     doc, source, fastest_rate [1/s]  fastest_rate: steps of the integration are at most 0.5/fastest_rate long; without it
+///                they are chosen from the equations and an estimate of their error (sim/planner.h)
 ///   [states]     NAME = { unit, initial, min, max, scale, rate_of }  initial: "free" (default), "shared" between experiments, a number
 ///   (fixed), or
 ///                { value, kind = "free" | "shared" | "fixed" }; no step leaves a state outside min … max, and formulas never see it there

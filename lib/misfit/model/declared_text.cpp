@@ -48,6 +48,7 @@ class Reader {
     if (const auto rate = head->number("fastest_rate", "1/s")) {
       if (!(rate->value > 0.0)) head->fail("fastest_rate", "must be above 0");
       out_.spec.fastest_rate = rate->value;
+      out_.spec.rate_given = true;
     }
     head->finish();
   }

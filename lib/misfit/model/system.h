@@ -104,6 +104,7 @@ struct SystemSpec {
   SystemForm regression;                    ///< form in which sliding_bin is stated ([1] of lib/misfit/README.md, Eq. 8); empty kind: none
   std::string static_curve, damping_curve;  ///< coefficients that sliding_bin solves for; empty: none
   double fastest_rate = 0.0;                ///< [1/s], of the system without effects
+  bool rate_given = false;                  ///< by the one who wrote the system: at least so many steps, whatever the plan finds
 };
 
 /// Row-major blocks of first derivatives; a null pointer means "not wanted".

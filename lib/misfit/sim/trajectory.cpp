@@ -78,8 +78,14 @@ struct Scratch {
   std::array<double, kMaxOutputs + 1> y{};
 };
 
-Interval interval_between(const Signals& signals, const InputTable& inputs, std::size_t i) {
-  return {signals.t[i], signals.t[i + 1], inputs.at(i), inputs.at(i + 1)};
+/// From the time of sample i to the shifted one: the parts of the interval beside it are fine enough for what is shorter.
+Interval shifted_interval(const Signals& signals, const InputTable& inputs, std::size_t i, double shift) {
+  Interval out{signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)};
+  if (i + 1 < signals.samples() && std::abs(shift) <= signals.t[i + 1] - signals.t[i]) {
+    out.parts = inputs.plan.of(i);
+    out.rate = inputs.plan.rate_at(i);
+  }
+  return out;
 }
 
 double* output_row(std::size_t i, int o, int outputs, Segment& out) {
@@ -113,8 +119,7 @@ bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& 
     S.combine(w.O.data() + static_cast<std::ptrdiff_t>(ny) * kRowStride, w.slots, by_shift.data());  // ∂τ/∂(θ, x0)
     std::array<double, kMaxStates> moved, speed{};
     std::copy_n(x, n, moved.begin());
-    if (!stepper.step_linear(moved.data(), {signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)}, w.slots, w.D.data()))
-      return false;
+    if (!stepper.step_linear(moved.data(), shifted_interval(signals, inputs, i, shift), w.slots, w.D.data())) return false;
     moved_S = S;
     moved_S->advance(w.D.data(), w.slots);
     // The rate of the motion, where the exact derivative would be that of the step map by its length: equal to the accuracy of a step.
@@ -133,6 +138,15 @@ bool predict_linear(Stepper& stepper, const Signals& signals, const InputTable& 
 
 }  // namespace
 
+Interval interval_between(const Signals& signals, const InputTable& inputs, std::size_t i) {
+  return {signals.t[i], signals.t[i + 1], inputs.at(i), inputs.at(i + 1), inputs.plan.of(i), inputs.plan.rate_at(i)};
+}
+
+void prepare_at(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x) {
+  constexpr double unplanned = std::numeric_limits<double>::infinity();
+  stepper.prepare(x, inputs.at(i), signals.t[i], i < inputs.plan.rate.size() ? inputs.plan.rate[i] : unplanned);
+}
+
 bool predict_at(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x, double* y) {
   Evaluator& evaluator = stepper.evaluator();
   evaluator.predict(x, inputs.at(i), signals.t[i], y);
@@ -140,7 +154,7 @@ bool predict_at(Stepper& stepper, const Signals& signals, const InputTable& inpu
   if (shift == 0.0) return true;
   std::array<double, kMaxStates> moved;
   std::copy_n(x, stepper.states(), moved.begin());
-  if (!stepper.step(moved.data(), {signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)})) return false;
+  if (!stepper.step(moved.data(), shifted_interval(signals, inputs, i, shift))) return false;
   evaluator.predict(moved.data(), inputs.at(i), signals.t[i], y);
   return true;
 }
@@ -168,7 +182,7 @@ void run_in_batches(Stepper& stepper, const Signals& signals, const InputTable& 
   w.row = S.empty_row();
   std::array<double, kMaxStates> x{};
   std::copy_n(x0, n, x.begin());
-  stepper.prepare(x.data(), inputs.at(first), signals.t[first]);
+  prepare_at(stepper, signals, inputs, first, x.data());
   // Rows copied from S need no look of their own: what is not finite in S stays so up to the end.
   const bool rows_differ = sensitivities && !evaluator.outputs_are_states();
   const auto begin_batch = [&](std::size_t from) {
@@ -216,7 +230,7 @@ RowMatrix run_states(Stepper& stepper, const Signals& signals, const InputTable&
   RowMatrix states(static_cast<Eigen::Index>(last - first), n);
   std::array<double, kMaxStates> x{};
   std::copy_n(x0, n, x.begin());
-  stepper.prepare(x.data(), inputs.at(first), signals.t[first]);
+  prepare_at(stepper, signals, inputs, first, x.data());
   for (std::size_t i = first; i < last; ++i) {
     std::copy_n(x.begin(), n, states.row(static_cast<Eigen::Index>(i - first)).data());
     if (i + 1 < last && !stepper.step(x.data(), interval_between(signals, inputs, i))) {

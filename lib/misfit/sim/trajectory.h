@@ -10,15 +10,20 @@ namespace misfit {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The inputs of an experiment, sample-major, for the stepper.
+/// The inputs of an experiment, sample-major, for the stepper, and how it goes from sample to sample.
 struct InputTable {
   int inputs = 0;
   std::vector<double> values;  ///< samples × max(inputs, 1)
+  IntegrationPlan plan = {};   ///< none: parts as the fastest rate at the start of a trajectory asks (planner.h makes one)
   [[nodiscard]] const double* at(std::size_t sample) const {
     return values.data() + sample * static_cast<std::size_t>(inputs > 0 ? inputs : 1);
   }
 };
 [[nodiscard]] InputTable input_table(const Signals& signals, int inputs);
+/// Between samples i and i + 1, with its parts.
+[[nodiscard]] Interval interval_between(const Signals& signals, const InputTable& inputs, std::size_t i);
+/// Stepper::prepare() at state x of sample i.
+void prepare_at(Stepper& stepper, const Signals& signals, const InputTable& inputs, std::size_t i, const double* x);
 
 /// Predicted outputs y (outputs + 1 places) at sample i, at the shifted time where an effect shifts it: the state is carried there by the
 /// step map itself. False if it cannot be carried there.

@@ -33,10 +33,22 @@ void fields(Bytes& bytes, Data& data) {
   bytes(curve, first, omega, rank, lambda, chosen);
 }
 
+template <class Bytes, Is<StepPart> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [to, implicit] = data;
+  bytes(to, implicit);
+}
+
+template <class Bytes, Is<IntegrationPlan> Data>
+void fields(Bytes& bytes, Data& data) {
+  auto& [parts, first, rate, tolerance, error, lack] = data;
+  bytes(parts, first, rate, tolerance, error, lack);
+}
+
 template <class Bytes, Is<InputTable> Data>
 void fields(Bytes& bytes, Data& data) {
-  auto& [inputs, values] = data;
-  bytes(inputs, values);
+  auto& [inputs, values, plan] = data;
+  bytes(inputs, values, plan);
 }
 
 /// All but the measurements.
@@ -65,11 +77,11 @@ void fields(Bytes& bytes, Data& data) {
 template <class Bytes, Is<FilterEstimate> Data>
 void fields(Bytes& bytes, Data& estimate) {
   auto& [model, forced, penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information,
-         objective, loglik, validation_loglik, left, edf, converged, message, outliers, nonlinear, linearisations] = estimate;
+         objective, loglik, validation_loglik, left, edf, converged, message, integration, outliers, nonlinear, linearisations] = estimate;
   static_cast<void>(model);
   static_cast<void>(forced);
   bytes(penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information, objective, loglik,
-        validation_loglik, left, edf, converged, message, outliers, nonlinear, linearisations);
+        validation_loglik, left, edf, converged, message, integration, outliers, nonlinear, linearisations);
 }
 
 namespace {

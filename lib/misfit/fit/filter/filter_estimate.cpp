@@ -23,10 +23,12 @@ class Estimation {
 
   FilterEstimate run() {
     if (!start_run()) throw RunError(at_.failure());
+    if (at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
     if (!options_.noise) search_noise();
     at_.iterate(25, tolerance());  // the exact derivatives step over both blocks at once
     if (!options_.use) gate_outliers();
     if (options_.verify) refine_jointly();
+    if (options_.verify) integrate_well();
     const bool runs = std::all_of(out_.traces.begin(), out_.traces.end(), [](const FilterTrace& trace) { return trace.finite; });
     if (!runs && !at_.linearise()) throw RunError(at_.failure());
     finish();
@@ -177,6 +179,32 @@ class Estimation {
       return true;
     }
     return false;
+  }
+
+  /// Plans the integration anew where its error moves an estimate by more than a tenth of its sigma, and estimates again.
+  void integrate_well() {
+    constexpr double enough = 0.1, aim = 0.02;
+    constexpr int most_plans = 3;
+    double tolerance = options_.integration;
+    for (int plans = 0;; ++plans) {
+      const double shift = at_.integration_shift();
+      tell_integration(plans, shift);
+      double worst = 0.0;
+      for (const auto& data : out_.data) worst = std::max(worst, data.inputs.plan.error);
+      const double next = std::max(std::min(tolerance, worst) * aim / shift, kFinestTolerance);
+      if (!(shift > enough) || plans == most_plans || next >= tolerance) return;
+      tolerance = next;
+      if (!at_.plan(tolerance) || !at_.linearise()) return;
+      at_.iterate(15, this->tolerance());
+      learned_ = {};
+      refine_jointly();
+    }
+  }
+
+  void tell_integration(int plans, double shift) {
+    std::vector<IntegrationPlan> used;
+    for (const auto& data : out_.data) used.push_back(data.inputs.plan);
+    out_.integration = in_words(used, plans) + in_words_of(shift, used.front().tolerance);
   }
 
   bool exclude_nonlinear(const std::vector<std::vector<std::size_t>>& nonlinear) {

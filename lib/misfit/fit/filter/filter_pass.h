@@ -41,7 +41,7 @@ class FilterPass {
     start_covariance(model, data, noise, kalman_);
     if (wishes.jacobian != nullptr) begin_derivatives();
     std::copy_n(data.start.data(), n_, x_.begin());
-    stepper_.prepare(x_.data(), data.inputs.at(data.first), signals_.t[data.first]);
+    prepare_at(stepper_, signals_, data.inputs, data.first, x_.data());
   }
 
   bool run() {
@@ -192,7 +192,7 @@ class FilterPass {
   }
 
   bool step(std::size_t k) {
-    const Interval interval{signals_.t[k], signals_.t[k + 1], data_.inputs.at(k), data_.inputs.at(k + 1)};
+    const Interval interval = interval_between(signals_, data_.inputs, k);
     if (!stepper_.step_linear(x_.data(), interval, slots_, D_.data())) return false;
     const Eigen::Map<const Eigen::Matrix<double, M, M, M == 1 ? Eigen::ColMajor : Eigen::RowMajor>, 0, Eigen::OuterStride<>> phi(
         D_.data(), n_, n_, Eigen::OuterStride<>(kRowStride));

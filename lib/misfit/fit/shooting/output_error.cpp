@@ -50,9 +50,11 @@ class Estimator {
         penalties_(options.keep_roughness ? kept(start.penalties)
                                           : curve_penalties(start.model)),  // not those of a regression, whose noise is another one
         shooting_(start.model, experiments, setting_.sigma, setting_.state_scale, start_states(setting_)),
-        initial_states_(start.initial_states) {}
+        initial_states_(start.initial_states),
+        tolerance_(start.integration > 0.0 ? start.integration : kSearchTolerance) {}
 
   FittedModel run() {
+    shooting_.plan(tolerance_);
     if (initial_states_.size() == experiments_.size()) {
       const Shooting::State before = shooting_.state();
       const std::vector<Penalty> penalties = penalties_;
@@ -166,9 +168,11 @@ class Estimator {
     constexpr int most_rounds = 8, most_iterations = 200;
     double before = 0.0;
     settled_ = false;
+    shooting_.plan(tolerance_);
     for (int round = 0; round < most_rounds; ++round) {
       if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
-      if (!solve({0, 10.0, 1e8, most_iterations, 1e-7})) return failed(last_.message);
+      const ShootingPass whole{0, 10.0, 1e8, most_iterations, 1e-7};
+      if (!solve(whole) && !(plan_finely() && solve(whole))) return failed(last_.message);
       const PenalisedFit smoothed = smooth_present(shooting_, penalties_, linearised);
       if (!smoothed.ok) return failed(shooting_.failure().empty() ? singular_message(linearised) : "");
       const std::vector<double> sigma = channel_sigmas(shooting_, shooting_.run(false), experiments_, smoothed.edf);
@@ -242,6 +246,8 @@ class Estimator {
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
     const double degrees = linearised.count - smoothed.edf;
     const std::vector<Segment> runs = shooting_.run(true);
+    if (!integrated_well(runs, smoothed.covariance)) return whole_trajectory({});
+    tell_integration(out);
     const auto& outputs = out.model.system->spec().outputs;
     for (std::size_t o = 0; o < outputs.size(); ++o) {
       const double sigma = shooting_.sigma()[o];
@@ -275,6 +281,45 @@ class Estimator {
     if (degrees < kFewestDegrees) withhold_sigmas(too_few(linearised.count, smoothed.edf), fit);
     fit.linearisations = shooting_.linearisations();
     return out;
+  }
+
+  /// Does the integration's error move no estimate by more than a tenth of its sigma? If not, the integration is planned anew so that it
+  /// will. Not for fits by the thousand, which go on with the plan of the one they are made about.
+  bool integrated_well(const std::vector<Segment>& runs, const Eigen::MatrixXd& covariance) {
+    constexpr double enough = 0.1, aim = 0.02;
+    constexpr int most_plans = 4;
+    if (!options_.coloured) return true;
+    const std::optional<Eigen::VectorXd> shift = shooting_.integration_shift(runs, covariance);
+    if (!shift) return true;
+    shift_ = shift->cwiseQuotient(covariance.diagonal().cwiseMax(1e-300).cwiseSqrt()).cwiseAbs().maxCoeff();
+    double worst = 0.0;
+    for (std::size_t e = 0; e < experiments_.size(); ++e) worst = std::max(worst, shooting_.plan_of(e).error);
+    const double next = std::max(std::min(tolerance_, worst) * aim / shift_, kFinestTolerance);
+    if (!(shift_ > enough) || plans_ == most_plans || next >= tolerance_) return true;
+    ++plans_;
+    tolerance_ = next;
+    return false;
+  }
+
+  /// A motion that the plan of a search cannot follow to the end may be followed by a finer one.
+  bool plan_finely() {
+    constexpr double fine = 1e-7;
+    if (tolerance_ <= fine) return false;
+    tolerance_ = fine;
+    shooting_.plan(tolerance_);
+    return true;
+  }
+
+  void tell_integration(FittedModel& out) const {
+    out.integration = tolerance_;
+    std::vector<IntegrationPlan> used;
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      used.push_back(shooting_.plan_of(e));
+      if (!used.back().lack.empty()) out.fit.warnings.push_back(experiments_[e].name + ": " + used.back().lack);
+    }
+    std::string& fact = out.fit.facts["integration"];
+    fact = in_words(used, plans_);
+    if (options_.coloured) fact += in_words_of(shift_, tolerance_);
   }
 
   static std::string too_few(double count, double unknowns) {
@@ -311,6 +356,9 @@ class Estimator {
   std::vector<Penalty> penalties_;
   Shooting shooting_;
   std::vector<Eigen::VectorXd> initial_states_;  ///< where the start is a fit
+  double tolerance_;                             ///< of the integration
+  double shift_ = 0.0;                           ///< of an estimate by its error [sigma], the largest
+  int plans_ = 0;                                ///< made at estimates
   LeastSquares::Summary last_;
   bool settled_ = false;  ///< noise and roughness agree with the residuals they leave
 };

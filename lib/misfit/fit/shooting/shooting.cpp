@@ -50,6 +50,18 @@ void Shooting::set_theta(const double* theta) {
   stepper_->evaluator().set_parameters(values_.data());
 }
 
+void Shooting::set_present_theta() {
+  std::vector<double> theta;
+  for (int index : free_) theta.push_back(model_.parameters[static_cast<std::size_t>(index)].value);
+  set_theta(theta.data());
+}
+
+void Shooting::plan(double tolerance) {
+  set_present_theta();
+  for (std::size_t e = 0; e < inputs_.size(); ++e)
+    inputs_[e].plan = plan_along(*stepper_, experiments_[e], inputs_[e], history_[e], tolerance);
+}
+
 std::vector<Shooting::Piece> Shooting::cut(std::size_t length) const {
   std::vector<Piece> pieces;
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
@@ -188,6 +200,7 @@ struct StateBounds {
 
 LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vector<Penalty>& penalties) {
   failure_.clear();
+  if (inputs_.front().plan.first.empty()) plan(kSearchTolerance);
   LeastSquares problem;
   const int theta_block = add_parameters(problem, model_, free_);
   std::vector<Piece> pieces = cut(pass.length);
@@ -239,9 +252,7 @@ void Shooting::restore(const State& state) {
 }
 
 std::vector<RowMatrix> Shooting::predict_segments() {
-  std::vector<double> theta;
-  for (int index : free_) theta.push_back(model_.parameters[static_cast<std::size_t>(index)].value);
-  set_theta(theta.data());
+  set_present_theta();
   std::vector<RowMatrix> out;
   std::vector<double> y(static_cast<std::size_t>(model_.outputs()) + 1);
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
@@ -258,9 +269,7 @@ std::vector<RowMatrix> Shooting::predict_segments() {
 
 std::vector<Segment> Shooting::run(bool sensitivities) {
   std::vector<Segment> out(experiments_.size());
-  std::vector<double> theta;
-  for (int index : free_) theta.push_back(model_.parameters[static_cast<std::size_t>(index)].value);
-  set_theta(theta.data());
+  set_present_theta();
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     const Eigen::VectorXd x0 = initial_state(e);
     run_segment(*stepper_, experiments_[e], inputs_[e], 0, experiments_[e].samples(), x0.data(), sensitivities, out[e]);

@@ -5,13 +5,14 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "misfit/data/signals.h"
 #include "misfit/inference/roughness.h"
 #include "misfit/math/least_squares.h"
-#include "misfit/sim/trajectory.h"
+#include "misfit/sim/planner.h"
 
 namespace misfit {
 
@@ -43,6 +44,14 @@ class Shooting {
   bool linearise_segments(std::size_t length, NormalEquations& out);
   /// Predictions over the whole of each experiment from its initial state, with derivatives if asked.
   [[nodiscard]] std::vector<Segment> run(bool sensitivities);
+
+  /// Plans the integration along the histories (planner.h); solve() does so by itself, at kSearchTolerance, where there is no plan.
+  void plan(double tolerance);
+  [[nodiscard]] const IntegrationPlan& plan_of(std::size_t experiment) const { return inputs_[experiment].plan; }
+  /// What the error of the integration does to the estimates: how far all unknowns (the free parameters, then the initial states) would
+  /// move if every part of the plan were halved, linear about `runs`, which are those of the present values with derivatives. Nothing where
+  /// it cannot be run so.
+  [[nodiscard]] std::optional<Eigen::VectorXd> integration_shift(const std::vector<Segment>& runs, const Eigen::MatrixXd& covariance);
 
   /// Parameters and histories, to go back to when a solve leads nowhere.
   struct State {
@@ -94,6 +103,7 @@ class Shooting {
   void add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const;
   void remember(std::vector<Piece>& pieces, const LeastSquares& problem);
   void note_failure(const Segment& segment, std::size_t experiment);
+  void set_present_theta();
 
   Model model_;
   const std::vector<Signals>& experiments_;

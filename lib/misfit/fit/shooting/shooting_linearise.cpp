@@ -119,4 +119,30 @@ bool Shooting::linearise(NormalEquations& out) {
   return true;
 }
 
+std::optional<Eigen::VectorXd> Shooting::integration_shift(const std::vector<Segment>& runs, const Eigen::MatrixXd& covariance) {
+  set_present_theta();
+  const auto columns = static_cast<Eigen::Index>(free_.size());
+  const Eigen::Index n = model_.states();
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(covariance.rows());
+  Segment finer;
+  for (std::size_t e = 0; e < experiments_.size(); ++e) {
+    InputTable inputs = inputs_[e];
+    inputs.plan = refined(inputs.plan);
+    run_segment(*stepper_, experiments_[e], inputs, 0, experiments_[e].samples(), initial_state(e).data(), false, finer);
+    if (!finer.finite) return std::nullopt;
+    const Eigen::Index start = columns + n * static_cast<Eigen::Index>(e);
+    for (Eigen::Index i = 0; i < finer.y.rows(); ++i) {
+      for (Eigen::Index o = 0; o < finer.y.cols(); ++o) {
+        const auto channel = static_cast<std::size_t>(o);
+        if (!counts(e, static_cast<std::size_t>(i), channel)) continue;
+        const double weighted = (finer.y(i, o) - runs[e].y(i, o)) / (sigma_[channel] * sigma_[channel]);
+        const auto row = runs[e].y_rows.row(i * finer.y.cols() + o);
+        gradient.head(columns) += weighted * row.head(columns).transpose();
+        gradient.segment(start, n) += weighted * row.tail(n).transpose();
+      }
+    }
+  }
+  return Eigen::VectorXd(-covariance * gradient);
+}
+
 }  // namespace misfit
