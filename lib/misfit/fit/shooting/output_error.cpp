@@ -246,7 +246,7 @@ class Estimator {
     const auto columns = static_cast<Eigen::Index>(out.model.free_parameters().size());
     const double degrees = linearised.count - smoothed.edf;
     const std::vector<Segment> runs = shooting_.run(true);
-    if (!integrated_well(runs, smoothed.covariance)) return whole_trajectory({});
+    if (!integrated_well(runs, smoothed.covariance)) return nearly_there_ && polish() ? finish(summary) : whole_trajectory({});
     tell_integration(out);
     const auto& outputs = out.model.system->spec().outputs;
     for (std::size_t o = 0; o < outputs.size(); ++o) {
@@ -284,21 +284,50 @@ class Estimator {
   }
 
   /// Does the integration's error move no estimate by more than a tenth of its sigma? If not, the integration is planned anew so that it
-  /// will. Not for fits by the thousand, which go on with the plan of the one they are made about.
+  /// will; where the estimates move by a few sigmas at most, they are moved there. Not for fits by the thousand, which go on with the plan
+  /// of the one they are made about.
   bool integrated_well(const std::vector<Segment>& runs, const Eigen::MatrixXd& covariance) {
-    constexpr double enough = 0.1, aim = 0.02;
+    constexpr double enough = 0.1, aim = 0.02, few = 3.0;
     constexpr int most_plans = 4;
     if (!options_.coloured) return true;
     const std::optional<Eigen::VectorXd> shift = shooting_.integration_shift(runs, covariance);
     if (!shift) return true;
-    shift_ = shift->cwiseQuotient(covariance.diagonal().cwiseMax(1e-300).cwiseSqrt()).cwiseAbs().maxCoeff();
+    shift_ = largest(*shift, covariance);
     double worst = 0.0;
     for (std::size_t e = 0; e < experiments_.size(); ++e) worst = std::max(worst, shooting_.plan_of(e).error);
     const double next = std::max(std::min(tolerance_, worst) * aim / shift_, kFinestTolerance);
     if (!(shift_ > enough) || plans_ == most_plans || next >= tolerance_) return true;
     ++plans_;
     tolerance_ = next;
+    nearly_there_ = shift_ < few;
+    if (!nearly_there_) return false;
+    shooting_.plan(tolerance_);
+    shooting_.move_by(*shift);
     return false;
+  }
+
+  /// Newton's steps with noise and roughness as they are, for estimates that are all but right. False if they do not end.
+  bool polish() {
+    constexpr double enough = 1e-3;
+    constexpr int most_steps = 5;
+    const Shooting::State before = shooting_.state();
+    for (int k = 0; k < most_steps; ++k) {
+      NormalEquations here;
+      std::vector<Penalty> penalties = kept(penalties_);
+      if (!shooting_.linearise(here)) break;
+      const PenalisedFit there = estimate_smoothing(here, penalties, 1.0);
+      if (!there.ok) break;
+      if (largest(shooting_.move_by(there.theta - here.theta), there.covariance) < enough) return true;
+    }
+    shooting_.restore(before);
+    shooting_.forget_failure();
+    return false;
+  }
+
+  /// Of a step of all unknowns [sigma].
+  static double largest(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance) {
+    constexpr double least = 1e-300;
+    return step.cwiseQuotient(covariance.diagonal().cwiseMax(least).cwiseSqrt()).cwiseAbs().maxCoeff();
   }
 
   /// A motion that the plan of a search cannot follow to the end may be followed by a finer one.
@@ -359,6 +388,7 @@ class Estimator {
   double tolerance_;                             ///< of the integration
   double shift_ = 0.0;                           ///< of an estimate by its error [sigma], the largest
   int plans_ = 0;                                ///< made at estimates
+  bool nearly_there_ = false;
   LeastSquares::Summary last_;
   bool settled_ = false;  ///< noise and roughness agree with the residuals they leave
 };

@@ -62,6 +62,23 @@ void Shooting::plan(double tolerance) {
     inputs_[e].plan = plan_along(*stepper_, experiments_[e], inputs_[e], history_[e], tolerance);
 }
 
+Eigen::VectorXd Shooting::move_by(const Eigen::VectorXd& step) {
+  Eigen::VectorXd made = step;
+  const Eigen::Index n = model_.states();
+  Eigen::Index at = 0;
+  for (int index : free_) {
+    Parameter& p = model_.parameters[static_cast<std::size_t>(index)];
+    const double before = p.value;
+    p.value = p.curve >= 0 ? before + step[at] : std::clamp(before + step[at], p.lower, p.upper);
+    made[at++] = p.value - before;
+  }
+  for (RowMatrix& history : history_) {
+    history.row(0) += step.segment(at, n).transpose();
+    at += n;
+  }
+  return made;
+}
+
 std::vector<Shooting::Piece> Shooting::cut(std::size_t length) const {
   std::vector<Piece> pieces;
   for (std::size_t e = 0; e < experiments_.size(); ++e) {

@@ -53,6 +53,9 @@ class Shooting {
   /// it cannot be run so.
   [[nodiscard]] std::optional<Eigen::VectorXd> integration_shift(const std::vector<Segment>& runs, const Eigen::MatrixXd& covariance);
 
+  /// Moves all unknowns, in the order of integration_shift(); parameters within their bounds. Returns the step that was made.
+  Eigen::VectorXd move_by(const Eigen::VectorXd& step);
+
   /// Parameters and histories, to go back to when a solve leads nowhere.
   struct State {
     std::vector<Parameter> parameters;
