@@ -287,6 +287,10 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   add_predictions(estimate, fit);
   report_gaps(estimate, fit);
   test_innovations(estimate, fit);
+  if (!estimate.integration.empty()) fit.facts["integration"] = estimate.integration;
+  for (const auto& data : estimate.data) {
+    if (!data.inputs.plan.lack.empty()) fit.warnings.push_back(data.signals->name + ": " + data.inputs.plan.lack);
+  }
   fit.facts["effective_parameters"] = format_value(estimate.edf);
   fit.facts["left_by_exact_derivatives"] = estimate.newton_decrement ? "one more Newton step on the exact likelihood would raise it by " +
                                                                            format_value(*estimate.newton_decrement)
@@ -316,7 +320,9 @@ FilterError filter_error(const FittedModel& start, const std::vector<Signals>& e
   const Stopwatch clock;
   FilterError out;
   try {
-    out.estimate = estimate_filter(start.model, curve_penalties(start.model), experiments, options);
+    FilterOptions here = options;
+    if (start.integration > 0.0) here.integration = std::min(here.integration, start.integration);
+    out.estimate = estimate_filter(start.model, curve_penalties(start.model), experiments, here);
     out.fit = filter_fit(*out.estimate, options.threads);
   } catch (const RunError& error) {
     out.fit.method = estimators::filter_error.name;

@@ -22,11 +22,13 @@ class Estimation {
       : options_(options), at_(start, std::move(penalties), experiments, options) {}
 
   FilterEstimate run() {
-    begin();
+    if (!begin()) begin_finely();
+    if (at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
     if (!options_.noise) search_noise();
     at_.iterate(25, tolerance());  // refine_jointly() steps over both blocks at once
     if (!options_.use) reject_outliers();
     if (options_.verify) refine_jointly();
+    if (options_.verify) integrate_well();
     conclude();
     return std::move(out_);
   }
@@ -36,8 +38,8 @@ class Estimation {
   [[nodiscard]] double tolerance() const { return options_.verify ? 0.2 : 0.02; }
 
   /// A filter that is too sure of itself loses the motion: its noise is raised until innovations are as large as it expects them, within a
-  /// factor of two.
-  void begin() {
+  /// factor of two. False if the model cannot be run.
+  bool begin() {
     constexpr int most_raises = 12;
     constexpr double most_variance = 4.0;  // of whitened innovations, which should have 1
     bool runs = at_.linearise();
@@ -50,7 +52,17 @@ class Estimation {
       }
       runs = at_.linearise();
     }
-    if (!runs) throw RunError(at_.failure());
+    return runs;
+  }
+
+  /// A motion that steps for a search lose may be followed in finer ones.
+  void begin_finely() {
+    constexpr double fine = 1e-7;
+    if (options_.integration <= fine) throw RunError(at_.failure());
+    options_.integration = fine;
+    out_.noise = options_.noise.value_or(out_.around);
+    at_.plan_along_readings(fine);
+    if (!begin()) throw RunError(at_.failure());
   }
 
   [[nodiscard]] double innovation_variance() const {
@@ -160,6 +172,34 @@ class Estimation {
     if (exact.failure.empty()) return true;
     unverified_ = exact.failure;
     return false;
+  }
+
+  /// Plans the integration anew where its error moves an estimate by more than a tenth of its sigma, and estimates again.
+  void integrate_well() {
+    constexpr double enough = 0.1, aim = 0.05, few = 3.0;
+    constexpr int most_plans = 3;
+    double tolerance = options_.integration;
+    for (int plans = 0;; ++plans) {
+      const double shift = at_.integration_shift();
+      describe_integration(plans, shift);
+      if (!(shift > enough) || plans == most_plans || tolerance <= kFinestTolerance) return;
+      tolerance = finer_tolerance(used_plans(), aim / shift);
+      if (!at_.plan(tolerance) || !at_.linearise()) return;
+      if (shift > few) at_.iterate(15, this->tolerance());
+      learned_ = {};
+      refine_jointly();
+    }
+  }
+
+  [[nodiscard]] std::vector<IntegrationPlan> used_plans() const {
+    std::vector<IntegrationPlan> out;
+    for (const auto& data : out_.data) out.push_back(data.inputs.plan);
+    return out;
+  }
+
+  void describe_integration(int plans, double shift) {
+    const std::vector<IntegrationPlan> used = used_plans();
+    out_.integration = in_words(used, plans) + in_words_of(shift, used.front().tolerance);
   }
 
   bool exclude_nonlinear(const std::vector<std::vector<std::size_t>>& nonlinear) {
