@@ -61,6 +61,11 @@ TEST(Assemble, AnOptionalRoleThatTheStudyBindsMustExist) {
               AllOf(HasSubstr("study.toml:30"), HasSubstr("no quantity 'pitch_rat'"), HasSubstr("'pitch_rate'")));
 }
 
+TEST(Assemble, AnInertiaThatFrictionNoLongerReadsIsToBeLeftOut) {
+  EXPECT_THAT(message_of(parachute(true, {effect("coulomb_friction", {{"inertia", "inertia"}})})),
+              AllOf(HasSubstr("study.toml:30"), HasSubstr("no role 'inertia'"), HasSubstr("leave the role out")));
+}
+
 TEST(Assemble, UnitsOfRolesAndWhatTheyAreBoundToMustAgree) {
   EXPECT_THAT(message_of(parachute(true, {effect("coning", {{"inertia", "dynamic_pressure"}}, "again")})),
               AllOf(HasSubstr("study.toml:30"), HasSubstr("role 'inertia' needs [kg m^2]"), HasSubstr("'dynamic_pressure' has [Pa]")));

@@ -259,6 +259,27 @@ TEST(IntegrationPlan, RefinedHasEveryPartInTwo) {
   EXPECT_EQ(finer.first, (std::vector<std::size_t>{0, 4, 6}));
 }
 
+TEST(IntegrationPlan, AtAFinerToleranceErrsByTheRatioAskedFor) {
+  constexpr double ratio = 0.05;
+  const World duffing = driven_duffing();
+  const auto known = registry_with(duffing.text);
+  const Model model = assemble(request_of("text"), *known);
+  Stepper stepper(model);
+  Signals signals;
+  signals.t = duffing.t;
+  signals.inputs = {{"u", "-", duffing.input, 0.0}};
+  const RowMatrix exact = reference(duffing);
+  InputTable inputs = input_table(signals, 1);
+  std::vector<double> errors;
+  for (const double tolerance : {1e-6, 0.0}) {
+    inputs.plan = plan_along({stepper, signals, inputs}, exact, tolerance > 0.0 ? tolerance : finer_tolerance({inputs.plan}, ratio));
+    const RowMatrix x = run_states({stepper, signals, inputs}, {0, signals.samples(), duffing.x0.data()});
+    errors.push_back((x - exact).col(0).norm());
+  }
+  EXPECT_LT(errors[1], 2.0 * ratio * errors[0]);
+  EXPECT_GT(errors[1], 0.02 * ratio * errors[0]) << "no finer than is needed";
+}
+
 TEST(IntegrationPlan, PartsBesideShortOnesAreAtMostTwiceAsLong) {
   const World ball = bouncing_ball();
   const auto known = registry_with(ball.text);

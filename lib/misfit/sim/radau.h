@@ -40,7 +40,7 @@ class RadauStep {
   void solve(int width, int stride, double* rows) const;
   void take_derivatives(double h, int width, double* D);
 
-  static constexpr std::size_t kMost = 3 * kMaxStates;
+  static constexpr std::size_t kMost = std::size_t{3} * kMaxStates;
   Evaluator* evaluator_;
   std::size_t n_, N_;  ///< states; unknowns of the stages
   std::array<double, kMost> Y_{}, f_{}, scale_{};
