@@ -16,9 +16,8 @@ struct CoulombFriction {
       "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007): smooth Coulomb friction by tanh";
   static constexpr const char* excludes = "sticking, higher friction at the start of motion (Stribeck), viscous part (viscous_friction)";
 
-  enum Quantity { rate, inertia, rate_lateral };
+  enum Quantity { rate, rate_lateral };
   static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
-                                        {.name = "inertia", .unit = "*", .optional = true},
                                         {.name = "rate_lateral", .unit = "*", .optional = true, .completes = "rate"}};
   enum Port { port, port_lateral };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"},
@@ -46,20 +45,14 @@ struct CoulombFriction {
     F[port_lateral] = -resistance * across;
   }
 
-  /// Slope at rate 0 over the inertia; a system without the quantity `inertia` has ports that are accelerations themselves.
-  static double fastest_rate(const Reads<double, double>& in) {
-    const double I = in.q[inertia] > 0.0 ? in.q[inertia] : 1.0;
-    return in.c[friction] / (in.c[width] * I);
-  }
+  /// Slope at rate 0, by what a force does to the rate.
+  static double fastest_rate(const Reads<double, double>& in, double response) { return in.c[friction] / in.c[width] * response; }
 
   static std::vector<Example> examples() {
     return {
-        {.quantities = {0.01, 5.0, 0.0},
-         .coefficients = {20.0, 0.01},
-         .ports = {-15.2318831, 0.0},
-         .source = "20 tanh(1) = 20 x 0.761594156"},
-        {.quantities = {-1.0, 0.0, 0.0}, .coefficients = {3.0, 0.02}, .ports = {3.0, 0.0}, .source = "fully sliding, against the motion"},
-        {.quantities = {0.3, 0.0, -0.4},
+        {.quantities = {0.01, 0.0}, .coefficients = {20.0, 0.01}, .ports = {-15.2318831, 0.0}, .source = "20 tanh(1) = 20 x 0.761594156"},
+        {.quantities = {-1.0, 0.0}, .coefficients = {3.0, 0.02}, .ports = {3.0, 0.0}, .source = "fully sliding, against the motion"},
+        {.quantities = {0.3, -0.4},
          .coefficients = {10.0, 0.5},
          .ports = {-4.56956494, 6.09275325},
          .source = "|rate| = 0.5: 10 tanh(1) x (0.6, -0.8), against"}};

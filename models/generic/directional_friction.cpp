@@ -18,8 +18,8 @@ struct DirectionalFriction {
       "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994), section 2: friction that depends on the direction";
   static constexpr const char* excludes = "the mean of both directions (coulomb_friction), unequal viscous parts";
 
-  enum Quantity { rate, inertia };
-  static constexpr Role quantities[] = {{.name = "rate", .unit = "*"}, {.name = "inertia", .unit = "*", .optional = true}};
+  enum Quantity { rate };
+  static constexpr Role quantities[] = {{.name = "rate", .unit = "*"}};
   enum Port { port };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { asymmetry, width };
@@ -48,15 +48,14 @@ struct DirectionalFriction {
   }
 
   /// The steepest slope of tanh² is 4/(3 sqrt(3)) = 0.77.
-  static double fastest_rate(const Reads<double, double>& in) {
+  static double fastest_rate(const Reads<double, double>& in, double response) {
     constexpr double steepest = 0.77;
-    const double I = in.q[inertia] > 0.0 ? in.q[inertia] : 1.0;
-    return steepest * std::abs(in.c[asymmetry]) / (in.c[width] * I);
+    return steepest * std::abs(in.c[asymmetry]) / in.c[width] * response;
   }
 
   static std::vector<Example> examples() {
-    return {{.quantities = {0.1, 2.0}, .coefficients = {6.0, 0.1}, .ports = {-3.48015401}, .source = "6 tanh(1)^2 = 6 x 0.580025669"},
-            {.quantities = {-5.0, 0.0},
+    return {{.quantities = {0.1}, .coefficients = {6.0, 0.1}, .ports = {-3.48015401}, .source = "6 tanh(1)^2 = 6 x 0.580025669"},
+            {.quantities = {-5.0},
              .coefficients = {-2.0, 0.1},
              .ports = {2.0},
              .source = "backward at full size: less friction where asymmetry is positive"}};

@@ -24,9 +24,8 @@ struct Hysteresis {
       "Wen, Journal of the Engineering Mechanics Division ASCE 102 (1976), with n = 2 and A = 1; Ismail, Ikhouane, Rodellar (2009)";
   static constexpr const char* excludes = "slip that weakens, pinching, rate dependence";
 
-  enum Quantity { rate, displacement, inertia };
-  static constexpr Role quantities[] = {
-      {.name = "rate", .unit = "*"}, {.name = "displacement", .unit = "{rate} s"}, {.name = "inertia", .unit = "*", .optional = true}};
+  enum Quantity { rate, displacement };
+  static constexpr Role quantities[] = {{.name = "rate", .unit = "*"}, {.name = "displacement", .unit = "{rate} s"}};
   enum Port { port };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { hysteresis, yield, loop, hysteresis_width };
@@ -74,20 +73,19 @@ struct Hysteresis {
 
   /// Of the elastic part, sqrt(force/(yield inertia)), and of z at the largest rate, of which the width is taken to be a fiftieth:
   /// |dz'/dz| at |z| = 1 is 2 |rate|/yield for every loop.
-  static double fastest_rate(const Reads<double, double>& in) {
+  static double fastest_rate(const Reads<double, double>& in, double response) {
     constexpr double rates_per_width = 2.0 * 50.0;
-    const double I = in.q[inertia] > 0.0 ? in.q[inertia] : 1.0;
-    return std::max(std::sqrt(std::abs(in.c[hysteresis]) / (in.c[yield] * I)), rates_per_width * in.c[hysteresis_width] / in.c[yield]);
+    return std::max(std::sqrt(std::abs(in.c[hysteresis]) / in.c[yield] * response), rates_per_width * in.c[hysteresis_width] / in.c[yield]);
   }
 
   static std::vector<Example> examples() {
-    return {{.quantities = {2.0, 0.3, 4.0},
+    return {{.quantities = {2.0, 0.3},
              .coefficients = {10.0, 0.5, 0.6, 0.01},
              .states = {0.5},
              .ports = {-5.0},
              .drifts = {3.0},
              .source = "2 (1 - 0.6 x 0.25 - 0.4 x 0.25)/0.5"},
-            {.quantities = {-1.0, -0.2, 0.0},
+            {.quantities = {-1.0, -0.2},
              .coefficients = {-3.0, 0.25, 0.5, 0.01},
              .states = {0.8},
              .t = 1.0,

@@ -20,9 +20,8 @@ struct StribeckFriction {
   static constexpr const char* excludes = "the sliding friction itself (coulomb_friction), sticking, memory of the contact (hysteresis)";
   static constexpr bool dissipative = true;
 
-  enum Quantity { rate, inertia, rate_lateral };
+  enum Quantity { rate, rate_lateral };
   static constexpr Role quantities[] = {{.name = "rate", .unit = "*"},
-                                        {.name = "inertia", .unit = "*", .optional = true},
                                         {.name = "rate_lateral", .unit = "*", .optional = true, .completes = "rate"}};
   enum Port { port, port_lateral };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"},
@@ -66,18 +65,17 @@ struct StribeckFriction {
     F[port_lateral] = -excess * across;
   }
 
-  /// Slope at rate 0 over the inertia, as for coulomb_friction.
-  static double fastest_rate(const Reads<double, double>& in) {
-    const double I = in.q[inertia] > 0.0 ? in.q[inertia] : 1.0;
-    return in.c[breakaway] * (1.0 - 1.0 / in.c[stribeck_ratio]) / (in.c[width] * I);
+  /// Slope at rate 0, by what a force does to the rate, as for coulomb_friction.
+  static double fastest_rate(const Reads<double, double>& in, double response) {
+    return in.c[breakaway] * (1.0 - 1.0 / in.c[stribeck_ratio]) / in.c[width] * response;
   }
 
   static std::vector<Example> examples() {
-    return {{.quantities = {0.05, 5.0, 0.0},
+    return {{.quantities = {0.05, 0.0},
              .coefficients = {8.0, 10.0, 0.01},
              .ports = {-4.30233652, 0.0},
              .source = "8 (tanh(5) - tanh(0.5)) = 8 x (0.99990920 - 0.46211716)"},
-            {.quantities = {-0.3, 0.0, 0.4},
+            {.quantities = {-0.3, 0.4},
              .coefficients = {2.0, 5.0, 0.1},
              .ports = {0.285978336, -0.381304448},
              .source = "|rate| = 0.5: 2 (tanh(5) - tanh(1)) x (-0.6, 0.8), against"}};

@@ -57,8 +57,13 @@ TEST(Assemble, APortThatTheSystemLacksNamesTheNearest) {
 }
 
 TEST(Assemble, AnOptionalRoleThatTheStudyBindsMustExist) {
-  EXPECT_THAT(message_of(parachute(true, {effect("coulomb_friction", {{"inertia", "inertai"}})})),
-              AllOf(HasSubstr("study.toml:30"), HasSubstr("no quantity 'inertai'"), HasSubstr("'inertia'")));
+  EXPECT_THAT(message_of(parachute(true, {effect("coulomb_friction", {{"rate_lateral", "pitch_rat"}})})),
+              AllOf(HasSubstr("study.toml:30"), HasSubstr("no quantity 'pitch_rat'"), HasSubstr("'pitch_rate'")));
+}
+
+TEST(Assemble, AnInertiaThatFrictionNoLongerReadsIsToBeLeftOut) {
+  EXPECT_THAT(message_of(parachute(true, {effect("coulomb_friction", {{"inertia", "inertia"}})})),
+              AllOf(HasSubstr("study.toml:30"), HasSubstr("no role 'inertia'"), HasSubstr("leave the role out")));
 }
 
 TEST(Assemble, UnitsOfRolesAndWhatTheyAreBoundToMustAgree) {

@@ -110,7 +110,7 @@ TEST(Binding, ARoleThatCompletesAnotherIsLeftOutWhereAStudyBindsThatOneAlone) {
   EXPECT_GE(whole.effects.back().ports.at(1), 0) << "friction opposes the rotation as a whole";
   const Model one = assemble(spherical({effect("coulomb_friction", {{"rate", "n_y"}, {"port", "moment_z"}})}), registry());
   EXPECT_EQ(one.effects.back().ports.at(1), -1);
-  EXPECT_EQ(one.effects.back().quantities.at(2), -1);
+  EXPECT_EQ(one.effects.back().quantities.at(1), -1);
 }
 
 TEST(Binding, UnitsOfParametersAreKnownBeforeAssembling) {

@@ -237,7 +237,7 @@ TEST_P(EffectLaws, IsFiniteWithFiniteDerivativesWhenAllQuantitiesAndStatesAreZer
     for (std::size_t i = 0; i < in.nz; ++i) in.row[in.nq + in.nc + i] = 0.0;
     EXPECT_TRUE(outputs(in).allFinite());
     EXPECT_TRUE(linear(in, true).J.allFinite());
-    EXPECT_TRUE(std::isfinite(effect_.fastest_rate(in.reads())));
+    EXPECT_TRUE(std::isfinite(effect_.fastest_rate(in.reads(), 1.0)));
   }
 }
 
@@ -247,7 +247,7 @@ TEST_P(EffectLaws, IsFiniteAtItsDefaultsWhereEveryFitStarts) {
     for (std::size_t i = 0; i < in.nc; ++i) in.row[in.nq + i] = spec_.coefficients[i].value;
     EXPECT_TRUE(outputs(in).allFinite());
     EXPECT_TRUE(linear(in, true).J.allFinite());
-    EXPECT_GE(effect_.fastest_rate(in.reads()), 0.0);
+    EXPECT_GE(effect_.fastest_rate(in.reads(), 1.0), 0.0);
   }
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "misfit/sim/trajectory.h"
+#include "tests/model/cases.h"
 #include "tests/model/declared_texts.h"
 #include "tests/model/differences.h"
 
@@ -116,6 +117,30 @@ y = { unit = "-", formula = "x" }
   for (int i = 0; fine && i < 100; ++i) fine = stepper.step(&x, {0.1 * i, 0.1 * (i + 1), nullptr, nullptr});
   EXPECT_FALSE(fine);
   EXPECT_THAT(stepper.failure(), AllOf(HasSubstr("at t = "), HasSubstr("exp(x)"), HasSubstr("k = 10 1/s")));
+}
+
+TEST(DeclaredSystem, TellsFrictionOnItsPortHowMuchMassTheForceMoves) {
+  const auto known = registry_with(R"toml(
+[states]
+y = { unit = "m" }
+v = { unit = "m/s", rate_of = "y" }
+[parameters]
+m = { unit = "kg", value = 500.0 }
+k = { unit = "N/m", value = 20.0 }
+[ports]
+F = { unit = "N", rate = "v" }
+[equations]
+v = "(F - k*y)/m"
+[outputs]
+y = { unit = "m" }
+)toml");
+  ModelRequest request =
+      with_values(request_of("text", {effect("coulomb_friction", {{"rate", "v"}, {"port", "F"}})}), {{"friction", 60.0}, {"width", 0.01}});
+  const Model model = assemble(request, *known);
+  Stepper stepper(model);
+  const double x[] = {0.3, 1.0};
+  stepper.prepare(x, nullptr, 0.0);
+  EXPECT_NEAR(stepper.fastest_rate(), 60.0 / 0.01 / 500.0, 1e-9);
 }
 
 }  // namespace

@@ -79,6 +79,32 @@ TEST_P(StepOf, PhiAndGammaAreCentralDifferencesOfTheStepWithSubsteps) {
   }
 }
 
+TEST_P(StepOf, PhiAndGammaAreCentralDifferencesOfImplicitSteps) {
+  const std::vector<StepPart> parts = {{0.4, true}, {0.7, false}, {1.0, true}};
+  const auto samples = samples_of(model_, 4);
+  for (std::size_t s = 0; s + 1 < samples.size(); ++s) {
+    Interval over = interval(samples[s], samples[s + 1], 1.0 / 60.0);
+    over.parts = parts;
+    expect_derivatives(samples[s], over);
+  }
+}
+
+TEST_P(StepOf, ImplicitStepsMoveAsExplicitOnesThatAreShort) {
+  const std::vector<StepPart> implicit = {{1.0, true}};
+  std::vector<StepPart> fine;
+  for (int k = 1; k <= 64; ++k) fine.push_back({k / 64.0, false});
+  for (const Sample& at : samples_of(model_, 4)) {
+    constexpr double small = 0.02;  // times the fastest rate: the fifth power of it is left
+    Interval over = interval(at, at, 1e-3);
+    over.t1 = over.t0 + small / std::max(stepper_.linearised_rate(at.x.data(), over, 0.0), 15.0);
+    over.parts = implicit;
+    const Eigen::VectorXd by_radau = stepped(at.x, over);
+    over.parts = fine;
+    const Eigen::VectorXd by_runge = stepped(at.x, over);
+    EXPECT_LE((by_radau - by_runge).norm(), 1e-9 * (1.0 + by_runge.norm()));
+  }
+}
+
 TEST_P(StepOf, AUsedStepperGivesTheSameBitsAsAFreshOne) {
   const auto samples = samples_of(model_, 3);
   std::vector<double> D(static_cast<std::size_t>(n_) * kRowStride, std::nan(""));

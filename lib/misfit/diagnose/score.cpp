@@ -162,14 +162,13 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
     const Signals& signals = *data.signals;
     G_.emplace_back(trace.samples * N * NF, 0.0);
     times_.insert(times_.end(), signals.t.begin(), signals.t.end());
-    stepper.prepare(data.start.data(), data.inputs.at(data.first), signals.t[data.first]);
+    prepare_at({stepper, signals, data.inputs}, data.first, data.start.data());
     for (std::size_t k = data.first; k < trace.samples; ++k) {
       x = trace.filtered(k);
       used_[offset + k] = true;
       values.quantities(x.data(), data.inputs.at(k), signals.t[k], quantities_.row(offset + k).data());
       if (k + 1 == trace.samples) break;
-      if (!stepper.step_linear(x.data(), {signals.t[k], signals.t[k + 1], data.inputs.at(k), data.inputs.at(k + 1)}, slots, D.data()))
-        break;
+      if (!stepper.step_linear(x.data(), interval_after({stepper, signals, data.inputs}, k), slots, D.data())) break;
       values.quantities(x.data(), data.inputs.at(k + 1), signals.t[k + 1], ahead_.row(offset + k).data());
       for (std::size_t i = 0; i < N; ++i) {
         for (int c = 0; c < slots.count(); ++c) G_.back()[(k * N + i) * NF + slots.column(c)] = D[i * kRowStride + N + c];

@@ -18,6 +18,7 @@ struct FittedModel {
   Eigen::MatrixXd plain_covariance{};           ///< of the free parameters as if residuals were white; empty where not computed
   /// Of a regression: experiment, equation, sample → what the model says of the rate less what was measured; NaN where not used.
   std::vector<std::vector<std::vector<double>>> equation_residuals{};
+  double integration = 0.0;  ///< tolerance of the plan that it was integrated with (IntegrationPlan), to go on with; 0: none
 };
 
 }  // namespace misfit

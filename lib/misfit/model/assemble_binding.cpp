@@ -43,8 +43,9 @@ void Assembler::check_roles(const EffectRequest& request, const EffectSpec& spec
   for (const auto& role : spec.ports) valid.emplace_back(role.name);
   for (const auto& [role, target] : request.roles) {
     if (std::find(valid.begin(), valid.end(), role) == valid.end()) {
-      throw InputError(request.where,
-                       "effect '" + shown(request.name) + "' (" + spec.key + ") has no role '" + shown(role) + "'" + suggest(role, valid));
+      throw InputError(request.where, "effect '" + shown(request.name) + "' (" + spec.key + ") has no role '" + shown(role) + "'" +
+                                          (role == "inertia" ? ": what its force moves is known from the equations, leave the role out"
+                                                             : suggest(role, valid)));
     }
   }
 }

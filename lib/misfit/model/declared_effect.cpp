@@ -42,7 +42,7 @@ class FormulaEffect final : public Effect {
     const std::size_t width = spec_.quantities.size() + spec_.coefficients.size() + (constants_too ? spec_.constants.size() : 0);
     for (std::size_t i = 0; i < width; ++i) J[i] = r[slopes_.place(i + 1)];
   }
-  [[nodiscard]] double fastest_rate(const Reads<double, double>& in) const override {
+  [[nodiscard]] double fastest_rate(const Reads<double, double>& in, double /*response*/) const override {
     if (conjugate_ < 0) return 0.0;
     Registers r;
     fill(in, r);

@@ -21,9 +21,10 @@ KeyGroup system_group() {
      "checked through them (SI, radians).",
      {{.name = "doc", .fallback = "\"declared system\"", .meaning = "One line on the system."},
       {.name = "source", .fallback = "\"\"", .meaning = "Where the equations come from."},
-      {.name = "fastest_rate", .type = Type::number, .unit = "1/s", .otherwise = "from the Jacobian of the equations alone", .least = 0.0,
+      {.name = "fastest_rate", .type = Type::number, .unit = "1/s", .otherwise = "from the equations", .least = 0.0,
        .above = true,
-       .meaning = "Lower bound of the fastest rate, which sets the integration step: rate times step at most 0.5."}}};
+       .meaning = "Integration steps are at most 0.5/fastest_rate long. Not needed: steps follow the fastest rate of the equations and an "
+                  "estimate of their error, implicit where stiff, and are checked at the estimate (integration in fit.json)."}}};
 }
 
 std::vector<KeyGroup> state_groups() {

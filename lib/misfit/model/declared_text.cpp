@@ -47,6 +47,7 @@ class Reader {
     out_.spec.doc = *head.text("doc");
     out_.spec.source = *head.text("source");
     out_.spec.fastest_rate = head.value("fastest_rate").value_or(0.0);
+    out_.spec.rate_given = out_.spec.fastest_rate > 0.0;
     head.finish();
   }
 

@@ -126,8 +126,10 @@ class Effect {
   virtual void evaluate(const Reads<double, double>& in, double* out) const = 0;
   /// J: row-major outputs × (quantities + coefficients + own states [+ constants if `constants_too`]).
   virtual void linearise(const Reads<double, double>& in, double* out, double* J, bool constants_too) const = 0;
-  /// Fastest rate of what it adds [1/s]: integrators keep rate × step < 0.5. 0: no demand.
-  [[nodiscard]] virtual double fastest_rate(const Reads<double, double>& in) const = 0;
+  /// Fastest rate of what it adds [1/s]: integrators keep rate × step < 0.5. 0: no demand. `response`: how fast the quantity of the role
+  /// `rate` changes per unit of the first port, from the system's equations (1/inertia); needed where responds() says so.
+  [[nodiscard]] virtual double fastest_rate(const Reads<double, double>& in, double response) const = 0;
+  [[nodiscard]] virtual bool responds() const { return false; }
   /// Noise intensity of each own state [unit/sqrt(s)]; zeros for deterministic memory.
   virtual void diffusion(const Reads<double, double>& in, double* out) const = 0;
 };
@@ -136,7 +138,8 @@ class Effect {
 /// excludes; array `ports`; `template <class T, class K> static void add(const Reads<T, K>& in, T* F)`, or with own states `add(in, F,
 /// drift)`; `static std::vector<Example> examples()`. Optional: arrays `quantities`, `constants`, `coefficients`, `states`; enums Quantity,
 /// Port, Coefficient, Constant, State with the names of the arrays' entries, to index with; `specialises`, `dissipative`;
-/// `fastest_rate(const Reads<double, double>&)`, `diffusion(const Reads<double, double>&, double*)`.
+/// `fastest_rate(const Reads<double, double>&)` or `fastest_rate(const Reads<double, double>&, double response)`, `diffusion(const
+/// Reads<double, double>&, double*)`.
 template <class E>
 class EffectOf final : public Effect {
  public:
@@ -155,9 +158,13 @@ class EffectOf final : public Effect {
     }
   }
 
-  [[nodiscard]] double fastest_rate(const Reads<double, double>& in) const override {
+  [[nodiscard]] double fastest_rate(const Reads<double, double>& in, double response) const override {
+    if constexpr (requires { E::fastest_rate(in, response); }) return E::fastest_rate(in, response);
     if constexpr (requires { E::fastest_rate(in); }) return E::fastest_rate(in);
     return 0.0;
+  }
+  [[nodiscard]] bool responds() const override {
+    return requires(const Reads<double, double>& in) { E::fastest_rate(in, 1.0); };
   }
 
   void diffusion(const Reads<double, double>& in, double* out) const override {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "misfit/core/lists.h"
 
@@ -255,6 +256,21 @@ void Evaluator::quantities(const double* x, const double* u, double t, double* q
   std::copy(q_.begin(), q_.begin() + nq_, q);
 }
 
+/// How fast the quantity of the role `rate` changes per unit of the effect's first port: ∂q/∂x · ∂x'/∂F.
+double Evaluator::response_of(const Use& use, const Point& at) {
+  const auto& roles = use.effect->spec().quantities;
+  const auto rate = std::find_if(roles.begin(), roles.end(), [](const Role& role) { return std::string_view(role.name) == "rate"; });
+  const int quantity = rate == roles.end() ? -1 : use.quantity[rate - roles.begin()], port = use.port.front();
+  if (quantity < 0 || quantity >= nq_ || port < 0) return 1.0;
+  std::array<double, kMaxStates> dx{};
+  std::fill(F_.begin(), F_.begin() + nf_, 0.0);
+  system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), q_P_.data(), nullptr});
+  system_->linearise_rates(at, P_.data(), F_.data(), dx.data(), {r_x_.data(), nullptr, r_F_.data(), nullptr});
+  double response = 0.0;
+  for (int i = 0; i < nx_; ++i) response += q_x_[quantity * nx_ + i] * r_F_[i * nf_ + port];
+  return std::abs(response);
+}
+
 double Evaluator::fastest_rate(const double* x, const double* u, double t) {
   const Point at{x, u, t, p_.data()};
   base_and_derived(at, x + nx_);
@@ -264,7 +280,8 @@ double Evaluator::fastest_rate(const double* x, const double* u, double t) {
   for (const auto* list : {&quantity_, &dynamic_, &sensor_}) {
     for (const auto& use : *list) {
       gather(use, x + nx_, values.data());
-      fastest = std::max(fastest, use.effect->fastest_rate(reads(use, values.data(), t)));
+      const double response = use.effect->responds() && list == &dynamic_ ? response_of(use, at) : 1.0;
+      fastest = std::max(fastest, use.effect->fastest_rate(reads(use, values.data(), t), response));
     }
   }
   return fastest;

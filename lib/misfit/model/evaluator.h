@@ -83,7 +83,7 @@ class Evaluator {
   /// The same with derivative rows for each of the outputs() + 1 values.
   void linearise_outputs(const double* x, const double* u, double t, Slots& slots, double* y, double* D);
 
-  /// Fastest rate of the system and its effects at this state [1/s].
+  /// Fastest rate of the system and its effects at this state, jumps at their steepest [1/s].
   [[nodiscard]] double fastest_rate(const double* x, const double* u, double t);
   /// Why rates() is not finite at this state, in words: see System::explain(). Empty if it is not known.
   [[nodiscard]] std::string explain(const double* x, const double* u, double t);
@@ -100,6 +100,7 @@ class Evaluator {
   };
   void flatten();
   void flatten_effect(const BoundEffect& bound);
+  [[nodiscard]] double response_of(const Use& use, const Point& at);
   [[nodiscard]] bool rates_move_with_constants() const;
   [[nodiscard]] double curve_value(const Curve& curve, double at) const;
   void gather(const Use& use, const double* own, double* values) const;

@@ -113,6 +113,7 @@ struct SystemSpec {
   FoldedAngle folded_angle = {};            ///< for the points of [reference]
   std::vector<ComparedQuantity> compared_quantities = {};  ///< of measured and simulated motion, beside the channels
   double fastest_rate = 0.0;                               ///< [1/s], of the system without effects
+  bool rate_given = false;  ///< by the one who wrote the system: at least so many steps, whatever the plan finds
 };
 
 /// Row-major blocks of first derivatives; a null pointer means "not wanted".

@@ -35,6 +35,8 @@ Blocks blocks_of(const Fit& fit) {
   Blocks out;
   out.heading(fmt::format("{}: {} ({:.2f} s, {} linearisations)", fit.method, in_words(fit.status), fit.seconds, fit.linearisations));
   out.paragraph(fit.message);
+  if (const auto integration = fit.facts.find("integration"); integration != fit.facts.end())
+    out.paragraph("Integration: " + integration->second + ".");
   std::vector<Row> rows;
   if (fit.trim) rows.emplace_back("trim", *fit.trim);
   add_rows(rows, "RMS of ", fit.rms);

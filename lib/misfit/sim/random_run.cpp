@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "misfit/sim/planner.h"
+
 namespace misfit {
 namespace {
 
@@ -24,9 +26,10 @@ class RandomRun {
     stepper_.prepare(x, whole.u0, whole.t0);
     stepper_.evaluator().diffusion(x, whole.u0, whole.t0, intensity_.data());
     for (std::size_t i = 0; i < further_.size(); ++i) intensity_[i] = std::hypot(intensity_[i], further_[i]);
-    constexpr double largest_product = 0.1, most = 1e5;
+    constexpr double largest_product = 0.1, stiff = 1e3;
     const double h = whole.t1 - whole.t0;
-    const double parts = std::clamp(std::ceil(stepper_.fastest_rate() * h / largest_product), 1.0, most);
+    const double parts = std::max(std::ceil(stepper_.fastest_rate() * h / largest_product), 1.0);
+    if (parts > stiff) return advance_planned(x, whole);
     std::array<double, kMaxInputs> from{}, to{};
     for (double part = 0.0; part < parts; part += 1.0) {
       inputs_at(model_, whole, part / parts, from.data());
@@ -39,6 +42,22 @@ class RandomRun {
   }
 
  private:
+  /// In the parts of a plan made for this interval from here.
+  bool advance_planned(double* x, const Interval& whole) {
+    constexpr double tolerance = 1e-6;
+    Interval interval = whole;
+    interval.rate = stepper_.fastest_rate();
+    double from = 0.0;
+    for (const StepPart& part : plan_interval(stepper_, interval, x, tolerance)) {
+      const double noisy = 0.5 * (part.to - from) * (whole.t1 - whole.t0);
+      add_noise(x, noisy);
+      if (!stepper_.advance(x, whole, from, part)) return false;
+      add_noise(x, noisy);
+      from = part.to;
+    }
+    return true;
+  }
+
   void add_noise(double* x, double h) {
     for (int i = nx_; i < model_.states(); ++i) {
       const double intensity = intensity_[i - nx_];
@@ -73,12 +92,13 @@ void run_randomly(const Simulation& simulation, const double* x0, std::mt19937_6
   out.last = signals.samples();
   out.finite = false;
   out.y.resize(out.last, stepper.evaluator().outputs());
-  Segment one;
+  std::array<double, kMaxOutputs + 1> y{};
   for (std::size_t i = 0; i < out.last; ++i) {
     out.failed_at = i;
-    run_segment(simulation, {i, i + 1, x.data()}, one);  // for what sample i shows, where its time is shifted as well
-    if (!one.finite) return;
-    out.y.row(i) = one.y.row(0);
+    prepare_at(simulation, i, x.data());  // where its time is shifted
+    if (!predict_at(simulation, i, x.data(), y.data())) return;
+    std::copy_n(y.begin(), out.y.cols(), out.y.row(i).data());
+    if (!out.y.row(i).allFinite()) return;
     if (i + 1 == out.last) break;
     out.failed_at = i + 1;
     if (!run.advance(x.data(), {signals.t[i], signals.t[i + 1], inputs.at(i), inputs.at(i + 1)})) return;

@@ -37,9 +37,26 @@ Stepper::Stepper(const Model& model) : evaluator_(model), n_(model.states()), nu
   sum_.assign(size, 0.0);
 }
 
-void Stepper::prepare(const double* x, const double* u, double t) {
+void Stepper::prepare(const double* x, const double* u, double t, double planned) {
   fastest_rate_ = evaluator_.fastest_rate(x, u, t);
+  excess_ = std::max(fastest_rate_ - planned, 0.0);
   failure_.clear();
+}
+
+double Stepper::linearised_rate(const double* x, const Interval& interval, double fraction) {
+  std::array<double, kMaxInputs> u{};
+  std::array<double, kMaxStates> dx{};
+  Slots slots;
+  inputs_at(interval, fraction, u.data());
+  evaluator_.linearise_rates(x, u.data(), interval.t0 + fraction * (interval.t1 - interval.t0), slots, dx.data(), L_.data());
+  double fastest = 0.0;
+  for (int i = 0; i < n_; ++i) {
+    for (int j = i; j < n_; ++j) {
+      const double both = std::sqrt(std::abs(*(L_.data() + row_at(i) + j) * *(L_.data() + row_at(j) + i)));
+      if (std::isfinite(both)) fastest = std::max(fastest, both);
+    }
+  }
+  return fastest;
 }
 
 bool Stepper::finite(const double* x) const {
@@ -56,45 +73,31 @@ void Stepper::keep_in_range(double* x, double* D, int width) const {
   }
 }
 
-/// Goes through the step again, stage by stage, to where the rates leave the finite numbers.
-void Stepper::note_failure(const double* x, const Interval& interval) {
-  const int parts = substeps(interval.t1 - interval.t0);
-  const double h = (interval.t1 - interval.t0) / parts;
-  std::array<double, kMaxStates> at{}, stage{}, sum{}, dx{};
-  std::array<double, kMaxInputs> u{};
-  std::copy_n(x, n_, at.begin());
-  for (int part = 0; part < parts; ++part) {
-    sum = at;
-    for (std::size_t s = 0; s < 4; ++s) {
-      stage = at;
-      for (int i = 0; s > 0 && i < n_; ++i) stage[i] += h * stage_at[s] * dx[i];
-      const double fraction = (part + stage_at[s]) / parts;
-      inputs_at(interval, fraction, u.data());
-      const double t = interval.t0 + fraction * (interval.t1 - interval.t0);
-      evaluator_.rates(stage.data(), u.data(), t, dx.data());
-      if (!finite(stage.data()) || !finite(dx.data())) {
-        failure_ = "at t = " + format_value(t) + " s: ";
-        const std::string why = evaluator_.explain(stage.data(), u.data(), t);
-        const auto& states = evaluator_.model().state_specs;
-        for (std::size_t i = 0; why.empty() && i < states.size(); ++i)
-          failure_ +=
-              (i == 0 ? "" : ", ") + states[i].name + " = " + format_value(stage[i]) + (states[i].unit == "-" ? "" : " " + states[i].unit);
-        failure_ += why;
-        return;
-      }
-      for (int i = 0; i < n_; ++i) sum[i] += h * stage_weight[s] * dx[i];
+/// Calls advance(share, implicit) for every step of an interval, until it returns false.
+template <class Advance>
+bool Stepper::for_each_part(const Interval& interval, const Advance& advance) const {
+  static constexpr StepPart whole{};
+  double from = 0.0;
+  for (const StepPart& part : interval.parts.empty() ? std::span(&whole, 1) : interval.parts) {
+    const int pieces = part.implicit ? 1 : pieces_of(interval, from, part);
+    const double length = part.to - from;
+    for (int k = 0; k < pieces; ++k) {
+      if (!advance(Share{from + length * k / pieces, k + 1 == pieces ? part.to : from + length * (k + 1) / pieces}, part.implicit))
+        return false;
     }
-    at = sum;
-    keep_in_range(at.data(), nullptr, 0);
+    from = part.to;
   }
+  return true;
 }
 
-int Stepper::substeps(double h) const {
-  constexpr double largest_product = 0.5;  // rate × step: above, explicit Runge–Kutta loses accuracy, then stability
-  constexpr double most = 1000.0;
-  const double product = fastest_rate_ * std::abs(h);
-  if (product <= largest_product) return 1;
-  const double wanted = std::ceil(product / largest_product);
+/// Into how many steps a part is divided: without a plan as the fastest rate asks, with one only where the rate has far outgrown it.
+int Stepper::pieces_of(const Interval& interval, double from, const StepPart& part) const {
+  constexpr double most = 1000.0, far_beyond = 1.0;
+  const bool planned = !interval.parts.empty();
+  const double rate = planned ? interval.rate + excess_ : fastest_rate_;
+  const double product = rate * std::abs((part.to - from) * (interval.t1 - interval.t0));
+  if (product <= (planned ? far_beyond : kLargestProduct) || (planned && excess_ == 0.0)) return 1;
+  const double wanted = std::ceil(product / kLargestProduct);
   return static_cast<int>(std::clamp(std::isfinite(wanted) ? wanted : 1.0, 1.0, most));
 }
 
@@ -105,29 +108,122 @@ void Stepper::inputs_at(const Interval& interval, double fraction, double* u) co
   }
 }
 
-bool Stepper::step(double* x, const Interval& interval) {
-  const int parts = substeps(interval.t1 - interval.t0);
-  const double h = (interval.t1 - interval.t0) / parts;
-  std::array<double, kMaxStates> stage, sum, dx{}, start;
+void Stepper::explicit_step(double* x, const Interval& interval, const Share& share) {
+  const double h = (share.to - share.from) * (interval.t1 - interval.t0);
+  std::array<double, kMaxStates> stage, sum, dx{};
   std::array<double, kMaxInputs> u{};
-  std::copy_n(x, n_, start.begin());
-  for (int part = 0; part < parts; ++part) {
-    std::copy_n(x, n_, sum.begin());
-    std::copy_n(x, n_, stage.begin());
-    for (std::size_t s = 0; s < 4; ++s) {
-      if (s > 0) {
-        for (int i = 0; i < n_; ++i) stage[i] = x[i] + h * stage_at[s] * dx[i];
-      }
-      const double fraction = (part + stage_at[s]) / parts;
-      inputs_at(interval, fraction, u.data());
-      evaluator_.rates(stage.data(), u.data(), interval.t0 + fraction * (interval.t1 - interval.t0), dx.data());
-      for (int i = 0; i < n_; ++i) sum[i] += h * stage_weight[s] * dx[i];
+  std::copy_n(x, n_, sum.begin());
+  std::copy_n(x, n_, stage.begin());
+  for (std::size_t s = 0; s < 4; ++s) {
+    if (s > 0) {
+      for (int i = 0; i < n_; ++i) stage[i] = x[i] + h * stage_at[s] * dx[i];
     }
-    std::copy_n(sum.begin(), n_, x);
-    if (!ranges_.empty()) keep_in_range(x, nullptr, 0);
+    const double fraction = share.from + stage_at[s] * (share.to - share.from);
+    inputs_at(interval, fraction, u.data());
+    evaluator_.rates(stage.data(), u.data(), interval.t0 + fraction * (interval.t1 - interval.t0), dx.data());
+    for (int i = 0; i < n_; ++i) sum[i] += h * stage_weight[s] * dx[i];
   }
-  if (finite(x)) return true;
+  std::copy_n(sum.begin(), n_, x);
+  if (!ranges_.empty()) keep_in_range(x, nullptr, 0);
+}
+
+/// solve(radau, h, stages) over the share.
+template <class Solve>
+bool Stepper::implicit_step(const Interval& interval, const Share& share, const Solve& solve) {
+  if (!radau_) radau_ = std::make_unique<RadauStep>(evaluator_);
+  const double length = share.to - share.from;
+  RadauInputs at;
+  for (std::size_t s = 0; s < at.t.size(); ++s) {
+    const double fraction = share.from + RadauStep::stage_at[s] * length;
+    at.t[s] = interval.t0 + fraction * (interval.t1 - interval.t0);
+    inputs_at(interval, fraction, at.u[s].data());
+  }
+  return solve(*radau_, length * (interval.t1 - interval.t0), at);
+}
+
+/// The same; where Newton's iteration does not converge, in halves, up to 64 of them: parameters that a search tries.
+template <class Solve>
+bool Stepper::implicit_steps(const Interval& interval, const Share& share, const Solve& solve) {
+  constexpr int most_pieces = 64;
+  int pieces = 1;
+  for (int k = 0; k < pieces;) {
+    const double length = (share.to - share.from) / pieces;
+    if (implicit_step(interval, {share.from + length * k, share.from + length * (k + 1)}, solve)) {
+      ++k;
+      continue;
+    }
+    if (2 * pieces > most_pieces) return false;
+    pieces *= 2;
+    k *= 2;
+  }
+  return true;
+}
+
+bool Stepper::solve_implicitly(RadauStep& radau, double* x, double h, const RadauInputs& at) const {
+  if (!radau.step(x, h, at)) return false;
+  if (!ranges_.empty()) keep_in_range(x, nullptr, 0);
+  return true;
+}
+
+bool Stepper::advance(double* x, const Interval& interval, double from, const StepPart& part) {
+  const Share share{from, part.to};
+  if (part.implicit)
+    return implicit_step(interval, share,
+                         [&](RadauStep& radau, double h, const RadauInputs& at) { return solve_implicitly(radau, x, h, at); });
+  explicit_step(x, interval, share);
+  return finite(x);
+}
+
+bool Stepper::step(double* x, const Interval& interval) {
+  std::array<double, kMaxStates> start;
+  std::copy_n(x, n_, start.begin());
+  const auto solve = [&](RadauStep& radau, double h, const RadauInputs& at) { return solve_implicitly(radau, x, h, at); };
+  const bool solved = for_each_part(interval, [&](const Share& share, bool implicit) {
+    if (implicit) return implicit_steps(interval, share, solve);
+    explicit_step(x, interval, share);
+    return true;
+  });
+  if (solved && finite(x)) return true;
   note_failure(start.data(), interval);
+  return false;
+}
+
+/// Goes through the interval again, to the step at which it fails.
+void Stepper::note_failure(const double* x, const Interval& interval) {
+  std::array<double, kMaxStates> at{};
+  std::copy_n(x, n_, at.begin());
+  static_cast<void>(for_each_part(interval, [&](const Share& share, bool implicit) {
+    const std::array<double, kMaxStates> before = at;
+    const auto solve = [&](RadauStep& radau, double h, const RadauInputs& inputs) { return solve_implicitly(radau, at.data(), h, inputs); };
+    if (implicit ? implicit_steps(interval, share, solve) : advance(at.data(), interval, share.from, {share.to, false})) return true;
+    if (!explain_step(before.data(), interval, share)) {
+      failure_ = "at t = " + format_value(interval.t0 + share.from * (interval.t1 - interval.t0)) +
+                 " s: " + (implicit ? "the equations of an implicit step have no solution" : "a state grows beyond all numbers");
+    }
+    return false;
+  }));
+}
+
+/// Says where the rates leave the finite numbers in the stages of an explicit step; false if they do not.
+bool Stepper::explain_step(const double* x, const Interval& interval, const Share& share) {
+  const double h = (share.to - share.from) * (interval.t1 - interval.t0);
+  std::array<double, kMaxStates> stage{}, dx{};
+  std::array<double, kMaxInputs> u{};
+  for (const double weight : stage_at) {
+    for (int i = 0; i < n_; ++i) stage[i] = x[i] + h * weight * dx[i];
+    const double fraction = share.from + weight * (share.to - share.from), t = interval.t0 + fraction * (interval.t1 - interval.t0);
+    inputs_at(interval, fraction, u.data());
+    evaluator_.rates(stage.data(), u.data(), t, dx.data());
+    if (finite(stage.data()) && finite(dx.data())) continue;
+    failure_ = "at t = " + format_value(t) + " s: ";
+    const std::string why = evaluator_.explain(stage.data(), u.data(), t);
+    const auto& states = evaluator_.model().state_specs;
+    for (std::size_t i = 0; why.empty() && i < states.size(); ++i)
+      failure_ +=
+          (i == 0 ? "" : ", ") + states[i].name + " = " + format_value(stage[i]) + (states[i].unit == "-" ? "" : " " + states[i].unit);
+    failure_ += why;
+    return true;
+  }
   return false;
 }
 
@@ -207,6 +303,22 @@ void Stepper::substep_linear(double* x, const Interval& interval, double from, d
   std::copy_n(sum.begin(), n, x);
 }
 
+void Stepper::explicit_step_linear(double* x, const Interval& interval, const Share& share, Slots& slots, double* D) {
+  // The number of states of the usual systems is given to the compiler; 0: any.
+  switch (n_) {
+    case 2:
+      return substep_linear<2>(x, interval, share.from, share.to, slots, D);
+    case 3:
+      return substep_linear<3>(x, interval, share.from, share.to, slots, D);
+    case 4:
+      return substep_linear<4>(x, interval, share.from, share.to, slots, D);
+    case 6:
+      return substep_linear<6>(x, interval, share.from, share.to, slots, D);
+    default:
+      return substep_linear<0>(x, interval, share.from, share.to, slots, D);
+  }
+}
+
 bool Stepper::step_linear(double* x, const Interval& interval, Slots& slots, double* D) {
   slots.clear();
   std::array<double, kMaxStates> start;
@@ -215,24 +327,22 @@ bool Stepper::step_linear(double* x, const Interval& interval, Slots& slots, dou
     double* row = D + i * kRowStride;
     for (int j = 0; j < n_; ++j) row[j] = i == j ? 1.0 : 0.0;
   }
-  const int parts = substeps(interval.t1 - interval.t0);
-  for (int part = 0; part < parts; ++part) {
-    const double from = 1.0 * part / parts, to = 1.0 * (part + 1) / parts;
-    // The number of states of the usual systems is given to the compiler; 0: any.
-    if (n_ == 2) {
-      substep_linear<2>(x, interval, from, to, slots, D);
-    } else if (n_ == 4) {
-      substep_linear<4>(x, interval, from, to, slots, D);
-    } else if (n_ == 3) {
-      substep_linear<3>(x, interval, from, to, slots, D);
-    } else if (n_ == 6) {
-      substep_linear<6>(x, interval, from, to, slots, D);
-    } else {
-      substep_linear<0>(x, interval, from, to, slots, D);
-    }
+  const auto keep = [&] {
     if (!ranges_.empty()) keep_in_range(x, D, n_ + slots.count());
-  }
-  if (finite(x)) return true;
+  };
+  const bool solved = for_each_part(interval, [&](const Share& share, bool implicit) {
+    if (!implicit) {
+      explicit_step_linear(x, interval, share, slots, D);
+      keep();
+      return true;
+    }
+    return implicit_steps(interval, share, [&](RadauStep& radau, double h, const RadauInputs& at) {
+      const bool fine = radau.step_linear(x, h, at, slots, D);
+      if (fine) keep();
+      return fine;
+    });
+  });
+  if (solved && finite(x)) return true;
   note_failure(start.data(), interval);
   return false;
 }

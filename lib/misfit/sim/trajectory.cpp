@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "misfit/core/lists.h"
@@ -83,12 +84,19 @@ struct State {
         O((simulation.stepper.evaluator().outputs() + 1) * kRowStride),
         row(S.empty_row()) {
     std::copy_n(stretch.x0, simulation.stepper.states(), x.begin());
-    simulation.stepper.prepare(x.data(), simulation.inputs.at(stretch.first), simulation.signals.t[stretch.first]);
+    prepare_at(simulation, stretch.first, x.data());
   }
 };
 
-Interval interval_after(const Simulation& run, std::size_t i) {
-  return {run.signals.t[i], run.signals.t[i + 1], run.inputs.at(i), run.inputs.at(i + 1)};
+/// From the time of sample i to the shifted one: the parts of the interval beside it are fine enough for what is shorter.
+Interval shifted_interval(const Simulation& run, std::size_t i, double shift) {
+  const auto& [stepper, signals, inputs] = run;
+  Interval out{signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)};
+  if (i + 1 < signals.samples() && std::abs(shift) <= signals.t[i + 1] - signals.t[i]) {
+    out.parts = inputs.plan.of(i);
+    out.rate = inputs.plan.rate_at(i);
+  }
+  return out;
 }
 
 double* output_row(std::size_t i, int o, int outputs, Segment& out) { return out.y_rows.row((i - out.first) * outputs + o).data(); }
@@ -121,8 +129,7 @@ bool predict_linear(const Simulation& simulation, std::size_t i, State& at, Segm
     std::vector<double> by_shift = at.S.empty_row();
     at.S.combine(at.O.data() + ny * kRowStride, at.slots, by_shift.data());  // ∂τ/∂(θ, x0)
     std::array<double, kMaxStates> moved = at.x, speed{};
-    if (!stepper.step_linear(moved.data(), {signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)}, at.slots, at.D.data()))
-      return false;
+    if (!stepper.step_linear(moved.data(), shifted_interval(simulation, i, shift), at.slots, at.D.data())) return false;
     moved_S = at.S;
     moved_S->advance(at.D.data(), at.slots);
     // The rate of the motion, where the exact derivative would be that of the step map by its length: equal to the accuracy of a step.
@@ -141,6 +148,17 @@ bool predict_linear(const Simulation& simulation, std::size_t i, State& at, Segm
 
 }  // namespace
 
+Interval interval_after(const Simulation& run, std::size_t i) {
+  const auto& [stepper, signals, inputs] = run;
+  return {signals.t[i], signals.t[i + 1], inputs.at(i), inputs.at(i + 1), inputs.plan.of(i), inputs.plan.rate_at(i)};
+}
+
+void prepare_at(const Simulation& run, std::size_t i, const double* x) {
+  const auto& [stepper, signals, inputs] = run;
+  constexpr double unplanned = std::numeric_limits<double>::infinity();
+  stepper.prepare(x, inputs.at(i), signals.t[i], i < inputs.plan.rate.size() ? inputs.plan.rate[i] : unplanned);
+}
+
 bool predict_at(const Simulation& simulation, std::size_t i, const double* x, double* y) {
   const auto& [stepper, signals, inputs] = simulation;
   Evaluator& evaluator = stepper.evaluator();
@@ -149,7 +167,7 @@ bool predict_at(const Simulation& simulation, std::size_t i, const double* x, do
   if (shift == 0.0) return true;
   std::array<double, kMaxStates> moved;
   std::copy_n(x, stepper.states(), moved.begin());
-  if (!stepper.step(moved.data(), {signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)})) return false;
+  if (!stepper.step(moved.data(), shifted_interval(simulation, i, shift))) return false;
   evaluator.predict(moved.data(), inputs.at(i), signals.t[i], y);
   return true;
 }
@@ -219,7 +237,7 @@ RowMatrix run_states(const Simulation& simulation, const Stretch& stretch) {
   RowMatrix states(stretch.last - stretch.first, n);
   std::array<double, kMaxStates> x{};
   std::copy_n(stretch.x0, n, x.begin());
-  stepper.prepare(x.data(), simulation.inputs.at(stretch.first), simulation.signals.t[stretch.first]);
+  prepare_at(simulation, stretch.first, x.data());
   for (std::size_t i = stretch.first; i < stretch.last; ++i) {
     std::copy_n(x.begin(), n, states.row(i - stretch.first).data());
     if (i + 1 < stretch.last && !stepper.step(x.data(), interval_after(simulation, i))) return states.topRows(i - stretch.first + 1);

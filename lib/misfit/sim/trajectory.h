@@ -10,10 +10,11 @@ namespace misfit {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The inputs of an experiment, sample-major, for the stepper.
+/// The inputs of an experiment, sample-major, for the stepper, and how it goes from sample to sample.
 struct InputTable {
   int inputs = 0;
   std::vector<double> values;  ///< samples × max(inputs, 1)
+  IntegrationPlan plan = {};   ///< none: parts as the fastest rate at the start of a trajectory asks (planner.h makes one)
   [[nodiscard]] const double* at(std::size_t sample) const { return values.data() + sample * (inputs > 0 ? inputs : 1); }
 };
 [[nodiscard]] InputTable input_table(const Signals& signals, int inputs);
@@ -32,6 +33,11 @@ struct Stretch {
   bool sensitivities = false;  ///< derivatives too
   std::size_t batch = 0;       ///< run_in_batches: samples handed over at once; 0: all
 };
+
+/// From sample i to the next, with its parts.
+[[nodiscard]] Interval interval_after(const Simulation& run, std::size_t i);
+/// Stepper::prepare() at state x of sample i.
+void prepare_at(const Simulation& run, std::size_t i, const double* x);
 
 /// Predicted outputs y (outputs + 1 places) at sample i, at the shifted time where an effect shifts it: the state is carried there by the
 /// step map itself. False if it cannot be carried there.

@@ -13,6 +13,7 @@
 #include "misfit/inference/curves.h"
 #include "misfit/inference/states.h"
 #include "misfit/model/curve_table.h"
+#include "misfit/sim/planner.h"
 #include "misfit/sim/random_run.h"
 #include "misfit/workflow/stages.h"
 
@@ -116,12 +117,14 @@ Case from_fit(Session& session) {
 
 Table simulate(const Case& c, const Session& session) {
   Stepper stepper(c.model);
-  const InputTable inputs = input_table(c.signals, c.model.inputs());
+  InputTable inputs = input_table(c.signals, c.model.inputs());
   std::mt19937_64 random(session.study.seed);
   Segment run;
   if (has_random_states(stepper.evaluator(), c.initial.data(), inputs.at(0), c.signals.t.front())) {
     run_randomly({stepper, c.signals, inputs}, c.initial.data(), random, run);
   } else {
+    inputs.plan = plan_run({stepper, c.signals, inputs}, c.initial.data());
+    if (!inputs.plan.lack.empty()) throw RunError(inputs.plan.lack);
     run_segment({stepper, c.signals, inputs}, {0, c.signals.samples(), c.initial.data()}, run);
   }
   if (!run.finite) throw RunError("simulation diverged (non-finite state) at t = " + format_value(c.signals.t[run.failed_at]) + " s");

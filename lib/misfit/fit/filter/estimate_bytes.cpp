@@ -29,9 +29,21 @@ void fields(Bytes& bytes, MaybeConst<Penalty> auto& data) {
 }
 
 template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<StepPart> auto& data) {
+  auto& [to, implicit] = data;
+  bytes(to, implicit);
+}
+
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<IntegrationPlan> auto& data) {
+  auto& [parts, first, rate, tolerance, error, lack] = data;
+  bytes(parts, first, rate, tolerance, error, lack);
+}
+
+template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<InputTable> auto& data) {
-  auto& [inputs, values] = data;
-  bytes(inputs, values);
+  auto& [inputs, values, plan] = data;
+  bytes(inputs, values, plan);
 }
 
 /// All but the measurements.
@@ -60,12 +72,12 @@ void fields(Bytes& bytes, MaybeConst<FilterJacobian> auto& data) {
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterEstimate> auto& estimate) {
   auto& [model, forced, penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information,
-         objective, loglik, validation_loglik, newton_decrement, edf, converged, message, notes, outliers, nonlinear, linearisations] =
-      estimate;
+         objective, loglik, validation_loglik, newton_decrement, edf, converged, message, notes, integration, outliers, nonlinear,
+         linearisations] = estimate;
   static_cast<void>(model);
   static_cast<void>(forced);
   bytes(penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information, objective, loglik,
-        validation_loglik, newton_decrement, edf, converged, message, notes, outliers, nonlinear, linearisations);
+        validation_loglik, newton_decrement, edf, converged, message, notes, integration, outliers, nonlinear, linearisations);
 }
 
 namespace {

@@ -288,6 +288,10 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   add_predictions(estimate, fit);
   report_gaps(estimate, fit);
   test_innovations(estimate, fit);
+  if (!estimate.integration.empty()) fit.facts["integration"] = estimate.integration;
+  for (const auto& data : estimate.data) {
+    if (!data.inputs.plan.lack.empty()) fit.warnings.push_back(data.signals->name + ": " + data.inputs.plan.lack);
+  }
   fit.facts["effective_parameters"] = format_value(estimate.edf);
   fit.facts["newton_decrement"] = estimate.newton_decrement ? "one more Newton step on the exact likelihood would raise it by " +
                                                                   format_value(*estimate.newton_decrement)
@@ -315,7 +319,9 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
 }
 
 FilterError filter_error(const FittedModel& start, const std::vector<Signals>& experiments, const FilterOptions& options) {
-  return filter_error(std::vector<FilterStart>{{start.model, curve_penalties(start.model)}}, experiments, options);
+  FilterOptions here = options;
+  if (start.integration > 0.0) here.integration = std::min(here.integration, start.integration);
+  return filter_error(std::vector<FilterStart>{{start.model, curve_penalties(start.model)}}, experiments, here);
 }
 
 FilterError filter_error(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments, const FilterOptions& options) {

@@ -30,6 +30,7 @@ class Estimation {
   /// As far as the first rounds of the blocks in turn. RunError: the model can be run from no start.
   void approach(int rounds) {
     begin();
+    if (at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
     set_floor();
     if (!noise_given_) search_noise();
     at_.iterate(rounds, tolerance());  // refine_jointly() steps over both blocks at once
@@ -42,6 +43,7 @@ class Estimation {
     if (!options_.use) reject_outliers();
     if (options_.verify) refine_jointly();
     return_to_floor();
+    if (options_.verify) integrate_well();
     conclude();
   }
 
@@ -73,7 +75,8 @@ class Estimation {
   [[nodiscard]] double tolerance() const { return options_.verify ? 0.2 : 0.02; }
 
   void begin() {
-    if (runs_with_raised_noise()) return;
+    const FilterNoise first_noise = out_.noise;
+    if (runs_with_raised_noise() || runs_finely(first_noise)) return;
     const std::string why = at_.failure();
     for (const RunnableStart& start : runnable_starts(out_.model)) {
       at_.theta = start.model.theta();
@@ -102,6 +105,17 @@ class Estimation {
       runs = at_.linearise();
     }
     return runs;
+  }
+
+  /// A motion that the steps of a search lose may be followed in finer ones.
+  bool runs_finely(const FilterNoise& noise) {
+    constexpr double fine = 1e-7;
+    if (options_.integration <= fine) return false;
+    out_.noise = noise;
+    at_.plan_along_measurements(fine);
+    if (!runs_with_raised_noise()) return false;
+    options_.integration = fine;
+    return true;
   }
 
   /// Where noise, measurements and roughness are given, the end is compared with the start: of two models each is to end at its maximum on
@@ -255,6 +269,34 @@ class Estimation {
     if (exact.failure.empty()) return true;
     unverified_ = exact.failure;
     return false;
+  }
+
+  /// Plans the integration anew where its error moves an estimate by more than a tenth of its sigma, and estimates again.
+  void integrate_well() {
+    constexpr double enough = 0.1, aim = 0.05, few = 3.0;
+    constexpr int most_plans = 3;
+    double tolerance = options_.integration;
+    for (int plans = 0;; ++plans) {
+      const double shift = at_.integration_shift();
+      describe_integration(plans, shift);
+      if (!(shift > enough) || plans == most_plans || tolerance <= kFinestTolerance) return;
+      tolerance = finer_tolerance(used_plans(), aim / shift);
+      if (!at_.plan(tolerance) || !at_.linearise()) return;
+      if (shift > few) at_.iterate(15, this->tolerance());
+      learned_ = {};
+      refine_jointly();
+    }
+  }
+
+  [[nodiscard]] std::vector<IntegrationPlan> used_plans() const {
+    std::vector<IntegrationPlan> out;
+    for (const auto& data : out_.data) out.push_back(data.inputs.plan);
+    return out;
+  }
+
+  void describe_integration(int plans, double shift) {
+    const std::vector<IntegrationPlan> used = used_plans();
+    out_.integration = in_words(used, plans) + in_words_of(shift, used.front().tolerance);
   }
 
   bool exclude_nonlinear(const std::vector<std::vector<std::size_t>>& nonlinear) {

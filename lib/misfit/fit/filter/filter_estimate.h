@@ -16,6 +16,7 @@ struct FilterOptions {
   std::optional<FilterNoise> around;                        ///< what sets the bounds of the noise; nullopt: the data
   std::optional<std::vector<std::vector<SampleRole>>> use;  ///< per experiment, so that two models are compared on the same measurements
   bool choose_roughness = true;                             ///< false: penalties as handed over
+  double integration = kSearchTolerance;                    ///< tolerance of the integration to begin with
   bool verify = true;                                       ///< derivatives of the exact likelihood at the end, and steps by them
 };
 
@@ -46,6 +47,7 @@ struct FilterEstimate {
   bool converged = false;
   std::string message;
   std::vector<std::string> notes;  ///< on where the search began, and what it found besides
+  std::string integration;  ///< what it costs and what its error does to the estimates, in words; empty where not verified
   int outliers = 0;
   std::vector<double> nonlinear;  ///< times [s] of measurements that move the filter but do not count: its linearisation breaks there
   int linearisations = 0;

@@ -41,7 +41,7 @@ class FilterPass {
     start_covariance(model_, data_, noise_, kalman_);
     if (options_.jacobian != nullptr) begin_derivatives();
     std::copy_n(data_.start.data(), n_, x_.begin());
-    stepper_.prepare(x_.data(), data_.inputs.at(data_.first), signals_.t[data_.first]);
+    prepare_at({stepper_, signals_, data_.inputs}, data_.first, x_.data());
   }
 
   bool run() {
@@ -191,7 +191,7 @@ class FilterPass {
   }
 
   bool step(std::size_t k) {
-    const Interval interval{signals_.t[k], signals_.t[k + 1], data_.inputs.at(k), data_.inputs.at(k + 1)};
+    const Interval interval = interval_after({stepper_, signals_, data_.inputs}, k);
     if (!stepper_.step_linear(x_.data(), interval, slots_, D_.data())) return false;
     const Eigen::Map<const Eigen::Matrix<double, M, M, M == 1 ? Eigen::ColMajor : Eigen::RowMajor>, 0, Eigen::OuterStride<>> phi(
         D_.data(), n_, n_, Eigen::OuterStride<>(kRowStride));

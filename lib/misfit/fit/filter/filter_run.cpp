@@ -32,7 +32,7 @@ void resize(FilterTrace& trace, int n, int ny, std::size_t samples) {
 
 }  // namespace
 
-FilterData filter_data(const FilterModel& model, const Signals& signals) {
+FilterData filter_data(const FilterModel& model, const Signals& signals, double integration) {
   FilterData out;
   out.signals = &signals;
   out.inputs = input_table(signals, model.model.inputs());
@@ -55,6 +55,8 @@ FilterData filter_data(const FilterModel& model, const Signals& signals) {
   const auto& specs = model.model.system->spec().states;
   for (std::size_t i = 0; i < specs.size(); ++i) out.scale[i] = specs[i].scale;
   for (int f : model.force_states) out.start[f] = 0.0;
+  Stepper stepper(model.model);
+  out.inputs.plan = plan_along({stepper, signals, out.inputs}, states.x, integration);
   return out;
 }
 

@@ -10,7 +10,7 @@
 #include "misfit/fit/filter/filter_model.h"
 #include "misfit/fit/filter/filter_noise.h"
 #include "misfit/inference/states.h"
-#include "misfit/sim/step.h"
+#include "misfit/sim/planner.h"
 
 namespace misfit {
 
@@ -30,7 +30,8 @@ struct FilterData {
   std::size_t first = 0;         ///< first sample at which all states can be read
   Eigen::VectorXd start, scale;  ///< model states there and their sigmas, force states excluded (0)
 };
-[[nodiscard]] FilterData filter_data(const FilterModel& model, const Signals& signals);
+/// Planned along the states that the channels show, to `integration` (IntegrationPlan::tolerance).
+[[nodiscard]] FilterData filter_data(const FilterModel& model, const Signals& signals, double integration = kSearchTolerance);
 /// The same experiment for a model of the same system with further own states: measurements, start and uses as in `data`.
 [[nodiscard]] FilterData filter_data_like(const FilterModel& model, const FilterData& data);
 

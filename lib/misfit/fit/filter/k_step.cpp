@@ -28,7 +28,7 @@ class FreeRuns {
 
   void run() {
     constexpr std::size_t stride = 3;
-    stepper_.prepare(data_.start.data(), data_.inputs.at(data_.first), signals_.t[data_.first]);
+    prepare_at({stepper_, signals_, data_.inputs}, data_.first, data_.start.data());
     for (std::size_t k = data_.first; k + 1 < signals_.samples(); k += stride) run_from(k);
   }
 
@@ -38,8 +38,7 @@ class FreeRuns {
     std::size_t next = 0;
     bool finite = true;
     for (std::size_t j = 1; next < lengths && k + j < signals_.samples(); ++j) {
-      const Interval interval{signals_.t[k + j - 1], signals_.t[k + j], data_.inputs.at(k + j - 1), data_.inputs.at(k + j)};
-      finite = finite && stepper_.step(x.data(), interval);
+      finite = finite && stepper_.step(x.data(), interval_after({stepper_, signals_, data_.inputs}, k + j - 1));
       if (static_cast<int>(j) != kLadderSteps[next]) continue;
       finite = finite && compare(x.data(), k + j, next);
       ++errors_.runs[next];

@@ -44,7 +44,7 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
     for (auto& penalty : out.penalties) penalty.chosen = false;
   }
   out.forced = with_random_force(start);
-  for (const auto& experiment : experiments) out.data.push_back(filter_data(out.forced, experiment));
+  for (const auto& experiment : experiments) out.data.push_back(filter_data(out.forced, experiment, options.integration));
   if (options.use) {
     for (std::size_t e = 0; e < out.data.size(); ++e) out.data[e].use = (*options.use)[e];
   }
@@ -71,6 +71,52 @@ bool LikelihoodAscent::linearise() {
   out.loglik = loglik;
   objective = loglik + out.prior().log_density(theta);
   return true;
+}
+
+void LikelihoodAscent::plan_along_measurements(double tolerance) {
+  for (FilterData& data : out.data) data.inputs.plan = filter_data(out.forced, *data.signals, tolerance).inputs.plan;
+}
+
+bool LikelihoodAscent::plan(double tolerance) {
+  bool another = false;
+  Stepper stepper(out.forced.model);
+  stepper.evaluator().set_parameters(values().data());
+  for (std::size_t e = 0; e < out.data.size(); ++e) {
+    const FilterTrace& trace = out.traces[e];
+    FilterData& data = out.data[e];
+    RowMatrix states(trace.samples, trace.n);
+    for (std::size_t k = data.first; k < trace.samples; ++k) states.row(k) = trace.filtered(k);
+    states.topRows(data.first).rowwise() = states.row(data.first).eval();
+    IntegrationPlan plan = plan_along({stepper, *data.signals, data.inputs}, states, tolerance);
+    another = another || plan.parts != data.inputs.plan.parts || plan.first != data.inputs.plan.first;
+    data.inputs.plan = std::move(plan);
+  }
+  return another;
+}
+
+double LikelihoodAscent::integration_shift() const {
+  FilterRunner runner(out.forced, false);
+  runner.set_parameters(values());
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(theta.size());
+  FilterTrace trace;
+  for (std::size_t e = 0; e < out.data.size(); ++e) {
+    FilterData finer = out.data[e];
+    finer.inputs.plan = refined(finer.inputs.plan);
+    if (!runner.run(finer, out.noise, trace)) return 0.0;
+    const FilterJacobian& jacobian = out.jacobians[e];
+    Eigen::VectorXd change = -jacobian.r;
+    for (Eigen::Index r = 0; r < change.size(); ++r) {
+      const std::size_t at = jacobian.index[r];
+      change[r] -= trace.e[at] / std::sqrt(trace.S[at]);
+    }
+    gradient += jacobian.J.transpose() * change;
+  }
+  const Eigen::Index n = theta.size();
+  const Eigen::MatrixXd& all = out.joint_covariance.size() > 0 ? out.joint_covariance : out.covariance;
+  if (n == 0 || all.rows() < n) return 0.0;
+  const auto covariance = all.topLeftCorner(n, n);
+  constexpr double least = 1e-300;
+  return (covariance * gradient).cwiseQuotient(covariance.diagonal().cwiseMax(least).cwiseSqrt()).cwiseAbs().maxCoeff();
 }
 
 double LikelihoodAscent::objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const {

@@ -22,6 +22,12 @@ class LikelihoodAscent {
   /// Alternates the blocks, physical parameters and noise, until neither gains `tolerance`: then `out.converged`, unless a step that
   /// promised as much as a sigma of one parameter found no way up.
   void iterate(int most, double tolerance);
+  /// Plans the integration along the states that the channels show.
+  void plan_along_measurements(double tolerance);
+  /// Plans the integration along the filtered states. True if it is another one than before: then linearise() is due.
+  bool plan(double tolerance);
+  /// How far the free parameters would move if every part of the plan were halved [sigma], the largest; 0 where it cannot be run so.
+  [[nodiscard]] double integration_shift() const;
   /// False if the model cannot be run with it: all is as before.
   bool try_noise(const NoiseFit& fit);
   /// A step of a Newton kind over parameters and log noise together, inside their bounds: `gradient` of the exact objective and of a

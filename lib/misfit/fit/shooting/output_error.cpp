@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
@@ -15,11 +16,6 @@ namespace misfit {
 namespace {
 
 using namespace output_error_parts;
-
-PenalisedFit smooth_present(Shooting& shooting, std::vector<Penalty>& penalties, NormalEquations& linearised) {
-  if (!shooting.linearise(linearised)) return {};
-  return estimate_smoothing(linearised, penalties);
-}
 
 bool any_chosen(const std::vector<Penalty>& penalties) {
   return std::any_of(penalties.begin(), penalties.end(), [](const Penalty& p) { return p.chosen; });
@@ -52,13 +48,15 @@ class Estimator {
         penalties_(options.keep_roughness ? kept(start.penalties)
                                           : curve_penalties(start.model)),  // not those of a regression, whose noise is another one
         shooting_(start.model, experiments, {setting_.sigma, setting_.state_scale}, start_states(setting_)),
-        initial_states_(start.initial_states) {}
+        initial_states_(start.initial_states),
+        tolerance_(start.integration > 0.0 ? start.integration : kSearchTolerance) {}
 
   FittedModel run() {
     if (initial_states_.size() == experiments_.size()) {
       const Shooting::State before = shooting_.state();
       const std::vector<Penalty> penalties = penalties_;
       shooting_.begin_at(initial_states_);
+      shooting_.run_histories();
       FittedModel out = whole_trajectory({});
       if (out.fit.status == FitStatus::converged) return out;
       shooting_.restore(before);
@@ -66,12 +64,14 @@ class Estimator {
       shooting_.set_sigma(setting_.sigma);
       shooting_.forget_failure();
     }
+    shooting_.plan(tolerance_);
     ShootingPass pass;
     for (const auto& next : short_passes(setting_, options_.from_regression)) {
       pass = next;
       if (!solve(pass)) return failed(segments_of(pass) + last_.message);
     }
     pass.tolerance = 1e-6;
+    plan_well();
     constexpr int most_lengthenings = 12;
     for (int k = 0; k < most_lengthenings && 6 * pass.length < setting_.samples / 2; ++k) {
       if (!lengthen(pass)) return lost(pass);
@@ -161,46 +161,69 @@ class Estimator {
     }
   }
 
-  /// One trajectory. Whenever the roughness is chosen anew, the last segmented pass is repeated first: a single trajectory alone converges
-  /// slowly along the curved valley of parameters that give the same phase.
+  /// One trajectory, integrated so finely that its error moves no estimate.
   FittedModel whole_trajectory(const ShootingPass& lengthened) {
-    NormalEquations linearised;
-    constexpr int most_rounds = 8, most_iterations = 200;
-    double before = 0.0;
-    settled_ = false;
-    for (int round = 0; round < most_rounds; ++round) {
-      if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return failed(last_.message);
-      if (!solve({.initial_radius = 1e8, .max_iterations = most_iterations, .tolerance = 1e-7})) return failed(last_.message);
-      const PenalisedFit smoothed = smooth_present(shooting_, penalties_, linearised);
-      if (!smoothed.ok) return failed(shooting_.failure().empty() ? singular_message(linearised) : "");
-      const std::vector<double> sigma = channel_sigmas({shooting_, shooting_.run(false), experiments_}, smoothed.edf);
-      const bool same_roughness = !any_chosen(penalties_) || std::abs(smoothed.edf - before) < 0.1;
-      settled_ = same_roughness && std::equal(sigma.begin(), sigma.end(), shooting_.sigma().begin(),
-                                              [](double now, double then) { return std::abs(now / then - 1.0) < 0.01; });
-      before = smoothed.edf;
-      shooting_.set_sigma(sigma);
-      if (!settled_) continue;
-      tighten_convergence(linearised, smoothed);
-      break;
+    if (lengthened.length == 0) {
+      plan_well();
+    } else {
+      shooting_.plan(tolerance_);
     }
-    return finish(last_);
+    bool found = search(lengthened);
+    while (found && settled_ && !integrated_well()) found = approach() || search({});
+    if (!found) return failed(why_);
+    if (may_gain_digits()) static_cast<void>(reach_minimum());
+    return finish();
   }
 
-  /// In a long valley the solver stops by its tolerance before the minimum: solved again with a tighter one if a step of more than 1e-6
-  /// sigma is left. Not for resampling, with its thousands of fits.
-  void tighten_convergence(const NormalEquations& linearised, const PenalisedFit& smoothed) {
-    constexpr double negligible_step = 1e-6;  // of a sigma
-    const Eigen::VectorXd sigma = smoothed.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
-    if ((smoothed.theta - linearised.theta).cwiseQuotient(sigma).cwiseAbs().maxCoeff() < negligible_step || !options_.coloured) return;
+  /// Whenever the roughness is chosen anew, the last lengthening comes first again: a single trajectory alone would creep along the curved
+  /// valley of equal phase.
+  bool search(const ShootingPass& lengthened) {
+    constexpr int most_rounds = 8, most_iterations = 200;
+    const ShootingPass whole{0, 10.0, 1e8, most_iterations, 1e-7};
+    double before = 0.0;
+    settled_ = false;
+    for (int round = 0; round < most_rounds && !settled_; ++round) {
+      if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return stopped(last_.message);
+      if (!solve(whole) && !(plan_finely() && solve(whole))) return stopped(last_.message);
+      if (!shooting_.linearise(end_.linearised, &end_.runs)) return stopped("");
+      end_.smoothed = estimate_smoothing(end_.linearised, penalties_);
+      if (!end_.smoothed.ok) return stopped(singular_message(end_.linearised));
+      const double edf = end_.smoothed.edf;
+      const std::vector<double> sigma = channel_sigmas({shooting_, end_.runs, experiments_}, edf);
+      const bool same_roughness = !any_chosen(penalties_) || std::abs(edf - before) < 0.1;
+      settled_ = same_roughness && same_noise(sigma);
+      before = edf;
+      shooting_.set_sigma(sigma);
+    }
+    end_is_present_ = false;
+    return true;
+  }
+
+  bool stopped(const std::string& why) {
+    why_ = why;
+    return false;
+  }
+
+  /// A search in a long valley ends by its tolerance some way before the minimum: on to it, with noise and roughness as they are. Where
+  /// that leads nowhere, everything is as before.
+  bool reach_minimum() {
     const Shooting::State before = shooting_.state();
     const LeastSquares::Summary then = last_;
-    if (solve({.initial_radius = 1e8, .max_iterations = 100, .tolerance = 1e-13})) {
-      last_ = then;
-      return;
-    }
+    constexpr double radius = 1e12;  // with a smaller one, directions that the data determine by a millionth of the others creep
+    const bool solved = solve({0, 10.0, radius, 100, 1e-13});
+    last_ = then;
+    end_is_present_ = false;
+    if (solved) return true;
     shooting_.restore(before);
     shooting_.forget_failure();
-    last_ = then;
+    return false;
+  }
+
+  /// If a step of more than 1e-6 sigma is left. Not for fits by the thousand.
+  [[nodiscard]] bool may_gain_digits() const {
+    constexpr double negligible_step = 1e-6;  // of a sigma
+    return settled_ && options_.coloured && !end_is_present_ &&
+           largest(end_.smoothed.theta - end_.linearised.theta, end_.smoothed.covariance) >= negligible_step;
   }
 
   std::string singular_message(const NormalEquations& linearised) {
@@ -237,26 +260,33 @@ class Estimator {
     [[nodiscard]] double degrees() const { return linearised.count - smoothed.edf; }
   };
 
-  FittedModel finish(const LeastSquares::Summary& summary) {
+  /// The Gaussian and the runs at the present values, noise and roughness as they are.
+  bool look_at_the_end() {
+    if (end_is_present_) return true;
+    std::vector<Penalty> penalties = kept(penalties_);
+    if (!shooting_.linearise(end_.linearised, &end_.runs)) return false;
+    end_.smoothed = estimate_smoothing(end_.linearised, penalties, 1.0);
+    end_is_present_ = true;
+    return true;
+  }
+
+  FittedModel finish() {
     FittedModel out{{}, shooting_.model(), penalties_, {}};
     Fit& fit = out.fit;
     fit.method = estimators::output_error.name;
-    fit.status = summary.converged && settled_ ? FitStatus::converged : FitStatus::not_converged;
-    fit.message = summary.converged && !settled_ ? "noise variances and smoothing parameters have not converged" : summary.message;
-    Ending end;
-    if (!shooting_.linearise(end.linearised)) return failed("");
-    std::vector<Penalty> penalties = kept(penalties_);
-    end.smoothed = estimate_smoothing(end.linearised, penalties, 1.0);
-    if (!end.smoothed.ok) return failed(singular_message(end.linearised));
-    if (const std::string which = undetermined(out.model, end.linearised); !which.empty()) return failed(at_the_end(which));
-    end.runs = shooting_.run(true);
-    set_noise(end.degrees(), fit);
-    const Eigen::MatrixXd covariance = describe_estimates(end, out);
-    predictions_of({shooting_, end.runs, experiments_}, covariance, fit);
+    fit.status = last_.converged && settled_ ? FitStatus::converged : FitStatus::not_converged;
+    fit.message = last_.converged && !settled_ ? "noise variances and smoothing parameters have not converged" : last_.message;
+    if (!look_at_the_end()) return failed("");
+    if (!end_.smoothed.ok) return failed(singular_message(end_.linearised));
+    if (const std::string which = undetermined(out.model, end_.linearised); !which.empty()) return failed(at_the_end(which));
+    describe_integration(out);
+    set_noise(end_.degrees(), fit);
+    const Eigen::MatrixXd covariance = describe_estimates(end_, out);
+    predictions_of({shooting_, end_.runs, experiments_}, covariance, fit);
     errors_of(experiments_, fit);
     set_initial_states(out);
-    fit.facts["effective_parameters"] = format_value(end.smoothed.edf);
-    add_remarks(end, covariance, out);
+    fit.facts["effective_parameters"] = format_value(end_.smoothed.edf);
+    add_remarks(end_, covariance, out);
     fit.linearisations = shooting_.linearisations();
     return out;
   }
@@ -294,6 +324,101 @@ class Estimator {
     classify_motion(out.model, {setting_, unknowns, regression_says_driven_}, fit);
     reject_prior_conflicts(out.model, covariance.topLeftCorner(columns, columns), fit);
     if (end.degrees() < kFewestDegrees && !out.model.noise_held()) withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
+  }
+
+  /// A plan whose error whole runs show: halving its parts changes their outputs by little, beside the noise or beside what the model is
+  /// still off. Where a finer plan or two do not bring that about, it is not the plan that keeps the model from following.
+  void plan_well() {
+    constexpr double of_the_noise = 0.2, of_the_residual = 0.03, small = 3.0, aim = 0.1, most_at_once = 1e-3;  // errors in sigma
+    constexpr int most_refinements = 2;
+    if (shooting_.plan_of(0).tolerance != tolerance_) shooting_.plan(tolerance_);
+    if (!options_.coloured) return;
+    const double before = tolerance_;
+    for (int k = 0;; ++k) {
+      const auto [error, residual] = integration_error();
+      if (error < of_the_noise || error < of_the_residual * residual) return;
+      if (k == most_refinements || tolerance_ <= kFinestTolerance) break;
+      plan_anew(std::max(aim / error, most_at_once));
+      if (error < small) return;  // it is judged at the estimate once more
+    }
+    tolerance_ = before;
+    shooting_.plan(tolerance_);
+  }
+
+  [[nodiscard]] Shooting::ErrorSize integration_error() {
+    const auto coarse = shooting_.outputs(false), fine = shooting_.outputs(true);
+    if (!coarse || !fine) return {std::numeric_limits<double>::infinity(), 0.0};
+    return shooting_.size_of(difference(*fine, *coarse), *fine);
+  }
+
+  static std::vector<RowMatrix> difference(std::vector<RowMatrix> outputs, const std::vector<RowMatrix>& from) {
+    for (std::size_t e = 0; e < outputs.size(); ++e) outputs[e] -= from[e];
+    return outputs;
+  }
+
+  void plan_anew(double ratio) {
+    tolerance_ = finer_tolerance(plans(), ratio);
+    shooting_.plan(tolerance_);
+  }
+
+  [[nodiscard]] std::vector<IntegrationPlan> plans() const {
+    std::vector<IntegrationPlan> out;
+    for (std::size_t e = 0; e < experiments_.size(); ++e) out.push_back(shooting_.plan_of(e));
+    return out;
+  }
+
+  /// Does the integration's error move no estimate by more than a tenth of its sigma? If so, the integration is planned anew. Not for fits
+  /// by the thousand, which go on with the plan of the one they are made about.
+  bool integrated_well() {
+    constexpr double enough = 0.1, aim = 0.05;
+    constexpr int most_plans = 4;
+    if (!options_.coloured) return true;
+    const auto coarse = shooting_.outputs(false), fine = shooting_.outputs(true);
+    if (!coarse || !fine) return true;
+    const Eigen::MatrixXd& covariance = end_.smoothed.covariance;
+    shift_ = largest(shooting_.shift_by(difference(*fine, *coarse), end_.runs, covariance), covariance);
+    if (!(shift_ > enough) || plans_ == most_plans || tolerance_ <= kFinestTolerance) return true;
+    ++plans_;
+    plan_anew(aim / shift_);
+    return false;
+  }
+
+  /// From near the estimate to it. False if it is not near, if the noise is another one there, or the way is not found.
+  bool approach() {
+    constexpr double few = 3.0;  // sigma
+    if (!(shift_ < few) || !reach_minimum() || !look_at_the_end() || !end_.smoothed.ok) return false;
+    return same_noise(channel_sigmas({shooting_, end_.runs, experiments_}, end_.smoothed.edf));
+  }
+
+  [[nodiscard]] bool same_noise(const std::vector<double>& sigma) const {
+    return std::equal(sigma.begin(), sigma.end(), shooting_.sigma().begin(),
+                      [](double now, double then) { return std::abs(now / then - 1.0) < 0.01; });
+  }
+
+  /// Of a step of all unknowns [sigma].
+  static double largest(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance) {
+    constexpr double least = 1e-300;
+    return step.cwiseQuotient(covariance.diagonal().cwiseMax(least).cwiseSqrt()).cwiseAbs().maxCoeff();
+  }
+
+  /// A motion that the plan of a search cannot follow to the end may be followed by a finer one.
+  bool plan_finely() {
+    constexpr double fine = 1e-7;
+    if (tolerance_ <= fine) return false;
+    tolerance_ = fine;
+    shooting_.plan(tolerance_);
+    return true;
+  }
+
+  void describe_integration(FittedModel& out) const {
+    out.integration = tolerance_;
+    const std::vector<IntegrationPlan> used = plans();
+    for (std::size_t e = 0; e < used.size(); ++e) {
+      if (!used[e].lack.empty()) out.fit.warnings.push_back(experiments_[e].name + ": " + used[e].lack);
+    }
+    std::string& fact = out.fit.facts["integration"];
+    fact = in_words(used, plans_);
+    if (options_.coloured) fact += in_words_of(shift_, tolerance_);
   }
 
   static std::string too_few(double count, double unknowns) {
@@ -334,7 +459,13 @@ class Estimator {
   std::vector<Penalty> penalties_;
   Shooting shooting_;
   std::vector<Eigen::VectorXd> initial_states_;  ///< where the start is a fit
+  double tolerance_;                             ///< of the integration
+  double shift_ = 0.0;                           ///< of an estimate by its error [sigma], the largest
+  int plans_ = 0;                                ///< made at estimates
+  Ending end_;
+  bool end_is_present_ = false;  ///< end_ is of the present values, noise and roughness
   LeastSquares::Summary last_;
+  std::string why_;       ///< the search stopped
   bool settled_ = false;  ///< noise and roughness agree with the residuals they leave
 };
 

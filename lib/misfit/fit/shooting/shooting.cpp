@@ -188,6 +188,7 @@ void Shooting::add_pieces(LeastSquares& problem, int theta_block, std::vector<Pi
 
 LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vector<Penalty>& penalties) {
   failure_.clear();
+  if (inputs_.front().plan.first.empty()) plan(kSearchTolerance);
   LeastSquares problem;
   const int theta_block = add_parameters(problem, model_, free_);
   std::vector<Piece> pieces = cut(pass.length);

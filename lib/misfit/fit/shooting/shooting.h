@@ -5,13 +5,14 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "misfit/data/signals.h"
 #include "misfit/inference/roughness.h"
 #include "misfit/math/least_squares.h"
-#include "misfit/sim/trajectory.h"
+#include "misfit/sim/planner.h"
 
 namespace misfit {
 
@@ -38,13 +39,32 @@ class Shooting {
   LeastSquares::Summary solve(const ShootingPass& pass, const std::vector<Penalty>& penalties);
 
   /// The single-trajectory problem at the present values: columns are the free parameters, then the initial states of each experiment.
-  /// Residuals are in units of sigma. False if the run leaves the finite numbers.
-  bool linearise(NormalEquations& out);
+  /// Residuals are in units of sigma. False if the run leaves the finite numbers. `runs`: what run(true) would give, at no further cost.
+  bool linearise(NormalEquations& out, std::vector<Segment>* runs = nullptr);
   /// The same with every segment of `length` samples on its own, its initial state (from the history) projected out: columns are the free
   /// parameters. For choosing the roughness before one trajectory fits the whole record.
   bool linearise_segments(std::size_t length, NormalEquations& out);
   /// Predictions over the whole of each experiment from its initial state, with derivatives if asked.
   [[nodiscard]] std::vector<Segment> run(bool sensitivities);
+
+  /// Replaces the histories by the model's own motion from their first states, where that stays finite.
+  void run_histories();
+  /// Plans the integration along the histories (planner.h); solve() does so by itself, at kSearchTolerance, where there is no plan.
+  void plan(double tolerance);
+  [[nodiscard]] const IntegrationPlan& plan_of(std::size_t experiment) const { return inputs_[experiment].plan; }
+  /// Outputs of whole runs (samples × outputs per experiment), with every part of the plan in two if `halved`. Nothing where a run leaves
+  /// the finite numbers.
+  [[nodiscard]] std::optional<std::vector<RowMatrix>> outputs(bool halved);
+  /// RMS of errors of the outputs, and beside it that of the residuals of `outputs`, where the error is largest of all outputs and
+  /// experiments.
+  struct ErrorSize {
+    double error = 0.0, residual = 0.0;  ///< [sigma]
+  };
+  [[nodiscard]] ErrorSize size_of(const std::vector<RowMatrix>& errors, const std::vector<RowMatrix>& outputs) const;
+  /// How far all unknowns (the free parameters, then the initial states) would move if the outputs were more by `errors`, linear about
+  /// `runs`, which are those of the present values with derivatives.
+  [[nodiscard]] Eigen::VectorXd shift_by(const std::vector<RowMatrix>& errors, const std::vector<Segment>& runs,
+                                         const Eigen::MatrixXd& covariance) const;
 
   /// Parameters and histories, to go back to when a solve leads nowhere.
   struct State {

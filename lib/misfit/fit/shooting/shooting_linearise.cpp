@@ -71,7 +71,21 @@ double Shooting::weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r)
   return count;
 }
 
-bool Shooting::linearise(NormalEquations& out) {
+namespace {
+
+/// Rows of a batch into those of the whole run.
+void keep(const Segment& part, std::size_t samples, Segment& whole) {
+  const Eigen::Index ny = part.y.cols();
+  whole.last = samples;
+  whole.y.resize(samples, ny);
+  whole.y_rows.resize(samples * ny, part.y_rows.cols());
+  whole.y.middleRows(part.first, part.y.rows()) = part.y;
+  whole.y_rows.middleRows(part.first * ny, part.y_rows.rows()) = part.y_rows;
+}
+
+}  // namespace
+
+bool Shooting::linearise(NormalEquations& out, std::vector<Segment>* runs) {
   const auto columns = static_cast<Eigen::Index>(free_.size());
   const Eigen::Index n = model_.states();
   const Eigen::Index all = columns + n * experiments_.size();
@@ -80,11 +94,13 @@ bool Shooting::linearise(NormalEquations& out) {
   set_theta(out.theta.data());
   Eigen::VectorXd r, g(columns + n);
   Eigen::MatrixXd N(columns + n, columns + n);
+  if (runs != nullptr) runs->resize(experiments_.size());
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     const Eigen::VectorXd x0 = initial_state(e);
     N.setZero();
     g.setZero();
     const auto add = [&](Segment& part) {
+      if (runs != nullptr) keep(part, experiments_[e].samples(), (*runs)[e]);
       out.count += weigh(e, part, r);
       N.selfadjointView<Eigen::Lower>().rankUpdate(part.y_rows.transpose());
       g.noalias() += part.y_rows.transpose() * r;
@@ -96,6 +112,7 @@ bool Shooting::linearise(NormalEquations& out) {
       note_failure(run_, e);
       return false;
     }
+    if (runs != nullptr) (*runs)[e].finite = true;
     N.triangularView<Eigen::StrictlyUpper>() = N.transpose();
     const Eigen::Index at = columns + n * e;
     out.theta.segment(at, n) = x0;
