@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
@@ -241,7 +242,7 @@ class Grading {
 /// The same record run through from its end.
 Signals times_reversed(const Signals& signals) {
   Signals out;
-  for (auto t = signals.t.rbegin(); t != signals.t.rend(); ++t) out.t.push_back(-*t);
+  for (const double t : signals.t | std::views::reverse) out.t.push_back(-t);
   return out;
 }
 

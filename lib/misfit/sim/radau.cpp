@@ -21,7 +21,9 @@ RadauStep::RadauStep(Evaluator& evaluator)
     : evaluator_(&evaluator), n_(evaluator.states()), N_(3 * n_), L_(N_ * stride, 0.0), rows_(N_ * stride, 0.0) {
   constexpr double of_the_scale = 1e-6;  // below this share of its typical size a state need not be right to its own digits
   const auto& specs = evaluator.model().state_specs;
-  for (std::size_t i = 0; i < N_; ++i) scale_[i] = of_the_scale * (i % n_ < specs.size() ? specs[i % n_].scale : 1.0);
+  for (std::size_t stage = 0; stage < 3; ++stage) {
+    for (std::size_t i = 0; i < n_; ++i) scale_[stage * n_ + i] = of_the_scale * (i < specs.size() ? specs[i].scale : 1.0);
+  }
 }
 
 /// f and its derivatives at a stage, into f_ and L_.
@@ -32,10 +34,13 @@ void RadauStep::linearise_stage(std::size_t stage, const RadauInputs& at, Slots&
 
 /// I − h a ⊗ A, every stage with its own A.
 void RadauStep::fill_matrix(double h) {
-  for (std::size_t r = 0; r < N_; ++r) {
-    for (std::size_t c = 0; c < N_; ++c) {
-      const double A = L_[((c / n_) * n_ + r % n_) * stride + c % n_];
-      lu_[r * N_ + c] = (r == c ? 1.0 : 0.0) - h * a[r / n_][c / n_] * A;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t r = 0; r < n_; ++r) {
+        const double* A = L_.data() + (j * n_ + r) * stride;
+        double* row = lu_.data() + (i * n_ + r) * N_ + j * n_;
+        for (std::size_t c = 0; c < n_; ++c) row[c] = (i == j && r == c ? 1.0 : 0.0) - h * a[i][j] * A[c];
+      }
     }
   }
 }
@@ -79,15 +84,17 @@ void RadauStep::solve(int width, int row_length, double* rows) const {
 bool RadauStep::solve_stages(const double* x, double h, const RadauInputs& at) {
   constexpr int most_iterations = 20;
   constexpr double converged = 1e-9;  // of the step just taken; the error left is of the order of its square
-  for (std::size_t i = 0; i < N_; ++i) Y_[i] = x[i % n_];
+  for (std::size_t stage = 0; stage < 3; ++stage) std::copy_n(x, n_, Y_.data() + stage * n_);
   std::array<double, kMost> step{};
   for (int k = 0; k < most_iterations; ++k) {
     own_.clear();
     for (std::size_t stage = 0; stage < 3; ++stage) linearise_stage(stage, at, own_);
-    for (std::size_t r = 0; r < N_; ++r) {
-      const std::size_t i = r % n_;
-      step[r] = x[i] - Y_[r];
-      for (std::size_t j = 0; j < 3; ++j) step[r] += h * a[r / n_][j] * f_[j * n_ + i];
+    for (std::size_t stage = 0; stage < 3; ++stage) {
+      for (std::size_t i = 0; i < n_; ++i) {
+        double& residual = step[stage * n_ + i];
+        residual = x[i] - Y_[stage * n_ + i];
+        for (std::size_t j = 0; j < 3; ++j) residual += h * a[stage][j] * f_[j * n_ + i];
+      }
     }
     fill_matrix(h);
     if (!factorise()) return false;
@@ -112,14 +119,15 @@ bool RadauStep::step(double* x, double h, const RadauInputs& at) {
 
 /// Right-hand sides ∂x + h Σ a_ij B_j, solved; the last stage's solution is D.
 void RadauStep::take_derivatives(double h, int width, double* D) {
-  for (std::size_t r = 0; r < N_; ++r) {
-    const std::size_t i = r % n_;
-    double* row = rows_.data() + r * stride;
-    std::copy_n(D + i * stride, width, row);
-    for (std::size_t j = 0; j < 3; ++j) {
-      const double weight = h * a[r / n_][j];
-      const double* B = L_.data() + (j * n_ + i) * stride;
-      for (int c = static_cast<int>(n_); c < width; ++c) row[c] += weight * B[c];
+  for (std::size_t stage = 0; stage < 3; ++stage) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      double* row = rows_.data() + (stage * n_ + i) * stride;
+      std::copy_n(D + i * stride, width, row);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const double weight = h * a[stage][j];
+        const double* B = L_.data() + (j * n_ + i) * stride;
+        for (int c = evaluator_->states(); c < width; ++c) row[c] += weight * B[c];
+      }
     }
   }
   solve(width, kRowStride, rows_.data());

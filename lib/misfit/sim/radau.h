@@ -37,7 +37,7 @@ class RadauStep {
   void linearise_stage(std::size_t stage, const RadauInputs& at, Slots& slots);
   void fill_matrix(double h);
   [[nodiscard]] bool factorise();
-  void solve(int width, int stride, double* rows) const;
+  void solve(int width, int row_length, double* rows) const;
   void take_derivatives(double h, int width, double* D);
 
   static constexpr std::size_t kMost = std::size_t{3} * kMaxStates;

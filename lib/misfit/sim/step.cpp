@@ -237,7 +237,7 @@ void Stepper::advance_rows(double h, std::size_t stage, int width, bool sparse, 
   const double to_next = last ? 0.0 : h * stage_at[stage + 1];
   const double* sum_before = first ? D : sum_.data();
   double* sum = last ? D : sum_.data();
-  constexpr int rows = N > 0 ? N : kMaxStates;
+  constexpr std::size_t rows = N > 0 ? N : kMaxStates;
   std::array<double, rows * rows> A;
   for (int i = 0; i < n; ++i) {
     double* row = L_.data() + row_at(i);
