@@ -29,6 +29,9 @@ struct Candidate {
   std::string why;                             ///< of being accepted or not, in words
   std::map<std::string, Estimate> parameters;  ///< at the refit, else one Gauss–Newton step
   std::map<std::string, Estimate> force;       ///< random force per port after refitting
+  /// Where the refit ended, for whoever begins there: all parameters of the model with the effect in their order [SI], and logarithms of
+  /// the noise (NoiseVector). Empty: not refitted.
+  std::vector<double> refit_values, refit_log_noise;
 };
 
 /// "overflow (level = x1, port = dx1/dt)"; the key alone where all roles are the defaults.

@@ -17,6 +17,7 @@ struct ContainedFit {
   /// Per experiment a letter for each measurement, samples × channels: c counted, v validation, u moves the filter without counting,
   /// - missing or an outlier.
   std::vector<std::string> use;
+  std::vector<double> refit_values, refit_log_noise;  ///< where discovery's refit of the larger model ended (Candidate); empty: none
 };
 
 /// Beside a rung's study.toml.

@@ -136,9 +136,12 @@ class Search {
     e.log_p = log_score_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
     c.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families_);
     c.parameters = e.refit->parameters;
-    for (int port : e.refit->estimate.forced.force_ports) {
+    const FilterEstimate& there = e.refit->estimate;
+    c.refit_values = there.model.values();
+    c.refit_log_noise = pack(there.noise, there.model.system->spec(), there.around).value;
+    for (int port : there.forced.force_ports) {
       const PortSpec& spec = estimate_.model.system->spec().dynamic_ports[port];
-      c.force[spec.name] = {e.refit->estimate.noise.force, 0.0, spec.unit};
+      c.force[spec.name] = {there.noise.force, 0.0, spec.unit};
     }
   }
 

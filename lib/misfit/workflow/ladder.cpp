@@ -142,6 +142,14 @@ StageInputs inputs_of_ladder(const Session& session) {
   return out;
 }
 
+ContainedFit begin_with(const FilterWork& parent, const std::optional<Candidate>& from) {
+  ContainedFit out = contained_fit(*parent.estimate);
+  if (!from) return out;
+  out.refit_values = from->refit_values;
+  out.refit_log_noise = from->refit_log_noise;
+  return out;
+}
+
 /// Why discovery could not say beforehand what an effect would bring.
 std::string not_predicted(const Effect& effect, const std::optional<Candidate>& from) {
   const auto& coefficients = effect.spec().coefficients;
@@ -223,6 +231,7 @@ ModelLadder::NewStudy ModelLadder::new_study(const std::string& effect, const st
   out.id = ladder_.rungs.empty() ? 1 : ladder_.rungs.back().id + 1;
   out.system = effect.starts_with(system_prefix);
   out.name = out.system ? effect.substr(system_prefix.size()) : effect;
+  out.from = from;
   out.place = fmt::format("rungs/{:02}_{}", out.id, file_name_for(out.name));
   const fs::path folder = root_.folder.file(out.place);
   out.text = out.system ? study_with_system(last(), out.name, folder, out.left_out) : study_with_effect(last(), effect, from, folder);
@@ -236,7 +245,7 @@ std::unique_ptr<Session> ModelLadder::open(const NewStudy& study, const Session&
   root_.redo_stage("rung/" + std::to_string(study.id), inputs, files, [&](const fs::path& dir) {
     make_writable_folder(dir / study.place);
     write_atomically(dir / files.front(), study.text);
-    if (!study.system) write_contained_fit(dir / files.back(), contained_fit(*parent_work.estimate));
+    if (!study.system) write_contained_fit(dir / files.back(), begin_with(parent_work, study.from));
   });
   auto child = std::make_unique<Session>(options_for(options_, root_.folder.file(study.place) / "study.toml"), registry_);
   child->parent = parent.folder.path();

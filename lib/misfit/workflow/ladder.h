@@ -40,6 +40,7 @@ class ModelLadder {
     std::string place;    ///< its folder in the run folder
     std::string text;
     std::vector<std::string> left_out;  ///< effects that do not suit its system
+    std::optional<Candidate> from;      ///< what discovery says of the effect
   };
   [[nodiscard]] NewStudy new_study(const std::string& effect, const std::optional<Candidate>& from);
   /// Written to its folder with the parent's estimate beside it, to begin with where it has the parent's system.

@@ -52,21 +52,28 @@ ContainedFit contained_fit(const FilterEstimate& estimate) {
 
 std::vector<FilterStart> starts_from(const ContainedFit& contained, const Model& model) {
   if (!contains(model, contained)) return {};
-  FilterStart with{model, {}, unpack(contained.noise)};
-  for (std::size_t i = 0; i < contained.values.size(); ++i) {
-    Parameter& p = with.model.parameters[i];
-    if (p.free) p.value = std::clamp(contained.values[i], p.lower, p.upper);
-  }
-  with.penalties = curve_penalties(with.model);
-  for (Penalty& p : with.penalties) {
-    const std::size_t curve = p.curve;
-    if (p.chosen && curve < contained.roughness.size() && contained.roughness[curve] > 0.0) p.lambda = contained.roughness[curve];
-  }
-  FilterStart without = with;
-  const Model off = with_strengths_off(model).model;
-  for (std::size_t i = contained.values.size(); i < off.parameters.size(); ++i) without.model.parameters[i].value = off.parameters[i].value;
-  if (without.model.values() == with.model.values()) return {without};
-  return {without, with};
+  const std::vector<double>& noise = contained.noise;
+  const auto start_at = [&](std::vector<double> values, const std::vector<double>& log_noise) {
+    FilterStart start{model, {}, unpack(log_noise)};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      Parameter& p = start.model.parameters[i];
+      if (p.free) p.value = std::clamp(values[i], p.lower, p.upper);
+    }
+    start.penalties = curve_penalties(start.model);
+    for (Penalty& p : start.penalties) {
+      const std::size_t curve = p.curve;
+      if (p.chosen && curve < contained.roughness.size() && contained.roughness[curve] > 0.0) p.lambda = contained.roughness[curve];
+    }
+    return start;
+  };
+  std::vector<double> off = with_strengths_off(model).model.values();
+  std::copy(contained.values.begin(), contained.values.end(), off.begin());
+  const FilterStart without = start_at(off, noise), as_given = start_at(contained.values, noise);
+  std::vector<FilterStart> out = {without};
+  if (contained.refit_values.size() == off.size() && contained.refit_log_noise.size() == noise.size())
+    out.push_back(start_at(contained.refit_values, contained.refit_log_noise));
+  if (out.size() == 1 && as_given.model.values() != without.model.values()) out.push_back(as_given);
+  return out;
 }
 
 std::optional<std::vector<std::vector<SampleRole>>> same_use(const ContainedFit& contained, const std::vector<Signals>& experiments) {

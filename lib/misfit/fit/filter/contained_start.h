@@ -13,7 +13,8 @@ namespace misfit {
 /// Has the model the parameters, curves and channels of the fit, these first?
 [[nodiscard]] bool contains(const Model& model, const ContainedFit& contained);
 
-/// `model` at the values of the fit: what is its own off, and as it is in `model` where that differs. Empty: it does not contain it.
+/// `model` at the values of the fit with what is its own off; then where discovery's refit ended, or without that the values of the fit
+/// with what is its own as it is in `model`, where that differs. Empty: the model does not contain that of the fit.
 [[nodiscard]] std::vector<FilterStart> starts_from(const ContainedFit& contained, const Model& model);
 
 /// FilterOptions::use as of the fit, without what is missing in these experiments; nullopt where they are others.
