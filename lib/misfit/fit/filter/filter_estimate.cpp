@@ -283,7 +283,7 @@ class Estimation {
       tolerance = finer_tolerance(used_plans(), aim / shift);
       if (!at_.plan(tolerance) || !at_.linearise()) return;
       if (shift > few) at_.iterate(15, this->tolerance());
-      learned_ = {};
+      bfgs_ = {};
       refine_jointly();
     }
   }
