@@ -42,6 +42,7 @@ double drop(const Parent& parent, const Model& child) {
   for (const auto& data : parent.estimate.data) options.use->push_back(data.use);
   const FilterStart own{parent.estimate.model, parent.estimate.penalties, parent.estimate.noise};
   const FilterEstimate without = estimate_filter(std::vector<FilterStart>{own}, parent.signals, options);
+  options.plans = plans_of(without);
   const std::vector<FilterStart> starts = starts_from(contained_fit(without), child);
   EXPECT_FALSE(starts.empty());
   return 2.0 * (estimate_filter(starts, parent.signals, options).objective - without.objective);

@@ -63,8 +63,9 @@ TEST(ProfileObjective, OutputErrorDropsByTheSquareOfItsPlainSigmas) {
 }
 
 /// The cart on its spring, as filter_error leaves it.
-FittedMethod filtered(const testing_cart::Cart& cart, FilterEstimate& estimate) {
+FittedMethod filtered(const testing_cart::Cart& cart, FilterEstimate& estimate, const std::vector<KnownNoise>& noise = {}) {
   Model start = assemble(testing_models::cart({}), testing_models::registry());
+  if (!noise.empty()) start.known_noise = noise;
   start.parameters[static_cast<std::size_t>(start.find_parameter("stiffness"))].free = true;
   estimate = estimate_filter(start, curve_penalties(start), {cart.signals});
   FittedMethod out{"filter_error", {{}, estimate.model, estimate.penalties, {}}, estimate.noise, estimate.around, {}};
@@ -109,10 +110,11 @@ TEST(MaximumFrom, ElsewhereOutputErrorComesBackToTheFit) {
   }
 }
 
+/// With the measurement noise that was put in: estimated, its resonance has a maximum on every chance line of white noise.
 TEST(MaximumFrom, ElsewhereFilterErrorComesBackToTheFit) {
   const testing_cart::Cart cart(600);
   FilterEstimate estimate;
-  const FittedMethod method = filtered(cart, estimate);
+  const FittedMethod method = filtered(cart, estimate, {{0.05, true}, {0.08, true}});
   const Maximisation near = maximise_near(method, {cart.signals});
   ASSERT_TRUE(near.objective) << near.why;
   EXPECT_NEAR(*near.objective, estimate.objective, 0.05);

@@ -139,9 +139,9 @@ void read_noise(const Section& root, Study& study) {
     out.where = noise->where(output);
     if (noise->is_table(output)) {
       const DescribedSection table = described(*noise, output, "noise.NAME");
+      out.fixed = *table.flag("fixed");
       if (!table.has("value")) table.fail("value", "is missing: a standard deviation");
       out.sigma = number_as_written(table, "value");
-      out.fixed = *table.flag("fixed");
       table.finish();
     } else {
       out.sigma = number_as_written(*noise, output);

@@ -29,7 +29,8 @@ struct SearchContext {
 /// options say otherwise; numbers and formulas: lib/misfit/README.md, 6.5.
 ///
 /// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, one of its strengths ends
-///    at a bound, or the held-out measurements do not become more likely. The first reason that holds is noted.
+///    at a bound, all are smaller than their sigma, or the held-out measurements do not become more likely. The first reason that holds is
+///    noted.
 /// 2. Unknown curves are screened again with the candidate in the model (`remaining_lack_of_fit`). If none remains of a quantity that the
 ///    candidate, or an alias before it, reads, it is accepted: the first such in the list. Else it is an alias: an effect that may only
 ///    imitate the missing one.

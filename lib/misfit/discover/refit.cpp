@@ -45,6 +45,7 @@ FilterOptions like(const FilterEstimate& estimate, int threads) {
   options.noise = estimate.noise;
   options.around = estimate.around;
   options.use = uses_of(estimate);
+  options.plans = plans_of(estimate);
   options.choose_roughness = false;
   options.integration = estimate.data.front().inputs.plan.tolerance;
   return options;

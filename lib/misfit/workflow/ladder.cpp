@@ -111,6 +111,7 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   std::vector<FilterStart> starts = {{child.estimate->model, penalties, child.estimate->noise}};
   const std::vector<FilterStart> off = starts_from(contained_fit(without), child.prepared.model);
   if (!off.empty()) starts.push_back({off.front().model, penalties, off.front().noise});
+  options.plans = plans_of(without);
   const FilterEstimate with = estimate_filter(starts, child.prepared.experiments, options);
   Gain gain{2.0 * (with.objective - without.objective), std::nullopt};
   if (parent.fit.validation_loglik) gain.held_out = with.validation_loglik - without.validation_loglik;

@@ -30,7 +30,7 @@ class Estimation {
   /// As far as the first rounds of the blocks in turn. RunError: the model can be run from no start.
   void approach(int rounds) {
     begin();
-    if (at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
+    if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
     set_floor();
     if (!noise_given_) search_noise();
     at_.iterate(rounds, tolerance());  // refine_jointly() steps over both blocks at once
@@ -43,7 +43,7 @@ class Estimation {
     if (!options_.use) reject_outliers();
     if (options_.verify) refine_jointly();
     return_to_floor();
-    if (options_.verify) integrate_well();
+    if (options_.verify && !options_.plans) integrate_well();
     conclude();
   }
 
@@ -280,7 +280,7 @@ class Estimation {
       const double shift = at_.integration_shift();
       describe_integration(plans, shift);
       if (!(shift > enough) || plans == most_plans || tolerance <= kFinestTolerance) return;
-      tolerance = finer_tolerance(used_plans(), aim / shift);
+      tolerance = finer_tolerance(plans_of(out_), aim / shift);
       if (!at_.plan(tolerance) || !at_.linearise()) return;
       if (shift > few) at_.iterate(15, this->tolerance());
       bfgs_ = {};
@@ -288,14 +288,8 @@ class Estimation {
     }
   }
 
-  [[nodiscard]] std::vector<IntegrationPlan> used_plans() const {
-    std::vector<IntegrationPlan> out;
-    for (const auto& data : out_.data) out.push_back(data.inputs.plan);
-    return out;
-  }
-
   void describe_integration(int plans, double shift) {
-    const std::vector<IntegrationPlan> used = used_plans();
+    const std::vector<IntegrationPlan> used = plans_of(out_);
     out_.integration = in_words(used, plans) + in_words_of(shift, used.front().tolerance);
   }
 
@@ -466,6 +460,12 @@ bool may_end_higher(const Searches& searches, std::size_t k) {
 }
 
 }  // namespace
+
+std::vector<IntegrationPlan> plans_of(const FilterEstimate& estimate) {
+  std::vector<IntegrationPlan> out;
+  for (const auto& data : estimate.data) out.push_back(data.inputs.plan);
+  return out;
+}
 
 FilterEstimate estimate_filter(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
                                const FilterOptions& options) {

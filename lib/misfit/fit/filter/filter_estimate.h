@@ -15,6 +15,7 @@ struct FilterOptions {
   std::optional<FilterNoise> noise;                         ///< where to start; nullopt: looked for
   std::optional<FilterNoise> around;                        ///< what sets the bounds of the noise; nullopt: the data
   std::optional<std::vector<std::vector<SampleRole>>> use;  ///< per experiment, so that two models are compared on the same measurements
+  std::optional<std::vector<IntegrationPlan>> plans;        ///< per experiment, for the same reason, and kept; nullopt: along the first run
   bool choose_roughness = true;                             ///< false: penalties as handed over
   double integration = kSearchTolerance;                    ///< tolerance of the integration to begin with
   bool verify = true;                                       ///< derivatives of the exact likelihood at the end, and steps by them
@@ -47,7 +48,7 @@ struct FilterEstimate {
   bool converged = false;
   std::string message;
   std::vector<std::string> notes;  ///< on where the search began, and what it found besides
-  std::string integration;  ///< what it costs and what its error does to the estimates, in words; empty where not verified
+  std::string integration;         ///< what it costs and what its error does to the estimates, in words; empty where not verified
   int outliers = 0;
   std::vector<double> nonlinear;  ///< times [s] of measurements that move the filter but do not count: its linearisation breaks there
   int linearisations = 0;
@@ -57,6 +58,9 @@ struct FilterEstimate {
   /// Of steps and covariances.
   [[nodiscard]] GaussianPrior regularised_prior() const { return {regularised_priors(model), penalties}; }
 };
+
+/// The steps of integration that it was found with, per experiment.
+[[nodiscard]] std::vector<IntegrationPlan> plans_of(const FilterEstimate& estimate);
 
 /// Maximum likelihood of parameters, roughness and noise, in these steps (`Estimation::run`):
 ///   1. `begin`: the filter is run from the start; where no noise is given, the usual one is raised until innovations are about as large as

@@ -45,8 +45,9 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
   }
   out.forced = with_random_force(start);
   for (const auto& experiment : experiments) out.data.push_back(filter_data(out.forced, experiment, options.integration));
-  if (options.use) {
-    for (std::size_t e = 0; e < out.data.size(); ++e) out.data[e].use = (*options.use)[e];
+  for (std::size_t e = 0; e < out.data.size(); ++e) {
+    if (options.use) out.data[e].use = (*options.use)[e];
+    if (options.plans) out.data[e].inputs.plan = (*options.plans)[e];
   }
   theta = start.theta();
   out.around = options.around ? *options.around : usual_noise(out.forced, out.data);
