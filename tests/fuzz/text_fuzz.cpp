@@ -1,5 +1,6 @@
 // Whatever text comes in, misfit answers with a model or with an InputError: no crash, no hang, no leak, no undefined behaviour.
-// The first character determines what the rest is: f a formula, e the line of a declared effect, s a declared system, anything else a study.
+// The first character determines what the rest is: f a formula, e the line of a declared effect, s a declared system, anything else a
+// study.
 
 #include <misfit_models_registry.h>
 #include <unistd.h>
