@@ -215,7 +215,7 @@ void DescribedSection::check_limits(const Key& key, double value) const {
 
 std::optional<Number> DescribedSection::number(std::string_view key) const {
   return read(key, [&](const Section& section, const Key& k) {
-    const auto number = section.number(key, k.unit, k.type == KeyType::number_with_sigma);
+    auto number = section.number(key, k.unit, k.type == KeyType::number_with_sigma);
     if (number) check_limits(k, number->value);
     return number;
   });
@@ -225,7 +225,7 @@ std::optional<double> DescribedSection::value(std::string_view key) const { retu
 
 std::optional<double> DescribedSection::value(std::string_view key, std::string_view unit) const {
   return read(key, [&](const Section& section, const Key& k) -> std::optional<double> {
-    const auto number = section.number(key, unit);
+    auto number = section.number(key, unit);
     if (!number) return std::nullopt;
     check_limits(k, number->value);
     return number->value;
@@ -263,7 +263,7 @@ std::optional<std::string> DescribedSection::choice(std::string_view key) const 
 }
 
 std::optional<std::vector<std::string>> DescribedSection::texts(std::string_view key) const {
-  const auto names = read(key, [&](const Section& section, const Key& /*k*/) { return section.texts(key); });
+  auto names = read(key, [&](const Section& section, const Key& /*k*/) { return section.texts(key); });
   if (!names) return names;
   const std::vector<std::string>& valid = group_->key(key).choices;
   for (auto it = names->begin(); it != names->end(); ++it) {

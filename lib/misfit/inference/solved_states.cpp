@@ -107,7 +107,8 @@ class OutputSolver {
       Linear there = linearise(i, next);
       if (!there.residual.allFinite() || there.residual.squaredNorm() > here.residual.squaredNorm()) {
         constexpr double hopeless = 1e8;
-        if ((damping *= 10.0) > hopeless) break;
+        damping *= 10.0;
+        if (damping > hopeless) break;
         continue;
       }
       damping *= 0.1;
