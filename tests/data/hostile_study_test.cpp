@@ -125,6 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"NoiseOfZero", "[noise]\nx = 0\n", {"study.toml:4", "above 0"}},
         Hostile{"ForceTimeBelowZero", "[force]\ncorrelation_time = -1\n", {"study.toml:4", "at least 0"}},
         Hostile{"ForceKey", "[force]\ncorrelation = 1\n", {"study.toml:4", "correlation_time"}},
+        Hostile{"NoiseOfAMisspeltKey", "[noise]\nx = { valu = 1 }\n", {"study.toml:4", "unknown key 'valu'", "'value'"}},
         Hostile{"NoiseWithoutValue", "[noise]\nx = { fixed = true }\n", {"study.toml:4", "value", "is missing"}},
         Hostile{"NoiseOfAnUnknownUnit", "[noise]\nx = \"1 " + long_text() + "\"\n", {"study.toml:4", "unknown unit"}}),
     name_of);

@@ -71,6 +71,28 @@ TEST(Verdict, AStrengthAtItsBoundIsNamedAndOneAtZeroIsNot) {
   EXPECT_FALSE(ends_at_bound(model, {friction, depth}).has_value());
 }
 
+/// Sigmas 8 N m of the friction and 0.2 of the wake's depth.
+TEST(Verdict, StrengthsThatAreAllBelowTheirSigmaAreNotDetermined) {
+  Model model = assemble(spherical({effect("strut_wake"), effect("coulomb_friction")}), registry());
+  const int depth = model.find_parameter("wake_depth"), friction = model.find_parameter("friction");
+  const std::vector<int> free = model.free_parameters();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(std::ssize(free), std::ssize(free));
+  const Eigen::Index f = std::find(free.begin(), free.end(), friction) - free.begin(),
+                     d = std::find(free.begin(), free.end(), depth) - free.begin();
+  ASSERT_TRUE(f < covariance.rows() && d < covariance.rows());
+  covariance(f, f) = 64.0;
+  covariance(d, d) = 0.04;
+  set(model, "friction", 5.0);
+  set(model, "wake_depth", 0.1);
+  const auto found = undetermined_strengths(model, covariance, {friction, depth});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(*found, "its strength is not determined: friction = 5.0 ± 8.0 N m, wake_depth = 0.10 ± 0.20");
+  set(model, "friction", 20.0);
+  EXPECT_FALSE(undetermined_strengths(model, covariance, {friction, depth}).has_value()) << "one is known";
+  EXPECT_TRUE(undetermined_strengths(model, covariance, {depth}).has_value());
+  EXPECT_FALSE(undetermined_strengths(model, Eigen::MatrixXd(), {depth}).has_value()) << "nothing is known of its sigma";
+}
+
 /// The friction planted is 25 N m, a study that says "at most 10" stops the refit there.
 TEST(Discover, DoesNotAcceptWhatEndsAtItsBound) {
   const Flight flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}}));

@@ -114,7 +114,7 @@ TEST(DrivenTest, ComparesAveragesOverHalfAPeriod) {
   constexpr int half_period = 20;
   const std::vector<double> t = even_times(samples, 0.1);
   const DrivenTest test =
-      test_driven({t, waves(samples, 3.0, 100.0), waves(samples, 6.0, 100.0), waves(samples, 0.5, 100.0), half_period, 5});
+      test_driven({t, waves(samples, 3.0, 100.0), waves(samples, 6.0, 100.0), [&] { return waves(samples, 0.5, 100.0); }, half_period, 5});
   EXPECT_EQ(test.averaged, half_period);
   EXPECT_NEAR(test.share, 0.5, 1e-9);
   EXPECT_NEAR(test.times_noise, 6.0, 1e-9);
@@ -127,7 +127,7 @@ TEST(DrivenTest, WhatAveragesAwayIsNoForce) {
   constexpr int half_period = 20;
   const std::vector<double> t = even_times(samples, 0.1);
   const DrivenTest test =
-      test_driven({t, waves(samples, 3.0, 4.0), waves(samples, 6.0, 100.0), waves(samples, 0.5, 100.0), half_period, 5});
+      test_driven({t, waves(samples, 3.0, 4.0), waves(samples, 6.0, 100.0), [&] { return waves(samples, 0.5, 100.0); }, half_period, 5});
   EXPECT_LT(test.share, 1e-9);
   EXPECT_FALSE(test.driven());
   EXPECT_TRUE(test.deterministic());
@@ -141,7 +141,7 @@ TEST(DrivenTest, NoiseIsAddedOnceMoreToWhatWasMeasured) {
   constexpr double sigma = 0.01;
   for (int i = 0; i < 20'000; ++i) levels.push_back(sigma * normal(random));
   const Signals signals = measured(even_times(levels.size(), 0.01), levels);
-  const std::vector<double> noisier = with_noise(model.system->spec(), signals).measured.front().values;
+  const std::vector<double> noisier = with_more_noise(model.system->spec(), signals).measured.front().values;
   double squares = 0.0;
   for (std::size_t i = 0; i < levels.size(); ++i) squares += std::pow(noisier[i] - levels[i], 2);
   EXPECT_NEAR(std::sqrt(squares / 20'000.0), sigma, 0.03 * sigma);

@@ -3,49 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/trajectory_start.h"
-#include "tests/model/declared_texts.h"
+#include "tests/fit/decay.h"
 
 namespace misfit {
 namespace {
 
-using namespace testing_models;
-
-const std::string decay_text = R"toml(
-[states]
-x = { unit = "V", scale = 1.0 }
-[parameters]
-a = { unit = "1/s", value = 0.5, bounds = [0.0, 100.0], free = true }
-[equations]
-x = "-a*x"
-[outputs]
-y = { unit = "V", formula = "x", noise = 0.01 }
-)toml";
-
-constexpr double noise = 0.01;
-
-std::vector<Signals> decay(std::size_t samples) {
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> normal;
-  Signals s;
-  s.name = "decay";
-  s.measured = {{"y", "V", {}, 0.0}};
-  for (std::size_t i = 0; i < samples; ++i) {
-    s.t.push_back(3.0 * static_cast<double>(i) / static_cast<double>(samples));
-    s.measured[0].values.push_back(std::exp(-s.t.back()) + noise * normal(random));
-  }
-  return {s};
-}
+using namespace testing_decay;
 
 Fit fitted(bool filter, std::size_t samples, std::optional<KnownNoise> known) {
   const auto registry = registry_with(decay_text);
   Model model = assemble(request_of("text"), *registry);
   if (known) model.known_noise = {*known};
-  const std::vector<Signals> experiments = decay(samples);
+  const std::vector<Signals> experiments{decay(samples, 5)};
   const TrajectoryStart start = trajectory_start(model, experiments);
   OutputErrorStart options;
   options.from_regression = start.regressed;
@@ -95,7 +68,7 @@ TEST(KnownNoise, GivesSigmasWhereTooFewSamplesShowIt) {
 TEST(KnownForceTime, IsHeld) {
   const auto registry = registry_with(decay_text);
   Model model = assemble(request_of("text"), *registry);
-  const std::vector<Signals> experiments = decay(600);
+  const std::vector<Signals> experiments{decay(600, 5)};
   const double step = experiments.front().t[1];
   FilterOptions one;
   one.threads = 1;

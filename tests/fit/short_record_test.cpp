@@ -11,39 +11,12 @@
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/trajectory_start.h"
 #include "misfit/inference/coloured.h"
-#include "tests/model/declared_texts.h"
+#include "tests/fit/decay.h"
 
 namespace misfit {
 namespace {
 
-using namespace testing_models;
-
-const std::string decay_text = R"toml(
-[states]
-x = { unit = "V", scale = 1.0 }
-[parameters]
-a = { unit = "1/s", value = 0.5, bounds = [0.0, 100.0], free = true }
-[equations]
-x = "-a*x"
-[outputs]
-y = { unit = "V", formula = "x", noise = 0.01 }
-)toml";
-
-constexpr double truth = 1.0, noise = 0.01, duration = 3.0;
-
-/// exp(−t) over three seconds with white noise.
-Signals decay(std::size_t samples, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  Signals s;
-  s.name = "decay";
-  s.measured = {{"y", "V", {}, 0.0}};
-  for (std::size_t i = 0; i < samples; ++i) {
-    s.t.push_back(duration * static_cast<double>(i) / static_cast<double>(samples));
-    s.measured[0].values.push_back(std::exp(-truth * s.t.back()) + noise * normal(random));
-  }
-  return s;
-}
+using namespace testing_decay;
 
 struct Coverage {
   int given = 0, inside = 0, withheld = 0, failed = 0, alarms = 0;

@@ -140,7 +140,10 @@ void read_noise(const Section& root, Study& study) {
     if (noise->is_table(output)) {
       const DescribedSection table = described(*noise, output, "noise.NAME");
       out.fixed = *table.flag("fixed");
-      if (!table.has("value")) table.fail("value", "is missing: a standard deviation");
+      if (!table.has("value")) {
+        table.finish();  // a key that is none comes first
+        table.fail("value", "is missing: a standard deviation");
+      }
       out.sigma = number_as_written(table, "value");
       table.finish();
     } else {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "misfit/core/display.h"
-#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/discover/alias.h"
 #include "misfit/discover/verdict.h"
@@ -108,30 +106,15 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   return remaining_lack_of_fit(both.estimate, reads, in.refit->drop, options) ? nullptr : second.entry;
 }
 
-/// A drop that no strength shows by itself: only something like their ratio to a shape is known (a lag of a time constant beyond the
-/// record is an integral), and the effect is not what its name says.
-std::optional<std::string> undetermined_strengths(const FilterEstimate& estimate, const std::vector<int>& strengths) {
-  const std::vector<int> free = estimate.model.free_parameters();
-  std::string values;
-  for (const int strength : strengths) {
-    const int column = place_of(free, strength);
-    if (column < 0 || column >= estimate.covariance.rows()) return std::nullopt;
-    const double sigma = std::sqrt(std::max(estimate.covariance(column, column), 0.0));
-    const Parameter& p = estimate.model.parameters[strength];
-    if (!(std::abs(p.value) < sigma)) return std::nullopt;
-    values += (values.empty() ? "" : ", ") + p.name + " = " + in_display_unit(p.value, p.unit, sigma);
-  }
-  if (values.empty()) return std::nullopt;
-  return "its strength is not determined: " + values;
-}
-
 /// Step 1: the reason why it cannot be accepted; empty if there is none.
 std::string refusal(RankedCandidate& e, const SearchContext& context) {
   Candidate& c = e.candidate;
   if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
   if (!e.refit->estimate.converged) return "its refit has not converged: " + e.refit->estimate.message;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
-  if (const auto unknown = undetermined_strengths(e.refit->estimate, e.screening->candidate_model->strengths)) return *unknown;
+  if (const auto unknown =
+          undetermined_strengths(e.refit->estimate.model, e.refit->estimate.covariance, e.screening->candidate_model->strengths))
+    return *unknown;
   c.held_out_gain = held_out_gain(context.estimate, e.refit->estimate, context.experiments, context.options.threads);
   return *c.held_out_gain > 0.0 ? "" : "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 
 namespace misfit {
@@ -115,6 +116,22 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
     }
   }
   return std::nullopt;
+}
+
+std::optional<std::string> undetermined_strengths(const Model& model, const Eigen::MatrixXd& covariance,
+                                                  const std::vector<int>& strengths) {
+  const std::vector<int> free = model.free_parameters();
+  std::string values;
+  for (const int strength : strengths) {
+    const int column = place_of(free, strength);
+    if (column < 0 || column >= covariance.rows()) return std::nullopt;
+    const double sigma = std::sqrt(std::max(covariance(column, column), 0.0));
+    const Parameter& p = model.parameters[strength];
+    if (!(std::abs(p.value) < sigma)) return std::nullopt;
+    values += (values.empty() ? "" : ", ") + p.name + " = " + in_display_unit(p.value, p.unit, sigma);
+  }
+  if (values.empty()) return std::nullopt;
+  return "its strength is not determined: " + values;
 }
 
 void add_camera_remarks(const Calibration* calibration, double p_accept, Discovery& out) {

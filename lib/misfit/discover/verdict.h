@@ -19,6 +19,13 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// scale of a bound other than 0; nullopt if none does. A strength at 0 is an effect that is off, and its drop says so.
 [[nodiscard]] std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths);
 
+/// "its strength is not determined: lag_stiffness = 140 ± 920 N m/rad" where every one of these parameters is smaller than its sigma: a
+/// drop that no strength shows by itself, but only something like their ratio to a shape (a lag of a time constant beyond the record is an
+/// integral), so that the effect is not what its name says. nullopt: it is determined, or `covariance` (of the free parameters) is not
+/// known.
+[[nodiscard]] std::optional<std::string> undetermined_strengths(const Model& model, const Eigen::MatrixXd& covariance,
+                                                                const std::vector<int>& strengths);
+
 /// Remarks on the camera: parameters that are significant in the sweep but not in the camera (kept in Discovery::sweep_asks). Nothing is
 /// accepted then: the drop of a sensor effect comes from its prior, the sweep's, so that the remedy is to calibrate again; and a physical
 /// effect may describe the error of the camera. Where the flight gives evidence of physics too, be it refused, of unknown form or not yet

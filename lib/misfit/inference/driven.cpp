@@ -55,19 +55,21 @@ DrivenTest test_driven(const EquationResiduals& equation) {
   const auto average = [&](const std::vector<double>& values) {
     return median_average(on_even_grid(equation.t, where_known(values, equation.residual)), test.averaged);
   };
-  const double residual = average(equation.residual), acceleration = average(equation.acceleration), noise = average(equation.of_noise);
+  const double residual = average(equation.residual), acceleration = average(equation.acceleration);
   test.share = acceleration > 0.0 ? residual / acceleration : 0.0;
+  if (test.deterministic()) return test;
+  const double noise = average(equation.of_noise());
   test.times_noise = noise > 0.0 ? residual / noise : std::numeric_limits<double>::infinity();
   return test;
 }
 
 std::string in_words(const DrivenTest& test) {
-  return fmt::format(
-      "residuals averaged over {} samples are {:.2g} of the averaged acceleration, {:.2g} times what measurement noise makes; at {}",
-      test.averaged, test.share, test.times_noise, in_words(test.whiteness));
+  const std::string noise = test.deterministic() ? "" : fmt::format(", {:.2g} times what measurement noise makes", test.times_noise);
+  return fmt::format("residuals averaged over {} samples are {:.2g} of the averaged acceleration{}; at {}", test.averaged, test.share,
+                     noise, in_words(test.whiteness));
 }
 
-Signals with_noise(const SystemSpec& system, const Signals& signals) {
+Signals with_more_noise(const SystemSpec& system, const Signals& signals) {
   constexpr unsigned seed = 1;
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,13 @@ namespace misfit {
 
 /// What the equations of motion leave of the measured accelerations; one entry per sample, NaN where not used. Any unit, the same for all.
 struct EquationResiduals {
-  const std::vector<double>& t;      ///< [s]
-  std::vector<double> residual;      ///< less what the model explains
-  std::vector<double> acceleration;  ///< as measured
-  std::vector<double> of_noise;      ///< what the measurement noise adds to it, one draw (with_noise())
-  int half_period = 0;               ///< of the motion, in samples
-  int stencil_reach = 0;             ///< lags below this are the stencils' own
+  const std::vector<double>& t;                   ///< [s]
+  std::vector<double> residual;                   ///< less what the model explains
+  std::vector<double> acceleration;               ///< as measured
+  std::function<std::vector<double>()> of_noise;  ///< what noise as large as the measured one adds to it, one draw (with_more_noise());
+                                                  ///< asked only where the model does not explain the motion
+  int half_period = 0;                            ///< of the motion, in samples
+  int stencil_reach = 0;                          ///< lags below this are the stencils' own
 };
 
 /// Is the motion driven by a force that the model lacks (lib/misfit/README.md, 5.8)? Single accelerations are mostly noise of the measured
@@ -26,7 +28,7 @@ struct DrivenTest {
   WhitenessTest whiteness;   ///< of the residuals, from the stencils' reach to half a period
   int averaged = 0;          ///< samples
   double share = 0.0;        ///< median size of averaged residuals over that of averaged accelerations
-  double times_noise = 0.0;  ///< median size of averaged residuals over that of averaged noise
+  double times_noise = 0.0;  ///< median size of averaged residuals over that of averaged noise; 0 where deterministic()
   /// Averaged residuals are above four times what measurement noise makes and above a fifth of the averaged acceleration (what curves of
   /// few coefficients or bins smooth away is below).
   [[nodiscard]] bool driven() const;
@@ -44,6 +46,6 @@ struct DrivenTest {
 
 /// The signals with one draw of white noise more on each channel, as large as it already has (measurement_noise()), from a fixed seed; on
 /// inputs as well that run smoothly between their samples, for they were measured.
-[[nodiscard]] Signals with_noise(const SystemSpec& system, const Signals& signals);
+[[nodiscard]] Signals with_more_noise(const SystemSpec& system, const Signals& signals);
 
 }  // namespace misfit

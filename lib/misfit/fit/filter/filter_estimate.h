@@ -62,7 +62,7 @@ struct FilterEstimate {
 /// The steps of integration that it was found with, per experiment.
 [[nodiscard]] std::vector<IntegrationPlan> plans_of(const FilterEstimate& estimate);
 
-/// Maximum likelihood of parameters, roughness and noise, in these steps (`Estimation::run`):
+/// Maximum likelihood of parameters, roughness and noise, in these steps (`FilterSearch`):
 ///   1. `begin`: the filter is run from the start; where no noise is given, the usual one is raised until innovations are about as large as
 ///      it expects them. A start from which it cannot be run is replaced by one from which it can (runnable_starts(), noise raised again);
 ///      a note says so.

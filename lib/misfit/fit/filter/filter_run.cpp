@@ -32,7 +32,7 @@ void resize(FilterTrace& trace, int n, int ny, std::size_t samples) {
 
 }  // namespace
 
-FilterData filter_data(const FilterModel& model, const Signals& signals, double integration) {
+FilterData filter_data(const FilterModel& model, const Signals& signals, double integration, const IntegrationPlan* plan) {
   FilterData out;
   out.signals = &signals;
   out.inputs = input_table(signals, model.model.inputs());
@@ -56,7 +56,7 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
   for (std::size_t i = 0; i < specs.size(); ++i) out.scale[i] = specs[i].scale;
   for (int f : model.force_states) out.start[f] = 0.0;
   Stepper stepper(model.model);
-  out.inputs.plan = plan_along({stepper, signals, out.inputs}, states.x, integration);
+  out.inputs.plan = plan != nullptr ? *plan : plan_along({stepper, signals, out.inputs}, states.x, integration);
   return out;
 }
 

@@ -30,8 +30,9 @@ struct FilterData {
   std::size_t first = 0;         ///< first sample at which all states can be read
   Eigen::VectorXd start, scale;  ///< model states there and their sigmas, force states excluded (0)
 };
-/// Planned along the states that the channels show, to `integration` (IntegrationPlan::tolerance).
-[[nodiscard]] FilterData filter_data(const FilterModel& model, const Signals& signals, double integration = kSearchTolerance);
+/// Planned along the states that the channels show, to `integration` (IntegrationPlan::tolerance), or as `plan` says.
+[[nodiscard]] FilterData filter_data(const FilterModel& model, const Signals& signals, double integration = kSearchTolerance,
+                                     const IntegrationPlan* plan = nullptr);
 /// The same experiment for a model of the same system with further own states: measurements, start and uses as in `data`.
 [[nodiscard]] FilterData filter_data_like(const FilterModel& model, const FilterData& data);
 

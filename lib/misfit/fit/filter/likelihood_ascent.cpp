@@ -44,10 +44,10 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
     for (auto& penalty : out.penalties) penalty.chosen = false;
   }
   out.forced = with_random_force(start);
-  for (const auto& experiment : experiments) out.data.push_back(filter_data(out.forced, experiment, options.integration));
-  for (std::size_t e = 0; e < out.data.size(); ++e) {
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    const IntegrationPlan* plan = options.plans ? &(*options.plans)[e] : nullptr;
+    out.data.push_back(filter_data(out.forced, experiments[e], options.integration, plan));
     if (options.use) out.data[e].use = (*options.use)[e];
-    if (options.plans) out.data[e].inputs.plan = (*options.plans)[e];
   }
   theta = start.theta();
   out.around = options.around ? *options.around : usual_noise(out.forced, out.data);

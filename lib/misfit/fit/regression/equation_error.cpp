@@ -214,9 +214,11 @@ DrivenTest test_first_equation(const Regressor& regressor, const Regression& reg
   constexpr int usual_lags = 20, beyond_stencil = 5;
   const double half_period = frequency > 0.0 ? std::numbers::pi / frequency / usual_step(signals.t) : usual_lags;
   const std::vector<double> acceleration = derivative(states, row);
-  const std::vector<Signals> noisier{with_noise(model.system->spec(), signals)};
   const std::vector<double>& residual = regression.residuals.front();
-  const std::vector<double> of_noise = difference(Regressor(model, noisier).linearise(model).residuals.front(), residual);
+  const auto of_noise = [&] {
+    const std::vector<Signals> noisier{with_more_noise(model.system->spec(), signals)};
+    return difference(Regressor(model, noisier).linearise(model).residuals.front(), residual);
+  };
   return test_driven({signals.t, residual, acceleration, of_noise, static_cast<int>(half_period), beyond_stencil});
 }
 

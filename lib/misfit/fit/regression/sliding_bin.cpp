@@ -103,7 +103,7 @@ std::vector<double> accelerations(const BinRegression& regression, std::size_t s
 /// What noise as large as the measured one adds to the equations.
 std::vector<double> of_noise(const BinForm& form, const Signals& signals, const SlidingBinOptions& options,
                              const BinRegression& regression) {
-  const Signals noisier = with_noise(form.model.system->spec(), signals);
+  const Signals noisier = with_more_noise(form.model.system->spec(), signals);
   const ReconstructedStates states = stencil_states(form, noisier, options.stencils, options.three_point_average);
   std::vector<double> out = accelerations(BinRegression(bin_equations(form, noisier, states)), signals.samples(), true);
   const std::vector<double> without = accelerations(regression, signals.samples(), true);
@@ -124,7 +124,7 @@ Pass run(const BinForm& form, const Signals& signals, const SlidingBinOptions& o
   constexpr int beyond_stencil = 2 * kStencilReach + 1;
   const double half_period = frequency > 0.0 ? std::numbers::pi / frequency / usual_step(signals.t) : 0.0;
   pass.test = test_driven({signals.t, residuals, accelerations(regression, signals.samples(), false),
-                           of_noise(form, signals, options, regression), static_cast<int>(half_period), beyond_stencil});
+                           [&] { return of_noise(form, signals, options, regression); }, static_cast<int>(half_period), beyond_stencil});
   pass.residual_rms = rms(residuals);
   pass.driven = options.driven.value_or(pass.test.driven());
   const std::vector<double> rho = correlation_up_to(residuals, pass.driven ? pass.test.whiteness.last_lag : beyond_stencil - 1);

@@ -7,6 +7,7 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
+#include "misfit/fit/shooting/output_error_integration.h"
 #include "misfit/fit/shooting/output_error_result.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
@@ -48,8 +49,8 @@ class Estimator {
         penalties_(options.keep_roughness ? kept(start.penalties)
                                           : curve_penalties(start.model)),  // not those of a regression, whose noise is another one
         shooting_(start.model, experiments, {setting_.sigma, setting_.state_scale}, start_states(setting_)),
-        initial_states_(start.initial_states),
-        tolerance_(start.integration > 0.0 ? start.integration : kSearchTolerance) {}
+        integration_(shooting_, experiments, start.integration, options.coloured),
+        initial_states_(start.initial_states) {}
 
   FittedModel run() {
     if (initial_states_.size() == experiments_.size()) {
@@ -64,14 +65,14 @@ class Estimator {
       shooting_.set_sigma(setting_.sigma);
       shooting_.forget_failure();
     }
-    shooting_.plan(tolerance_);
+    integration_.plan();
     ShootingPass pass;
     for (const auto& next : short_passes(setting_, options_.from_regression)) {
       pass = next;
       if (!solve(pass)) return failed(segments_of(pass) + last_.message);
     }
     pass.tolerance = 1e-6;
-    plan_well();
+    integration_.plan_for_whole_runs();
     constexpr int most_lengthenings = 12;
     for (int k = 0; k < most_lengthenings && 6 * pass.length < setting_.samples / 2; ++k) {
       if (!lengthen(pass)) return lost(pass);
@@ -164,12 +165,12 @@ class Estimator {
   /// One trajectory, integrated so finely that its error moves no estimate.
   FittedModel whole_trajectory(const ShootingPass& lengthened) {
     if (lengthened.length == 0) {
-      plan_well();
+      integration_.plan_for_whole_runs();
     } else {
-      shooting_.plan(tolerance_);
+      integration_.plan();
     }
     bool found = search(lengthened);
-    while (found && settled_ && !integrated_well()) found = approach() || search({});
+    while (found && settled_ && !integration_.negligible_at(end_.runs, end_.smoothed.covariance)) found = approach() || search({});
     if (!found) return failed(why_);
     if (may_gain_digits()) static_cast<void>(reach_minimum());
     return finish();
@@ -184,7 +185,7 @@ class Estimator {
     settled_ = false;
     for (int round = 0; round < most_rounds && !settled_; ++round) {
       if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return stopped(last_.message);
-      if (!solve(whole) && !(plan_finely() && solve(whole))) return stopped(last_.message);
+      if (!solve(whole) && !(integration_.plan_finely() && solve(whole))) return stopped(last_.message);
       if (!shooting_.linearise(end_.linearised, &end_.runs)) return stopped("");
       end_.smoothed = estimate_smoothing(end_.linearised, penalties_);
       if (!end_.smoothed.ok) return stopped(singular_message(end_.linearised));
@@ -223,7 +224,7 @@ class Estimator {
   [[nodiscard]] bool may_gain_digits() const {
     constexpr double negligible_step = 1e-6;  // of a sigma
     return settled_ && options_.coloured && !end_is_present_ &&
-           largest(end_.smoothed.theta - end_.linearised.theta, end_.smoothed.covariance) >= negligible_step;
+           largest_in_sigmas(end_.smoothed.theta - end_.linearised.theta, end_.smoothed.covariance) >= negligible_step;
   }
 
   std::string singular_message(const NormalEquations& linearised) {
@@ -279,7 +280,7 @@ class Estimator {
     if (!look_at_the_end()) return failed("");
     if (!end_.smoothed.ok) return failed(singular_message(end_.linearised));
     if (const std::string which = undetermined(out.model, end_.linearised); !which.empty()) return failed(at_the_end(which));
-    describe_integration(out);
+    integration_.describe(out);
     set_noise(end_.degrees(), fit);
     const Eigen::MatrixXd covariance = describe_estimates(end_, out);
     predictions_of({shooting_, end_.runs, experiments_}, covariance, fit);
@@ -326,99 +327,16 @@ class Estimator {
     if (end.degrees() < kFewestDegrees && !out.model.noise_held()) withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
   }
 
-  /// A plan whose error whole runs show: halving its parts changes their outputs by little, beside the noise or beside what the model is
-  /// still off. Where a finer plan or two do not bring that about, it is not the plan that keeps the model from following.
-  void plan_well() {
-    constexpr double of_the_noise = 0.2, of_the_residual = 0.03, small = 3.0, aim = 0.1, most_at_once = 1e-3;  // errors in sigma
-    constexpr int most_refinements = 2;
-    if (shooting_.plan_of(0).tolerance != tolerance_) shooting_.plan(tolerance_);
-    if (!options_.coloured) return;
-    const double before = tolerance_;
-    for (int k = 0;; ++k) {
-      const auto [error, residual] = integration_error();
-      if (error < of_the_noise || error < of_the_residual * residual) return;
-      if (k == most_refinements || tolerance_ <= kFinestTolerance) break;
-      plan_anew(std::max(aim / error, most_at_once));
-      if (error < small) return;  // it is judged at the estimate once more
-    }
-    tolerance_ = before;
-    shooting_.plan(tolerance_);
-  }
-
-  [[nodiscard]] Shooting::ErrorSize integration_error() {
-    const auto coarse = shooting_.outputs(false), fine = shooting_.outputs(true);
-    if (!coarse || !fine) return {std::numeric_limits<double>::infinity(), 0.0};
-    return shooting_.size_of(difference(*fine, *coarse), *fine);
-  }
-
-  static std::vector<RowMatrix> difference(std::vector<RowMatrix> outputs, const std::vector<RowMatrix>& from) {
-    for (std::size_t e = 0; e < outputs.size(); ++e) outputs[e] -= from[e];
-    return outputs;
-  }
-
-  void plan_anew(double ratio) {
-    tolerance_ = finer_tolerance(plans(), ratio);
-    shooting_.plan(tolerance_);
-  }
-
-  [[nodiscard]] std::vector<IntegrationPlan> plans() const {
-    std::vector<IntegrationPlan> out;
-    for (std::size_t e = 0; e < experiments_.size(); ++e) out.push_back(shooting_.plan_of(e));
-    return out;
-  }
-
-  /// Does the integration's error move no estimate by more than a tenth of its sigma? If so, the integration is planned anew. Not for fits
-  /// by the thousand, which go on with the plan of the one they are made about.
-  bool integrated_well() {
-    constexpr double enough = 0.1, aim = 0.05;
-    constexpr int most_plans = 4;
-    if (!options_.coloured) return true;
-    const auto coarse = shooting_.outputs(false), fine = shooting_.outputs(true);
-    if (!coarse || !fine) return true;
-    const Eigen::MatrixXd& covariance = end_.smoothed.covariance;
-    shift_ = largest(shooting_.shift_by(difference(*fine, *coarse), end_.runs, covariance), covariance);
-    if (!(shift_ > enough) || plans_ == most_plans || tolerance_ <= kFinestTolerance) return true;
-    ++plans_;
-    plan_anew(aim / shift_);
-    return false;
-  }
-
   /// From near the estimate to it. False if it is not near, if the noise is another one there, or the way is not found.
   bool approach() {
     constexpr double few = 3.0;  // sigma
-    if (!(shift_ < few) || !reach_minimum() || !look_at_the_end() || !end_.smoothed.ok) return false;
+    if (!(integration_.shift() < few) || !reach_minimum() || !look_at_the_end() || !end_.smoothed.ok) return false;
     return same_noise(channel_sigmas({shooting_, end_.runs, experiments_}, end_.smoothed.edf));
   }
 
   [[nodiscard]] bool same_noise(const std::vector<double>& sigma) const {
     return std::equal(sigma.begin(), sigma.end(), shooting_.sigma().begin(),
                       [](double now, double then) { return std::abs(now / then - 1.0) < 0.01; });
-  }
-
-  /// Of a step of all unknowns [sigma].
-  static double largest(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance) {
-    constexpr double least = 1e-300;
-    return step.cwiseQuotient(covariance.diagonal().cwiseMax(least).cwiseSqrt()).cwiseAbs().maxCoeff();
-  }
-
-  /// A motion that the plan of a search cannot follow to the end may be followed by a finer one.
-  bool plan_finely() {
-    constexpr double fine = 1e-7;
-    if (tolerance_ <= fine) return false;
-    tolerance_ = fine;
-    shooting_.plan(tolerance_);
-    return true;
-  }
-
-  void describe_integration(FittedModel& out) const {
-    out.integration = tolerance_;
-    const std::vector<IntegrationPlan> used = plans();
-    for (std::size_t e = 0; e < used.size(); ++e) {
-      if (!used[e].lack.empty()) out.fit.warnings.push_back(experiments_[e].name + ": " + used[e].lack);
-    }
-    std::string& fact = out.fit.facts["integration"];
-    fact = in_words(used, plans_);
-    if (options_.coloured) fact += in_words_of(shift_, tolerance_);
   }
 
   static std::string too_few(double count, double unknowns) {
@@ -458,10 +376,8 @@ class Estimator {
   Setting setting_;
   std::vector<Penalty> penalties_;
   Shooting shooting_;
+  OutputErrorIntegration integration_;
   std::vector<Eigen::VectorXd> initial_states_;  ///< where the start is a fit
-  double tolerance_;                             ///< of the integration
-  double shift_ = 0.0;                           ///< of an estimate by its error [sigma], the largest
-  int plans_ = 0;                                ///< made at estimates
   Ending end_;
   bool end_is_present_ = false;  ///< end_ is of the present values, noise and roughness
   LeastSquares::Summary last_;

@@ -1,0 +1,406 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/fit/filter/likelihood_ascent.h"
+#include "misfit/fit/filter/likelihood_derivatives.h"
+#include "misfit/fit/filter/noise_survey.h"
+#include "misfit/fit/filter/restricted_likelihood.h"
+#include "misfit/fit/filter/runnable_start.h"
+#include "misfit/math/bfgs.h"
+
+// Of estimate_filter(): not for use outside.
+namespace misfit {
+
+/// One search for the maximum, from one start: the steps of estimate_filter().
+class FilterSearch {
+ public:
+  FilterSearch(const FilterStart& start, const std::vector<Signals>& experiments, const FilterOptions& options)
+      : options_(options),
+        noise_given_(start.noise || options.noise),
+        at_(start.model, start.penalties, experiments, begun(start, options)) {}
+
+  /// As far as the first rounds of the blocks in turn. RunError: the model can be run from no start.
+  void approach(int rounds) {
+    begin();
+    if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
+    set_floor();
+    if (!noise_given_) search_noise();
+    at_.iterate(rounds, tolerance());  // refine_jointly() steps over both blocks at once
+    rounds_left_ -= rounds;
+  }
+
+  /// On to the end. RunError: the model cannot be run where it ended.
+  void finish() {
+    if (!out_.converged && rounds_left_ > 0) at_.iterate(rounds_left_, tolerance());
+    if (!options_.noise && !out_.around.time_held) survey_noise();
+    if (!options_.use) reject_outliers();
+    if (options_.verify) refine_jointly();
+    return_to_floor();
+    if (options_.verify && !options_.plans) integrate_well();
+    conclude();
+  }
+
+  /// What was wrong with the start; empty: it is the given one.
+  [[nodiscard]] const std::string& replaced() const { return replaced_; }
+
+  FilterEstimate take() { return std::move(out_); }
+
+  /// [log-likelihood] By which starts of one model are compared (marginal_loglik), parameters and noise as they are.
+  [[nodiscard]] double height() const {
+    return chooses_roughness() ? marginal_loglik(at_.normal_equations(), out_.penalties, at_.objective) : at_.objective;
+  }
+  /// Below which it does not end; −infinity where the start is none (set_floor()).
+  [[nodiscard]] double floor() const { return floor_ ? floor_->objective : -std::numeric_limits<double>::infinity(); }
+
+  static constexpr int all_rounds = 25;
+
+ private:
+  static FilterOptions begun(const FilterStart& start, FilterOptions options) {
+    if (start.noise) options.noise = start.noise;
+    return options;
+  }
+
+  [[nodiscard]] bool chooses_roughness() const {
+    return std::any_of(out_.penalties.begin(), out_.penalties.end(), [](const Penalty& p) { return p.chosen; });
+  }
+
+  /// [log-likelihood] Coarse where refine_jointly() follows.
+  [[nodiscard]] double tolerance() const { return options_.verify ? 0.2 : 0.02; }
+
+  void begin() {
+    const FilterNoise first_noise = out_.noise;
+    if (runs_with_raised_noise() || runs_finely(first_noise)) return;
+    const std::string why = at_.failure();
+    for (const RunnableStart& start : runnable_starts(out_.model)) {
+      at_.theta = start.model.theta();
+      out_.noise = out_.around;
+      out_.forced.set_force_time(out_.noise.force_time);
+      noise_given_ = false;
+      if (!runs_with_raised_noise()) continue;
+      replaced_ = "the model cannot be run from its start (" + why + "); the search began elsewhere: " + start.words;
+      return;
+    }
+    throw RunError(why);
+  }
+
+  /// A filter whose assumed noise is too small diverges: noise is raised until the RMS of the whitened innovations is at most 2.
+  bool runs_with_raised_noise() {
+    constexpr int most_raises = 12;
+    constexpr double most_variance = 4.0;  // of whitened innovations, which should have 1
+    bool runs = at_.linearise();
+    for (int k = 0; k < most_raises && !noise_given_; ++k) {
+      if (runs && innovation_variance() <= most_variance) break;
+      out_.noise.force *= 2.0;
+      for (auto& channel : out_.noise.channels) {
+        channel.white *= 1.5;
+        channel.jitter *= 1.5;
+      }
+      runs = at_.linearise();
+    }
+    return runs;
+  }
+
+  /// A motion that the steps of a search lose may be followed in finer ones.
+  bool runs_finely(const FilterNoise& noise) {
+    constexpr double fine = 1e-7;
+    if (options_.integration <= fine) return false;
+    out_.noise = noise;
+    at_.plan_along_measurements(fine);
+    if (!runs_with_raised_noise()) return false;
+    options_.integration = fine;
+    return true;
+  }
+
+  /// Where noise, measurements and roughness are given, the end is compared with the start: of two models each is to end at its maximum on
+  /// the same, and the larger one never below the smaller one from which it began.
+  void set_floor() {
+    if (!noise_given_ || !options_.use || chooses_roughness()) return;
+    floor_.emplace(Floor{at_.theta, pack(out_.noise, out_.model.system->spec(), out_.around).value, at_.objective});
+  }
+
+  /// A noise step may lose a little, and the noise's restricted likelihood has its maximum elsewhere: an end below the start is replaced by
+  /// what plain Newton steps, each of which rises, reach from the start.
+  void return_to_floor() {
+    constexpr int most_steps = 5;
+    if (!floor_ || at_.objective >= floor_->objective || !at_.move_to(floor_->theta, floor_->logs)) return;
+    const Eigen::MatrixXd information = out_.noise_fit.information;
+    out_.noise_fit = fit_noise(at_.runs(), out_.noise, {out_.around, options_.threads, 0});
+    out_.noise_fit.information = information;
+    out_.noise_fit.logs = floor_->logs;
+    const Eigen::Index q = std::ssize(floor_->logs);
+    restricted_ = {Eigen::VectorXd::Zero(q), Eigen::MatrixXd::Zero(q, q)};
+    LikelihoodDerivatives exact;
+    for (int k = 0; k < most_steps && options_.verify; ++k) {
+      if (!differentiate(false, exact) || !invert_joint(exact)) return;
+      if (!at_.joint_step(exact.gradient, out_.joint_covariance, restricted_.slope)) return;
+      if (*out_.newton_decrement < kDecrementOfOneSigma) return;
+    }
+  }
+
+  [[nodiscard]] double innovation_variance() const {
+    double squares = 0.0, count = 0.0;
+    for (const auto& jacobian : out_.jacobians) {
+      squares += jacobian.r.squaredNorm();
+      count += static_cast<double>(jacobian.r.size());
+    }
+    return count > 0.0 ? squares / count : 0.0;
+  }
+
+  /// Estimates the noise after one Gauss–Newton step of the parameters under the assumed noise; if the filter diverges there with the
+  /// estimated noise, at the start's parameters.
+  void search_noise() {
+    const Eigen::VectorXd start = at_.theta;
+    at_.gauss_newton_step();
+    if (at_.try_noise(best_noise())) return;
+    at_.theta = start;
+    at_.linearise();
+    at_.try_noise(best_noise());
+  }
+
+  /// From three start values of the jitter's frequency: the likelihood has a local maximum at each spectral line of the measurement noise.
+  NoiseFit best_noise() const {
+    constexpr int iterations = 6;
+    NoiseFit best;
+    best.minus_loglik = std::numeric_limits<double>::infinity();
+    for (const double share : {0.4, 1.0, 2.0}) {
+      FilterNoise start = out_.noise;
+      for (std::size_t o = 0; o < start.channels.size(); ++o)
+        start.channels[o].jitter_frequency = share * out_.around.channels[o].jitter_frequency;
+      const NoiseFit fit = fit_noise(at_.runs(), start, {out_.around, options_.threads, iterations});
+      if (fit.minus_loglik < best.minus_loglik) best = fit;
+    }
+    return best;
+  }
+
+  /// The likelihood has a maximum per correlation time at which the random force can stand in for something else (jitter, the motion's own
+  /// memory): the highest is climbed, others nearly as high are named.
+  void survey_noise() {
+    constexpr double clearly_higher = 0.5, nearly = 5.0;  // [log-likelihood]
+    const std::vector<NoiseFit> maxima = noise_maxima(at_.runs(), out_.noise, {out_.around, options_.threads});
+    if (maxima.empty()) return;
+    const double present = minus_loglik(at_.runs(), out_.noise);
+    if (maxima.front().minus_loglik < present - clearly_higher && at_.try_noise(maxima.front())) at_.iterate(all_rounds, tolerance());
+    for (const NoiseFit& other : maxima) {
+      const double below = other.minus_loglik - maxima.front().minus_loglik;
+      if (&other == &maxima.front() || below > nearly) continue;
+      out_.notes.push_back("the likelihood has another maximum at a correlation time of the random force of about " +
+                           format_value(other.noise.force_time) + " s, lower by " + format_value(2.0 * below) + " in 2 log L");
+    }
+  }
+
+  /// Gates the measurements and estimates again until the rejected set no longer changes: outliers in the data bias the first estimates, by
+  /// which good measurements may have been rejected too.
+  void reject_outliers() {
+    constexpr int most_rounds = 4;
+    const std::vector<FilterData> all = out_.data;
+    std::vector<std::vector<std::size_t>> before(all.size()), now(all.size());
+    FilterRunner runner(out_.forced, false);
+    for (int round = 0; round < most_rounds; ++round) {
+      FilterTrace trace;
+      out_.outliers = 0;
+      runner.set_parameters(at_.values());
+      for (std::size_t e = 0; e < all.size(); ++e) {
+        if (!runner.run_gated(all[e], out_.noise, trace, now[e])) return;
+        out_.outliers += static_cast<int>(now[e].size());
+      }
+      if (now == before) return;
+      for (std::size_t e = 0; e < all.size(); ++e) {
+        out_.data[e].use = all[e].use;
+        for (std::size_t at : now[e]) out_.data[e].use[at] = SampleRole::none;
+      }
+      before = now;
+      iterate_again();
+    }
+  }
+
+  /// After a change of which measurements count.
+  void iterate_again() {
+    at_.linearise();
+    at_.iterate(15, tolerance());
+  }
+
+  /// Newton steps over parameters and log noise together, each in these steps:
+  ///   1. `differentiate`: gradient and Fisher information of the exact likelihood; one-sided differences only after a short step whose
+  ///      gain was as predicted ("promised").
+  ///   2. `exclude_nonlinear` (no use given): measurements at which the filter's linearisation fails still update the state, but no longer
+  ///      count in the likelihood; iterate and begin again.
+  ///   3. `restrict_likelihood`: correction of the noise's gradient and information for the estimated parameters (REML).
+  ///   4. `invert_joint`: covariance of parameters and noise with roughness and priors.
+  ///   5. `step_jointly`: a Newton step inside the bounds that raises the exact objective.
+  /// Ends when no step rises, or after a step of less than a sigma.
+  void refine_jointly() {
+    constexpr int most_steps = 20;
+    constexpr double short_step = 8.0, as_promised = 0.2;  // promised gain: of four sigmas of one parameter; share of it
+    LikelihoodDerivatives exact;
+    bool one_sided = false;
+    for (int k = 0; k < most_steps; ++k) {
+      if (!differentiate(one_sided, exact)) return;
+      one_sided = false;
+      if (!options_.use && exclude_nonlinear(exact.nonlinear)) {
+        iterate_again();
+        bfgs_ = {};
+        continue;
+      }
+      restrict_likelihood();
+      if (!invert_joint(exact)) return;
+      const std::optional<double> gained = step_jointly(exact);
+      if (!gained) return;
+      const double promised = *out_.newton_decrement;
+      if (promised < kDecrementOfOneSigma) {
+        out_.newton_decrement = std::abs(promised - *gained);
+        return;
+      }
+      one_sided = promised < short_step && std::abs(*gained - promised) < as_promised * promised;
+    }
+  }
+
+  bool differentiate(bool one_sided, LikelihoodDerivatives& exact) {
+    const auto at_theta = [&](const LikelihoodDerivatives* near) { return exact_derivatives(out_, at_.theta, options_.threads, near); };
+    exact = at_theta(one_sided ? &exact : nullptr);
+    if (one_sided && !exact.failure.empty()) exact = at_theta(nullptr);
+    out_.newton_decrement.reset();
+    if (exact.failure.empty()) return true;
+    unverified_ = exact.failure;
+    return false;
+  }
+
+  /// Plans the integration anew where its error moves an estimate by more than a tenth of its sigma, and estimates again.
+  void integrate_well() {
+    constexpr double enough = 0.1, aim = 0.05, few = 3.0;
+    constexpr int most_plans = 3;
+    double tolerance = options_.integration;
+    for (int plans = 0;; ++plans) {
+      const double shift = at_.integration_shift();
+      describe_integration(plans, shift);
+      if (!(shift > enough) || plans == most_plans || tolerance <= kFinestTolerance) return;
+      tolerance = finer_tolerance(plans_of(out_), aim / shift);
+      if (!at_.plan(tolerance) || !at_.linearise()) return;
+      if (shift > few) at_.iterate(15, this->tolerance());
+      bfgs_ = {};
+      refine_jointly();
+    }
+  }
+
+  void describe_integration(int plans, double shift) {
+    const std::vector<IntegrationPlan> used = plans_of(out_);
+    out_.integration = in_words(used, plans) + in_words_of(shift, used.front().tolerance);
+  }
+
+  bool exclude_nonlinear(const std::vector<std::vector<std::size_t>>& nonlinear) {
+    bool any = false;
+    for (std::size_t e = 0; e < nonlinear.size(); ++e) {
+      for (std::size_t at : nonlinear[e]) {
+        out_.data[e].use[at] = SampleRole::update;
+        out_.nonlinear.push_back(out_.data[e].signals->t[at / out_.model.outputs()]);
+        any = true;
+      }
+    }
+    return any;
+  }
+
+  /// −½ log det N is nearly linear in the logarithms of the noise: its gradient is reused until one of these has changed by 0.1.
+  void restrict_likelihood() {
+    constexpr double least_change = 0.1;
+    const std::vector<double>& logs = out_.noise_fit.logs;
+    bool moved = restricted_at_.size() != logs.size();
+    for (std::size_t i = 0; i < logs.size() && !moved; ++i) moved = std::abs(logs[i] - restricted_at_[i]) > least_change;
+    if (!moved) return;
+    restricted_ = restricted_likelihood(out_, at_.theta, options_.threads);
+    restricted_at_ = logs;
+  }
+
+  /// The information loss is an approximation: it is not subtracted where the matrix would not stay positive definite.
+  bool invert_joint(const LikelihoodDerivatives& exact) {
+    const Eigen::MatrixXd whole = joint_information(out_, exact);
+    Eigen::MatrixXd less = whole;
+    const Eigen::Index q = restricted_.information_loss.rows();
+    less.bottomRightCorner(q, q) -= restricted_.information_loss;
+    const PenaltyBasis basis = penalty_eigenbasis(whole.rows(), out_.penalties);
+    for (const Eigen::MatrixXd* information : std::array<const Eigen::MatrixXd*, 2>{&less, &whole}) {
+      if (!invert_with(*information, basis, out_.joint_covariance)) continue;
+      out_.joint_information = *information;
+      return true;
+    }
+    unverified_ = "the information matrix cannot be inverted";
+    return false;
+  }
+
+  /// With the BFGS inverse of the steps before; if that does not rise (near a kink its updates are wrong), with the inverse information.
+  std::optional<double> step_jointly(const LikelihoodDerivatives& exact) {
+    Eigen::VectorXd gradient = exact.gradient;
+    gradient.tail(restricted_.slope.size()) += restricted_.slope;
+    bfgs_.update(at_.joint(), gradient);
+    std::optional<double> gained = at_.joint_step(gradient, bfgs_.inverse(out_.joint_covariance), restricted_.slope);
+    if (gained || !bfgs_.has_updates()) return gained;
+    bfgs_ = {};
+    return at_.joint_step(gradient, out_.joint_covariance, restricted_.slope);
+  }
+
+  void conclude() {
+    const bool runs = std::all_of(out_.traces.begin(), out_.traces.end(), [](const FilterTrace& trace) { return trace.finite; });
+    if (!runs && !at_.linearise()) throw RunError(at_.failure());
+    out_.model.set_theta(at_.theta);
+    const std::vector<double> all = at_.values();
+    for (std::size_t i = 0; i < all.size(); ++i) out_.forced.model.parameters[i].value = all[i];
+    out_.objective = at_.objective;
+    if (at_.theta.size() > 0) set_covariance();
+    for (const auto& trace : out_.traces) out_.validation_loglik += trace.validation_loglik;
+    const std::optional<double>& left = out_.newton_decrement;
+    if (options_.verify) out_.converged = left && (*left < kDecrementOfOneSigma || (out_.converged && *left < kDecrementOfTwoSigmas));
+    out_.message = how_it_ended();
+  }
+
+  void set_covariance() {
+    std::vector<Penalty> given = out_.penalties;
+    for (auto& p : given) p.chosen = false;
+    const PenalisedFit smoothed = estimate_smoothing(at_.normal_equations(), given, 1.0);
+    if (smoothed.ok) {
+      out_.covariance = smoothed.covariance;
+      out_.edf = smoothed.edf;
+    }
+    if (out_.joint_covariance.size() > 0) out_.covariance = out_.joint_covariance.topLeftCorner(at_.theta.size(), at_.theta.size());
+  }
+
+  [[nodiscard]] std::string how_it_ended() const {
+    const std::optional<double>& left = out_.newton_decrement;
+    constexpr double quadratic = 100.0;  // [log-likelihood] a promise of more is beyond what its derivatives know
+    if (left && *left >= quadratic) return "no maximum was reached: the likelihood still rises steeply";
+    if (left && *left >= kDecrementOfOneSigma) {
+      return "by its exact derivatives the log-likelihood could still rise by " + format_value(*left) +
+             (out_.converged ? ", less than a change of one parameter by two sigmas is worth" : "");
+    }
+    if (out_.converged) return "the likelihood no longer rises";
+    if (options_.verify && !left) return "whether the likelihood is at its maximum could not be verified: " + unverified_;
+    return "iteration limit: the likelihood may still rise";
+  }
+
+  /// Where a comparison begins.
+  struct Floor {
+    Eigen::VectorXd theta;
+    std::vector<double> logs;
+    double objective;
+  };
+
+  FilterOptions options_;
+  bool noise_given_;
+  std::string replaced_;
+  int rounds_left_ = all_rounds;
+  std::optional<Floor> floor_;
+  BfgsInverse bfgs_;
+  RestrictedLikelihood restricted_;
+  std::vector<double> restricted_at_;  ///< the logarithms where it was taken
+  std::string unverified_ = "too many samples where the linearisation of the filter fails";
+  LikelihoodAscent at_;
+  FilterEstimate& out_ = at_.out;
+};
+
+}  // namespace misfit
