@@ -33,7 +33,8 @@ struct CoulombFriction {
        .upper = 1e6,
        .scale = 0.01,
        .doc = "rate at which the smoothed friction has 76 % of its size",
-       .fixed = true},
+       .fixed = true,
+       .scan = {.from = 0.02, .to = 0.3, .count = 3, .over = "|rate|", .smooths = true}},
   };
   static constexpr bool dissipative = true;
 

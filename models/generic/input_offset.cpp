@@ -12,6 +12,7 @@ struct InputOffset {
   static constexpr const char* valid = "an offset that is constant over the recording";
   static constexpr const char* size = "a pump that needs 0.3 V before it delivers: -0.3 V times its gain";
   static constexpr const char* source = "definition";
+  static constexpr const char* specialises = "constant_force";
   static constexpr const char* excludes = "wrong gain (input_gain), drift, a dead zone of the input";
 
   enum Quantity { input };

@@ -32,6 +32,23 @@ TEST(Bindings, AMotionHasItsRateAndWhatThatIsTheRateOf) {
   EXPECT_THAT(bindings("cubic_stiffness", "test_tanks"), ElementsAre(Roles{})) << "a tank has no displacement";
 }
 
+TEST(Bindings, TheSpeedOfAMotorIsARateThoughNobodyModelsItsAngle) {
+  SystemSpec motor = registry().system("test_tanks").make({})->spec();
+  motor.states[0].unit = "rad/s";
+  EXPECT_THAT(enumerate_bindings(registry().effect("coulomb_friction").spec(), motor),
+              ElementsAre(Roles{}, Roles{{"port", "dx1/dt"}, {"rate", "x1"}}));
+  motor.states[0].unit = "rad/s^2";
+  EXPECT_THAT(enumerate_bindings(registry().effect("coulomb_friction").spec(), motor), ElementsAre(Roles{})) << "an acceleration is none";
+}
+
+TEST(Bindings, LevelsOfOneUnitMayExchange) {
+  EXPECT_THAT(bindings("exchange", "test_tanks"), ElementsAre(Roles{}, Roles{{"level", "x1"}, {"other", "x2"}, {"port", "dx1/dt"}},
+                                                              Roles{{"level", "x2"}, {"other", "x1"}, {"port", "dx2/dt"}}));
+  SystemSpec of_two_kinds = registry().system("test_tanks").make({})->spec();
+  of_two_kinds.states[0].unit = "K";
+  EXPECT_THAT(enumerate_bindings(registry().effect("exchange").spec(), of_two_kinds), ElementsAre(Roles{}));
+}
+
 TEST(Bindings, SensorsAndInputsAreTriedWhereTheSystemHasADefaultForThem) {
   EXPECT_THAT(bindings("sensor_scale", "test_tanks"), ElementsAre(Roles{}, Roles{{"output", "y1"}}, Roles{{"output", "y2"}}));
   EXPECT_THAT(bindings("input_gain", "test_tanks"),

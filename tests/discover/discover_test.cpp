@@ -29,7 +29,7 @@ TEST(Discover, IsSilentWhereNothingIsMissing) {
 }
 
 TEST(Discover, NamesAPlantedFriction) {
-  const Discovery found = Flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}})).discover();
+  const Discovery found = Flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}, {"width", 0.02}})).discover();
   ASSERT_FALSE(found.candidates.empty());
   const Candidate& first = found.candidates.front();
   EXPECT_EQ(first.effect, "coulomb_friction") << found.verdict;
@@ -42,7 +42,7 @@ TEST(Discover, NamesAPlantedFriction) {
 }
 
 TEST(Discover, OnlyOneEffectIsPredictedAsInTheWholeSearch) {
-  const Flight flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}}));
+  const Flight flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}, {"width", 0.02}}));
   const Discovery whole = flight.discover();
   DiscoverOptions options;
   options.only = "coulomb_friction";
@@ -95,7 +95,7 @@ TEST(Verdict, StrengthsThatAreAllBelowTheirSigmaAreNotDetermined) {
 
 /// The friction planted is 25 N m, a study that says "at most 10" stops the refit there.
 TEST(Discover, DoesNotAcceptWhatEndsAtItsBound) {
-  const Flight flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}}));
+  const Flight flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}, {"width", 0.02}}));
   ModelRequest request = flight.request;
   request.parameters["friction"].upper = 10.0;
   const Discovery found = misfit::discover(flight.estimate, request, registry(), flight.signals);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 
+#include "misfit/core/units.h"
+#include "misfit/math/statistics.h"
 #include "misfit/model/evaluator.h"
 
 namespace misfit {
@@ -17,6 +20,17 @@ bool has_role(const std::vector<Role>& roles, std::string_view name) {
 const StateSpec* state_called(const SystemSpec& system, const std::string& name) {
   const auto found = std::find_if(system.states.begin(), system.states.end(), [&](const StateSpec& s) { return s.name == name; });
   return found == system.states.end() ? nullptr : &*found;
+}
+
+/// Its unit is one per time: rad/s, m/s, kg/s, m^3/s, Hz, but neither m/s^2 nor V.
+bool is_rate(const std::string& unit) {
+  constexpr std::array<std::string_view, 4> times = {"s", "ms", "min", "h"};
+  double power = 0.0;
+  for (const auto& [symbol, exponent] : unit_symbols(unit)) {
+    if (symbol == "Hz") power -= exponent;
+    if (std::find(times.begin(), times.end(), symbol) != times.end()) power += exponent;
+  }
+  return power == -1.0;
 }
 
 /// Ports on which generic effects make sense by themselves, with the roles that their conjugate state plays.
@@ -32,6 +46,7 @@ std::vector<Roles> natural_ports(const SystemSpec& system) {
       roles.insert({{"rate", state->name}, {"displacement", moved}, {"level", moved}});
     } else {
       roles["level"] = state->name;
+      if (is_rate(state->unit)) roles["rate"] = state->name;
     }
     out.push_back(std::move(roles));
   }
@@ -48,7 +63,7 @@ std::optional<Roles> roles_at(const EffectSpec& effect, const Roles& place) {
         out[role.name] = found->second;
         continue;
       }
-      constexpr std::array<std::string_view, 5> kinds = {"rate", "displacement", "level", "port", "to_port"};
+      constexpr std::array<std::string_view, 6> kinds = {"rate", "displacement", "level", "other", "port", "to_port"};
       if (!role.optional && std::find(kinds.begin(), kinds.end(), role.name) != kinds.end()) return std::nullopt;
     }
   }
@@ -64,6 +79,20 @@ std::vector<Roles> times(const std::vector<Roles>& places, const std::string& ro
       if (port != place.end() && port->second == value) continue;  // nothing spills into itself
       out.push_back(place);
       out.back()[role] = value;
+    }
+  }
+  return out;
+}
+
+/// Each place once per other state of the unit that its level has.
+std::vector<Roles> times_other_states(const std::vector<Roles>& places, const SystemSpec& system) {
+  std::vector<Roles> out;
+  for (const Roles& place : places) {
+    const StateSpec& level = *state_called(system, place.at("level"));
+    for (const StateSpec& state : system.states) {
+      if (state.name == level.name || !parse_unit(state.unit).same_dimension(parse_unit(level.unit))) continue;
+      out.push_back(place);
+      out.back()["other"] = state.name;
     }
   }
   return out;
@@ -86,6 +115,51 @@ std::optional<OperatingRange::Range> range_of(std::vector<double> values) {
   return range;
 }
 
+/// Index of the quantity that ScanSpec::over names, −1 if it names none.
+int scanned_quantity(const BoundEffect& effect, const ScanSpec& scan) {
+  std::string_view role = scan.over;
+  if (role.size() > 2 && role.starts_with('|') && role.ends_with('|')) role = role.substr(1, role.size() - 2);
+  const auto& quantities = effect.effect->spec().quantities;
+  const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const Role& r) { return role == r.name; });
+  return found == quantities.end() ? -1 : effect.quantities[found - quantities.begin()];
+}
+
+/// Usual sigma of each quantity one step ahead, from the covariance of the predicted states and the quantities' slopes.
+std::vector<double> sigmas_of_quantities(const FilterEstimate& estimate) {
+  constexpr std::size_t samples = 100;  // of each experiment
+  const std::size_t count = estimate.model.system->spec().quantities.size();
+  Evaluator evaluator(estimate.forced.model);
+  FilterRunner runner(estimate.forced, false);
+  runner.set_parameters(estimate.forced.model.values());
+  std::vector<std::vector<double>> sigmas(count);
+  std::vector<double> q(count), moved(count);
+  for (const FilterData& data : estimate.data) {
+    FilterTrace trace;
+    if (!runner.run(data, estimate.noise, trace, {.keep_P = true})) continue;
+    const Eigen::Index n = trace.n, columns = n + 2 * Eigen::Index{trace.ny};
+    const std::size_t stride = std::max<std::size_t>((trace.samples - data.first) / samples, 1);
+    for (std::size_t k = data.first; k < trace.samples; k += stride) {
+      const Eigen::Map<const RowMatrix> P(trace.P.data() + k * n * columns, n, columns);
+      Eigen::VectorXd x = trace.predicted_at(k);
+      evaluator.quantities(x.data(), data.inputs.at(k), data.signals->t[k], q.data());
+      Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(count, n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const double at = x[i], by = std::sqrt(std::max(P(i, i), 0.0));
+        if (!(by > 0.0)) continue;
+        x[i] = at + by;
+        evaluator.quantities(x.data(), data.inputs.at(k), data.signals->t[k], moved.data());
+        x[i] = at;
+        for (std::size_t j = 0; j < count; ++j) slope(j, i) = (moved[j] - q[j]) / by;
+      }
+      const Eigen::VectorXd variance = (slope * P.leftCols(n) * slope.transpose()).diagonal();
+      for (std::size_t j = 0; j < count; ++j) sigmas[j].push_back(std::sqrt(std::max(variance[j], 0.0)));
+    }
+  }
+  std::vector<double> out;
+  for (auto& list : sigmas) out.push_back(list.empty() ? 0.0 : median(list));
+  return out;
+}
+
 }  // namespace
 
 bool is_generic(const EffectSpec& effect) {
@@ -102,6 +176,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
     for (const Roles& place : places) ports.push_back(place.at("port"));
     places = times(places, "to_port", ports);
   }
+  if (has_role(effect.quantities, "other")) places = times_other_states(places, system);
   if (has_role(effect.quantities, "input"))
     places = times(places, "input", system.roles.contains("input") ? names_of(system.inputs) : std::vector<std::string>{});
   if (has_role(effect.ports, "output"))
@@ -135,6 +210,7 @@ OperatingRange::OperatingRange(const FilterEstimate& estimate) {
     }
   }
   for (auto& list : values) ranges_.push_back(range_of(std::move(list)));
+  sigmas_ = sigmas_of_quantities(estimate);
   if (steps.empty()) return;
   const auto middle = steps.begin() + steps.size() / 2;
   std::nth_element(steps.begin(), middle, steps.end());
@@ -146,18 +222,29 @@ std::optional<OperatingRange::Range> OperatingRange::range(int quantity) const {
   return quantity < 0 || i >= ranges_.size() ? std::nullopt : ranges_[i];
 }
 
+double OperatingRange::narrowest(int quantity) const {
+  const std::size_t i = quantity;
+  return quantity < 0 || i >= sigmas_.size() || !std::isfinite(sigmas_[i]) ? 0.0 : std::sqrt(0.5 * std::numbers::pi) * sigmas_[i];
+}
+
+double OperatingRange::lower_bound(const BoundEffect& effect, std::size_t coefficient) const {
+  const EffectSpec& spec = effect.effect->spec();
+  const CoefficientSpec& c = spec.coefficients[coefficient];
+  if (!c.scan.smooths) return c.lower;
+  const int quantity = scanned_quantity(effect, c.scan);
+  return std::clamp(narrowest(quantity), c.lower, c.upper);
+}
+
 std::vector<double> OperatingRange::grid(const BoundEffect& effect, std::size_t coefficient) const {
   const EffectSpec& spec = effect.effect->spec();
   const CoefficientSpec& c = spec.coefficients[coefficient];
   const std::string_view over = c.scan.over;
-  const bool size = over.starts_with('|') && over.ends_with('|') && over.size() > 2;
+  const bool size = over.starts_with('|');
   double origin = 0.0, unit = 1.0;
   if (over == "step") {
     unit = step_;
   } else if (!over.empty()) {
-    const std::string_view role = size ? over.substr(1, over.size() - 2) : over;
-    const auto found = std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const Role& r) { return role == r.name; });
-    const auto range = found == spec.quantities.end() ? std::nullopt : this->range(effect.quantities[found - spec.quantities.begin()]);
+    const auto range = this->range(scanned_quantity(effect, c.scan));
     if (!range) return {c.value};
     origin = size ? 0.0 : range->low;
     unit = size ? std::max(std::abs(range->low), std::abs(range->high)) : range->high - range->low;
@@ -167,7 +254,7 @@ std::vector<double> OperatingRange::grid(const BoundEffect& effect, std::size_t 
     const int steps = std::max(c.scan.count - 1, 1);
     const double share = size || over == "step" ? c.scan.from * std::pow(c.scan.to / c.scan.from, static_cast<double>(i) / steps)
                                                 : c.scan.from + (c.scan.to - c.scan.from) * i / steps;
-    out.push_back(std::clamp(origin + unit * share, c.lower, c.upper));
+    out.push_back(std::clamp(origin + unit * share, lower_bound(effect, coefficient), c.upper));
   }
   return out;
 }

@@ -17,8 +17,9 @@ using Roles = std::map<std::string, std::string>;
 
 /// Where in a system an effect could act: first its default roles ({}), then, for a generic effect, every place that the system itself
 /// suggests. A dynamic port of the random force whose conjugate is a state gives `port` with that state: as `rate`, and what it is the rate
-/// of as `displacement` and `level`; or, where it is the rate of nothing, as `level`. `to_port` is each other such port. `input` is each
-/// input and `output` each output (`signal` follows it), if the system has a default for `input`, or for `signal`: its way of saying
+/// of as `displacement` and `level`; or, where it is the rate of nothing, as `level`, and as `rate` too if its unit is one per time (the
+/// speed of a motor whose angle nobody models). `to_port` is each other such port, `other` each other state of the level's unit. `input` is
+/// each input and `output` each output (`signal` follows it), if the system has a default for `input`, or for `signal`: its way of saying
 /// that generic effects make sense there. Units are not looked at: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
@@ -34,12 +35,18 @@ class OperatingRange {
   /// nullopt where it never changes or is not known.
   [[nodiscard]] std::optional<Range> range(int quantity) const;
   [[nodiscard]] double step() const { return step_; }  ///< usual sampling interval [s]
+  /// Narrowest smoothing about a value of a quantity that the filter can follow: sqrt(pi/2) times the usual sigma of its predictions, by
+  /// which a step looks smoothed to it (the mean of sign(x) over a normal x of that sigma has the slope sqrt(2/pi)/sigma). 0: of outputs.
+  [[nodiscard]] double narrowest(int quantity) const;
 
+  /// Lower bound of a shape: its own, or what the filter resolves of the quantity that it smooths.
+  [[nodiscard]] double lower_bound(const BoundEffect& effect, std::size_t coefficient) const;
   /// Values of a shape to look at (ScanSpec), kept within its bounds; the default alone where `over` names what is not known.
   [[nodiscard]] std::vector<double> grid(const BoundEffect& effect, std::size_t coefficient) const;
 
  private:
   std::vector<std::optional<Range>> ranges_;
+  std::vector<double> sigmas_;  ///< of quantities
   double step_ = 0.0;
 };
 

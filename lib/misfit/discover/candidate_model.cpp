@@ -119,6 +119,7 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
       strength_specs.push_back(&coefficients[c]);
     } else if (coefficients[c].scan.count > 0) {
       out.shapes.push_back(parameter);
+      p.lower = operating_range.lower_bound(bound, c);
       axes.push_back(operating_range.grid(bound, c));
     } else if (coefficients[c].scan.count < 0) {
       out.frequency = parameter;

@@ -83,6 +83,15 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
   return out;
 }
 
+/// A shape that a study keeps fixed but discovery looked for: the strength's interval holds for that value alone, so it is fitted too.
+bool several_values_scanned(const Model& model, int shape) {
+  const BoundEffect& bound = model.effects.back();
+  for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
+    if (bound.coefficients[c].parameter == shape) return bound.effect->spec().coefficients[c].scan.count > 1;
+  }
+  return false;
+}
+
 }  // namespace
 
 Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry) {
@@ -104,7 +113,10 @@ Model start_model(const FilterEstimate& without, const ScreeningResult& screenin
   }
   for (std::size_t i = 0; i < screening.cell.size(); ++i) {
     const int shape = i < candidate_model.shapes.size() ? candidate_model.shapes[i] : candidate_model.frequency;
-    model.parameters[shape].value = screening.cell[i];
+    Parameter& p = model.parameters[shape];
+    p.value = screening.cell[i];
+    p.lower = candidate_model.model.parameters[shape].lower;
+    p.free |= several_values_scanned(model, shape);
   }
   return model;
 }

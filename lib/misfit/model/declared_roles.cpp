@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "misfit/core/shown.h"
+#include "misfit/core/units.h"
 #include "misfit/model/declared_system.h"
 
 namespace misfit::declared {
@@ -48,6 +49,19 @@ class Roles {
     if (level >= 0 || d_.roles->has("rate")) s.roles["rate"] = moving;
     s.roles["level"] = role("level", level < 0 ? moving : s.states[level].name, quantities);
     if (level >= 0) s.roles["displacement"] = s.roles["level"];
+    set_other_level();
+  }
+
+  /// The first state of the level's unit beside it.
+  void set_other_level() {
+    SystemSpec& s = d_.spec;
+    const int level = index_of(s.quantities, s.roles["level"]);
+    const Unit unit = parse_unit(s.quantities[level].unit);
+    for (const StateSpec& state : s.states) {
+      if (state.name == s.roles["level"] || !parse_unit(state.unit).same_dimension(unit)) continue;
+      s.roles["other"] = state.name;
+      return;
+    }
   }
 
   std::string role(const char* name, const std::string& fallback, const std::vector<std::string>& valid) {

@@ -52,6 +52,9 @@ struct ScanSpec {
   /// For effects of any unit, which cannot know sizes beforehand. "level" (a role): 0 to 1 stand for the ends of the range that it visits;
   /// "|level|": shares of its largest size; "step": multiples of the sampling interval, in equal ratios. "": plain numbers.
   const char* over = "";
+  /// A smoothing about a value of `over`, a quantity: no narrower than the filter resolves that. A linear filter takes the slope of a
+  /// corner at one point, where the mean over the uncertainty of its state counts, and finds what acts across it too small.
+  bool smooths = false;
 };
 
 /// A number the effect owns; where the study says so, a curve of any quantity.
