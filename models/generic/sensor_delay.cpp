@@ -22,7 +22,13 @@ struct SensorDelay {
   static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { late_share, sensor_delay };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "late_share", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.1, .doc = "part of the output that comes late"},
+      {.name = "late_share",
+       .unit = "-",
+       .lower = -2.0,
+       .upper = 2.0,
+       .scale = 0.1,
+       .doc = "part of the output that comes late",
+       .whole = 1.0},
       {.name = "sensor_delay",
        .kind = CoefficientKind::shape,
        .value = 0.05,

@@ -19,7 +19,7 @@ struct SensorLag {
   static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { share, sensor_tau };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "share", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.1, .doc = "lagged part of the output"},
+      {.name = "share", .unit = "-", .lower = -2.0, .upper = 2.0, .scale = 0.1, .doc = "lagged part of the output", .whole = 1.0},
       {.name = "sensor_tau",
        .kind = CoefficientKind::shape,
        .value = 0.05,

@@ -50,9 +50,10 @@ TEST(StudyEdit, EffectsAsTablesOfTheirOwnKeepTheirEntries) {
 TEST(StudyEdit, TheLineOfAnEffectHoldsKindRolesAndStart) {
   EXPECT_EQ(effect_line("coning", "coning", {}), "coning = {}");
   EXPECT_EQ(effect_line("bearing", "coulomb_friction", {{"rate", "omega"}}), "bearing = { kind = \"coulomb_friction\", rate = \"omega\" }");
-  EXPECT_EQ(effect_line("strut_wake", "strut_wake", {}, {{"wake_phi", -1.5}}), "strut_wake = { start = { wake_phi = -1.5 } }");
-  EXPECT_EQ(effect_line("lag", "lag", {{"port", "dx2/dt"}}, {{"lag.k", 1e-9}}),
+  EXPECT_EQ(effect_line("strut_wake", "strut_wake", {}, {{{"wake_phi", -1.5}}}), "strut_wake = { start = { wake_phi = -1.5 } }");
+  EXPECT_EQ(effect_line("lag", "lag", {{"port", "dx2/dt"}}, {{{"lag.k", 1e-9}}}),
             "lag = { port = \"dx2/dt\", start = { \"lag.k\" = 1e-09 } }");
+  EXPECT_EQ(effect_line("lag", "lag", {}, {{}, {"tau"}, {"k", "z"}}), "lag = { free = [\"tau\"], fixed = [\"k\", \"z\"] }");
 }
 
 TEST(StudyEdit, AnEntryBecomesACommentWithAReason) {

@@ -28,7 +28,8 @@ struct HastyFriction {
        .upper = 1e6,
        .scale = 0.01,
        .doc = "width of the smoothing",
-       .fixed = true},
+       .fixed = true,
+       .scan = {.from = 0.02, .to = 0.3, .count = 3, .over = "|rate|", .smooths = true}},
   };
   static constexpr bool dissipative = true;
 

@@ -12,6 +12,7 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
   json("held_out_gain", c.held_out_gain), json("p_value", c.p_value), json("group", c.group);
   json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters), json("family", c.family);
   json("roles", c.roles), json("dof", c.dof), json("described", c.described), json("force", c.force);
+  json("free", c.free), json("fixed", c.fixed);
   json("refit_values", c.refit_values), json("refit_log_noise", c.refit_log_noise);
 }
 

@@ -28,6 +28,7 @@ struct Candidate {
   bool accepted = false;
   std::string why;                             ///< of being accepted or not, in words
   std::map<std::string, Estimate> parameters;  ///< at the refit, else one Gauss–Newton step
+  std::vector<std::string> free, fixed;        ///< its coefficients that the refit estimated or held unlike the effect says itself
   std::map<std::string, Estimate> force;       ///< random force per port after refitting
   /// Where the refit ended, for whoever begins there: all parameters of the model with the effect in their order [SI], and logarithms of
   /// the noise (NoiseVector). Empty: not refitted.

@@ -69,6 +69,7 @@ struct EffectStudy {
   std::string kind;                             ///< effect's key: "coulomb_friction"; default = name
   std::map<std::string, std::string> roles;     ///< role → quantity or port, as bound by the study
   std::map<std::string, config::Number> start;  ///< parameter → value to start from, as written (unit checked by the model)
+  std::vector<std::string> free, fixed;         ///< parameters that are estimated, or kept, unlike the effect says itself
   Source where;
   std::optional<FormulaStudy> declared;
 };

@@ -104,13 +104,18 @@ std::string without_inline_entry(const StudyText& study, const TomlNode& node, c
 }  // namespace
 
 std::string effect_line(const std::string& name, const std::string& kind, const std::map<std::string, std::string>& roles,
-                        const std::map<std::string, double>& start) {
+                        const EffectStart& start) {
   std::vector<std::string> entries;
   if (kind != name) entries.push_back("kind = " + toml_string(kind));
   for (const auto& [role, target] : roles) entries.push_back(toml_key(role) + " = " + toml_string(target));
   std::vector<std::string> values;
-  for (const auto& [parameter, value] : start) values.push_back(fmt::format("{} = {:.6g}", toml_key(parameter), value));
+  for (const auto& [parameter, value] : start.values) values.push_back(fmt::format("{} = {:.6g}", toml_key(parameter), value));
   if (!values.empty()) entries.push_back(fmt::format("start = {{ {} }}", fmt::join(values, ", ")));
+  for (const auto& [key, list] : {std::pair{"free", &start.free}, std::pair{"fixed", &start.fixed}}) {
+    std::vector<std::string> quoted;
+    for (const std::string& parameter : *list) quoted.push_back(toml_string(parameter));
+    if (!quoted.empty()) entries.push_back(fmt::format("{} = [{}]", key, fmt::join(quoted, ", ")));
+  }
   if (entries.empty()) return toml_key(name) + " = {}";
   return fmt::format("{} = {{ {} }}", toml_key(name), fmt::join(entries, ", "));
 }

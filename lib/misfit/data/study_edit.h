@@ -17,10 +17,14 @@ namespace misfit {
 enum class OddPaths { refuse, replace };
 [[nodiscard]] std::string text_for_folder(const Study& study, const std::filesystem::path& folder, OddPaths odd = OddPaths::refuse);
 
-/// The line of [effects] for an effect: "bearing = { kind = \"coulomb_friction\", rate = \"omega\" }". `start`: values of parameters to
-/// start from [SI].
+/// What the line of an effect says of its parameters.
+struct EffectStart {
+  std::map<std::string, double> values = {};       ///< to start from [SI]
+  std::vector<std::string> free = {}, fixed = {};  ///< estimated, or held, unlike the effect says itself
+};
+/// The line of [effects] for an effect: "bearing = { kind = \"coulomb_friction\", rate = \"omega\" }".
 [[nodiscard]] std::string effect_line(const std::string& name, const std::string& kind, const std::map<std::string, std::string>& roles,
-                                      const std::map<std::string, double>& start = {});
+                                      const EffectStart& start = {});
 
 /// `line` after the last entry of [effects]; the section is made where there is none.
 [[nodiscard]] std::string with_effect(const std::string& text, const std::string& line);

@@ -146,6 +146,8 @@ std::vector<KeyGroup> effect_groups() {
        {{.name = "kind", .otherwise = "NAME", .meaning = "Key of the effect."},
         {.name = "start", .type = Type::table, .otherwise = "as the effect says",
          .meaning = "Parameter = value to start from, where [parameters] gives none."},
+        {.name = "free", .type = Type::texts, .otherwise = "as the effect says", .meaning = "Parameters that are estimated, where [parameters] does not say."},
+        {.name = "fixed", .type = Type::texts, .otherwise = "as the effect says", .meaning = "Parameters that keep their value, where [parameters] does not say."},
         {.name = "ROLE", .otherwise = "quantity or port of the same name, else the system's choice", .any = true,
          .meaning = "Quantity that the effect reads, or port that it adds to, in place of the one of that name."}}},
       {"effects.NAME.start", "Values to start from.",
@@ -159,7 +161,9 @@ std::vector<KeyGroup> effect_groups() {
          .meaning = "Parameters that, all 0, switch the effect off."},
         {.name = "parameters", .type = Type::table, .otherwise = "none", .meaning = "Parameters of the formula."},
         {.name = "start", .type = Type::table, .otherwise = "as the parameters say",
-         .meaning = "Parameter = value to start from, where [parameters] gives none."}}, false, "formula"},
+         .meaning = "Parameter = value to start from, where [parameters] gives none."},
+        {.name = "free", .type = Type::texts, .otherwise = "as the parameters say", .meaning = "Parameters that are estimated, where [parameters] does not say."},
+        {.name = "fixed", .type = Type::texts, .otherwise = "as the parameters say", .meaning = "Parameters that keep their value, where [parameters] does not say."}}, false, "formula"},
       {"effects.NAME.parameters.NAME", "A parameter of a declared effect.",
        declared_parameter_keys(true)}};
 }

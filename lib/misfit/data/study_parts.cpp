@@ -170,13 +170,16 @@ EffectStudy read_effect(const DescribedSection& section, const std::string& name
   if (section.has("formula")) effect.declared = read_formula(section);
   effect.kind = effect.declared ? name : section.text("kind").value_or(name);
   for (const std::string& role : section.keys()) {
-    if (!effect.declared && role != "kind" && role != "start") effect.roles[role] = section.text(role).value_or("");
+    if (!effect.declared && role != "kind" && role != "start" && role != "free" && role != "fixed")
+      effect.roles[role] = section.text(role).value_or("");
   }
   if (section.has("start")) {
     const DescribedSection start = described(section, "start", "effects.NAME.start");
     for (const std::string& parameter : start.keys()) effect.start[parameter] = number_as_written(start, parameter);
     start.finish();
   }
+  effect.free = section.texts("free").value_or(std::vector<std::string>{});
+  effect.fixed = section.texts("fixed").value_or(std::vector<std::string>{});
   section.finish();
   return effect;
 }

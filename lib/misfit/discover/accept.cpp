@@ -12,6 +12,7 @@ namespace misfit {
 namespace {
 
 constexpr double tied_drops = 6.0;  // refitted drops nearer than this do not distinguish two effects
+constexpr double tied_gains = 3.0;  // of the log-likelihood: half of it
 
 std::string label(const Candidate& c) { return effect_at(c.effect, c.roles); }
 
@@ -87,7 +88,7 @@ CandidateModel with_quantities(CandidateModel candidate_model, const std::vector
   return candidate_model;
 }
 
-/// Step 3 of accept_best(), for one alias: another known effect that removes the lack of fit which `in` leaves.
+/// Step 4 of accept_best(), for one alias: another known effect that removes the lack of fit which `in` leaves.
 const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked,
                                          const SearchContext& context) {
   const DiscoverOptions& options = context.options;
@@ -111,15 +112,19 @@ std::string refusal(RankedCandidate& e, const SearchContext& context) {
   Candidate& c = e.candidate;
   if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
   if (!e.refit->estimate.converged) return "its refit has not converged: " + e.refit->estimate.message;
+  if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
   if (const auto unknown =
           undetermined_strengths(e.refit->estimate.model, e.refit->estimate.covariance, e.screening->candidate_model->strengths))
     return *unknown;
-  c.held_out_gain = held_out_gain(context.estimate, e.refit->estimate, context.experiments, context.options.threads);
-  return *c.held_out_gain > 0.0 ? "" : "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
+  if (!c.held_out_gain) c.held_out_gain = held_out_gain(context.estimate, e.refit->estimate, context.experiments, context.options.threads);
+  if (!(*c.held_out_gain > 0.0)) return "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
+  const double needed = 0.5 * static_cast<double>(c.parameters.size() - e.refit->fixed.size());
+  if (*c.held_out_gain > needed) return "";
+  return "the held-out likelihood rises by " + format_value(*c.held_out_gain) + ", less than by half for each of its parameters";
 }
 
-/// Step 5: groups the best candidate with those that these data cannot distinguish from it.
+/// Step 6: groups the best candidate with those that these data cannot distinguish from it.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   if (ranked.empty() || !ranked.front().refit) return;
   RankedCandidate& best = ranked.front();
@@ -138,7 +143,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   for (RankedCandidate* e : members) e->candidate.group = group;
 }
 
-/// Step 6: reasons for those that were refitted and are not accepted, the accepted one in front.
+/// Step 7: reasons for those that were refitted and are not accepted, the accepted one in front.
 void explain_others(std::vector<RankedCandidate>& ranked) {
   const Candidate& best = ranked.front().candidate;
   for (std::size_t k = 1; k < ranked.size(); ++k) {
@@ -165,14 +170,39 @@ struct Alias {
 struct Choice {
   Place at;
   const RankedCandidate* second = nullptr;
+  bool leaves_something = false;  ///< that no second effect is known to explain
 };
 
-/// Steps 1 and 2: the first candidate that is not refused and without lack of fit. Those before it that are not refused are aliases.
-Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vector<Alias>& aliases, const SearchContext& context) {
-  std::vector<int> read;  // by the aliases
+/// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
+double gain_of(const RankedCandidate& e) { return 0.5 * e.refit->drop + e.candidate.held_out_gain.value_or(0.0); }
+
+/// A lag, a delay, a limit of a sensor: forms that could stand for much of what the plant does.
+bool shapes_a_sensor(const RankedCandidate& e) {
+  const CandidateModel& candidate_model = *e.screening->candidate_model;
+  const bool memory = !candidate_model.model.effects.back().effect->spec().states.empty();
+  return candidate_model.family == "sensor" && !candidate_model.has_priors && (memory || !candidate_model.shapes.empty());
+}
+
+/// Step 1, and the order of step 2.
+std::vector<Place> not_refused(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
+  std::vector<Place> out;
   for (auto e = ranked.begin(); e != ranked.end() && e->refit; ++e) {
     e->candidate.why = refusal(*e, context);
-    if (!e->candidate.why.empty()) continue;
+    if (e->candidate.why.empty()) out.push_back(e);
+  }
+  std::stable_sort(out.begin(), out.end(), [](Place a, Place b) { return gain_of(*a) > gain_of(*b); });
+  if (out.empty()) return out;
+  const double best = gain_of(*out.front());
+  const auto tied = std::find_if(out.begin(), out.end(), [&](Place e) { return gain_of(*e) < best - tied_gains; });
+  std::sort(out.begin(), tied);  // as in the list
+  std::stable_partition(out.begin(), tied, [](Place e) { return !shapes_a_sensor(*e); });
+  return out;
+}
+
+/// Step 2: the first without lack of fit. Those before it are aliases.
+Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vector<Alias>& aliases, const SearchContext& context) {
+  std::vector<int> read;  // by the aliases
+  for (const Place e : not_refused(ranked, context)) {
     const CandidateModel& candidate_model = *e->screening->candidate_model;
     const auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), e->refit->drop, context.options);
     if (!left) return {e};
@@ -184,7 +214,24 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
   return {ranked.end()};
 }
 
-/// Step 3: the first alias whose lack of fit a second effect removes.
+/// Step 3: a choice is not made past one that explains more than twice as much. Such an alias is chosen in its place: what it leaves is
+/// another effect; for one that is refused, nothing is.
+Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Alias>& aliases,
+                             const SearchContext& context) {
+  if (choice.at == ranked.end()) return choice;
+  const double least = 2.0 * choice.at->refit->drop;
+  for (const Alias& alias : aliases) {
+    if (alias.at->refit->drop > least) return {alias.at, nullptr, true};
+  }
+  for (const RankedCandidate& e : ranked) {
+    if (!e.refit || e.candidate.why.empty() || !(e.refit->drop > least) || !(e.candidate.p_value < context.options.p_accept)) continue;
+    choice.at->candidate.why = "explains less than half of what " + label(e.candidate) + " does, which cannot be accepted";
+    return {ranked.end()};
+  }
+  return choice;
+}
+
+/// Step 4: the first alias whose lack of fit a second effect removes.
 Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases, const SearchContext& context) {
   for (const Alias& alias : aliases) {
     if (const RankedCandidate* second = explaining_effect(*alias.at, ranked, context)) return {alias.at, second};
@@ -192,12 +239,13 @@ Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const st
   return {ranked.end()};
 }
 
-/// Step 4.
+/// Step 5.
 void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   Candidate& c = choice.at->candidate;
   c.accepted = true;
   c.why = "family-wise " + p_equals(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
-  if (choice.second != nullptr) c.why += "; " + label(choice.second->candidate) + " explains what remains";
+  if (choice.second != nullptr) c.why += "; " + label(choice.second->candidate) + " explains what remains: add it next";
+  if (choice.leaves_something) c.why += "; lack of fit remains: something else is missing too";
   std::rotate(ranked.begin(), choice.at, choice.at + 1);
 }
 
@@ -210,7 +258,7 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
   return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, best.refit->drop, context.options);
 }
 
-/// Step 7: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if
+/// Step 8: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if
 /// that candidate is more significant than any unknown curve, else the most significant unknown curve.
 std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>& ranked, const std::optional<UnknownCurve>& left,
                                              const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
@@ -227,14 +275,16 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
 std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                        const SearchContext& context) {
   std::vector<Alias> aliases;
-  Choice choice = first_without_lack_of_fit(ranked, aliases, context);                           // 1, 2
-  if (choice.at == ranked.end()) choice = first_with_a_second_effect(ranked, aliases, context);  // 3
+  Choice choice = first_without_lack_of_fit(ranked, aliases, context);  // 1, 2
+  const bool passed = choice.at != ranked.end();
+  choice = not_past_a_larger_one(ranked, choice, aliases, context);                                         // 3
+  if (choice.at == ranked.end() && !passed) choice = first_with_a_second_effect(ranked, aliases, context);  // 4
   const bool accepted = choice.at != ranked.end();
-  if (accepted) move_to_front(ranked, choice);  // 4
-  find_groups(ranked, context);                 // 5
-  if (accepted) explain_others(ranked);         // 6
+  if (accepted) move_to_front(ranked, choice);  // 5
+  find_groups(ranked, context);                 // 6
+  if (accepted) explain_others(ranked);         // 7
   if (accepted) return std::nullopt;
-  return unexplained_force(ranked, remaining_with_best(ranked, aliases, context), unknown, context);  // 7
+  return unexplained_force(ranked, remaining_with_best(ranked, aliases, context), unknown, context);  // 8
 }
 
 }  // namespace misfit

@@ -28,19 +28,22 @@ struct SearchContext {
 /// The acceptance rule of discovery: at most one of the refitted candidates, which stand in front, best first. p_accept: 0.01 unless the
 /// options say otherwise; numbers and formulas: lib/misfit/README.md, 6.5.
 ///
-/// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, one of its strengths ends
-///    at a bound, all are smaller than their sigma, or the held-out measurements do not become more likely. The first reason that holds is
-///    noted.
-/// 2. Unknown curves are screened again with the candidate in the model (`remaining_lack_of_fit`). If none remains of a quantity that the
-///    candidate, or an alias before it, reads, it is accepted: the first such in the list. Else it is an alias: an effect that may only
-///    imitate the missing one.
-/// 3. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, if each is
+/// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, only a part of an effect
+///    is found that exists as a whole (whole_strength.h), one of its strengths ends at a bound, all are smaller than their sigma, or the
+///    held-out log-likelihood rises by less than 1/2 for each of its parameters. The first reason that holds is noted.
+/// 2. The others come by what they gain, on the estimation's measurements and the held-out ones together (`gain_of`); those within 3 of
+///    the best as in the list, but a lag, delay or limit of a sensor after the plant. Unknown curves are screened again with the candidate
+///    in the model (`remaining_lack_of_fit`). If none remains of a quantity that the candidate, or an alias before it, reads, it is chosen:
+///    the first such. Else it is an alias: an effect that may only imitate the missing one.
+/// 3. A choice is not made past a candidate with more than twice its drop (`not_past_a_larger_one`): if that is an alias it is accepted
+///    first, since two effects are missing; if it is refused, none is accepted.
+/// 4. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, if each is
 ///    needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
-/// 4. The accepted one becomes the first of the list.
-/// 5. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 6, and neither has
+/// 5. The accepted one becomes the first of the list.
+/// 6. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 6, and neither has
 ///    a significant score once the other is in the model.
-/// 6. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
-/// 7. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
+/// 7. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
+/// 8. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
 ///    remains with the first alias, or with the best candidate if that is significant but was refused, provided that the best candidate has
 ///    a lower p than every unknown curve; else the best unknown curve, if its family-wise p is below p_accept and no refitted first
 ///    candidate has a lower p.

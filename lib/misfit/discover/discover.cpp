@@ -36,9 +36,11 @@ class Search {
     unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
     families_ = static_cast<double>(screening_.size() + unknown_.size());
     rank();
-    refit_best();
+    refit_those([this](const RankedCandidate& e) { return near_best(e) || (ranks().size() > 1 && significant(e)); }, options_.refits);
     if (options_.refits && !ranks().first()) return {};
-    const auto unexplained = accept_best(ranked_, unknown_, {estimate_, registry_, experiments_, options_, families_});
+    const SearchContext context{estimate_, registry_, experiments_, options_, families_};
+    auto unexplained = accept_best(ranked_, unknown_, context);
+    if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context);
     list_unknown();
     describe_search(unexplained);
     return std::move(out_);
@@ -47,7 +49,7 @@ class Search {
   /// Only the effect of the options, with the drop of one step, as a candidate among all families.
   Discovery predict() {
     const std::size_t curves =
-        features_of(estimate_, force_, hats_of_unknown_curves).size() * estimate_.model.system->spec().dynamic_ports.size();
+        features_of(estimate_, force_, hats_of_unknown_curves).size() * ports_of_unknown_curves(estimate_.model.system->spec()).size();
     families_ = static_cast<double>(candidate_models_.size() + curves);
     std::erase_if(candidate_models_, [&](const CandidateModel& s) { return s.effect != options_.only; });
     screening_ = screen(scores(), candidate_models_, part(0.0, 1.0));
@@ -95,27 +97,43 @@ class Search {
     });
   }
 
-  /// Refits all whose predicted drop is above half of the best, if any candidate is significant in the screening.
-  void refit_best() {
+  /// Predicted drop above half of the best, if any candidate is significant in the screening.
+  bool near_best(const RankedCandidate& e) const {
     double best = 0.0;
-    for (const auto& e : ranked_) {
-      if (!e.candidate.described && e.candidate.p_value < 5.0 * options_.p_accept) best = std::max(best, e.candidate.predicted_drop);
+    for (const auto& other : ranked_) {
+      if (!other.candidate.described && other.candidate.p_value < 5.0 * options_.p_accept)
+        best = std::max(best, other.candidate.predicted_drop);
     }
-    if (!(best > 0.0)) return;
-    const auto worth_it = [&](const RankedCandidate& e) {
-      return !e.candidate.described && e.candidate.p_value <= 5.0 * options_.p_accept && e.candidate.predicted_drop >= 0.5 * best;
-    };
+    return best > 0.0 && !e.candidate.described && e.candidate.p_value <= 5.0 * options_.p_accept &&
+           e.candidate.predicted_drop >= 0.5 * best;
+  }
+  bool significant(const RankedCandidate& e) const { return !e.candidate.described && e.candidate.p_value < options_.p_accept; }
+  bool none_accepted() const {
+    return std::none_of(ranked_.begin(), ranked_.end(), [](const RankedCandidate& e) { return e.candidate.accepted; });
+  }
+
+  /// One step of a threshold or a width tells little of what it explains at its maximum. False: there is none.
+  bool refit_the_other_significant_ones() {
+    if (ranks().size() > 1) return false;  // refitted with the first
+    std::optional<StoredJobs> stored = options_.refits;
+    if (stored) stored->digest += "_others";
+    return refit_those([this](const RankedCandidate& e) { return significant(e); }, stored);
+  }
+
+  template <class WorthIt>
+  bool refit_those(const WorthIt& worth_it, const std::optional<StoredJobs>& stored) {
+    const auto tried = [](const RankedCandidate& e) { return e.refit.has_value() || !e.candidate.why.empty(); };
     const std::size_t most = options_.max_refits;
-    const std::size_t count = std::min<std::size_t>(most, std::count_if(ranked_.begin(), ranked_.end(), worth_it));
     std::vector<RankedCandidate*> chosen;
     std::vector<const ScreeningResult*> effects;
     for (auto& e : ranked_) {
-      if (chosen.size() >= count) break;
-      if (!worth_it(e)) continue;
+      if (chosen.size() >= most) break;
+      if (tried(e) || !worth_it(e)) continue;
       chosen.push_back(&e);
       effects.push_back(e.screening);
     }
-    auto refits = refit_all(refit_work(), score_, effects, {options_.refits, part(end_of_curves, end_of_refits), options_.stop});
+    if (chosen.empty()) return false;
+    auto refits = refit_all(refit_work(), score_, effects, {stored, part(end_of_curves, end_of_refits), options_.stop});
     if (!refits) throw RunError("discover: stopped before all refits were done");
     for (std::size_t k = 0; k < refits->size(); ++k) {  // none on ranks other than the first
       chosen[k]->candidate.predicted_drop = (*refits)[k].predicted_drop;
@@ -123,6 +141,7 @@ class Search {
       store_refit(*chosen[k]);
     }
     sort_ranked();
+    return true;
   }
 
   void store_refit(RankedCandidate& e) const {
@@ -136,6 +155,8 @@ class Search {
     e.log_p = log_score_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
     c.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families_);
     c.parameters = e.refit->parameters;
+    c.free = e.refit->free;
+    c.fixed = e.refit->fixed;
     const FilterEstimate& there = e.refit->estimate;
     c.refit_values = there.model.values();
     c.refit_log_noise = pack(there.noise, there.model.system->spec(), there.around).value;
@@ -149,9 +170,9 @@ class Search {
     for (auto& e : ranked_) {
       const std::string p = "family-wise " + p_equals(e.candidate.p_value);
       if (e.candidate.why.empty()) {
-        e.candidate.why = e.candidate.p_value < options_.p_accept
-                              ? p + ", but less than half of the best predicted drop: tested again with the best in the model"
-                              : "not significant: " + p;
+        e.candidate.why = e.candidate.p_value < options_.p_accept ? p + ", but not among the first " + std::to_string(options_.max_refits) +
+                                                                        ": tested again with the best in the model"
+                                                                  : "not significant: " + p;
       }
       out_.candidates.push_back(e.candidate);
     }

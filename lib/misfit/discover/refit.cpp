@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/lists.h"
+#include "misfit/discover/whole_strength.h"
 
 namespace misfit {
 namespace {
@@ -83,6 +85,39 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
   return out;
 }
 
+/// Where a part of the effect is found, the whole with a memory so much shorter looks nearly the same.
+Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole) {
+  Model start = part;
+  for (const WholeStrength& w : whole) {
+    Parameter& p = start.parameters[w.parameter];
+    const double share = std::abs(p.value / w.value);
+    p.value = w.value;
+    p.free = false;
+    for (const BoundCoefficient& c : part.effects.back().coefficients) {
+      if (c.parameter < 0 || start.parameters[c.parameter].unit != "s") continue;
+      Parameter& time = start.parameters[c.parameter];
+      time.value = std::clamp(share * time.value, std::max(time.lower, 1e-3 * time.value), time.upper);
+    }
+  }
+  return start;
+}
+
+/// "late_share = 0.12 ± 0.01, where all of it would be 1"; empty where the strengths are about whole.
+std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
+  constexpr double about = 0.3;  // of the whole: formulas idealise
+  const std::vector<int> free = estimate.model.free_parameters();
+  for (const WholeStrength& w : whole) {
+    const Parameter& p = estimate.model.parameters[w.parameter];
+    const int column = place_of(free, w.parameter);
+    const bool known = column >= 0 && estimate.covariance.size() > 0;
+    const double sigma = known ? std::sqrt(std::max(estimate.covariance(column, column), 0.0)) : 0.0;
+    if (std::abs(p.value - w.value) <= std::max(about * std::abs(w.value), 2.0 * sigma)) continue;
+    return p.name + " = " + in_display_unit(p.value, p.unit, sigma) + ", where the whole effect would have " +
+           in_display_unit(w.value, p.unit);
+  }
+  return {};
+}
+
 /// A shape that a study keeps fixed but discovery looked for: the strength's interval holds for that value alone, so it is fitted too.
 bool several_values_scanned(const Model& model, int shape) {
   const BoundEffect& bound = model.effects.back();
@@ -159,6 +194,42 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
   return out;
 }
 
+namespace {
+
+/// With its strengths at which the effect is whole held there, if the data allow it.
+void hold_whole(const RefitWork& work, Refit& out) {
+  constexpr double allowed = 2.0;  // of the log-likelihood
+  const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
+  if (whole.empty()) return;
+  const Model start = start_of_whole(out.estimate.model, whole);
+  FilterOptions options = like(work.without, work.threads);
+  options.noise = out.estimate.noise;
+  try {
+    FilterEstimate held = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
+    if (held.converged && (!out.estimate.converged || held.objective > out.estimate.objective - allowed)) {
+      out.estimate = std::move(held);
+      return;
+    }
+  } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
+  }
+  out.partial = part_of_effect(out.estimate, whole);
+}
+
+/// Names of the effect's coefficients, as its file has them, that are free or fixed unlike there.
+void note_changes(const ScreeningResult& screening, const Registry& registry, Refit& out) {
+  const Model as_filed = assemble(screening.candidate_model->request, registry);
+  const BoundEffect& bound = out.estimate.model.effects.back();
+  for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
+    const int at = bound.coefficients[c].parameter;
+    if (at < 0 || bound.effect->spec().coefficients[c].shared) continue;
+    const bool free = out.estimate.model.parameters[at].free;
+    if (free == as_filed.parameters[at].free) continue;
+    (free ? out.free : out.fixed).emplace_back(bound.effect->spec().coefficients[c].name);
+  }
+}
+
+}  // namespace
+
 Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from) {
   const FilterEstimate& without = work.without;
   Refit out;
@@ -179,6 +250,8 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const double off = without.objective + prior_of_off(*screening.candidate_model);
   if (!out.ok || !out.estimate.converged || out.estimate.objective < off) climb(off_model(work, screening), without.noise);
   if (!out.ok) return out;
+  hold_whole(work, out);
+  note_changes(screening, work.registry, out);
   out.drop = 2.0 * (out.estimate.objective + still_to_gain(out.estimate) - without.objective - still_to_gain(without) -
                     prior_of_off(*screening.candidate_model));
   out.parameters = parameters_of_effect(out.estimate, screening);

@@ -14,6 +14,8 @@ struct Refit {
   FilterEstimate estimate;
   ModelRequest request;
   std::map<std::string, Estimate> parameters;  ///< of the effect
+  std::vector<std::string> free, fixed;        ///< its coefficients that are estimated or held unlike the effect's file says
+  std::string partial;                         ///< why it is no whole effect (whole_strength.h); empty: it is, or may be
 };
 
 /// What refits have in common.
@@ -41,7 +43,8 @@ struct OneStep {
 
 /// `from`: where to start, if it ended anywhere. Where no maximum is reached from there, and without it: from the estimate with the effect
 /// added to it, which an effect that the other parameters must make room for can throw out of the finite numbers; where that, too, reaches
-/// none, or one below the estimate: from the estimate with the effect in it but off, below which the search does not end.
+/// none, or one below the estimate: from the estimate with the effect in it but off, below which the search does not end. A strength at
+/// which the effect would be whole (whole_strength.h) is then held there if that costs the log-likelihood at most 2.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// Gain of the held-out log-likelihood. Where the study holds nothing out, both models are fitted again without the last quarter of every

@@ -24,10 +24,11 @@ SteppedRefit stepped(const RefitWork& work, const ScoreTest& score, const Screen
 }  // namespace
 
 std::string pack(const SteppedRefit& result, const ScreeningResult& effect) {
-  const auto& [ok, why, drop, estimate, request, parameters] = result.refit;
+  const auto& [ok, why, drop, estimate, request, parameters, free, fixed, partial] = result.refit;
   static_cast<void>(request);  // the candidate model's
   ByteWriter bytes;
-  bytes(effect.candidate_model->effect, effect.candidate_model->roles, result.predicted_drop, ok, why, drop, parameters);
+  bytes(effect.candidate_model->effect, effect.candidate_model->roles, result.predicted_drop, ok, why, drop, parameters, free, fixed,
+        partial);
   if (ok) write_estimate(bytes, estimate);
   return bytes.take();
 }
@@ -37,7 +38,8 @@ SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const S
   SteppedRefit out;
   std::string name;
   std::map<std::string, std::string> roles;
-  reader(name, roles, out.predicted_drop, out.refit.ok, out.refit.why, out.refit.drop, out.refit.parameters);
+  reader(name, roles, out.predicted_drop, out.refit.ok, out.refit.why, out.refit.drop, out.refit.parameters, out.refit.free,
+         out.refit.fixed, out.refit.partial);
   if (name != effect.candidate_model->effect || roles != effect.candidate_model->roles)
     throw RunError("a stored refit is of '" + name + "' and not of '" + effect.candidate_model->effect + "'");
   out.refit.request = effect.candidate_model->request;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "misfit/core/lists.h"
 #include "misfit/jobs/work_queue.h"
 #include "misfit/math/statistics.h"
 
@@ -183,15 +184,28 @@ std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<Can
   return out;
 }
 
+std::vector<int> ports_of_unknown_curves(const SystemSpec& system) {
+  std::vector<int> out;
+  for (int p = 0; p < int_size(system.dynamic_ports); ++p) {
+    const int moved = index_of(system.states, system.dynamic_ports[p].conjugate);
+    const bool has_rate =
+        moved >= 0 && std::any_of(system.states.begin(), system.states.end(), [&](const StateSpec& s) { return s.rate_of == moved; });
+    const auto& forced = system.force_ports;
+    if (!has_rate || std::find(forced.begin(), forced.end(), system.dynamic_ports[p].name) != forced.end()) out.push_back(p);
+  }
+  return out;
+}
+
 std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress) {
   const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
-  const auto& ports = work.estimate.model.system->spec().dynamic_ports;
+  const std::vector<int> ports = ports_of_unknown_curves(work.estimate.model.system->spec());
+  const auto& names = work.estimate.model.system->spec().dynamic_ports;
   std::vector<UnknownCurve> out(features.size() * ports.size());
   const auto test = [&](std::size_t k) {
     const Features& f = features[k / ports.size()];
     UnknownCurve& curve = out[k];
-    curve.port_index = static_cast<int>(k % ports.size());
-    curve.port = ports[k % ports.size()].name;
+    curve.port_index = ports[k % ports.size()];
+    curve.port = names[curve.port_index].name;
     curve.quantity = f.quantity;
     curve.quantity_index = f.index;
     curve.result = work.score.test(work.force.columns(curve.port_index, f.f, f.ahead));

@@ -110,6 +110,7 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
   constexpr double at_bound_in_scales = 1e-3;
   for (const int index : strengths) {
     const Parameter& p = model.parameters[index];
+    if (!p.free) continue;
     for (const double bound : {p.lower, p.upper}) {
       if (bound == 0.0 || !std::isfinite(bound) || std::abs(p.value - bound) > at_bound_in_scales * p.scale) continue;
       return "its strength " + p.name + " ends at its bound " + in_display_unit(bound, p.unit);

@@ -72,6 +72,10 @@ struct CoefficientSpec {
   bool over_sine = false;        ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
   bool fixed = false;            ///< not fitted unless the study frees it: a smoothing width, an origin of time
   ScanSpec scan{};
+  /// Of a strength: where the effect is whole, and less of it is nothing that exists: all of an output is late, or none. Discovery holds it
+  /// there where the data allow it, and refuses an effect of which they show only a part. 0: any strength is possible.
+  double whole = 0.0;
+  const char* whole_of = "";       ///< role of an input: `whole` is a share of the gain by which the model lets it act on the first port
   const char* calibrated_as = "";  ///< camera parameter whose calibration sigma is the prior of this strength, if there is a calibration
   double prior_sigma = 0.0;        ///< as a candidate: Gaussian about 0 where there is no calibration [unit]; 0: no prior
   double own_sigma = 0.0;          ///< in every fit: Gaussian about the value [unit]; 0: no prior

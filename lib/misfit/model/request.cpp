@@ -55,7 +55,7 @@ ParameterRequest read_parameter(const ParameterStudy& study, const std::string& 
   return out;
 }
 
-/// `start` of an effect's line: values where [parameters] gives none.
+/// `start`, `free` and `fixed` of an effect's line: what [parameters] does not say.
 void read_starts(const Study& study, const std::map<std::string, std::string>& units, ModelRequest& request) {
   for (const auto& effect : study.effects) {
     for (const auto& [own, number] : effect.start) {
@@ -67,6 +67,14 @@ void read_starts(const Study& study, const std::map<std::string, std::string>& u
       ParameterRequest& parameter = request.parameters[name];
       if (parameter.where.file.empty()) parameter.where = number.where;
       if (!parameter.value) parameter.value = number.value;
+    }
+    for (const auto& [list, is_free] : {std::pair{&effect.free, true}, std::pair{&effect.fixed, false}}) {
+      for (const std::string& own : *list) {
+        const std::string prefixed = effect.name + "." + own;
+        ParameterRequest& parameter = request.parameters[units.contains(prefixed) ? prefixed : own];
+        if (parameter.where.file.empty()) parameter.where = effect.where;
+        if (!parameter.free) parameter.free = is_free;
+      }
     }
   }
 }

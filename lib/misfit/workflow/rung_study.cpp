@@ -39,13 +39,13 @@ std::string free_name(const std::vector<EffectRequest>& effects, const std::stri
 
 /// Where to start: shapes where discovery's scan found most (from a wrong sector or frequency no refit finds the right one), and if it
 /// refitted the effect, all its numbers at that maximum (another start may end in a lower one).
-std::map<std::string, double> start_found(const Effect& effect, const Candidate& from) {
-  std::map<std::string, double> start;
+EffectStart start_found(const Effect& effect, const Candidate& from) {
+  EffectStart start{{}, from.free, from.fixed};
   for (const auto& c : effect.spec().coefficients) {
     const bool scanned_shape = c.scan.count != 0 && c.kind == CoefficientKind::shape;
     if (c.shared || (!scanned_shape && !from.actual_drop)) continue;
     for (const auto& [name, estimate] : from.parameters) {
-      if (name == c.name || name.ends_with(std::string(".") + c.name)) start[c.name] = estimate.value;
+      if (name == c.name || name.ends_with(std::string(".") + c.name)) start.values[c.name] = estimate.value;
     }
   }
   return start;
@@ -128,7 +128,7 @@ std::string study_with_effect(const Session& session, const std::string& effect,
   } catch (const InputError& error) {
     throw InputError("effect '" + effect + "' does not suit this model: " + error.what());
   }
-  const auto start = from ? start_found(found, *from) : std::map<std::string, double>{};
+  const auto start = from ? start_found(found, *from) : EffectStart{};
   const std::string text = text_for_folder(session.study, folder);
   return edited(session, [&] { return with_effect(text, effect_line(name, effect, roles, start)); });
 }

@@ -1,0 +1,95 @@
+#include "misfit/discover/whole_strength.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "misfit/core/lists.h"
+#include "misfit/math/statistics.h"
+#include "misfit/model/evaluator.h"
+
+namespace misfit {
+namespace {
+
+/// Force on a port that moves the rates as an input does: b·∂f/∂u / b·b with the port's column b of x' = f + b F.
+class InputGain {
+ public:
+  struct Place {
+    int input, port;
+  };
+  InputGain(const Model& model, Place place) : evaluator_(model), system_(*model.system), values_(model.values()), place_(place) {}
+
+  double at(const Eigen::VectorXd& x, const double* u, double t) {
+    constexpr double step = 1e-4;  // of the input, or of 1 where it is smaller: differences on both sides
+    const SystemSpec& spec = system_.spec();
+    std::vector<double> input(u, u + spec.inputs.size());
+    const double by = step * std::max(1.0, std::abs(input[place_.input]));
+    Eigen::VectorXd above(x.size()), below(x.size());
+    input[place_.input] += by;
+    evaluator_.rates(x.data(), input.data(), t, above.data());
+    input[place_.input] -= 2.0 * by;
+    evaluator_.rates(x.data(), input.data(), t, below.data());
+    const Eigen::Index states = spec.states.size();
+    const std::vector<double> no_ports(spec.quantity_ports.size() + spec.dynamic_ports.size() + 1, 0.0);
+    std::vector<double> dx(spec.states.size()), all_by_x(spec.states.size() * spec.states.size());
+    RowMatrix by_force(states, static_cast<Eigen::Index>(spec.dynamic_ports.size()));
+    system_.linearise_rates({x.data(), u, t, values_.data()}, no_ports.data(), no_ports.data(), dx.data(),
+                            {all_by_x.data(), nullptr, by_force.data(), nullptr});
+    const Eigen::VectorXd b = by_force.col(place_.port);
+    return b.dot((above - below).head(states)) / (2.0 * by * b.squaredNorm());
+  }
+
+ private:
+  Evaluator evaluator_;
+  const System& system_;
+  std::vector<double> values_;  // constants first
+  Place place_;
+};
+
+/// Median over the recording; 0: the quantity is no input, or it does not act there.
+double gain_of_input(const FilterEstimate& estimate, const Model& model, int quantity, int port) {
+  const SystemSpec& system = model.system->spec();
+  if (quantity < 0 || quantity >= int_size(system.quantities) || port < 0) return 0.0;
+  const int input = index_of(system.inputs, system.quantities[quantity].name);
+  if (input < 0) return 0.0;
+  std::vector<double> gains;
+  InputGain gain(model, {input, port});
+  for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
+    const FilterTrace& trace = estimate.traces[e];
+    const FilterData& data = estimate.data[e];
+    constexpr std::size_t samples = 100;  // of each experiment
+    const std::size_t stride = std::max<std::size_t>((trace.samples - data.first) / samples, 1);
+    for (std::size_t k = data.first; k < trace.samples; k += stride)
+      gains.push_back(gain.at(trace.filtered(k), data.inputs.at(k), data.signals->t[k]));
+  }
+  std::erase_if(gains, [](double g) { return !std::isfinite(g); });
+  return gains.empty() ? 0.0 : median(gains);
+}
+
+}  // namespace
+
+std::vector<WholeStrength> whole_strengths(const FilterEstimate& estimate) {
+  Model others = estimate.forced.model;  // the effect itself off
+  const BoundEffect& bound = estimate.model.effects.back();
+  const EffectSpec& spec = bound.effect->spec();
+  std::vector<WholeStrength> out;
+  for (std::size_t c = 0; c < spec.coefficients.size(); ++c) {
+    const int parameter = bound.coefficients[c].parameter;
+    if (spec.coefficients[c].kind == CoefficientKind::strength && parameter >= 0) others.parameters[parameter].value = 0.0;
+  }
+  for (std::size_t c = 0; c < spec.coefficients.size(); ++c) {
+    const int parameter = bound.coefficients[c].parameter;
+    double value = spec.coefficients[c].whole;
+    if (parameter < 0 || value == 0.0) continue;
+    const std::string_view of = spec.coefficients[c].whole_of;
+    const auto input = std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const Role& role) { return of == role.name; });
+    if (!of.empty())
+      value *= input == spec.quantities.end()
+                   ? 0.0
+                   : gain_of_input(estimate, others, bound.quantities[input - spec.quantities.begin()], bound.ports.front());
+    if (value != 0.0) out.push_back({parameter, value});
+  }
+  return out;
+}
+
+}  // namespace misfit
