@@ -32,7 +32,7 @@ struct Offsets {
 
   /// XᵀV⁻¹X of generalised least squares with the whole covariance of the measurements, V, written down.
   Eigen::MatrixXd information(const std::vector<double>& there) {
-    cart.noise = unpack(there);
+    cart.noise = unpack(there, cart.model.model.system->spec());
     cart.model.model.parameters[static_cast<std::size_t>(cart.model.time_parameter)].value = cart.noise.force_time;
     const Dense dense(cart, cart.run());
     Eigen::MatrixXd X = Eigen::MatrixXd::Zero(dense.y.size(), 2);

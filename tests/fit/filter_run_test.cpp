@@ -75,7 +75,7 @@ TEST(RunLinear, DerivativesByNoiseAreThoseOfWholeRuns) {
     for (std::size_t side = 0; side < 2; ++side) {
       std::vector<double> logs = at.value;
       logs[i] += side == 0 ? -h : h;
-      cart.noise = unpack(logs);
+      cart.noise = unpack(logs, spec);
       linear[side] = -minus_loglik(cart.data, run_linear(cart.model, cart.data, trace, cart.noise));
       cart.model.model.parameters[static_cast<std::size_t>(cart.model.time_parameter)].value = cart.noise.force_time;
       whole[side] = cart.run().loglik;

@@ -33,21 +33,37 @@ bool is_rate(const std::string& unit) {
   return power == -1.0;
 }
 
-/// Ports on which generic effects make sense by themselves, with the roles that their conjugate state plays.
+/// Roles that the conjugate of a port plays: a state, or a quantity that a declared port calls its rate.
+Roles roles_of_conjugate(const SystemSpec& system, const std::string& name) {
+  const StateSpec* state = state_called(system, name);
+  const auto quantity =
+      std::find_if(system.quantities.begin(), system.quantities.end(), [&](const QuantitySpec& q) { return q.name == name; });
+  if (state != nullptr && state->rate_of >= 0) {
+    const std::string& moved = system.states[state->rate_of].name;
+    return {{"rate", name}, {"displacement", moved}, {"level", moved}};
+  }
+  if (state != nullptr) {
+    Roles roles = {{"level", name}};
+    if (is_rate(state->unit)) roles["rate"] = name;
+    return roles;
+  }
+  if (quantity != system.quantities.end() && is_rate(quantity->unit)) return {{"rate", name}};
+  return {};
+}
+
+/// It has a default for `signal`: its way of saying that generic effects make sense at places of its own.
+bool suggests_places(const SystemSpec& system) { return system.roles.contains("signal"); }
+
+/// Ports on which generic effects make sense by themselves: those of the random force, and those that a system declares.
 std::vector<Roles> natural_ports(const SystemSpec& system) {
   std::vector<Roles> out;
   for (const auto& port : system.dynamic_ports) {
     const bool forced = std::find(system.force_ports.begin(), system.force_ports.end(), port.name) != system.force_ports.end();
-    const StateSpec* state = state_called(system, port.conjugate);
-    if (state == nullptr || (!forced && !system.force_ports.empty())) continue;
-    Roles roles = {{"port", port.name}};
-    if (state->rate_of >= 0) {
-      const std::string& moved = system.states[state->rate_of].name;
-      roles.insert({{"rate", state->name}, {"displacement", moved}, {"level", moved}});
-    } else {
-      roles["level"] = state->name;
-      if (is_rate(state->unit)) roles["rate"] = state->name;
-    }
+    const bool declared = port.name != "d" + port.conjugate + "/dt";
+    if (port.conjugate.empty() || (!forced && !system.force_ports.empty() && !(declared && suggests_places(system)))) continue;
+    Roles roles = roles_of_conjugate(system, port.conjugate);
+    if (roles.empty()) continue;
+    roles["port"] = port.name;
     out.push_back(std::move(roles));
   }
   return out;
@@ -180,7 +196,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   if (has_role(effect.quantities, "input"))
     places = times(places, "input", system.roles.contains("input") ? names_of(system.inputs) : std::vector<std::string>{});
   if (has_role(effect.ports, "output"))
-    places = times(places, "output", system.roles.contains("signal") ? names_of(system.outputs) : std::vector<std::string>{});
+    places = times(places, "output", suggests_places(system) ? names_of(system.outputs) : std::vector<std::string>{});
   for (const Roles& place : places) {
     const auto roles = roles_at(effect, place);
     if (roles && !roles->empty()) out.push_back(*roles);

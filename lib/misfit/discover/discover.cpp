@@ -19,6 +19,16 @@
 namespace misfit {
 namespace {
 
+/// Strength on each port.
+std::map<std::string, Estimate> random_force(const FilterEstimate& estimate) {
+  std::map<std::string, Estimate> out;
+  for (std::size_t i = 0; i < estimate.forced.force_ports.size(); ++i) {
+    const PortSpec& spec = estimate.model.system->spec().dynamic_ports[estimate.forced.force_ports[i]];
+    out[spec.name] = {estimate.noise.force_of(estimate.forced.force_group[i]), 0.0, spec.unit};
+  }
+  return out;
+}
+
 class Search {
  public:
   Search(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments,
@@ -160,10 +170,7 @@ class Search {
     const FilterEstimate& there = e.refit->estimate;
     c.refit_values = there.model.values();
     c.refit_log_noise = pack(there.noise, there.model.system->spec(), there.around).value;
-    for (int port : there.forced.force_ports) {
-      const PortSpec& spec = estimate_.model.system->spec().dynamic_ports[port];
-      c.force[spec.name] = {there.noise.force, 0.0, spec.unit};
-    }
+    c.force = random_force(there);
   }
 
   void list_unknown() {
@@ -182,10 +189,7 @@ class Search {
   }
 
   void describe_search(const std::optional<Unexplained>& unexplained) {
-    for (int port : estimate_.forced.force_ports) {
-      const PortSpec& spec = estimate_.model.system->spec().dynamic_ports[port];
-      out_.force[spec.name] = {estimate_.noise.force, 0.0, spec.unit};
-    }
+    out_.force = random_force(estimate_);
     for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
     std::string curves = "unknown curves:";
     for (const auto& curve : unknown_) curves += " " + curve.port + "(" + curve.quantity + ")";

@@ -54,7 +54,7 @@ std::vector<FilterStart> starts_from(const ContainedFit& contained, const Model&
   if (!contains(model, contained)) return {};
   const std::vector<double>& noise = contained.noise;
   const auto start_at = [&](std::vector<double> values, const std::vector<double>& log_noise) {
-    FilterStart start{model, {}, unpack(log_noise)};
+    FilterStart start{model, {}, unpack(log_noise, model.system->spec())};
     for (std::size_t i = 0; i < values.size(); ++i) {
       Parameter& p = start.model.parameters[i];
       if (p.free) p.value = std::clamp(values[i], p.lower, p.upper);

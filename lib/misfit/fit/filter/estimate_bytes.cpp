@@ -12,8 +12,8 @@ void fields(Bytes& bytes, MaybeConst<ChannelNoise> auto& data) {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterNoise> auto& data) {
-  auto& [force, force_time, channels, time_held] = data;
-  bytes(force, force_time, channels, time_held);
+  auto& [force, force_time, channels, time_held, further_forces] = data;
+  bytes(force, force_time, channels, time_held, further_forces);
 }
 
 template <class Bytes>

@@ -60,14 +60,16 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
     return Estimate{value, value * sigmas[i], unit};
   };
   const auto intervals = noise_intervals(estimate, {0, 1}, threads);
-  for (int port : estimate.forced.force_ports) {
-    const PortSpec& named = spec.dynamic_ports[port];
-    fit.force[named.name] = as_estimate(0, named.unit);
-    fit.force[named.name].interval = intervals[0];
+  for (std::size_t i = 0; i < estimate.forced.force_ports.size(); ++i) {
+    const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[i]];
+    const std::size_t at = place_of_force(estimate.forced.force_group[i], spec);
+    fit.force[named.name] = as_estimate(at, named.unit);
+    if (at == 0) fit.force[named.name].interval = intervals[0];
+    fit.driven = fit.driven || sigmas[at] > 0.0;
   }
   fit.force["correlation_time"] = as_estimate(1, "s");
   fit.force["correlation_time"].interval = intervals[1];
-  if (!(sigmas[0] > 0.0)) fit.facts["random_force"] = "the estimated random force is 0: the motion is not driven";
+  if (!fit.driven) fit.facts["random_force"] = "the estimated random force is 0: the motion is not driven";
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     const std::string& name = spec.outputs[o].name;
     const std::string& unit = spec.outputs[o].unit;
@@ -80,7 +82,6 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
     fit.noise[name + "_jitter_frequency"] = as_estimate(4 + 4 * o, "Hz");
     fit.noise[name + "_jitter_damping"] = as_estimate(5 + 4 * o, "-");
   }
-  fit.driven = sigmas[0] > 0.0;
 }
 
 /// Sum of squares of one-step prediction errors, and how many.

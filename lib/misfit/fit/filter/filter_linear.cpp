@@ -45,7 +45,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
       }
     }
     correction = kalman.x - trace.correction_at(k);
-    kalman.predict(phi, steps.at(h), model.kind, model.force_states);
+    kalman.predict(phi, steps.at(h), model);
     kalman.x.noalias() = phi * correction + shifted;
   }
   return out;

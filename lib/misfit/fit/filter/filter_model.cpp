@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "misfit/core/error.h"
+#include "misfit/core/units.h"
 
 namespace misfit {
 namespace {
@@ -40,7 +41,18 @@ std::vector<int> ports_of(const SystemSpec& spec) {
   return ports;
 }
 
+/// Of the last force port: that of an earlier one of its dimension, else a new one.
+int group_of(const SystemSpec& spec, const FilterModel& model) {
+  const Unit unit = parse_unit(spec.dynamic_ports[model.force_ports.back()].unit);
+  for (std::size_t i = 0; i < model.force_group.size(); ++i) {
+    if (unit.same_dimension(parse_unit(spec.dynamic_ports[model.force_ports[i]].unit))) return model.force_group[i];
+  }
+  return model.force_group.empty() ? 0 : 1 + *std::max_element(model.force_group.begin(), model.force_group.end());
+}
+
 }  // namespace
+
+int FilterModel::force_groups() const { return force_group.empty() ? 1 : 1 + *std::max_element(force_group.begin(), force_group.end()); }
 
 FilterModel with_random_force(const Model& model) {
   static const EffectOf<RandomForce> effect("random_force");
@@ -60,6 +72,7 @@ FilterModel with_random_force(const Model& model) {
     bound.first_state = static_cast<int>(out.model.own_states.size());
     out.force_states.push_back(out.model.states());
     out.force_ports.push_back(port);
+    out.force_group.push_back(group_of(spec, out));
     out.model.own_states.push_back(effect.spec().states.front());
     out.model.own_state_names.push_back(bound.name + ".force");
     out.model.own_state_units.push_back(spec.dynamic_ports[port].unit);

@@ -12,9 +12,11 @@ struct FilterModel {
   Model model;                    ///< the given one, then one effect per force port and the fixed parameter `force_time` at the end
   std::vector<int> force_states;  ///< state index of each force
   std::vector<int> force_ports;   ///< dynamic port of each
+  std::vector<int> force_group;   ///< of each: ports of one dimension have one strength (FilterNoise::force_of), the first have group 0
   std::vector<int> kind;          ///< of each state: 0 force, 1 rate, 2 level (NoiseStep)
   int time_parameter = 0;
 
+  [[nodiscard]] int force_groups() const;  ///< at least 1
   [[nodiscard]] double force_time() const { return model.parameters[time_parameter].value; }
   void set_force_time(double seconds) { model.parameters[time_parameter].value = seconds; }
 };

@@ -59,14 +59,22 @@ NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterN
     push(out, name + "_jitter_frequency", channel.jitter_frequency, {0.5 * usual.jitter_frequency, 3.3 * usual.jitter_frequency});
     push(out, name + "_jitter_damping", channel.jitter_damping, {0.01, 0.99});
   }
+  for (std::size_t g = 0; g < noise.further_forces.size(); ++g) {
+    const double usual = around.further_forces[g];
+    push(out, "force_" + std::to_string(g + 2), noise.further_forces[g], {1e-3 * usual, 1e3 * usual});
+  }
   return out;
 }
 
-FilterNoise unpack(const std::vector<double>& logs) {
+std::size_t place_of_force(int group, const SystemSpec& spec) { return group == 0 ? 0 : 1 + 4 * spec.outputs.size() + group; }
+
+FilterNoise unpack(const std::vector<double>& logs, const SystemSpec& spec) {
   FilterNoise out;
   out.force = std::exp(logs[0]);
   out.force_time = std::exp(logs[1]);
-  for (std::size_t i = 2; i + 3 < logs.size(); i += 4)
+  const std::size_t channels_end = place_of_force(1, spec);
+  for (std::size_t i = channels_end; i < logs.size(); ++i) out.further_forces.push_back(std::exp(logs[i]));
+  for (std::size_t i = 2; i < channels_end; i += 4)
     out.channels.push_back({std::exp(logs[i]), std::exp(logs[i + 1]), std::exp(logs[i + 2]), std::exp(logs[i + 3])});
   return out;
 }
@@ -88,6 +96,8 @@ NoiseStep discretise(const FilterNoise& noise, double h) {
       for (std::size_t j = 0; j < 3; ++j) out.m[i][j] += 0.5 * h * weight[k] * intensity * g[i] * g[j];
     }
   }
+  out.variance_ratio = {1.0};
+  for (const double further : noise.further_forces) out.variance_ratio.push_back(further * further / (noise.force * noise.force));
   for (const auto& channel : noise.channels) out.jitter.push_back(jitter_step(channel, h));
   return out;
 }

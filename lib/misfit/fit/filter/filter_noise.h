@@ -21,29 +21,37 @@ struct ChannelNoise {
   bool held = false;              ///< white is known and all there is
 };
 
-/// The random force: one Ornstein–Uhlenbeck process per force port, of one common strength and correlation time, independent.
+/// The random force: one Ornstein–Uhlenbeck process per force port, independent, of one common correlation time, and of one common strength
+/// for the ports of one unit (FilterModel::force_group).
 struct FilterNoise {
-  double force = 0.0;       ///< stationary sigma [port unit]
+  double force = 0.0;       ///< stationary sigma on the ports of the first group [port unit]
   double force_time = 0.1;  ///< correlation time [s]
   std::vector<ChannelNoise> channels;
-  bool time_held = false;  ///< the correlation time is known
+  bool time_held = false;                   ///< the correlation time is known
+  std::vector<double> further_forces = {};  ///< the same of the further groups [port unit]
+
+  [[nodiscard]] double force_of(int group) const { return group == 0 ? force : further_forces[group - 1]; }
 };
 
-/// Logarithms in a fixed order: force, force_time, then per channel white, jitter, jitter_frequency, jitter_damping. Bounds keep a
+/// Logarithms in a fixed order: force, force_time, then per channel white, jitter, jitter_frequency, jitter_damping, then further_forces.
+/// Bounds keep a
 /// likelihood that does not depend on one of them from running away.
 struct NoiseVector {
   std::vector<double> value, lower, upper;
   std::vector<std::string> names;  ///< "force", "force_time", "P_y", "P_y_jitter", …
 };
 [[nodiscard]] NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around);
-[[nodiscard]] FilterNoise unpack(const std::vector<double>& logs);
+[[nodiscard]] FilterNoise unpack(const std::vector<double>& logs, const SystemSpec& spec);
+/// Place of a group's strength among them.
+[[nodiscard]] std::size_t place_of_force(int group, const SystemSpec& spec);
 
 /// Exact discretisation over one step h of everything whose noise does not depend on the state.
 struct NoiseStep {
   /// Second moments of a force's noise on rows of three kinds: the force itself (0), a rate (1), a level (2), the last two relative to
   /// the row's response Φ to the force at the start of the step; i.e. Q_ij = m[kind_i][kind_j] Φ_if Φ_jf with Φ_ff taken as 1
   /// (lib/misfit/README.md (29)). [J]
-  std::array<std::array<double, 3>, 3> m{};
+  std::array<std::array<double, 3>, 3> m{};  ///< of a force of the first group
+  std::vector<double> variance_ratio;        ///< of each group to the first
   struct Jitter {
     std::array<double, 4> phi{};  ///< of (j, j'/ω), row-major
     std::array<double, 3> q{};    ///< covariance: 00, 01, 11

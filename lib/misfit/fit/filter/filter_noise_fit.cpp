@@ -43,14 +43,14 @@ class Scoring {
       : runs_(runs), vector_(start), threads_(threads), counts_(counted(runs)) {}
 
   Eigen::MatrixXd information(const std::vector<double>& at) {
-    derivatives(at, run_all(runs_, unpack(at)));
+    derivatives(at, run_all(runs_, unpacked(at)));
     return information_;
   }
 
   NoiseFit run(int max_iterations) {
     NoiseFit out;
     std::vector<double> at = vector_.value;
-    Innovations present = run_all(runs_, unpack(at));
+    Innovations present = run_all(runs_, unpacked(at));
     double best = cost(present, counts_);
     double damping = 1e-3;
     bool fresh = false;  // derivatives are those at `at`
@@ -62,7 +62,7 @@ class Scoring {
       for (int attempt = 0; attempt < 6 && !moved; ++attempt) {
         const std::vector<double> next = step(at, damping, expected);
         if (expected < 1e-3) break;
-        Innovations there = run_all(runs_, unpack(next));
+        Innovations there = run_all(runs_, unpacked(next));
         const double value = cost(there, counts_);
         if (value < best) {
           moved = true;
@@ -82,7 +82,7 @@ class Scoring {
     }
     if (!fresh && max_iterations > kRefinements) derivatives(at, present);
     out.logs = at;
-    out.noise = unpack(at);
+    out.noise = unpacked(at);
     out.minus_loglik = best;
     out.information = information_;
     for (std::size_t i = 0; i < at.size(); ++i) out.at_bound.push_back(stuck(at, i));
@@ -90,6 +90,8 @@ class Scoring {
   }
 
  private:
+  [[nodiscard]] FilterNoise unpacked(const std::vector<double>& logs) const { return unpack(logs, runs_.model->model.system->spec()); }
+
   [[nodiscard]] bool stuck(const std::vector<double>& at, std::size_t i) const {
     constexpr double near = 1e-6;
     return at[i] < vector_.lower[i] + near || at[i] > vector_.upper[i] - near;
@@ -102,7 +104,7 @@ class Scoring {
     run_jobs(n, threads_, [&](std::size_t i) {
       std::vector<double> there = at;
       there[i] += there[i] + difference < vector_.upper[i] ? difference : -difference;
-      moved[i] = run_all(runs_, unpack(there));
+      moved[i] = run_all(runs_, unpacked(there));
       const double scale = 1.0 / (there[i] - at[i]);
       for (std::size_t k = 0; k < here.e.size(); ++k) {
         if (!counts_[k]) continue;
@@ -158,7 +160,7 @@ NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const N
 }
 
 Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around, int threads) {
-  const NoiseVector vector = pack(unpack(logs), runs.model->model.system->spec(), around);
+  const NoiseVector vector = pack(unpack(logs, runs.model->model.system->spec()), runs.model->model.system->spec(), around);
   return Scoring(runs, vector, threads).information(logs);
 }
 

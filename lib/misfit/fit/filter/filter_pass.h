@@ -197,7 +197,7 @@ class FilterPass {
         D_.data(), n_, n_, Eigen::OuterStride<>(kRowStride));
     Eigen::Map<RowMatrix>(trace_.Phi.data() + k * N_ * N_, n_, n_) = phi;
     const NoiseStep& noise_step = steps_.at(interval.t1 - interval.t0);
-    kalman_.predict(phi, noise_step, model_.kind, model_.force_states);
+    kalman_.predict(phi, noise_step, model_);
     if (options_.jacobian == nullptr) return true;
     s_work_.noalias() = phi * s_model_;
     for (int i = 0; i < n_; ++i) {

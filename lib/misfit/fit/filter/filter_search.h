@@ -100,6 +100,7 @@ class FilterSearch {
     for (int k = 0; k < most_raises && !noise_given_; ++k) {
       if (runs && innovation_variance() <= most_variance) break;
       out_.noise.force *= 2.0;
+      for (double& force : out_.noise.further_forces) force *= 2.0;
       for (auto& channel : out_.noise.channels) {
         channel.white *= 1.5;
         channel.jitter *= 1.5;

@@ -7,15 +7,17 @@
 namespace misfit {
 namespace {
 
-/// Size of a force that gives the states' measured derivatives.
-double force_size(const FilterModel& model, const FilterData& data, const ReconstructedStates& states) {
+/// Size of a force of a group that gives the states' measured derivatives.
+double force_size(const FilterModel& model, int group, const FilterData& data, const ReconstructedStates& states) {
   Evaluator evaluator(model.model);
   const int n = evaluator.states();
   std::vector<double> dx(n), D(n * kRowStride);
   Slots slots;
   evaluator.linearise_rates(data.start.data(), data.inputs.at(data.first), data.signals->t[data.first], slots, dx.data(), D.data());
   double size = 0.0;
-  for (int f : model.force_states) {
+  for (std::size_t force = 0; force < model.force_states.size(); ++force) {
+    const int f = model.force_states[force];
+    if (model.force_group[force] != group) continue;
     for (int i = 0; i < n; ++i) {
       const double gain = std::abs(D[i * kRowStride + f]);
       if (i == f || model.kind[i] != 1 || !(gain > 0.0)) continue;
@@ -43,7 +45,9 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   out.force_time = out.time_held ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * h;
   const ReconstructedStates states = reconstruct_states(model.model, first);
   const double of_equal_intensity = std::sqrt(samples_of_memory * h / out.force_time);
-  out.force = share_of_motion * force_size(model, data.front(), states) * of_equal_intensity;
+  const auto usual_force = [&](int group) { return share_of_motion * force_size(model, group, data.front(), states) * of_equal_intensity; };
+  out.force = usual_force(0);
+  for (int group = 1; group < model.force_groups(); ++group) out.further_forces.push_back(usual_force(group));
   // Well above the motion, which the model itself must explain: pack() lets the frequency down to half of this.
   constexpr double above_motion = 3.0;
   const double jitter_frequency =

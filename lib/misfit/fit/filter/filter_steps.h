@@ -34,7 +34,11 @@ class NoiseSteps {
 template <int M, int NY>
 void start_covariance(const FilterModel& model, const FilterData& data, const FilterNoise& noise, Kalman<M, NY>& kalman) {
   for (Eigen::Index i = 0; i < data.scale.size(); ++i) kalman.P(i, i) = data.scale[i] * data.scale[i];
-  for (int f : model.force_states) kalman.P(f, f) = noise.force * noise.force;
+  for (std::size_t i = 0; i < model.force_states.size(); ++i) {
+    const int f = model.force_states[i];
+    const double force = noise.force_of(model.force_group[i]);
+    kalman.P(f, f) = force * force;
+  }
   for (std::size_t o = 0; o < noise.channels.size(); ++o) {
     const auto at = static_cast<Eigen::Index>(2 * o);
     kalman.G(at, at) = kalman.G(at + 1, at + 1) = noise.channels[o].jitter * noise.channels[o].jitter;

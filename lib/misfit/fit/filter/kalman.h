@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "misfit/fit/filter/filter_model.h"
 #include "misfit/fit/filter/filter_noise.h"
 #include "misfit/model/limits.h"
 
@@ -63,15 +64,17 @@ class Kalman {
     x += gain * innovation;
     j += gain_jitter * innovation;
   }
-  /// Over a step with the model's Φ: P → Φ P Φᵀ + Q. `kind` of each row (NoiseStep); `force`: indices of the force states. x is left to the
-  /// caller.
+  /// Over a step with the model's Φ: P → Φ P Φᵀ + Q. `kind` of each row (NoiseStep). x is left to the caller.
   template <class Phi>
-  void predict(const Phi& phi, const NoiseStep& noise, const std::vector<int>& kind, const std::vector<int>& force) {
+  void predict(const Phi& phi, const NoiseStep& noise, const FilterModel& model) {
+    const std::vector<int>& kind = model.kind;
     const StateMatrix turned = phi * P;
     P.noalias() = turned * phi.transpose();
-    for (int f : force) {
+    for (std::size_t i = 0; i < model.force_states.size(); ++i) {
+      const int f = model.force_states[i];
+      const double ratio = noise.variance_ratio[model.force_group[i]];
       for (Eigen::Index c = 0; c < P.cols(); ++c) {
-        const double right = c == f ? 1.0 : phi(c, f);
+        const double right = ratio * (c == f ? 1.0 : phi(c, f));
         if (right == 0.0) continue;
         const std::size_t kc = kind[c];
         for (Eigen::Index r = 0; r < P.rows(); ++r) {

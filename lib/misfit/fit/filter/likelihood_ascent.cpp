@@ -189,7 +189,7 @@ bool LikelihoodAscent::move_to(const Eigen::VectorXd& there, const std::vector<d
   const auto set = [&](const Eigen::VectorXd& parameters, const std::vector<double>& noise) {
     theta = parameters;
     out.noise_fit.logs = noise;
-    out.noise = unpack(noise);
+    out.noise = unpack(noise, out.model.system->spec());
     out.forced.set_force_time(out.noise.force_time);
     return linearise();
   };
@@ -231,7 +231,8 @@ std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradie
   if (promised < least_gain) return std::nullopt;
   const auto gain = [&](double share) {
     const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
-    return objective_at(at.head(n), unpack({at.data() + n, at.data() + at.size()})) - objective + slope.dot((at - here).tail(slope.size()));
+    return objective_at(at.head(n), unpack({at.data() + n, at.data() + at.size()}, out.model.system->spec())) - objective +
+           slope.dot((at - here).tail(slope.size()));
   };
   constexpr double shortest = 0.005;  // at a kink of the likelihood only a short step rises
   double share = 1.0, gained = gain(share);

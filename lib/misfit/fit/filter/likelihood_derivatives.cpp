@@ -135,7 +135,7 @@ class Differences {
   double loglik_with_noise(Eigen::Index i, double step, Runs& runs) const {
     std::vector<double> logs = estimate_.noise_fit.logs;
     logs[i] += step;
-    return objective_.loglik_at(theta_, unpack(logs), &runs);
+    return objective_.loglik_at(theta_, unpack(logs, estimate_.model.system->spec()), &runs);
   }
 
   OneDerivative with_step(const Eigen::VectorXd& step, double h, const Eigen::Ref<Eigen::VectorXd>& column) const {

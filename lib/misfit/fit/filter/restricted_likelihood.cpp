@@ -43,7 +43,7 @@ RestrictedLikelihood restricted_likelihood(const FilterEstimate& estimate, const
       if (estimate.noise_fit.at_bound[i]) return;
       there[i] += h;
     }
-    beside[i] = information_with(estimate, theta, unpack(there));
+    beside[i] = information_with(estimate, theta, unpack(there, estimate.model.system->spec()));
   });
   const std::optional<Eigen::MatrixXd>& here = beside.back();
   Eigen::MatrixXd covariance;

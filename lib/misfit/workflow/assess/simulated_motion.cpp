@@ -70,10 +70,11 @@ StochasticModel stochastic_model(const FilterEstimate& estimate, const Model& mo
   const int own = model.states() - model.system_states();
   out.intensity.assign(own, 0.0);
   out.start_sigma.assign(own, 0.0);
-  for (int state : estimate.forced.force_states) {
-    const int place = state - model.system_states();
-    out.intensity[place] = estimate.noise.force * std::sqrt(2.0 / estimate.noise.force_time);
-    out.start_sigma[place] = estimate.noise.force;
+  for (std::size_t i = 0; i < estimate.forced.force_states.size(); ++i) {
+    const int place = estimate.forced.force_states[i] - model.system_states();
+    const double force = estimate.noise.force_of(estimate.forced.force_group[i]);
+    out.intensity[place] = force * std::sqrt(2.0 / estimate.noise.force_time);
+    out.start_sigma[place] = force;
   }
   for (const ChannelNoise& c : estimate.noise.channels) out.noise.push_back({c.white, c.jitter, c.jitter_frequency, c.jitter_damping});
   return out;
