@@ -20,7 +20,7 @@ struct SensorAbsolute {
   static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { folded, fold_width };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "folded", .unit = "-", .lower = 0.0, .upper = 1.0, .scale = 0.1, .doc = "share of the sign that is lost", .whole = 1.0},
+      {.name = "folded", .unit = "-", .lower = 0.0, .upper = 2.0, .scale = 0.1, .doc = "share of the sign that is lost", .whole = 1.0},
       {.name = "fold_width",
        .kind = CoefficientKind::shape,
        .value = 0.05,

@@ -26,7 +26,7 @@ struct SensorQuantisation {
   static constexpr Role ports[] = {{.name = "output", .unit = "{signal}"}};
   enum Coefficient { rounded, step };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "rounded", .unit = "-", .lower = 0.0, .upper = 1.0, .scale = 0.1, .doc = "share of the rounding", .whole = 1.0},
+      {.name = "rounded", .unit = "-", .lower = 0.0, .upper = 2.0, .scale = 0.1, .doc = "share of the rounding", .whole = 1.0},
       {.name = "step",
        .kind = CoefficientKind::shape,
        .value = 0.1,

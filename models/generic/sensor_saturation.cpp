@@ -25,7 +25,7 @@ struct SensorSaturation {
       {.name = "clipped",
        .unit = "-",
        .lower = 0.0,
-       .upper = 1.0,
+       .upper = 2.0,
        .scale = 0.1,
        .doc = "share of what lies beyond the range that is not read",
        .whole = 1.0},

@@ -177,8 +177,7 @@ class Search {
     for (auto& e : ranked_) {
       const std::string p = "family-wise " + p_equals(e.candidate.p_value);
       if (e.candidate.why.empty()) {
-        e.candidate.why = e.candidate.p_value < options_.p_accept ? p + ", but not among the first " + std::to_string(options_.max_refits) +
-                                                                        ": tested again with the best in the model"
+        e.candidate.why = e.candidate.p_value < options_.p_accept ? p + ", not refitted: tested again with the best in the model"
                                                                   : "not significant: " + p;
       }
       out_.candidates.push_back(e.candidate);
