@@ -172,7 +172,7 @@ class Estimator {
     bool found = search(lengthened);
     while (found && settled_ && !integration_.negligible_at(end_.runs, end_.smoothed.covariance)) found = approach() || search({});
     if (!found) return failed(why_);
-    if (may_gain_digits()) static_cast<void>(reach_minimum());
+    if (settled_ && options_.coloured && !newton_steps() && reach_minimum()) static_cast<void>(newton_steps());
     return finish();
   }
 
@@ -220,11 +220,38 @@ class Estimator {
     return false;
   }
 
-  /// If a step of more than 1e-6 sigma is left. Not for fits by the thousand.
-  [[nodiscard]] bool may_gain_digits() const {
-    constexpr double negligible_step = 1e-6;  // of a sigma
-    return settled_ && options_.coloured && !end_is_present_ &&
-           largest_in_sigmas(end_.smoothed.theta - end_.linearised.theta, end_.smoothed.covariance) >= negligible_step;
+  /// From near the minimum to all its digits, by Gauss–Newton steps that shrink, noise and roughness as they are. False, and everything as
+  /// at the shortest of them, if they do not: far from it, or at a bound. Not for fits by the thousand.
+  bool newton_steps() {
+    constexpr double negligible = 1e-8, few_digits = 1e-6, near = 0.5, shrinks = 0.8;  // steps in sigma
+    constexpr int most = 25;
+    double before = near / shrinks;
+    Shooting::State best = shooting_.state();
+    for (int k = 0; k < most && look_at_the_end() && end_.smoothed.ok; ++k) {
+      const Eigen::VectorXd step = end_.smoothed.theta - end_.linearised.theta;
+      const double size = largest_in_sigmas(step, end_.smoothed.covariance);
+      if (!(size < shrinks * before)) break;
+      if (size < negligible && !noise_moves()) return true;
+      best = shooting_.state();
+      before = size;
+      if (!shooting_.move_to(end_.smoothed.theta)) break;
+      end_is_present_ = false;
+    }
+    shooting_.restore(best);
+    shooting_.forget_failure();
+    end_is_present_ = false;
+    return before < few_digits;
+  }
+
+  /// Noise by the residuals at the end, where no roughness hangs on it. False: it was that already.
+  bool noise_moves() {
+    constexpr double negligible = 1e-6;  // relative
+    if (any_chosen(penalties_)) return false;
+    const std::vector<double> sigma = channel_sigmas({shooting_, end_.runs, experiments_}, end_.smoothed.edf);
+    if (same_noise(sigma, negligible)) return false;
+    shooting_.set_sigma(sigma);
+    end_is_present_ = false;
+    return true;
   }
 
   std::string singular_message(const NormalEquations& linearised) {
@@ -334,9 +361,9 @@ class Estimator {
     return same_noise(channel_sigmas({shooting_, end_.runs, experiments_}, end_.smoothed.edf));
   }
 
-  [[nodiscard]] bool same_noise(const std::vector<double>& sigma) const {
+  [[nodiscard]] bool same_noise(const std::vector<double>& sigma, double difference = 0.01) const {
     return std::equal(sigma.begin(), sigma.end(), shooting_.sigma().begin(),
-                      [](double now, double then) { return std::abs(now / then - 1.0) < 0.01; });
+                      [difference](double now, double then) { return std::abs(now / then - 1.0) < difference; });
   }
 
   static std::string too_few(double count, double unknowns) {
