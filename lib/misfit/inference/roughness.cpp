@@ -55,22 +55,13 @@ bool invert_with(const Eigen::MatrixXd& information, const PenaltyBasis& basis, 
 
 namespace {
 
-/// Gradient of the penalised log-likelihood where the problem was made. Of small steps no digits are lost: it is not taken at θ = 0.
-Eigen::VectorXd ascent(const NormalEquations& problem, const PenaltyBasis& basis, double sigma2) {
-  const Eigen::VectorXd rotated = basis.Q.transpose() * problem.theta;
-  Eigen::VectorXd bend = Eigen::VectorXd::Zero(rotated.size());
-  for (const Penalty& p : basis.penalties) {
-    const Eigen::Index size = p.omega.rows();
-    bend.segment(p.first, size) += p.lambda * (p.omega * rotated.segment(p.first, size));
-  }
-  return problem.prior.gradient(problem.theta) - problem.g / sigma2 - basis.Q * bend;
-}
-
 /// Maximum, covariance, residuals and effective parameters with the λ of `basis`; false: not positive definite.
 bool solve_penalised(const NormalEquations& problem, const PenaltyBasis& basis, double sigma2, PenalisedFit& out) {
   if (!invert_with(precision_of(problem, {}, sigma2), basis, out.covariance)) return false;
-  const Eigen::VectorXd d = out.covariance * ascent(problem, basis, sigma2);
-  out.theta = problem.theta + d;
+  Eigen::VectorXd b = (problem.N * problem.theta - problem.g) / sigma2;
+  b += problem.prior.precision.cwiseProduct(problem.prior.mean);
+  out.theta = out.covariance * b;
+  const Eigen::VectorXd d = out.theta - problem.theta;
   out.rss = std::max(problem.rss + 2.0 * d.dot(problem.g) + d.dot(problem.N * d), 1e-300);
   out.edf = (out.covariance * problem.N).trace() / sigma2 - problem.held;
   out.sigma2 = sigma2;
@@ -89,6 +80,17 @@ double updated_lambda(const Penalty& p, const PenalisedFit& fit, double largest)
 }
 
 }  // namespace
+
+Eigen::VectorXd newton_step(const NormalEquations& problem, const std::vector<Penalty>& penalties, const Eigen::MatrixXd& covariance) {
+  const PenaltyBasis basis = penalty_eigenbasis(problem.N.rows(), penalties);
+  const Eigen::VectorXd rotated = basis.Q.transpose() * problem.theta;
+  Eigen::VectorXd bend = Eigen::VectorXd::Zero(rotated.size());
+  for (const Penalty& p : basis.penalties) {
+    const Eigen::Index size = p.omega.rows();
+    bend.segment(p.first, size) += p.lambda * (p.omega * rotated.segment(p.first, size));
+  }
+  return covariance * (problem.prior.gradient(problem.theta) - problem.g - basis.Q * bend);
+}
 
 PenalisedFit estimate_smoothing(const NormalEquations& problem, std::vector<Penalty>& penalties, double sigma2_given) {
   constexpr int max_rounds = 60;

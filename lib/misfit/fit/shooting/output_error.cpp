@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
@@ -65,10 +67,23 @@ class Estimator {
       shooting_.set_sigma(setting_.sigma);
       shooting_.forget_failure();
     }
+    const Start start{shooting_.state(), penalties_};
+    FittedModel out = from_segments();
+    return stuck_ && options_.coloured ? again_with_short_steps(start, std::move(out)) : out;
+  }
+
+ private:
+  struct Start {
+    Shooting::State at;
+    std::vector<Penalty> penalties;
+  };
+
+  FittedModel from_segments() {
     integration_.plan();
     ShootingPass pass;
-    for (const auto& next : short_passes(setting_, options_.from_regression)) {
+    for (auto& next : short_passes(setting_, options_.from_regression)) {
       pass = next;
+      pass.initial_radius = std::min(pass.initial_radius, largest_radius_);
       if (!solve(pass)) return failed(segments_of(pass) + last_.message);
     }
     pass.tolerance = 1e-6;
@@ -83,7 +98,20 @@ class Estimator {
     return whole_trajectory(pass);
   }
 
- private:
+  /// Long steps leap into valleys where a parameter no longer acts: begun again, with short steps.
+  FittedModel again_with_short_steps(const Start& start, FittedModel first) {
+    constexpr double short_steps = 1.0;
+    shooting_.restore(start.at);
+    shooting_.set_sigma(setting_.sigma);
+    shooting_.forget_failure();
+    penalties_ = start.penalties;
+    end_is_present_ = false;
+    first_misfit_ = std::exchange(stuck_, std::nullopt);
+    largest_radius_ = short_steps;
+    FittedModel second = from_segments();
+    return second.fit.usable() || stuck_ ? second : first;
+  }
+
   bool solve(const ShootingPass& pass) {
     last_ = shooting_.solve(pass, penalties_);
     return last_.usable;
@@ -180,7 +208,7 @@ class Estimator {
   /// valley of equal phase.
   bool search(const ShootingPass& lengthened) {
     constexpr int most_rounds = 8, most_iterations = 200;
-    const ShootingPass whole{0, 10.0, 1e8, most_iterations, 1e-7};
+    const ShootingPass whole{0, 10.0, std::min(1e8, largest_radius_), most_iterations, 1e-7};
     double before = 0.0;
     settled_ = false;
     for (int round = 0; round < most_rounds && !settled_; ++round) {
@@ -228,13 +256,13 @@ class Estimator {
     double before = near / shrinks;
     Shooting::State best = shooting_.state();
     for (int k = 0; k < most && look_at_the_end() && end_.smoothed.ok; ++k) {
-      const Eigen::VectorXd step = end_.smoothed.theta - end_.linearised.theta;
+      const Eigen::VectorXd step = newton_step(end_.linearised, penalties_, end_.smoothed.covariance);
       const double size = largest_in_sigmas(step, end_.smoothed.covariance);
       if (!(size < shrinks * before)) break;
       if (size < negligible && !noise_moves()) return true;
       best = shooting_.state();
       before = size;
-      if (!shooting_.move_to(end_.smoothed.theta)) break;
+      if (!shooting_.move_to(end_.linearised.theta + step)) break;
       end_is_present_ = false;
     }
     shooting_.restore(best);
@@ -260,7 +288,18 @@ class Estimator {
   }
 
   std::string at_the_end(const std::string& which) {
-    return why_undetermined(which, last_.converged, {shooting_, shooting_.run(false), experiments_});
+    constexpr double near = 1.0, alike = 1.0;  // sigma; of a log-likelihood
+    const std::vector<Segment> runs = shooting_.run(false);
+    const EndOfSearch end{shooting_, runs, experiments_};
+    const double left =
+        end_.smoothed.ok ? largest_in_sigmas(newton_step(end_.linearised, penalties_, end_.smoothed.covariance), end_.smoothed.covariance)
+                         : 0.0;
+    stuck_ = misfit_of(end);
+    std::string unsettled;
+    if (!last_.converged || left > near) unsettled = "the search ended before it came to a maximum";
+    if (first_misfit_ && !(std::abs(*first_misfit_ - *stuck_) < alike))
+      unsettled = "two searches from these values ended at different points";
+    return why_undetermined(which, unsettled, end);
   }
 
   /// No deterministic model can follow driven motion: there the method declines, with the reason, instead of failing.
@@ -408,8 +447,10 @@ class Estimator {
   Ending end_;
   bool end_is_present_ = false;  ///< end_ is of the present values, noise and roughness
   LeastSquares::Summary last_;
-  std::string why_;       ///< the search stopped
-  bool settled_ = false;  ///< noise and roughness agree with the residuals they leave
+  double largest_radius_ = std::numeric_limits<double>::infinity();  ///< of trust regions
+  std::optional<double> stuck_, first_misfit_;                       ///< misfit where parameters are not determined; in the first search
+  std::string why_;                                                  ///< the search stopped
+  bool settled_ = false;                                             ///< noise and roughness agree with the residuals they leave
 };
 
 }  // namespace

@@ -165,17 +165,28 @@ double motion_size(const std::vector<double>& values) {
   return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
 }
 
-std::string why_undetermined(const std::string& which, bool converged, const EndOfSearch& end) {
+double misfit_of(const EndOfSearch& end) {
+  double sum = 0.0;
+  for (std::size_t o = 0; o < end.shooting.sigma().size(); ++o) {
+    const auto [squares, count] = squares_of(channel_residuals(end, o));
+    sum += 0.5 * count * std::log(std::max(squares, 1e-300) / std::max(count, 1.0));
+  }
+  return sum;
+}
+
+std::string why_undetermined(const std::string& which, std::string unsettled, const EndOfSearch& end) {
   const auto& outputs = end.shooting.model().system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     const auto [squares, count] = squares_of(channel_residuals(end, o));
     const double rms = std::sqrt(squares / std::max(count, 1.0)), size = motion_size(end.experiments.front().measured[o].values);
-    if (converged && rms < follows * size) continue;
-    return "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
-           ", motion RMS " + in_display_unit(size, outputs[o].unit) + "): there " + which.substr(0, which.find_first_of(":;")) +
-           ", which need not be so elsewhere. Begin with other values, or give bounds";
+    if (rms < follows * size) continue;
+    unsettled = "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
+                ", motion RMS " + in_display_unit(size, outputs[o].unit) + ")";
+    break;
   }
-  return which;
+  if (unsettled.empty()) return which;
+  return unsettled + ": there " + which.substr(0, which.find_first_of(":;")) +
+         ", which need not be so elsewhere. Begin with other values, or give bounds";
 }
 
 namespace {
