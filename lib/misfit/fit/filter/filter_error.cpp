@@ -256,18 +256,20 @@ double short_record_factor(const FilterEstimate& estimate) {
   return degrees.measurements / (degrees.measurements - unknowns_beside_parameters(estimate));
 }
 
-/// Intervals of a short record, or that it is too short for any.
+/// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a jitter that is not
+/// there) has taken no degree of freedom from its variance.
 void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
   const Degrees degrees = degrees_of(estimate);
   if (degrees.left() >= kShortRecord) return;
   if (degrees.left() >= kFewestDegrees) {
-    add_student_intervals(degrees.left(), fit);
+    const auto idle = static_cast<double>(std::count(estimate.noise_fit.at_bound.begin(), estimate.noise_fit.at_bound.end(), true));
+    add_student_intervals(degrees.left() + idle, fit);
     return;
   }
   withhold_sigmas(
       format_value(degrees.measurements) + " measurements for " + format_value(std::round(10.0 * degrees.unknowns) / 10.0) +
-          " unknowns (free parameters, initial states, noise and random force) are too few to estimate the uncertainty of the values "
-          "are: no sigma is given",
+          " unknowns (free parameters, initial states, noise and random force) are too few to estimate the uncertainty of the values: no "
+          "sigma is given",
       fit);
 }
 

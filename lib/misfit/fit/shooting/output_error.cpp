@@ -248,21 +248,26 @@ class Estimator {
     return false;
   }
 
-  /// From near the minimum to all its digits, by Gauss–Newton steps that shrink, noise and roughness as they are. False, and everything as
-  /// at the shortest of them, if they do not: far from it, or at a bound. Not for fits by the thousand.
+  /// From near the minimum to all its digits, by Gauss–Newton steps that shrink, noise and roughness as they are. Steps that shrink by a
+  /// rate along one direction are the terms of a geometric series: its sum is gone at once. False, and everything as at the shortest of
+  /// them, if they do not shrink to nothing: far from the minimum, or at a bound. Not for fits by the thousand.
   bool newton_steps() {
-    constexpr double negligible = 1e-8, few_digits = 1e-6, near = 0.5, shrinks = 0.8;  // steps in sigma
+    constexpr double negligible = 1e-8, few_digits = 1e-6, near = 0.5, shrinks = 0.8, highest_rate = 0.5;  // steps in sigma
     constexpr int most = 25;
     double before = near / shrinks;
+    Eigen::VectorXd last;
     Shooting::State best = shooting_.state();
     for (int k = 0; k < most && look_at_the_end() && end_.smoothed.ok; ++k) {
       const Eigen::VectorXd step = newton_step(end_.linearised, penalties_, end_.smoothed.covariance);
-      const double size = largest_in_sigmas(step, end_.smoothed.covariance);
+      const Eigen::VectorXd here = in_sigmas(step, end_.smoothed.covariance);
+      const double size = here.cwiseAbs().maxCoeff();
       if (!(size < shrinks * before)) break;
       if (size < negligible && !noise_moves()) return true;
       best = shooting_.state();
       before = size;
-      if (!shooting_.move_to(end_.linearised.theta + step)) break;
+      const double rate = last.size() > 0 ? std::clamp(here.dot(last) / last.squaredNorm(), -highest_rate, highest_rate) : 0.0;
+      last = here;
+      if (!shooting_.move_to(end_.linearised.theta + step / (1.0 - rate))) break;
       end_is_present_ = false;
     }
     shooting_.restore(best);
