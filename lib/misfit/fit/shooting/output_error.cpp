@@ -160,34 +160,8 @@ class Estimator {
         "the model follows the measured motion over segments of " + span + " s only: run on, the simulated motion leaves it (" + stop + ")";
     FittedModel out = failed(what);
     out.fit.facts["prediction"] = "restarted every " + span + " s from a fitted state: no single trajectory exists";
-    if (out.fit.predictions.empty()) show_segments(out.fit);
+    if (out.fit.predictions.empty()) show_segments(shooting_, experiments_, out.fit);
     return out;
-  }
-
-  /// Predictions of the segments, so that a figure can show where they fail; sigma is the residuals' own.
-  void show_segments(Fit& fit) {
-    const std::vector<RowMatrix> y = shooting_.predict_segments();
-    const auto& outputs = shooting_.model().system->spec().outputs;
-    for (std::size_t o = 0; o < outputs.size(); ++o) {
-      double squares = 0.0, count = 0.0;
-      for (std::size_t e = 0; e < y.size(); ++e) {
-        ChannelPrediction p{
-            experiments_[e].name, outputs[o].name, outputs[o].unit, experiments_[e].t, experiments_[e].measured[o].values, {}, {}, {}};
-        for (std::size_t i = 0; i < p.t.size(); ++i) {
-          p.predicted.push_back(y[e](i, o));
-          p.held_out.push_back(experiments_[e].held_out(i));
-          if (!shooting_.counts(e, i, o)) continue;
-          squares += std::pow(p.measured[i] - p.predicted[i], 2);
-          count += 1.0;
-        }
-        fit.predictions.push_back(std::move(p));
-      }
-      const double rms = std::sqrt(squares / std::max(count, 1.0));
-      fit.rms[outputs[o].name] = {rms, 0.0, outputs[o].unit};
-      for (auto& p : fit.predictions) {
-        if (p.channel == outputs[o].name) p.sigma.assign(p.t.size(), rms);
-      }
-    }
   }
 
   /// One trajectory, integrated so finely that its error moves no estimate.
@@ -318,7 +292,7 @@ class Estimator {
       out.fit.message =
           "the motion is driven by a force that this deterministic model does not have, so it cannot follow it: " + out.fit.message +
           ". The method that can estimate such motion is " + random_force_estimator().name;
-      show_segments(out.fit);
+      show_segments(shooting_, experiments_, out.fit);
     }
     out.fit.linearisations = shooting_.linearisations();
     return out;

@@ -129,6 +129,31 @@ void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, F
   }
 }
 
+void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, Fit& fit) {
+  const std::vector<RowMatrix> y = shooting.predict_segments();
+  const auto& outputs = shooting.model().system->spec().outputs;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    double squares = 0.0, count = 0.0;
+    for (std::size_t e = 0; e < y.size(); ++e) {
+      ChannelPrediction p{
+          experiments[e].name, outputs[o].name, outputs[o].unit, experiments[e].t, experiments[e].measured[o].values, {}, {}, {}};
+      for (std::size_t i = 0; i < p.t.size(); ++i) {
+        p.predicted.push_back(y[e](i, o));
+        p.held_out.push_back(experiments[e].held_out(i));
+        if (!shooting.counts(e, i, o)) continue;
+        squares += std::pow(p.measured[i] - p.predicted[i], 2);
+        count += 1.0;
+      }
+      fit.predictions.push_back(std::move(p));
+    }
+    const double rms = std::sqrt(squares / std::max(count, 1.0));
+    fit.rms[outputs[o].name] = {rms, 0.0, outputs[o].unit};
+    for (auto& p : fit.predictions) {
+      if (p.channel == outputs[o].name) p.sigma.assign(p.t.size(), rms);
+    }
+  }
+}
+
 void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
   double loglik = 0.0, held_loglik = 0.0;
   std::map<std::string, std::array<double, 4>> sums;  // squares, count, held-out squares, held-out count

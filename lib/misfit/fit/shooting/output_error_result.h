@@ -25,6 +25,9 @@ struct EndOfSearch {
 /// Channels of every experiment with sigma from noise and `covariance` of (parameters, initial states of each experiment).
 void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, Fit& fit);
 
+/// Predictions of the segments of the last solve, so that a figure can show where they fail; sigma is the residuals' own.
+void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, Fit& fit);
+
 /// RMS and Gaussian log-likelihood of estimation and validation part, from the predictions and fit.noise.
 void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 
