@@ -69,7 +69,7 @@ class Estimator {
     }
     const Start start{shooting_.state(), penalties_};
     FittedModel out = from_segments();
-    return stuck_ && options_.coloured ? again_with_short_steps(start, std::move(out)) : out;
+    return stuck_ && options_.coloured ? again_with_short_steps(start, out) : out;
   }
 
  private:
@@ -99,7 +99,7 @@ class Estimator {
   }
 
   /// Long steps leap into valleys where a parameter no longer acts: begun again, with short steps.
-  FittedModel again_with_short_steps(const Start& start, FittedModel first) {
+  FittedModel again_with_short_steps(const Start& start, const FittedModel& first) {
     constexpr double short_steps = 1.0;
     shooting_.restore(start.at);
     shooting_.set_sigma(setting_.sigma);

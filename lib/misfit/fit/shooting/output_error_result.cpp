@@ -11,6 +11,7 @@
 #include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
+#include "misfit/inference/record_residuals.h"
 #include "misfit/math/whiteness.h"
 
 namespace misfit::output_error_parts {
@@ -162,9 +163,11 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
     const auto experiment = std::find_if(experiments.begin(), experiments.end(), [&](const Signals& s) { return s.name == p.experiment; });
     auto& s = sums[p.channel];
     const double sigma = fit.noise.at(p.channel).value;
+    RecordResiduals record;
     for (std::size_t i = experiment->exclude; i < p.t.size(); ++i) {
       const double r = p.measured[i] - p.predicted[i];
       if (!std::isfinite(r)) continue;
+      record.add(p.measured[i], p.predicted[i], p.held_out[i]);
       const double term = -0.5 * r * r / (sigma * sigma) - std::log(sigma) - 0.5 * std::log(2.0 * pi);
       const bool held = p.held_out[i];
       any_held = any_held || held;
@@ -172,6 +175,7 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
       s[held ? 2 : 0] += r * r;
       s[held ? 3 : 1] += 1.0;
     }
+    record.describe(p, fit);
   }
   fit.loglik = loglik;
   if (any_held) fit.validation_loglik = held_loglik;

@@ -28,7 +28,8 @@ void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, F
 /// Predictions of the segments of the last solve, so that a figure can show where they fail; sigma is the residuals' own.
 void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, Fit& fit);
 
-/// RMS and Gaussian log-likelihood of estimation and validation part, from the predictions and fit.noise.
+/// RMS, per experiment too (record_residuals.h), and Gaussian log-likelihood of estimation and validation part, from the predictions and
+/// fit.noise.
 void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 
 /// Standard deviation of the known values.
