@@ -32,14 +32,14 @@ void expect_certified(const Problem& problem, int start) {
 }
 
 TEST(EndOfSearch, HasSixDigitsAtCertifiedMinimaFromTheNearStart) {
-  for (const Problem& problem : problems()) {
+  for (const Problem& problem : problems) {
     SCOPED_TRACE(problem.name);
     expect_certified(problem, 2);
   }
 }
 
 TEST(EndOfSearch, HasSixDigitsFromTheFarStartButWhereThatIsLost) {
-  for (const Problem& problem : problems()) {
+  for (const Problem& problem : problems) {
     if (problem.name == "MGH10" || problem.name == "MGH17") continue;  // below
     SCOPED_TRACE(problem.name);
     expect_certified(problem, 1);
@@ -48,7 +48,7 @@ TEST(EndOfSearch, HasSixDigitsFromTheFarStartButWhereThatIsLost) {
 
 /// MGH17: exp(−b4 x), exp(−b5 x) are over before the second row; MGH10: a valley a thousand steps long.
 TEST(EndOfSearch, WhereItGotStuckNothingIsSaidOfTheData) {
-  for (const Problem& problem : problems()) {
+  for (const Problem& problem : problems) {
     if (problem.name != "MGH10" && problem.name != "MGH17") continue;
     SCOPED_TRACE(problem.name);
     const Fit fit = fitted(problem, 1);
@@ -64,7 +64,7 @@ TEST(EndOfSearch, WhereItGotStuckNothingIsSaidOfTheData) {
 
 /// Of b1 and b2 only the product acts, wherever a search ends.
 TEST(EndOfSearch, WhatNoPointDeterminesIsSaidOfTheData) {
-  Problem problem = problems().front();
+  Problem problem = problems.front();
   problem.formula = "b1*b2*x/(3308 + x)";
   const Fit fit = fitted(problem, 1);
   EXPECT_EQ(fit.status, FitStatus::failed);
