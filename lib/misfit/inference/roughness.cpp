@@ -81,6 +81,17 @@ double updated_lambda(const Penalty& p, const PenalisedFit& fit, double largest)
 
 }  // namespace
 
+Eigen::VectorXd newton_step(const NormalEquations& problem, const std::vector<Penalty>& penalties, const Eigen::MatrixXd& covariance) {
+  const PenaltyBasis basis = penalty_eigenbasis(problem.N.rows(), penalties);
+  const Eigen::VectorXd rotated = basis.Q.transpose() * problem.theta;
+  Eigen::VectorXd bend = Eigen::VectorXd::Zero(rotated.size());
+  for (const Penalty& p : basis.penalties) {
+    const Eigen::Index size = p.omega.rows();
+    bend.segment(p.first, size) += p.lambda * (p.omega * rotated.segment(p.first, size));
+  }
+  return covariance * (problem.prior.gradient(problem.theta) - problem.g - basis.Q * bend);
+}
+
 PenalisedFit estimate_smoothing(const NormalEquations& problem, std::vector<Penalty>& penalties, double sigma2_given) {
   constexpr int max_rounds = 60;
   constexpr double negligible_change = 1e-3;  // of the logarithms of λ and σ²

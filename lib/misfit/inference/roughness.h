@@ -56,6 +56,11 @@ struct PenaltyBasis {
 /// `sigma2_given` > 0 the variance is kept.
 [[nodiscard]] PenalisedFit estimate_smoothing(const NormalEquations& problem, std::vector<Penalty>& penalties, double sigma2_given = 0.0);
 
+/// The step from problem.theta to the maximum of the penalised Gaussian, residuals in units of their sigma, `covariance` as of
+/// PenalisedFit. PenalisedFit::theta less problem.theta, but with all digits of a small step.
+[[nodiscard]] Eigen::VectorXd newton_step(const NormalEquations& problem, const std::vector<Penalty>& penalties,
+                                          const Eigen::MatrixXd& covariance);
+
 /// Covariance of the unknowns when the λ marked `chosen` are not known but only as well as the data show them [KS]:
 ///   Σ_λ w(λ) [C(λ) + C(λ) E C(λ) + (θ(λ) − θ)(θ(λ) − θ)ᵀ],
 /// C(λ), θ(λ): covariance and maximum at that λ, θ: the problem's own, taken as its maximum, E: what residuals with memory add to N (empty:

@@ -42,6 +42,9 @@ Blocks blocks_of(const Fit& fit) {
   add_rows(rows, "RMS of ", fit.rms);
   add_rows(rows, "RMS of ", fit.validation_rms, ", held out");
   TableBlock table = rows_table("result", rows);
+  for (const auto& [name, words] : fit.facts) {
+    if (name.rfind("residuals of ", 0) == 0) table.rows.push_back({name, words});
+  }
   const TableBlock parameters = parameter_table(fit);
   table.rows.insert(table.rows.end(), parameters.rows.begin(), parameters.rows.end());
   for (const CurveEstimate& curve : fit.curves) table.rows.push_back({"curve " + curve.name, range_of(curve)});

@@ -15,6 +15,7 @@
 #include "misfit/fit/filter/noise_interval.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
+#include "misfit/inference/record_residuals.h"
 #include "misfit/inference/short_record.h"
 #include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
@@ -98,13 +99,20 @@ struct ChannelErrors {
   Squares fitted, held_out;
 };
 
-/// Output `o` of one experiment; adds its errors.
-ChannelPrediction predict_channel(const FilterEstimate& estimate, std::size_t experiment, std::size_t o, ChannelErrors& errors) {
+/// Output `o` of one experiment.
+struct OfChannel {
+  ChannelPrediction prediction;
+  RecordResiduals residuals;
+};
+
+/// Adds its errors.
+OfChannel predict_channel(const FilterEstimate& estimate, std::size_t experiment, std::size_t o, ChannelErrors& errors) {
   const FilterData& data = estimate.data[experiment];
   const FilterTrace& trace = estimate.traces[experiment];
   const OutputSpec& output = estimate.model.system->spec().outputs[o];
   const Signals& signals = *data.signals;
-  ChannelPrediction p{signals.name, output.name, output.unit, signals.t, signals.measured[o].values, {}, {}, {}};
+  OfChannel out{{signals.name, output.name, output.unit, signals.t, signals.measured[o].values, {}, {}, {}}, {}};
+  ChannelPrediction& p = out.prediction;
   for (std::size_t k = 0; k < signals.samples(); ++k) {
     const std::size_t at = trace.place(k, o);
     p.predicted.push_back(trace.y[at]);
@@ -112,15 +120,21 @@ ChannelPrediction predict_channel(const FilterEstimate& estimate, std::size_t ex
     p.held_out.push_back(signals.held_out(k));
     if (data.use[at] == SampleRole::counted) errors.fitted.add(p.measured[k] - trace.y[at]);
     if (data.use[at] == SampleRole::validation) errors.held_out.add(p.measured[k] - trace.y[at]);
+    if (data.use[at] == SampleRole::counted || data.use[at] == SampleRole::validation)
+      out.residuals.add(p.measured[k], trace.y[at], data.use[at] == SampleRole::validation);
   }
-  return p;
+  return out;
 }
 
 void add_predictions(const FilterEstimate& estimate, Fit& fit) {
   const auto& outputs = estimate.model.system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     ChannelErrors errors;
-    for (std::size_t e = 0; e < estimate.data.size(); ++e) fit.predictions.push_back(predict_channel(estimate, e, o, errors));
+    for (std::size_t e = 0; e < estimate.data.size(); ++e) {
+      OfChannel channel = predict_channel(estimate, e, o, errors);
+      channel.residuals.describe(channel.prediction, fit);
+      fit.predictions.push_back(std::move(channel.prediction));
+    }
     if (errors.fitted.count > 0.0) fit.rms[outputs[o].name] = {errors.fitted.root(), 0.0, outputs[o].unit};
     if (errors.held_out.count > 0.0) fit.validation_rms[outputs[o].name] = {errors.held_out.root(), 0.0, outputs[o].unit};
   }
@@ -257,18 +271,20 @@ double short_record_factor(const FilterEstimate& estimate) {
   return degrees.measurements / (degrees.measurements - unknowns_beside_parameters(estimate));
 }
 
-/// Intervals of a short record, or that it is too short for any.
+/// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a jitter that is not
+/// there) has taken no degree of freedom from its variance.
 void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
   const Degrees degrees = degrees_of(estimate);
   if (degrees.left() >= kShortRecord) return;
   if (degrees.left() >= kFewestDegrees) {
-    add_student_intervals(degrees.left(), fit);
+    const auto idle = static_cast<double>(std::count(estimate.noise_fit.at_bound.begin(), estimate.noise_fit.at_bound.end(), true));
+    add_student_intervals(degrees.left() + idle, fit);
     return;
   }
   withhold_sigmas(
       format_value(degrees.measurements) + " measurements for " + format_value(std::round(10.0 * degrees.unknowns) / 10.0) +
-          " unknowns (free parameters, initial states, noise and random force) are too few to estimate the uncertainty of the values "
-          "are: no sigma is given",
+          " unknowns (free parameters, initial states, noise and random force) are too few to estimate the uncertainty of the values: no "
+          "sigma is given",
       fit);
 }
 

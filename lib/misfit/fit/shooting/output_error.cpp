@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
@@ -65,10 +67,23 @@ class Estimator {
       shooting_.set_sigma(setting_.sigma);
       shooting_.forget_failure();
     }
+    const Start start{shooting_.state(), penalties_};
+    FittedModel out = from_segments();
+    return stuck_ && options_.coloured ? again_with_short_steps(start, out) : out;
+  }
+
+ private:
+  struct Start {
+    Shooting::State at;
+    std::vector<Penalty> penalties;
+  };
+
+  FittedModel from_segments() {
     integration_.plan();
     ShootingPass pass;
-    for (const auto& next : short_passes(setting_, options_.from_regression)) {
+    for (auto& next : short_passes(setting_, options_.from_regression)) {
       pass = next;
+      pass.initial_radius = std::min(pass.initial_radius, largest_radius_);
       if (!solve(pass)) return failed(segments_of(pass) + last_.message);
     }
     pass.tolerance = 1e-6;
@@ -83,7 +98,20 @@ class Estimator {
     return whole_trajectory(pass);
   }
 
- private:
+  /// Long steps leap into valleys where a parameter no longer acts: begun again, with short steps.
+  FittedModel again_with_short_steps(const Start& start, const FittedModel& first) {
+    constexpr double short_steps = 1.0;
+    shooting_.restore(start.at);
+    shooting_.set_sigma(setting_.sigma);
+    shooting_.forget_failure();
+    penalties_ = start.penalties;
+    end_is_present_ = false;
+    first_misfit_ = std::exchange(stuck_, std::nullopt);
+    largest_radius_ = short_steps;
+    FittedModel second = from_segments();
+    return second.fit.usable() || stuck_ ? second : first;
+  }
+
   bool solve(const ShootingPass& pass) {
     last_ = shooting_.solve(pass, penalties_);
     return last_.usable;
@@ -132,34 +160,8 @@ class Estimator {
         "the model follows the measured motion over segments of " + span + " s only: run on, the simulated motion leaves it (" + stop + ")";
     FittedModel out = failed(what);
     out.fit.facts["prediction"] = "restarted every " + span + " s from a fitted state: no single trajectory exists";
-    if (out.fit.predictions.empty()) show_segments(out.fit);
+    if (out.fit.predictions.empty()) show_segments(shooting_, experiments_, out.fit);
     return out;
-  }
-
-  /// Predictions of the segments, so that a figure can show where they fail; sigma is the residuals' own.
-  void show_segments(Fit& fit) {
-    const std::vector<RowMatrix> y = shooting_.predict_segments();
-    const auto& outputs = shooting_.model().system->spec().outputs;
-    for (std::size_t o = 0; o < outputs.size(); ++o) {
-      double squares = 0.0, count = 0.0;
-      for (std::size_t e = 0; e < y.size(); ++e) {
-        ChannelPrediction p{
-            experiments_[e].name, outputs[o].name, outputs[o].unit, experiments_[e].t, experiments_[e].measured[o].values, {}, {}, {}};
-        for (std::size_t i = 0; i < p.t.size(); ++i) {
-          p.predicted.push_back(y[e](i, o));
-          p.held_out.push_back(experiments_[e].held_out(i));
-          if (!shooting_.counts(e, i, o)) continue;
-          squares += std::pow(p.measured[i] - p.predicted[i], 2);
-          count += 1.0;
-        }
-        fit.predictions.push_back(std::move(p));
-      }
-      const double rms = std::sqrt(squares / std::max(count, 1.0));
-      fit.rms[outputs[o].name] = {rms, 0.0, outputs[o].unit};
-      for (auto& p : fit.predictions) {
-        if (p.channel == outputs[o].name) p.sigma.assign(p.t.size(), rms);
-      }
-    }
   }
 
   /// One trajectory, integrated so finely that its error moves no estimate.
@@ -172,7 +174,7 @@ class Estimator {
     bool found = search(lengthened);
     while (found && settled_ && !integration_.negligible_at(end_.runs, end_.smoothed.covariance)) found = approach() || search({});
     if (!found) return failed(why_);
-    if (may_gain_digits()) static_cast<void>(reach_minimum());
+    if (settled_ && options_.coloured && !newton_steps() && reach_minimum()) static_cast<void>(newton_steps());
     return finish();
   }
 
@@ -180,7 +182,7 @@ class Estimator {
   /// valley of equal phase.
   bool search(const ShootingPass& lengthened) {
     constexpr int most_rounds = 8, most_iterations = 200;
-    const ShootingPass whole{0, 10.0, 1e8, most_iterations, 1e-7};
+    const ShootingPass whole{0, 10.0, std::min(1e8, largest_radius_), most_iterations, 1e-7};
     double before = 0.0;
     settled_ = false;
     for (int round = 0; round < most_rounds && !settled_; ++round) {
@@ -220,11 +222,43 @@ class Estimator {
     return false;
   }
 
-  /// If a step of more than 1e-6 sigma is left. Not for fits by the thousand.
-  [[nodiscard]] bool may_gain_digits() const {
-    constexpr double negligible_step = 1e-6;  // of a sigma
-    return settled_ && options_.coloured && !end_is_present_ &&
-           largest_in_sigmas(end_.smoothed.theta - end_.linearised.theta, end_.smoothed.covariance) >= negligible_step;
+  /// From near the minimum to all its digits, by Gauss–Newton steps that shrink, noise and roughness as they are. Steps that shrink by a
+  /// rate along one direction are the terms of a geometric series: its sum is gone at once. False, and everything as at the shortest of
+  /// them, if they do not shrink to nothing: far from the minimum, or at a bound. Not for fits by the thousand.
+  bool newton_steps() {
+    constexpr double negligible = 1e-8, few_digits = 1e-6, near = 0.5, shrinks = 0.8, highest_rate = 0.5;  // steps in sigma
+    constexpr int most = 25;
+    double before = near / shrinks;
+    Eigen::VectorXd last;
+    Shooting::State best = shooting_.state();
+    for (int k = 0; k < most && look_at_the_end() && end_.smoothed.ok; ++k) {
+      const Eigen::VectorXd step = newton_step(end_.linearised, penalties_, end_.smoothed.covariance);
+      const Eigen::VectorXd here = in_sigmas(step, end_.smoothed.covariance);
+      const double size = here.cwiseAbs().maxCoeff();
+      if (!(size < shrinks * before)) break;
+      if (size < negligible && !noise_moves()) return true;
+      best = shooting_.state();
+      before = size;
+      const double rate = last.size() > 0 ? std::clamp(here.dot(last) / last.squaredNorm(), -highest_rate, highest_rate) : 0.0;
+      last = here;
+      if (!shooting_.move_to(end_.linearised.theta + step / (1.0 - rate))) break;
+      end_is_present_ = false;
+    }
+    shooting_.restore(best);
+    shooting_.forget_failure();
+    end_is_present_ = false;
+    return before < few_digits;
+  }
+
+  /// Noise by the residuals at the end, where no roughness hangs on it. False: it was that already.
+  bool noise_moves() {
+    constexpr double negligible = 1e-6;  // relative
+    if (any_chosen(penalties_)) return false;
+    const std::vector<double> sigma = channel_sigmas({shooting_, end_.runs, experiments_}, end_.smoothed.edf);
+    if (same_noise(sigma, negligible)) return false;
+    shooting_.set_sigma(sigma);
+    end_is_present_ = false;
+    return true;
   }
 
   std::string singular_message(const NormalEquations& linearised) {
@@ -233,7 +267,18 @@ class Estimator {
   }
 
   std::string at_the_end(const std::string& which) {
-    return why_undetermined(which, last_.converged, {shooting_, shooting_.run(false), experiments_});
+    constexpr double near = 1.0, alike = 1.0;  // sigma; of a log-likelihood
+    const std::vector<Segment> runs = shooting_.run(false);
+    const EndOfSearch end{shooting_, runs, experiments_};
+    const double left =
+        end_.smoothed.ok ? largest_in_sigmas(newton_step(end_.linearised, penalties_, end_.smoothed.covariance), end_.smoothed.covariance)
+                         : 0.0;
+    stuck_ = misfit_of(end);
+    std::string unsettled;
+    if (!last_.converged || left > near) unsettled = "the search ended before it came to a maximum";
+    if (first_misfit_ && !(std::abs(*first_misfit_ - *stuck_) < alike))
+      unsettled = "two searches from these values ended at different points";
+    return why_undetermined(which, unsettled, end);
   }
 
   /// No deterministic model can follow driven motion: there the method declines, with the reason, instead of failing.
@@ -247,7 +292,7 @@ class Estimator {
       out.fit.message =
           "the motion is driven by a force that this deterministic model does not have, so it cannot follow it: " + out.fit.message +
           ". The method that can estimate such motion is " + random_force_estimator().name;
-      show_segments(out.fit);
+      show_segments(shooting_, experiments_, out.fit);
     }
     out.fit.linearisations = shooting_.linearisations();
     return out;
@@ -334,9 +379,9 @@ class Estimator {
     return same_noise(channel_sigmas({shooting_, end_.runs, experiments_}, end_.smoothed.edf));
   }
 
-  [[nodiscard]] bool same_noise(const std::vector<double>& sigma) const {
+  [[nodiscard]] bool same_noise(const std::vector<double>& sigma, double difference = 0.01) const {
     return std::equal(sigma.begin(), sigma.end(), shooting_.sigma().begin(),
-                      [](double now, double then) { return std::abs(now / then - 1.0) < 0.01; });
+                      [difference](double now, double then) { return std::abs(now / then - 1.0) < difference; });
   }
 
   static std::string too_few(double count, double unknowns) {
@@ -381,8 +426,10 @@ class Estimator {
   Ending end_;
   bool end_is_present_ = false;  ///< end_ is of the present values, noise and roughness
   LeastSquares::Summary last_;
-  std::string why_;       ///< the search stopped
-  bool settled_ = false;  ///< noise and roughness agree with the residuals they leave
+  double largest_radius_ = std::numeric_limits<double>::infinity();  ///< of trust regions
+  std::optional<double> stuck_, first_misfit_;                       ///< misfit where parameters are not determined; in the first search
+  std::string why_;                                                  ///< the search stopped
+  bool settled_ = false;                                             ///< noise and roughness agree with the residuals they leave
 };
 
 }  // namespace

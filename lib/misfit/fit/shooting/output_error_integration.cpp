@@ -13,9 +13,13 @@ std::vector<RowMatrix> difference(std::vector<RowMatrix> outputs, const std::vec
 
 }  // namespace
 
-double largest_in_sigmas(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance) {
+Eigen::VectorXd in_sigmas(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance) {
   constexpr double least = 1e-300;
-  return step.cwiseQuotient(covariance.diagonal().cwiseMax(least).cwiseSqrt()).cwiseAbs().maxCoeff();
+  return step.cwiseQuotient(covariance.diagonal().cwiseMax(least).cwiseSqrt());
+}
+
+double largest_in_sigmas(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance) {
+  return in_sigmas(step, covariance).cwiseAbs().maxCoeff();
 }
 
 OutputErrorIntegration::OutputErrorIntegration(Shooting& shooting, const std::vector<Signals>& experiments, double tolerance, bool checked)

@@ -8,7 +8,8 @@
 // How finely output error integrates: not for use outside.
 namespace misfit::output_error_parts {
 
-/// The largest step of an unknown, in its sigma.
+/// A step, each unknown in its sigma; and the largest of them.
+[[nodiscard]] Eigen::VectorXd in_sigmas(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance);
 [[nodiscard]] double largest_in_sigmas(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance);
 
 /// Plans the steps of the shooting's runs (sim/plan.h) and judges them against runs with half the steps.

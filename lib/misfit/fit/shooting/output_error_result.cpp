@@ -11,6 +11,7 @@
 #include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
+#include "misfit/inference/record_residuals.h"
 #include "misfit/math/whiteness.h"
 
 namespace misfit::output_error_parts {
@@ -129,6 +130,31 @@ void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, F
   }
 }
 
+void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, Fit& fit) {
+  const std::vector<RowMatrix> y = shooting.predict_segments();
+  const auto& outputs = shooting.model().system->spec().outputs;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    double squares = 0.0, count = 0.0;
+    for (std::size_t e = 0; e < y.size(); ++e) {
+      ChannelPrediction p{
+          experiments[e].name, outputs[o].name, outputs[o].unit, experiments[e].t, experiments[e].measured[o].values, {}, {}, {}};
+      for (std::size_t i = 0; i < p.t.size(); ++i) {
+        p.predicted.push_back(y[e](i, o));
+        p.held_out.push_back(experiments[e].held_out(i));
+        if (!shooting.counts(e, i, o)) continue;
+        squares += std::pow(p.measured[i] - p.predicted[i], 2);
+        count += 1.0;
+      }
+      fit.predictions.push_back(std::move(p));
+    }
+    const double rms = std::sqrt(squares / std::max(count, 1.0));
+    fit.rms[outputs[o].name] = {rms, 0.0, outputs[o].unit};
+    for (auto& p : fit.predictions) {
+      if (p.channel == outputs[o].name) p.sigma.assign(p.t.size(), rms);
+    }
+  }
+}
+
 void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
   double loglik = 0.0, held_loglik = 0.0;
   std::map<std::string, std::array<double, 4>> sums;  // squares, count, held-out squares, held-out count
@@ -137,9 +163,11 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
     const auto experiment = std::find_if(experiments.begin(), experiments.end(), [&](const Signals& s) { return s.name == p.experiment; });
     auto& s = sums[p.channel];
     const double sigma = fit.noise.at(p.channel).value;
+    RecordResiduals record;
     for (std::size_t i = experiment->exclude; i < p.t.size(); ++i) {
       const double r = p.measured[i] - p.predicted[i];
       if (!std::isfinite(r)) continue;
+      record.add(p.measured[i], p.predicted[i], p.held_out[i]);
       const double term = -0.5 * r * r / (sigma * sigma) - std::log(sigma) - 0.5 * std::log(2.0 * pi);
       const bool held = p.held_out[i];
       any_held = any_held || held;
@@ -147,6 +175,7 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
       s[held ? 2 : 0] += r * r;
       s[held ? 3 : 1] += 1.0;
     }
+    record.describe(p, fit);
   }
   fit.loglik = loglik;
   if (any_held) fit.validation_loglik = held_loglik;
@@ -165,17 +194,28 @@ double motion_size(const std::vector<double>& values) {
   return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
 }
 
-std::string why_undetermined(const std::string& which, bool converged, const EndOfSearch& end) {
+double misfit_of(const EndOfSearch& end) {
+  double sum = 0.0;
+  for (std::size_t o = 0; o < end.shooting.sigma().size(); ++o) {
+    const auto [squares, count] = squares_of(channel_residuals(end, o));
+    sum += 0.5 * count * std::log(std::max(squares, 1e-300) / std::max(count, 1.0));
+  }
+  return sum;
+}
+
+std::string why_undetermined(const std::string& which, std::string unsettled, const EndOfSearch& end) {
   const auto& outputs = end.shooting.model().system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     const auto [squares, count] = squares_of(channel_residuals(end, o));
     const double rms = std::sqrt(squares / std::max(count, 1.0)), size = motion_size(end.experiments.front().measured[o].values);
-    if (converged && rms < follows * size) continue;
-    return "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
-           ", motion RMS " + in_display_unit(size, outputs[o].unit) + "): there " + which.substr(0, which.find_first_of(":;")) +
-           ", which need not be so elsewhere. Begin with other values, or give bounds";
+    if (rms < follows * size) continue;
+    unsettled = "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
+                ", motion RMS " + in_display_unit(size, outputs[o].unit) + ")";
+    break;
   }
-  return which;
+  if (unsettled.empty()) return which;
+  return unsettled + ": there " + which.substr(0, which.find_first_of(":;")) +
+         ", which need not be so elsewhere. Begin with other values, or give bounds";
 }
 
 namespace {

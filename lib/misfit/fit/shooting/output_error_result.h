@@ -25,15 +25,23 @@ struct EndOfSearch {
 /// Channels of every experiment with sigma from noise and `covariance` of (parameters, initial states of each experiment).
 void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, Fit& fit);
 
-/// RMS and Gaussian log-likelihood of estimation and validation part, from the predictions and fit.noise.
+/// Predictions of the segments of the last solve, so that a figure can show where they fail; sigma is the residuals' own.
+void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, Fit& fit);
+
+/// RMS, per experiment too (record_residuals.h), and Gaussian log-likelihood of estimation and validation part, from the predictions and
+/// fit.noise.
 void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 
 /// Standard deviation of the known values.
 [[nodiscard]] double motion_size(const std::vector<double>& values);
 
-/// Parameters that the information matrix does not determine (`which`, a sentence): the sentence holds for the data only if the search has
-/// converged and the residuals are less than half of the motion; else it is said of the point where the search ended.
-[[nodiscard]] std::string why_undetermined(const std::string& which, bool converged, const EndOfSearch& end);
+/// Minus the log-likelihood of the residuals with each channel's noise at its maximum, but for constants.
+[[nodiscard]] double misfit_of(const EndOfSearch& end);
+
+/// Parameters that the information matrix does not determine (`which`, a sentence): the sentence holds for the data only at a maximum
+/// (`unsettled` is empty; else says why it may be none) and if the residuals are less than half of the motion; else it is said of the point
+/// where the search ended.
+[[nodiscard]] std::string why_undetermined(const std::string& which, std::string unsettled, const EndOfSearch& end);
 
 /// Where the noise of an output is held and its residuals are of another size: a warning.
 void warn_of_other_noise(const Model& model, Fit& fit);

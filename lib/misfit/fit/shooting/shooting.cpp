@@ -224,6 +224,23 @@ void Shooting::restore(const State& state) {
   history_ = state.history;
 }
 
+bool Shooting::move_to(const Eigen::VectorXd& unknowns) {
+  const Eigen::Index columns = std::ssize(free_), n = model_.states();
+  const auto inside = [](double value, double least, double most) { return value >= least && value <= most; };
+  for (Eigen::Index c = 0; c < columns; ++c) {
+    const Parameter& p = model_.parameters[free_[c]];
+    if (p.curve < 0 && !inside(unknowns[c], p.lower, p.upper)) return false;
+  }
+  const StateBounds bounds(model_);
+  for (Eigen::Index at = columns; at < unknowns.size(); ++at) {
+    const std::size_t j = (at - columns) % n;
+    if (!inside(unknowns[at], bounds.least[j], bounds.most[j])) return false;
+  }
+  model_.set_theta(unknowns.head(columns));
+  for (std::size_t e = 0; e < history_.size(); ++e) history_[e].row(0) = unknowns.segment(columns + n * e, n).transpose();
+  return true;
+}
+
 std::vector<RowMatrix> Shooting::predict_segments() {
   set_theta(model_.theta().data());
   std::vector<RowMatrix> out;

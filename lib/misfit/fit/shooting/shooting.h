@@ -77,6 +77,8 @@ class Shooting {
   void begin_at(const std::vector<Eigen::VectorXd>& initial_states) {
     for (std::size_t e = 0; e < history_.size(); ++e) history_[e].row(0) = initial_states[e];
   }
+  /// All unknowns as linearise() orders them. False, and nothing changes, if one of them is outside its bounds.
+  bool move_to(const Eigen::VectorXd& unknowns);
   /// What the segments of the last solve predict, each from its own fitted state: samples × outputs per experiment.
   [[nodiscard]] std::vector<RowMatrix> predict_segments();
 
