@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "misfit/core/lists.h"
+#include "misfit/core/watch.h"
 
 namespace misfit {
 namespace {
@@ -29,16 +30,60 @@ bool all_finite(const double* values, std::size_t count) {
   return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
 }
 
+// What has stopped a solve from outside: no exception goes through Ceres. From then on no point can be evaluated, and the solve ends with
+// the best one at the end of its iteration.
+class Stop final : public ceres::IterationCallback {
+ public:
+  [[nodiscard]] bool stopped() const { return interrupted_ || !spent_.empty(); }
+
+  template <class Action>
+  bool unless_stopped(const Action& action) {
+    if (stopped()) return false;
+    try {
+      return action();
+    } catch (const TimeSpent& spent) {
+      spent_ = spent.what();
+    } catch (const Stopped&) {
+      interrupted_ = true;
+    }
+    return false;
+  }
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    unless_stopped([&] {
+      tell_watch(summary.iteration, "sum of squares", 2.0 * summary.cost);
+      return true;
+    });
+    return stopped() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+  /// What the solve ended with; the blocks hold the point of its last iteration (update_state_every_iteration).
+  void add_to(const ceres::Solver::Summary& ceres, LeastSquares::Summary& summary) const {
+    if (interrupted_) throw Interrupted();
+    if (spent_.empty()) return;
+    summary.out_of_time = true;
+    summary.converged = false;
+    summary.usable = !ceres.iterations.empty();
+    if (summary.usable) summary.cost = ceres.iterations.back().cost;
+    summary.message = spent_;
+  }
+
+ private:
+  bool interrupted_ = false;
+  std::string spent_;
+};
+
 // Wraps an Evaluate whose sizes are known at run time only. A residual or derivative that is not finite is an evaluation failure.
 class RuntimeCost final : public ceres::CostFunction {
  public:
-  RuntimeCost(const LeastSquares::Evaluate& evaluate, int residuals, const std::vector<int>& block_sizes) : evaluate_(&evaluate) {
+  RuntimeCost(const LeastSquares::Evaluate& evaluate, int residuals, const std::vector<int>& block_sizes, Stop& stop)
+      : evaluate_(&evaluate), stop_(&stop) {
     set_num_residuals(residuals);
     *mutable_parameter_block_sizes() = block_sizes;
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    if (!(*evaluate_)(parameters, residuals, jacobians)) return false;
+    if (!stop_->unless_stopped([&] { return (*evaluate_)(parameters, residuals, jacobians); })) return false;
     const std::size_t rows = num_residuals();
     if (!all_finite(residuals, rows)) return false;
     if (jacobians == nullptr) return true;
@@ -51,6 +96,7 @@ class RuntimeCost final : public ceres::CostFunction {
 
  private:
   const LeastSquares::Evaluate* evaluate_;  // owned by LeastSquares, which outlives the solve
+  Stop* stop_;                              // outlives it, too
 };
 
 std::unique_ptr<ceres::LossFunction> make_loss(LeastSquares::Loss loss, double scale) {
@@ -131,6 +177,9 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
   silence_glog();
   Summary result;
   result.cost = std::numeric_limits<double>::quiet_NaN();
+  Stop stop;
+  std::vector<std::vector<double>> before;
+  for (const Block& block : blocks_) before.push_back(block.values);
   ceres::Problem problem;
   std::size_t columns = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -157,18 +206,23 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
       sizes.push_back(int_size(block.values));
       pointers.push_back(block.values.data());
     }
-    auto cost = std::make_unique<RuntimeCost>(term.evaluate, term.count, sizes);
+    auto cost = std::make_unique<RuntimeCost>(term.evaluate, term.count, sizes, stop);
     problem.AddResidualBlock(cost.release(), make_loss(term.loss, term.scale).release(), pointers);  // the problem owns both
     rows += term.count;
   }
   ceres::Solver::Summary summary;
-  ceres::Solve(to_ceres(options, rows, columns), &problem, &summary);
+  ceres::Solver::Options to = to_ceres(options, rows, columns);
+  to.callbacks.push_back(&stop);
+  to.update_state_every_iteration = true;
+  ceres::Solve(to, &problem, &summary);
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.usable = summary.IsSolutionUsable();
   result.message = summary.message;
   if (result.usable) result.cost = summary.final_cost;
   result.linearisations = std::max(0, summary.num_jacobian_evaluations);
   result.iterations = std::max(0, result.linearisations - 1);
+  stop.add_to(summary, result);
+  for (std::size_t b = 0; b < blocks_.size() && !result.usable; ++b) blocks_[b].values = before[b];
   return result;
 }
 
