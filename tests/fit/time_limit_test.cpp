@@ -1,13 +1,12 @@
-// Fits that a limit of time cuts off. The limit is spent by whoever hears of the search: after a given number of iterations it waits until
-// the time is over, so that the tests do not depend on how fast the machine is.
+// Fits that a limit of time cuts off. Whoever hears of the search cuts it off, after a given number of iterations: the tests do not depend
+// on how fast the machine is.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <thread>
+#include <string>
 #include <tuple>
 
 #include "misfit/core/watch.h"
@@ -23,21 +22,20 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// Cuts off what is searched for while it lives, once `iterations` have been heard of; 0: at once.
+constexpr const char* limit_of_20_s = "the time limit of 20 s for this search was spent";
+
+/// Cuts off what is searched for while it lives, as soon as `iterations` have been heard of; 0: at once.
 class CutOff {
  public:
   explicit CutOff(int iterations)
-      : iterations_(iterations),
-        watch_("this search", iterations > 0 ? long_enough : 1e-9, [this](const SearchState& state) { hear(state); }) {}
+      : iterations_(iterations), watch_("this search", iterations > 0 ? 0.0 : 1e-9, [this](const SearchState& state) { hear(state); }) {}
   [[nodiscard]] int heard() const { return heard_; }
   [[nodiscard]] double value() const { return value_; }
 
  private:
-  static constexpr double long_enough = 20.0;  // [s] for the iterations, in a test
-
   void hear(const SearchState& state) {
     value_ = state.value;
-    if (++heard_ == iterations_) std::this_thread::sleep_for(std::chrono::duration<double>(state.left.value() + 0.01));
+    if (++heard_ >= iterations_) throw TimeSpent(limit_of_20_s);
   }
 
   int iterations_, heard_ = 0;
@@ -45,30 +43,34 @@ class CutOff {
   Watch watch_;
 };
 
-const std::string limit_of_20_s = "the time limit of 20 s for this search was spent";
-
-FilterError fit_of_flight(const std::vector<Signals>& flights) {
-  const Model model = assemble(testing_flight::request_for(flights), testing_flight::registry());
-  FilterOptions options;
-  options.threads = 1;
-  return filter_error(std::vector<FilterStart>{{model, curve_penalties(model)}}, flights, options);
-}
+/// A flight with its model.
+struct Flight {
+  std::vector<Signals> signals;
+  Model model;
+  explicit Flight(double seconds)
+      : signals{testing_flight::fly(seconds, 3)}, model(assemble(testing_flight::request_for(signals), testing_flight::registry())) {}
+  [[nodiscard]] FilterError fit() const {
+    FilterOptions options;
+    options.threads = 1;
+    return filter_error(std::vector<FilterStart>{{model, curve_penalties(model)}}, signals, options);
+  }
+};
 
 TEST(TimeLimit, FilterErrorEndsWithItsBestPoint) {
-  const std::vector<Signals> flights = {testing_flight::fly(8.0, 3)};
-  const FilterError whole = fit_of_flight(flights);
+  const Flight flight(8.0);
+  const FilterError whole = flight.fit();
   ASSERT_EQ(whole.fit.status, FitStatus::converged) << whole.fit.message;
   double before = -std::numeric_limits<double>::infinity();
   for (const int iterations : {1, 4}) {
     std::optional<CutOff> cut(std::in_place, iterations);
-    const FilterError fit = fit_of_flight(flights);
+    const FilterError fit = flight.fit();
     EXPECT_EQ(cut->heard(), iterations) << "it went on";
     const double heard = cut->value();
     cut.reset();
     ASSERT_TRUE(fit.estimate);
     EXPECT_TRUE(fit.estimate->out_of_time);
     EXPECT_EQ(fit.fit.status, FitStatus::not_converged);
-    EXPECT_THAT(fit.fit.message, StartsWith(limit_of_20_s + " at a log-likelihood of "));
+    EXPECT_THAT(fit.fit.message, StartsWith(std::string(limit_of_20_s) + " at a log-likelihood of "));
     EXPECT_THAT(fit.fit.message, HasSubstr("--time-limit"));
     EXPECT_NEAR(fit.fit.loglik.value(), heard, 1e-6 * std::abs(heard)) << "it is the point that was heard of last";
     EXPECT_LT(*fit.fit.loglik, *whole.fit.loglik);
@@ -80,19 +82,19 @@ TEST(TimeLimit, FilterErrorEndsWithItsBestPoint) {
 }
 
 TEST(TimeLimit, AFilterThatWasNeverRunFails) {
-  const std::vector<Signals> flights = {testing_flight::fly(8.0, 3)};
+  const Flight flight(8.0);
   const CutOff cut(0);
-  const FilterError fit = fit_of_flight(flights);
+  const FilterError fit = flight.fit();
   EXPECT_FALSE(fit.estimate);
   EXPECT_EQ(fit.fit.status, FitStatus::failed);
   EXPECT_THAT(fit.fit.message, HasSubstr("before there was any result"));
 }
 
 TEST(TimeLimit, WithoutOneTheFitIsTheSameToTheBit) {
-  const std::vector<Signals> flights = {testing_flight::fly(4.0, 3)};
-  const Fit alone = fit_of_flight(flights).fit;
+  const Flight flight(4.0);
+  const Fit alone = flight.fit().fit;
   const Watch watch("this search", 1e6, [](const SearchState&) {});
-  const Fit watched = fit_of_flight(flights).fit;
+  const Fit watched = flight.fit().fit;
   EXPECT_EQ(alone.loglik, watched.loglik);
   for (const auto& [name, estimate] : alone.parameters) EXPECT_EQ(estimate.value, watched.parameters.at(name).value) << name;
 }
@@ -119,7 +121,7 @@ TEST(TimeLimit, OutputErrorEndsWithItsBestPoint) {
     const Fit fit = decay.fit().fit;
     EXPECT_EQ(cut.heard(), iterations) << "it went on";
     EXPECT_EQ(fit.status, FitStatus::not_converged) << fit.message;
-    EXPECT_THAT(fit.message, StartsWith(limit_of_20_s + " at a sum of squares of "));
+    EXPECT_THAT(fit.message, StartsWith(std::string(limit_of_20_s) + " at a sum of squares of "));
     EXPECT_TRUE(fit.parameters.contains("a"));
     EXPECT_FALSE(fit.predictions.empty());
   }

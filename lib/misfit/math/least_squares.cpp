@@ -30,11 +30,15 @@ bool all_finite(const double* values, std::size_t count) {
   return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
 }
 
-// What has stopped a solve from outside: no exception goes through Ceres. From then on no point can be evaluated, and the solve ends with
-// the best one at the end of its iteration.
+// A solve whose time is spent: from then on no point can be evaluated, and it ends with the best one at the end of its iteration. Only an
+// interrupt goes through Ceres as an exception, which it survives with one thread: a line search would try twenty more points.
 class Stop final : public ceres::IterationCallback {
  public:
-  [[nodiscard]] bool stopped() const { return interrupted_ || !spent_.empty(); }
+  using Values = std::vector<std::vector<double>>;
+  /// `present`: of all blocks, at the end of an iteration.
+  explicit Stop(std::function<Values()> present) : present_(std::move(present)) {}
+
+  [[nodiscard]] bool stopped() const { return !spent_.empty(); }
 
   template <class Action>
   bool unless_stopped(const Action& action) {
@@ -43,13 +47,15 @@ class Stop final : public ceres::IterationCallback {
       return action();
     } catch (const TimeSpent& spent) {
       spent_ = spent.what();
-    } catch (const Stopped&) {
-      interrupted_ = true;
     }
     return false;
   }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (summary.step_is_successful) {
+      cost_ = summary.cost;
+      best_ = present_();
+    }
     unless_stopped([&] {
       tell_watch(summary.iteration, "sum of squares", 2.0 * summary.cost);
       return true;
@@ -57,19 +63,22 @@ class Stop final : public ceres::IterationCallback {
     return stopped() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
-  /// What the solve ended with; the blocks hold the point of its last iteration (update_state_every_iteration).
-  void add_to(const ceres::Solver::Summary& ceres, LeastSquares::Summary& summary) const {
-    if (interrupted_) throw Interrupted();
+  /// Values at the end of the last iteration that went down; after a failure Ceres leaves those of the start.
+  [[nodiscard]] const Values& best() const { return best_; }
+
+  void add_to(LeastSquares::Summary& summary) const {
     if (spent_.empty()) return;
     summary.out_of_time = true;
     summary.converged = false;
-    summary.usable = !ceres.iterations.empty();
-    if (summary.usable) summary.cost = ceres.iterations.back().cost;
+    summary.usable = std::isfinite(cost_);
+    summary.cost = cost_;
     summary.message = spent_;
   }
 
  private:
-  bool interrupted_ = false;
+  std::function<Values()> present_;
+  double cost_ = std::numeric_limits<double>::quiet_NaN();
+  Values best_;
   std::string spent_;
 };
 
@@ -177,9 +186,13 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
   silence_glog();
   Summary result;
   result.cost = std::numeric_limits<double>::quiet_NaN();
-  Stop stop;
-  std::vector<std::vector<double>> before;
-  for (const Block& block : blocks_) before.push_back(block.values);
+  const auto values = [this] {
+    Stop::Values out;
+    for (const Block& block : blocks_) out.push_back(block.values);
+    return out;
+  };
+  const Stop::Values before = values();
+  Stop stop(values);
   ceres::Problem problem;
   std::size_t columns = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -221,8 +234,10 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
   if (result.usable) result.cost = summary.final_cost;
   result.linearisations = std::max(0, summary.num_jacobian_evaluations);
   result.iterations = std::max(0, result.linearisations - 1);
-  stop.add_to(summary, result);
-  for (std::size_t b = 0; b < blocks_.size() && !result.usable; ++b) blocks_[b].values = before[b];
+  stop.add_to(result);
+  if (result.usable && !result.out_of_time) return result;
+  const Stop::Values& end = result.usable ? stop.best() : before;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) blocks_[b].values = end[b];
   return result;
 }
 
