@@ -48,7 +48,7 @@ void Progress::update(const SearchState& state) {
   const std::lock_guard lock(mutex_);
   if (!due(false)) return;
   const std::string left = state.left ? ", at most " + time_left(*state.left) : "";
-  fmt::print(stderr, "{}{}  iteration {}, {} {:.6g}, {:.0f} s{}", clear_line, printable(state.work), state.iteration, state.what,
+  fmt::print(stderr, "{}{}  iteration {}, {} {:.8g}, {:.0f} s{}", clear_line, printable(state.work), state.iteration, state.what,
              state.value, std::floor(state.seconds), left);
   std::fflush(stderr);
 }

@@ -58,7 +58,7 @@ TEST_F(UnfinishedDiscovery, ARoundWithoutTimeEndsInWords) {
   DiscoverOptions options;
   options.round_limit = 1e-6;
   const Discovery found = discover(options);
-  EXPECT_THAT(found.verdict, StartsWith("Not finished: the time limit of 1e-06 s for this round of discover was spent; before"));
+  EXPECT_THAT(found.verdict, StartsWith("Not finished: the time limit of 1e-06 s for this round of discover was spent before"));
   for (const Candidate& c : found.candidates) EXPECT_FALSE(c.accepted);
 }
 
@@ -71,6 +71,16 @@ TEST(Unfinished, IsTestedAgainWhereAnotherIsAccepted) {
   EXPECT_EQ(found.verdict, "Missing: lag.");
   ASSERT_EQ(found.sentences.size(), 1U);
   EXPECT_THAT(found.sentences[0], HasSubstr("the refits of overflow and delay were not finished"));
+}
+
+TEST(Unfinished, AnAcceptedEffectStaysWhereOnlyItsGroupIsNotFinished) {
+  Discovery found;
+  found.verdict = "Missing: lag.";
+  found.candidates.resize(1);
+  found.candidates[0].accepted = true;
+  say_cut_off("the time limit of 5 s for this round of discover was spent", true, found);
+  EXPECT_EQ(found.verdict, "Missing: lag.");
+  EXPECT_THAT(found.sentences.at(0), StartsWith("the time limit of 5 s for this round of discover was spent before"));
 }
 
 TEST(Unfinished, SaysNothingWhereAllWereFinished) {

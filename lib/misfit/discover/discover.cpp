@@ -45,6 +45,9 @@ class Search {
       spent = limit.what();
     }
     const Unhurried writing_up;
+    for (auto& e : ranked_) {
+      if (!spent.empty() && e.refit && e.candidate.why.empty()) e.candidate.why = "not judged: " + spent;
+    }
     list_unknown();
     describe_search(unexplained);
     say_unfinished(unfinished_, out_);

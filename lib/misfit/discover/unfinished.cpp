@@ -26,9 +26,13 @@ void say_unfinished(const std::vector<std::string>& effects, Discovery& discover
 }
 
 void say_cut_off(const std::string& spent, bool screened, Discovery& discovery) {
-  const std::string where = screened ? "the candidates are tested one by one, but not all that follows: no effect is accepted"
-                                     : "before all candidates were tested: nothing can be said of any";
-  discovery.verdict = "Not finished: " + spent + "; " + where + " (more time: time_limit of [discover], --round-limit SECONDS).";
+  if (any_accepted(discovery)) {
+    discovery.sentences.push_back(spent + " before it was tested to the end which effects these data cannot distinguish from that");
+    return;
+  }
+  const std::string where = screened ? " after the candidates were tested one by one: which of them is missing is not decided"
+                                     : " before all candidates were tested: nothing can be said of any";
+  discovery.verdict = "Not finished: " + spent + where + " (more time: --round-limit SECONDS, or time_limit of [discover]).";
 }
 
 }  // namespace misfit
