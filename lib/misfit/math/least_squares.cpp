@@ -147,6 +147,15 @@ ceres::Solver::Options to_ceres(const LeastSquares::Options& options, std::size_
   return to;
 }
 
+void describe(const ceres::Solver::Summary& summary, LeastSquares::Summary& result) {
+  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  result.usable = summary.IsSolutionUsable();
+  result.message = summary.message;
+  if (result.usable) result.cost = summary.final_cost;
+  result.linearisations = std::max(0, summary.num_jacobian_evaluations);
+  result.iterations = std::max(0, result.linearisations - 1);
+}
+
 // Why a block cannot be a start; empty if it can. Ceres would say it with addresses.
 std::string infeasible(std::size_t number, const std::vector<double>& values, const std::vector<double>& lower,
                        const std::vector<double>& upper) {
@@ -228,12 +237,7 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
   to.callbacks.push_back(&stop);
   to.update_state_every_iteration = true;
   ceres::Solve(to, &problem, &summary);
-  result.converged = summary.termination_type == ceres::CONVERGENCE;
-  result.usable = summary.IsSolutionUsable();
-  result.message = summary.message;
-  if (result.usable) result.cost = summary.final_cost;
-  result.linearisations = std::max(0, summary.num_jacobian_evaluations);
-  result.iterations = std::max(0, result.linearisations - 1);
+  describe(summary, result);
   stop.add_to(result);
   if (result.usable && !result.out_of_time) return result;
   const Stop::Values& end = result.usable ? stop.best() : before;
