@@ -156,6 +156,21 @@ void describe(const ceres::Solver::Summary& summary, LeastSquares::Summary& resu
   result.iterations = std::max(0, result.linearisations - 1);
 }
 
+// With its bounds, or constant; how many free columns that makes.
+template <class Block>
+std::size_t add_to(ceres::Problem& problem, Block& block) {
+  problem.AddParameterBlock(block.values.data(), int_size(block.values));
+  if (block.fixed) {
+    problem.SetParameterBlockConstant(block.values.data());
+    return 0;
+  }
+  for (int i = 0; i < int_size(block.values); ++i) {
+    if (block.lower[i] > -infinity) problem.SetParameterLowerBound(block.values.data(), i, block.lower[i]);
+    if (block.upper[i] < infinity) problem.SetParameterUpperBound(block.values.data(), i, block.upper[i]);
+  }
+  return block.values.size();
+}
+
 // Why a block cannot be a start; empty if it can. Ceres would say it with addresses.
 std::string infeasible(std::size_t number, const std::vector<double>& values, const std::vector<double>& lower,
                        const std::vector<double>& upper) {
@@ -208,16 +223,7 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
     Block& block = blocks_[b];
     if (!block.fixed) result.message = infeasible(b, block.values, block.lower, block.upper);
     if (!result.message.empty()) return result;
-    problem.AddParameterBlock(block.values.data(), int_size(block.values));
-    if (block.fixed) {
-      problem.SetParameterBlockConstant(block.values.data());
-      continue;
-    }
-    columns += block.values.size();
-    for (int i = 0; i < int_size(block.values); ++i) {
-      if (block.lower[i] > -infinity) problem.SetParameterLowerBound(block.values.data(), i, block.lower[i]);
-      if (block.upper[i] < infinity) problem.SetParameterUpperBound(block.values.data(), i, block.upper[i]);
-    }
+    columns += add_to(problem, block);
   }
   std::size_t rows = 0;
   for (const Residuals& term : residuals_) {
