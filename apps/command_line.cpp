@@ -1,15 +1,20 @@
 #include "apps/command_line.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <iostream>
 #include <limits>
 #include <map>
 #include <new>
+#include <string_view>
 #include <thread>
+#include <tuple>
 
 #include "apps/help.h"
 #include "apps/progress.h"
@@ -26,10 +31,12 @@
 namespace misfit {
 namespace {
 
-/// The first Ctrl-C asks the stages to stop, the second ends the program at once.
+/// The first Ctrl-C (or SIGTERM) asks all work to stop, and is answered at once; the second ends the program where it is.
 extern "C" void on_interrupt(int) {
-  interrupted() = true;
+  constexpr std::string_view answer = "\nmisfit: stopping; once more ends it at once\n";
+  if (!interrupted().exchange(true)) std::ignore = ::write(STDERR_FILENO, answer.data(), answer.size());
   std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
 }
 
 using Verb = int (*)(const Options&, const Registry&);
@@ -67,6 +74,31 @@ void add_force(CLI::App& verb, Options& options) {
   verb.add_flag("--force", options.session.force, "overwrite files that misfit did not write (never data, never through links)");
 }
 
+/// Of a time limit: a positive number of seconds.
+CLI::Validator seconds_check() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value > 0.0;
+    return good ? "" : "'" + shown(text) + "': a number of seconds above 0 is expected";
+  };
+  return {check, ""};
+}
+
+void add_time_limit(CLI::App& verb, Options& options) {
+  verb.add_option("--time-limit", options.session.time_limit,
+                  "of every fit and refit: then it ends with its best values, unconverged (default: [fit] time_limit of the study)")
+      ->type_name("SECONDS")
+      ->check(seconds_check());
+}
+
+void add_round_limit(CLI::App& verb, Options& options) {
+  verb.add_option("--round-limit", options.session.round_limit,
+                  "of a round of discover: then it ends with what was found (default: [discover] time_limit of the study)")
+      ->type_name("SECONDS")
+      ->check(seconds_check());
+}
+
 void add_work(CLI::App& verb, Options& options) {
   verb.add_option("--out", options.session.out, "run folder (default: out/ beside the study)")->type_name("DIR");
   add_force(verb, options);
@@ -80,6 +112,16 @@ void study_options(CLI::App& verb, Options& options) {
   add_work(verb, options);
 }
 
+void fit_options(CLI::App& verb, Options& options) {
+  study_options(verb, options);
+  add_time_limit(verb, options);
+}
+
+void run_options(CLI::App& verb, Options& options) {
+  fit_options(verb, options);
+  add_round_limit(verb, options);
+}
+
 void track_options(CLI::App& verb, Options& options) {
   study_options(verb, options);
   verb.add_option("--check-video", options.check_video, "also write the video with the track drawn on it (.avi, .mp4 or .mkv)")
@@ -90,12 +132,15 @@ void discover_options(CLI::App& verb, Options& options) {
   add_study(verb, options);
   verb.add_flag("--auto", options.automatic, "add the accepted effect and search again, until none is accepted");
   add_work(verb, options);
+  add_time_limit(verb, options);
+  add_round_limit(verb, options);
 }
 
 void add_verb_options(CLI::App& verb, Options& options) {
   add_study(verb, options);
   verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
   add_work(verb, options);
+  add_time_limit(verb, options);
 }
 
 void uncertainty_options(CLI::App& verb, Options& options) {
@@ -104,6 +149,7 @@ void uncertainty_options(CLI::App& verb, Options& options) {
       ->type_name("N")
       ->check(CLI::Range(1, 100'000'000));
   add_work(verb, options);
+  add_time_limit(verb, options);
 }
 
 void batch_options(CLI::App& verb, Options& options) {
@@ -115,6 +161,7 @@ void batch_options(CLI::App& verb, Options& options) {
   add_force(verb, options);
   add_method(verb, options);
   add_running(verb, options);
+  add_time_limit(verb, options);
 }
 
 void init_options(CLI::App& verb, Options& options) {
@@ -140,19 +187,19 @@ struct VerbEntry {
 };
 
 constexpr VerbEntry verbs[] = {
-    {"run", "run all stages of the study and write the report; stages whose inputs have not changed are skipped", run_verb, study_options},
+    {"run", "run all stages of the study and write the report; stages whose inputs have not changed are skipped", run_verb, run_options},
     {"track", "follow the marker through the video: track.csv, contact sheet, lost samples and their reasons", track_verb, track_options},
     {"calibrate", "estimate camera height, scale and the further parameters that the static sweep supports", calibrate_verb, study_options},
     {"attitude", "compute the angles of the axis from the track", attitude_verb, study_options},
-    {"fit", "estimate the model's curves and parameters", fit_verb, study_options},
-    {"diagnose", "residual diagnostics: unexplained force against states, inputs and time; whiteness tests", diagnose_verb, study_options},
+    {"fit", "estimate the model's curves and parameters", fit_verb, fit_options},
+    {"diagnose", "residual diagnostics: unexplained force against states, inputs and time; whiteness tests", diagnose_verb, fit_options},
     {"discover", "rank the effects the model may be missing; continues from the last model of the ladder", discover_verb, discover_options},
     {"add", "add an effect (or system:KIND) to the last rung: writes and fits a new study, prints the error before and after", add_verb,
      add_verb_options},
-    {"compare", "compare methods with each other and with reference curves, simulated with measured motion", compare_verb, study_options},
+    {"compare", "compare methods with each other and with reference curves, simulated with measured motion", compare_verb, fit_options},
     {"uncertainty", "propagate geometry, camera and mass uncertainty to the results (Monte Carlo, on threads or under mpirun)",
      uncertainty_verb, uncertainty_options},
-    {"report", "write the figures and one self-contained page", report_verb, study_options},
+    {"report", "write the figures and one self-contained page", report_verb, fit_options},
     {"simulate", "simulate the model as described in [simulate], or as fitted", simulate_verb, study_options},
     {"batch", "fit many studies as one job, on threads or under mpirun; tabulate how their results vary", batch_verb, batch_options},
     {"init", "write a first study for a CSV file: column roles, linear model, figures", init_verb, init_options},
@@ -248,6 +295,7 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
   }
   const CLI::App* chosen = app.get_subcommands().front();
   std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
   refuse_ranks(chosen->get_name());
   if (!options.quiet && (ranks_started() == 1 || ranks().first())) options.session.listener = terminal_listener();
   if (options.json) out.use_json_escapes();

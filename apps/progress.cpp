@@ -34,21 +34,39 @@ Progress::~Progress() {
 void Progress::update(std::size_t done, std::size_t total) {
   if (!visible_ || total == 0) return;
   if (!before_) before_ = done > 0 ? done - 1 : 0;
-  const auto now = Clock::now();
-  if (now - last_ < between_lines && done < total) return;
-  last_ = now;
+  const std::optional<double> elapsed = due(done >= total);
+  if (!elapsed) return;
   const double part = static_cast<double>(done) / static_cast<double>(total);
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
   const auto now_done = static_cast<double>(done - *before_), to_do = static_cast<double>(total - done);
-  const std::string left = done == *before_ ? "" : "  " + time_left(elapsed * to_do / now_done);
+  const std::string left = done == *before_ ? "" : "  " + time_left(*elapsed * to_do / now_done);
   fmt::print(stderr, "{}{}  {:.0f} %{}", clear_line, what_, std::floor(100.0 * part), left);
   std::fflush(stderr);
+}
+
+void Progress::update(const SearchState& state) {
+  if (!visible_) return;
+  const std::lock_guard lock(mutex_);
+  if (!due(false)) return;
+  const std::string left = state.left ? ", at most " + time_left(*state.left) : "";
+  fmt::print(stderr, "{}{}  iteration {}, {} {:.8g}, {:.0f} s{}", clear_line, printable(state.work), state.iteration, state.what,
+             state.value, std::floor(state.seconds), left);
+  std::fflush(stderr);
+}
+
+std::optional<double> Progress::due(bool at_once) {
+  const auto now = Clock::now();
+  if (now - last_ < between_lines && !at_once) return std::nullopt;
+  last_ = now;
+  return std::chrono::duration<double>(now - start_).count();
 }
 
 Listener terminal_listener() {
   return {[](const std::string& line) { std::cerr << line << '\n'; },
           [](const std::string& name) -> ProgressFn {
             return [line = std::make_shared<Progress>(name)](std::size_t done, std::size_t total) { line->update(done, total); };
+          },
+          [](const std::string& name) -> Watch::Hearer {
+            return [line = std::make_shared<Progress>(name)](const SearchState& state) { line->update(state); };
           }};
 }
 

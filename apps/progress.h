@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -19,10 +20,16 @@ class Progress {
 
   /// The remaining time is estimated from the work done since the first call: work of an earlier run took no time in this one.
   void update(std::size_t done, std::size_t total);
+  /// "filter_error  iteration 7, log-likelihood -1234.5, 3 s, at most 57 s left": several threads may call it at once.
+  void update(const SearchState& state);
 
  private:
+  /// nullopt: the last line is too young.
+  [[nodiscard]] std::optional<double> due(bool at_once);
+
   std::string what_;
   bool visible_;
+  std::mutex mutex_;
   std::optional<std::size_t> before_;  ///< done before the first call
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point last_;

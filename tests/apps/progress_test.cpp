@@ -97,9 +97,17 @@ TEST_F(ProgressOnATerminal, TheListenerClearsTheLineWhenTheWorkHasEnded) {
   EXPECT_EQ(terminal.shown(), "\r\033[Kfit  100 %  0 s left\r\033[K");
 }
 
+TEST_F(ProgressOnATerminal, ShowsIterationCostAndTimeOfASearch) {
+  terminal_listener().searches("filter_error")({7, "log-likelihood", -1234.5, "filter_error", 3.2, 57.0});
+  EXPECT_EQ(terminal.shown(), "\r\033[Kfilter_error  iteration 7, log-likelihood -1234.5, 3 s, at most 57 s left\r\033[K");
+  terminal_listener().searches("fit")({8, "sum of squares", 0.25, "output_error", 95.0, {}});
+  EXPECT_EQ(terminal.shown(), "\r\033[Koutput_error  iteration 8, sum of squares 0.25, 95 s\r\033[K") << "no limit, no time left";
+}
+
 TEST(Progress, IsSilentWhereThereIsNoTerminal) {
   ::testing::internal::CaptureStderr();
   { Progress("fit").update(1, 4); }
+  terminal_listener().searches("fit")({8, "sum of squares", 0.25, "output_error", 95.0, {}});
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 

@@ -5,34 +5,32 @@
 
 #include <tuple>
 
-#include "misfit/core/error.h"
-
 namespace misfit {
 namespace {
 
 /// The flag is the process's: as it was at the end of every test.
-class Interrupted : public testing::Test {
+class InterruptTest : public testing::Test {
  protected:
-  ~Interrupted() override { interrupted() = false; }
+  ~InterruptTest() override { interrupted() = false; }
 };
 
-TEST_F(Interrupted, StopsWhereWorkAsks) {
+TEST_F(InterruptTest, StopsWhereWorkAsks) {
   EXPECT_NO_THROW(stop_if_interrupted());
   interrupted() = true;
   try {
     stop_if_interrupted();
     FAIL() << "went on";
-  } catch (const RunError& error) {
+  } catch (const Interrupted& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("the same command continues from there"));
   }
 }
 
-TEST_F(Interrupted, AMissingResultIsAnInterruptHereOrOnAnotherRank) {
+TEST_F(InterruptTest, AMissingResultIsAnInterruptHereOrOnAnotherRank) {
   EXPECT_EQ(finished(std::optional<int>(3)), 3);
   EXPECT_THROW(std::ignore = finished(std::optional<int>()), EndedElsewhere);
   interrupted() = true;
   EXPECT_EQ(finished(std::optional<int>(3)), 3) << "a result that is there counts";
-  EXPECT_THROW(std::ignore = finished(std::optional<int>()), RunError);
+  EXPECT_THROW(std::ignore = finished(std::optional<int>()), Interrupted);
 }
 
 }  // namespace

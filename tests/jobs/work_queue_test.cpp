@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "misfit/core/watch.h"
+
 namespace misfit {
 namespace {
 
@@ -52,6 +54,27 @@ std::string rethrown(int threads) {
     return error.what();
   }
   return "none";
+}
+
+TEST(RunJobs, JobsHaveTheWatchOfWhoCalls) {
+  const Watch watch("all of it", 1000.0);
+  std::atomic<int> watched{0};
+  EXPECT_TRUE(run_jobs(50, 3, [&](std::size_t) { watched += Watch::current() == &watch ? 1 : 0; }));
+  EXPECT_EQ(watched, 50);
+}
+
+TEST(RunJobs, AnInterruptedJobWasNotBegunWhereWorkCanBeStopped) {
+  std::atomic<bool> stop{false};
+  const auto job = [&](std::size_t k) {
+    if (k < 3) return;
+    stop = true;
+    throw Interrupted();
+  };
+  std::size_t done = 0;
+  EXPECT_FALSE(run_jobs(
+      10, 1, job, [&](std::size_t now, std::size_t) { done = now; }, &stop));
+  EXPECT_EQ(done, 3U);
+  EXPECT_THROW(run_jobs(10, 1, job), Interrupted);
 }
 
 TEST(RunJobs, RethrowsTheExceptionOfTheLowestJob) {

@@ -5,7 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
+#include <type_traits>
 #include <vector>
+
+#include "misfit/core/watch.h"
 
 namespace misfit {
 namespace {
@@ -190,6 +194,60 @@ TEST(LeastSquares, IterationLimitIsNotConvergence) {
   const auto summary = problem.solve(options);
   EXPECT_FALSE(summary.converged);
   EXPECT_TRUE(summary.usable);
+}
+
+/// The exponential, at whose evaluation number `last` the work is stopped.
+template <class Stop>
+LeastSquares::Evaluate stopped_at(int last, int& calls) {
+  return [evaluate = exponential(exponential_data(2.0, -1.5, 20)), last, &calls](const double* const* p, double* r, double** J) {
+    if (++calls >= last) {
+      if constexpr (std::is_same_v<Stop, TimeSpent>) throw TimeSpent("the time limit of 1 s for this was spent");
+      throw Interrupted();
+    }
+    return evaluate(p, r, J);
+  };
+}
+
+TEST(LeastSquares, EndsWithTheBestPointWhenItsTimeIsSpent) {
+  double before = inf;
+  for (const int last : {4, 5, 6, 7}) {
+    int calls = 0;
+    LeastSquares problem;
+    const int block = problem.add_block({1.0, 0.0});
+    problem.add_residuals({block}, 20, stopped_at<TimeSpent>(last, calls));
+    const auto summary = problem.solve({});
+    EXPECT_TRUE(summary.out_of_time);
+    EXPECT_TRUE(summary.usable);
+    EXPECT_FALSE(summary.converged);
+    EXPECT_EQ(summary.message, "the time limit of 1 s for this was spent");
+    EXPECT_EQ(calls, last) << "nothing is evaluated after it";
+    double squares = 0.0;
+    for (int i = 0; i < 20; ++i)
+      squares += std::pow(problem.block(block)[0] * std::exp(problem.block(block)[1] * 0.1 * i) - 2.0 * std::exp(-0.15 * i), 2);
+    EXPECT_NEAR(summary.cost, 0.5 * squares, 1e-12) << "the values are those of the cost";
+    EXPECT_LE(summary.cost, before);
+    before = summary.cost;
+  }
+  EXPECT_LT(before, 3.0) << "the start has 4.5";
+}
+
+TEST(LeastSquares, TimeSpentAtTheStartLeavesTheStart) {
+  int calls = 0;
+  LeastSquares problem;
+  const int block = problem.add_block({1.0, 0.0});
+  problem.add_residuals({block}, 20, stopped_at<TimeSpent>(1, calls));
+  const auto summary = problem.solve({});
+  EXPECT_TRUE(summary.out_of_time);
+  EXPECT_FALSE(summary.usable);
+  EXPECT_EQ(problem.block(block), (std::vector{1.0, 0.0}));
+}
+
+TEST(LeastSquares, AnInterruptComesThrough) {
+  int calls = 0;
+  LeastSquares problem;
+  problem.add_residuals({problem.add_block({1.0, 0.0})}, 20, stopped_at<Interrupted>(4, calls));
+  EXPECT_THROW(std::ignore = problem.solve({}), Interrupted);
+  EXPECT_EQ(calls, 4);
 }
 
 TEST(LeastSquares, StartOutsideItsBoundsIsNamed) {

@@ -56,6 +56,14 @@ void read_sliding_bin(const Section& root, Study& study) {
   section.finish();
 }
 
+std::optional<double> read_time_limit(const Section& root, const char* group) {
+  if (!root.has(group)) return std::nullopt;
+  const DescribedSection section = study_parts::described(root, group);
+  const std::optional<double> limit = section.value("time_limit");
+  section.finish();
+  return limit;
+}
+
 }  // namespace
 
 Study read_study(const fs::path& path) {
@@ -80,6 +88,8 @@ Study read_study(const fs::path& path) {
   study_parts::read_reference(root, study);
   study_parts::read_uncertainty(root, study);
   read_sliding_bin(root, study);
+  study.fit_time_limit = read_time_limit(root, "fit");
+  study.discover_time_limit = read_time_limit(root, "discover");
   study_parts::read_simulate(root, study);
   root.finish(config::sections_of(study_keys()));
   return study;

@@ -155,9 +155,10 @@ struct Study {
   std::map<std::string, std::filesystem::path> reference;  ///< curve → file
   std::optional<SimulateStudy> simulate;
   std::optional<UncertaintyStudy> uncertainty;
-  double bin_width = 0.0;  ///< [sliding_bin] width [rad]; 0 = default 1.5 deg
-  double bin_step = 0.0;   ///< [sliding_bin] step [rad]; 0 = default 0.1 deg
-  std::string text;        ///< the file's content, for hashing and resolved.toml
+  std::optional<double> fit_time_limit, discover_time_limit;  ///< time_limit of [fit], [discover] [s]
+  double bin_width = 0.0;                                     ///< [sliding_bin] width [rad]; 0 = default 1.5 deg
+  double bin_step = 0.0;                                      ///< [sliding_bin] step [rad]; 0 = default 0.1 deg
+  std::string text;                                           ///< the file's content, for hashing and resolved.toml
 };
 
 /// Reads and checks DIR/study.toml. Relative paths are taken from the study's folder, and every file named must exist.

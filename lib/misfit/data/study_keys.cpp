@@ -276,6 +276,18 @@ KeyGroup sliding_bin_group() {
      {angle("width", "Width of a bin.", "\"1.5 deg\""), angle("step", "By which the bin slides.", "\"0.1 deg\"")}};
 }
 
+std::vector<KeyGroup> time_groups() {
+  return {{"fit", "How long estimating may take.",
+       {{.name = "time_limit", .type = Type::number, .unit = "s",
+         .otherwise = "none for a fit; for a refit of discover 10 times as long as the fit before it, at least 300 s", .least = 0.0,
+         .above = true,
+         .meaning = "Of every fit and refit: then it ends with the best values until then, and is not called converged."}}},
+      {"discover", "How long a search for missing effects may take.",
+       {{.name = "time_limit", .type = Type::number, .unit = "s",
+         .otherwise = "20 times that of a refit", .least = 0.0, .above = true,
+         .meaning = "Of one round: then it ends with what was found, and what was not tested is named."}}}};
+}
+
 std::vector<KeyGroup> simulate_groups() {
   const auto seconds = [](const char* name, const char* meaning, const char* fallback) {
     return Key{.name = name, .type = Type::number, .unit = "s", .fallback = fallback, .least = 0.0, .above = true,
@@ -309,6 +321,7 @@ std::vector<KeyGroup> all_groups() {
   add({uncertainty_group()});
   add(perturbation_groups());
   add({sliding_bin_group()});
+  add(time_groups());
   add(simulate_groups());
   return out;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/lists.h"
+#include "misfit/core/watch.h"
 #include "misfit/model/effect.h"
 
 namespace misfit {
@@ -195,6 +196,7 @@ Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, co
     double last_h = -1.0;
     NoiseStep noise;
     for (std::size_t k = data.first; k < trace.samples; ++k) {
+      look_at_watch();
       for (std::size_t o = 0; o < NY; ++o) {
         const std::size_t at = trace.place(k, o);
         if (data.use[at] == SampleRole::none) continue;
@@ -239,6 +241,7 @@ Eigen::VectorXd ForceSensitivity::score_of_steps(int port) const {
     const std::size_t N = trace.n, NF = ports_;
     const RowMatrix adjoint = adjoint_of(trace, data, estimate_.noise);
     for (std::size_t k = data.first; k + 1 < trace.samples; ++k) {
+      look_at_watch();
       double sum = 0.0;
       for (std::size_t i = 0; i < N; ++i) sum += G_[e][(k * N + i) * NF + port] * adjoint(k + 1, i);
       out[offset + k] = sum;

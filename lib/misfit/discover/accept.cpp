@@ -16,6 +16,10 @@ constexpr double tied_gains = 3.0;  // of the log-likelihood: half of it
 
 std::string label(const Candidate& c) { return effect_at(c.effect, c.roles); }
 
+RefitWork work_from(const FilterEstimate& estimate, const SearchContext& context) {
+  return {estimate, context.experiments, context.registry, context.options.threads, context.options.refit_limit};
+}
+
 /// Score tests of other effects in the model to which a refitted one has been added.
 class ConditionalScores {
  public:
@@ -75,7 +79,7 @@ SecondEffect second_effect_given(const RankedCandidate& in, const ConditionalSco
 /// Is `in` significant beside the other? Drop 2 [log L(both) − log L(other alone)] with its family-wise p, as for any refitted drop.
 bool needed_given(const RankedCandidate& in, const Refit& both, const RankedCandidate& other, const SearchContext& context) {
   std::optional<Refit> fitted;
-  if (!other.refit) fitted = refit({context.estimate, context.experiments, context.registry, context.options.threads}, *other.screening);
+  if (!other.refit) fitted = refit(work_from(context.estimate, context), *other.screening);
   const Refit& alone = other.refit ? *other.refit : *fitted;
   if (!alone.ok || !alone.estimate.converged) return false;
   const double drop = in.refit->drop + both.drop - alone.drop;
@@ -95,7 +99,7 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   const ConditionalScores conditional(*in.refit, context);
   const SecondEffect second = second_effect_given(in, conditional, ranked, options.p_accept);
   if (second.entry == nullptr) return nullptr;
-  const Refit both = refit({in.refit->estimate, context.experiments, context.registry, options.threads}, second.score);
+  const Refit both = refit(work_from(in.refit->estimate, context), second.score);
   if (!both.ok || !both.estimate.converged || !(both.drop > 0.0)) return nullptr;
   const Model& model = both.estimate.model;
   const std::vector<int>&strengths = in.screening->candidate_model->strengths, &others = second.score.candidate_model->strengths;

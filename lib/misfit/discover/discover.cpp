@@ -7,11 +7,13 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/core/watch.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/discover/accept.h"
 #include "misfit/discover/alias.h"
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/refit_jobs.h"
+#include "misfit/discover/unfinished.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/math/statistics.h"
@@ -42,17 +44,26 @@ class Search {
         force_(estimate) {}
 
   Discovery run() {
-    screening_ = screen(scores(), candidate_models_, part(0.0, end_of_screen));
-    unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
-    families_ = static_cast<double>(screening_.size() + unknown_.size());
-    rank();
-    refit_those([this](const RankedCandidate& e) { return near_best(e) || (ranks().size() > 1 && significant(e)); }, options_.refits);
-    if (options_.refits && !ranks().first()) return {};
-    const SearchContext context{estimate_, registry_, experiments_, options_, families_};
-    auto unexplained = accept_best(ranked_, unknown_, context);
-    if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context);
+    std::optional<Unexplained> unexplained;
+    std::string spent;
+    try {
+      screen_all();
+      refit_those([this](const RankedCandidate& e) { return near_best(e) || (ranks().size() > 1 && significant(e)); }, options_.refits);
+      if (options_.refits && !ranks().first()) return {};
+      const SearchContext context{estimate_, registry_, experiments_, options_, families_};
+      unexplained = accept_best(ranked_, unknown_, context);
+      if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context);
+    } catch (const TimeSpent& limit) {
+      spent = limit.what();
+    }
+    const Unhurried writing_up;
+    for (auto& e : ranked_) {
+      if (!spent.empty() && e.refit && e.candidate.why.empty()) e.candidate.why = "not judged: " + spent;
+    }
     list_unknown();
     describe_search(unexplained);
+    say_unfinished(unfinished_, out_);
+    if (!spent.empty()) say_cut_off(spent, !ranked_.empty(), out_);
     return std::move(out_);
   }
 
@@ -86,7 +97,17 @@ class Search {
   }
 
   ScoreWork scores() const { return {estimate_, score_, force_, options_.threads}; }
-  RefitWork refit_work() const { return {estimate_, experiments_, registry_, options_.threads}; }
+  RefitWork refit_work() const { return {estimate_, experiments_, registry_, options_.threads, options_.refit_limit}; }
+
+  /// Every rank comes to the refits, which are shared: none is stopped before.
+  void screen_all() {
+    std::optional<Unhurried> all_ranks;
+    if (ranks_started() > 1) all_ranks.emplace();
+    screening_ = screen(scores(), candidate_models_, part(0.0, end_of_screen));
+    unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
+    families_ = static_cast<double>(screening_.size() + unknown_.size());
+    rank();
+  }
 
   void rank() {
     for (const auto& s : screening_) {
@@ -127,6 +148,7 @@ class Search {
     if (ranks().size() > 1) return false;  // refitted with the first
     std::optional<StoredJobs> stored = options_.refits;
     if (stored) stored->digest += "_others";
+    for (RankedCandidate& e : ranked_) e.candidate.group.clear();
     return refit_those([this](const RankedCandidate& e) { return significant(e); }, stored);
   }
 
@@ -154,10 +176,11 @@ class Search {
     return true;
   }
 
-  void store_refit(RankedCandidate& e) const {
+  void store_refit(RankedCandidate& e) {
     Candidate& c = e.candidate;
     if (!e.refit->ok) {
       c.why = e.refit->why;
+      if (e.refit->out_of_time) unfinished_.push_back(effect_at(c.effect, c.roles));
       e.refit.reset();
       return;
     }
@@ -208,6 +231,7 @@ class Search {
   std::vector<ScreeningResult> screening_;
   std::vector<UnknownCurve> unknown_;
   std::vector<RankedCandidate> ranked_;
+  std::vector<std::string> unfinished_;  ///< effects whose refits were cut off
   double families_ = 1.0;
   Discovery out_;
 };
@@ -217,8 +241,15 @@ class Search {
 Discovery discover(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                    const std::vector<Signals>& experiments, const DiscoverOptions& options) {
   const Stopwatch clock;
-  Search search(estimate, request, registry, experiments, options);
-  Discovery out = options.only.empty() ? search.run() : search.predict();
+  const bool whole = options.only.empty();
+  const Watch watch("this round of discover", whole ? options.round_limit : 0.0);
+  Discovery out;
+  try {
+    Search search(estimate, request, registry, experiments, options);
+    out = whole ? search.run() : search.predict();
+  } catch (const TimeSpent& spent) {
+    say_cut_off(spent.what(), false, out);
+  }
   out.seconds = clock.seconds();
   return out;
 }

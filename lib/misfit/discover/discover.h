@@ -24,6 +24,8 @@ struct DiscoverOptions {
   /// Where refits are kept as they end, to be shared by ranks and found again by a search that was stopped; nullopt: in memory.
   std::optional<StoredJobs> refits = std::nullopt;
   const std::atomic<bool>* stop = nullptr;  ///< between refits
+  double refit_limit = 0.0;                 ///< time limit of each refit [s]; 0: none
+  double round_limit = 0.0;                 ///< of the whole search [s]; 0: none
 };
 
 /// Ranks what the model could lack (lib/misfit/README.md, 6.3 to 6.5): score tests of every effect in the registry that suits the system
@@ -31,7 +33,8 @@ struct DiscoverOptions {
 /// p-value and held-out gain. `request` is what the estimate's model was assembled from. With `only` the answer holds that one candidate,
 /// its p-value corrected for all families a whole search would look at; no candidate where the effect cannot be screened (it has no
 /// strength, does not suit the system, is driven by noise, or another effect stands for it). With `refits` the answer of ranks other than
-/// the first is empty. RunError: stopped.
+/// the first is empty. RunError: stopped. A refit that its time limit has cut off is named and says nothing of its effect; where that of
+/// the round is spent, the answer is what was found until then, and says so (discover/unfinished.h).
 [[nodiscard]] Discovery discover(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                  const std::vector<Signals>& experiments, const DiscoverOptions& options = {});
 

@@ -6,6 +6,8 @@
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/lists.h"
+#include "misfit/core/text.h"
+#include "misfit/core/watch.h"
 #include "misfit/discover/whole_strength.h"
 
 namespace misfit {
@@ -230,11 +232,22 @@ void note_changes(const ScreeningResult& screening, const Registry& registry, Re
 
 }  // namespace
 
+Refit unfinished(const ScreeningResult& screening, const std::string& spent, std::optional<double> drop) {
+  Refit out;
+  out.request = screening.candidate_model->request;
+  out.out_of_time = true;
+  out.why = "its refit was not finished: " + spent + (drop ? ", at a drop of " + format_value(*drop) + " until then" : "") +
+            "; that says nothing against it (more time: --time-limit SECONDS, or time_limit of [fit] and [discover])";
+  return out;
+}
+
 Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from) {
+  const Watch watch("the refit of " + screening.candidate_model->effect, work.time_limit);
   const FilterEstimate& without = work.without;
   Refit out;
   out.request = screening.candidate_model->request;
   const auto climb = [&](const Model& start, const FilterNoise& noise) {
+    if (watch.spent()) return;
     FilterOptions options = like(without, work.threads);
     options.noise = noise;
     try {
@@ -243,17 +256,21 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
       out.ok = true;
     } catch (const RunError& error) {
       out.why = error.what();
+    } catch (const TimeSpent&) {  // said below
     }
   };
   if (from.model) climb(*from.model, from.noise);
   if (!out.ok || !out.estimate.converged) climb(start_model(without, screening, work.registry), without.noise);
   const double off = without.objective + prior_of_off(*screening.candidate_model);
   if (!out.ok || !out.estimate.converged || out.estimate.objective < off) climb(off_model(work, screening), without.noise);
+  const bool in_time = (out.ok && out.estimate.converged) || !watch.spent();
+  if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
   hold_whole(work, out);
   note_changes(screening, work.registry, out);
   out.drop = 2.0 * (out.estimate.objective + still_to_gain(out.estimate) - without.objective - still_to_gain(without) -
                     prior_of_off(*screening.candidate_model));
+  if (!in_time) return unfinished(screening, watch.words(), out.drop);
   out.parameters = parameters_of_effect(out.estimate, screening);
   return out;
 }
@@ -269,6 +286,7 @@ double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, 
     options.use = without_last_quarter(without);
     options.verify = false;
     const FilterEstimate shorter = estimate_filter(estimate->model, estimate->penalties, experiments, options);
+    if (shorter.out_of_time) throw TimeSpent(Watch::current()->words());
     gain += (estimate == &with ? 1.0 : -1.0) * shorter.validation_loglik;
   }
   return gain;

@@ -8,8 +8,9 @@ namespace misfit {
 
 /// The model with one effect more, at its own maximum over everything, on the same measurements and with the same roughness weights.
 struct Refit {
-  bool ok = false;    ///< it could be run; whether a maximum was reached is estimate.converged
-  std::string why;    ///< of failing
+  bool ok = false;           ///< it could be run; whether a maximum was reached is estimate.converged
+  bool out_of_time = false;  ///< not ok: a limit of time was spent before a maximum was reached, which is no evidence against the effect
+  std::string why;           ///< of failing
   double drop = 0.0;  ///< 2 [objective(with) − objective(without)], priors on both sides; with what exact derivatives leave where converged
   FilterEstimate estimate;
   ModelRequest request;
@@ -24,6 +25,7 @@ struct RefitWork {
   const std::vector<Signals>& experiments;
   const Registry& registry;
   int threads = 0;
+  double time_limit = 0.0;  ///< of each refit [s]; 0: none
 };
 
 /// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
@@ -47,8 +49,11 @@ struct OneStep {
 /// which the effect would be whole (whole_strength.h) is then held there if that costs the log-likelihood at most 2.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
-/// Gain of the held-out log-likelihood. Where the study holds nothing out, both models are fitted again without the last quarter of every
-/// experiment, and judged on it.
+/// The refit of an effect for which no time was left: `drop` is how far it had come.
+[[nodiscard]] Refit unfinished(const ScreeningResult& screening, const std::string& spent, std::optional<double> drop = std::nullopt);
+
+/// Gain of the held-out log-likelihood. TimeSpent: a limit of time was spent in one of these fits. Where the study holds nothing out, both
+/// models are fitted again without the last quarter of every experiment, and judged on it.
 [[nodiscard]] double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, const std::vector<Signals>& experiments,
                                    int threads);
 

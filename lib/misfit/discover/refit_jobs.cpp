@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "misfit/core/watch.h"
 #include "misfit/fit/filter/estimate_bytes.h"
 #include "misfit/jobs/ranks.h"
 
@@ -17,18 +18,22 @@ void fields(Bytes& bytes, Data& estimate) {
 namespace {
 
 SteppedRefit stepped(const RefitWork& work, const ScoreTest& score, const ScreeningResult& effect) {
-  const OneStep step = one_step(work, score, effect);
-  return {step.drop, refit(work, effect, step)};
+  try {
+    const OneStep step = one_step(work, score, effect);
+    return {step.drop, refit(work, effect, step)};
+  } catch (const TimeSpent& spent) {
+    return {effect.result.chi2, unfinished(effect, spent.what())};
+  }
 }
 
 }  // namespace
 
 std::string pack(const SteppedRefit& result, const ScreeningResult& effect) {
-  const auto& [ok, why, drop, estimate, request, parameters, free, fixed, partial] = result.refit;
+  const auto& [ok, out_of_time, why, drop, estimate, request, parameters, free, fixed, partial] = result.refit;
   static_cast<void>(request);  // the candidate model's
   ByteWriter bytes;
-  bytes(effect.candidate_model->effect, effect.candidate_model->roles, result.predicted_drop, ok, why, drop, parameters, free, fixed,
-        partial);
+  bytes(effect.candidate_model->effect, effect.candidate_model->roles, result.predicted_drop, ok, out_of_time, why, drop, parameters, free,
+        fixed, partial);
   if (ok) write_estimate(bytes, estimate);
   return bytes.take();
 }
@@ -38,8 +43,8 @@ SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const S
   SteppedRefit out;
   std::string name;
   std::map<std::string, std::string> roles;
-  reader(name, roles, out.predicted_drop, out.refit.ok, out.refit.why, out.refit.drop, out.refit.parameters, out.refit.free,
-         out.refit.fixed, out.refit.partial);
+  reader(name, roles, out.predicted_drop, out.refit.ok, out.refit.out_of_time, out.refit.why, out.refit.drop, out.refit.parameters,
+         out.refit.free, out.refit.fixed, out.refit.partial);
   if (name != effect.candidate_model->effect || roles != effect.candidate_model->roles)
     throw RunError("a stored refit is of '" + name + "' and not of '" + effect.candidate_model->effect + "'");
   out.refit.request = effect.candidate_model->request;
@@ -51,7 +56,7 @@ SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const S
 std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const ScoreTest& score,
                                                    const std::vector<const ScreeningResult*>& effects, const RefitJobs& jobs) {
   const int within = effects.size() > 1 || ranks_started() > 1 ? 1 : work.threads;
-  const RefitWork each{work.without, work.experiments, work.registry, within};
+  const RefitWork each{work.without, work.experiments, work.registry, within, work.time_limit};
   const auto one = [&](std::size_t k) { return stepped(each, score, *effects[k]); };
   std::vector<SteppedRefit> out;
   if (!jobs.stored) {

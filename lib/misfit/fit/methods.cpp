@@ -5,6 +5,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
+#include "misfit/core/watch.h"
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/filter/runnable_start.h"
@@ -156,12 +157,17 @@ constexpr std::array table{
     Estimator{estimators::filter_error, run_filter_error, refit_filter_error, maximise_filter_error},
 };
 
-/// What cannot be run has no maximum.
+/// What cannot be run, or not in time, has no maximum.
 Maximisation maximise(const FittedMethod& from, const Experiments& experiments, SearchStart start) {
+  const Watch watch("a search by " + from.method, from.time_limit);
   try {
-    return estimator(from.method).maximise(from, experiments, start);
+    Maximisation out = estimator(from.method).maximise(from, experiments, start);
+    if (!out.objective && watch.spent()) out.why = watch.words();
+    return out;
   } catch (const RunError& error) {
     return {{}, error.what(), {}};
+  } catch (const TimeSpent&) {
+    return {{}, watch.words(), {}};
   }
 }
 
@@ -173,9 +179,19 @@ const Estimator& estimator(const std::string& name) {
   return *found;
 }
 
+Fit refit_in_time(const FittedMethod& from, const Experiments& experiments) {
+  const Watch watch("a refit by " + from.method, from.time_limit);
+  try {
+    Fit fit = estimator(from.method).refit(from, experiments);
+    if (fit.status == FitStatus::converged || !watch.spent()) return fit;
+  } catch (const TimeSpent&) {  // said below
+  }
+  throw RunError(watch.words());
+}
+
 Fit fit_again(const FittedMethod& from, const Experiments& experiments) {
   try {
-    return estimator(from.method).refit(from, experiments);
+    return refit_in_time(from, experiments);
   } catch (const RunError& error) {
     Fit fit;
     fit.method = from.method;

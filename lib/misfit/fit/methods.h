@@ -30,6 +30,7 @@ struct FittedMethod {
   std::optional<FilterNoise> noise, around;                 ///< of a method with a random force
   std::optional<std::vector<std::vector<SampleRole>>> use;  ///< of the same: which measurements count
   SlidingBinOptions bins = {};
+  double time_limit = 0.0;  ///< of every fit from here [s]; 0: none
 };
 
 struct Estimation {
@@ -64,7 +65,10 @@ struct Estimator {
 /// InputError for a name that no method has.
 [[nodiscard]] const Estimator& estimator(const std::string& name);
 
-/// Estimator::refit; a fit that could not be made says why (failed).
+/// Estimator::refit within the time limit of `from`. RunError, too: it was spent.
+[[nodiscard]] Fit refit_in_time(const FittedMethod& from, const std::vector<Signals>& experiments);
+
+/// The same; a fit that could not be made says why (failed).
 [[nodiscard]] Fit fit_again(const FittedMethod& from, const std::vector<Signals>& experiments);
 
 /// Where the method ends when it begins near a maximum: from where `from` stands, its noise and initial states too.

@@ -6,6 +6,7 @@
 #include <complex>
 
 #include "misfit/core/text.h"
+#include "misfit/core/watch.h"
 #include "misfit/inference/short_record.h"
 #include "misfit/math/spectrum.h"
 #include "misfit/math/whiteness.h"
@@ -77,6 +78,7 @@ class Sandwich {
       }
       Eigen::VectorXd column(samples);
       for (Eigen::Index c = 0; c < e.J.cols(); ++c) {
+        look_at_watch();
         for (Eigen::Index i = 0; i < samples; ++i) column[i] = e.J((first + i) * channels_ + a, c);
         const Eigen::VectorXcd line = fourier(column, size_);
         real.col(c) = line.real();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/watch.h"
 #include "misfit/inference/solved_states.h"
 #include "misfit/math/statistics.h"
 
@@ -84,6 +85,7 @@ std::vector<std::vector<double>> read_all(const Model& model, const Signals& sig
   std::array<double, kMaxOutputs> y{};
   std::array<double, kMaxStates> x{};
   for (std::size_t i = 0; i < signals.samples(); ++i) {
+    look_at_watch();
     bool known = true;
     for (std::size_t o = 0; o < signals.measured.size(); ++o) {
       y[o] = signals.measured[o].values[i];

@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "misfit/core/watch.h"
+
 namespace misfit {
 namespace {
 
@@ -25,13 +27,11 @@ class Queue {
       try {
         job_(k);
         finished();
+      } catch (const Interrupted&) {
+        if (stop_ != nullptr) return;  // as if it had not been begun
+        fail(k);
       } catch (...) {
-        const std::lock_guard lock(mutex_);
-        failed_ = true;
-        if (k < failed_job_) {
-          failed_job_ = k;
-          exception_ = std::current_exception();
-        }
+        fail(k);
       }
     }
   }
@@ -43,6 +43,14 @@ class Queue {
   }
 
  private:
+  void fail(std::size_t k) {
+    const std::lock_guard lock(mutex_);
+    failed_ = true;
+    if (k >= failed_job_) return;
+    failed_job_ = k;
+    exception_ = std::current_exception();
+  }
+
   void finished() {
     const std::lock_guard lock(mutex_);
     ++done_;
@@ -71,7 +79,10 @@ bool run_jobs(std::size_t jobs, int threads, const std::function<void(std::size_
   std::vector<std::thread> others;
   for (std::size_t i = 1; i < workers; ++i) {
     try {
-      others.emplace_back([&queue] { queue.work(); });
+      others.emplace_back([&queue, watch = Watch::current()] {
+        const SameWatch same(watch);
+        queue.work();
+      });
     } catch (const std::system_error&) {
       break;  // the machine grants no more threads: those that run do all the jobs
     }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "misfit/core/lists.h"
+#include "misfit/core/watch.h"
 
 namespace misfit {
 namespace {
@@ -29,16 +30,69 @@ bool all_finite(const double* values, std::size_t count) {
   return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
 }
 
+// A solve whose time is spent: from then on no point can be evaluated, and it ends with the best one at the end of its iteration. Only an
+// interrupt goes through Ceres as an exception, which it survives with one thread: a line search would try twenty more points.
+class Stop final : public ceres::IterationCallback {
+ public:
+  using Values = std::vector<std::vector<double>>;
+  /// `present`: of all blocks, at the end of an iteration.
+  explicit Stop(std::function<Values()> present) : present_(std::move(present)) {}
+
+  [[nodiscard]] bool stopped() const { return !spent_.empty(); }
+
+  template <class Action>
+  bool unless_stopped(const Action& action) {
+    if (stopped()) return false;
+    try {
+      return action();
+    } catch (const TimeSpent& spent) {
+      spent_ = spent.what();
+    }
+    return false;
+  }
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (summary.step_is_successful) {
+      cost_ = summary.cost;
+      best_ = present_();
+    }
+    unless_stopped([&] {
+      tell_watch(summary.iteration, "sum of squares", 2.0 * summary.cost);
+      return true;
+    });
+    return stopped() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+  /// Values at the end of the last iteration that went down; after a failure Ceres leaves those of the start.
+  [[nodiscard]] const Values& best() const { return best_; }
+
+  void add_to(LeastSquares::Summary& summary) const {
+    if (spent_.empty()) return;
+    summary.out_of_time = true;
+    summary.converged = false;
+    summary.usable = std::isfinite(cost_);
+    summary.cost = cost_;
+    summary.message = spent_;
+  }
+
+ private:
+  std::function<Values()> present_;
+  double cost_ = std::numeric_limits<double>::quiet_NaN();
+  Values best_;
+  std::string spent_;
+};
+
 // Wraps an Evaluate whose sizes are known at run time only. A residual or derivative that is not finite is an evaluation failure.
 class RuntimeCost final : public ceres::CostFunction {
  public:
-  RuntimeCost(const LeastSquares::Evaluate& evaluate, int residuals, const std::vector<int>& block_sizes) : evaluate_(&evaluate) {
+  RuntimeCost(const LeastSquares::Evaluate& evaluate, int residuals, const std::vector<int>& block_sizes, Stop& stop)
+      : evaluate_(&evaluate), stop_(&stop) {
     set_num_residuals(residuals);
     *mutable_parameter_block_sizes() = block_sizes;
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    if (!(*evaluate_)(parameters, residuals, jacobians)) return false;
+    if (!stop_->unless_stopped([&] { return (*evaluate_)(parameters, residuals, jacobians); })) return false;
     const std::size_t rows = num_residuals();
     if (!all_finite(residuals, rows)) return false;
     if (jacobians == nullptr) return true;
@@ -51,6 +105,7 @@ class RuntimeCost final : public ceres::CostFunction {
 
  private:
   const LeastSquares::Evaluate* evaluate_;  // owned by LeastSquares, which outlives the solve
+  Stop* stop_;                              // outlives it, too
 };
 
 std::unique_ptr<ceres::LossFunction> make_loss(LeastSquares::Loss loss, double scale) {
@@ -92,6 +147,30 @@ ceres::Solver::Options to_ceres(const LeastSquares::Options& options, std::size_
   return to;
 }
 
+void describe(const ceres::Solver::Summary& summary, LeastSquares::Summary& result) {
+  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  result.usable = summary.IsSolutionUsable();
+  result.message = summary.message;
+  if (result.usable) result.cost = summary.final_cost;
+  result.linearisations = std::max(0, summary.num_jacobian_evaluations);
+  result.iterations = std::max(0, result.linearisations - 1);
+}
+
+// With its bounds, or constant; how many free columns that makes.
+template <class Block>
+std::size_t add_to(ceres::Problem& problem, Block& block) {
+  problem.AddParameterBlock(block.values.data(), int_size(block.values));
+  if (block.fixed) {
+    problem.SetParameterBlockConstant(block.values.data());
+    return 0;
+  }
+  for (int i = 0; i < int_size(block.values); ++i) {
+    if (block.lower[i] > -infinity) problem.SetParameterLowerBound(block.values.data(), i, block.lower[i]);
+    if (block.upper[i] < infinity) problem.SetParameterUpperBound(block.values.data(), i, block.upper[i]);
+  }
+  return block.values.size();
+}
+
 // Why a block cannot be a start; empty if it can. Ceres would say it with addresses.
 std::string infeasible(std::size_t number, const std::vector<double>& values, const std::vector<double>& lower,
                        const std::vector<double>& upper) {
@@ -131,22 +210,20 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
   silence_glog();
   Summary result;
   result.cost = std::numeric_limits<double>::quiet_NaN();
+  const auto values = [this] {
+    Stop::Values out;
+    for (const Block& block : blocks_) out.push_back(block.values);
+    return out;
+  };
+  const Stop::Values before = values();
+  Stop stop(values);
   ceres::Problem problem;
   std::size_t columns = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     Block& block = blocks_[b];
     if (!block.fixed) result.message = infeasible(b, block.values, block.lower, block.upper);
     if (!result.message.empty()) return result;
-    problem.AddParameterBlock(block.values.data(), int_size(block.values));
-    if (block.fixed) {
-      problem.SetParameterBlockConstant(block.values.data());
-      continue;
-    }
-    columns += block.values.size();
-    for (int i = 0; i < int_size(block.values); ++i) {
-      if (block.lower[i] > -infinity) problem.SetParameterLowerBound(block.values.data(), i, block.lower[i]);
-      if (block.upper[i] < infinity) problem.SetParameterUpperBound(block.values.data(), i, block.upper[i]);
-    }
+    columns += add_to(problem, block);
   }
   std::size_t rows = 0;
   for (const Residuals& term : residuals_) {
@@ -157,18 +234,20 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
       sizes.push_back(int_size(block.values));
       pointers.push_back(block.values.data());
     }
-    auto cost = std::make_unique<RuntimeCost>(term.evaluate, term.count, sizes);
+    auto cost = std::make_unique<RuntimeCost>(term.evaluate, term.count, sizes, stop);
     problem.AddResidualBlock(cost.release(), make_loss(term.loss, term.scale).release(), pointers);  // the problem owns both
     rows += term.count;
   }
   ceres::Solver::Summary summary;
-  ceres::Solve(to_ceres(options, rows, columns), &problem, &summary);
-  result.converged = summary.termination_type == ceres::CONVERGENCE;
-  result.usable = summary.IsSolutionUsable();
-  result.message = summary.message;
-  if (result.usable) result.cost = summary.final_cost;
-  result.linearisations = std::max(0, summary.num_jacobian_evaluations);
-  result.iterations = std::max(0, result.linearisations - 1);
+  ceres::Solver::Options to = to_ceres(options, rows, columns);
+  to.callbacks.push_back(&stop);
+  to.update_state_every_iteration = true;
+  ceres::Solve(to, &problem, &summary);
+  describe(summary, result);
+  stop.add_to(result);
+  if (result.usable && !result.out_of_time) return result;
+  const Stop::Values& end = result.usable ? stop.best() : before;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) blocks_[b].values = end[b];
   return result;
 }
 

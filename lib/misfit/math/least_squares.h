@@ -11,7 +11,7 @@ namespace misfit {
 class LeastSquares {
  public:
   /// r: `residuals` values; J[b], if J and J[b] are not null: row-major residuals × size of block b. Returns false where the model cannot
-  /// be evaluated (the step is then shortened). Must not throw.
+  /// be evaluated (the step is then shortened). Must not throw, but for Stopped.
   using Evaluate = std::function<bool(const double* const* blocks, double* r, double** J)>;
 
   enum class Loss { none, huber, cauchy, tukey };
@@ -38,7 +38,9 @@ class LeastSquares {
     double cost = 0.0;       ///< ½ Σ ρ
     int iterations = 0;      ///< linearisations after the first
     int linearisations = 0;
+    bool out_of_time = false;  ///< a limit of time was spent (TimeSpent, whose words are the message): the blocks are the best so far
   };
+  /// Throws Interrupted.
   [[nodiscard]] Summary solve(const Options& options);
   [[nodiscard]] const std::vector<double>& block(int number) const { return blocks_[number].values; }
 

@@ -7,6 +7,7 @@
 
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
+#include "misfit/core/watch.h"
 
 namespace misfit {
 namespace {
@@ -82,6 +83,7 @@ bool Stepper::for_each_part(const Interval& interval, const Advance& advance) co
     const int pieces = part.implicit ? 1 : pieces_of(interval, from, part);
     const double length = part.to - from;
     for (int k = 0; k < pieces; ++k) {
+      look_at_watch();
       if (!advance(Share{from + length * k / pieces, k + 1 == pieces ? part.to : from + length * (k + 1) / pieces}, part.implicit))
         return false;
     }
@@ -166,6 +168,7 @@ bool Stepper::solve_implicitly(RadauStep& radau, double* x, double h, const Rada
 }
 
 bool Stepper::advance(double* x, const Interval& interval, double from, const StepPart& part) {
+  look_at_watch();
   const Share share{from, part.to};
   if (part.implicit)
     return implicit_step(interval, share,

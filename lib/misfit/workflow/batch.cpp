@@ -105,6 +105,7 @@ class BatchJob {
   /// Of all studies with all that they name, as far as it can be read.
   [[nodiscard]] std::string digest() const {
     std::string text = hash_of_program() + fmt::format(" {} {}", options_.seed.value_or(0), fmt::join(options_.methods, " "));
+    if (options_.time_limit) text += fmt::format(" {} s", *options_.time_limit);
     for (const BatchEntry& entry : entries_) text += "\n" + entry.file.string() + hashes_of(entry.file);
     return hash_text(text);
   }

@@ -113,6 +113,7 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   if (!off.empty()) starts.push_back({off.front().model, penalties, off.front().noise});
   options.plans = plans_of(without);
   const FilterEstimate with = estimate_filter(starts, child.prepared.experiments, options);
+  if (without.out_of_time || with.out_of_time) throw TimeSpent(Watch::current()->words());
   Gain gain{2.0 * (with.objective - without.objective), std::nullopt};
   if (parent.fit.validation_loglik) gain.held_out = with.validation_loglik - without.validation_loglik;
   return gain;
@@ -122,9 +123,13 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
 void compare_with_parent(const FilterWork& child, const FilterWork& parent, int threads, Rung& rung) {
   rung.parameters = new_parameters(child, parent);
   if (!same_channels(child.estimate->model, parent.estimate->model)) return;
-  const Gain gain = gain_of(child, parent, threads);
-  rung.actual_drop = gain.drop;
-  rung.held_out_gain = gain.held_out;
+  try {
+    const Gain gain = gain_of(child, parent, threads);
+    rung.actual_drop = gain.drop;
+    rung.held_out_gain = gain.held_out;
+  } catch (const TimeSpent& spent) {
+    append_note(rung.note, std::string("no actual drop: ") + spent.what());
+  }
 }
 
 StageInputs inputs_of_ladder(const Session& session) {
@@ -250,6 +255,7 @@ std::unique_ptr<Session> ModelLadder::open(const NewStudy& study, const Session&
   });
   auto child = std::make_unique<Session>(options_for(options_, root_.folder.file(study.place) / "study.toml"), registry_);
   child->parent = parent.folder.path();
+  if (limits_fits_) child->usual_limit = usual_limit(options_, parent_work.fit.seconds);
   return child;
 }
 
@@ -271,6 +277,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   } else {
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
+    const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.hearer("add"));
     compare_with_parent(*work, *parent_work, options_.threads, rung);
   }
   append(std::move(rung));
@@ -312,6 +319,7 @@ std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Re
 
 void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderListener& listener) {
   constexpr int most_rungs = 12;
+  ladder.limit_fits();
   for (int k = 0; k < most_rungs; ++k) {
     const Discovery discovery = discovered(ladder.last());
     if (listener.discovered) listener.discovered(discovery);

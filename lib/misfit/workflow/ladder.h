@@ -30,6 +30,9 @@ class ModelLadder {
   /// there, does not suit the system; RunError: the new model cannot be fitted.
   const Rung& add(const std::string& effect, const std::optional<Candidate>& from);
 
+  /// From now on a rung's fit has a time limit where nobody gives one (usual_limit()): nobody waits for it.
+  void limit_fits() { limits_fits_ = true; }
+
  private:
   [[nodiscard]] std::string relative_study(const Session& session) const;
   /// The study of a rung that is to be added.
@@ -51,6 +54,7 @@ class ModelLadder {
   const Registry& registry_;
   Session root_;
   std::unique_ptr<Session> last_;
+  bool limits_fits_ = false;
   Ladder ladder_;
 };
 

@@ -72,12 +72,12 @@ void fields(Bytes& bytes, MaybeConst<FilterJacobian> auto& data) {
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterEstimate> auto& estimate) {
   auto& [model, forced, penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information,
-         objective, loglik, validation_loglik, newton_decrement, edf, converged, message, notes, integration, outliers, nonlinear,
-         linearisations] = estimate;
+         objective, loglik, validation_loglik, newton_decrement, edf, converged, out_of_time, message, notes, integration, outliers,
+         nonlinear, linearisations] = estimate;
   static_cast<void>(model);
   static_cast<void>(forced);
   bytes(penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information, objective, loglik,
-        validation_loglik, newton_decrement, edf, converged, message, notes, integration, outliers, nonlinear, linearisations);
+        validation_loglik, newton_decrement, edf, converged, out_of_time, message, notes, integration, outliers, nonlinear, linearisations);
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/core/watch.h"
 #include "misfit/data/estimators.h"
 #include "misfit/data/ladder.h"
 #include "misfit/fit/filter/noise_interval.h"
@@ -346,11 +347,15 @@ FilterError filter_error(const std::vector<FilterStart>& starts, const std::vect
   FilterError out;
   try {
     out.estimate = estimate_filter(starts, experiments, options);
+    const Unhurried writing_up;
     out.fit = filter_fit(*out.estimate, options.threads);
   } catch (const RunError& error) {
     out.fit.method = estimators::filter_error.name;
     out.fit.status = FitStatus::declined;
     out.fit.message = error.what();
+  } catch (const TimeSpent& spent) {
+    out.fit.method = estimators::filter_error.name;
+    out.fit.message = spent.what();
   }
   out.fit.seconds = clock.seconds();
   return out;

@@ -1,50 +1,14 @@
 #include "misfit/fit/filter/filter_estimate.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 
 #include "misfit/fit/filter/filter_search.h"
 
 namespace misfit {
 namespace {
-
-using Searches = std::vector<std::pair<double, std::unique_ptr<FilterSearch>>>;  ///< with their heights
-
-/// A few rounds from each start; the highest first. Those from which the model cannot be run are left out.
-Searches begin_all(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments, const FilterOptions& options) {
-  constexpr int first_rounds = 6;
-  Searches out;
-  for (const FilterStart& start : starts) {
-    auto search = std::make_unique<FilterSearch>(start, experiments, options);
-    try {
-      search->approach(first_rounds);
-    } catch (const RunError&) {
-      continue;
-    }
-    const double height = search->height();
-    if (std::isfinite(height)) out.emplace_back(height, std::move(search));
-  }
-  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  return out;
-}
-
-/// False: the model cannot be run where it ended.
-bool finished(FilterSearch& search) {
-  try {
-    search.finish();
-    return true;
-  } catch (const RunError&) {
-    return false;
-  }
-}
-
-FilterEstimate from_one(const FilterStart& start, const std::vector<Signals>& experiments, const FilterOptions& options) {
-  FilterSearch search(start, experiments, options);
-  search.approach(FilterSearch::all_rounds);
-  search.finish();
-  FilterEstimate out = search.take();
-  if (!search.replaced().empty()) out.notes.push_back(search.replaced());
-  return out;
-}
 
 /// Log density of measurements that count in `a` and not in `b`: what one has set aside as outliers must not decide which is higher.
 double not_shared(const FilterEstimate& a, const FilterEstimate& b) {
@@ -57,13 +21,109 @@ double not_shared(const FilterEstimate& a, const FilterEstimate& b) {
   return sum;
 }
 
-/// Worth going on beside the highest: neither clearly lower, nor as high and so at the same maximum.
-bool may_end_higher(const Searches& searches, std::size_t k) {
-  constexpr double clearly_lower = 10.0, same = 0.5;  // [log-likelihood]
-  constexpr std::size_t most = 2;
-  const double below = searches.front().first - searches[k].first;
-  return k == 0 || (k < most && below <= clearly_lower && below >= same);
-}
+/// The searches for one maximum, from one start or several.
+class StartedSearches {
+ public:
+  StartedSearches(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments, const FilterOptions& options)
+      : starts_(starts), experiments_(experiments), options_(options) {}
+
+  FilterEstimate run() {
+    try {
+      return starts_.size() == 1 ? from_first() : from_all();
+    } catch (const TimeSpent& spent) {
+      const Unhurried writing_up;
+      return best_when(spent);
+    }
+  }
+
+ private:
+  FilterSearch& begin(const FilterStart& start) {
+    searches_.push_back(std::make_unique<FilterSearch>(start, experiments_, options_));
+    return *searches_.back();
+  }
+
+  FilterEstimate from_first() {
+    FilterSearch& search = begin(starts_.front());
+    search.approach(FilterSearch::all_rounds);
+    search.finish();
+    FilterEstimate out = search.take();
+    if (!search.replaced().empty()) out.notes.push_back(search.replaced());
+    return out;
+  }
+
+  FilterEstimate from_all() {
+    const std::vector<std::pair<double, FilterSearch*>> begun = begin_all();
+    const bool all_replaced = std::all_of(begun.begin(), begun.end(), [](const auto& s) { return !s.second->replaced().empty(); });
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < begun.size(); ++k) {
+      FilterSearch& search = *begun[k].second;
+      if ((!may_end_higher(begun, k) && !(search.floor() > highest)) || !finished(search)) continue;
+      const double height = search.height();
+      FilterEstimate there = search.take();
+      if (all_replaced) there.notes.push_back(search.replaced());
+      if (best_ && height - not_shared(there, *best_) <= highest - not_shared(*best_, there)) continue;
+      highest = height;
+      best_ = std::move(there);
+    }
+    if (best_) return std::move(*best_);
+    return from_first();
+  }
+
+  /// A few rounds from each start; the highest first. Those from which the model cannot be run are left out.
+  std::vector<std::pair<double, FilterSearch*>> begin_all() {
+    constexpr int first_rounds = 6;
+    std::vector<std::pair<double, FilterSearch*>> out;
+    for (const FilterStart& start : starts_) {
+      FilterSearch& search = begin(start);
+      try {
+        search.approach(first_rounds);
+      } catch (const RunError&) {
+        continue;
+      }
+      const double height = search.height();
+      if (std::isfinite(height)) out.emplace_back(height, &search);
+    }
+    std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    return out;
+  }
+
+  /// Worth going on beside the highest: neither clearly lower, nor as high and so at the same maximum.
+  static bool may_end_higher(const std::vector<std::pair<double, FilterSearch*>>& begun, std::size_t k) {
+    constexpr double clearly_lower = 10.0, same = 0.5;  // [log-likelihood]
+    constexpr std::size_t most = 2;
+    const double below = begun.front().first - begun[k].first;
+    return k == 0 || (k < most && below <= clearly_lower && below >= same);
+  }
+
+  /// False: the model cannot be run where it ended.
+  static bool finished(FilterSearch& search) {
+    try {
+      search.finish();
+      return true;
+    } catch (const RunError&) {
+      return false;
+    }
+  }
+
+  /// The end of a search that was finished, else the best point that any has come to.
+  FilterEstimate best_when(const TimeSpent& spent) {
+    if (best_) {
+      best_->notes.push_back(std::string("a search from another start was not finished: ") + spent.what());
+      return std::move(*best_);
+    }
+    std::stable_sort(searches_.begin(), searches_.end(), [](const auto& a, const auto& b) { return a->reached() > b->reached(); });
+    for (const auto& search : searches_) {
+      if (search->cut_off(spent)) return search->take();
+    }
+    throw TimeSpent(in_words(spent));
+  }
+
+  const std::vector<FilterStart>& starts_;
+  const std::vector<Signals>& experiments_;
+  const FilterOptions& options_;
+  std::vector<std::unique_ptr<FilterSearch>> searches_;
+  std::optional<FilterEstimate> best_;
+};
 
 }  // namespace
 
@@ -75,23 +135,7 @@ std::vector<IntegrationPlan> plans_of(const FilterEstimate& estimate) {
 
 FilterEstimate estimate_filter(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
                                const FilterOptions& options) {
-  if (starts.size() == 1) return from_one(starts.front(), experiments, options);
-  const Searches searches = begin_all(starts, experiments, options);
-  const bool all_replaced = std::all_of(searches.begin(), searches.end(), [](const auto& s) { return !s.second->replaced().empty(); });
-  std::optional<FilterEstimate> best;
-  double highest = -std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < searches.size(); ++k) {
-    FilterSearch& search = *searches[k].second;
-    if ((!may_end_higher(searches, k) && !(search.floor() > highest)) || !finished(search)) continue;
-    const double height = search.height();
-    FilterEstimate there = search.take();
-    if (all_replaced) there.notes.push_back(search.replaced());
-    if (best && height - not_shared(there, *best) <= highest - not_shared(*best, there)) continue;
-    highest = height;
-    best = std::move(there);
-  }
-  if (best) return std::move(*best);
-  return from_one(starts.front(), experiments, options);
+  return StartedSearches(starts, experiments, options).run();
 }
 
 FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,

@@ -46,6 +46,7 @@ struct FilterEstimate {
   std::optional<double> newton_decrement;  ///< what one more Newton step on the exact likelihood would still gain; nullopt: not verified
   double edf = 0.0;
   bool converged = false;
+  bool out_of_time = false;  ///< a limit of time was spent (core/watch.h): the best point until then
   std::string message;
   std::vector<std::string> notes;  ///< on where the search began, and what it found besides
   std::string integration;         ///< what it costs and what its error does to the estimates, in words; empty where not verified
@@ -74,7 +75,8 @@ struct FilterEstimate {
 ///      (lib/misfit/README.md, 5.7); its own steps are listed there.
 ///   6. `conclude`: covariance, effective parameters, and in words whether the likelihood still rises.
 /// Penalties: those of `start`. RunError if the states cannot be read from the channels or the model can be run from no start.
-/// A start that is given noise, uses and roughness is also a floor: the search does not end below it.
+/// A start that is given noise, uses and roughness is also a floor: the search does not end below it. Where a limit of time is spent
+/// (core/watch.h), the best point so far, not converged (`out_of_time`); TimeSpent if there is none.
 [[nodiscard]] FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
                                              const FilterOptions& options = {});
 

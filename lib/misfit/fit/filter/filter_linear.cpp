@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_run.h"
 #include "misfit/fit/filter/filter_steps.h"
 
@@ -21,6 +22,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
   typename Kalman<M, NY>::StateMatrix phi = Kalman<M, NY>::StateMatrix::Zero(n, n);
   const double old_time = model.force_time();
   for (std::size_t k = data.first; k < trace.samples; ++k) {
+    look_at_watch();
     for (int o = 0; o < ny; ++o) {
       const std::size_t at = trace.place(k, o);
       if (data.use[at] == SampleRole::none) continue;

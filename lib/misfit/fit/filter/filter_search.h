@@ -9,6 +9,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
+#include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_estimate.h"
 #include "misfit/fit/filter/likelihood_ascent.h"
 #include "misfit/fit/filter/likelihood_derivatives.h"
@@ -31,6 +32,7 @@ class FilterSearch {
   /// As far as the first rounds of the blocks in turn. RunError: the model can be run from no start.
   void approach(int rounds) {
     begin();
+    at_.remember();
     if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
     set_floor();
     if (!noise_given_) search_noise();
@@ -48,6 +50,21 @@ class FilterSearch {
     if (options_.verify && !options_.plans) integrate_well();
     conclude();
   }
+
+  /// Ends where the search was when its time was spent, not converged. False: it had come to no point yet.
+  bool cut_off(const TimeSpent& spent) {
+    if (!at_.return_to_remembered()) return false;
+    out_.newton_decrement.reset();
+    out_.joint_covariance.resize(0, 0);
+    out_.joint_information.resize(0, 0);
+    out_.converged = false;
+    conclude();
+    out_.out_of_time = true;
+    out_.message = in_words(spent, "log-likelihood", out_.loglik);
+    return true;
+  }
+  /// [log-likelihood] Objective of the point to which cut_off() would return.
+  [[nodiscard]] double reached() const { return at_.reached(); }
 
   /// What was wrong with the start; empty: it is the given one.
   [[nodiscard]] const std::string& replaced() const { return replaced_; }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "misfit/core/text.h"
+#include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_start.h"
 #include "misfit/fit/filter/likelihood_derivatives.h"
 #include "misfit/math/bounded.h"
@@ -158,7 +159,10 @@ double LikelihoodAscent::gauss_newton_step() {
     if (!(value > objective - 1e-6)) continue;
     const Eigen::VectorXd before = theta;
     theta = there;
-    if (linearise()) return nothing;
+    if (linearise()) {
+      remember();
+      return nothing;
+    }
     theta = before;
   }
   linearise();
@@ -175,7 +179,10 @@ bool LikelihoodAscent::try_noise(const NoiseFit& fit) {
   out.noise = fit.noise;
   out.noise_fit = fit;
   out.forced.set_force_time(out.noise.force_time);
-  if (linearise() && objective > then - 1.0) return true;
+  if (linearise() && objective > then - 1.0) {
+    remember();
+    return true;
+  }
   out.noise = before;
   out.noise_fit.logs = logs;
   out.forced.set_force_time(out.noise.force_time);
@@ -193,10 +200,33 @@ bool LikelihoodAscent::move_to(const Eigen::VectorXd& there, const std::vector<d
     out.forced.set_force_time(out.noise.force_time);
     return linearise();
   };
-  if (set(there, logs)) return true;
+  if (set(there, logs)) {
+    remember();
+    tell_watch(++iterations_, "log-likelihood", out.loglik);
+    return true;
+  }
   set(theta_before, logs_before);
   return false;
 }
+
+void LikelihoodAscent::remember() { remembered_.emplace(Point{theta, objective, out.noise, out.noise_fit, out.penalties}); }
+
+bool LikelihoodAscent::return_to_remembered() {
+  if (!remembered_) return false;
+  theta = remembered_->theta;
+  out.noise = remembered_->noise;
+  out.noise_fit = remembered_->noise_fit;
+  out.penalties = remembered_->penalties;
+  out.forced.set_force_time(out.noise.force_time);
+  if (!linearise()) return false;
+  if (out.noise_fit.at_bound.empty()) {
+    out.noise_fit = fit_noise(runs(), out.noise, {out.around, threads_, 0});
+    out.noise_fit.information = noise_information(runs(), out.noise_fit.logs, out.around, threads_);
+  }
+  return true;
+}
+
+double LikelihoodAscent::reached() const { return remembered_ ? remembered_->objective : -std::numeric_limits<double>::infinity(); }
 
 void LikelihoodAscent::iterate(int most, double tolerance) {
   out.converged = false;
@@ -206,6 +236,7 @@ void LikelihoodAscent::iterate(int most, double tolerance) {
     const double edf = out.edf;
     const double not_gained = gauss_newton_step();
     try_noise(fit_noise(runs(), out.noise, {out.around, threads_, k < 3 ? 3 : kRefinements}));
+    tell_watch(++iterations_, "log-likelihood", out.loglik);
     const bool settled = !choosing || std::abs(out.edf - edf) < 0.05;
     if (k > 0 && settled && std::abs(objective - before) < tolerance) {
       out.converged = not_gained < kDecrementOfOneSigma;

@@ -37,6 +37,13 @@ class LikelihoodAscent {
   std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope);
   /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
   bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
+  /// The present point is the one to return to; every step that has risen does this by itself.
+  void remember();
+  /// To the point that was remembered last, with runs and information of the noise there, whatever was going on. False: there is none, or
+  /// it cannot be run.
+  bool return_to_remembered();
+  /// Objective at that point; −infinity: there is none.
+  [[nodiscard]] double reached() const;
   [[nodiscard]] Eigen::VectorXd joint() const;  ///< the free parameters, then the logarithms of the noise
 
   [[nodiscard]] std::vector<double> values() const { return out.forced.model.values_at(theta); }
@@ -51,8 +58,18 @@ class LikelihoodAscent {
  private:
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
 
+  struct Point {
+    Eigen::VectorXd theta;
+    double objective;
+    FilterNoise noise;
+    NoiseFit noise_fit;
+    std::vector<Penalty> penalties;
+  };
+
   int threads_;
   std::size_t failed_experiment_ = 0;
+  std::optional<Point> remembered_;
+  int iterations_ = 0;  ///< that tell_watch() was told of
 };
 
 }  // namespace misfit

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_run.h"
 #include "misfit/fit/filter/filter_steps.h"
 
@@ -72,6 +73,7 @@ RowMatrix adjoint_of(const FilterTrace& trace, const FilterData& data, const Fil
   RowMatrix out = RowMatrix::Zero(trace.samples, trace.n);
   Backward backward(trace, data, noise, false);
   for (std::size_t k = trace.samples; k-- > data.first;) {
+    look_at_watch();
     backward.sample(k);
     out.row(k) = backward.r.head(trace.n).transpose();
   }
@@ -84,6 +86,7 @@ Smoothing smooth_states(const FilterTrace& trace, const FilterData& data, const 
   out.x = out.variance = RowMatrix::Zero(trace.samples, n);
   Backward backward(trace, data, noise, true);
   for (std::size_t k = trace.samples; k-- > data.first;) {
+    look_at_watch();
     backward.sample(k);
     const Eigen::Index i = k;
     const FilterTrace::Rows joint(trace.P.data() + i * n * all, n, all);

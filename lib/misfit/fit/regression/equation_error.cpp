@@ -8,6 +8,7 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/core/watch.h"
 #include "misfit/data/estimators.h"
 #include "misfit/inference/coloured.h"
 #include "misfit/inference/curves.h"
@@ -119,6 +120,7 @@ class Regressor {
       const int row = rows_[channel];
       std::vector<double> residuals(signals.samples(), std::nan(""));
       for (std::size_t i = signals.exclude; i < signals.samples(); ++i) {
+        look_at_watch();
         if (!states.ok[i] || signals.held_out(i) || !between_[e].steps[i]) continue;
         slots.clear();
         evaluator.linearise_rates(states.x.row(i).data(), inputs_[e].at(i), signals.t[i], slots, dx.data(), D.data());

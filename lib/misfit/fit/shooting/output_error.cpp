@@ -8,6 +8,7 @@
 
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
+#include "misfit/core/watch.h"
 #include "misfit/data/estimators.h"
 #include "misfit/fit/shooting/output_error_integration.h"
 #include "misfit/fit/shooting/output_error_result.h"
@@ -55,6 +56,16 @@ class Estimator {
         initial_states_(start.initial_states) {}
 
   FittedModel run() {
+    try {
+      return run_to_the_end();
+    } catch (const TimeSpent& spent) {
+      const Unhurried writing_up;
+      return cut_off(spent);
+    }
+  }
+
+ private:
+  FittedModel run_to_the_end() {
     if (initial_states_.size() == experiments_.size()) {
       const Shooting::State before = shooting_.state();
       const std::vector<Penalty> penalties = penalties_;
@@ -72,7 +83,6 @@ class Estimator {
     return stuck_ && options_.coloured ? again_with_short_steps(start, out) : out;
   }
 
- private:
   struct Start {
     Shooting::State at;
     std::vector<Penalty> penalties;
@@ -112,8 +122,27 @@ class Estimator {
     return second.fit.usable() || stuck_ ? second : first;
   }
 
+  /// Where the search was when its time was spent: one trajectory from there, or, where the model cannot be run so, what the segments
+  /// followed.
+  FittedModel cut_off(const TimeSpent& spent) {
+    shooting_.forget_failure();
+    last_.converged = end_is_present_ = false;
+    last_.message = in_words(spent);
+    if (!look_at_the_end() || !end_.smoothed.ok) return failed(last_.message);
+    last_.message = in_words(spent, "sum of squares", end_.linearised.rss);
+    FittedModel out = finish();
+    if (out.fit.status == FitStatus::declined) {  // that it does not follow the motion yet says nothing
+      out.fit.status = FitStatus::not_converged;
+      out.fit.message = last_.message;
+    } else if (out.fit.status == FitStatus::failed) {
+      out.fit.message = last_.message + "; " + out.fit.message;
+    }
+    return out;
+  }
+
   bool solve(const ShootingPass& pass) {
     last_ = shooting_.solve(pass, penalties_);
+    if (last_.out_of_time) throw TimeSpent(last_.message);
     return last_.usable;
   }
 
@@ -175,6 +204,7 @@ class Estimator {
     while (found && settled_ && !integration_.negligible_at(end_.runs, end_.smoothed.covariance)) found = approach() || search({});
     if (!found) return failed(why_);
     if (settled_ && options_.coloured && !newton_steps() && reach_minimum()) static_cast<void>(newton_steps());
+    const Unhurried writing_up;
     return finish();
   }
 

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "misfit/core/text.h"
+#include "misfit/core/watch.h"
 
 namespace misfit {
 
@@ -204,6 +206,8 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   LeastSquares::Summary summary = problem.solve(options);
   linearisations_ += summary.linearisations;
   if (!summary.usable) return summary;
+  std::optional<Unhurried> writing_up;
+  if (summary.out_of_time) writing_up.emplace();
   const std::vector<double>& solved = problem.block(theta_block);
   model_.set_theta(Eigen::Map<const Eigen::VectorXd>(solved.data(), std::ssize(solved)));
   set_theta(solved.data());

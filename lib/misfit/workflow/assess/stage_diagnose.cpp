@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "misfit/core/error.h"
 #include "misfit/data/estimators.h"
 #include "misfit/diagnose/diagnose.h"
@@ -17,7 +19,10 @@ std::optional<Diagnosis> known_diagnosis(const Session& session) {
 StageInputs inputs_of_discovery(const Session& session) {
   std::vector<fs::path> files = files_of_filter(session);
   if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
-  return session.inputs("discover", files);
+  StageInputs inputs = session.inputs("discover", files);
+  if (const auto limit = session.asked_limit()) inputs["time_limit"] = fmt::format("{} s", *limit);
+  if (const auto limit = session.round_limit()) inputs["round_limit"] = fmt::format("{} s", *limit);
+  return inputs;
 }
 
 std::optional<Discovery> known_discovery(const Session& session) {

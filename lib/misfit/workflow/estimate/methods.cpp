@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "misfit/core/watch.h"
 #include "misfit/fit/regression/equation_error.h"
 #include "misfit/inference/curves.h"
 
@@ -37,6 +38,24 @@ std::optional<ContainedFit> contained_fit_of(const Session& session) {
 }  // namespace
 
 MethodRun Methods::run(const std::string& method) {
+  const Watch watch(method, session_.fit_limit(), session_.options.listener.hearer(method));
+  MethodRun out;
+  try {
+    out = run_in_time(method);
+  } catch (const TimeSpent& spent) {
+    out.at.method = out.at.fitted.fit.method = method;
+    out.at.fitted.fit.message = in_words(spent);
+    if (!estimator(method).info.deterministic && !estimator(method).info.regression_form) {
+      auto work = std::make_shared<FilterWork>();
+      work->fit = out.at.fitted.fit;
+      out.filter = std::move(work);
+    }
+  }
+  out.at.time_limit = session_.fit_limit();
+  return out;
+}
+
+MethodRun Methods::run_in_time(const std::string& method) {
   const Estimator& method_of_study = estimator(method);
   if (method_of_study.info.regression_form) return {run_in_regression_form(method_of_study), nullptr};
   auto work = std::make_shared<FilterWork>();

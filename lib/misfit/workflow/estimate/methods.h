@@ -24,10 +24,12 @@ class Methods {
  public:
   explicit Methods(Session& session) : session_(session) {}
 
+  /// Within the time limit of the session; a fit that had come to nothing when it was spent says so (failed).
   [[nodiscard]] MethodRun run(const std::string& method);
   [[nodiscard]] const Prepared& prepared();
 
  private:
+  [[nodiscard]] MethodRun run_in_time(const std::string& method);
   [[nodiscard]] const FittedModel& regression();
   [[nodiscard]] FittedMethod run_in_regression_form(const Estimator& method);
 

@@ -30,7 +30,9 @@ StageInputs inputs_of_fit(const Session& session, const std::string& method, con
   for (const auto& [name, curve] : session.study.curves) {
     if (curve.table) files.push_back(*curve.table);
   }
-  return session.inputs(method + "\n" + config::content_of(session.study.text, without), files);
+  StageInputs inputs = session.inputs(method + "\n" + config::content_of(session.study.text, without), files);
+  if (session.options.time_limit) inputs["time_limit"] = fmt::format("{} s", *session.options.time_limit);
+  return inputs;
 }
 
 std::shared_ptr<const FilterWork> filter_work(Session& session) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <tuple>
 
 #include "misfit/core/error.h"
@@ -132,6 +133,12 @@ Session::Session(const SessionOptions& o, const Registry& r, RunFolder::Access a
   if (access == RunFolder::Access::read) return;
   for (const char* below_it : {"fit", "figures", "rungs"}) check_folder(folder.file(below_it));
   check_small_files(study);
+}
+
+double usual_limit(const SessionOptions& options, double seconds_before) {
+  constexpr double least = 300.0, times_before = 10.0;
+  const double threads = options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
+  return std::max(least, times_before * seconds_before * std::max(threads, 1.0));
 }
 
 StageInputs Session::inputs(const std::string& settings, const std::vector<fs::path>& files) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "misfit/core/run_folder.h"
+#include "misfit/core/watch.h"
 #include "misfit/data/reference.h"
 #include "misfit/data/study.h"
 #include "misfit/jobs/work_queue.h"
@@ -20,10 +21,14 @@ struct Listener {
   std::function<void(const std::string& line)> note;  ///< what is made again, and why; where work continues
   /// Work of this name begins; what is returned is called with (done, total) as it goes on, and destroyed when it has ended.
   std::function<ProgressFn(const std::string& name)> progress;
+  /// A fit of this name begins: what is returned is told of the searches in it, and destroyed when it has ended.
+  std::function<Watch::Hearer(const std::string& name)> searches;
 
   void hear(const std::string& line) const;  ///< a note
   /// Work of this name begins: to be called with (done, total) as long as it goes on.
   [[nodiscard]] ProgressFn begin(const std::string& name) const;
+  /// A fit of this name begins; empty: nobody listens.
+  [[nodiscard]] Watch::Hearer hearer(const std::string& name) const { return searches ? searches(name) : Watch::Hearer(); }
 };
 
 /// A study and how to work on it.
@@ -34,10 +39,16 @@ struct SessionOptions {
   int threads = 0;                         ///< 0: one per core
   std::optional<unsigned long> seed = {};  ///< instead of the study's
   long runs = 0;                           ///< of the Monte Carlo; 0: as the study says
+  std::optional<double> time_limit = {};   ///< of every fit and refit [s], instead of the study's
+  std::optional<double> round_limit = {};  ///< of a round of discovery [s], instead of the study's
   bool force = false;                      ///< write over files that misfit did not make
   std::string command = "C++";             ///< what run.json and the report name as the command that made a result
   Listener listener = {};
 };
+
+/// [s] For a refit, and a fit of a rung that nobody asked for by itself, where no limit is given: 10 times the processor time of the fit
+/// before it, at least 300 s; so generous that only what would not end comes to it, on a machine that others use, too.
+[[nodiscard]] double usual_limit(const SessionOptions& options, double seconds_before);
 
 struct FilterWork;
 
@@ -58,9 +69,16 @@ struct Session {
   RunFolder folder;
   std::string program;                ///< hash of the running program: another build does everything again
   std::filesystem::path parent = {};  ///< run folder of the parent rung: what it read from videos and pictures need not be read again
+  double usual_limit = 0.0;           ///< [s] of a fit where neither the options nor the study say; 0: none
   std::shared_ptr<const FilterWork> filter;  ///< filter_error as estimated in this run of the program, for the stages after it (stages.h)
 
   [[nodiscard]] std::vector<std::string> methods() const { return options.methods.empty() ? study.methods : options.methods; }
+  /// Time limit of every fit and refit that the options or the study give [s].
+  [[nodiscard]] std::optional<double> asked_limit() const { return options.time_limit ? options.time_limit : study.fit_time_limit; }
+  /// Of a round of discovery.
+  [[nodiscard]] std::optional<double> round_limit() const { return options.round_limit ? options.round_limit : study.discover_time_limit; }
+  /// Of a fit [s]; 0: none.
+  [[nodiscard]] double fit_limit() const { return asked_limit().value_or(usual_limit); }
   /// {"program", "settings"} and the files, hashed: the inputs of a stage.
   [[nodiscard]] StageInputs inputs(const std::string& settings, const std::vector<std::filesystem::path>& files) const;
   /// Does a stage unless it was done from the same inputs and its files are as they were written (those that are not: a note):

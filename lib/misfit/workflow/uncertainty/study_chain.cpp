@@ -105,7 +105,7 @@ std::vector<Signals> StudyChain::signals(const PerturbedRig& rig, const Model& m
 Fit StudyChain::fit(const Model& model, const std::vector<Signals>& experiments) const {
   FittedMethod from = from_;
   from.fitted.model = model;
-  return estimator(from.method).refit(from, experiments);
+  return refit_in_time(from, experiments);
 }
 
 ChainResult StudyChain::run(const std::vector<double>& errors) const {
