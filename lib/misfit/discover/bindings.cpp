@@ -104,6 +104,7 @@ std::vector<Roles> times(const std::vector<Roles>& places, const std::string& ro
 std::vector<Roles> times_other_states(const std::vector<Roles>& places, const SystemSpec& system) {
   std::vector<Roles> out;
   for (const Roles& place : places) {
+    if (!place.contains("level")) continue;
     const StateSpec& level = *state_called(system, place.at("level"));
     for (const StateSpec& state : system.states) {
       if (state.name == level.name || !parse_unit(state.unit).same_dimension(parse_unit(level.unit))) continue;

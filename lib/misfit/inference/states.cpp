@@ -9,6 +9,7 @@
 #include "misfit/core/watch.h"
 #include "misfit/inference/solved_states.h"
 #include "misfit/math/statistics.h"
+#include "misfit/model/evaluator.h"
 
 namespace misfit {
 namespace {
@@ -127,8 +128,34 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
   for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
     if (!out.shown[j]) out.x.col(j).setConstant(start_of(model.state_specs[j]));
   }
-  for (std::size_t z = 0; z < model.own_states.size(); ++z) out.x.col(model.system_states() + z).setConstant(model.own_states[z].initial);
+  if (model.own_states.empty() || samples == 0) return out;
+  const auto known = std::find(out.ok.begin(), out.ok.end(), true);
+  const std::size_t first = known == out.ok.end() ? 0 : known - out.ok.begin();
+  Eigen::VectorXd at = out.x.row(static_cast<Eigen::Index>(first)).transpose();
+  set_own_states_at_rest(model, input_table(signals, model.inputs()).at(first), signals.t[first], at);
+  const Eigen::Index own = model.own_states.size();
+  out.x.rightCols(own).rowwise() = at.tail(own).transpose();
   return out;
+}
+
+void set_own_states_at_rest(const Model& model, const double* u, double t, Eigen::Ref<Eigen::VectorXd> at) {
+  constexpr double determined = 1e-9;  // reciprocal condition of a block
+  const Eigen::Index system = model.system_states();
+  for (std::size_t z = 0; z < model.own_states.size(); ++z) at[system + static_cast<Eigen::Index>(z)] = model.own_states[z].initial;
+  if (model.own_states.empty()) return;
+  Evaluator evaluator(model);
+  Slots slots;
+  std::vector<double> dx(model.states()), D(model.states() * kRowStride);
+  evaluator.linearise_rates(at.data(), u, t, slots, dx.data(), D.data());
+  for (const BoundEffect& effect : model.effects) {
+    const Eigen::Index first = system + effect.first_state, size = effect.effect->spec().states.size();
+    if (size == 0) continue;
+    const Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>> rows(D.data(), model.states(), model.states(),
+                                                                    Eigen::OuterStride<>(kRowStride));
+    const Eigen::FullPivLU<Eigen::MatrixXd> block(Eigen::MatrixXd(rows.block(first, first, size, size)));
+    const Eigen::VectorXd rest = at.segment(first, size) - block.solve(Eigen::Map<const Eigen::VectorXd>(dx.data() + first, size));
+    if (block.rcond() > determined && rest.allFinite()) at.segment(first, size) = rest;
+  }
 }
 
 double motion_frequency(const Model& model, const ReconstructedStates& states) {

@@ -20,11 +20,16 @@ struct ReconstructedStates {
 /// Quadratic least squares over five neighbouring samples, or, where fewer than four of them are there, over seven or nine (uneven times
 /// and missing samples allowed; never stretched over a gap of more than five usual steps): value, slope, second derivative. A state is
 /// shown if an output observes it, if System::read_states() gives it, if solve_outputs() finds it, or if it is the rate of one that is. Own
-/// states of effects start at their declared initial value.
+/// states of effects are at rest where the states are first known (set_own_states_at_rest()).
 [[nodiscard]] ReconstructedStates reconstruct_states(const Model& model, const Signals& signals);
 
 /// What a state is taken to be before anything shows it: its declared start, else one scale inside its range, else 0.
 [[nodiscard]] double start_of(const StateSpec& state);
+
+/// Own states of effects at rest where the system's states, inputs and time are `at` (values of the model's states; own states are set):
+/// where their drift is 0, effect by effect, by one Newton step, which is exact for the linear memories (a lag at the level it follows).
+/// Those whose drift does not tell them (play inside its clearance) stay at their declared initial value.
+void set_own_states_at_rest(const Model& model, const double* u, double t, Eigen::Ref<Eigen::VectorXd> at);
 
 /// Circular frequency of the motion [rad/s]: sqrt(var(x')/var(x)) over the shown pairs of state and rate, the largest; 0 if there is none.
 [[nodiscard]] double motion_frequency(const Model& model, const ReconstructedStates& states);

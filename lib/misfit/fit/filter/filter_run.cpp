@@ -66,7 +66,7 @@ FilterData filter_data_like(const FilterModel& model, const FilterData& data) {
   out.start = out.scale = Eigen::VectorXd::Zero(all);
   out.start.head(system) = data.start.head(system);
   out.scale.head(system) = data.scale.head(system);
-  for (Eigen::Index i = system; i < all; ++i) out.start[i] = model.model.own_states[i - system].initial;
+  set_own_states_at_rest(model.model, data.inputs.at(data.first), data.signals->t[data.first], out.start);
   for (int f : model.force_states) out.start[f] = 0.0;
   return out;
 }
