@@ -28,7 +28,7 @@ using namespace strangers;
 struct Options {
   std::map<std::string, std::string> texts = {
       {"--program", MISFIT_PROGRAM}, {"--seeds", "0:8"}, {"--systems", ""},  {"--worlds", "1000000"}, {"--keep", ""},
-      {"--out", "strangers.jsonl"},  {"--summary", ""},  {"--threads", "2"}, {"--limit", "60"}};
+      {"--out", "strangers.jsonl"},  {"--summary", ""},  {"--threads", "2"}, {"--limit", "60"},       {"--processor-limit", "0"}};
   bool parse(int argc, char** argv) {
     for (int i = 1; i + 1 < argc; i += 2) {
       const auto at = texts.find(argv[i]);
@@ -72,6 +72,7 @@ void run_all(Options& options) {
                      : std::filesystem::temp_directory_path() / ("strangers_" + std::to_string(std::hash<std::string>()(texts["--out"])));
   bench.threads = std::stoi(texts["--threads"]);
   bench.limit = std::stod(texts["--limit"]);
+  bench.processor_limit = std::stod(texts["--processor-limit"]);
   if (!std::filesystem::exists(bench.program)) throw std::invalid_argument("no program " + bench.program.string());
   std::set<std::pair<std::string, int>> done;
   for (const auto& row : read_rows(texts["--out"])) done.emplace(row["system"], row["seed"]);
@@ -101,6 +102,7 @@ int main(int argc, char** argv) {
   if (!options.parse(argc, argv)) {
     std::fprintf(stderr,
                  "usage: %s [--program MISFIT] [--seeds A:B] [--systems A,B] [--worlds N] [--keep DIR] [--threads N] [--limit S] "
+                 "[--processor-limit S] "
                  "[--out FILE.jsonl] | --summary FILE.jsonl\n",
                  argv[0]);
     return 2;

@@ -53,7 +53,7 @@ std::optional<double> loglik(const fs::path& study) {
 std::optional<double> fitted(const fs::path& study, const Bench& bench) {
   const Ended ended =
       run({bench.program, "fit", study, "--method", "filter_error", "--threads", std::to_string(bench.threads), "--quiet", "--force"},
-          study / "fit.txt", bench.limit);
+          study / "fit.txt", bench);
   return ended.status == 0 ? loglik(study) : std::nullopt;
 }
 
@@ -131,7 +131,7 @@ json answer(const World& world, const Bench& bench) {
     return row;
   }
   const Ended ended = run({bench.program, "discover", dir / "study", "--threads", std::to_string(bench.threads), "--quiet", "--force"},
-                          dir / "discover.txt", bench.limit);
+                          dir / "discover.txt", bench);
   row["seconds"] = ended.seconds;
   row["processor_seconds"] = ended.processor_seconds;
   if (ended.status == 0) {

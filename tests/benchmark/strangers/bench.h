@@ -13,8 +13,9 @@ struct Bench {
   std::filesystem::path program;  ///< misfit
   std::filesystem::path folder;   ///< of the worlds' folders
   int threads = 2;
-  double limit = 60.0;  ///< of one discover [s]
-  bool keep = false;    ///< worlds' folders
+  double limit = 60.0;           ///< of one process, wall time [s]
+  double processor_limit = 0.0;  ///< of one process, all its threads [s]; 0: none. For a machine that is shared
+  bool keep = false;             ///< worlds' folders
 };
 
 /// Writes DIR/study (the user's, by misfit init where the system has no text); false with `error` where init fails.
@@ -27,10 +28,10 @@ void write_twin(const World& world, const std::filesystem::path& dir);
 
 /// How a process ended.
 struct Ended {
-  int status = 0;  ///< -1: killed at the limit
+  int status = 0;  ///< -1: killed at a limit
   double seconds = 0.0, processor_seconds = 0.0;
 };
-[[nodiscard]] Ended run(const std::vector<std::string>& words, const std::filesystem::path& output, double limit);
+[[nodiscard]] Ended run(const std::vector<std::string>& words, const std::filesystem::path& output, const Bench& bench);
 
 /// Runs the world and judges the answer: one row of the table. DIR is made, and removed unless kept.
 [[nodiscard]] nlohmann::json answer(const World& world, const Bench& bench);

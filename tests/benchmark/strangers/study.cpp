@@ -113,7 +113,7 @@ bool write_study(const World& world, const Bench& bench, const fs::path& dir) {
   const std::string data = table(system, simulate(world));
   if (system.text.empty()) {
     write(dir / "data.csv", data);
-    return run({bench.program, "init", dir / "data.csv", "--out", dir / "study", "--force"}, dir / "init.txt", bench.limit).status == 0;
+    return run({bench.program, "init", dir / "data.csv", "--out", dir / "study", "--force"}, dir / "init.txt", bench).status == 0;
   }
   write(dir / "study/data.csv", data);
   write(dir / "study/model.toml", model_text(world, world.start));

@@ -13,7 +13,12 @@ using nlohmann::json;
 using Rows = std::vector<json>;
 constexpr double seen = 60.0;  ///< drop from which an effect ought to be found
 
-double drop(const json& row) { return row.value("oracle_drop", row.value("twin_drop", 0.0)); }
+/// The larger of what the true model gains from the truth and what discovery found that the right effect gains.
+double drop(const json& row) {
+  const json right = row.value("right", json::object());
+  const json found = right.value("actual", json());
+  return std::max(row.value("oracle_drop", row.value("twin_drop", 0.0)), found.is_number() ? found.get<double>() : 0.0);
+}
 bool named(const json& row) { return row["verdict"] == "named"; }
 bool unknown(const json& row) { return row["verdict"] == "unknown"; }
 bool first(const json& row) { return row.value("first", false); }
@@ -73,11 +78,13 @@ std::string fate(const json& row) {
 }
 
 void print_times(const Rows& rows) {
-  std::vector<double> seconds;
-  for (const auto& row : rows) seconds.push_back(row.value("seconds", 0.0));
-  std::sort(seconds.begin(), seconds.end());
-  if (seconds.empty()) return;
-  std::printf("\nseconds of discover: median %.1f, largest %.1f\n", seconds[seconds.size() / 2], seconds.back());
+  std::printf("\n");
+  for (const char* name : {"seconds", "processor_seconds"}) {
+    std::vector<double> seconds;
+    for (const auto& row : rows) seconds.push_back(row.value(name, 0.0));
+    std::sort(seconds.begin(), seconds.end());
+    if (!seconds.empty()) std::printf("%s of discover: median %.1f, largest %.1f\n", name, seconds[seconds.size() / 2], seconds.back());
+  }
 }
 
 void print_null(const Rows& rows) {
