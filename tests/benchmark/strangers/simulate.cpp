@@ -117,12 +117,11 @@ void integrate(Run& run) {
       const std::size_t at = 2 * s + (run.world.held ? 1 : static_cast<std::size_t>(2 * reach[stage]));
       for (std::size_t i = 0; i < u.size(); ++i) input[i] = u[i][at];
       run.plant.numbers["t"] = (static_cast<double>(s) + reach[stage]) * h - lead * run.world.step;
-      system.rates(trial.data(), input.data(), run.plant, k[stage].data());
+      system.equations(trial.data(), input.data(), run.plant, k[stage].data(), y.data());
       for (std::size_t d = 0; d < run.disturbances.size(); ++d)
         k[stage][static_cast<std::size_t>(system.disturbed[d])] +=
             disturbance_at(run.disturbances[d], (static_cast<double>(s) + reach[stage]) / run.parts);
       if (stage > 0) continue;
-      system.observe(x.data(), input.data(), run.plant, y.data());
       for (std::size_t o = 0; o < y.size(); ++o) run.outputs[o].push_back(y[o]);
       for (std::size_t j = 0; j < n; ++j) run.rate_size[j] += k[0][j] * k[0][j] / static_cast<double>(steps);
     }
@@ -250,14 +249,18 @@ World draw_world(const System& system, int seed) {
   world.noise = dice.draw({"", 0.002, 0.03});
   world.disturbance = dice.uniform(0, 1) < 0.5 ? 0.0 : dice.draw({"", 0.003, 0.03});
   for (const auto& parameter : system.parameters) {
-    const double value = dice.draw(parameter);
+    Dice own(system.name + " parameter " + parameter.name, seed);
+    const double value = own.draw(parameter);
     world.parameters.numbers[parameter.name] = value;
-    world.start.numbers[parameter.name] = value * std::exp(0.25 * dice.normal());
+    world.start.numbers[parameter.name] = value * std::exp(0.25 * own.normal());
   }
   choose_hidden(world, dice);
   const Run quiet = calm(world);
   for (auto& hidden : world.hidden) {
-    for (const auto& d : hidden.effect.draws) hidden.values.numbers[d.name] = si_of(d.name, dice.draw(d), hidden.effect, world, quiet);
+    for (const auto& d : hidden.effect.draws) {
+      Dice own(system.name + " " + hidden.effect.name + " " + d.name, seed);
+      hidden.values.numbers[d.name] = si_of(d.name, own.draw(d), hidden.effect, world, quiet);
+    }
   }
   return world;
 }

@@ -23,8 +23,10 @@ System first_order() {
   s.initial = {0.0};
   s.inputs = {{"u", "V", 1, -1, 1}};
   s.outputs = {{"y", "V"}};
-  s.rates = [](const double* x, const double* u, const Values&, double* dx) { dx[0] = (u[0] - x[0]) / 0.3; };
-  s.observe = [](const double* x, const double*, const Values&, double* y) { y[0] = x[0]; };
+  s.equations = [](const double* x, const double* u, const Values&, double* dx, double* y) {
+    dx[0] = (u[0] - x[0]) / 0.3;
+    y[0] = x[0];
+  };
   s.fine_step = 0.005;
   return s;
 }
@@ -52,8 +54,11 @@ TEST(Strangers, DelayOfTheSensorByTwoSamplesShiftsTheRecording) {
 TEST(Strangers, UndampedOscillatorKeepsItsEnergy) {
   System system = first_order();
   system.initial = {1.0, 0.0};
-  system.rates = [](const double* x, const double*, const Values&, double* dx) { dx[0] = x[1], dx[1] = -x[0]; };
-  system.observe = [](const double* x, const double*, const Values&, double* y) { y[0] = x[0] * x[0] + x[1] * x[1]; };
+  system.equations = [](const double* x, const double*, const Values&, double* dx, double* y) {
+    dx[0] = x[1];
+    dx[1] = -x[0];
+    y[0] = x[0] * x[0] + x[1] * x[1];
+  };
   const Record record = simulate(quiet_world(system));
   for (double energy : record.outputs[0]) ASSERT_NEAR(energy, 1.0, 1e-8);
 }

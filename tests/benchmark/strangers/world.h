@@ -4,7 +4,6 @@
 // side, inputs, outputs, and what can be hidden in it. Nothing here uses the library: its integrator and its models are what is judged.
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -52,6 +51,9 @@ struct Channel {
   bool slow = false;             ///< of an input: weather, not a command
 };
 
+/// Rates dx and outputs y at states x and inputs u. `p`: parameters, what is hidden in the plant, and the time "t".
+using Equations = void (*)(const double* x, const double* u, const Values& p, double* dx, double* y);
+
 struct System {
   std::string name;
   /// Text of the declared system: {name} is where a user would start a parameter, {=name} its true value, {hold} that of the inputs.
@@ -60,8 +62,7 @@ struct System {
   std::vector<Draw> parameters;
   std::vector<double> initial;
   std::vector<Channel> inputs, outputs;
-  std::function<void(const double* x, const double* u, const Values& p, double* dx)> rates;
-  std::function<void(const double* x, const double* u, const Values& p, double* y)> observe;
+  Equations equations = nullptr;
   double slowest = 1.0;                    ///< time constant that the excitation is to show [s]
   double step_low = 0.0, step_high = 0.0;  ///< sampling interval [s]
   double fine_step = 0.0;                  ///< of the integrator, at most [s]
@@ -69,9 +70,9 @@ struct System {
   std::vector<Effect> effects;
 };
 
+[[nodiscard]] Equations equations_of(const std::string& system);
+[[nodiscard]] System read_system(const std::string& name);
 [[nodiscard]] std::vector<System> all_systems();
-[[nodiscard]] std::vector<System> machines();   ///< motors, drives, vehicles
-[[nodiscard]] std::vector<System> processes();  ///< heat, batteries, bioreactors, ships
 
 struct Hidden {
   Effect effect;
