@@ -18,7 +18,7 @@ json read(const fs::path& file) {
 /// "key@port;role=value" against a candidate of candidates.json.
 bool is_right(const std::string& answer, const json& candidate) {
   const std::size_t at = answer.find('@'), role = std::min(answer.find(';'), answer.size());
-  if (answer.substr(0, std::min(at, role)) != candidate["effect"]) return false;
+  if (answer.substr(0, std::min(at, role)) != candidate["effect"].get<std::string>()) return false;
   const json& ports = candidate["ports"];
   if (at != std::string::npos && (ports.empty() || !ports[0].get<std::string>().starts_with(answer.substr(at + 1, role - at - 1))))
     return false;

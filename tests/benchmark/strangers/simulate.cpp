@@ -215,7 +215,7 @@ void choose_hidden(World& world, Dice& dice) {
 
 }  // namespace
 
-Dice::Dice(const std::string& purpose, int seed) : state_(1469598103934665603ULL) {
+Dice::Dice(const std::string& purpose, int seed) {
   for (char c : purpose) state_ = (state_ ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
   state_ = mixed(state_ + static_cast<std::uint64_t>(seed) * 0x9e3779b97f4a7c15ULL);
 }

@@ -111,7 +111,7 @@ class Dice {
   double draw(const Draw& draw);
 
  private:
-  std::uint64_t state_;
+  std::uint64_t state_ = 1469598103934665603ULL;
 };
 
 }  // namespace strangers
