@@ -72,6 +72,16 @@ TEST(Verdict, AStrengthAtItsBoundIsNamedAndOneAtZeroIsNot) {
 }
 
 /// Sigmas 8 N m of the friction and 0.2 of the wake's depth.
+TEST(Verdict, ALagLongerThanHalfOfTheRecordingIsNone) {
+  Model model = assemble(parachute(true, {effect("lag")}), registry());
+  set(model, "tau", 62.0);
+  const auto found = outlasts_recording(model, 40.0);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(*found, "its time tau = 62 s is longer than half of the recording, 40 s");
+  EXPECT_FALSE(outlasts_recording(model, 200.0).has_value());
+  EXPECT_FALSE(outlasts_recording(assemble(parachute(true, {effect("drift")}), registry()), 40.0).has_value()) << "drift remembers nothing";
+}
+
 TEST(Verdict, StrengthsThatAreAllBelowTheirSigmaAreNotDetermined) {
   Model model = assemble(spherical({effect("strut_wake"), effect("coulomb_friction")}), registry());
   const int depth = model.find_parameter("wake_depth"), friction = model.find_parameter("friction");

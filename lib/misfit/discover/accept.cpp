@@ -111,16 +111,26 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   return remaining_lack_of_fit(both.estimate, reads, in.refit->drop, options) ? nullptr : second.entry;
 }
 
+/// [s]
+double longest_recording(const std::vector<Signals>& experiments) {
+  double longest = 0.0;
+  for (const Signals& s : experiments) longest = std::max(longest, s.t.empty() ? 0.0 : s.t.back() - s.t.front());
+  return longest;
+}
+
 /// Step 1: the reason why it cannot be accepted; empty if there is none.
 std::string refusal(RankedCandidate& e, const SearchContext& context) {
   Candidate& c = e.candidate;
   if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
   if (!e.refit->estimate.converged) return "its refit has not converged: " + e.refit->estimate.message;
+  const auto memory = outlasts_recording(e.refit->estimate.model, longest_recording(context.experiments));
+  e.misnamed = memory || !e.refit->partial.empty();
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
   if (const auto unknown =
           undetermined_strengths(e.refit->estimate.model, e.refit->estimate.covariance, e.screening->candidate_model->strengths))
     return *unknown;
+  if (memory) return *memory;
   if (!c.held_out_gain) c.held_out_gain = held_out_gain(context.estimate, e.refit->estimate, context.experiments, context.options.threads);
   if (!(*c.held_out_gain > 0.0)) return "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
   const double needed = 0.5 * static_cast<double>(c.parameters.size() - e.refit->fixed.size());
@@ -259,6 +269,7 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
   if (!aliases.empty()) return aliases.front().remaining;
   if (ranked.empty() || !ranked.front().refit || !(ranked.front().candidate.p_value < context.options.p_accept)) return std::nullopt;
   const RankedCandidate& best = ranked.front();
+  if (best.misnamed) return std::nullopt;
   return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, best.refit->drop, context.options);
 }
 
@@ -267,7 +278,8 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
 std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>& ranked, const std::optional<UnknownCurve>& left,
                                              const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
   const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
-  const bool any = best != unknown.end(), front_better = any && !ranked.empty() && ranked.front().log_p < best->log_p;
+  const bool any = best != unknown.end();
+  const bool front_better = any && !ranked.empty() && !ranked.front().misnamed && ranked.front().log_p < best->log_p;
   if (left && (!any || front_better)) return Unexplained{left->port, left->quantity, left->p_value};
   if (!any || (front_better && ranked.front().refit)) return std::nullopt;  // what a known effect explains better is not unknown
   const double p = sidak(best->p_value, context.families);

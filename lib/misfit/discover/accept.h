@@ -14,6 +14,8 @@ struct RankedCandidate {
   Candidate candidate;
   std::optional<Refit> refit;
   double log_p = 0.0;  ///< of the refit where there is one
+  /// Its refit is not what its name says: a part of a whole, or a memory longer than the recording. Its drop explains nothing then.
+  bool misnamed = false;
 };
 
 /// What a search works on, for testing again in another model.
@@ -29,8 +31,9 @@ struct SearchContext {
 /// options say otherwise; numbers and formulas: lib/misfit/README.md, 6.5.
 ///
 /// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, only a part of an effect
-///    is found that exists as a whole (whole_strength.h), one of its strengths ends at a bound, all are smaller than their sigma, or the
-///    held-out log-likelihood rises by less than 1/2 for each of its parameters. The first reason that holds is noted.
+///    is found that exists as a whole (whole_strength.h), one of its strengths ends at a bound, all are smaller than their sigma, it
+///    remembers for longer than half of the recording, or the held-out log-likelihood rises by less than 1/2 for each of its parameters.
+///    The first reason that holds is noted.
 /// 2. The others come by what they gain, on the estimation's measurements and the held-out ones together (`gain_of`); those within 3 of
 ///    the best as in the list, but a lag, delay or limit of a sensor after the plant. Unknown curves are screened again with the candidate
 ///    in the model (`remaining_lack_of_fit`). If none remains of a quantity that the candidate, or an alias before it, reads, it is chosen:
@@ -45,8 +48,8 @@ struct SearchContext {
 /// 7. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
 /// 8. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
 ///    remains with the first alias, or with the best candidate if that is significant but was refused, provided that the best candidate has
-///    a lower p than every unknown curve; else the best unknown curve, if its family-wise p is below p_accept and no refitted first
-///    candidate has a lower p.
+///    a lower p than every unknown curve and is what its name says; else the best unknown curve, if its family-wise p is below p_accept and
+///    no refitted first candidate has a lower p.
 [[nodiscard]] std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                                      const SearchContext& context);
 

@@ -247,7 +247,8 @@ bool already_listed(const CandidateModel& candidate_model, const std::vector<Can
 std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                              const Calibration* calibration) {
   std::vector<CandidateModel> out;
-  std::vector<std::string> suiting;
+  std::vector<std::string> suiting;  // candidates and what the model has
+  for (const EffectRequest& effect : request.effects) suiting.push_back(effect.kind);
   const OperatingRange operating_range(estimate);
   const SystemSpec& system = estimate.model.system->spec();
   for (const std::string& key : registry.effect_keys()) {

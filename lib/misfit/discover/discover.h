@@ -18,7 +18,7 @@ struct DiscoverOptions {
   int threads = 0;                           ///< 0: one per core; does not change the answer
   const Calibration* calibration = nullptr;  ///< its covariance and tests are priors of sensor effects
   double p_accept = 0.01;                    ///< family-wise
-  int max_refits = 6;  ///< at once; as many again where none of the first is accepted
+  int max_refits = 6;                        ///< at once; as many again where none of the first is accepted
   std::string only;  ///< key of an effect: it alone is screened, and the drop of one Gauss–Newton step predicted; nothing is refitted
   ProgressFn progress = {};  ///< called with (done, total) as the search goes on
   /// Where refits are kept as they end, to be shared by ranks and found again by a search that was stopped; nullopt: in memory.

@@ -135,6 +135,19 @@ std::optional<std::string> undetermined_strengths(const Model& model, const Eige
   return "its strength is not determined: " + values;
 }
 
+std::optional<std::string> outlasts_recording(const Model& model, double seconds) {
+  const BoundEffect& effect = model.effects.back();
+  if (effect.effect->spec().states.empty()) return std::nullopt;
+  for (const BoundCoefficient& c : effect.coefficients) {
+    if (c.parameter < 0) continue;
+    const Parameter& p = model.parameters[c.parameter];
+    if (p.unit != "s" || p.value < 0.5 * seconds) continue;
+    return "its time " + p.name + " = " + in_display_unit(p.value, p.unit) + " is longer than half of the recording, " +
+           in_display_unit(seconds, "s");
+  }
+  return std::nullopt;
+}
+
 void add_camera_remarks(const Calibration* calibration, double p_accept, Discovery& out) {
   if (calibration == nullptr) return;
   std::vector<std::string> wanted;

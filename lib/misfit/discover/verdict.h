@@ -26,6 +26,10 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 [[nodiscard]] std::optional<std::string> undetermined_strengths(const Model& model, const Eigen::MatrixXd& covariance,
                                                                 const std::vector<int>& strengths);
 
+/// "its time constant tau = 62 s is longer than half of the recording, 40 s" where a time of the model's last effect, which remembers, is:
+/// on such a record a lag is a constant force and a stiffness. nullopt: none is.
+[[nodiscard]] std::optional<std::string> outlasts_recording(const Model& model, double seconds);
+
 /// Remarks on the camera: parameters that are significant in the sweep but not in the camera (kept in Discovery::sweep_asks). Nothing is
 /// accepted then: the drop of a sensor effect comes from its prior, the sweep's, so that the remedy is to calibrate again; and a physical
 /// effect may describe the error of the camera. Where the flight gives evidence of physics too, be it refused, of unknown form or not yet
