@@ -217,14 +217,17 @@ void hold_whole(const RefitWork& work, Refit& out) {
   out.partial = part_of_effect(out.estimate, whole);
 }
 
-/// Names of the effect's coefficients, as its file has them, that are free or fixed unlike there.
+/// Names of the effect's coefficients, as its file has them, that are free or fixed unlike there. A smoothing that ends at what the filter
+/// resolves is not: with the wider bounds of a study it would go on to where a linear filter finds its effect too small.
 void note_changes(const ScreeningResult& screening, const Registry& registry, Refit& out) {
   const Model as_filed = assemble(screening.candidate_model->request, registry);
   const BoundEffect& bound = out.estimate.model.effects.back();
   for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
     const int at = bound.coefficients[c].parameter;
     if (at < 0 || bound.effect->spec().coefficients[c].shared) continue;
-    const bool free = out.estimate.model.parameters[at].free;
+    const Parameter& p = out.estimate.model.parameters[at];
+    const bool at_resolution = bound.effect->spec().coefficients[c].scan.smooths && p.value <= 1.001 * p.lower;
+    const bool free = p.free && !at_resolution;
     if (free == as_filed.parameters[at].free) continue;
     (free ? out.free : out.fixed).emplace_back(bound.effect->spec().coefficients[c].name);
   }
