@@ -97,6 +97,33 @@ TEST(Refit, FromOneStepOnEndsWhereTheEstimateWithTheEffectDoes) {
   EXPECT_LE(onwards.estimate.linearisations, plain.estimate.linearisations);
 }
 
+/// Against the density of all held-out residuals at once, N(0, 1 + J C Jᵀ), and without uncertainty that of the estimate.
+TEST(PredictiveLoglik, IsTheDensityOfTheHeldOutResidualsWithUncertainParameters) {
+  const World world = with_friction(1.5);
+  FilterEstimate estimate = world.estimate;
+  FilterData& data = estimate.data.front();
+  for (std::size_t i = data.use.size() - data.use.size() / 8; i < data.use.size(); ++i) data.use[i] = SampleRole::validation;
+  FilterData swapped = data;
+  for (SampleRole& role : swapped.use) {
+    role = role == SampleRole::validation ? SampleRole::counted : role == SampleRole::counted ? SampleRole::update : role;
+  }
+  FilterRunner runner(estimate.forced, true);
+  runner.set_parameters(estimate.forced.model.values());
+  FilterTrace trace;
+  FilterJacobian held_out;
+  ASSERT_TRUE(runner.run(swapped, estimate.noise, trace, {&held_out}));
+  estimate.covariance *= 25.0;  // enough to matter
+  const Eigen::Index n = held_out.r.size();
+  const Eigen::MatrixXd J = held_out.J, spread = Eigen::MatrixXd::Identity(n, n) + J * estimate.covariance * J.transpose();
+  const double of_estimate = trace.loglik + 0.5 * held_out.r.squaredNorm();
+  const double expected =
+      of_estimate - 0.5 * held_out.r.dot(spread.ldlt().solve(held_out.r)) - 0.5 * spread.ldlt().vectorD().array().log().sum();
+  EXPECT_NEAR(predictive_loglik(estimate), expected, 1e-6 * std::abs(expected));
+  EXPECT_GT(std::abs(expected - trace.loglik), 0.1);
+  estimate.covariance.setZero();
+  EXPECT_NEAR(predictive_loglik(estimate), trace.loglik, 1e-9 * std::abs(trace.loglik));
+}
+
 TEST(Accept, AnAliasIsNotPreferredToAnEffectThatGainsMore) {
   const World world = with_friction(1.5);
   std::vector<RankedCandidate> ranked = {world.entry("hysteresis"), world.entry("coulomb_friction")};

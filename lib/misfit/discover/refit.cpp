@@ -278,11 +278,39 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   return out;
 }
 
+double predictive_loglik(const FilterEstimate& estimate) {
+  const Eigen::Index n = estimate.covariance.rows();
+  FilterRunner runner(estimate.forced, true);
+  runner.set_parameters(estimate.forced.model.values());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
+  double loglik = 0.0;
+  FilterTrace trace;
+  FilterJacobian jacobian;
+  for (const FilterData& known : estimate.data) {
+    FilterData data = known;
+    for (SampleRole& role : data.use) {
+      if (role == SampleRole::counted) role = SampleRole::update;
+      if (role == SampleRole::validation) role = SampleRole::counted;
+    }
+    if (!runner.run(data, estimate.noise, trace, {&jacobian}) || jacobian.J.cols() != n) return estimate.validation_loglik;
+    loglik += trace.loglik;
+    information += jacobian.J.transpose() * jacobian.J;
+    slope += jacobian.J.transpose() * jacobian.r;
+  }
+  if (n == 0) return loglik;
+  const Eigen::MatrixXd spread = Eigen::MatrixXd::Identity(n, n) + estimate.covariance * information;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> solver(spread);
+  const double determinant = solver.determinant(), explained = slope.dot(solver.solve(estimate.covariance * slope));
+  if (!(determinant > 0.0) || !std::isfinite(explained)) return loglik;
+  return loglik + 0.5 * explained - 0.5 * std::log(determinant);
+}
+
 double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, const std::vector<Signals>& experiments, int threads) {
   const auto validated = [](const FilterEstimate& e) {
     return std::any_of(e.traces.begin(), e.traces.end(), [](const FilterTrace& t) { return t.validated > 0; });
   };
-  if (validated(without)) return with.validation_loglik - without.validation_loglik;
+  if (validated(without)) return predictive_loglik(with) - predictive_loglik(without);
   double gain = 0.0;
   for (const auto* estimate : {&without, &with}) {
     FilterOptions options = like(*estimate, threads);
@@ -290,7 +318,7 @@ double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, 
     options.verify = false;
     const FilterEstimate shorter = estimate_filter(estimate->model, estimate->penalties, experiments, options);
     if (shorter.out_of_time) throw TimeSpent(Watch::current()->words());
-    gain += (estimate == &with ? 1.0 : -1.0) * shorter.validation_loglik;
+    gain += (estimate == &with ? 1.0 : -1.0) * predictive_loglik(shorter);
   }
   return gain;
 }

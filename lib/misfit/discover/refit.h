@@ -52,8 +52,16 @@ struct OneStep {
 /// The refit of an effect for which no time was left: `drop` is how far it had come.
 [[nodiscard]] Refit unfinished(const ScreeningResult& screening, const std::string& spent, std::optional<double> drop = std::nullopt);
 
-/// Gain of the held-out log-likelihood. TimeSpent: a limit of time was spent in one of these fits. Where the study holds nothing out, both
-/// models are fitted again without the last quarter of every experiment, and judged on it.
+/// Log predictive density of the held-out measurements, the parameters being uncertain by their covariance C: to first order, with the
+/// whitened residuals r and their derivatives J there,
+///   log L_held-out(estimate) + bᵀ (C⁻¹ + JᵀJ)⁻¹ b/2 − log det(1 + C JᵀJ)/2,   b = Jᵀ r.
+/// With the estimates as if they were exact, an effect that leaves the random force nothing to do would be refused wherever the held-out
+/// motion goes beyond what the estimation has seen: the random force makes up for errors of parameters, too. (Gelman et al., Bayesian Data
+/// Analysis, 7.1: predictive density.)
+[[nodiscard]] double predictive_loglik(const FilterEstimate& estimate);
+
+/// Gain of the held-out predictive density. TimeSpent: a limit of time was spent in one of these fits. Where the study holds nothing out,
+/// both models are fitted again without the last quarter of every experiment, and judged on it.
 [[nodiscard]] double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, const std::vector<Signals>& experiments,
                                    int threads);
 
