@@ -190,6 +190,8 @@ struct Choice {
 /// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
 double gain_of(const RankedCandidate& e) { return 0.5 * e.refit->drop + e.candidate.held_out_gain.value_or(0.0); }
 
+std::size_t estimated_parameters(const RankedCandidate& e) { return e.refit->parameters.size() - e.refit->fixed.size(); }
+
 /// A lag, a delay, a limit of a sensor: forms that could stand for much of what the plant does.
 bool shapes_a_sensor(const RankedCandidate& e) {
   const CandidateModel& candidate_model = *e.screening->candidate_model;
@@ -209,6 +211,7 @@ std::vector<Place> not_refused(std::vector<RankedCandidate>& ranked, const Searc
   const double best = gain_of(*out.front());
   const auto tied = std::find_if(out.begin(), out.end(), [&](Place e) { return gain_of(*e) < best - tied_gains; });
   std::sort(out.begin(), tied);  // as in the list
+  std::stable_sort(out.begin(), tied, [](Place a, Place b) { return estimated_parameters(*a) < estimated_parameters(*b); });
   std::stable_partition(out.begin(), tied, [](Place e) { return !shapes_a_sensor(*e); });
   return out;
 }

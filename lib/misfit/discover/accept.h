@@ -35,9 +35,10 @@ struct SearchContext {
 ///    remembers for longer than half of the recording, or the held-out log-likelihood rises by less than 1/2 for each of its parameters.
 ///    The first reason that holds is noted.
 /// 2. The others come by what they gain, on the estimation's measurements and the held-out ones together (`gain_of`); those within 3 of
-///    the best as in the list, but a lag, delay or limit of a sensor after the plant. Unknown curves are screened again with the candidate
-///    in the model (`remaining_lack_of_fit`). If none remains of a quantity that the candidate, or an alias before it, reads, it is chosen:
-///    the first such. Else it is an alias: an effect that may only imitate the missing one.
+///    the best by the number of their parameters, then as in the list, but a lag, delay or limit of a sensor after the plant. Unknown
+///    curves are screened again with the candidate in the model (`remaining_lack_of_fit`). If none remains of a quantity that the
+///    candidate, or an alias before it, reads, it is chosen: the first such. Else it is an alias: an effect that may only imitate the
+///    missing one.
 /// 3. A choice is not made past a candidate with more than twice its drop (`not_past_a_larger_one`): if that is an alias it is accepted
 ///    first, since two effects are missing; if it is refused, none is accepted.
 /// 4. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, if each is
