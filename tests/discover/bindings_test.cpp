@@ -9,6 +9,7 @@ namespace misfit {
 namespace {
 
 using namespace testing_models;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;
 
@@ -47,6 +48,15 @@ TEST(Bindings, LevelsOfOneUnitMayExchange) {
   SystemSpec of_two_kinds = registry().system("test_tanks").make({})->spec();
   of_two_kinds.states[0].unit = "K";
   EXPECT_THAT(enumerate_bindings(registry().effect("exchange").spec(), of_two_kinds), ElementsAre(Roles{}));
+}
+
+TEST(Bindings, AQuantityThatAPortCallsItsRateHasNoLevelToExchange) {
+  SystemSpec twisted = registry().system("test_oscillator").make({})->spec();
+  twisted.quantities.push_back({.name = "twist", .unit = "rad/s", .doc = "of two ends"});
+  twisted.dynamic_ports.push_back({.name = "torque", .unit = "N m", .doc = "of the shaft", .conjugate = "twist"});
+  EXPECT_THAT(enumerate_bindings(registry().effect("coulomb_friction").spec(), twisted),
+              Contains(Roles{{"port", "torque"}, {"rate", "twist"}}));
+  EXPECT_THAT(enumerate_bindings(registry().effect("exchange").spec(), twisted), ElementsAre(Roles{}));
 }
 
 TEST(Bindings, SensorsAndInputsAreTriedWhereTheSystemHasADefaultForThem) {

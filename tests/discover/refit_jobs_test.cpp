@@ -68,7 +68,8 @@ TEST_F(RefitJobs, WhatComesBackCanBeGoneOnWith) {
   EXPECT_EQ(after.estimate.model.values(), before.estimate.model.values());
   EXPECT_EQ(after.estimate.model.free_parameters(), before.estimate.model.free_parameters());
   EXPECT_EQ(after.parameters.at("friction").value, before.parameters.at("friction").value);
-  EXPECT_EQ(held_out_gain(estimate_, after.estimate, signals_, 0), held_out_gain(estimate_, before.estimate, signals_, 0));
+  HeldOut held_out(estimate_, signals_, 0);
+  EXPECT_EQ(held_out.gain(after.estimate), held_out.gain(before.estimate));
   const ScreeningResult& other = effect("quadratic_drag");
   const auto score_in = [&](const Refit& in) {
     const std::vector<CandidateModel> list = candidate_models(in.estimate, in.request, registry(), nullptr);

@@ -1,5 +1,6 @@
 #include "misfit/fit/filter/filter_noise.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -61,6 +62,20 @@ TEST(Discretise, JitterIsStationaryWithTheCorrelationOfADampedResonance) {
   A << 0.0, w, -w, -0.4 * w;
   D(1, 1) = 4.0 * 0.2 * w * 1.3 * 1.3;
   EXPECT_LT((van_loan(A, D, h) - Q).norm(), 1e-10);
+}
+
+TEST(NoiseVector, KeepsTheForcesOfEveryUnitOfPorts) {
+  SystemSpec spec;
+  spec.outputs = {{.name = "speed", .unit = "rad/s", .noise = 0.1}, {.name = "current", .unit = "A", .noise = 0.02}};
+  const FilterNoise noise{3.0, 0.2, {{0.1, 0.3, 8.0, 0.4}, {0.02, 0.05, 20.0, 0.2}}, false, {0.7, 11.0}};
+  const NoiseVector packed = pack(noise, spec, noise);
+  ASSERT_EQ(packed.value.size(), packed.names.size());
+  const FilterNoise again = unpack(packed.value, spec);
+  EXPECT_THAT(again.further_forces, testing::ElementsAre(testing::DoubleNear(0.7, 1e-15), testing::DoubleNear(11.0, 1e-14)));
+  EXPECT_NEAR(again.force, 3.0, 1e-15);
+  EXPECT_NEAR(again.channels[1].jitter_frequency, 20.0, 1e-13);
+  for (int group = 0; group < 3; ++group)
+    EXPECT_NEAR(packed.value[place_of_force(group, spec)], std::log(noise.force_of(group)), 1e-15) << group;
 }
 
 }  // namespace

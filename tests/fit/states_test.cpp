@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/fit/planar_model.h"
+#include "tests/model/declared_texts.h"
 
 namespace misfit {
 namespace {
@@ -81,6 +82,39 @@ TEST(ReconstructStates, IsNotStretchedOverAGapInTime) {
   EXPECT_FALSE(s.ok[20]);
   EXPECT_TRUE(s.ok[18]);
   EXPECT_TRUE(s.ok[21]);
+}
+
+/// A level that an input of 3 K/s heats, with an effect that has a memory.
+ReconstructedStates states_with(const EffectRequest& effect, double level) {
+  static const auto known = testing_models::registry_with(R"toml([states]
+T = { unit = "K" }
+[inputs]
+u = { unit = "K/s" }
+[parameters]
+loss = { unit = "1/s", value = 0.1, free = true }
+[equations]
+T = "u - loss*T"
+[outputs]
+T = { unit = "K", noise = 0.1 }
+)toml");
+  const Model model = assemble(testing_models::request_of("text", {effect}), *known);
+  Signals signals;
+  signals.t = even_times(40, 0.5);
+  signals.measured.push_back({"T", "K", std::vector<double>(40, level)});
+  signals.inputs.push_back({"u", "K/s", std::vector<double>(40, 3.0)});
+  return reconstruct_states(model, signals);
+}
+
+TEST(ReconstructStates, AMemoryThatFollowsItsInputBeginsAtTheInput) {
+  const ReconstructedStates s = states_with(testing_models::effect("input_lag", {{"input", "u"}, {"port", "dT/dt"}}), 20.0);
+  EXPECT_NEAR(s.x(0, 1), 3.0, 1e-9);
+  EXPECT_NEAR(s.x(39, 1), 3.0, 1e-9);
+}
+
+TEST(ReconstructStates, AMemoryThatStandsStillInsideAClearanceKeepsItsDeclaredStart) {
+  const EffectRequest play = testing_models::effect("backlash", {{"displacement", "T"}, {"port", "dT/dt"}});
+  EXPECT_EQ(states_with(play, 0.05).x(0, 1), 0.0) << "half of the clearance is 0.1";
+  EXPECT_NEAR(states_with(play, 20.0).x(0, 1), 19.9, 1e-6) << "it was pushed there";
 }
 
 TEST(MotionFrequency, IsThatOfASine) {

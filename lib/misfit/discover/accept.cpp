@@ -111,6 +111,15 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   return remaining_lack_of_fit(both.estimate, reads, in.refit->drop, options) ? nullptr : second.entry;
 }
 
+/// Of the effect, as its refit had them.
+int estimated_parameters(const RankedCandidate& e) {
+  const Model& model = e.refit->estimate.model;
+  const auto& coefficients = model.effects.back().coefficients;
+  return static_cast<int>(std::count_if(coefficients.begin(), coefficients.end(), [&](const BoundCoefficient& c) {
+    return c.parameter >= int_size(model.parameters) - int_size(e.refit->parameters) && model.parameters[c.parameter].free;
+  }));
+}
+
 /// [s]
 double longest_recording(const std::vector<Signals>& experiments) {
   double longest = 0.0;
@@ -119,7 +128,7 @@ double longest_recording(const std::vector<Signals>& experiments) {
 }
 
 /// Step 1: the reason why it cannot be accepted; empty if there is none.
-std::string refusal(RankedCandidate& e, const SearchContext& context) {
+std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
   Candidate& c = e.candidate;
   if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
   if (!e.refit->estimate.converged) return "its refit has not converged: " + e.refit->estimate.message;
@@ -131,11 +140,10 @@ std::string refusal(RankedCandidate& e, const SearchContext& context) {
           undetermined_strengths(e.refit->estimate.model, e.refit->estimate.covariance, e.screening->candidate_model->strengths))
     return *unknown;
   if (memory) return *memory;
-  if (!c.held_out_gain) c.held_out_gain = held_out_gain(context.estimate, e.refit->estimate, context.experiments, context.options.threads);
+  if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
   if (!(*c.held_out_gain > 0.0)) return "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
-  const double needed = 0.5 * static_cast<double>(c.parameters.size() - e.refit->fixed.size());
-  if (*c.held_out_gain > needed) return "";
-  return "the held-out likelihood rises by " + format_value(*c.held_out_gain) + ", less than by half for each of its parameters";
+  if (*c.held_out_gain > 0.5 * estimated_parameters(e)) return "";
+  return "the held-out likelihood rises by " + format_value(*c.held_out_gain) + ", less than by half for each of its estimated parameters";
 }
 
 /// Step 6: groups the best candidate with those that these data cannot distinguish from it.
@@ -190,8 +198,6 @@ struct Choice {
 /// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
 double gain_of(const RankedCandidate& e) { return 0.5 * e.refit->drop + e.candidate.held_out_gain.value_or(0.0); }
 
-std::size_t estimated_parameters(const RankedCandidate& e) { return e.refit->parameters.size() - e.refit->fixed.size(); }
-
 /// A lag, a delay, a limit of a sensor: forms that could stand for much of what the plant does.
 bool shapes_a_sensor(const RankedCandidate& e) {
   const CandidateModel& candidate_model = *e.screening->candidate_model;
@@ -202,8 +208,9 @@ bool shapes_a_sensor(const RankedCandidate& e) {
 /// Step 1, and the order of step 2.
 std::vector<Place> not_refused(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   std::vector<Place> out;
+  HeldOut held_out(context.estimate, context.experiments, context.options.threads);
   for (auto e = ranked.begin(); e != ranked.end() && e->refit; ++e) {
-    e->candidate.why = refusal(*e, context);
+    e->candidate.why = refusal(*e, held_out, context);
     if (e->candidate.why.empty()) out.push_back(e);
   }
   std::stable_sort(out.begin(), out.end(), [](Place a, Place b) { return gain_of(*a) > gain_of(*b); });
@@ -235,7 +242,6 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
 /// another effect; for one that is refused, nothing is.
 Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Alias>& aliases,
                              const SearchContext& context) {
-  if (choice.at == ranked.end()) return choice;
   const double least = 2.0 * choice.at->refit->drop;
   for (const Alias& alias : aliases) {
     if (alias.at->refit->drop > least) return {alias.at, nullptr, true};
@@ -294,10 +300,9 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
 std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                        const SearchContext& context) {
   std::vector<Alias> aliases;
-  Choice choice = first_without_lack_of_fit(ranked, aliases, context);  // 1, 2
-  const bool passed = choice.at != ranked.end();
-  choice = not_past_a_larger_one(ranked, choice, aliases, context);                                         // 3
-  if (choice.at == ranked.end() && !passed) choice = first_with_a_second_effect(ranked, aliases, context);  // 4
+  Choice choice = first_without_lack_of_fit(ranked, aliases, context);                          // 1, 2
+  choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, aliases, context)  // 3
+                                     : first_with_a_second_effect(ranked, aliases, context);    // 4
   const bool accepted = choice.at != ranked.end();
   if (accepted) move_to_front(ranked, choice);  // 5
   find_groups(ranked, context);                 // 6

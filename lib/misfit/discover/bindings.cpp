@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string_view>
 
@@ -141,34 +142,28 @@ int scanned_quantity(const BoundEffect& effect, const ScanSpec& scan) {
   return found == quantities.end() ? -1 : effect.quantities[found - quantities.begin()];
 }
 
-/// Usual sigma of each quantity one step ahead, from the covariance of the predicted states and the quantities' slopes.
+/// Usual sigma of each quantity one step ahead: of g x, x the predicted state with its covariance P and g the quantity's slope.
 std::vector<double> sigmas_of_quantities(const FilterEstimate& estimate) {
   constexpr std::size_t samples = 100;  // of each experiment
-  const std::size_t count = estimate.model.system->spec().quantities.size();
-  Evaluator evaluator(estimate.forced.model);
+  const System& system = *estimate.model.system;
+  const std::size_t count = system.spec().quantities.size();
+  const Eigen::Index states = estimate.model.system_states();
+  const std::vector<double> parameters = estimate.forced.model.values(), no_ports(system.spec().quantity_ports.size() + 1, 0.0);
   FilterRunner runner(estimate.forced, false);
-  runner.set_parameters(estimate.forced.model.values());
+  runner.set_parameters(parameters);
   std::vector<std::vector<double>> sigmas(count);
-  std::vector<double> q(count), moved(count);
+  std::vector<double> q(count);
+  RowMatrix slope(static_cast<Eigen::Index>(count), states);
   for (const FilterData& data : estimate.data) {
     FilterTrace trace;
     if (!runner.run(data, estimate.noise, trace, {.keep_P = true})) continue;
     const Eigen::Index n = trace.n, columns = n + 2 * Eigen::Index{trace.ny};
     const std::size_t stride = std::max<std::size_t>((trace.samples - data.first) / samples, 1);
     for (std::size_t k = data.first; k < trace.samples; k += stride) {
+      const Point at{trace.predicted_at(k).data(), data.inputs.at(k), data.signals->t[k], parameters.data()};
+      system.linearise_quantities(at, no_ports.data(), ~std::uint64_t{0}, q.data(), {slope.data(), nullptr, nullptr});
       const Eigen::Map<const RowMatrix> P(trace.P.data() + k * n * columns, n, columns);
-      Eigen::VectorXd x = trace.predicted_at(k);
-      evaluator.quantities(x.data(), data.inputs.at(k), data.signals->t[k], q.data());
-      Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(count, n);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const double at = x[i], by = std::sqrt(std::max(P(i, i), 0.0));
-        if (!(by > 0.0)) continue;
-        x[i] = at + by;
-        evaluator.quantities(x.data(), data.inputs.at(k), data.signals->t[k], moved.data());
-        x[i] = at;
-        for (std::size_t j = 0; j < count; ++j) slope(j, i) = (moved[j] - q[j]) / by;
-      }
-      const Eigen::VectorXd variance = (slope * P.leftCols(n) * slope.transpose()).diagonal();
+      const Eigen::VectorXd variance = (slope * P.topLeftCorner(states, states) * slope.transpose()).diagonal();
       for (std::size_t j = 0; j < count; ++j) sigmas[j].push_back(std::sqrt(std::max(variance[j], 0.0)));
     }
   }
@@ -205,7 +200,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   return out;
 }
 
-OperatingRange::OperatingRange(const FilterEstimate& estimate) {
+OperatingRange::OperatingRange(const FilterEstimate& estimate) : estimate_(estimate) {
   const SystemSpec& system = estimate.model.system->spec();
   Evaluator evaluator(estimate.forced.model);
   const std::size_t count = system.quantities.size();
@@ -227,7 +222,6 @@ OperatingRange::OperatingRange(const FilterEstimate& estimate) {
     }
   }
   for (auto& list : values) ranges_.push_back(range_of(std::move(list)));
-  sigmas_ = sigmas_of_quantities(estimate);
   if (steps.empty()) return;
   const auto middle = steps.begin() + steps.size() / 2;
   std::nth_element(steps.begin(), middle, steps.end());
@@ -240,6 +234,7 @@ std::optional<OperatingRange::Range> OperatingRange::range(int quantity) const {
 }
 
 double OperatingRange::narrowest(int quantity) const {
+  if (sigmas_.empty()) sigmas_ = sigmas_of_quantities(estimate_);
   const std::size_t i = quantity;
   return quantity < 0 || i >= sigmas_.size() || !std::isfinite(sigmas_[i]) ? 0.0 : std::sqrt(0.5 * std::numbers::pi) * sigmas_[i];
 }

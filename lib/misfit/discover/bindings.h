@@ -20,12 +20,11 @@ using Roles = std::map<std::string, std::string>;
 /// a state is its `rate`, and what it is the rate of `displacement` and `level`; one that is the rate of nothing is its `level`, and its
 /// `rate` too if its unit is one per time (the speed of a motor whose angle nobody models). A conjugate that is no state is its `rate` if
 /// its unit is. `to_port` is each other such port, `other` each other state of the level's unit. `input` is each input and `output` each
-/// output
-/// (`signal` follows it), if the system has a default for `input`, or for `signal`: its way of saying that generic effects make sense
-/// there. Units are not looked at otherwise: assemble() refuses what does not suit.
+/// output (`signal` follows it), if the system has a default for `input`, or for `signal`: its way of saying that generic effects make
+/// sense there. Units are not looked at otherwise: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
-/// What a recording visits: sizes for the shapes of effects that take any unit.
+/// What a recording visits: sizes for the shapes of effects that take any unit. Keeps a pointer to the estimate; for one thread.
 class OperatingRange {
  public:
   explicit OperatingRange(const FilterEstimate& estimate);
@@ -47,8 +46,9 @@ class OperatingRange {
   [[nodiscard]] std::vector<double> grid(const BoundEffect& effect, std::size_t coefficient) const;
 
  private:
+  const FilterEstimate& estimate_;
   std::vector<std::optional<Range>> ranges_;
-  std::vector<double> sigmas_;  ///< of quantities
+  mutable std::vector<double> sigmas_;  ///< of quantities; made when first asked for, by a run of the filter
   double step_ = 0.0;
 };
 

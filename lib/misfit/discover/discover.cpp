@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "misfit/core/error.h"
 #include "misfit/core/stopwatch.h"
@@ -48,7 +49,7 @@ class Search {
     std::string spent;
     try {
       screen_all();
-      refit_those([this](const RankedCandidate& e) { return near_best(e) || (ranks().size() > 1 && significant(e)); }, options_.refits);
+      refit_the_best();
       if (options_.refits && !ranks().first()) return {};
       const SearchContext context{estimate_, registry_, experiments_, options_, families_};
       unexplained = accept_best(ranked_, unknown_, context);
@@ -128,19 +129,29 @@ class Search {
     });
   }
 
-  /// Predicted drop above half of the best, if any candidate is significant in the screening.
-  bool near_best(const RankedCandidate& e) const {
+  /// The largest predicted drop of those that may be significant; infinity: there is none.
+  double best_predicted() const {
     double best = 0.0;
-    for (const auto& other : ranked_) {
-      if (!other.candidate.described && other.candidate.p_value < 5.0 * options_.p_accept)
-        best = std::max(best, other.candidate.predicted_drop);
+    for (const auto& e : ranked_) {
+      if (may_be_significant(e)) best = std::max(best, e.candidate.predicted_drop);
     }
-    return best > 0.0 && !e.candidate.described && e.candidate.p_value <= 5.0 * options_.p_accept &&
-           e.candidate.predicted_drop >= 0.5 * best;
+    return best > 0.0 ? best : std::numeric_limits<double>::infinity();
+  }
+  bool may_be_significant(const RankedCandidate& e) const {
+    return !e.candidate.described && e.candidate.p_value < 5.0 * options_.p_accept;
   }
   bool significant(const RankedCandidate& e) const { return !e.candidate.described && e.candidate.p_value < options_.p_accept; }
   bool none_accepted() const {
     return std::none_of(ranked_.begin(), ranked_.end(), [](const RankedCandidate& e) { return e.candidate.accepted; });
+  }
+
+  /// Those with a predicted drop above half of the best; under mpirun, where no rank knows what another accepts, all that are significant.
+  void refit_the_best() {
+    const double half = 0.5 * best_predicted();
+    const bool all = ranks().size() > 1;
+    refit_those(
+        [&](const RankedCandidate& e) { return (may_be_significant(e) && e.candidate.predicted_drop >= half) || (all && significant(e)); },
+        options_.refits);
   }
 
   /// One step of a threshold or a width tells little of what it explains at its maximum. False: there is none.

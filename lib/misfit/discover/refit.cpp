@@ -66,18 +66,23 @@ std::vector<std::vector<SampleRole>> without_last_quarter(const FilterEstimate& 
   return out;
 }
 
+/// Standard error of a parameter; 0 where it is fixed or no covariance is known.
+double sigma_of(const FilterEstimate& estimate, int parameter) {
+  const int column = place_of(estimate.model.free_parameters(), parameter);
+  if (column < 0 || column >= estimate.covariance.rows()) return 0.0;
+  return std::sqrt(std::max(estimate.covariance(column, column), 0.0));
+}
+
 /// Of the effect, which is the model's last.
 std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estimate, const ScreeningResult& screening) {
   std::map<std::string, Estimate> out;
   const CandidateModel& candidate_model = *screening.candidate_model;
-  const std::vector<int> free = estimate.model.free_parameters();
   const BoundEffect& bound = estimate.model.effects.back();
   for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
     const int at = bound.coefficients[c].parameter;
     if (at < 0 || bound.effect->spec().coefficients[c].shared) continue;
-    const int column = place_of(free, at), strength = place_of(candidate_model.strengths, at);
-    const bool known = column >= 0 && estimate.covariance.size() > 0;
-    double sigma = known ? std::sqrt(std::max(estimate.covariance(column, column), 0.0)) : 0.0;
+    const int strength = place_of(candidate_model.strengths, at);
+    double sigma = sigma_of(estimate, at);
     // With Kalman gains held the covariance of a sensor effect is too small (sensitivity_columns); screening uses whole runs.
     const bool screened = strength >= 0 && strength < screening.result.sigma.size();
     if (candidate_model.family == "sensor" && screened) sigma = screening.result.sigma[strength];
@@ -104,15 +109,12 @@ Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole)
   return start;
 }
 
-/// "late_share = 0.12 ± 0.01, where all of it would be 1"; empty where the strengths are about whole.
+/// "late_share = 0.12 ± 0.01, where the whole effect would have 1.00"; empty where the strengths are about whole.
 std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
   constexpr double about = 0.3;  // of the whole: formulas idealise
-  const std::vector<int> free = estimate.model.free_parameters();
   for (const WholeStrength& w : whole) {
     const Parameter& p = estimate.model.parameters[w.parameter];
-    const int column = place_of(free, w.parameter);
-    const bool known = column >= 0 && estimate.covariance.size() > 0;
-    const double sigma = known ? std::sqrt(std::max(estimate.covariance(column, column), 0.0)) : 0.0;
+    const double sigma = sigma_of(estimate, w.parameter);
     if (std::abs(p.value - w.value) <= std::max(about * std::abs(w.value), 2.0 * sigma)) continue;
     return p.name + " = " + in_display_unit(p.value, p.unit, sigma) + ", where the whole effect would have " +
            in_display_unit(w.value, p.unit);
@@ -127,6 +129,52 @@ bool several_values_scanned(const Model& model, int shape) {
     if (bound.coefficients[c].parameter == shape) return bound.effect->spec().coefficients[c].scan.count > 1;
   }
   return false;
+}
+
+/// With its strengths at which the effect is whole held there, if the data allow it. False: there was no time to try, so that a part that
+/// was found says nothing.
+bool hold_whole(const RefitWork& work, Refit& out) {
+  constexpr double allowed = 2.0;  // of the log-likelihood
+  const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
+  if (whole.empty()) return true;
+  const Model start = start_of_whole(out.estimate.model, whole);
+  FilterOptions options = like(work.without, work.threads);
+  options.noise = out.estimate.noise;
+  try {
+    FilterEstimate held = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
+    if (held.out_of_time) return false;
+    if (held.converged && (!out.estimate.converged || held.objective > out.estimate.objective - allowed)) {
+      out.estimate = std::move(held);
+      return true;
+    }
+  } catch (const TimeSpent&) {
+    return false;
+  } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
+  }
+  out.partial = part_of_effect(out.estimate, whole);
+  return true;
+}
+
+/// Names of the effect's coefficients, as its file has them, that are free or fixed unlike there. A smoothing that ends at what the filter
+/// resolves is not: with the wider bounds of a study it would go on to where a linear filter finds its effect too small.
+void note_changes(const ScreeningResult& screening, const Registry& registry, Refit& out) {
+  const Model as_filed = assemble(screening.candidate_model->request, registry);
+  const BoundEffect& bound = out.estimate.model.effects.back();
+  for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
+    const int at = bound.coefficients[c].parameter;
+    if (at < 0 || bound.effect->spec().coefficients[c].shared) continue;
+    const Parameter& p = out.estimate.model.parameters[at];
+    const bool at_resolution = bound.effect->spec().coefficients[c].scan.smooths && p.value <= 1.001 * p.lower;
+    const bool free = p.free && !at_resolution;
+    if (free == as_filed.parameters[at].free) continue;
+    (free ? out.free : out.fixed).emplace_back(bound.effect->spec().coefficients[c].name);
+  }
+}
+
+/// With what the exact derivatives leave where a search converged, priors on both sides.
+double drop_of(const FilterEstimate& with, const FilterEstimate& without, const ScreeningResult& screening) {
+  return 2.0 *
+         (with.objective + still_to_gain(with) - without.objective - still_to_gain(without) - prior_of_off(*screening.candidate_model));
 }
 
 }  // namespace
@@ -196,45 +244,6 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
   return out;
 }
 
-namespace {
-
-/// With its strengths at which the effect is whole held there, if the data allow it.
-void hold_whole(const RefitWork& work, Refit& out) {
-  constexpr double allowed = 2.0;  // of the log-likelihood
-  const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
-  if (whole.empty()) return;
-  const Model start = start_of_whole(out.estimate.model, whole);
-  FilterOptions options = like(work.without, work.threads);
-  options.noise = out.estimate.noise;
-  try {
-    FilterEstimate held = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
-    if (held.converged && (!out.estimate.converged || held.objective > out.estimate.objective - allowed)) {
-      out.estimate = std::move(held);
-      return;
-    }
-  } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
-  }
-  out.partial = part_of_effect(out.estimate, whole);
-}
-
-/// Names of the effect's coefficients, as its file has them, that are free or fixed unlike there. A smoothing that ends at what the filter
-/// resolves is not: with the wider bounds of a study it would go on to where a linear filter finds its effect too small.
-void note_changes(const ScreeningResult& screening, const Registry& registry, Refit& out) {
-  const Model as_filed = assemble(screening.candidate_model->request, registry);
-  const BoundEffect& bound = out.estimate.model.effects.back();
-  for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
-    const int at = bound.coefficients[c].parameter;
-    if (at < 0 || bound.effect->spec().coefficients[c].shared) continue;
-    const Parameter& p = out.estimate.model.parameters[at];
-    const bool at_resolution = bound.effect->spec().coefficients[c].scan.smooths && p.value <= 1.001 * p.lower;
-    const bool free = p.free && !at_resolution;
-    if (free == as_filed.parameters[at].free) continue;
-    (free ? out.free : out.fixed).emplace_back(bound.effect->spec().coefficients[c].name);
-  }
-}
-
-}  // namespace
-
 Refit unfinished(const ScreeningResult& screening, const std::string& spent, std::optional<double> drop) {
   Refit out;
   out.request = screening.candidate_model->request;
@@ -269,11 +278,9 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const bool in_time = (out.ok && out.estimate.converged) || !watch.spent();
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
-  hold_whole(work, out);
+  if (!in_time || !hold_whole(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
   note_changes(screening, work.registry, out);
-  out.drop = 2.0 * (out.estimate.objective + still_to_gain(out.estimate) - without.objective - still_to_gain(without) -
-                    prior_of_off(*screening.candidate_model));
-  if (!in_time) return unfinished(screening, watch.words(), out.drop);
+  out.drop = drop_of(out.estimate, without, screening);
   out.parameters = parameters_of_effect(out.estimate, screening);
   return out;
 }
@@ -306,21 +313,20 @@ double predictive_loglik(const FilterEstimate& estimate) {
   return loglik + 0.5 * explained - 0.5 * std::log(determinant);
 }
 
-double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, const std::vector<Signals>& experiments, int threads) {
-  const auto validated = [](const FilterEstimate& e) {
-    return std::any_of(e.traces.begin(), e.traces.end(), [](const FilterTrace& t) { return t.validated > 0; });
-  };
-  if (validated(without)) return predictive_loglik(with) - predictive_loglik(without);
-  double gain = 0.0;
-  for (const auto* estimate : {&without, &with}) {
-    FilterOptions options = like(*estimate, threads);
-    options.use = without_last_quarter(without);
-    options.verify = false;
-    const FilterEstimate shorter = estimate_filter(estimate->model, estimate->penalties, experiments, options);
-    if (shorter.out_of_time) throw TimeSpent(Watch::current()->words());
-    gain += (estimate == &with ? 1.0 : -1.0) * predictive_loglik(shorter);
-  }
-  return gain;
+double HeldOut::loglik(const FilterEstimate& estimate) const {
+  const bool held_out = std::any_of(without_.traces.begin(), without_.traces.end(), [](const FilterTrace& t) { return t.validated > 0; });
+  if (held_out) return predictive_loglik(estimate);
+  FilterOptions options = like(estimate, threads_);
+  options.use = without_last_quarter(without_);
+  options.verify = false;
+  const FilterEstimate shorter = estimate_filter(estimate.model, estimate.penalties, experiments_, options);
+  if (shorter.out_of_time) throw TimeSpent(Watch::current()->words());
+  return predictive_loglik(shorter);
+}
+
+double HeldOut::gain(const FilterEstimate& with) {
+  if (!before_) before_ = loglik(without_);
+  return loglik(with) - *before_;
 }
 
 }  // namespace misfit

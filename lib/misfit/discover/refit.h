@@ -60,9 +60,24 @@ struct OneStep {
 /// Analysis, 7.1: predictive density.)
 [[nodiscard]] double predictive_loglik(const FilterEstimate& estimate);
 
-/// Gain of the held-out predictive density. TimeSpent: a limit of time was spent in one of these fits. Where the study holds nothing out,
-/// both models are fitted again without the last quarter of every experiment, and judged on it.
-[[nodiscard]] double held_out_gain(const FilterEstimate& without, const FilterEstimate& with, const std::vector<Signals>& experiments,
-                                   int threads);
+/// Gain of the held-out predictive density over an estimate. Where the study holds nothing out, both models are fitted again without the
+/// last quarter of every experiment, and judged on it; the first once for all.
+class HeldOut {
+ public:
+  /// Keeps pointers to the estimate and the experiments.
+  HeldOut(const FilterEstimate& without, const std::vector<Signals>& experiments, int threads)
+      : without_(without), experiments_(experiments), threads_(threads) {}
+
+  /// TimeSpent: a limit of time was spent in one of these fits.
+  [[nodiscard]] double gain(const FilterEstimate& with);
+
+ private:
+  [[nodiscard]] double loglik(const FilterEstimate& estimate) const;
+
+  const FilterEstimate& without_;
+  const std::vector<Signals>& experiments_;
+  int threads_;
+  std::optional<double> before_;
+};
 
 }  // namespace misfit

@@ -128,14 +128,18 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
   for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
     if (!out.shown[j]) out.x.col(j).setConstant(start_of(model.state_specs[j]));
   }
-  if (model.own_states.empty() || samples == 0) return out;
-  const auto known = std::find(out.ok.begin(), out.ok.end(), true);
-  const std::size_t first = known == out.ok.end() ? 0 : known - out.ok.begin();
-  Eigen::VectorXd at = out.x.row(static_cast<Eigen::Index>(first)).transpose();
+  add_own_states(model, signals, out);
+  return out;
+}
+
+void add_own_states(const Model& model, const Signals& signals, ReconstructedStates& states) {
+  if (model.own_states.empty() || states.x.rows() == 0) return;
+  const auto known = std::find(states.ok.begin(), states.ok.end(), true);
+  const std::size_t first = known == states.ok.end() ? 0 : known - states.ok.begin();
+  Eigen::VectorXd at = states.x.row(static_cast<Eigen::Index>(first)).transpose();
   set_own_states_at_rest(model, input_table(signals, model.inputs()).at(first), signals.t[first], at);
   const Eigen::Index own = model.own_states.size();
-  out.x.rightCols(own).rowwise() = at.tail(own).transpose();
-  return out;
+  states.x.rightCols(own).rowwise() = at.tail(own).transpose();
 }
 
 void set_own_states_at_rest(const Model& model, const double* u, double t, Eigen::Ref<Eigen::VectorXd> at) {

@@ -31,6 +31,9 @@ struct ReconstructedStates {
 /// Those whose drift does not tell them (play inside its clearance) stay at their declared initial value.
 void set_own_states_at_rest(const Model& model, const double* u, double t, Eigen::Ref<Eigen::VectorXd> at);
 
+/// Fills the columns of own states: at rest where the states are first known.
+void add_own_states(const Model& model, const Signals& signals, ReconstructedStates& states);
+
 /// Circular frequency of the motion [rad/s]: sqrt(var(x')/var(x)) over the shown pairs of state and rate, the largest; 0 if there is none.
 [[nodiscard]] double motion_frequency(const Model& model, const ReconstructedStates& states);
 

@@ -71,7 +71,10 @@ void read_starts(const Study& study, const std::map<std::string, std::string>& u
     for (const auto& [list, is_free] : {std::pair{&effect.free, true}, std::pair{&effect.fixed, false}}) {
       for (const std::string& own : *list) {
         const std::string prefixed = effect.name + "." + own;
-        ParameterRequest& parameter = request.parameters[units.contains(prefixed) ? prefixed : own];
+        const std::string& name = units.contains(prefixed) ? prefixed : own;
+        if (is_free && std::find(effect.fixed.begin(), effect.fixed.end(), own) != effect.fixed.end())
+          throw InputError(effect.where, "effect '" + shown(effect.name) + "': " + shown(own) + " stands in free and in fixed");
+        ParameterRequest& parameter = request.parameters[name];
         if (parameter.where.file.empty()) parameter.where = effect.where;
         if (!parameter.free) parameter.free = is_free;
       }

@@ -38,10 +38,12 @@ void Draw::operator()(Figure figure) const {
 
 void curves_section(const ReportInput& input, Page& page, const Draw& draw) {
   const auto names = curves_of(input);
-  if (names.empty() && !input.comparison) return;
+  Blocks differences;
+  if (input.comparison) differences.append(curve_difference_blocks(*input.comparison));
+  if (names.empty() && differences.all().empty()) return;
   page.section("Curves");
   for (const auto& [curve, of] : names) draw(curve_figure(curve, of, input.fits, input.references));
-  if (input.comparison) page.show(curve_difference_blocks(*input.comparison));
+  page.show(differences);
 }
 
 void uncertainty_section(const ReportInput& input, Page& page, const Draw& draw) {

@@ -111,8 +111,7 @@ ReconstructedStates stencil_states(const BinForm& form, const Signals& signals, 
     out.x(row, form.rate) = out.dx(row, form.level) = motion.rate[i];
     out.dx(row, form.rate) = motion.acceleration[i];
   }
-  const auto& own = form.model.own_states;
-  for (std::size_t z = 0; z < own.size(); ++z) out.x.col(form.model.system_states() + z).setConstant(own[z].initial);
+  add_own_states(form.model, signals, out);
   return out;
 }
 

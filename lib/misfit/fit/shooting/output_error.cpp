@@ -356,34 +356,15 @@ class Estimator {
     if (!end_.smoothed.ok) return failed(singular_message(end_.linearised));
     if (const std::string which = undetermined(out.model, end_.linearised); !which.empty()) return failed(at_the_end(which));
     integration_.describe(out);
-    set_noise(end_.degrees(), fit);
+    set_noise(shooting_, end_.degrees(), fit);
     const Eigen::MatrixXd covariance = describe_estimates(end_, out);
     predictions_of({shooting_, end_.runs, experiments_}, covariance, fit);
     errors_of(experiments_, fit);
-    set_initial_states(out);
+    set_initial_states(shooting_, experiments_, out);
     fit.facts["effective_parameters"] = format_value(end_.smoothed.edf);
     add_remarks(end_, covariance, out);
     fit.linearisations = shooting_.linearisations();
     return out;
-  }
-
-  void set_noise(double degrees, Fit& fit) const {
-    const auto& outputs = shooting_.model().system->spec().outputs;
-    const double degrees_each = std::max(degrees / static_cast<double>(outputs.size()), 1.0);
-    for (std::size_t o = 0; o < outputs.size(); ++o) {
-      const double sigma = shooting_.sigma()[o];
-      const double sigma_of_it = shooting_.model().known_noise[o].fixed ? 0.0 : sigma / std::sqrt(2.0 * degrees_each);
-      fit.noise[outputs[o].name] = {sigma, sigma_of_it, outputs[o].unit};
-    }
-  }
-
-  void set_initial_states(FittedModel& out) const {
-    for (std::size_t e = 0; e < experiments_.size(); ++e) {
-      out.initial_states.push_back(shooting_.initial_state(e));
-      if (shooting_.held_out(e))
-        out.fit.facts["held out: " + experiments_[e].name] =
-            "all its samples are held out: its initial state is taken from its first samples";
-    }
   }
 
   void add_remarks(const Ending& end, const Eigen::MatrixXd& covariance, FittedModel& out) const {
@@ -412,11 +393,6 @@ class Estimator {
   [[nodiscard]] bool same_noise(const std::vector<double>& sigma, double difference = 0.01) const {
     return std::equal(sigma.begin(), sigma.end(), shooting_.sigma().begin(),
                       [difference](double now, double then) { return std::abs(now / then - 1.0) < difference; });
-  }
-
-  static std::string too_few(double count, double unknowns) {
-    return format_value(count) + " measurements for " + format_value(std::round(10.0 * unknowns) / 10.0) +
-           " unknowns (free parameters and initial states) are too few to estimate the uncertainty of the values: no sigma is given";
   }
 
   /// Parameters, curves and trim with the covariance of all unknowns, which is returned: allowing for autocorrelated residuals, and what

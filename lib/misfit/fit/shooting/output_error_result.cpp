@@ -130,6 +130,29 @@ void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, F
   }
 }
 
+void set_noise(const Shooting& shooting, double degrees, Fit& fit) {
+  const auto& outputs = shooting.model().system->spec().outputs;
+  const double degrees_each = std::max(degrees / static_cast<double>(outputs.size()), 1.0);
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    const double sigma = shooting.sigma()[o];
+    const double sigma_of_it = shooting.model().known_noise[o].fixed ? 0.0 : sigma / std::sqrt(2.0 * degrees_each);
+    fit.noise[outputs[o].name] = {sigma, sigma_of_it, outputs[o].unit};
+  }
+}
+
+void set_initial_states(const Shooting& shooting, const std::vector<Signals>& experiments, FittedModel& out) {
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    out.initial_states.push_back(shooting.initial_state(e));
+    if (shooting.held_out(e))
+      out.fit.facts["held out: " + experiments[e].name] = "all its samples are held out: its initial state is taken from its first samples";
+  }
+}
+
+std::string too_few(double count, double unknowns) {
+  return format_value(count) + " measurements for " + format_value(std::round(10.0 * unknowns) / 10.0) +
+         " unknowns (free parameters and initial states) are too few to estimate the uncertainty of the values: no sigma is given";
+}
+
 void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, Fit& fit) {
   const std::vector<RowMatrix> y = shooting.predict_segments();
   const auto& outputs = shooting.model().system->spec().outputs;
