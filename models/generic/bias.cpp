@@ -17,7 +17,7 @@ struct Bias {
   static constexpr Role ports[] = {{.name = "output", .unit = "*"}};
   enum Coefficient { offset };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "offset", .unit = "{output}", .lower = -1e6, .upper = 1e6, .scale = 0.01, .doc = "output where the true value is 0"},
+      {.name = "offset", .unit = "{output}", .lower = -1e15, .upper = 1e15, .scale = 0.01, .doc = "output where the true value is 0"},
   };
 
   template <class T, class K>

@@ -17,7 +17,7 @@ struct ConstantForce {
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { constant_force };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "constant_force", .unit = "{port}", .lower = -1e12, .upper = 1e12, .scale = 0.1, .doc = "the force"},
+      {.name = "constant_force", .unit = "{port}", .lower = -1e15, .upper = 1e15, .scale = 0.1, .doc = "the force"},
   };
 
   template <class T, class K>

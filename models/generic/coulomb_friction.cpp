@@ -24,13 +24,13 @@ struct CoulombFriction {
                                    {.name = "port_lateral", .unit = "*", .optional = true, .completes = "port"}};
   enum Coefficient { friction, width };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "friction", .unit = "{port}", .lower = 0.0, .upper = 1e6, .scale = 1.0, .doc = "size of the friction when moving"},
+      {.name = "friction", .unit = "{port}", .lower = 0.0, .upper = 1e15, .scale = 1.0, .doc = "size of the friction when moving"},
       {.name = "width",
        .kind = CoefficientKind::shape,
        .value = 0.1,
        .unit = "{rate}",
-       .lower = 1e-6,
-       .upper = 1e6,
+       .lower = 1e-12,
+       .upper = 1e12,
        .scale = 0.01,
        .doc = "rate at which the smoothed friction has 76 % of its size",
        .fixed = true,

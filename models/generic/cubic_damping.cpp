@@ -23,8 +23,8 @@ struct CubicDamping {
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "cubic_damping",
        .unit = "{port}/{rate}/{rate}/{rate}",
-       .lower = -1e12,
-       .upper = 1e12,
+       .lower = -1e15,
+       .upper = 1e15,
        .scale = 0.1,
        .doc = "force per cube of the rate; positive takes energy out"},
   };

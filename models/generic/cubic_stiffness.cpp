@@ -22,8 +22,8 @@ struct CubicStiffness {
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "cubic_stiffness",
        .unit = "{port}/{displacement}/{displacement}/{displacement}",
-       .lower = -1e12,
-       .upper = 1e12,
+       .lower = -1e15,
+       .upper = 1e15,
        .scale = 1.0,
        .doc = "force per cube of the displacement; positive hardens"},
   };

@@ -17,13 +17,13 @@ struct Drift {
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { drift, drift_origin };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "drift", .unit = "{port}/s", .lower = -1e6, .upper = 1e6, .scale = 0.01, .doc = "growth of the force"},
+      {.name = "drift", .unit = "{port}/s", .lower = -1e15, .upper = 1e15, .scale = 0.01, .doc = "growth of the force"},
       {.name = "drift_origin",
        .kind = CoefficientKind::shape,
        .value = 0.0,
        .unit = "s",
-       .lower = -1e9,
-       .upper = 1e9,
+       .lower = -1e12,
+       .upper = 1e12,
        .scale = 1.0,
        .doc = "time at which it is 0",
        .fixed = true},

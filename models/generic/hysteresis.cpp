@@ -30,13 +30,13 @@ struct Hysteresis {
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { hysteresis, yield, loop, hysteresis_width };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "hysteresis", .unit = "{port}", .lower = -1e6, .upper = 1e6, .scale = 1.0, .doc = "limit of the force"},
+      {.name = "hysteresis", .unit = "{port}", .lower = -1e15, .upper = 1e15, .scale = 1.0, .doc = "limit of the force"},
       {.name = "yield",
        .kind = CoefficientKind::shape,
        .value = 0.1,
        .unit = "{displacement}",
-       .lower = 1e-9,
-       .upper = 1e6,
+       .lower = 1e-12,
+       .upper = 1e12,
        .scale = 0.1,
        .doc = "motion over which the force comes to its limit",
        .scan = {.from = 0.06, .to = 0.5, .count = 4, .over = "|displacement|"}},
@@ -53,8 +53,8 @@ struct Hysteresis {
        .kind = CoefficientKind::shape,
        .value = 0.05,
        .unit = "{rate}",
-       .lower = 1e-9,
-       .upper = 1e6,
+       .lower = 1e-12,
+       .upper = 1e12,
        .scale = 0.05,
        .doc = "rounding of the rate about 0: a fiftieth of the largest rate",
        .fixed = true,

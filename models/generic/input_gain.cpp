@@ -21,8 +21,8 @@ struct InputGain {
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "gain_error",
        .unit = "{port}/{input}",
-       .lower = -1e12,
-       .upper = 1e12,
+       .lower = -1e15,
+       .upper = 1e15,
        .scale = 0.1,
        .doc = "force per input beside what the model has"},
   };

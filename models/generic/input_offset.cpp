@@ -23,8 +23,8 @@ struct InputOffset {
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "input_offset",
        .unit = "{port}",
-       .lower = -1e12,
-       .upper = 1e12,
+       .lower = -1e15,
+       .upper = 1e15,
        .scale = 0.1,
        .doc = "constant beside what the recorded input does"},
   };

@@ -17,14 +17,14 @@ struct PeriodicForcing {
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { cosine, sine, frequency };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "cosine", .unit = "{port}", .lower = -1e6, .upper = 1e6, .scale = 1.0, .doc = "amplitude in phase with cos(2 pi f t)"},
-      {.name = "sine", .unit = "{port}", .lower = -1e6, .upper = 1e6, .scale = 1.0, .doc = "amplitude in phase with sin(2 pi f t)"},
+      {.name = "cosine", .unit = "{port}", .lower = -1e15, .upper = 1e15, .scale = 1.0, .doc = "amplitude in phase with cos(2 pi f t)"},
+      {.name = "sine", .unit = "{port}", .lower = -1e15, .upper = 1e15, .scale = 1.0, .doc = "amplitude in phase with sin(2 pi f t)"},
       {.name = "frequency",
        .kind = CoefficientKind::shape,
        .value = 1.0,
        .unit = "Hz",
-       .lower = 1e-6,
-       .upper = 1e3,
+       .lower = 1e-9,
+       .upper = 1e9,
        .scale = 0.1,
        .doc = "frequency of the forcing",
        .scan = {.from = 1e-6, .to = 1e3, .count = -1}},

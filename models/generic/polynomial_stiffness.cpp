@@ -23,8 +23,8 @@ struct PolynomialStiffness {
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "quadratic_stiffness",
        .unit = "{port}/{displacement}/{displacement}",
-       .lower = -1e12,
-       .upper = 1e12,
+       .lower = -1e15,
+       .upper = 1e15,
        .scale = 1.0,
        .doc = "force per square of the displacement: the asymmetry"},
       {.name = "quintic_stiffness",

@@ -27,7 +27,7 @@ struct QuadraticDrag {
       {.name = "drag",
        .unit = "{port}/{rate}/{rate}",
        .lower = 0.0,
-       .upper = 1e6,
+       .upper = 1e15,
        .scale = 0.1,
        .doc = "force per square of the rate; positive takes energy out"},
   };

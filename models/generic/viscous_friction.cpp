@@ -25,7 +25,7 @@ struct ViscousFriction {
       {.name = "viscosity",
        .unit = "{port}/{rate}",
        .lower = 0.0,
-       .upper = 1e6,
+       .upper = 1e15,
        .scale = 1.0,
        .doc = "force per rate; positive takes energy out"},
   };

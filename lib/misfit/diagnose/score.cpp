@@ -62,8 +62,8 @@ ScoreTest::ScoreTest(const FilterEstimate& estimate) {
   }
   has_parameters_ = theta.size() > 0;
   if (!has_parameters_) return;
-  const GaussianPrior prior = estimate.regularised_prior();
   Eigen::MatrixXd information = J_.transpose() * J_;
+  const GaussianPrior prior = estimate.regularised_prior(information.diagonal());
   prior.add_precision(information);
   gradient_ = -J_.transpose() * r_ + prior.gradient(theta);
   information_.compute(information);

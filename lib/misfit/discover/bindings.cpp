@@ -44,12 +44,11 @@ Roles roles_of_conjugate(const SystemSpec& system, const std::string& name) {
     return {{"rate", name}, {"displacement", moved}, {"level", moved}};
   }
   if (state != nullptr) {
-    Roles roles = {{"level", name}};
-    if (is_rate(state->unit)) roles["rate"] = name;
-    return roles;
+    return {{"level", name}, {is_rate(state->unit) ? "rate" : "content", name}};
   }
-  if (quantity != system.quantities.end() && is_rate(quantity->unit)) return {{"rate", name}};
-  return {};
+  if (quantity == system.quantities.end()) return {};
+  if (!quantity->rate_of.empty()) return {{"rate", name}, {"displacement", quantity->rate_of}, {"level", quantity->rate_of}};
+  return is_rate(quantity->unit) ? Roles{{"rate", name}} : Roles{};
 }
 
 /// It has a default for `signal`: its way of saying that generic effects make sense at places of its own.
@@ -80,7 +79,7 @@ std::optional<Roles> roles_at(const EffectSpec& effect, const Roles& place) {
         out[role.name] = found->second;
         continue;
       }
-      constexpr std::array<std::string_view, 6> kinds = {"rate", "displacement", "level", "other", "port", "to_port"};
+      constexpr std::array<std::string_view, 7> kinds = {"rate", "displacement", "level", "content", "other", "port", "to_port"};
       if (!role.optional && std::find(kinds.begin(), kinds.end(), role.name) != kinds.end()) return std::nullopt;
     }
   }
@@ -105,10 +104,10 @@ std::vector<Roles> times(const std::vector<Roles>& places, const std::string& ro
 std::vector<Roles> times_other_states(const std::vector<Roles>& places, const SystemSpec& system) {
   std::vector<Roles> out;
   for (const Roles& place : places) {
-    if (!place.contains("level")) continue;
-    const StateSpec& level = *state_called(system, place.at("level"));
+    const StateSpec* level = place.contains("level") ? state_called(system, place.at("level")) : nullptr;
+    if (level == nullptr) continue;
     for (const StateSpec& state : system.states) {
-      if (state.name == level.name || !parse_unit(state.unit).same_dimension(parse_unit(level.unit))) continue;
+      if (state.name == level->name || !parse_unit(state.unit).same_dimension(parse_unit(level->unit))) continue;
       out.push_back(place);
       out.back()["other"] = state.name;
     }

@@ -24,9 +24,12 @@ struct ColumnPriors {
 /// Model::free_parameters().
 [[nodiscard]] ColumnPriors parameter_priors(const Model& model);
 
-/// The same with a very wide one (1000 typical sizes about 0) for parameters that have none: keeps linear algebra regular where a
-/// coefficient is touched by no sample. Part of no objective.
-[[nodiscard]] ColumnPriors regularised_priors(const Model& model);
+/// The same with a very wide one about 0 for parameters that have none: keeps linear algebra regular where a coefficient is touched by no
+/// sample. Its sigma is 1000 typical sizes, and at least 1e5 sigmas of what the measurements say of the parameter alone, `information`
+/// (the diagonal of the data's information matrix, which may go on behind the free parameters) being their precision: a typical size in
+/// SI is a guess, 1 N/m^3 where a spring has 1e7, which must not hold what the measurements determine. Of curves, and of parameters of
+/// which the measurements say less than 1e9 typical sizes, 1000 typical sizes are kept. Part of no objective.
+[[nodiscard]] ColumnPriors regularised_priors(const Model& model, const Eigen::VectorXd& information);
 
 /// log density of one parameter's prior at its value, constants left out; 0 if it has none.
 [[nodiscard]] double log_prior(const Parameter& parameter);

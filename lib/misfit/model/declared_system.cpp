@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <utility>
 
 #include "misfit/core/lists.h"
@@ -23,6 +24,7 @@ class DeclaredSystem final : public System {
     for (std::size_t i = 0; i < c_->spec.states.size() + 2 * c_->spec.inputs.size(); ++i) plain_ |= std::uint64_t{1} << i;
     spec_ = c_->spec;
     if (!(spec_.fastest_rate > 0.0)) spec_.fastest_rate = nominal_rate();
+    find_rates_of_quantities();
   }
 
   [[nodiscard]] const SystemSpec& spec() const override { return spec_; }
@@ -181,6 +183,52 @@ class DeclaredSystem final : public System {
     for (const auto& constant : spec_.constants) k.push_back(constant.required ? 1.0 : constant.value);
     k.push_back(0.0);
     return fastest_rate({x.data(), u.data(), 0.0, k.data()});
+  }
+
+  /// States, inputs and parameters near their sizes, another for each `number`.
+  struct Place {
+    std::vector<double> x, u, k;
+  };
+  Place some_place(unsigned number) const {
+    std::mt19937 random(number);
+    const auto share = [&random] { return 0.1 + 0.8 * std::generate_canonical<double, 53>(random); };
+    Place out;
+    for (const auto& state : spec_.states) {
+      const double low = std::isfinite(state.lower) ? state.lower : std::isfinite(state.start) ? state.start : 0.0;
+      out.x.push_back(std::min(low + share() * state.scale, state.upper));
+    }
+    for (std::size_t i = 0; i < spec_.inputs.size(); ++i) out.u.push_back(share());
+    for (const auto& constant : spec_.constants) out.k.push_back(constant.required || constant.value == 0.0 ? share() : constant.value);
+    out.u.push_back(0.0);
+    out.k.push_back(0.0);
+    return out;
+  }
+
+  /// Which quantities are rates of others, as the equations say: dq/dt = q_x x' at some places, forces off.
+  void find_rates_of_quantities() {
+    constexpr unsigned places = 3;
+    constexpr double rounding = 1e-9;
+    const std::size_t first = spec_.states.size() + 2 * spec_.inputs.size(), count = spec_.quantities.size(), states = spec_.states.size();
+    std::vector<std::vector<bool>> is_rate(count, std::vector<bool>(count, true));  // of [rate][moved]
+    for (unsigned number = 0; number < places; ++number) {
+      const Place place = some_place(number);
+      const Point at{place.x.data(), place.u.data(), 0.0, place.k.data()};
+      std::vector<double> q(count), slope(count * states), dx(states);
+      linearise_quantities(at, no_forces.data(), ~std::uint64_t{0}, q.data(), {slope.data(), nullptr, nullptr});
+      rates(at, no_forces.data(), no_forces.data(), dx.data());
+      for (std::size_t moved = first; moved < count; ++moved) {
+        double rate = 0.0, size = 0.0;
+        for (std::size_t j = 0; j < states; ++j) {
+          rate += slope[moved * states + j] * dx[j];
+          size += std::abs(slope[moved * states + j] * dx[j]);
+        }
+        for (std::size_t i = first; i < count; ++i) is_rate[i][moved] = is_rate[i][moved] && size > 0.0 && std::abs(q[i] - rate) < rounding * size;
+      }
+    }
+    for (std::size_t i = first; i < count; ++i) {
+      const auto moved = std::find(is_rate[i].begin() + static_cast<std::ptrdiff_t>(first), is_rate[i].end(), true);
+      if (moved != is_rate[i].end()) spec_.quantities[i].rate_of = spec_.quantities[moved - is_rate[i].begin()].name;
+    }
   }
 
   /// The part of a formula that made a node.

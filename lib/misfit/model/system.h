@@ -43,6 +43,7 @@ struct QuantitySpec {
   bool carries_sign = false;  ///< may be negative: curves of it need no division by its sine (CoefficientSpec::over_sine is ignored)
   bool explains = true;       ///< a coordinate of the motion: maps and unknown curves are drawn over it
   bool of_sensor = false;     ///< depends on constants of the sensor (ConstantSpec::of_sensor); all others must not
+  std::string rate_of = {};   ///< quantity whose derivative in time it is; a state's is in StateSpec
 };
 
 struct PortSpec {

@@ -209,15 +209,16 @@ Eigen::MatrixXd covariance_of(const FilterEstimate& estimate) {
   NormalEquations problem;
   problem.theta = Eigen::VectorXd::Zero(all);
   problem.theta.head(columns) = estimate.model.theta();
-  problem.prior = regularised_priors(estimate.model).padded(all);
-  problem.g = GaussianPrior{problem.prior, estimate.penalties}.gradient(problem.theta);
+  problem.prior = parameter_priors(estimate.model).padded(all);
   problem.N = Eigen::MatrixXd::Zero(all, all);
   if (joint) {
     problem.N = estimate.joint_information;
     problem.N.diagonal() -= problem.prior.precision;
   } else {
     for (const auto& jacobian : estimate.jacobians) problem.N += jacobian.J.transpose() * jacobian.J;
+    problem.prior = regularised_priors(estimate.model, problem.N.diagonal());
   }
+  problem.g = GaussianPrior{problem.prior, estimate.penalties}.gradient(problem.theta);
   const Eigen::MatrixXd out = with_uncertain_roughness(problem, estimate.penalties, 1.0);
   return out.size() > 0 ? Eigen::MatrixXd(out.topLeftCorner(columns, columns)) : estimate.covariance;
 }

@@ -57,7 +57,9 @@ struct FilterEstimate {
   /// Of the objective.
   [[nodiscard]] GaussianPrior prior() const { return {parameter_priors(model), penalties}; }
   /// Of steps and covariances.
-  [[nodiscard]] GaussianPrior regularised_prior() const { return {regularised_priors(model), penalties}; }
+  [[nodiscard]] GaussianPrior regularised_prior(const Eigen::VectorXd& information) const {
+    return {regularised_priors(model, information), penalties};
+  }
 };
 
 /// The steps of integration that it was found with, per experiment.

@@ -138,7 +138,7 @@ NormalEquations LikelihoodAscent::normal_equations() const {
     sums.count += static_cast<double>(jacobian.r.size());
   }
   sums.N = Eigen::MatrixXd(sums.N.selfadjointView<Eigen::Lower>());
-  sums.prior = regularised_priors(out.model);
+  sums.prior = regularised_priors(out.model, sums.N.diagonal());
   return sums;
 }
 

@@ -237,7 +237,7 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
   }
   const Eigen::MatrixXd& back = differences.axes().back;
   out.gradient.head(theta.size()) =
-      back.transpose() * out.gradient.head(theta.size()).eval() + estimate.regularised_prior().gradient(theta);
+      back.transpose() * out.gradient.head(theta.size()).eval() + estimate.prior().gradient(theta);
   columns.leftCols(theta.size()) = columns.leftCols(theta.size()) * back;
   out.information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
   out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
@@ -250,7 +250,7 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
 
 Eigen::MatrixXd joint_information(const FilterEstimate& estimate, const LikelihoodDerivatives& exact) {
   Eigen::MatrixXd out = exact.information;
-  out.diagonal() += regularised_priors(estimate.model).padded(out.rows()).precision;
+  out.diagonal() += regularised_priors(estimate.model, out.diagonal()).padded(out.rows()).precision;
   pin_unknown(estimate.noise_fit, out);
   return out;
 }

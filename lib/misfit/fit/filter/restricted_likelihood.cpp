@@ -24,7 +24,7 @@ std::optional<Eigen::MatrixXd> information_with(const FilterEstimate& estimate, 
     information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.J.transpose());
   }
   information = Eigen::MatrixXd(information.selfadjointView<Eigen::Lower>());
-  estimate.regularised_prior().add_precision(information);
+  estimate.regularised_prior(information.diagonal()).add_precision(information);
   return information;
 }
 

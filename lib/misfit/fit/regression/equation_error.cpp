@@ -151,6 +151,12 @@ class Regressor {
   std::vector<int> rows_;
 };
 
+/// regularised_priors() with residuals of the size that they have where the sums were made.
+ColumnPriors very_wide_beside(const NormalEquations& sums, const Model& model) {
+  const double variance = sums.count > 0.0 ? sums.rss / sums.count : 0.0;
+  return regularised_priors(model, variance > 0.0 ? Eigen::VectorXd(sums.N.diagonal() / variance) : Eigen::VectorXd(sums.N.diagonal()));
+}
+
 /// The regression's answer inside the parameters' bounds; curves are held by their roughness alone.
 Eigen::VectorXd inside_bounds(const Model& model, const std::vector<int>& free, const PenalisedFit& smoothed) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -174,7 +180,7 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
   for (int round = 0; round < rounds && !settled; ++round) {
     Regression regression = regressor.linearise(out.model);
     ++out.fit.linearisations;
-    regression.sums.prior = regularised_priors(out.model);
+    regression.sums.prior = very_wide_beside(regression.sums, out.model);
     if (regression.sums.count < 2.0 * static_cast<double>(free.size()) || free.empty()) {
       out.fit.status = FitStatus::declined;
       out.fit.message = free.empty() ? "every parameter is fixed: there is nothing to estimate"
@@ -269,7 +275,7 @@ void add_remarks(const Regressor& regressor, const NormalEquations& sums, Fitted
 
 void describe_all(const Regressor& regressor, const PenalisedFit& smoothed, FittedModel& out) {
   Regression regression = regressor.linearise(out.model, true);
-  regression.sums.prior = regularised_priors(out.model);
+  regression.sums.prior = very_wide_beside(regression.sums, out.model);
   const double weight = 1.0 / std::sqrt(smoothed.sigma2);
   for (ResidualRows& rows : regression.rows) {
     rows.J *= weight;
