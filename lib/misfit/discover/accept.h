@@ -13,6 +13,7 @@ struct RankedCandidate {
   const ScreeningResult* screening = nullptr;
   Candidate candidate;
   std::optional<Refit> refit;
+  bool refit_begun = false;
   double log_p = 0.0;  ///< of the refit where there is one
   /// Its refit is not what its name says: a part of a whole, or a memory longer than the recording. Its drop explains nothing then.
   bool misnamed = false;

@@ -19,9 +19,10 @@ using Roles = std::map<std::string, std::string>;
 /// suggests. `port` is each port of the random force, and each port that a system with a default for `signal` declares. A conjugate that is
 /// a state is its `rate`, and what it is the rate of `displacement` and `level`; one that is the rate of nothing is its `level`, and its
 /// `rate` too if its unit is one per time (the speed of a motor whose angle nobody models), else its `content`. A conjugate that is no
-/// state is its `rate` if its unit is, or if the equations make it the rate of another quantity, its `displacement` and `level`. `to_port` is each other such port, `other` each other state of the level's unit. `input` is each input and `output` each
-/// output (`signal` follows it), if the system has a default for `input`, or for `signal`: its way of saying that generic effects make
-/// sense there. Units are not looked at otherwise: assemble() refuses what does not suit.
+/// state is its `rate` if its unit is, or if the equations make it the rate of another quantity, its `displacement` and `level`. `to_port`
+/// is each other such port, `other` each other state of the level's unit. `input` is each input and `output` each output (`signal` follows
+/// it), if the system has a default for `input`, or for `signal`: its way of saying that generic effects make sense there. Units are not
+/// looked at otherwise: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
 /// What a recording visits: sizes for the shapes of effects that take any unit. Keeps a pointer to the estimate; for one thread.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "misfit/core/error.h"
@@ -13,6 +14,7 @@
 #include "misfit/discover/accept.h"
 #include "misfit/discover/alias.h"
 #include "misfit/discover/candidate.h"
+#include "misfit/discover/free_run.h"
 #include "misfit/discover/refit_jobs.h"
 #include "misfit/discover/unfinished.h"
 #include "misfit/discover/verdict.h"
@@ -50,6 +52,8 @@ class Search {
     try {
       screen_all();
       refit_the_best();
+      refit_the_significant_with_shapes();
+      refit_what_the_free_run_shows();
       if (options_.refits && !ranks().first()) return {};
       const SearchContext context{estimate_, registry_, experiments_, options_, families_};
       unexplained = accept_best(ranked_, unknown_, context);
@@ -141,45 +145,95 @@ class Search {
     return !e.candidate.described && e.candidate.p_value < 5.0 * options_.p_accept;
   }
   bool significant(const RankedCandidate& e) const { return !e.candidate.described && e.candidate.p_value < options_.p_accept; }
+  static bool has_shapes(const RankedCandidate& e) {
+    const CandidateModel& c = *e.screening->candidate_model;
+    return c.cells.size() > 1 || c.frequency >= 0;
+  }
   bool none_accepted() const {
     return std::none_of(ranked_.begin(), ranked_.end(), [](const RankedCandidate& e) { return e.candidate.accepted; });
   }
+
+  /// Some refits, begun together.
+  struct Wave {
+    std::function<const ScreeningResult*(const RankedCandidate&)> begin;  ///< where a candidate's refit begins; nullptr: it is not in it
+    const char* name = "";                                                ///< of its stored jobs
+    const FilterEstimate* screened = nullptr;                             ///< RefitWork::screened
+    const ScoreTest* score = nullptr;                                     ///< nullptr: the estimate's
+  };
 
   /// Those with a predicted drop above half of the best; under mpirun, where no rank knows what another accepts, all that are significant.
   void refit_the_best() {
     const double half = 0.5 * best_predicted();
     const bool all = ranks().size() > 1;
-    refit_those(
-        [&](const RankedCandidate& e) { return (may_be_significant(e) && e.candidate.predicted_drop >= half) || (all && significant(e)); },
-        options_.refits);
+    refit_wave({.begin = [&](const RankedCandidate& e) {
+      return (may_be_significant(e) && e.candidate.predicted_drop >= half) || (all && significant(e)) ? e.screening : nullptr;
+    }});
   }
 
-  /// One step of a threshold or a width tells little of what it explains at its maximum. False: there is none.
+  /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum.
+  void refit_the_significant_with_shapes() {
+    refit_wave(
+        {.begin = [this](const RankedCandidate& e) { return significant(e) && has_shapes(e) ? e.screening : nullptr; }, .name = "_shapes"});
+  }
+
+  /// The effects that explain most of the free run, each at least a fifth of it, begun from there.
+  void refit_what_the_free_run_shows() {
+    constexpr double least_share = 0.2;
+    constexpr std::size_t most = 3;
+    calm_ = free_run(estimate_);
+    if (!calm_) return;
+    const ScoreTest score(*calm_);
+    const ForceSensitivity force(*calm_);
+    calm_screening_ = screen({*calm_, score, force, options_.threads}, candidate_models_);
+    double counted = 0.0;
+    for (const FilterTrace& trace : calm_->traces) counted += static_cast<double>(trace.counted);
+    std::vector<const ScreeningResult*> best;
+    for (const ScreeningResult& s : calm_screening_) {
+      if (s.runs && s.result.dof > 0 && s.result.chi2 > least_share * counted) best.push_back(&s);
+    }
+    std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });
+    best.resize(std::min(best.size(), most));
+    refit_wave({.begin =
+                    [&](const RankedCandidate& e) {
+                      const auto found = std::find_if(best.begin(), best.end(), [&](const auto* s) {
+                        return s->candidate_model == e.screening->candidate_model && !e.candidate.described;
+                      });
+                      return found == best.end() ? nullptr : *found;
+                    },
+                .name = "_free_run",
+                .screened = &*calm_,
+                .score = &score});
+  }
+
+  /// False: there is none.
   bool refit_the_other_significant_ones() {
     if (ranks().size() > 1) return false;  // refitted with the first
-    std::optional<StoredJobs> stored = options_.refits;
-    if (stored) stored->digest += "_others";
     for (RankedCandidate& e : ranked_) e.candidate.group.clear();
-    return refit_those([this](const RankedCandidate& e) { return significant(e); }, stored);
+    return refit_wave({.begin = [this](const RankedCandidate& e) { return significant(e) ? e.screening : nullptr; }, .name = "_others"});
   }
 
-  template <class WorthIt>
-  bool refit_those(const WorthIt& worth_it, const std::optional<StoredJobs>& stored) {
-    const auto tried = [](const RankedCandidate& e) { return e.refit.has_value() || !e.candidate.why.empty(); };
-    const std::size_t most = options_.max_refits;
+  /// False: no candidate is in it.
+  bool refit_wave(const Wave& wave) {
     std::vector<RankedCandidate*> chosen;
     std::vector<const ScreeningResult*> effects;
     for (auto& e : ranked_) {
-      if (chosen.size() >= most) break;
-      if (tried(e) || !worth_it(e)) continue;
+      if (std::ssize(chosen) >= options_.max_refits) break;
+      const ScreeningResult* begin = e.refit_begun || !e.candidate.why.empty() ? nullptr : wave.begin(e);
+      if (begin == nullptr) continue;
+      e.refit_begun = true;
       chosen.push_back(&e);
-      effects.push_back(e.screening);
+      effects.push_back(begin);
     }
     if (chosen.empty()) return false;
-    auto refits = refit_all(refit_work(), score_, effects, {stored, part(end_of_curves, end_of_refits), options_.stop});
+    std::optional<StoredJobs> stored = options_.refits;
+    if (stored) stored->digest += wave.name;
+    RefitWork work = refit_work();
+    work.screened = wave.screened;
+    auto refits =
+        refit_all(work, wave.score == nullptr ? score_ : *wave.score, effects, {stored, part(end_of_curves, end_of_refits), options_.stop});
     if (!refits) throw RunError("discover: stopped before all refits were done");
     for (std::size_t k = 0; k < refits->size(); ++k) {  // none on ranks other than the first
-      chosen[k]->candidate.predicted_drop = (*refits)[k].predicted_drop;
+      if (wave.screened == nullptr) chosen[k]->candidate.predicted_drop = (*refits)[k].predicted_drop;
       chosen[k]->refit = std::move((*refits)[k].refit);
       store_refit(*chosen[k]);
     }
@@ -240,6 +294,8 @@ class Search {
   ScoreTest score_;
   ForceSensitivity force_;
   std::vector<ScreeningResult> screening_;
+  std::optional<FilterEstimate> calm_;           ///< free_run()
+  std::vector<ScreeningResult> calm_screening_;  ///< there
   std::vector<UnknownCurve> unknown_;
   std::vector<RankedCandidate> ranked_;
   std::vector<std::string> unfinished_;  ///< effects whose refits were cut off

@@ -26,6 +26,9 @@ struct RefitWork {
   const Registry& registry;
   int threads = 0;
   double time_limit = 0.0;  ///< of each refit [s]; 0: none
+  /// Where the effects were screened if that is not `without`: one step is made there, and the refit begins with as much less of the random
+  /// force as the effect leaves of what is unexplained there.
+  const FilterEstimate* screened = nullptr;
 };
 
 /// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.

@@ -1,5 +1,7 @@
 #include "misfit/discover/refit_jobs.h"
 
+#include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include "misfit/core/watch.h"
@@ -17,9 +19,22 @@ void fields(Bytes& bytes, Data& estimate) {
 
 namespace {
 
+/// From where the effects were screened to the noise of the estimate.
+OneStep step_from_elsewhere(const RefitWork& work, const ScoreTest& score, const ScreeningResult& effect) {
+  const FilterEstimate& there = *work.screened;
+  OneStep step = one_step({there, work.experiments, work.registry, work.threads}, score, effect);
+  double counted = 0.0;
+  for (const FilterTrace& trace : there.traces) counted += static_cast<double>(trace.counted);
+  const double left = std::exp(-0.5 * step.drop / std::max(counted, 1.0));  // share of the residuals' RMS
+  step.noise = work.without.noise;
+  step.noise.force *= left;
+  for (double& force : step.noise.further_forces) force *= left;
+  return step;
+}
+
 SteppedRefit stepped(const RefitWork& work, const ScoreTest& score, const ScreeningResult& effect) {
   try {
-    const OneStep step = one_step(work, score, effect);
+    const OneStep step = work.screened == nullptr ? one_step(work, score, effect) : step_from_elsewhere(work, score, effect);
     return {step.drop, refit(work, effect, step)};
   } catch (const TimeSpent& spent) {
     return {effect.result.chi2, unfinished(effect, spent.what())};
@@ -56,7 +71,7 @@ SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const S
 std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const ScoreTest& score,
                                                    const std::vector<const ScreeningResult*>& effects, const RefitJobs& jobs) {
   const int within = effects.size() > 1 || ranks_started() > 1 ? 1 : work.threads;
-  const RefitWork each{work.without, work.experiments, work.registry, within, work.time_limit};
+  const RefitWork each{work.without, work.experiments, work.registry, within, work.time_limit, work.screened};
   const auto one = [&](std::size_t k) { return stepped(each, score, *effects[k]); };
   std::vector<SteppedRefit> out;
   if (!jobs.stored) {
