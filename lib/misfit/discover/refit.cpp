@@ -111,7 +111,7 @@ Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole)
 
 /// "late_share = 0.12 ± 0.01, where the whole effect would have 1.00"; empty where the strengths are about whole.
 std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
-  constexpr double about = 0.3;  // of the whole: formulas idealise
+  constexpr double about = 0.2;  // of the whole: formulas idealise
   for (const WholeStrength& w : whole) {
     const Parameter& p = estimate.model.parameters[w.parameter];
     const double sigma = sigma_of(estimate, w.parameter);

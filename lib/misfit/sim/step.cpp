@@ -78,13 +78,16 @@ void Stepper::keep_in_range(double* x, double* D, int width) const {
 template <class Advance>
 bool Stepper::for_each_part(const Interval& interval, const Advance& advance) const {
   static constexpr StepPart whole{};
+  const int most_explicit = interval.parts.empty() ? 100 : 16;  // an implicit step costs about as much as sixteen explicit ones
   double from = 0.0;
   for (const StepPart& part : interval.parts.empty() ? std::span(&whole, 1) : interval.parts) {
-    const int pieces = part.implicit ? 1 : pieces_of(interval, from, part);
+    const int wanted = part.implicit ? 1 : pieces_of(interval, from, part);
+    const bool implicit = part.implicit || wanted > most_explicit;
+    const int pieces = implicit ? 1 : wanted;
     const double length = part.to - from;
     for (int k = 0; k < pieces; ++k) {
       look_at_watch();
-      if (!advance(Share{from + length * k / pieces, k + 1 == pieces ? part.to : from + length * (k + 1) / pieces}, part.implicit))
+      if (!advance(Share{from + length * k / pieces, k + 1 == pieces ? part.to : from + length * (k + 1) / pieces}, implicit))
         return false;
     }
     from = part.to;
@@ -92,7 +95,9 @@ bool Stepper::for_each_part(const Interval& interval, const Advance& advance) co
   return true;
 }
 
-/// Into how many steps a part is divided: without a plan as the fastest rate asks, with one only where the rate has far outgrown it.
+/// Into how many explicit steps a part is divided: without a plan as the fastest rate asks, with one only where the rate has far outgrown
+/// it. Where those were too many, one implicit step is made: a search that tries a fast parameter must not cost a thousand
+/// times as much there.
 int Stepper::pieces_of(const Interval& interval, double from, const StepPart& part) const {
   constexpr double most = 1000.0, far_beyond = 1.0;
   const bool planned = !interval.parts.empty();
