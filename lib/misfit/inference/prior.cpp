@@ -19,15 +19,15 @@ ColumnPriors parameter_priors(const Model& model) {
 
 ColumnPriors regularised_priors(const Model& model, const Eigen::VectorXd& information) {
   constexpr double very_wide = 1e3, said_nothing = 1e9;  // typical sizes
-  constexpr double share = 1e-10;                        // of the data's information
+  constexpr double notable = 1e-2, share = 1e-6;         // of the data's information
   const std::vector<int> free = model.free_parameters();
   ColumnPriors out = parameter_priors(model);
   for (Eigen::Index c = 0; c < std::ssize(free); ++c) {
     const Parameter& p = model.parameters[free[c]];
     if (p.prior_sigma) continue;
     out.precision[c] = 1.0 / std::pow(very_wide * p.scale, 2);
-    if (p.curve < 0 && information[c] > 1.0 / std::pow(said_nothing * p.scale, 2))
-      out.precision[c] = std::min(out.precision[c], share * information[c]);
+    const bool known = information[c] > 1.0 / std::pow(said_nothing * p.scale, 2);
+    if (p.curve < 0 && known && out.precision[c] > notable * information[c]) out.precision[c] = share * information[c];
   }
   return out;
 }

@@ -25,10 +25,10 @@ struct ColumnPriors {
 [[nodiscard]] ColumnPriors parameter_priors(const Model& model);
 
 /// The same with a very wide one about 0 for parameters that have none: keeps linear algebra regular where a coefficient is touched by no
-/// sample. Its sigma is 1000 typical sizes, and at least 1e5 sigmas of what the measurements say of the parameter alone, `information`
-/// (the diagonal of the data's information matrix, which may go on behind the free parameters) being their precision: a typical size in
-/// SI is a guess, 1 N/m^3 where a spring has 1e7, which must not hold what the measurements determine. Of curves, and of parameters of
-/// which the measurements say less than 1e9 typical sizes, 1000 typical sizes are kept. Part of no objective.
+/// sample. Its sigma is 1000 typical sizes. A typical size in SI may be a guess, though, 1 N/m^3 where a spring has 1e7: where that prior
+/// would have more than a hundredth of the precision with which the measurements alone know the parameter, `information` (the diagonal of
+/// their information matrix, which may go on behind the free parameters), it has a millionth of it. Not so for curves, nor for parameters
+/// of which the measurements know less than 1e9 typical sizes. Part of no objective.
 [[nodiscard]] ColumnPriors regularised_priors(const Model& model, const Eigen::VectorXd& information);
 
 /// log density of one parameter's prior at its value, constants left out; 0 if it has none.

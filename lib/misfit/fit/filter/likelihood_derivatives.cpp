@@ -236,11 +236,11 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
       out.nonlinear[e].insert(out.nonlinear[e].end(), parts[i].nonlinear[e].begin(), parts[i].nonlinear[e].end());
   }
   const Eigen::MatrixXd& back = differences.axes().back;
-  out.gradient.head(theta.size()) =
-      back.transpose() * out.gradient.head(theta.size()).eval() + estimate.prior().gradient(theta);
   columns.leftCols(theta.size()) = columns.leftCols(theta.size()) * back;
   out.information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
   out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
+  out.gradient.head(theta.size()) = back.transpose() * out.gradient.head(theta.size()).eval() +
+                                    estimate.regularised_prior(out.information.diagonal()).gradient(theta);
   for (auto& nonlinear : out.nonlinear) {
     std::sort(nonlinear.begin(), nonlinear.end());
     nonlinear.erase(std::unique(nonlinear.begin(), nonlinear.end()), nonlinear.end());

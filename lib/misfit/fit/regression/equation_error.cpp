@@ -151,10 +151,14 @@ class Regressor {
   std::vector<int> rows_;
 };
 
-/// regularised_priors() with residuals of the size that they have where the sums were made.
+/// regularised_priors() with residuals of the size that the best values would leave, rss - g' N^-1 g over their number.
 ColumnPriors very_wide_beside(const NormalEquations& sums, const Model& model) {
-  const double variance = sums.count > 0.0 ? sums.rss / sums.count : 0.0;
-  return regularised_priors(model, variance > 0.0 ? Eigen::VectorXd(sums.N.diagonal() / variance) : Eigen::VectorXd(sums.N.diagonal()));
+  constexpr double rounding = 1e-12;
+  const Eigen::VectorXd information = sums.N.diagonal();
+  Eigen::MatrixXd N = sums.N;
+  N.diagonal() += rounding * information + Eigen::VectorXd::Constant(information.size(), std::numeric_limits<double>::min());
+  const double left = sums.rss - sums.g.dot(N.ldlt().solve(sums.g)), variance = left / std::max(sums.count, 1.0);
+  return regularised_priors(model, variance > 0.0 && std::isfinite(variance) ? Eigen::VectorXd(information / variance) : information);
 }
 
 /// The regression's answer inside the parameters' bounds; curves are held by their roughness alone.
