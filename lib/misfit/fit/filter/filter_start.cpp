@@ -13,7 +13,7 @@ double force_size(const FilterModel& model, int group, const FilterData& data, c
   const int n = evaluator.states();
   std::vector<double> dx(n), D(n * kRowStride);
   Slots slots;
-  evaluator.linearise_rates(data.start.data(), data.inputs.at(data.first), data.signals->t[data.first], slots, dx.data(), D.data());
+  evaluator.linearise_rates({data.start.data(), data.inputs.at(data.first), data.signals->t[data.first]}, slots, dx.data(), D.data());
   double size = 0.0;
   for (std::size_t force = 0; force < model.force_states.size(); ++force) {
     const int f = model.force_states[force];
