@@ -38,7 +38,8 @@ struct ParachutePlanar {
   }
 
   template <class T, class K>
-  void quantities(const T* x, const double* u, double /*t*/, const K* k, const T* P, std::uint64_t needed, T* q) const {
+  void quantities(const PointOf<T, K>& at, std::uint64_t needed, T* q) const {
+    const auto& [x, u, t, k, P] = at;
     using std::cos;
     using std::sqrt;
     q[eta] = x[tilt];
@@ -77,14 +78,15 @@ struct ParachutePlanar {
   }
 
   template <class T, class K>
-  void rates(const T* x, const double* /*u*/, double /*t*/, const K* k, const T* P, const T* F, T* dx) const {
+  void rates(const PointOf<T, K>& at, const T* F, T* dx) const {
+    const auto& [x, u, t, k, P] = at;
     dx[tilt] = x[tilt_rate];
     dx[tilt_rate] = F[in_plane] / moment_of_inertia(k, P);
   }
 
   template <class T, class K>
-  void outputs(const T* x, const double* /*u*/, double /*t*/, const K* /*k*/, T* y) const {
-    y[measured_tilt] = x[tilt];
+  void outputs(const PointOf<T, K>& at, T* y) const {
+    y[measured_tilt] = at.x[tilt];
   }
 
   [[nodiscard]] SystemSpec spec() const {

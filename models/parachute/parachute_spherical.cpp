@@ -89,7 +89,8 @@ struct ParachuteSpherical {
   }
 
   template <class T, class K>
-  void quantities(const T* n, const double* /*u*/, double /*t*/, const K* k, const T* P, std::uint64_t needed, T* q) const {
+  void quantities(const PointOf<T, K>& at, std::uint64_t needed, T* q) const {
+    const auto& [n, u, t, k, P] = at;
     using std::atan2;
     using std::sqrt;
     const Axis<T> a = axis_of(n);
@@ -111,12 +112,13 @@ struct ParachuteSpherical {
     // The root only where the pressure is changed: it costs as much as everything else here.
     q[wind_speed] = vanishes(P[pressure_port]) ? T(k[V]) : T(k[V] * sqrt(T(q[dynamic_pressure] / k[qbar])));
     if (wants(needed, alpha_T) || wants(needed, wind_cross_axis) || wants(needed, wind_cross_axis_lateral))
-      relative_wind(n, a, n_x_rate, k, P, q);
+      relative_wind(at, a, n_x_rate, q);
   }
 
   /// Components of (v × n)/|v| about the axes of in-plane and lateral rotation; alpha_T between n and v.
   template <class T, class K>
-  static void relative_wind(const T* n, const Axis<T>& a, const T& n_x_rate, const K* k, const T* P, T* q) {
+  static void relative_wind(const PointOf<T, K>& at, const Axis<T>& a, const T& n_x_rate, T* q) {
+    const auto& [n, u, t, k, P] = at;
     using std::atan2;
     using std::sqrt;
     const T v_x = q[wind_speed] - k[R_cp] * n_x_rate;
@@ -135,7 +137,8 @@ struct ParachuteSpherical {
   }
 
   template <class T, class K>
-  void rates(const T* n, const double* /*u*/, double /*t*/, const K* k, const T* P, const T* F, T* dx) const {
+  void rates(const PointOf<T, K>& at, const T* F, T* dx) const {
+    const auto& [n, u, t, k, P] = at;
     const Axis<T> a = axis_of(n);
     const T n_x_rate = axial_rate(n, a.x);
     const T turning = n[dy] * n[dy] + n[dz] * n[dz] + n_x_rate * n_x_rate;
@@ -155,7 +158,9 @@ struct ParachuteSpherical {
   }
 
   template <class T, class K>
-  void outputs(const T* n, const double* /*u*/, double /*t*/, const K* k, T* pixels) const {
+  void outputs(const PointOf<T, K>& at, T* pixels) const {
+    const T* n = at.x;
+    const K* k = at.k;
     using std::atan2;
     using std::sqrt;
     const CameraParameters<T> camera = camera_of<T>(k);

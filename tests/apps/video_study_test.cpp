@@ -184,7 +184,7 @@ void paint_sweep(const StudyCopy& study) {
     const std::string name = "sweep_" + std::to_string(k + 6) + ".png";
     for (std::uint8_t& grey : picture.pixels) grey = static_cast<std::uint8_t>(std::clamp(std::lround(grey + noise(random)), 0L, 255L));
     Canvas canvas(720, 720);
-    canvas.paste({picture, 0, 1}, 0.0, 0.0, 720.0, 720.0, 0, 0, 1.0);
+    canvas.paste({picture, 0, 1}, {0.0, 0.0, 720.0, 720.0}, {});
     canvas.write_png(study.path(name));
     table += std::to_string(degrees) + "," + name + "\n";
   }

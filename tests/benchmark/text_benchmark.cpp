@@ -81,7 +81,7 @@ void right_hand_sides(const World& world, const Model& model) {
   Slots slots;
   for (std::size_t i = 0; i < samples; ++i) {
     x[0] = 0.2 + 1e-5 * static_cast<double>(i);
-    benchmark::DoNotOptimize(evaluator.linearise_rates_sparsely(x.data(), world.inputs.at(i), 0.0, slots, dx.data(), D.data()));
+    benchmark::DoNotOptimize(evaluator.linearise_rates_sparsely({x.data(), world.inputs.at(i), 0.0}, slots, dx.data(), D.data()));
   }
 }
 

@@ -114,7 +114,7 @@ TEST(Calibrate, ExactPixelsOfAFlawedCameraReturnIt) {
     const std::array<std::array<double, 2>, 3> at = {
         {{rig.l_p + rig.R1 * c, rig.R1 * s}, {rig.l_p - rig.R2 * c, rig.R2 * s}, {rig.l_p + rig.R3 * c, -rig.R3 * s}}};
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto p = project_point(truth, rig.l_b, at[k][0], 0.0, at[k][1]);
+      const auto p = project_point<double>(truth, rig.l_b, {at[k][0], 0.0, at[k][1]});
       sweep.P_y[k].push_back(p[0]);
       sweep.P_z[k].push_back(p[1]);
     }

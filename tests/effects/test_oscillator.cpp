@@ -21,19 +21,22 @@ struct TestOscillator {
   static std::vector<std::string> flags() { return {}; }
 
   template <class T, class K>
-  void quantities(const T* s, const double* u, double /*t*/, const K* k, const T* P, std::uint64_t /*needed*/, T* q) const {
+  void quantities(const PointOf<T, K>& at, std::uint64_t /*needed*/, T* q) const {
+    const auto& [s, u, t, k, P] = at;
     q[place] = s[x];
     q[speed] = s[v];
     q[held_force] = T(u[drive]);
     q[inertia] = k[mass] + P[added_mass];
   }
   template <class T, class K>
-  void rates(const T* s, const double* u, double /*t*/, const K* k, const T* P, const T* F, T* dx) const {
+  void rates(const PointOf<T, K>& at, const T* F, T* dx) const {
+    const auto& [s, u, t, k, P] = at;
     dx[x] = s[v] + F[slip];
     dx[v] = (F[force] + u[drive] - k[stiffness] * s[x]) / (k[mass] + P[added_mass]);
   }
   template <class T, class K>
-  void outputs(const T* s, const double* /*u*/, double /*t*/, const K* k, T* y) const {
+  void outputs(const PointOf<T, K>& at, T* y) const {
+    const auto& [s, u, t, k, P] = at;
     y[position_reading] = k[gain] * s[x];
     y[speed_reading] = s[v];
   }

@@ -19,18 +19,21 @@ struct TestTanks {
   static std::vector<std::string> flags() { return {}; }
 
   template <class T, class K>
-  void quantities(const T* x, const double* u, double /*t*/, const K* /*k*/, const T* /*P*/, std::uint64_t /*needed*/, T* q) const {
+  void quantities(const PointOf<T, K>& at, std::uint64_t /*needed*/, T* q) const {
+    const auto& [x, u, t, k, P] = at;
     q[upper_level] = x[x1];
     q[lower_level] = x[x2];
     q[pump_voltage] = T(u[voltage]);
   }
   template <class T, class K>
-  void rates(const T* x, const double* u, double /*t*/, const K* k, const T* /*P*/, const T* F, T* dx) const {
+  void rates(const PointOf<T, K>& at, const T* F, T* dx) const {
+    const auto& [x, u, t, k, P] = at;
     dx[x1] = k[pump] * u[voltage] - k[drain_1] * x[x1] + F[into_upper];
     dx[x2] = k[drain_1] * x[x1] - k[drain_2] * x[x2] + F[into_lower];
   }
   template <class T, class K>
-  void outputs(const T* x, const double* /*u*/, double /*t*/, const K* /*k*/, T* y) const {
+  void outputs(const PointOf<T, K>& at, T* y) const {
+    const auto& [x, u, t, k, P] = at;
     y[y1] = x[x1];
     y[y2] = x[x2];
   }

@@ -62,13 +62,23 @@ Signals record() {
   return s;
 }
 
-TEST(RandomForce, HasAStrengthForEachUnitOfItsPorts) {
+Fit fitted(const std::optional<KnownForce>& prior) {
   const auto registry = registry_with(motor_text);
-  const Model model = assemble(request_of("text"), *registry);
+  Model model = assemble(request_of("text"), *registry);
+  model.force_strength = prior;
   const std::vector<Signals> experiments{record()};
   FilterOptions options;
   options.threads = 1;
-  const Fit fit = filter_error(trajectory_start(model, experiments).from, experiments, options).fit;
+  return filter_error(trajectory_start(model, experiments).from, experiments, options).fit;
+}
+
+const Fit& fitted_without_prior() {
+  static const Fit fit = fitted({});
+  return fit;
+}
+
+TEST(RandomForce, HasAStrengthForEachUnitOfItsPorts) {
+  const Fit& fit = fitted_without_prior();
   ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
   EXPECT_TRUE(fit.driven);
   const Estimate torque = fit.force.at("dw/dt"), voltage = fit.force.at("di/dt");
@@ -78,6 +88,25 @@ TEST(RandomForce, HasAStrengthForEachUnitOfItsPorts) {
   EXPECT_NEAR(fit.parameters.at("R").value, resistance, 4.0 * fit.parameters.at("R").sigma);
   EXPECT_NEAR(fit.parameters.at("b").value, damping, 4.0 * fit.parameters.at("b").sigma);
   EXPECT_LT(fit.parameters.at("R").sigma, 0.002);
+}
+
+/// Two normal densities of its logarithm, the likelihood's (nearly) and a prior as sharp, a sigma apart: their product lies in the middle
+/// and is sharper by sqrt 2.
+TEST(RandomForce, PriorOfItsStrengthIsLogNormal) {
+  const Estimate alone = fitted_without_prior().force.at("dw/dt");
+  const double log_sigma = alone.sigma / alone.value, median = std::exp(log_sigma) * alone.value;
+  const Fit fit = fitted(KnownForce{median, log_sigma * median, "rad/s^2"});
+  ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+  const Estimate both = fit.force.at("dw/dt");
+  EXPECT_NEAR(std::log(both.value / alone.value), 0.5 * log_sigma, 0.1 * log_sigma);
+  EXPECT_NEAR(both.sigma / both.value, log_sigma / std::sqrt(2.0), 0.15 * log_sigma);
+  EXPECT_LT(fit.force.at("di/dt").value, 0.5) << "the prior is of the other unit";
+}
+
+TEST(RandomForce, SharpPriorHoldsItsStrength) {
+  const Fit fit = fitted(KnownForce{2.0, 2e-3, "rad/s^2"});
+  ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+  EXPECT_NEAR(fit.force.at("dw/dt").value, 2.0, 0.01);
 }
 
 }  // namespace

@@ -60,9 +60,9 @@ void run_once(const Model& model) {
   std::vector<double> dx(x.size()), D(static_cast<std::size_t>(std::max(model.states(), model.outputs() + 1)) * kRowStride),
       y(static_cast<std::size_t>(model.outputs()) + 1);
   Slots slots;
-  evaluator.linearise_rates(x.data(), u.data(), 0.0, slots, dx.data(), D.data());
+  evaluator.linearise_rates({x.data(), u.data(), 0.0}, slots, dx.data(), D.data());
   slots.clear();
-  evaluator.linearise_outputs(x.data(), u.data(), 0.0, slots, y.data(), D.data());
+  evaluator.linearise_outputs({x.data(), u.data(), 0.0}, slots, y.data(), D.data());
   static_cast<void>(evaluator.fastest_rate(x.data(), u.data(), 0.0));
   static_cast<void>(evaluator.explain(x.data(), u.data(), 0.0));
 }

@@ -103,7 +103,7 @@ TEST(Camera, EachParameterDoesWhatItsNameSays) {
   c.K = 100.0;
   c.h_c = 0.1;
   c.camera_distance = 1.0;
-  p = project_point(c, 5.0, 2.0, 0.4, 0.3);  // depth 5 + 1 − 2
+  p = project_point<double>(c, 5.0, {2.0, 0.4, 0.3});  // depth 5 + 1 − 2
   EXPECT_NEAR(p[0], 50.0, 1e-12);
   EXPECT_NEAR(p[1], 50.0, 1e-12);
 }

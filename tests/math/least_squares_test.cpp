@@ -125,7 +125,7 @@ TEST(LeastSquares, RobustLossIgnoresTheWildPointThatDragsThePlainFit) {
   const auto location = [](LeastSquares::Loss loss) {
     LeastSquares problem;
     const int block = problem.add_block({0.8});
-    for (const double y : {1.0, 1.1, 0.9, 1.05, 0.95, 50.0}) problem.add_residuals({block}, 1, pull_to(y), loss, 0.5);
+    for (const double y : {1.0, 1.1, 0.9, 1.05, 0.95, 50.0}) problem.add_residuals({block}, 1, pull_to(y), {loss, 0.5});
     LeastSquares::Options options;
     options.function_tolerance = 1e-14;
     EXPECT_TRUE(problem.solve(options).usable);
@@ -266,7 +266,7 @@ TEST(LeastSquares, WrongSizesAreRefusedWhenAdded) {
   const int block = problem.add_block({1.0});
   EXPECT_THROW(problem.add_residuals({block}, 0, pull_to(1.0)), std::invalid_argument);
   EXPECT_THROW(problem.add_residuals({block + 1}, 1, pull_to(1.0)), std::out_of_range);
-  EXPECT_THROW(problem.add_residuals({block}, 1, pull_to(1.0), LeastSquares::Loss::huber, 0.0), std::invalid_argument);
+  EXPECT_THROW(problem.add_residuals({block}, 1, pull_to(1.0), {LeastSquares::Loss::huber, 0.0}), std::invalid_argument);
 }
 
 }  // namespace

@@ -44,6 +44,30 @@ TEST(Autocorrelation, LeavesOutMissingPairsAndTheMean) {
   EXPECT_NEAR(rho[2], 0.36, 0.02);
 }
 
+/// Pairs of lag 4 and more lie in the loud part alone: the variance of all values is a tenth of theirs.
+TEST(Autocorrelation, IsAtMostOneWhereOnlyALoudPartHasPairs) {
+  std::vector<double> r;
+  for (int i = 0; i < 60; ++i) r.push_back(10.0 * std::sin(0.05 * i));
+  for (int part = 0; part < 200; ++part) {
+    r.insert(r.end(), 40, std::numeric_limits<double>::quiet_NaN());
+    for (int i = 0; i < 4; ++i) r.push_back(i % 2 == 0 ? 0.1 : -0.1);
+  }
+  const auto rho = autocorrelation(r, 20);
+  for (const double value : rho) EXPECT_LE(std::abs(value), 1.0);
+  EXPECT_GT(rho[4], 0.9);
+  EXPECT_LE(std::abs(whiteness(r, 4, 20).largest), 1.0);
+}
+
+TEST(Autocorrelation, IsAtMostOneWhateverIsMissing) {
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform;
+    std::vector<double> r = autoregressive(300, 0.99, seed);
+    for (double& x : r) x = uniform(random) < 0.6 ? std::numeric_limits<double>::quiet_NaN() : x * std::exp(3.0 * uniform(random));
+    for (const double value : autocorrelation(r, 60)) EXPECT_FALSE(std::abs(value) > 1.0);
+  }
+}
+
 TEST(Autocorrelation, OfFewerThanTenPairsIsNotGiven) {
   const auto rho = autocorrelation({1.0, 2.0, 1.5, 0.5, 2.5, 1.0, 2.0, 1.5, 0.5, 2.5, 1.0}, 2);
   EXPECT_TRUE(std::isfinite(rho[1]));

@@ -37,7 +37,7 @@ TEST(DeclaredDuffing, HasTheRatesAndDerivativesOfTheClosedForm) {
   EXPECT_DOUBLE_EQ(dx[0], -1.2);
   EXPECT_NEAR(dx[1], 10.0 * 0.7 + 0.4 * 1.2 - 30.0 * 0.3 - 50.0 * 0.027, 1e-14);
   Slots slots;
-  evaluator.linearise_rates(x, u, 0.0, slots, dx, D);
+  evaluator.linearise_rates({x, u, 0.0}, slots, dx, D);
   EXPECT_EQ(D[0], 0.0);
   EXPECT_EQ(D[1], 1.0);
   EXPECT_NEAR(D[kRowStride], -30.0 - 150.0 * 0.09, 1e-13);
@@ -104,7 +104,7 @@ y = { unit = "V", formula = "x1" }
   double dx[1], D[kRowStride], y[2];
   const double below = -0.3, above = 2.5;
   Slots slots;
-  evaluator.linearise_rates(&below, nullptr, 0.0, slots, dx, D);
+  evaluator.linearise_rates({&below, nullptr, 0.0}, slots, dx, D);
   EXPECT_EQ(dx[0], 0.0);
   EXPECT_EQ(D[0], 0.0);
   evaluator.predict(&below, nullptr, 0.0, y);

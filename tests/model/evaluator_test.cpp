@@ -37,7 +37,7 @@ class AssembledModel : public testing::TestWithParam<Case> {
     const int n = evaluator.states();
     std::vector<double> rows(static_cast<std::size_t>(n) * kRowStride, std::nan(""));
     Linear l{Eigen::VectorXd(n), {}};
-    evaluator.linearise_rates(at.x.data(), at.u.data(), at.t, slots, l.value.data(), rows.data());
+    evaluator.linearise_rates({at.x.data(), at.u.data(), at.t}, slots, l.value.data(), rows.data());
     l.D = dense(rows, n, n, slots, evaluator.columns());
     return l;
   }
@@ -45,7 +45,7 @@ class AssembledModel : public testing::TestWithParam<Case> {
     const int outputs = evaluator.outputs() + 1;
     std::vector<double> rows(static_cast<std::size_t>(outputs) * kRowStride, std::nan(""));
     Linear l{Eigen::VectorXd(outputs), {}};
-    evaluator.linearise_outputs(at.x.data(), at.u.data(), at.t, slots, l.value.data(), rows.data());
+    evaluator.linearise_outputs({at.x.data(), at.u.data(), at.t}, slots, l.value.data(), rows.data());
     l.D = dense(rows, outputs, evaluator.states(), slots, evaluator.columns());
     return l;
   }
@@ -157,7 +157,7 @@ TEST(EvaluatorTest, AWanderingSolverThatArrivesAtNotANumberGetsNotANumberBack) {
   EXPECT_FALSE(std::isfinite(dx[1]));
   Slots slots;
   std::vector<double> D(3 * static_cast<std::size_t>(kRowStride));
-  evaluator.linearise_rates(x, u, 0.0, slots, dx, D.data());
+  evaluator.linearise_rates({x, u, 0.0}, slots, dx, D.data());
   EXPECT_FALSE(std::isfinite(dx[1]));
 }
 
@@ -169,7 +169,7 @@ TEST(EvaluatorTest, FreeConstantsLeaveTheRatesTheirFastDerivativesAndEffectsOnQu
     double dx[8];
     Slots slots;
     std::vector<double> D(8 * static_cast<std::size_t>(kRowStride));
-    return evaluator.linearise_rates_sparsely(x, nullptr, 0.0, slots, dx, D.data());
+    return evaluator.linearise_rates_sparsely({x, nullptr, 0.0}, slots, dx, D.data());
   };
   EXPECT_TRUE(is_fast(free_camera(spherical())));
   EXPECT_TRUE(is_fast(free_camera(spherical({effect("viscous_friction", {{"rate", "image_scale"}})}))));

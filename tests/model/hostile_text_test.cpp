@@ -99,6 +99,10 @@ INSTANTIATE_TEST_SUITE_P(
     EachPlace, HostileStudyOfASystem,
     testing::Values(
         Hostile{"AColumnThatNothingReads", "y = \"level\"", "foo = \"t\"", {"study.toml:5:22", "columns.foo", "no such signal", "u_rate"}},
+        Hostile{"AForceOfAnotherUnit",
+                "[effects]\n",
+                "[force]\nstrength = { value = \"1 N\", sigma = \"1 N\" }\n[effects]\n",
+                {"study.toml:7", "[force] strength needs the unit", "(V/s)", "not [N]"}},
         Hostile{"AColumnMisspelt", "y = \"level\"", "u_rat = \"t\"", {"study.toml:5:22", "did you mean 'u_rate'"}},
         Hostile{"AStateThatIsNoOutput", "y = \"level\"", "x = \"level\"", {"study.toml:5:22", "columns.x", "valid: t, y, u"}},
         Hostile{"AColumnOfALongName", "y = \"level\"", long_text() + " = \"t\"", {"study.toml:5:22", "…", "valid: t, y"}},

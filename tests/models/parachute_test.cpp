@@ -34,7 +34,7 @@ NormalEquations at_trim(const Model& m) {
   double dx[2];
   std::vector<double> A(2 * static_cast<std::size_t>(kRowStride));
   Slots slots;
-  evaluator.linearise_rates(x, u, 0.0, slots, dx, A.data());
+  evaluator.linearise_rates({x, u, 0.0}, slots, dx, A.data());
   EXPECT_NEAR(dx[1], 0.0, 1e-10) << "the trim is an equilibrium";
   EXPECT_NEAR(A[1], 1.0, 1e-15);
   return {-A[kRowStride], -A[kRowStride + 1]};

@@ -169,7 +169,7 @@ TEST(SphericalParachute, IsRegularThroughZeroTilt) {
     State dx{};
     std::vector<double> D(4 * static_cast<std::size_t>(kRowStride));
     Slots slots;
-    evaluator.linearise_rates(x.data(), nullptr, 0.0, slots, dx.data(), D.data());
+    evaluator.linearise_rates({x.data(), nullptr, 0.0}, slots, dx.data(), D.data());
     for (std::size_t j = 0; j < 4; ++j) {
       const Eigen::VectorXd difference = central_difference(
           [&](double value) {

@@ -177,7 +177,7 @@ TEST(Video, WhatIsNoVideoIsSaid) {
 TEST(ReadImage, IsGreyAndSaysWhatItCannotRead) {
   const TemporaryFolder folder;
   Canvas canvas(20, 10);
-  canvas.paste({stripes(20, 10, 0), 0, 1}, 0.0, 0.0, 20.0, 10.0, 0, 0, 1.0);
+  canvas.paste({stripes(20, 10, 0), 0, 1}, {0.0, 0.0, 20.0, 10.0}, {});
   canvas.write_png(folder.path() / "a.png");
   EXPECT_EQ(read_image(folder.path() / "a.png"), stripes(20, 10, 0));
   folder.write("b.png", "no picture");

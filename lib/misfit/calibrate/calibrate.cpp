@@ -58,7 +58,7 @@ std::vector<bool> first_keep(const std::vector<SweepPoint>& points, double l_b, 
   SweepModel largest = plan.base;
   for (const CameraGroup& group : plan.candidates) free_group(largest, group);
   const SweepModel& model = coordinates(points) >= 3 * largest.free.size() ? largest : plan.base;
-  return points_within(points, l_b, robust_fit(points, l_b, model).camera, model.free.size(), limit);
+  return points_within(points, l_b, robust_fit(points, l_b, model), limit);
 }
 
 std::string names_of(const std::vector<std::size_t>& parameters) {
@@ -78,9 +78,9 @@ Selection select_and_clean(const std::vector<SweepPoint>& points, std::vector<bo
                            const CalibrateOptions& options) {
   for (int round = 0;; ++round) {
     plan.base.start = start_camera(points, l_b, plan.base.start);
-    Selection selection = select_parameters({points, keep, l_b, plan.base, plan.candidates, options.threshold});
+    Selection selection = select_parameters({{points, keep, l_b}, plan.base, plan.candidates, options.threshold});
     check_enough(selection.fit.data, selection.fit.free);
-    std::vector<bool> next = points_within(points, l_b, selection.fit.camera, selection.fit.free.size(), options.outlier_limit);
+    std::vector<bool> next = points_within(points, l_b, selection.fit, options.outlier_limit);
     if (next == keep) return selection;
     if (round == 10) {
       plan.notes.emplace_back("outlier rejection did not converge in 10 rounds; that of the last round is used");

@@ -30,13 +30,12 @@ double robust_sigma(const std::vector<double>& residuals, std::size_t free) {
 
 }  // namespace
 
-std::vector<bool> points_within(const std::vector<SweepPoint>& points, double l_b, const CameraParameters<double>& camera, std::size_t free,
-                                double limit) {
+std::vector<bool> points_within(const std::vector<SweepPoint>& points, double l_b, const SweepFit& fit, double limit) {
   // Exact data have a robust sigma of rounding errors only; 1e-6 px is far below any measurement.
-  const double width = limit * std::max(1e-6, robust_sigma(all_residuals(points, l_b, camera), free));
+  const double width = limit * std::max(1e-6, robust_sigma(all_residuals(points, l_b, fit.camera), fit.free.size()));
   std::vector<bool> keep;
   for (const SweepPoint& p : points) {
-    const auto predicted = predict(p, l_b, camera);
+    const auto predicted = predict(p, l_b, fit.camera);
     keep.push_back(!(std::abs(p.P_y - predicted[0]) > width) && !(std::abs(p.P_z - predicted[1]) > width));  // a missing one does not count
   }
   return keep;
@@ -49,7 +48,7 @@ SweepFit robust_fit(const std::vector<SweepPoint>& points, double l_b, const Swe
   SweepFit fit;
   double scale = robust_sigma(all_residuals(points, l_b, next.start), 2);
   for (int round = 0; round < 20; ++round) {
-    fit = fit_sweep(points, all, l_b, next, {LeastSquares::Loss::cauchy, 2.0 * std::max(1e-6, scale)});
+    fit = fit_sweep({points, all, l_b}, next, {LeastSquares::Loss::cauchy, 2.0 * std::max(1e-6, scale)});
     next.start = fit.camera;
     const double previous = scale;
     scale = robust_sigma(all_residuals(points, l_b, fit.camera), model.free.size());

@@ -17,7 +17,7 @@ SweepFit fit_with(const SelectionTask& task, const Members& in) {
     if (in[g]) model.free.insert(model.free.end(), task.candidates[g].parameters.begin(), task.candidates[g].parameters.end());
   }
   std::sort(model.free.begin(), model.free.end());
-  return fit_sweep(task.points, task.keep, task.l_b, model);
+  return fit_sweep(task.data, model);
 }
 
 // The test of freeing `group`: `without` and `with` are least-squares fits of nested models to the same data.

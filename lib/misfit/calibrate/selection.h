@@ -8,11 +8,9 @@
 
 namespace misfit {
 
-/// What forward selection works on. References must outlive the call.
+/// What forward selection works on.
 struct SelectionTask {
-  const std::vector<SweepPoint>& points;
-  const std::vector<bool>& keep;
-  double l_b = 0.0;
+  SweepData data;
   SweepModel base;                      ///< free whatever the tests say
   std::vector<CameraGroup> candidates;  ///< none of them in `base`
   double threshold = 1e-3;

@@ -32,22 +32,28 @@ constexpr std::array<Bounds, parameters> bounds = {{
     {-1.0, 1.0},      // camera_distance [m]
 }};
 
-// Residuals of one point and, where asked for, their rows of derivatives to all camera parameters; returns how many there are (0 to 2).
-int point_residuals(const SweepPoint& point, double l_b, const CameraParameters<double>& camera, double* residuals, Row* rows) {
+// Residuals of one point, 0 to 2 of them, and their rows of derivatives to all camera parameters.
+struct PointResiduals {
+  int count = 0;
+  std::array<double, 2> r{};
+  std::array<Row, 2> rows;
+};
+
+PointResiduals point_residuals(const SweepPoint& point, double l_b, const CameraParameters<double>& camera) {
   CameraParameters<CameraJet> jets;
   const auto to = camera_entries(jets);
   const auto values = camera_values(camera);
   for (int i = 0; i < parameters; ++i) *to[i] = CameraJet(values[i], i);
-  const auto p = project_point(jets, l_b, CameraJet(point.x), CameraJet(0.0), CameraJet(point.z));
+  const auto p = project_point<CameraJet>(jets, l_b, {CameraJet(point.x), CameraJet(0.0), CameraJet(point.z)});
   const std::array<double, 2> measured = {point.P_y, point.P_z};
-  int count = 0;
+  PointResiduals out;
   for (std::size_t i = 0; i < 2; ++i) {
     if (!std::isfinite(measured[i])) continue;
-    residuals[count] = p[i].a - measured[i];
-    if (rows != nullptr) rows[count] = p[i].v.transpose();
-    ++count;
+    out.r[out.count] = p[i].a - measured[i];
+    out.rows[out.count] = p[i].v.transpose();
+    ++out.count;
   }
-  return count;
+  return out;
 }
 
 int coordinates(const SweepPoint& p) { return (std::isfinite(p.P_y) ? 1 : 0) + (std::isfinite(p.P_z) ? 1 : 0); }
@@ -59,12 +65,11 @@ CameraParameters<double> with_free(CameraParameters<double> camera, const std::v
 
 LeastSquares::Evaluate point_cost(const SweepPoint& point, double l_b, const SweepModel& model) {
   return [&point, l_b, &model](const double* const* blocks, double* r, double** J) {
-    std::array<Row, 2> rows;
-    const auto camera = with_free(model.start, model.free, blocks[0]);
-    const int count = point_residuals(point, l_b, camera, r, rows.data());
+    const PointResiduals at = point_residuals(point, l_b, with_free(model.start, model.free, blocks[0]));
+    std::copy_n(at.r.begin(), at.count, r);
     if (J == nullptr || J[0] == nullptr) return true;
-    for (int i = 0; i < count; ++i) {
-      for (std::size_t j = 0; j < model.free.size(); ++j) J[0][i * model.free.size() + j] = rows[i][model.free[j]];
+    for (int i = 0; i < at.count; ++i) {
+      for (std::size_t j = 0; j < model.free.size(); ++j) J[0][i * model.free.size() + j] = at.rows[i][model.free[j]];
     }
     return true;
   };
@@ -83,19 +88,16 @@ void add_covariance(SweepFit& fit, const Eigen::MatrixXd& J) {
   fit.determined = true;
 }
 
-void add_statistics(SweepFit& fit, const std::vector<SweepPoint>& points, const std::vector<bool>& keep, double l_b) {
+void add_statistics(SweepFit& fit, const SweepData& data) {
+  const auto& [points, keep, l_b] = data;
   Eigen::MatrixXd J(2 * points.size(), fit.free.size());
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!keep[i]) continue;
-    std::array<double, 2> r{};
-    std::array<Row, 2> rows;
-    const int count = point_residuals(points[i], l_b, fit.camera, r.data(), rows.data());
-    for (int k = 0; k < count; ++k, ++row) {
-      fit.rss += r[k] * r[k];
-      for (std::size_t j = 0; j < fit.free.size(); ++j) {
-        J(row, j) = rows[k][fit.free[j]];
-      }
+    const PointResiduals at = point_residuals(points[i], l_b, fit.camera);
+    for (int k = 0; k < at.count; ++k, ++row) {
+      fit.rss += at.r[k] * at.r[k];
+      for (std::size_t j = 0; j < fit.free.size(); ++j) J(row, j) = at.rows[k][fit.free[j]];
     }
   }
   fit.data = row;
@@ -128,7 +130,7 @@ double& camera_entry(CameraParameters<double>& camera, std::size_t parameter) { 
 double camera_entry(const CameraParameters<double>& camera, std::size_t parameter) { return camera_values(camera)[parameter]; }
 
 std::array<double, 2> predict(const SweepPoint& point, double l_b, const CameraParameters<double>& camera) {
-  return project_point(camera, l_b, point.x, 0.0, point.z);
+  return project_point<double>(camera, l_b, {point.x, 0.0, point.z});
 }
 
 CameraParameters<double> start_camera(const std::vector<SweepPoint>& points, double l_b, CameraParameters<double> start) {
@@ -147,8 +149,8 @@ CameraParameters<double> start_camera(const std::vector<SweepPoint>& points, dou
   return start;
 }
 
-SweepFit fit_sweep(const std::vector<SweepPoint>& points, const std::vector<bool>& keep, double l_b, const SweepModel& model,
-                   const SweepLoss& loss) {
+SweepFit fit_sweep(const SweepData& data, const SweepModel& model, const LeastSquares::Robust& loss) {
+  const auto& [points, keep, l_b] = data;
   std::vector<double> values, lower, upper;
   for (const std::size_t parameter : model.free) {
     values.push_back(camera_entry(model.start, parameter));
@@ -159,7 +161,7 @@ SweepFit fit_sweep(const std::vector<SweepPoint>& points, const std::vector<bool
   const int block = problem.add_block(values, lower, upper);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!keep[i]) continue;
-    problem.add_residuals({block}, coordinates(points[i]), point_cost(points[i], l_b, model), loss.loss, loss.scale);
+    problem.add_residuals({block}, coordinates(points[i]), point_cost(points[i], l_b, model), loss);
   }
   LeastSquares::Options options;
   options.max_iterations = 200;
@@ -170,7 +172,7 @@ SweepFit fit_sweep(const std::vector<SweepPoint>& points, const std::vector<bool
   fit.camera = with_free(model.start, model.free, problem.block(block).data());
   fit.converged = summary.converged;
   fit.message = summary.message;
-  add_statistics(fit, points, keep, l_b);
+  add_statistics(fit, data);
   fit.inside = inside_bounds(fit);
   return fit;
 }

@@ -10,6 +10,13 @@
 
 namespace misfit {
 
+/// What a camera is fitted to. References must outlive it.
+struct SweepData {
+  const std::vector<SweepPoint>& points;
+  const std::vector<bool>& keep;  ///< points that count
+  double l_b = 0.0;               ///< RigGeometry::l_b [m]
+};
+
 /// Which camera parameters are free (indices into camera_parameter_names, ascending), and the camera to start from.
 struct SweepModel {
   std::vector<std::size_t> free;
@@ -32,11 +39,6 @@ struct SweepFit {
   [[nodiscard]] double sigma(std::size_t parameter) const;  ///< 0 if not free, NaN if not determined
 };
 
-struct SweepLoss {
-  LeastSquares::Loss loss = LeastSquares::Loss::none;
-  double scale = 1.0;  ///< [px]
-};
-
 [[nodiscard]] double& camera_entry(CameraParameters<double>& camera, std::size_t parameter);
 [[nodiscard]] double camera_entry(const CameraParameters<double>& camera, std::size_t parameter);
 
@@ -48,7 +50,6 @@ struct SweepLoss {
 [[nodiscard]] CameraParameters<double> start_camera(const std::vector<SweepPoint>& points, double l_b, CameraParameters<double> start);
 
 /// Least squares over the points with keep[i]. Loss acts on the distance of a point, both coordinates together.
-[[nodiscard]] SweepFit fit_sweep(const std::vector<SweepPoint>& points, const std::vector<bool>& keep, double l_b, const SweepModel& model,
-                                 const SweepLoss& loss = {});
+[[nodiscard]] SweepFit fit_sweep(const SweepData& data, const SweepModel& model, const LeastSquares::Robust& loss = {});
 
 }  // namespace misfit

@@ -220,10 +220,17 @@ std::vector<KeyGroup> noise_groups() {
         {.name = "fixed", .type = Type::flag, .fallback = "true", .meaning = "Held, or estimated from there."}}}};
 }
 
-KeyGroup force_group() {
-  return {"force", std::string("The random force of ") + random_force_estimator().name + ", an Ornstein-Uhlenbeck process on every port.",
+std::vector<KeyGroup> force_groups() {
+  return {{"force", std::string("The random force of ") + random_force_estimator().name + ", an Ornstein-Uhlenbeck process on every port.",
      {{.name = "correlation_time", .type = Type::number, .unit = "s", .otherwise = "estimated", .least = 0.0,
-       .meaning = "Held at this; 0: a white force (a memory of 0.3 samples)."}}};
+         .meaning = "Held at this; 0: a white force (a memory of 0.3 samples)."},
+        {.name = "strength", .type = Type::table, .otherwise = "no prior",
+         .meaning = "A log-normal prior of its standard deviation on the ports of one unit."}}},
+      {"force.strength", "The prior of the random force's strength: its logarithm is normal about log(value) with a standard deviation of sigma/value.",
+       {{.name = "value", .type = Type::number, .unit = "of the ports (named where they have several)", .otherwise = "required", .least = 0.0,
+         .above = true, .meaning = "Median."},
+        {.name = "sigma", .type = Type::number, .unit = "of the value", .otherwise = "required", .least = 0.0, .above = true,
+         .meaning = "Standard deviation where it is much smaller than the value."}}}};
 }
 
 KeyGroup reference_group() {
@@ -316,7 +323,7 @@ std::vector<KeyGroup> all_groups() {
   add({parameters_group(), curves_group()});
   add(initial_groups());
   add(noise_groups());
-  add({force_group()});
+  add(force_groups());
   add({reference_group()});
   add({uncertainty_group()});
   add(perturbation_groups());

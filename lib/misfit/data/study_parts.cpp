@@ -124,10 +124,37 @@ InitialStudy read_one_initial(const Section& initial, const std::string& key) {
 
 }  // namespace
 
+namespace {
+
+/// A value with its sigma, both above 0.
+config::Number read_strength(const Section& force) {
+  const DescribedSection table = described(force, "strength", "force.strength");
+  const auto positive = [&](const char* key) {
+    if (!table.has(key)) {
+      table.finish();  // a key that is none comes first
+      table.fail(key, "is missing: a prior has a value and a sigma");
+    }
+    const config::Number out = number_as_written(table, key);
+    if (!(out.value > 0.0)) table.fail(key, fmt::format("{} must be above 0: the logarithm of the strength has a normal prior", out.value));
+    return out;
+  };
+  config::Number out = positive("value");
+  const config::Number sigma = positive("sigma");
+  if (!sigma.unit.empty() && !parse_unit(sigma.unit).same_dimension(parse_unit(out.unit)))
+    table.fail("sigma", fmt::format("[{}] is no unit of the value, [{}]", sigma.unit, out.unit));
+  table.finish();
+  out.sigma = sigma.value;
+  out.where = force.where("strength");
+  return out;
+}
+
+}  // namespace
+
 void read_force(const Section& root, Study& study) {
   if (!root.has("force")) return;
   const DescribedSection force = described(root, "force");
   study.force_time = force.value("correlation_time");
+  if (force.has("strength")) study.force_strength = read_strength(force);
   force.finish();
 }
 

@@ -55,7 +55,16 @@ std::string where_it_fails(const ForceMap& map) {
          place(map.x[best_from] - half, map.quantity_unit) + " and " + place(map.x[best_to] + half, map.quantity_unit);
 }
 
-ForceMap map_of(const ScoreTest& score, const ForceSensitivity& force, const Features& features, const SystemSpec& spec, int port) {
+/// What missing forces are sought with: score test of the estimate, sensitivity to a force, and the quantities over which it may vary.
+struct Search {
+  const SystemSpec& spec;
+  const ScoreTest& score;
+  const ForceSensitivity& force;
+  const std::vector<Features>& features;
+};
+
+ForceMap map_of(const Search& search, const Features& features, int port) {
+  const SystemSpec& spec = search.spec;
   ForceMap map;
   map.port = spec.dynamic_ports[port].name;
   map.port_unit = spec.dynamic_ports[port].unit;
@@ -63,7 +72,7 @@ ForceMap map_of(const ScoreTest& score, const ForceSensitivity& force, const Fea
   map.quantity_unit = features.unit;
   map.x = features.centre;
   map.count = features.count;
-  const ScoreResult result = score.test(force.columns(port, features.f, features.ahead));
+  const ScoreResult result = search.score.test(search.force.columns(port, features.f, features.ahead));
   map.amplitude.assign(result.amplitude.data(), result.amplitude.data() + result.amplitude.size());
   map.sigma.assign(result.sigma.data(), result.sigma.data() + result.sigma.size());
   map.chi2 = result.chi2;
@@ -72,14 +81,12 @@ ForceMap map_of(const ScoreTest& score, const ForceSensitivity& force, const Fea
   return map;
 }
 
-std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
-                               const std::vector<Features>& features, const DiagnoseOptions& options) {
-  const SystemSpec& spec = estimate.model.system->spec();
-  const std::size_t ports = spec.dynamic_ports.size();
-  std::vector<ForceMap> maps(ports * features.size());
+std::vector<ForceMap> all_maps(const Search& search, const DiagnoseOptions& options) {
+  const std::size_t ports = search.spec.dynamic_ports.size();
+  std::vector<ForceMap> maps(ports * search.features.size());
   run_jobs(
       maps.size(), options.threads,
-      [&](std::size_t k) { maps[k] = map_of(score, force, features[k / ports], spec, static_cast<int>(k % ports)); }, options.progress);
+      [&](std::size_t k) { maps[k] = map_of(search, search.features[k / ports], static_cast<int>(k % ports)); }, options.progress);
   for (auto& map : maps) {
     map.p_corrected = sidak(map.p_value, static_cast<double>(maps.size()));
     if (map.p_corrected < significant) map.sentence = where_it_fails(map);
@@ -89,11 +96,10 @@ std::vector<ForceMap> all_maps(const FilterEstimate& estimate, const ScoreTest& 
 }
 
 /// Cells of the two quantities whose maps are most significant.
-std::vector<PairMap> pair_maps(const FilterEstimate& estimate, const ScoreTest& score, const ForceSensitivity& force,
-                               const std::vector<Features>& features, const std::vector<ForceMap>& maps) {
+std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>& maps) {
+  const auto& [spec, score, force, features] = search;
   std::vector<PairMap> out;
   if (maps.empty() || features.size() < 2) return out;
-  const SystemSpec& spec = estimate.model.system->spec();
   const ForceMap& first = maps.front();
   const auto second = std::find_if(maps.begin(), maps.end(), [&](const ForceMap& m) { return m.quantity != first.quantity; });
   if (second == maps.end()) return out;
@@ -174,9 +180,10 @@ Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& option
   const ScoreTest score(estimate);
   const ForceSensitivity force(estimate);
   const std::vector<Features> features = features_of(estimate, force);
+  const Search search{estimate.model.system->spec(), score, force, features};
   out.whiteness = whiteness_of(estimate);
-  out.maps = all_maps(estimate, score, force, features, options);
-  out.pairs = pair_maps(estimate, score, force, features, out.maps);
+  out.maps = all_maps(search, options);
+  out.pairs = pair_maps(search, out.maps);
   out.nis = nis_of(estimate);
   out.missing = missing_force_of(estimate);
   conclude(out);

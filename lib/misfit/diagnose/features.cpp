@@ -46,10 +46,17 @@ void drop_empty(Features& features) {
   features.centre = std::move(centre);
 }
 
-Features hats(const std::string& name, const std::string& unit, int index, const std::vector<double>& values,
-              const std::vector<double>& ahead, const std::vector<bool>& used, int most) {
+/// A quantity over the samples, and what it is one step ahead.
+struct Course {
+  std::string quantity, unit;
+  int index = -1;  ///< Features::index
+  std::vector<double> values = {}, ahead = {};
+};
+
+Features hats(const Course& course, const std::vector<bool>& used, int most) {
+  const auto& [quantity, unit, index, values, ahead] = course;
   Features out;
-  out.quantity = name;
+  out.quantity = quantity;
   out.unit = unit;
   out.index = index;
   std::vector<double> visited;
@@ -80,14 +87,14 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSen
   };
   for (std::size_t q = 0; q < specs.size(); ++q) {
     if (!specs[q].explains) continue;
-    std::vector<double> values(force.used().size()), ahead = values;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      values[k] = force.quantities()(k, q);
-      ahead[k] = force.quantities_ahead()(k, q);
+    Course course{specs[q].name, specs[q].unit, static_cast<int>(q)};
+    for (std::size_t k = 0; k < force.used().size(); ++k) {
+      course.values.push_back(force.quantities()(k, q));
+      course.ahead.push_back(force.quantities_ahead()(k, q));
     }
-    take(hats(specs[q].name, specs[q].unit, static_cast<int>(q), values, ahead, force.used(), most));
+    take(hats(course, force.used(), most));
   }
-  take(hats("time", "s", -1, force.times(), force.times(), force.used(), most));
+  take(hats({"time", "s", -1, force.times(), force.times()}, force.used(), most));
   return out;
 }
 

@@ -237,7 +237,7 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
   }
   constexpr int steps_of_noise = 3;
   const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, {without.around, work.threads, steps_of_noise});
-  const double objective = -noise.minus_loglik + log_prior(model, same_roughness(model, without));
+  const double objective = -noise.minus_log_density + log_prior(model, same_roughness(model, without));
   const double drop = 2.0 * (objective - without.objective - prior_of_off(*screening.candidate_model));
   OneStep out{std::max(drop, screening.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing
   if (drop > 0.0) out.model = std::move(model);

@@ -107,7 +107,7 @@ Estimation run_filter_error(const EstimationTask& task) {
   FilterOptions options;
   options.threads = task.threads;
   if (task.contained && contains(task.model, *task.contained)) {
-    options.around = unpack(task.contained->usual_noise, task.model.system->spec());
+    options.around = usual_noise_of(*task.contained, task.model);
     options.use = same_use(*task.contained, task.experiments);
   }
   FilterError result = filter_error(filter_starts(task), task.experiments, options);

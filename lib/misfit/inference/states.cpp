@@ -150,7 +150,7 @@ void set_own_states_at_rest(const Model& model, const double* u, double t, Eigen
   Evaluator evaluator(model);
   Slots slots;
   std::vector<double> dx(model.states()), D(model.states() * kRowStride);
-  evaluator.linearise_rates(at.data(), u, t, slots, dx.data(), D.data());
+  evaluator.linearise_rates({at.data(), u, t}, slots, dx.data(), D.data());
   for (const BoundEffect& effect : model.effects) {
     const Eigen::Index first = system + effect.first_state, size = effect.effect->spec().states.size();
     if (size == 0) continue;

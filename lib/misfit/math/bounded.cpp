@@ -12,8 +12,16 @@ struct Held {
   Eigen::VectorXd excess, pull;
 };
 
-Held hold(const Eigen::VectorXd& centre, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
-          const std::vector<int>& side) {
+struct Gaussian {
+  const Eigen::VectorXd& centre;
+  const Eigen::MatrixXd& covariance;
+};
+struct Bounds {
+  const Eigen::VectorXd &lower, &upper;
+};
+
+Held hold(const Gaussian& density, const Bounds& bounds, const std::vector<int>& side) {
+  const auto& [centre, covariance] = density;
   Held held;
   for (Eigen::Index i = 0; i < centre.size(); ++i) {
     if (side[i] != 0) held.at.push_back(i);
@@ -21,7 +29,7 @@ Held hold(const Eigen::VectorXd& centre, const Eigen::MatrixXd& covariance, cons
   held.excess.resize(held.at.size());
   for (std::size_t k = 0; k < held.at.size(); ++k) {
     const Eigen::Index i = held.at[k];
-    held.excess[k] = (side[i] < 0 ? lower[i] : upper[i]) - centre[i];
+    held.excess[k] = (side[i] < 0 ? bounds.lower[i] : bounds.upper[i]) - centre[i];
   }
   held.pull = covariance(held.at, held.at).ldlt().solve(held.excess);
   return held;
@@ -49,7 +57,7 @@ BoundedMaximum maximum_inside(const Eigen::VectorXd& centre, const Eigen::Matrix
   std::vector<int> side(n, 0);  // −1: at its lower bound, 1: at its upper one
   for (Eigen::Index change = 0; change < 4 * n + 1; ++change) {
     BoundedMaximum out{centre, 0.0};
-    const Held held = hold(centre, covariance, lower, upper, side);
+    const Held held = hold({centre, covariance}, {lower, upper}, side);
     if (!held.at.empty()) {
       out.at += covariance(Eigen::all, held.at) * held.pull;
       out.below = 0.5 * held.excess.dot(held.pull);

@@ -89,7 +89,8 @@ std::optional<std::array<T, 2>> from_image(const CameraParameters<T>& c, const T
 ///   P_z = l_b K (z + h_c) / (l_b − x),  P_y = l_b K y / (l_b − x), then to_image().
 /// Valid for x < l_b (in front of the camera); the caller checks.
 template <class T>
-std::array<T, 2> project_point(const CameraParameters<T>& c, double l_b, const T& x, const T& y, const T& z) {
+std::array<T, 2> project_point(const CameraParameters<T>& c, double l_b, const std::array<T, 3>& point) {
+  const auto& [x, y, z] = point;
   const T focal = l_b * c.K;
   const T depth = l_b + c.camera_distance - x;
   return to_image(c, focal, T(focal * y / depth), T(focal * (z + c.h_c) / depth));

@@ -108,7 +108,8 @@ class RuntimeCost final : public ceres::CostFunction {
   Stop* stop_;                              // outlives it, too
 };
 
-std::unique_ptr<ceres::LossFunction> make_loss(LeastSquares::Loss loss, double scale) {
+std::unique_ptr<ceres::LossFunction> make_loss(const LeastSquares::Robust& robust) {
+  const auto& [loss, scale] = robust;
   switch (loss) {
     case LeastSquares::Loss::none:
       return nullptr;
@@ -199,11 +200,12 @@ int LeastSquares::add_block(std::vector<double> values, std::vector<double> lowe
 
 void LeastSquares::fix_block(int block) { blocks_.at(block).fixed = true; }
 
-void LeastSquares::add_residuals(std::vector<int> blocks, int residuals, Evaluate evaluate, Loss loss, double scale) {
+void LeastSquares::add_residuals(std::vector<int> blocks, int residuals, Evaluate evaluate, const Robust& robust) {
   if (residuals < 1 || blocks.empty()) throw std::invalid_argument("LeastSquares::add_residuals: no residuals or no blocks");
-  if (loss != Loss::none && !(scale > 0.0)) throw std::invalid_argument("LeastSquares::add_residuals: the loss' width must be positive");
+  if (robust.loss != Loss::none && !(robust.scale > 0.0))
+    throw std::invalid_argument("LeastSquares::add_residuals: the loss' width must be positive");
   for (const int b : blocks) static_cast<void>(blocks_.at(b));
-  residuals_.push_back({std::move(blocks), residuals, std::move(evaluate), loss, scale});
+  residuals_.push_back({std::move(blocks), residuals, std::move(evaluate), robust});
 }
 
 LeastSquares::Summary LeastSquares::solve(const Options& options) {
@@ -235,7 +237,7 @@ LeastSquares::Summary LeastSquares::solve(const Options& options) {
       pointers.push_back(block.values.data());
     }
     auto cost = std::make_unique<RuntimeCost>(term.evaluate, term.count, sizes, stop);
-    problem.AddResidualBlock(cost.release(), make_loss(term.loss, term.scale).release(), pointers);  // the problem owns both
+    problem.AddResidualBlock(cost.release(), make_loss(term.robust).release(), pointers);  // the problem owns both
     rows += term.count;
   }
   ceres::Solver::Summary summary;

@@ -15,13 +15,17 @@ class LeastSquares {
   using Evaluate = std::function<bool(const double* const* blocks, double* r, double** J)>;
 
   enum class Loss { none, huber, cauchy, tukey };
+  struct Robust {
+    Loss loss = Loss::none;
+    double scale = 1.0;  ///< the loss' width in units of the residual
+  };
 
   /// Adds a block and returns its number. Bounds are ±infinity where absent. `values` is the start, `solution()` the end.
   int add_block(std::vector<double> values, std::vector<double> lower = {}, std::vector<double> upper = {});
   /// Fixes a block at its start.
   void fix_block(int block);
-  /// `residuals` ≥ 1; `scale` is the loss' width in units of the residual.
-  void add_residuals(std::vector<int> blocks, int residuals, Evaluate evaluate, Loss loss = Loss::none, double scale = 1.0);
+  /// `residuals` ≥ 1.
+  void add_residuals(std::vector<int> blocks, int residuals, Evaluate evaluate, const Robust& robust = {Loss::none, 1.0});
 
   struct Options {
     int max_iterations = 50;
@@ -53,8 +57,7 @@ class LeastSquares {
     std::vector<int> blocks;
     int count = 0;
     Evaluate evaluate;
-    Loss loss = Loss::none;
-    double scale = 1.0;
+    Robust robust;
   };
   std::vector<Block> blocks_;
   std::vector<Residuals> residuals_;

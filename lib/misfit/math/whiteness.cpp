@@ -16,37 +16,33 @@ std::size_t finite_values(const std::vector<double>& values) {
   return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }));
 }
 
-/// Sums of products by lag, about the mean; lags 0 … `lags`.
-std::vector<double> products_of(const std::vector<double>& residuals, std::size_t lags) {
+/// Of the pairs at one lag.
+struct Pairs {
+  double count = 0.0, product = 0.0;  ///< Σ r_i r_{i+k}
+  double earlier = 0.0, later = 0.0;  ///< Σ r_i², Σ r_{i+k}²
+};
+
+/// About the mean, of lags 0 … `lags`.
+std::vector<Pairs> pairs_of(const std::vector<double>& residuals, std::size_t lags) {
   double sum = 0.0, n = 0.0;
   for (double r : residuals) {
     if (std::isfinite(r)) sum += r, n += 1.0;
   }
-  std::vector<double> about_mean;  // 0 where there is none: adds nothing
-  for (double r : residuals) about_mean.push_back(std::isfinite(r) ? r - sum / n : 0.0);
-  std::vector<double> out;
-  for (std::size_t lag = 0; lag <= lags; ++lag) {
-    double product = 0.0;
-    for (std::size_t i = lag; i < about_mean.size(); ++i) product += about_mean[i] * about_mean[i - lag];
-    out.push_back(product);
+  std::vector<double> about_mean, known;  // both 0 where there is none: adds nothing
+  for (double r : residuals) {
+    known.push_back(std::isfinite(r) ? 1.0 : 0.0);
+    about_mean.push_back(std::isfinite(r) ? r - sum / n : 0.0);
   }
-  return out;
-}
-
-/// How many pairs there are of each lag 0 … `lags`.
-std::vector<double> pairs_of(const std::vector<double>& residuals, std::size_t lags) {
-  const std::size_t length = residuals.size();
-  std::vector<double> out(lags + 1, 0.0);
-  if (finite_values(residuals) == length) {
-    for (std::size_t lag = 0; lag <= lags && lag < length; ++lag) out[lag] = static_cast<double>(length - lag);
-    return out;
-  }
-  std::vector<int> known;
-  for (double r : residuals) known.push_back(std::isfinite(r) ? 1 : 0);
+  std::vector<Pairs> out(lags + 1);
   for (std::size_t lag = 0; lag <= lags; ++lag) {
-    int count = 0;
-    for (std::size_t i = lag; i < length; ++i) count += known[i] * known[i - lag];
-    out[lag] = count;
+    Pairs& pairs = out[lag];
+    for (std::size_t i = lag; i < about_mean.size(); ++i) {
+      const double earlier = about_mean[i - lag], later = about_mean[i];
+      pairs.count += known[i - lag] * known[i];
+      pairs.product += earlier * later;
+      pairs.earlier += known[i] * earlier * earlier;
+      pairs.later += known[i - lag] * later * later;
+    }
   }
   return out;
 }
@@ -54,14 +50,22 @@ std::vector<double> pairs_of(const std::vector<double>& residuals, std::size_t l
 constexpr double min_pairs = 10.0;
 
 /// Variance of the statistic over these lags: 2 of each, and what the lags share.
-double variance_of(const std::vector<std::size_t>& lags, const std::vector<double>& pairs) {
+double variance_of(const std::vector<std::size_t>& lags, const std::vector<Pairs>& pairs) {
   double variance = 2.0 * static_cast<double>(lags.size());
   for (const std::size_t j : lags) {
     for (const std::size_t k : lags) {
-      if (j != k) variance += 4.0 * pairs[j + k] / (pairs[0] * pairs[0]);
+      if (j != k) variance += 4.0 * pairs[j + k].count / (pairs[0].count * pairs[0].count);
     }
   }
   return variance;
+}
+
+/// ρ_k of a series with places for `length` values: Autocorrelation of whiteness.h.
+double correlation(const Pairs& all, const Pairs& at_lag, double lag, double length) {
+  if (at_lag.count < min_pairs) return nan_value;
+  if (at_lag.count == length - lag) return all.product > 0.0 ? at_lag.product / all.product : nan_value;
+  const double scale = std::sqrt(at_lag.earlier * at_lag.later);
+  return scale > 0.0 ? (length - lag) / length * at_lag.product / scale : nan_value;
 }
 
 }  // namespace
@@ -91,14 +95,10 @@ std::vector<double> joined_series(const std::vector<std::vector<double>>& series
 
 std::vector<double> autocorrelation(const std::vector<double>& residuals, int max_lag) {
   const auto lags = static_cast<std::size_t>(std::max(max_lag, 0));
-  const std::vector<double> sums = products_of(residuals, lags), pairs = pairs_of(residuals, lags);
+  const std::vector<Pairs> pairs = pairs_of(residuals, lags);
   const auto length = static_cast<double>(residuals.size());
   std::vector<double> rho;
-  for (std::size_t k = 0; k <= lags; ++k) {
-    const double variance = sums[0] / std::max(pairs[0], 1.0);
-    const double share = (length - static_cast<double>(k)) / length;  // 1/n before the sum, not 1/(n − k)
-    rho.push_back(pairs[k] >= min_pairs && variance > 0.0 ? share * sums[k] / pairs[k] / variance : nan_value);
-  }
+  for (const Pairs& at_lag : pairs) rho.push_back(correlation(pairs[0], at_lag, static_cast<double>(rho.size()), length));
   return rho;
 }
 
@@ -110,18 +110,18 @@ WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int
   constexpr double min_values_per_parameter = 10.0;
   if (n < min_values_per_parameter * fitted) test.last_lag = 0;
   if (test.last_lag < first_lag) return test;
-  const std::vector<double> rho = autocorrelation(residuals, test.last_lag);
-  const std::vector<double> pairs = pairs_of(residuals, 2 * test.last_lag);
+  const std::vector<Pairs> pairs = pairs_of(residuals, 2 * test.last_lag);
   const auto length = static_cast<double>(residuals.size());
   std::vector<std::size_t> lags;
   for (int lag = first_lag; lag <= test.last_lag; ++lag) {
     const auto k = static_cast<std::size_t>(lag);
-    if (!std::isfinite(rho[k])) continue;
-    const double r = rho[k] * pairs[k] / n * length / (length - static_cast<double>(lag));  // sum of products over sum of squares
-    test.statistic += n * (n + 2.0) * r * r / pairs[k];
+    const double rho = correlation(pairs[0], pairs[k], lag, length);
+    if (!std::isfinite(rho)) continue;
+    const double r = pairs[k].product / pairs[0].product;
+    test.statistic += n * (n + 2.0) * r * r / pairs[k].count;
     lags.push_back(k);
-    if (std::abs(rho[k]) <= std::abs(test.largest)) continue;
-    test.largest = rho[k];
+    if (std::abs(rho) <= std::abs(test.largest)) continue;
+    test.largest = rho;
     test.largest_lag = lag;
   }
   if (lags.empty()) return test;

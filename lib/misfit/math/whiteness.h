@@ -16,8 +16,9 @@ namespace misfit {
 /// Series one after the other, with as many NaN between two as all have values: no pair of any lag that is looked at lies across.
 [[nodiscard]] std::vector<double> joined_series(const std::vector<std::vector<double>>& series);
 
-/// Sample autocorrelation ρ_0 … ρ_max_lag about the mean, ρ_k = c_k/c_0 with c_k = (1/n) Σ r_i r_{i+k}. With missing values (NaN) the mean
-/// product of the pairs that exist stands for all n − k of them. ρ of fewer than 10 pairs is NaN.
+/// Sample autocorrelation ρ_0 … ρ_max_lag about the mean, ρ_k = c_k/c_0 with c_k = (1/n) Σ r_i r_{i+k}. Where values are
+/// missing (NaN), ρ_k = (1 − k/n) Σ r_i r_{i+k} / sqrt(Σ r_i² Σ r_{i+k}²), all sums over the pairs that exist: variances of other values
+/// would let it exceed 1 where the pairs lie in a loud part of the record. ρ of fewer than 10 pairs is NaN.
 [[nodiscard]] std::vector<double> autocorrelation(const std::vector<double>& residuals, int max_lag);
 
 struct WhitenessTest {

@@ -94,6 +94,7 @@ void Assembler::add_states() {
 void Assembler::add_noise() {
   model_.known_noise.assign(system().outputs.size(), {});
   model_.force_time = request_.force_time;
+  model_.force_strength = request_.force_strength;
   std::vector<std::string> names;
   for (const auto& output : system().outputs) names.push_back(output.name);
   for (const auto& [name, request] : request_.noise) {

@@ -29,37 +29,36 @@ class DeclaredSystem final : public System {
 
   [[nodiscard]] const SystemSpec& spec() const override { return spec_; }
 
-  void quantities(const Point& at, const double* P, std::uint64_t needed, double* q) const override {
-    if ((needed & ~plain_) == 0U) return plain(at, P, needed, q);
+  void quantities(const Point& at, std::uint64_t needed, double* q) const override {
+    if ((needed & ~plain_) == 0U) return plain(at, needed, q);
     Registers r;
-    run(c_->quantities, at, P, no_forces.data(), r);
+    run(c_->quantities, at, no_forces.data(), r);
     write(c_->quantities.value, r, q);
   }
 
-  void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
-                            const QuantityDerivatives& d) const override {
+  void linearise_quantities(const Point& at, std::uint64_t needed, double* q, const QuantityDerivatives& d) const override {
     if (needed == 0U) return;
     const Tape& tape = d.P != nullptr ? c_->quantities_all : d.k != nullptr ? c_->quantities_k : c_->quantities_x;
     const std::size_t rows = spec_.quantities.size();
     Registers r;
-    run(tape, at, P, no_forces.data(), r);
+    run(tape, at, no_forces.data(), r);
     write(tape.value, r, q);
     block(tape.by_x, r, rows * spec_.states.size(), d.x);
     block(tape.by_P, r, rows * spec_.quantity_ports.size(), d.P);
     block(tape.by_k, r, rows * spec_.constants.size(), d.k);
   }
 
-  void rates(const Point& at, const double* P, const double* F, double* dx) const override {
+  void rates(const Point& at, const double* F, double* dx) const override {
     Registers r;
-    run(c_->rates, at, P, F, r);
+    run(c_->rates, at, F, r);
     write(c_->rates.value, r, dx);
   }
 
-  void linearise_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const override {
+  void linearise_rates(const Point& at, const double* F, double* dx, const RateDerivatives& d) const override {
     const Tape& tape = d.P != nullptr ? c_->rates_all : d.k != nullptr ? c_->rates_k : c_->rates_x;
     const std::size_t rows = spec_.states.size();
     Registers r;
-    run(tape, at, P, F, r);
+    run(tape, at, F, r);
     write(tape.value, r, dx);
     block(tape.by_x, r, rows * rows, d.x);
     block(tape.by_F, r, rows * spec_.dynamic_ports.size(), d.F);
@@ -69,7 +68,7 @@ class DeclaredSystem final : public System {
 
   void outputs(const Point& at, double* y) const override {
     Registers r;
-    run(c_->outputs, at, no_forces.data(), no_forces.data(), r);
+    run(c_->outputs, without_ports(at), no_forces.data(), r);
     write(c_->outputs.value, r, y);
   }
 
@@ -77,7 +76,7 @@ class DeclaredSystem final : public System {
     const Tape& tape = y_k != nullptr ? c_->outputs_k : c_->outputs_x;
     const std::size_t rows = spec_.outputs.size();
     Registers r;
-    run(tape, at, no_forces.data(), no_forces.data(), r);
+    run(tape, without_ports(at), no_forces.data(), r);
     write(tape.value, r, y);
     block(tape.by_x, r, rows * spec_.states.size(), y_x);
     block(tape.by_k, r, rows * spec_.constants.size(), y_k);
@@ -111,7 +110,7 @@ class DeclaredSystem final : public System {
     }
     Registers r;
     std::array<double, kMaxStates * kMaxStates> J;
-    run(c_->rates_steep, {x.data(), at.u, at.t, at.k}, no_forces.data(), no_forces.data(), r);
+    run(c_->rates_steep, without_ports({x.data(), at.u, at.t, at.k}), no_forces.data(), r);
     write(c_->rates_steep.value, r, dx.data());
     block(c_->rates_steep.by_x, r, spec_.states.size() * spec_.states.size(), J.data());
     double fastest = c_->spec.fastest_rate;
@@ -124,9 +123,9 @@ class DeclaredSystem final : public System {
     return fastest;
   }
 
-  [[nodiscard]] std::string explain(const Point& at, const double* P, const double* F) const override {
+  [[nodiscard]] std::string explain(const Point& at, const double* F) const override {
     Registers r;
-    run(c_->rates, at, P, F, r);
+    run(c_->rates, at, F, r);
     for (std::size_t row = 0; row < spec_.states.size(); ++row) {
       const formula::Program::Step* step = c_->rates.program.culprit(row, r.data());
       if (step == nullptr) continue;
@@ -139,14 +138,15 @@ class DeclaredSystem final : public System {
   }
 
  private:
-  void run(const Tape& tape, const Point& at, const double* P, const double* F, Registers& r) const {
+  static Point without_ports(const Point& at) { return {at.x, at.u, at.t, at.k, no_forces.data()}; }
+  void run(const Tape& tape, const Point& at, const double* F, Registers& r) const {
     const Leaves& n = c_->leaves;
     double* to = r.data();
     for (int i = 0; i < n.nx; ++i) *to++ = at.x[i];
     for (int i = 0; i < n.nu; ++i) *to++ = at.u[i];
     *to++ = at.t;
     for (int i = 0; i < n.nk; ++i) *to++ = at.k[i];
-    for (int i = 0; i < n.np; ++i) *to++ = P[i];
+    for (int i = 0; i < n.np; ++i) *to++ = at.P[i];
     for (int i = 0; i < n.nf; ++i) *to++ = F[i];
     tape.program.run(r.data());
   }
@@ -160,7 +160,7 @@ class DeclaredSystem final : public System {
   }
 
   /// States and inputs alone, without a program.
-  void plain(const Point& at, const double* P, std::uint64_t needed, double* q) const {
+  void plain(const Point& at, std::uint64_t needed, double* q) const {
     if (needed == 0U) return;
     const Leaves& n = c_->leaves;
     for (int i = 0; i < n.nx; ++i) {
@@ -169,7 +169,7 @@ class DeclaredSystem final : public System {
     }
     for (int i = 0; i < n.nu; ++i) {
       q[n.nx + i] = at.u[i];
-      q[n.nx + n.nu + i] = at.u[i] + P[i];
+      q[n.nx + n.nu + i] = at.u[i] + at.P[i];
     }
   }
 

@@ -190,11 +190,11 @@ Reads<double, double> Evaluator::reads(const Use& use, const double* values, dou
   return {values, values + use.nq, values + use.nq + use.nc, values + use.nq + use.nc + use.nz, t};
 }
 
-void Evaluator::add_value(const Use& use, const double* own, double t, double* targets, double* drifts) {
+void Evaluator::add_value(const Use& use, const Point& at, double* targets, double* drifts) {
   std::array<double, kMaxWidth> values;
   std::array<double, kMaxWidth> out;
-  gather(use, own, values.data());
-  use.effect->evaluate(reads(use, values.data(), t), out.data());
+  gather(use, own_states(at), values.data());
+  use.effect->evaluate(reads(use, values.data(), at.t), out.data());
   for (int o = 0; o < use.ports; ++o) {
     const int port = use.port[o];
     if (port >= 0) targets[port] += out[o];
@@ -202,56 +202,55 @@ void Evaluator::add_value(const Use& use, const double* own, double t, double* t
   for (int i = 0; i < use.nz; ++i) drifts[use.first_state + i] = out[use.ports + i];
 }
 
-void Evaluator::base_and_derived(const Point& at, const double* own) {
+void Evaluator::base_and_derived(const Point& at) {
   std::fill(P_.begin(), P_.begin() + np_, 0.0);
   if (quantity_effects_) {
-    system_->quantities(at, P_.data(), needed_, q_.data());
+    system_->quantities(at, needed_, q_.data());
     std::array<double, kMaxStates> drifts{};
-    for (const auto& use : quantity_) add_value(use, own, at.t, P_.data(), drifts.data());
+    for (const auto& use : quantity_) add_value(use, at, P_.data(), drifts.data());
   }
-  system_->quantities(at, P_.data(), needed_, q_.data());
+  system_->quantities(at, needed_, q_.data());
 }
 
 void Evaluator::rates(const double* x, const double* u, double t, double* dx) {
-  const Point at{x, u, t, p_.data()};
-  const double* own = x + nx_;
-  base_and_derived(at, own);
+  const Point at = point({x, u, t});
+  base_and_derived(at);
   std::fill(F_.begin(), F_.begin() + nf_, 0.0);
-  for (const auto& use : dynamic_) add_value(use, own, t, F_.data(), dx + nx_);
-  if (n_ > nx_) own_drifts(at, own, dx + nx_);
-  system_->rates(at, P_.data(), F_.data(), dx);
+  for (const auto& use : dynamic_) add_value(use, at, F_.data(), dx + nx_);
+  if (n_ > nx_) own_drifts(at, dx + nx_);
+  system_->rates(at, F_.data(), dx);
 }
 
 /// Memory of effects on quantity and sensor ports drifts as well.
-void Evaluator::own_drifts(const Point& at, const double* own, double* drifts) {
+void Evaluator::own_drifts(const Point& at, double* drifts) {
   std::array<double, kMaxPorts + kMaxOutputs> unused{};
   for (const auto& use : quantity_) {
-    if (use.nz > 0) add_value(use, own, at.t, unused.data(), drifts);
+    if (use.nz > 0) add_value(use, at, unused.data(), drifts);
   }
   if (std::any_of(sensor_.begin(), sensor_.end(), [](const Use& use) { return use.nz > 0; })) {
     system_->outputs(at, q_.data() + nq_);
     for (const auto& use : sensor_) {
-      if (use.nz > 0) add_value(use, own, at.t, unused.data(), drifts);
+      if (use.nz > 0) add_value(use, at, unused.data(), drifts);
     }
   }
 }
 
 void Evaluator::predict(const double* x, const double* u, double t, double* y) {
-  const Point at{x, u, t, p_.data()};
+  const Point at = point({x, u, t});
   system_->outputs(at, y);
   y[ny_] = 0.0;
   if (sensor_.empty()) return;
-  base_and_derived(at, x + nx_);
+  base_and_derived(at);
   std::copy(y, y + ny_, q_.begin() + nq_);
   std::array<double, kMaxStates> drifts{};
-  for (const auto& use : sensor_) add_value(use, x + nx_, t, y, drifts.data());
+  for (const auto& use : sensor_) add_value(use, at, y, drifts.data());
 }
 
 void Evaluator::quantities(const double* x, const double* u, double t, double* q) {
   const std::uint64_t needed = needed_;
   needed_ = ~std::uint64_t{0};
-  const Point at{x, u, t, p_.data()};
-  base_and_derived(at, x + nx_);
+  const Point at = point({x, u, t});
+  base_and_derived(at);
   needed_ = needed;
   std::copy(q_.begin(), q_.begin() + nq_, q);
 }
@@ -264,16 +263,16 @@ double Evaluator::response_of(const Use& use, const Point& at) {
   if (quantity < 0 || quantity >= nq_ || port < 0) return 1.0;
   std::array<double, kMaxStates> dx{};
   std::fill(F_.begin(), F_.begin() + nf_, 0.0);
-  system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), q_P_.data(), nullptr});
-  system_->linearise_rates(at, P_.data(), F_.data(), dx.data(), {r_x_.data(), nullptr, r_F_.data(), nullptr});
+  system_->linearise_quantities(at, needed_, q_.data(), {q_x_.data(), q_P_.data(), nullptr});
+  system_->linearise_rates(at, F_.data(), dx.data(), {r_x_.data(), nullptr, r_F_.data(), nullptr});
   double response = 0.0;
   for (int i = 0; i < nx_; ++i) response += q_x_[quantity * nx_ + i] * r_F_[i * nf_ + port];
   return std::abs(response);
 }
 
 double Evaluator::fastest_rate(const double* x, const double* u, double t) {
-  const Point at{x, u, t, p_.data()};
-  base_and_derived(at, x + nx_);
+  const Point at = point({x, u, t});
+  base_and_derived(at);
   system_->outputs(at, q_.data() + nq_);
   double fastest = system_->fastest_rate(at);
   std::array<double, kMaxWidth> values;
@@ -290,12 +289,12 @@ double Evaluator::fastest_rate(const double* x, const double* u, double t) {
 std::string Evaluator::explain(const double* x, const double* u, double t) {
   std::array<double, kMaxStates> dx{};
   rates(x, u, t, dx.data());
-  return system_->explain({x, u, t, p_.data()}, P_.data(), F_.data());
+  return system_->explain(point({x, u, t}), F_.data());
 }
 
 void Evaluator::diffusion(const double* x, const double* u, double t, double* intensity) {
-  const Point at{x, u, t, p_.data()};
-  base_and_derived(at, x + nx_);
+  const Point at = point({x, u, t});
+  base_and_derived(at);
   system_->outputs(at, q_.data() + nq_);
   std::array<double, kMaxWidth> values;
   for (const auto* list : {&quantity_, &dynamic_, &sensor_}) {

@@ -44,6 +44,19 @@ class Slots {
 /// Derivative rows: columns 0 … states−1 for the state, then one column per slot. Fixed stride.
 inline constexpr std::ptrdiff_t kRowStride = padded(kMaxStates + kMaxColumns);
 
+/// Derivatives of the state, states() rows of kRowStride: D = [∂x | ∂ by slots].
+struct SlotRows {
+  Slots& slots;
+  double* D;
+};
+
+/// State, inputs and time at which a model is evaluated.
+struct Instant {
+  const double* x;
+  const double* u;
+  double t;
+};
+
 /// The assembled right-hand side x' = f(x, u, t; p) and outputs y = h(x, u, t; p) with first derivatives, by the chain rule over effects
 /// that are each linearised on their own (lib/misfit/README.md (1) to (5); its index spaces: 8.3). One object per thread: it holds scratch
 /// memory, so that nothing allocates. Order: base quantities → effects on quantity ports → derived quantities → effects on dynamic ports
@@ -63,10 +76,10 @@ class Evaluator {
 
   void rates(const double* x, const double* u, double t, double* dx);
   /// dx and its derivative rows D[i·kRowStride + …] for i < states(): ∂/∂x, then ∂/∂(slot). New slots may be added.
-  void linearise_rates(const double* x, const double* u, double t, Slots& slots, double* dx, double* D);
+  void linearise_rates(const Instant& at, Slots& slots, double* dx, double* D);
   /// The same for the inner loop: D gets the columns ∂/∂x only, and B the (few) derivatives by slots. False, with nothing done, where the
   /// model needs full rows (effects on quantity ports).
-  bool linearise_rates_sparsely(const double* x, const double* u, double t, Slots& slots, double* dx, double* D);
+  bool linearise_rates_sparsely(const Instant& at, Slots& slots, double* dx, double* D);
   /// ∂(dx_row)/∂(slot) of the last linearise_rates_sparsely(); several entries of one place add up.
   struct Entry {
     int row, slot;
@@ -81,7 +94,7 @@ class Evaluator {
   /// y and, last, the shift of the sample time [s] (outputs() + 1 values).
   void predict(const double* x, const double* u, double t, double* y);
   /// The same with derivative rows for each of the outputs() + 1 values.
-  void linearise_outputs(const double* x, const double* u, double t, Slots& slots, double* y, double* D);
+  void linearise_outputs(const Instant& at, Slots& slots, double* y, double* D);
 
   /// Fastest rate of the system and its effects at this state, jumps at their steepest [1/s].
   [[nodiscard]] double fastest_rate(const double* x, const double* u, double t);
@@ -105,9 +118,20 @@ class Evaluator {
   [[nodiscard]] double curve_value(const Curve& curve, double at) const;
   void gather(const Use& use, const double* own, double* values) const;
   Reads<double, double> reads(const Use& use, const double* values, double t) const;
-  void add_value(const Use& use, const double* own, double t, double* targets, double* drifts);
-  void add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts,
-                  double* drift_rows);
+  struct Linearisation {                               // of one effect at the present quantities, by the numbers that it reads
+    std::array<double, kMaxWidth> values, out, slope;  // slope: of the curve behind a coefficient
+    std::array<double, kMaxWidth * kMaxWidth> J;
+    std::array<CurvePoint, kMaxWidth> points;
+  };
+  struct Targets {  // to which an effect adds: ports, and the drifts of its own states, with rows of kRowStride
+    double *ports, *rows, *drifts, *drift_rows;
+  };
+  [[nodiscard]] Point point(const Instant& at) const { return {at.x, at.u, at.t, p_.data(), P_.data()}; }
+  [[nodiscard]] const double* own_states(const Point& at) const { return at.x + nx_; }
+  void add_value(const Use& use, const Point& at, double* targets, double* drifts);
+  void linearise_effect(const Use& use, const Point& at, Linearisation& l) const;
+  void chain_effect(const Use& use, const Linearisation& l, int output, Slots& slots, double* row) const;
+  void add_linear(const Use& use, const Point& at, Slots& slots, const Targets& to) const;
   // The common case, nothing on quantity ports: quantities depend on the state and on free constants alone, and derivatives by parameters
   // are kept as a short list of entries instead of rows.
   struct Link {
@@ -139,7 +163,7 @@ class Evaluator {
   void linearise_rates_simply(const Point& at, Slots& slots, double* dx, double* D);
   void take_entries(double weight, int from, int to);
   template <int NX>
-  void add_entries(Plan& plan, const double* own, double t, Slots& slots, double* drifts);
+  void add_entries(Plan& plan, const Point& at, Slots& slots, double* drifts);
   template <int NX>
   void chain_output(const Plan& plan, int row, const double* j, Slots& slots);
   void chain_constants(double weight, int quantity, int row, Slots& slots);
@@ -149,10 +173,10 @@ class Evaluator {
   [[nodiscard]] bool slots_hold(const CurveState& state, int first, const Slots& slots) const;
   void find_slots(CurveState& state, int first, Slots& slots) const;
   void find_twins();
-  void base_and_derived(const Point& at, const double* own);
-  void own_drifts(const Point& at, const double* own, double* drifts);
-  void own_drifts_linear(const Point& at, const double* own, Slots& slots, double* drifts, double* own_rows);
-  void base_and_derived_linear(const Point& at, const double* own, Slots& slots);
+  void base_and_derived(const Point& at);
+  void own_drifts(const Point& at, double* drifts);
+  void own_drifts_linear(const Point& at, Slots& slots, double* drifts, double* own_rows);
+  void base_and_derived_linear(const Point& at, Slots& slots);
   void outputs_as_quantities(const Point& at, Slots& slots);
   void linearise_outputs_simply(const Point& at, const Slots& slots, double* y, double* D);
   void clear_new_slot(int slot, int rows, double* D) const;

@@ -28,21 +28,13 @@ void Evaluator::chain_quantity(double weight, int quantity, int slots, double* r
   add_scaled(weight, from, n_ + slots, row);
 }
 
-/// Adds an effect's outputs to targets[port] with derivative rows rows[port·kRowStride + …], and sets its own states' drifts and rows. Rows
-/// are kept zero beyond the slots in use: a slot that is met for the first time needs no clearing.
-// NOLINTNEXTLINE(readability-function-size): the general path; its parts share five arrays of fixed size on the stack
-void Evaluator::add_linear(const Use& use, const double* own, double t, Slots& slots, double* targets, double* rows, double* drifts,
-                           double* drift_rows) {
-  std::array<double, kMaxWidth> values;
-  std::array<double, kMaxWidth> out;
-  std::array<double, kMaxWidth * kMaxWidth> J;
-  std::array<CurvePoint, kMaxWidth> points;
-  double* v = values.data();
+/// Numbers that the effect reads (order of gather()), with the curves behind its coefficients, and its outputs' derivatives by them.
+void Evaluator::linearise_effect(const Use& use, const Point& at, Linearisation& l) const {
+  double* v = l.values.data();
   for (int i = 0; i < use.nq; ++i) {
     const int quantity = use.quantity[i];
     *v++ = quantity < 0 ? 0.0 : q_[quantity];
   }
-  std::array<double, kMaxWidth> slope;
   for (int i = 0; i < use.nc; ++i) {
     const std::size_t index = i;
     if (use.curve[index] < 0) {
@@ -50,62 +42,70 @@ void Evaluator::add_linear(const Use& use, const double* own, double t, Slots& s
       continue;
     }
     const Curve& curve = model_->curves[use.curve[index]];
-    const double at = q_[curve.quantity];
-    points[index] = curve.over_sine ? curve.spline.over_sine(at) : curve.spline.at(at);
-    const CurvePoint& point = points[index];
+    const double place = q_[curve.quantity];
+    l.points[index] = curve.over_sine ? curve.spline.over_sine(place) : curve.spline.at(place);
+    const CurvePoint& point = l.points[index];
     const double* c = p_.data() + curve.first + point.first;
     *v++ = point.w[0] * c[0] + point.w[1] * c[1] + point.w[2] * c[2] + point.w[3] * c[3];
-    slope[index] = point.d[0] * c[0] + point.d[1] * c[1] + point.d[2] * c[2] + point.d[3] * c[3];
+    l.slope[index] = point.d[0] * c[0] + point.d[1] * c[1] + point.d[2] * c[2] + point.d[3] * c[3];
   }
-  for (int i = 0; i < use.nz; ++i) *v++ = own[use.first_state + i];
+  for (int i = 0; i < use.nz; ++i) *v++ = own_states(at)[use.first_state + i];
   for (int i = 0; i < use.nk; ++i) *v++ = p_[use.constant[i]];
-  use.effect->linearise(reads(use, values.data(), t), out.data(), J.data(), free_constants_);
+  use.effect->linearise(reads(use, l.values.data(), at.t), l.out.data(), l.J.data(), free_constants_);
+}
 
-  for (int o = 0; o < use.outputs; ++o) {
-    double* row = nullptr;
-    if (o < use.ports) {
-      const int port = use.port[o];
-      if (port < 0) continue;
-      targets[port] += out[o];
-      row = rows + port * kRowStride;
-    } else {
-      const int state = use.first_state + o - use.ports;
-      drifts[state] = out[o];
-      row = drift_rows + state * kRowStride;
+/// row += derivatives of one output of the effect by the state and the slots.
+void Evaluator::chain_effect(const Use& use, const Linearisation& l, int output, Slots& slots, double* row) const {
+  const double* j = l.J.data() + static_cast<std::ptrdiff_t>(output) * use.width;
+  for (int i = 0; i < use.nq; ++i, ++j) {
+    const int quantity = use.quantity[i];
+    if (quantity >= 0 && *j != 0.0) chain_quantity(*j, quantity, slots.count(), row);
+  }
+  for (int i = 0; i < use.nc; ++i, ++j) {
+    const std::size_t index = i;
+    if (*j == 0.0) continue;
+    if (use.curve[index] < 0) {
+      const int column = column_of_[use.parameter[index]];
+      if (column >= 0) row[n_ + slots.slot(column)] += *j;
+      continue;
     }
-    const double* j = J.data() + static_cast<std::ptrdiff_t>(o) * use.width;
-    for (int i = 0; i < use.nq; ++i, ++j) {
-      const int quantity = use.quantity[i];
-      if (quantity >= 0 && *j != 0.0) chain_quantity(*j, quantity, slots.count(), row);
+    const Curve& curve = model_->curves[use.curve[index]];
+    chain_quantity(*j * l.slope[index], curve.quantity, slots.count(), row);
+    const int first = curve.first + l.points[index].first;
+    for (int w = 0; w < 4; ++w) {
+      const int column = column_of_[first + w];
+      if (column >= 0) row[n_ + slots.slot(column)] += *j * l.points[index].w[w];
     }
-    for (int i = 0; i < use.nc; ++i, ++j) {
-      const std::size_t index = i;
-      if (*j == 0.0) continue;
-      if (use.curve[index] < 0) {
-        const int column = column_of_[use.parameter[index]];
-        if (column >= 0) row[n_ + slots.slot(column)] += *j;
-        continue;
-      }
-      const Curve& curve = model_->curves[use.curve[index]];
-      chain_quantity(*j * slope[index], curve.quantity, slots.count(), row);
-      const int first = curve.first + points[index].first;
-      for (int w = 0; w < 4; ++w) {
-        const int column = column_of_[first + w];
-        if (column >= 0) row[n_ + slots.slot(column)] += *j * points[index].w[w];
-      }
-    }
-    for (int i = 0; i < use.nz; ++i, ++j) row[nx_ + use.first_state + i] += *j;
-    if (!free_constants_) continue;
-    for (int i = 0; i < use.nk; ++i, ++j) {
-      const int column = column_of_[use.constant[i]];
-      if (column >= 0 && *j != 0.0) row[n_ + slots.slot(column)] += *j;
-    }
+  }
+  for (int i = 0; i < use.nz; ++i, ++j) row[nx_ + use.first_state + i] += *j;
+  if (!free_constants_) return;
+  for (int i = 0; i < use.nk; ++i, ++j) {
+    const int column = column_of_[use.constant[i]];
+    if (column >= 0 && *j != 0.0) row[n_ + slots.slot(column)] += *j;
   }
 }
 
-void Evaluator::base_and_derived_linear(const Point& at, const double* own, Slots& slots) {
+/// Adds an effect's outputs to the ports with derivative rows rows[port·kRowStride + …], and sets its own states' drifts and rows. Rows
+/// are kept zero beyond the slots in use: a slot that is met for the first time needs no clearing.
+void Evaluator::add_linear(const Use& use, const Point& at, Slots& slots, const Targets& to) const {
+  Linearisation l;
+  linearise_effect(use, at, l);
+  for (int o = 0; o < use.ports; ++o) {
+    const int port = use.port[o];
+    if (port < 0) continue;
+    to.ports[port] += l.out[o];
+    chain_effect(use, l, o, slots, to.rows + port * kRowStride);
+  }
+  for (int o = use.ports; o < use.outputs; ++o) {
+    const int state = use.first_state + o - use.ports;
+    to.drifts[state] = l.out[o];
+    chain_effect(use, l, o, slots, to.drift_rows + state * kRowStride);
+  }
+}
+
+void Evaluator::base_and_derived_linear(const Point& at, Slots& slots) {
   if (!general_) {
-    system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), nullptr, nullptr});
+    system_->linearise_quantities(at, needed_, q_.data(), {q_x_.data(), nullptr, nullptr});
     return;
   }
   const int width = n_ + columns_;
@@ -125,36 +125,35 @@ void Evaluator::base_and_derived_linear(const Point& at, const double* own, Slot
   };
   std::fill(P_.begin(), P_.begin() + np_, 0.0);
   double* k = free_constants_ ? q_k_.data() : nullptr;
-  system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), q_P_.data(), k});
+  system_->linearise_quantities(at, needed_, q_.data(), {q_x_.data(), q_P_.data(), k});
   rows_from_blocks(false);
   if (!quantity_effects_) return;
   for (int P = 0; P < np_; ++P) std::fill_n(row_of(P_rows_, P), width, 0.0);
   std::array<double, kMaxStates> drifts{};
   scratch_.assign(scratch_.size(), 0.0);
-  for (const auto& use : quantity_) add_linear(use, own, at.t, slots, P_.data(), P_rows_.data(), drifts.data(), scratch_.data());
-  system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), q_P_.data(), k});
+  for (const auto& use : quantity_) add_linear(use, at, slots, {P_.data(), P_rows_.data(), drifts.data(), scratch_.data()});
+  system_->linearise_quantities(at, needed_, q_.data(), {q_x_.data(), q_P_.data(), k});
   rows_from_blocks(true);
 }
 
-void Evaluator::linearise_rates(const double* x, const double* u, double t, Slots& slots, double* dx, double* D) {
-  const Point at{x, u, t, p_.data()};
-  if (linearise_rates_sparsely(x, u, t, slots, dx, D)) {
+void Evaluator::linearise_rates(const Instant& instant, Slots& slots, double* dx, double* D) {
+  if (linearise_rates_sparsely(instant, slots, dx, D)) {
     for (int i = 0; i < n_; ++i) std::fill_n(D + i * kRowStride + n_, columns_, 0.0);
     for (const Entry& entry : slot_entries_) D[entry.row * kRowStride + n_ + entry.slot] += entry.value;
     return;
   }
-  const double* own = x + nx_;
-  base_and_derived_linear(at, own, slots);
+  const Point at = point(instant);
+  base_and_derived_linear(at, slots);
   std::fill(F_.begin(), F_.begin() + nf_, 0.0);
   const int width = n_ + columns_;
   for (int i = 0; i < nf_; ++i) std::fill_n(row_of(F_rows_, i), width, 0.0);
   for (int i = nx_; i < n_; ++i) std::fill_n(D + i * kRowStride, width, 0.0);
   double* own_rows = D + nx_ * kRowStride;
-  for (const auto& use : dynamic_) add_linear(use, own, t, slots, F_.data(), F_rows_.data(), dx + nx_, own_rows);
-  if (n_ > nx_) own_drifts_linear(at, own, slots, dx + nx_, own_rows);
+  for (const auto& use : dynamic_) add_linear(use, at, slots, {F_.data(), F_rows_.data(), dx + nx_, own_rows});
+  if (n_ > nx_) own_drifts_linear(at, slots, dx + nx_, own_rows);
 
   RateDerivatives d{r_x_.data(), quantity_effects_ ? r_P_.data() : nullptr, r_F_.data(), free_constants_ ? r_k_.data() : nullptr};
-  system_->linearise_rates(at, P_.data(), F_.data(), dx, d);
+  system_->linearise_rates(at, F_.data(), dx, d);
   for (int i = 0; i < nx_; ++i) {
     double* row = D + i * kRowStride;
     std::copy_n(r_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
@@ -185,11 +184,11 @@ void Evaluator::clear_new_slot(int slot, int rows, double* D) const {
   for (int i = 0; i <= rows; ++i) D[i * kRowStride + n_ + slot] = 0.0;
 }
 
-void Evaluator::own_drifts_linear(const Point& at, const double* own, Slots& slots, double* drifts, double* own_rows) {
+void Evaluator::own_drifts_linear(const Point& at, Slots& slots, double* drifts, double* own_rows) {
   std::array<double, kMaxPorts + kMaxOutputs> unused{};
   const auto drift = [&](const Use& use) {
     std::fill(scratch_.begin(), scratch_.end(), 0.0);
-    add_linear(use, own, at.t, slots, unused.data(), scratch_.data(), drifts, own_rows);
+    add_linear(use, at, slots, {unused.data(), scratch_.data(), drifts, own_rows});
   };
   for (const auto& use : quantity_) {
     if (use.nz > 0) drift(use);
@@ -228,13 +227,13 @@ void Evaluator::linearise_outputs_simply(const Point& at, const Slots& slots, do
   y[ny_] = 0.0;
 }
 
-void Evaluator::linearise_outputs(const double* x, const double* u, double t, Slots& slots, double* y, double* D) {
-  const Point at{x, u, t, p_.data()};
+void Evaluator::linearise_outputs(const Instant& instant, Slots& slots, double* y, double* D) {
+  const Point at = point(instant);
   if (sensor_.empty() && !free_constants_) {
     linearise_outputs_simply(at, slots, y, D);
     return;
   }
-  if (!sensor_.empty()) base_and_derived_linear(at, x + nx_, slots);
+  if (!sensor_.empty()) base_and_derived_linear(at, slots);
   outputs_as_quantities(at, slots);
   const int width = n_ + columns_;
   for (int i = 0; i < ny_; ++i) {
@@ -246,7 +245,7 @@ void Evaluator::linearise_outputs(const double* x, const double* u, double t, Sl
   std::array<double, kMaxStates> drifts{};
   for (const auto& use : sensor_) {
     std::fill(scratch_.begin(), scratch_.end(), 0.0);
-    add_linear(use, x + nx_, t, slots, y, D, drifts.data(), scratch_.data());
+    add_linear(use, at, slots, {y, D, drifts.data(), scratch_.data()});
   }
 }
 

@@ -89,7 +89,7 @@ void Evaluator::fill_numbers() {
 }
 
 template <int NX>
-void Evaluator::add_entries(Plan& plan, const double* own, double t, Slots& slots, double* drifts) {
+void Evaluator::add_entries(Plan& plan, const Point& at, Slots& slots, double* drifts) {
   std::array<double, kMaxWidth> out;
   std::array<double, kMaxWidth * kMaxWidth> J;
   double* values = plan.values.data();
@@ -97,8 +97,8 @@ void Evaluator::add_entries(Plan& plan, const double* own, double t, Slots& slot
   for (const Link& link : plan.curves) values[link.place] = curve_[link.other].value;
   const double* coefficients = values + plan.nq;
   double* states = values + plan.nq + plan.nc;
-  for (int i = 0; i < plan.nz; ++i) states[i] = own[plan.first_state + i];
-  plan.effect->linearise({values, coefficients, states, states + plan.nz, t}, out.data(), J.data(), constants_in_rates_);
+  for (int i = 0; i < plan.nz; ++i) states[i] = own_states(at)[plan.first_state + i];
+  plan.effect->linearise({values, coefficients, states, states + plan.nz, at.t}, out.data(), J.data(), constants_in_rates_);
   for (const Link& output : plan.outputs) {
     const double value = out[output.place];
     if (output.other < nf_) {
@@ -150,14 +150,14 @@ template <int NX, int N>
 void Evaluator::linearise_rates_simply(const Point& at, Slots& slots, double* dx, double* D) {
   const int nx = NX > 0 ? NX : nx_;
   const int n = N > 0 ? N : n_;
-  system_->linearise_quantities(at, P_.data(), needed_, q_.data(), {q_x_.data(), nullptr, constants_in_rates_ ? q_k_.data() : nullptr});
+  system_->linearise_quantities(at, needed_, q_.data(), {q_x_.data(), nullptr, constants_in_rates_ ? q_k_.data() : nullptr});
   evaluate_curves(slots);
   for (int f = 0; f < nf_; ++f) F_[f] = 0.0;
   for (double& value : force_x_) value = 0.0;
   entries_.clear();
   curve_entries_.clear();
-  for (auto& plan : plans_) add_entries<NX>(plan, at.x + nx, at.t, slots, dx + nx);
-  system_->linearise_rates(at, P_.data(), F_.data(), dx, {r_x_.data(), nullptr, r_F_.data(), constants_in_rates_ ? r_k_.data() : nullptr});
+  for (auto& plan : plans_) add_entries<NX>(plan, at, slots, dx + nx);
+  system_->linearise_rates(at, F_.data(), dx, {r_x_.data(), nullptr, r_F_.data(), constants_in_rates_ ? r_k_.data() : nullptr});
 
   slot_entries_.clear();
   for (int i = 0; i < n; ++i) {
@@ -197,9 +197,9 @@ void Evaluator::take_entries(double weight, int from, int to) {
   }
 }
 
-bool Evaluator::linearise_rates_sparsely(const double* x, const double* u, double t, Slots& slots, double* dx, double* D) {
+bool Evaluator::linearise_rates_sparsely(const Instant& instant, Slots& slots, double* dx, double* D) {
   if (general_rates_ || own_elsewhere_) return false;
-  const Point at{x, u, t, p_.data()};
+  const Point at = point(instant);
   // The number of states of the usual systems is given to the compiler, and that there is no memory besides; 0: any.
   if (nx_ == 2) {
     n_ == 2 ? linearise_rates_simply<2, 2>(at, slots, dx, D) : linearise_rates_simply<2, 0>(at, slots, dx, D);

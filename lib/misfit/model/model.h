@@ -34,6 +34,12 @@ struct EffectRequest {
   Source where;
 };
 
+/// Log-normal prior of the random force's strength on the ports of one dimension: log strength ~ N(log median, (sigma/median)²).
+struct KnownForce {
+  double median = 1.0, sigma = 1.0;  ///< SI
+  std::string unit = {};             ///< of the ports; empty: all have one
+};
+
 /// A model as asked for: plain data, from a study or made in a test.
 struct ModelRequest {
   std::string system;
@@ -58,6 +64,7 @@ struct ModelRequest {
   };
   std::map<std::string, NoiseRequest> noise;  ///< of outputs
   std::optional<double> force_time;           ///< of the random force [s], held; 0: white
+  std::optional<KnownForce> force_strength;   ///< its prior
 };
 
 /// One row of the parameter table.
@@ -117,6 +124,7 @@ struct Model {
   std::vector<StateSpec> state_specs;
   std::vector<KnownNoise> known_noise;  ///< per output
   std::optional<double> force_time;     ///< correlation time of the random force [s], held; 0: white
+  std::optional<KnownForce> force_strength;
   std::vector<OwnStateSpec> own_states;
   std::vector<std::string> own_state_names;  ///< "effect.state"
   std::vector<std::string> own_state_units;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "misfit/core/shown.h"
+#include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/data/study_keys.h"
 #include "misfit/model/experiment.h"
@@ -98,8 +99,33 @@ void read_initial(const Study& study, const SystemSpec& spec, ModelRequest& requ
   }
 }
 
-void read_noise(const Study& study, const SystemSpec& spec, ModelRequest& request) {
+/// Units of the ports that the random force may act on, each once.
+std::vector<std::string> force_units(const SystemSpec& spec) {
+  std::vector<std::string> out;
+  for (const PortSpec& port : spec.dynamic_ports) {
+    const auto& named = spec.force_ports;
+    const bool forced = named.empty() || std::find(named.begin(), named.end(), port.name) != named.end();
+    const auto alike = [&](const std::string& unit) { return parse_unit(unit).same_dimension(parse_unit(port.unit)); };
+    if (forced && std::none_of(out.begin(), out.end(), alike)) out.push_back(port.unit);
+  }
+  return out;
+}
+
+void read_force(const Study& study, const SystemSpec& spec, ModelRequest& request) {
   request.force_time = study.force_time;
+  if (!study.force_strength) return;
+  const config::Number& strength = *study.force_strength;
+  const std::vector<std::string> units = force_units(spec);
+  const auto alike = [&](const std::string& unit) { return parse_unit(unit).same_dimension(parse_unit(strength.unit)); };
+  const bool known = strength.unit.empty() ? units.size() == 1 : std::any_of(units.begin(), units.end(), alike);
+  if (!known) {
+    throw InputError(strength.where, "[force] strength needs the unit of a port that the random force acts on (" + join_words(units) + ")" +
+                                         (strength.unit.empty() ? "" : ", not [" + strength.unit + "]"));
+  }
+  request.force_strength = KnownForce{strength.value, *strength.sigma, strength.unit};
+}
+
+void read_noise(const Study& study, const SystemSpec& spec, ModelRequest& request) {
   for (const auto& [name, noise] : study.noise) {
     request.noise[name] = {noise.sigma.value, noise.fixed, noise.where};
     for (const auto& output : spec.outputs) {
@@ -201,6 +227,7 @@ StudyModel read_model(const Study& study, const Registry& registry) {
   read_starts(study, units, request);
   read_initial(study, spec, request);
   read_noise(study, spec, request);
+  read_force(study, spec, request);
   read_curves(study, spec, request);
   return out;
 }

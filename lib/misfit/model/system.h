@@ -130,13 +130,16 @@ struct RateDerivatives {
   double* k = nullptr;  ///< states × constants
 };
 
-/// Where a system is evaluated.
-struct Point {
-  const double* x;  ///< states
-  const double* u;  ///< inputs
-  double t;         ///< [s]
-  const double* k;  ///< constants
+/// Where a system is evaluated. T, K: double, or Jets where derivatives by states and ports, by constants, are taken.
+template <class T, class K>
+struct PointOf {
+  const T* x;            ///< states
+  const double* u;       ///< inputs
+  double t;              ///< [s]
+  const K* k;            ///< constants
+  const T* P = nullptr;  ///< what effects add on the quantity ports; outputs do not depend on it
 };
+using Point = PointOf<double, double>;
 
 /// The skeleton of a model. `needed` has bit i set if quantity i is read by somebody: others may be left 0.
 class System {
@@ -146,11 +149,10 @@ class System {
   /// Curves in the meaning people compare (the paper's C_m_alphadot), from this model's own; `k` are the constants.
   [[nodiscard]] virtual std::vector<DerivedCurve> derived_curves(const double* /*k*/) const { return {}; }
 
-  virtual void quantities(const Point& at, const double* P, std::uint64_t needed, double* q) const = 0;
-  virtual void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
-                                    const QuantityDerivatives& d) const = 0;
-  virtual void rates(const Point& at, const double* P, const double* F, double* dx) const = 0;
-  virtual void linearise_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const = 0;
+  virtual void quantities(const Point& at, std::uint64_t needed, double* q) const = 0;
+  virtual void linearise_quantities(const Point& at, std::uint64_t needed, double* q, const QuantityDerivatives& d) const = 0;
+  virtual void rates(const Point& at, const double* F, double* dx) const = 0;
+  virtual void linearise_rates(const Point& at, const double* F, double* dx, const RateDerivatives& d) const = 0;
   virtual void outputs(const Point& at, double* y) const = 0;
   /// y, ∂y/∂x (outputs × states), and, if not null, ∂y/∂k (outputs × constants).
   virtual void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const = 0;
@@ -158,7 +160,7 @@ class System {
   [[nodiscard]] virtual double fastest_rate(const Point& /*at*/) const { return spec().fastest_rate; }
   /// Why rates() is not finite here, in words: the part of the formula, the states and parameters in it. Empty if it is finite or not
   /// known.
-  [[nodiscard]] virtual std::string explain(const Point& /*at*/, const double* /*P*/, const double* /*F*/) const { return {}; }
+  [[nodiscard]] virtual std::string explain(const Point& /*at*/, const double* /*F*/) const { return {}; }
   /// The inverse of outputs() for SystemSpec::readable_states: fills those entries of x. False where the outputs have no such state.
   virtual bool read_states(const double* /*y*/, const double* /*k*/, double* /*x*/) const { return false; }
 };

@@ -20,9 +20,9 @@
 namespace misfit {
 
 /// Turns a struct with templated formulas into a System. `S` has static NX, NU, NP (quantity ports), NF (dynamic ports), NQ, NK, NY and
-///   template <class T, class K> void quantities(const T* x, const double* u, double t, const K* k, const T* P, uint64_t needed, T* q)
-///   const template <class T, class K> void rates(const T* x, const double* u, double t, const K* k, const T* P, const T* F, T* dx) const
-///   template <class T, class K> void outputs(const T* x, const double* u, double t, const K* k, T* y) const
+///   template <class T, class K> void quantities(const PointOf<T, K>& at, uint64_t needed, T* q) const
+///   template <class T, class K> void rates(const PointOf<T, K>& at, const T* F, T* dx) const
+///   template <class T, class K> void outputs(const PointOf<T, K>& at, T* y) const
 ///   SystemSpec spec() const;   std::vector<DerivedCurve> derived_curves(const double* k) const
 /// All first derivatives come from Jets as wide as what varies: states alone in the common case.
 template <class S>
@@ -33,28 +33,25 @@ class SystemOf final : public System {
   [[nodiscard]] const SystemSpec& spec() const override { return spec_; }
   [[nodiscard]] std::vector<DerivedCurve> derived_curves(const double* k) const override { return system_.derived_curves(k); }
 
-  void quantities(const Point& at, const double* P, std::uint64_t needed, double* q) const override {
-    system_.template quantities<double, double>(at.x, at.u, at.t, at.k, P, needed, q);
+  void quantities(const Point& at, std::uint64_t needed, double* q) const override {
+    system_.template quantities<double, double>(at, needed, q);
   }
-  void linearise_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
-                            const QuantityDerivatives& d) const override {
-    if (d.k != nullptr) return differentiate_quantities<S::NX + S::NP + S::NK>(at, P, needed, q, d);
+  void linearise_quantities(const Point& at, std::uint64_t needed, double* q, const QuantityDerivatives& d) const override {
+    if (d.k != nullptr) return differentiate_quantities<S::NX + S::NP + S::NK>(at, needed, q, d);
     if constexpr (S::NP > 0) {
-      if (d.P != nullptr) return differentiate_quantities<S::NX + S::NP>(at, P, needed, q, d);
+      if (d.P != nullptr) return differentiate_quantities<S::NX + S::NP>(at, needed, q, d);
     }
-    differentiate_quantities<S::NX>(at, P, needed, q, d);
+    differentiate_quantities<S::NX>(at, needed, q, d);
   }
-  void rates(const Point& at, const double* P, const double* F, double* dx) const override {
-    system_.template rates<double, double>(at.x, at.u, at.t, at.k, P, F, dx);
-  }
-  void linearise_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const override {
-    if (d.k != nullptr) return differentiate_rates<S::NX + S::NF + S::NP + S::NK>(at, P, F, dx, d);
+  void rates(const Point& at, const double* F, double* dx) const override { system_.template rates<double, double>(at, F, dx); }
+  void linearise_rates(const Point& at, const double* F, double* dx, const RateDerivatives& d) const override {
+    if (d.k != nullptr) return differentiate_rates<S::NX + S::NF + S::NP + S::NK>(at, F, dx, d);
     if constexpr (S::NP > 0) {
-      if (d.P != nullptr) return differentiate_rates<S::NX + S::NF + S::NP>(at, P, F, dx, d);
+      if (d.P != nullptr) return differentiate_rates<S::NX + S::NF + S::NP>(at, F, dx, d);
     }
-    differentiate_rates<S::NX + S::NF>(at, P, F, dx, d);
+    differentiate_rates<S::NX + S::NF>(at, F, dx, d);
   }
-  void outputs(const Point& at, double* y) const override { system_.template outputs<double, double>(at.x, at.u, at.t, at.k, y); }
+  void outputs(const Point& at, double* y) const override { system_.template outputs<double, double>(at, y); }
   void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const override {
     if (y_k != nullptr) {
       differentiate_outputs<S::NX + S::NK>(at, y, y_x, y_k);
@@ -83,8 +80,7 @@ class SystemOf final : public System {
   static constexpr std::size_t at_least_one(int n) { return n > 0 ? n : 1; }
 
   template <int W>
-  MISFIT_FLATTEN void differentiate_quantities(const Point& at, const double* P, std::uint64_t needed, double* q,
-                                               const QuantityDerivatives& d) const {
+  MISFIT_FLATTEN void differentiate_quantities(const Point& at, std::uint64_t needed, double* q, const QuantityDerivatives& d) const {
     using T = Jet<W>;
     constexpr bool with_P = W >= S::NX + S::NP && S::NP > 0;
     constexpr bool with_k = W > S::NX + S::NP;
@@ -92,17 +88,17 @@ class SystemOf final : public System {
     seed(x.data(), at.x, S::NX, 0);
     std::array<T, at_least_one(S::NP)> ports;
     if constexpr (with_P) {
-      seed(ports.data(), P, S::NP, S::NX);
+      seed(ports.data(), at.P, S::NP, S::NX);
     } else {
-      plain(ports.data(), P, S::NP);
+      plain(ports.data(), at.P, S::NP);
     }
     std::array<T, S::NQ> out;
     if constexpr (with_k) {
       std::array<T, at_least_one(S::NK)> k;
       seed(k.data(), at.k, S::NK, S::NX + S::NP);
-      system_.template quantities<T, T>(x.data(), at.u, at.t, k.data(), ports.data(), needed, out.data());
+      system_.template quantities<T, T>({x.data(), at.u, at.t, k.data(), ports.data()}, needed, out.data());
     } else {
-      system_.template quantities<T, double>(x.data(), at.u, at.t, at.k, ports.data(), needed, out.data());
+      system_.template quantities<T, double>({x.data(), at.u, at.t, at.k, ports.data()}, needed, out.data());
     }
     for (int i = 0; i < S::NQ; ++i) {
       if ((needed >> i & 1U) == 0U) continue;
@@ -117,7 +113,7 @@ class SystemOf final : public System {
   }
 
   template <int W>
-  MISFIT_FLATTEN void differentiate_rates(const Point& at, const double* P, const double* F, double* dx, const RateDerivatives& d) const {
+  MISFIT_FLATTEN void differentiate_rates(const Point& at, const double* F, double* dx, const RateDerivatives& d) const {
     using T = Jet<W>;
     constexpr bool with_P = W >= S::NX + S::NF + S::NP && S::NP > 0;
     constexpr bool with_k = W > S::NX + S::NF + S::NP;
@@ -127,17 +123,17 @@ class SystemOf final : public System {
     seed(forces.data(), F, S::NF, S::NX);
     std::array<T, at_least_one(S::NP)> ports;
     if constexpr (with_P) {
-      seed(ports.data(), P, S::NP, S::NX + S::NF);
+      seed(ports.data(), at.P, S::NP, S::NX + S::NF);
     } else {
-      plain(ports.data(), P, S::NP);
+      plain(ports.data(), at.P, S::NP);
     }
     std::array<T, at_least_one(S::NX)> out;
     if constexpr (with_k) {
       std::array<T, at_least_one(S::NK)> k;
       seed(k.data(), at.k, S::NK, S::NX + S::NF + S::NP);
-      system_.template rates<T, T>(x.data(), at.u, at.t, k.data(), ports.data(), forces.data(), out.data());
+      system_.template rates<T, T>({x.data(), at.u, at.t, k.data(), ports.data()}, forces.data(), out.data());
     } else {
-      system_.template rates<T, double>(x.data(), at.u, at.t, at.k, ports.data(), forces.data(), out.data());
+      system_.template rates<T, double>({x.data(), at.u, at.t, at.k, ports.data()}, forces.data(), out.data());
     }
     for (int i = 0; i < S::NX; ++i) {
       const T& jet = out[i];
@@ -160,9 +156,9 @@ class SystemOf final : public System {
     if constexpr (W > S::NX) {
       std::array<T, at_least_one(S::NK)> k;
       seed(k.data(), at.k, S::NK, S::NX);
-      system_.template outputs<T, T>(x.data(), at.u, at.t, k.data(), out.data());
+      system_.template outputs<T, T>({x.data(), at.u, at.t, k.data()}, out.data());
     } else {
-      system_.template outputs<T, double>(x.data(), at.u, at.t, at.k, out.data());
+      system_.template outputs<T, double>({x.data(), at.u, at.t, at.k}, out.data());
     }
     for (int i = 0; i < S::NY; ++i) {
       const T& jet = out[i];

@@ -28,7 +28,7 @@ RadauStep::RadauStep(Evaluator& evaluator)
 
 /// f and its derivatives at a stage, into f_ and L_.
 void RadauStep::linearise_stage(std::size_t stage, const RadauInputs& at, Slots& slots) {
-  evaluator_->linearise_rates(Y_.data() + stage * n_, at.u[stage].data(), at.t[stage], slots, f_.data() + stage * n_,
+  evaluator_->linearise_rates({Y_.data() + stage * n_, at.u[stage].data(), at.t[stage]}, slots, f_.data() + stage * n_,
                               L_.data() + stage * n_ * stride);
 }
 
@@ -134,7 +134,8 @@ void RadauStep::take_derivatives(double h, int width, double* D) {
   for (std::size_t i = 0; i < n_; ++i) std::copy_n(rows_.data() + row_[2 * n_ + i] * stride, width, D + i * stride);
 }
 
-bool RadauStep::step_linear(double* x, double h, const RadauInputs& at, Slots& slots, double* D) {
+bool RadauStep::step_linear(double* x, double h, const RadauInputs& at, const SlotRows& by) {
+  const auto& [slots, D] = by;
   if (!solve_stages(x, h, at)) return false;
   const int n = evaluator_->states(), before = n + slots.count();
   const int all = n + evaluator_->columns();

@@ -29,8 +29,8 @@ class RadauStep {
 
   /// Advances x by h. False if Newton's iteration does not converge: x is as before.
   [[nodiscard]] bool step(double* x, double h, const RadauInputs& at);
-  /// The same with derivatives: D has states() rows of kRowStride, [∂x | ∂ by slots], and is advanced with x. New slots may be added.
-  [[nodiscard]] bool step_linear(double* x, double h, const RadauInputs& at, Slots& slots, double* D);
+  /// The same with derivatives, which are advanced with x. New slots may be added.
+  [[nodiscard]] bool step_linear(double* x, double h, const RadauInputs& at, const SlotRows& by);
 
  private:
   [[nodiscard]] bool solve_stages(const double* x, double h, const RadauInputs& at);

@@ -49,7 +49,7 @@ double Stepper::linearised_rate(const double* x, const Interval& interval, doubl
   std::array<double, kMaxStates> dx{};
   Slots slots;
   inputs_at(interval, fraction, u.data());
-  evaluator_.linearise_rates(x, u.data(), interval.t0 + fraction * (interval.t1 - interval.t0), slots, dx.data(), L_.data());
+  evaluator_.linearise_rates({x, u.data(), interval.t0 + fraction * (interval.t1 - interval.t0)}, slots, dx.data(), L_.data());
   double fastest = 0.0;
   for (int i = 0; i < n_; ++i) {
     for (int j = i; j < n_; ++j) {
@@ -238,7 +238,8 @@ bool Stepper::explain_step(const double* x, const Interval& interval, const Shar
 /// One stage on rows of ∂/∂(x0, slots), L = [A | B], B as entries if sparse:  K = A X + [0 | B];  sum += h w K;  next = D + h a K (rows of
 /// the next stage's state). The first stage starts the sum from D, the last one leaves it in D. Columns go in blocks of kRowPadding.
 template <int N>
-void Stepper::advance_rows(double h, std::size_t stage, int width, bool sparse, const double* X, double* next, double* D) {
+void Stepper::advance_rows(const Stage& of, const double* X, double* next, double* D) {
+  const auto& [h, stage, width, sparse] = of;
   const int n = N > 0 ? N : n_;
   const bool first = stage == 0, last = stage + 1 == stage_at.size();
   const double to_sum = h * stage_weight[stage];
@@ -273,8 +274,10 @@ void Stepper::advance_rows(double h, std::size_t stage, int width, bool sparse, 
 }
 
 template <int N>
-void Stepper::substep_linear(double* x, const Interval& interval, double from, double to, Slots& slots, double* D) {
+void Stepper::substep_linear(double* x, const Interval& interval, const Share& share, const SlotRows& by) {
   const int n = N > 0 ? N : n_;
+  const auto& [from, to] = share;
+  const auto& [slots, D] = by;
   const double h = (to - from) * (interval.t1 - interval.t0);
   std::array<double, (N > 0 ? N : kMaxStates)> stage, sum, dx{};
   std::array<double, kMaxInputs> u;
@@ -290,8 +293,8 @@ void Stepper::substep_linear(double* x, const Interval& interval, double from, d
     }
     const int before = n + slots.count();
     const double t = interval.t0 + fraction * (interval.t1 - interval.t0);
-    const bool sparse = evaluator_.linearise_rates_sparsely(stage.data(), u.data(), t, slots, dx.data(), L_.data());
-    if (!sparse) evaluator_.linearise_rates(stage.data(), u.data(), t, slots, dx.data(), L_.data());
+    const bool sparse = evaluator_.linearise_rates_sparsely({stage.data(), u.data(), t}, slots, dx.data(), L_.data());
+    if (!sparse) evaluator_.linearise_rates({stage.data(), u.data(), t}, slots, dx.data(), L_.data());
     const int width = n + slots.count();
     if (width > before) {  // columns met for the first time: nothing of them has moved the state yet
       const auto clear = [&](double* rows) {
@@ -303,7 +306,7 @@ void Stepper::substep_linear(double* x, const Interval& interval, double from, d
         clear(sum_.data());
       }
     }
-    advance_rows<N>(h, s, width, sparse, X, next, D);
+    advance_rows<N>({h, s, width, sparse}, X, next, D);
     X = next;
     next = X == X_.data() ? Y_.data() : X_.data();
     for (int i = 0; i < n; ++i) sum[i] += h * stage_weight[s] * dx[i];
@@ -311,19 +314,19 @@ void Stepper::substep_linear(double* x, const Interval& interval, double from, d
   std::copy_n(sum.begin(), n, x);
 }
 
-void Stepper::explicit_step_linear(double* x, const Interval& interval, const Share& share, Slots& slots, double* D) {
+void Stepper::explicit_step_linear(double* x, const Interval& interval, const Share& share, const SlotRows& by) {
   // The number of states of the usual systems is given to the compiler; 0: any.
   switch (n_) {
     case 2:
-      return substep_linear<2>(x, interval, share.from, share.to, slots, D);
+      return substep_linear<2>(x, interval, share, by);
     case 3:
-      return substep_linear<3>(x, interval, share.from, share.to, slots, D);
+      return substep_linear<3>(x, interval, share, by);
     case 4:
-      return substep_linear<4>(x, interval, share.from, share.to, slots, D);
+      return substep_linear<4>(x, interval, share, by);
     case 6:
-      return substep_linear<6>(x, interval, share.from, share.to, slots, D);
+      return substep_linear<6>(x, interval, share, by);
     default:
-      return substep_linear<0>(x, interval, share.from, share.to, slots, D);
+      return substep_linear<0>(x, interval, share, by);
   }
 }
 
@@ -340,12 +343,12 @@ bool Stepper::step_linear(double* x, const Interval& interval, Slots& slots, dou
   };
   const bool solved = for_each_part(interval, [&](const Share& share, bool implicit) {
     if (!implicit) {
-      explicit_step_linear(x, interval, share, slots, D);
+      explicit_step_linear(x, interval, share, {slots, D});
       keep();
       return true;
     }
     return implicit_steps(interval, share, [&](RadauStep& radau, double h, const RadauInputs& at) {
-      const bool fine = radau.step_linear(x, h, at, slots, D);
+      const bool fine = radau.step_linear(x, h, at, {slots, D});
       if (fine) keep();
       return fine;
     });

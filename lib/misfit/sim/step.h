@@ -65,21 +65,28 @@ class Stepper {
   struct Share {
     double from, to;
   };
+  /// Of an explicit step of length h [s]: how many columns its rows have, and whether the evaluator left parameters as entries.
+  struct Stage {
+    double h;
+    std::size_t number;
+    int width;
+    bool sparse;
+  };
   template <class Advance>
   [[nodiscard]] bool for_each_part(const Interval& interval, const Advance& advance) const;
   [[nodiscard]] int pieces_of(const Interval& interval, double from, const StepPart& part) const;
   void inputs_at(const Interval& interval, double fraction, double* u) const;
   void explicit_step(double* x, const Interval& interval, const Share& share);
-  void explicit_step_linear(double* x, const Interval& interval, const Share& share, Slots& slots, double* D);
+  void explicit_step_linear(double* x, const Interval& interval, const Share& share, const SlotRows& by);
   template <class Solve>
   [[nodiscard]] bool implicit_step(const Interval& interval, const Share& share, const Solve& solve);
   template <class Solve>
   [[nodiscard]] bool implicit_steps(const Interval& interval, const Share& share, const Solve& solve);
   [[nodiscard]] bool solve_implicitly(RadauStep& radau, double* x, double h, const RadauInputs& at) const;
   template <int N>
-  void substep_linear(double* x, const Interval& interval, double from, double to, Slots& slots, double* D);
+  void substep_linear(double* x, const Interval& interval, const Share& share, const SlotRows& by);
   template <int N>
-  void advance_rows(double h, std::size_t stage, int width, bool sparse, const double* X, double* next, double* D);
+  void advance_rows(const Stage& of, const double* X, double* next, double* D);
 
   Evaluator evaluator_;
   std::unique_ptr<RadauStep> radau_;

@@ -121,7 +121,7 @@ bool predict_linear(const Simulation& simulation, std::size_t i, State& at, Segm
     return true;
   }
   at.slots.clear();
-  evaluator.linearise_outputs(at.x.data(), inputs.at(i), signals.t[i], at.slots, at.y.data(), at.O.data());
+  evaluator.linearise_outputs({at.x.data(), inputs.at(i), signals.t[i]}, at.slots, at.y.data(), at.O.data());
   const double shift = evaluator.shifts_time() ? at.y[ny] : 0.0;
   std::optional<Sensitivity> moved_S;
   const Sensitivity* use = &at.S;
@@ -136,7 +136,7 @@ bool predict_linear(const Simulation& simulation, std::size_t i, State& at, Segm
     evaluator.rates(moved.data(), inputs.at(i), signals.t[i] + shift, speed.data());
     moved_S->add_direction(speed.data(), by_shift.data());
     at.slots.clear();
-    evaluator.linearise_outputs(moved.data(), inputs.at(i), signals.t[i], at.slots, at.y.data(), at.O.data());
+    evaluator.linearise_outputs({moved.data(), inputs.at(i), signals.t[i]}, at.slots, at.y.data(), at.O.data());
     use = &*moved_S;
   }
   for (int o = 0; o < ny; ++o) {

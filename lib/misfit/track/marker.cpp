@@ -20,9 +20,16 @@ double rise_slope(double u) {
   return 15.0 / 16.0 * v * v;
 }
 
-void set_disc(ShapeValue& s, std::size_t k, double radius, double edge, double x, double y) {
+/// Shape k: a disc of that radius and edge about the origin, seen at `at`.
+struct Disc {
+  double radius, edge;
+};
+
+void set_disc(ShapeValue& s, std::size_t k, const Disc& disc, const std::array<double, 2>& at) {
+  const auto& [x, y] = at;
+  const double edge = disc.edge;
   const double rho = std::hypot(x, y);
-  const double u = (radius - rho) / edge;
+  const double u = (disc.radius - rho) / edge;
   const double slope = rise_slope(u) / edge;
   s.value[k] = rise(u);
   s.by_radius[k] = slope;
@@ -68,8 +75,8 @@ ShapeValue shape_at(const Marker& marker, double x, double y) {
     set_picture(s, marker.picture, x, y);
     return s;
   }
-  set_disc(s, 0, marker.outer, marker.edge, x, y);
-  if (marker.kind == MarkerKind::ring) set_disc(s, 1, marker.inner, marker.edge, x, y);
+  set_disc(s, 0, {marker.outer, marker.edge}, {x, y});
+  if (marker.kind == MarkerKind::ring) set_disc(s, 1, {marker.inner, marker.edge}, {x, y});
   return s;
 }
 

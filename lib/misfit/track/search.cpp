@@ -17,15 +17,22 @@ struct Grid {
 /// Block of pixels behind a grid point, chosen so that the smaller side of the marker spans about eight points.
 struct Pitch {
   int x = 1, y = 1;  ///< columns and image rows
+  int row_step = 1;  ///< rows of the frame per image row
+};
+
+/// Part of an image that a grid covers: its first pixel, and how many grid points it has.
+struct Cut {
+  int column, row, width, height;
 };
 
 Pitch pitch_of(const Marker& marker, int row_step) {
   const double size = 2.0 * std::min(marker.reach_x(), marker.reach_y()) + 1.0;
   const int pitch = std::clamp(static_cast<int>(size / 8.0), 1, 8);
-  return {pitch, std::max(1, static_cast<int>(std::lround(pitch / row_step - 0.01)))};
+  return {pitch, std::max(1, static_cast<int>(std::lround(pitch / row_step - 0.01))), row_step};
 }
 
-Grid shrink(const Image& image, int first_column, int first_row, int width, int height, const Pitch& pitch) {
+Grid shrink(const Image& image, const Cut& cut, const Pitch& pitch) {
+  const auto& [first_column, first_row, width, height] = cut;
   Grid grid{width, height, std::vector<float>(std::size_t{1} * width * height, 0.0F)};
   const float scale = 1.0F / static_cast<float>(pitch.x * pitch.y);
   for (int j = 0; j < height; ++j) {
@@ -45,11 +52,11 @@ Grid shrink(const Image& image, int first_column, int first_row, int width, int 
 }
 
 /// The marker's brightness over a block of pixels whose middle is at grid point (i, j) from its own middle point.
-double shown(const Marker& marker, int row_step, const Pitch& pitch, int i, int j) {
+double shown(const Marker& marker, const Pitch& pitch, int i, int j) {
   double sum = 0.0;
   for (int k = 0; k < pitch.y; ++k) {
     for (int m = 0; m < pitch.x; ++m) {
-      const double x = i * pitch.x + m - 0.5 * (pitch.x - 1), y = row_step * (j * pitch.y + k - 0.5 * (pitch.y - 1));
+      const double x = i * pitch.x + m - 0.5 * (pitch.x - 1), y = pitch.row_step * (j * pitch.y + k - 0.5 * (pitch.y - 1));
       const ShapeValue s = shape_at(marker, x, y);
       sum += marker.levels[1] * s.value[0] + (marker.shapes() > 1 ? marker.levels[2] * s.value[1] : 0.0);
     }
@@ -69,13 +76,13 @@ void normalise(std::vector<float>& values) {
 }
 
 /// The marker as the grid would show it, centred on its middle point, without mean and of unit length.
-Grid kernel_of(const Marker& marker, int row_step, const Pitch& pitch) {
+Grid kernel_of(const Marker& marker, const Pitch& pitch) {
   const double margin = marker.kind == MarkerKind::picture ? 1.0 : 1.25;
   const int half_x = std::max(2, static_cast<int>(std::lround(margin * marker.reach_x() / pitch.x)));
-  const int half_y = std::max(2, static_cast<int>(std::lround(margin * marker.reach_y() / (pitch.y * row_step))));
+  const int half_y = std::max(2, static_cast<int>(std::lround(margin * marker.reach_y() / (pitch.y * pitch.row_step))));
   Grid kernel{2 * half_x + 1, 2 * half_y + 1, {}};
   for (int j = -half_y; j <= half_y; ++j) {
-    for (int i = -half_x; i <= half_x; ++i) kernel.values.push_back(static_cast<float>(shown(marker, row_step, pitch, i, j)));
+    for (int i = -half_x; i <= half_x; ++i) kernel.values.push_back(static_cast<float>(shown(marker, pitch, i, j)));
   }
   normalise(kernel.values);
   return kernel;
@@ -102,7 +109,8 @@ struct BoxSums {
     }
   }
   [[nodiscard]] std::size_t index(int i, int j) const { return j * width + i; }
-  [[nodiscard]] double box(const std::vector<double>& of, int i, int j, int w, int h) const {
+  [[nodiscard]] double box(const std::vector<double>& of, int i, int j, const Grid& kernel) const {
+    const int w = kernel.width, h = kernel.height;
     return of[index(i + w, j + h)] - of[index(i, j + h)] - of[index(i + w, j)] + of[index(i, j)];
   }
 };
@@ -125,7 +133,7 @@ Grid correlate(const Grid& grid, const Grid& kernel) {
       }
     }
     for (int i = 0; i < out.width; ++i) {
-      const double s = sums.box(sums.sum, i, j, kernel.width, kernel.height), q = sums.box(sums.square, i, j, kernel.width, kernel.height);
+      const double s = sums.box(sums.sum, i, j, kernel), q = sums.box(sums.square, i, j, kernel);
       const double variance = q - s * s / n;
       to[i] = variance > min_deviation * min_deviation * n ? static_cast<float>(to[i] / std::sqrt(variance)) : 0.0F;
     }
@@ -154,7 +162,7 @@ Region intersection(const Region& a, const Region& b) {
 
 std::vector<Match> search(const Field& field, const Marker& marker, const Region& region, double least, std::size_t most) {
   const Pitch pitch = pitch_of(marker, field.row_step);
-  const Grid kernel = kernel_of(marker, field.row_step, pitch);
+  const Grid kernel = kernel_of(marker, pitch);
   const double half_x = 0.5 * kernel.width * pitch.x, half_y = 0.5 * kernel.height * pitch.y;
   const Region wanted = intersection(region, whole(field));
   const auto first = [](double v) { return std::max(0, static_cast<int>(std::floor(v))); };
@@ -162,7 +170,7 @@ std::vector<Match> search(const Field& field, const Marker& marker, const Region
   const int c1 = std::min(field.image.width, static_cast<int>(std::ceil(wanted.right + half_x + 2.0)));
   const int r1 = std::min(field.image.height, static_cast<int>(std::ceil(field.image_row(wanted.bottom) + half_y + 2.0)));
   if (c1 - c0 < kernel.width * pitch.x || r1 - r0 < kernel.height * pitch.y) return {};
-  const Grid grid = shrink(field.image, c0, r0, (c1 - c0) / pitch.x, (r1 - r0) / pitch.y, pitch);
+  const Grid grid = shrink(field.image, {c0, r0, (c1 - c0) / pitch.x, (r1 - r0) / pitch.y}, pitch);
   const Grid map = correlate(grid, kernel);
   std::vector<Match> found;
   for (int j = 0; j < map.height; ++j) {

@@ -11,11 +11,11 @@ namespace {
 
 using video_module::Mark;
 
-Mark mark(Mark::Shape shape, double x, double y, double size, Colour colour) {
+Mark mark(Mark::Shape shape, const PixelPoint& at, double size, Colour colour) {
   Mark m;
   m.shape = shape;
-  m.x = x;
-  m.y = y;
+  m.x = at.column;
+  m.y = at.row;
   m.size = size;
   m.red = colour.red;
   m.green = colour.green;
@@ -43,10 +43,11 @@ double grey_at(const Field& field, double column, double row, double size) {
 
 Canvas::Canvas(int width, int height) : width_(width), height_(height), bgr_(std::size_t{3} * width * height, 24) {}
 
-void Canvas::paste(const Field& field, double left, double top, double width, double height, int x, int y, double scale) {
-  for (int j = 0; j < std::lround(height * scale); ++j) {
-    for (int i = 0; i < std::lround(width * scale); ++i) {
-      const double column = left + i / scale, row = top + j / scale;
+void Canvas::paste(const Field& field, const FramePart& part, const Place& to) {
+  const auto& [x, y, scale] = to;
+  for (int j = 0; j < std::lround(part.height * scale); ++j) {
+    for (int i = 0; i < std::lround(part.width * scale); ++i) {
+      const double column = part.left + i / scale, row = part.top + j / scale;
       if (x + i < 0 || y + j < 0 || x + i >= width_ || y + j >= height_) continue;
       if (column < -0.5 || row < -0.5 || column > field.image.width - 0.5 || row > field.frame_height() - 0.5) continue;
       const auto grey = static_cast<std::uint8_t>(grey_at(field, column, row, 1.0 / scale));
@@ -65,24 +66,24 @@ void Canvas::write_png(const std::filesystem::path& path) const {
   write_atomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-Mark circle(double x, double y, double radius, Colour colour) { return mark(Mark::Shape::circle, x, y, radius, colour); }
-Mark cross(double x, double y, double half, Colour colour) { return mark(Mark::Shape::cross, x, y, half, colour); }
+Mark circle(const PixelPoint& at, double radius, Colour colour) { return mark(Mark::Shape::circle, at, radius, colour); }
+Mark cross(const PixelPoint& at, double half, Colour colour) { return mark(Mark::Shape::cross, at, half, colour); }
 
-Mark line(double x, double y, double x_end, double y_end, Colour colour) {
-  Mark m = mark(Mark::Shape::line, x, y, 0.0, colour);
-  m.x_end = x_end;
-  m.y_end = y_end;
+Mark line(const PixelPoint& from, const PixelPoint& to, Colour colour) {
+  Mark m = mark(Mark::Shape::line, from, 0.0, colour);
+  m.x_end = to.column;
+  m.y_end = to.row;
   return m;
 }
 
-Mark box(double x, double y, double x_end, double y_end, Colour colour) {
-  Mark m = line(x, y, x_end, y_end, colour);
+Mark box(const PixelPoint& from, const PixelPoint& to, Colour colour) {
+  Mark m = line(from, to, colour);
   m.shape = Mark::Shape::box;
   return m;
 }
 
-Mark text(double x, double y, double height, std::string words, Colour colour) {
-  Mark m = mark(Mark::Shape::text, x, y, height, colour);
+Mark text(const PixelPoint& at, double height, std::string words, Colour colour) {
+  Mark m = mark(Mark::Shape::text, at, height, colour);
   m.text = std::move(words);
   return m;
 }

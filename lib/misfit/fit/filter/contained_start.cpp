@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "misfit/fit/filter/filter_start.h"
 #include "misfit/fit/filter/runnable_start.h"
 
 namespace misfit {
@@ -29,7 +30,7 @@ bool same_parameter(const std::string& a, const std::string& b) { return a == b 
 
 bool contains(const Model& model, const ContainedFit& contained) {
   const bool room = contained.values.size() <= model.parameters.size() && contained.roughness.size() <= model.curves.size();
-  return room && contained.noise.size() == 2 + 4 * model.system->spec().outputs.size() &&
+  return room && contained.noise.size() == place_of_force(with_random_force(model).force_groups(), model.system->spec()) &&
          std::equal(contained.names.begin(), contained.names.end(), model.parameters.begin(),
                     [](const std::string& name, const Parameter& p) { return same_parameter(name, p.name); });
 }
@@ -73,6 +74,12 @@ std::vector<FilterStart> starts_from(const ContainedFit& contained, const Model&
   if (contained.refit_values.size() == off.size() && contained.refit_log_noise.size() == noise.size())
     out.push_back(start_at(contained.refit_values, contained.refit_log_noise));
   if (out.size() == 1 && as_given.model.values() != without.model.values()) out.push_back(as_given);
+  return out;
+}
+
+FilterNoise usual_noise_of(const ContainedFit& contained, const Model& model) {
+  FilterNoise out = unpack(contained.usual_noise, model.system->spec());
+  mark_known(with_random_force(model), out);
   return out;
 }
 

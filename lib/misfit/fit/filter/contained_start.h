@@ -17,6 +17,9 @@ namespace misfit {
 /// with what is its own as it is in `model`, where that differs. Empty: the model does not contain that of the fit.
 [[nodiscard]] std::vector<FilterStart> starts_from(const ContainedFit& contained, const Model& model);
 
+/// FilterOptions::around as of the fit, with what the study of `model` knows of the noise.
+[[nodiscard]] FilterNoise usual_noise_of(const ContainedFit& contained, const Model& model);
+
 /// FilterOptions::use as of the fit, without what is missing in these experiments; nullopt where they are others.
 [[nodiscard]] std::optional<std::vector<std::vector<SampleRole>>> same_use(const ContainedFit& contained,
                                                                            const std::vector<Signals>& experiments);

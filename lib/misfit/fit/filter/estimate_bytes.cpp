@@ -11,15 +11,21 @@ void fields(Bytes& bytes, MaybeConst<ChannelNoise> auto& data) {
 }
 
 template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<ForcePrior> auto& data) {
+  auto& [group, median, log_sigma] = data;
+  bytes(group, median, log_sigma);
+}
+
+template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterNoise> auto& data) {
-  auto& [force, force_time, channels, time_held, further_forces] = data;
-  bytes(force, force_time, channels, time_held, further_forces);
+  auto& [force, force_time, channels, time_held, further_forces, prior] = data;
+  bytes(force, force_time, channels, time_held, further_forces, prior);
 }
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<NoiseFit> auto& data) {
-  auto& [noise, minus_loglik, information, logs, at_bound, converged] = data;
-  bytes(noise, minus_loglik, information, logs, at_bound, converged);
+  auto& [noise, minus_log_density, information, logs, at_bound, converged] = data;
+  bytes(noise, minus_log_density, information, logs, at_bound, converged);
 }
 
 template <class Bytes>

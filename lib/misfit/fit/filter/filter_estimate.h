@@ -41,7 +41,7 @@ struct FilterEstimate {
   Eigen::MatrixXd covariance;             ///< of the free parameters: inverse of the information with roughness and priors
   Eigen::MatrixXd joint_covariance;       ///< of parameters and log noise together, nothing held; empty where not verified
   Eigen::MatrixXd joint_information;      ///< of which that is the inverse, without the roughness
-  double objective = 0.0;                 ///< log-likelihood + log prior (GaussianPrior::log_density)
+  double objective = 0.0;                 ///< log-likelihood + log priors of parameters, roughness and noise
   double loglik = 0.0, validation_loglik = 0.0;
   std::optional<double> newton_decrement;  ///< what one more Newton step on the exact likelihood would still gain; nullopt: not verified
   double edf = 0.0;

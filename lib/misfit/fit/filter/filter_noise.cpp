@@ -63,7 +63,18 @@ NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterN
     const double usual = around.further_forces[g];
     push(out, "force_" + std::to_string(g + 2), noise.further_forces[g], {1e-3 * usual, 1e3 * usual});
   }
+  out.prior = ColumnPriors{}.padded(std::ssize(out.value));
+  if (around.prior.group < 0) return out;
+  const auto place = static_cast<Eigen::Index>(place_of_force(around.prior.group, spec));
+  out.prior.mean[place] = std::log(around.prior.median);
+  out.prior.precision[place] = 1.0 / (around.prior.log_sigma * around.prior.log_sigma);
   return out;
+}
+
+double log_prior(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around) {
+  if (around.prior.group < 0) return 0.0;
+  const NoiseVector vector = pack(noise, spec, around);
+  return vector.prior.log_density(Eigen::Map<const Eigen::VectorXd>(vector.value.data(), std::ssize(vector.value)));
 }
 
 std::size_t place_of_force(int group, const SystemSpec& spec) { return group == 0 ? 0 : 1 + 4 * spec.outputs.size() + group; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "misfit/data/signals.h"
+#include "misfit/inference/prior.h"
 #include "misfit/model/model.h"
 
 namespace misfit {
@@ -21,6 +22,12 @@ struct ChannelNoise {
   bool held = false;              ///< white is known and all there is
 };
 
+/// Log-normal: log of a group's strength ~ N(log median, log_sigma²).
+struct ForcePrior {
+  int group = -1;  ///< −1: none
+  double median = 1.0, log_sigma = 1.0;
+};
+
 /// The random force: one Ornstein–Uhlenbeck process per force port, independent, of one common correlation time, and of one common strength
 /// for the ports of one unit (FilterModel::force_group).
 struct FilterNoise {
@@ -29,20 +36,24 @@ struct FilterNoise {
   std::vector<ChannelNoise> channels;
   bool time_held = false;                   ///< the correlation time is known
   std::vector<double> further_forces = {};  ///< the same of the further groups [port unit]
+  ForcePrior prior = {};                    ///< what is known of a strength beforehand
 
   [[nodiscard]] double force_of(int group) const { return group == 0 ? force : further_forces[group - 1]; }
 };
 
 /// Logarithms in a fixed order: force, force_time, then per channel white, jitter, jitter_frequency, jitter_damping, then further_forces.
-/// Bounds keep a
-/// likelihood that does not depend on one of them from running away.
+/// Bounds keep a likelihood that does not depend on one of them from running away.
 struct NoiseVector {
   std::vector<double> value, lower, upper;
+  ColumnPriors prior;              ///< of the logarithms
   std::vector<std::string> names;  ///< "force", "force_time", "P_y", "P_y_jitter", …
 };
-[[nodiscard]] NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around);
+[[nodiscard]] NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec,
+                               const FilterNoise& around);  ///< `around`: bounds and prior
+/// log density of the noise's prior, constants left out.
+[[nodiscard]] double log_prior(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around);
 [[nodiscard]] FilterNoise unpack(const std::vector<double>& logs, const SystemSpec& spec);
-/// Place of a group's strength among them.
+/// Place of a group's strength among them; of the number of groups: how many logarithms there are.
 [[nodiscard]] std::size_t place_of_force(int group, const SystemSpec& spec);
 
 /// Exact discretisation over one step h of everything whose noise does not depend on the state.

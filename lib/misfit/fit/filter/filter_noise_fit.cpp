@@ -51,7 +51,7 @@ class Scoring {
     NoiseFit out;
     std::vector<double> at = vector_.value;
     Innovations present = run_all(runs_, unpacked(at));
-    double best = cost(present, counts_);
+    double best = cost_at(at, present);
     double damping = 1e-3;
     bool fresh = false;  // derivatives are those at `at`
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
@@ -63,7 +63,7 @@ class Scoring {
         const std::vector<double> next = step(at, damping, expected);
         if (expected < 1e-3) break;
         Innovations there = run_all(runs_, unpacked(next));
-        const double value = cost(there, counts_);
+        const double value = cost_at(next, there);
         if (value < best) {
           moved = true;
           fresh = false;
@@ -83,7 +83,7 @@ class Scoring {
     if (!fresh && max_iterations > kRefinements) derivatives(at, present);
     out.logs = at;
     out.noise = unpacked(at);
-    out.minus_loglik = best;
+    out.minus_log_density = best;
     out.information = information_;
     for (std::size_t i = 0; i < at.size(); ++i) out.at_bound.push_back(stuck(at, i));
     return out;
@@ -91,6 +91,12 @@ class Scoring {
 
  private:
   [[nodiscard]] FilterNoise unpacked(const std::vector<double>& logs) const { return unpack(logs, runs_.model->model.system->spec()); }
+
+  static Eigen::Map<const Eigen::VectorXd> vector(const std::vector<double>& v) { return {v.data(), std::ssize(v)}; }
+
+  [[nodiscard]] double cost_at(const std::vector<double>& logs, const Innovations& there) const {
+    return cost(there, counts_) - vector_.prior.log_density(vector(logs));
+  }
 
   [[nodiscard]] bool stuck(const std::vector<double>& at, std::size_t i) const {
     constexpr double near = 1e-6;
@@ -124,6 +130,8 @@ class Scoring {
       }
     }
     information_ = Eigen::MatrixXd(information_.selfadjointView<Eigen::Lower>());
+    gradient_ -= vector_.prior.gradient(vector(at));
+    information_.diagonal() += vector_.prior.precision;
   }
 
   /// A damped step inside the bounds, each logarithm by at most 1; what it is expected to gain.
@@ -175,7 +183,5 @@ std::vector<bool> pin_unknown(const NoiseFit& fit, Eigen::MatrixXd& information)
   }
   return known;
 }
-
-double minus_loglik(const LinearisedRuns& runs, const FilterNoise& noise) { return cost(run_all(runs, noise), counted(runs)); }
 
 }  // namespace misfit

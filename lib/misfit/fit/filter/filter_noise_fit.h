@@ -15,16 +15,16 @@ inline constexpr int kRefinements = 2;  ///< iterations up to which `information
 
 struct NoiseFit {
   FilterNoise noise;
-  double minus_loglik = 0.0;
-  Eigen::MatrixXd information;  ///< Fisher, over the logarithms of pack()
-  std::vector<double> logs;     ///< at the maximum
-  std::vector<bool> at_bound;   ///< not determined from below or above: left out of `information` (zero row)
+  double minus_log_density = 0.0;  ///< −(log-likelihood + log prior of the noise)
+  Eigen::MatrixXd information;     ///< Fisher and the prior's, over the logarithms of pack()
+  std::vector<double> logs;        ///< at the maximum
+  std::vector<bool> at_bound;      ///< not determined from below or above: left out of `information` (zero row)
   bool converged = false;
 };
 
-/// Maximum likelihood of the noise with the runs' trajectories held: Fisher scoring with derivatives of innovations and variances by
-/// differences of the whole linear filter (step 1e-4 in the logarithm), Levenberg damping. `around` sets the bounds (pack()). The answer
-/// does not depend on `threads`.
+/// Maximum of likelihood times prior of the noise with the runs' trajectories held: Fisher scoring with derivatives of innovations and
+/// variances by differences of the whole linear filter (step 1e-4 in the logarithm), Levenberg damping. `around` sets bounds and prior
+/// (pack()). The answer does not depend on `threads`.
 struct NoiseSearch {
   const FilterNoise& around;
   int threads = 0;
@@ -32,15 +32,12 @@ struct NoiseSearch {
 };
 [[nodiscard]] NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const NoiseSearch& search);
 
-/// The Fisher information of fit_noise at any logarithms (pack()), counted measurements only; parameters are held.
+/// The information of fit_noise at any logarithms (pack()), counted measurements only; parameters are held.
 [[nodiscard]] Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around,
                                                 int threads);
 
 /// Pins, in an information whose last rows are those of `fit`'s logarithms, what is at its bound or so unknown that the data do not even
 /// know the logarithm to one unit (the shape of something that is not there). Returned: which logarithms are known.
 std::vector<bool> pin_unknown(const NoiseFit& fit, Eigen::MatrixXd& information);
-
-/// −log-likelihood of the noise about the runs.
-[[nodiscard]] double minus_loglik(const LinearisedRuns& runs, const FilterNoise& noise);
 
 }  // namespace misfit

@@ -91,7 +91,7 @@ class FilterPass {
       joint.rightCols(twice(ny_)) = kalman_.C;
     }
     slots_.clear();
-    evaluator_.linearise_outputs(x_.data(), data_.inputs.at(k), signals_.t[k], slots_, y_.data(), O_.data());
+    evaluator_.linearise_outputs({x_.data(), data_.inputs.at(k), signals_.t[k]}, slots_, y_.data(), O_.data());
     if (evaluator_.shifts_time()) evaluator_.rates(x_.data(), data_.inputs.at(k), signals_.t[k], speed_.data());
     kalman_.x.setZero();
     for (int o = 0; o < ny_; ++o) {

@@ -188,13 +188,13 @@ class FilterSearch {
   NoiseFit best_noise() const {
     constexpr int iterations = 6;
     NoiseFit best;
-    best.minus_loglik = std::numeric_limits<double>::infinity();
+    best.minus_log_density = std::numeric_limits<double>::infinity();
     for (const double share : {0.4, 1.0, 2.0}) {
       FilterNoise start = out_.noise;
       for (std::size_t o = 0; o < start.channels.size(); ++o)
         start.channels[o].jitter_frequency = share * out_.around.channels[o].jitter_frequency;
       const NoiseFit fit = fit_noise(at_.runs(), start, {out_.around, options_.threads, iterations});
-      if (fit.minus_loglik < best.minus_loglik) best = fit;
+      if (fit.minus_log_density < best.minus_log_density) best = fit;
     }
     return best;
   }
@@ -205,10 +205,10 @@ class FilterSearch {
     constexpr double clearly_higher = 0.5, nearly = 5.0;  // [log-likelihood]
     const std::vector<NoiseFit> maxima = noise_maxima(at_.runs(), out_.noise, {out_.around, options_.threads});
     if (maxima.empty()) return;
-    const double present = minus_loglik(at_.runs(), out_.noise);
-    if (maxima.front().minus_loglik < present - clearly_higher && at_.try_noise(maxima.front())) at_.iterate(all_rounds, tolerance());
+    const double present = fit_noise(at_.runs(), out_.noise, {out_.around, options_.threads, 0}).minus_log_density;
+    if (maxima.front().minus_log_density < present - clearly_higher && at_.try_noise(maxima.front())) at_.iterate(all_rounds, tolerance());
     for (const NoiseFit& other : maxima) {
-      const double below = other.minus_loglik - maxima.front().minus_loglik;
+      const double below = other.minus_log_density - maxima.front().minus_log_density;
       if (&other == &maxima.front() || below > nearly) continue;
       out_.notes.push_back("the likelihood has another maximum at a correlation time of the random force of about " +
                            format_value(other.noise.force_time) + " s, lower by " + format_value(2.0 * below) + " in 2 log L");

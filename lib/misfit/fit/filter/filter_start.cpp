@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "misfit/core/error.h"
+#include "misfit/core/units.h"
+
 namespace misfit {
 namespace {
 
@@ -13,7 +16,7 @@ double force_size(const FilterModel& model, int group, const FilterData& data, c
   const int n = evaluator.states();
   std::vector<double> dx(n), D(n * kRowStride);
   Slots slots;
-  evaluator.linearise_rates(data.start.data(), data.inputs.at(data.first), data.signals->t[data.first], slots, dx.data(), D.data());
+  evaluator.linearise_rates({data.start.data(), data.inputs.at(data.first), data.signals->t[data.first]}, slots, dx.data(), D.data());
   double size = 0.0;
   for (std::size_t force = 0; force < model.force_states.size(); ++force) {
     const int f = model.force_states[force];
@@ -35,14 +38,25 @@ double force_size(const FilterModel& model, int group, const FilterData& data, c
 
 }  // namespace
 
+void mark_known(const FilterModel& model, FilterNoise& usual) {
+  usual.time_held = model.model.force_time.has_value();
+  for (std::size_t o = 0; o < usual.channels.size(); ++o) usual.channels[o].held = model.model.known_noise[o].fixed;
+  if (!model.model.force_strength) return;
+  const KnownForce& known = *model.model.force_strength;
+  const auto& ports = model.model.system->spec().dynamic_ports;
+  const auto acts = [&](int port) { return known.unit.empty() || parse_unit(ports[port].unit).same_dimension(parse_unit(known.unit)); };
+  const auto port = std::find_if(model.force_ports.begin(), model.force_ports.end(), acts);
+  if (port == model.force_ports.end()) throw RunError("[force] strength: the random force acts on no port in " + known.unit);
+  usual.prior = {model.force_group[port - model.force_ports.begin()], known.median, known.sigma / known.median};
+}
+
 FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>& data) {
   constexpr double share_of_motion = 0.3, samples_of_memory = 6.0, share_of_rate = 0.15;
   FilterNoise out;
   const Signals& first = *data.front().signals;
   const double h = usual_step(first.t);
   constexpr double memory_of_white = 0.3;  // samples: correlated by 4 % at the next
-  out.time_held = model.model.force_time.has_value();
-  out.force_time = out.time_held ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * h;
+  out.force_time = model.model.force_time ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * h;
   const ReconstructedStates states = reconstruct_states(model.model, first);
   const double of_equal_intensity = std::sqrt(samples_of_memory * h / out.force_time);
   const auto usual_force = [&](int group) { return share_of_motion * force_size(model, group, data.front(), states) * of_equal_intensity; };
@@ -57,8 +71,9 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
     const KnownNoise& known = model.model.known_noise[o];
     double white = known.sigma > 0.0 ? known.sigma : measurement_noise(first.measured[o].values);
     if (!(white > 0.0)) white = outputs[o].noise > 0.0 ? outputs[o].noise : 1.0;
-    out.channels.push_back({white, known.fixed ? 1e-3 * white : white, jitter_frequency, 0.3, known.fixed});
+    out.channels.push_back({white, known.fixed ? 1e-3 * white : white, jitter_frequency, 0.3});
   }
+  mark_known(model, out);
   return out;
 }
 

@@ -9,4 +9,8 @@ namespace misfit {
 /// with a correlation time of six samples.
 [[nodiscard]] FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>& data);
 
+/// Marks in the usual noise what the study knows: noise and correlation time that are held, the prior of the force's strength. RunError if
+/// the random force acts on no port of the prior's unit.
+void mark_known(const FilterModel& model, FilterNoise& usual);
+
 }  // namespace misfit

@@ -71,8 +71,12 @@ bool LikelihoodAscent::linearise() {
   }
   ++out.linearisations;
   out.loglik = loglik;
-  objective = loglik + out.prior().log_density(theta);
+  objective = loglik + log_prior();
   return true;
+}
+
+double LikelihoodAscent::log_prior() const {
+  return out.prior().log_density(theta) + misfit::log_prior(out.noise, out.model.system->spec(), out.around);
 }
 
 void LikelihoodAscent::plan_along_measurements(double tolerance) {
@@ -149,7 +153,7 @@ double LikelihoodAscent::gauss_newton_step() {
   if (!smoothed.ok) return unknown;
   out.edf = smoothed.edf;
   out.covariance = smoothed.covariance;
-  objective = out.loglik + out.prior().log_density(theta);  // the roughness may have changed
+  objective = out.loglik + log_prior();  // the roughness may have changed
   const auto [lower, upper] = bounds_of(out.model);
   const BoundedMaximum best = maximum_inside(smoothed.theta, smoothed.covariance, lower, upper);
   const Eigen::VectorXd step = best.at - theta;

@@ -57,6 +57,7 @@ class LikelihoodAscent {
 
  private:
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
+  [[nodiscard]] double log_prior() const;  ///< of parameters, roughness and noise, at `theta` and `out.noise`
 
   struct Point {
     Eigen::VectorXd theta;

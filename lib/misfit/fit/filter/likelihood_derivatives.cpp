@@ -194,7 +194,8 @@ double log_density(const FilterTrace& trace, std::size_t place) {
 }
 
 double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise) const {
-  return loglik_at(theta, noise) + estimate_->prior().log_density(theta);
+  return loglik_at(theta, noise) + estimate_->prior().log_density(theta) +
+         log_prior(noise, estimate_->model.system->spec(), estimate_->around);
 }
 
 double ExactObjective::loglik_at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* traces) const {
@@ -241,6 +242,9 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
   out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
   out.gradient.head(theta.size()) = back.transpose() * out.gradient.head(theta.size()).eval() +
                                     estimate.regularised_prior(out.information.diagonal()).gradient(theta);
+  const NoiseVector noise = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
+  out.gradient.tail(std::ssize(noise.value)) +=
+      noise.prior.gradient(Eigen::Map<const Eigen::VectorXd>(noise.value.data(), std::ssize(noise.value)));
   for (auto& nonlinear : out.nonlinear) {
     std::sort(nonlinear.begin(), nonlinear.end());
     nonlinear.erase(std::unique(nonlinear.begin(), nonlinear.end()), nonlinear.end());
@@ -251,6 +255,8 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
 Eigen::MatrixXd joint_information(const FilterEstimate& estimate, const LikelihoodDerivatives& exact) {
   Eigen::MatrixXd out = exact.information;
   out.diagonal() += regularised_priors(estimate.model, out.diagonal()).padded(out.rows()).precision;
+  const NoiseVector noise = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
+  out.diagonal().tail(std::ssize(noise.value)) += noise.prior.precision;
   pin_unknown(estimate.noise_fit, out);
   return out;
 }

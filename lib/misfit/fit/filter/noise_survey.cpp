@@ -28,8 +28,9 @@ FilterNoise with_usual_jitter(FilterNoise noise, const FilterNoise& usual) {
 }
 
 void sort_by_height(std::vector<NoiseFit>& fits) {
-  std::erase_if(fits, [](const NoiseFit& fit) { return !std::isfinite(fit.minus_loglik); });
-  std::stable_sort(fits.begin(), fits.end(), [](const NoiseFit& a, const NoiseFit& b) { return a.minus_loglik < b.minus_loglik; });
+  std::erase_if(fits, [](const NoiseFit& fit) { return !std::isfinite(fit.minus_log_density); });
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const NoiseFit& a, const NoiseFit& b) { return a.minus_log_density < b.minus_log_density; });
 }
 
 bool same_time(const NoiseFit& a, const NoiseFit& b) {

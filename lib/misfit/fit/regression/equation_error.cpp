@@ -123,7 +123,7 @@ class Regressor {
         look_at_watch();
         if (!states.ok[i] || signals.held_out(i) || !between_[e].steps[i]) continue;
         slots.clear();
-        evaluator.linearise_rates(states.x.row(i).data(), inputs_[e].at(i), signals.t[i], slots, dx.data(), D.data());
+        evaluator.linearise_rates({states.x.row(i).data(), inputs_[e].at(i), signals.t[i]}, slots, dx.data(), D.data());
         const double r = dx[row] - states.dx(i, row);
         if (!std::isfinite(r)) continue;
         residuals[i] = r;

@@ -75,8 +75,9 @@ void write_check_video(const Session& session, const std::vector<std::optional<T
   const TrackFacts& f = **tracked;
   const Track track = read_track(track_files(session, e).track);
   write_files(to.has_parent_path() ? to.parent_path() : ".", write_rules(session), {to.filename().string()}, [&](const fs::path& dir) {
-    write_check_video(*session.study.experiments[e].video, dir / to.filename(), track, f.fields == "progressive" ? 1 : 2,
-                      f.fields == "bottom_first" ? 1 : 0, std::max(f.outer, 8.0), session.progress("check video"));
+    const FieldsOfFrame fields{f.fields == "progressive" ? 1 : 2, f.fields == "bottom_first" ? 1 : 0};
+    write_check_video({*session.study.experiments[e].video, track, fields, std::max(f.outer, 8.0)}, dir / to.filename(),
+                      session.progress("check video"));
   });
 }
 
