@@ -17,7 +17,9 @@ int add_verb(const Options& options, const Registry& registry) {
   }
   print(ladder.ladder(), rung, ladder.last_fit());
   print(ladder.ladder());
-  std::cout << "study of this rung: " << ladder.root().folder.file(rung.study).lexically_normal().string() << '\n';
+  Session& root = ladder.root();
+  std::cout << "study of this rung: " << root.folder.file(rung.study).lexically_normal().string() << '\n';
+  print_verdict(verdict_of(root, fit_stage(root)), root.folder.file("report.html"));
   return 0;
 }
 

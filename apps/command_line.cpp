@@ -70,6 +70,10 @@ void add_study(CLI::App& verb, Options& options) {
   verb.add_option("study", options.session.study, "study.toml, or the folder that holds it")->type_name("STUDY")->required();
 }
 
+void add_verbose(CLI::App& verb, Options& options) {
+  verb.add_flag("--verbose", options.verbose, "print the tables of every stage instead of a line");
+}
+
 void add_force(CLI::App& verb, Options& options) {
   verb.add_flag("--force", options.session.force, "overwrite files that misfit did not write (never data, never through links)");
 }
@@ -120,6 +124,8 @@ void fit_options(CLI::App& verb, Options& options) {
 void run_options(CLI::App& verb, Options& options) {
   fit_options(verb, options);
   add_round_limit(verb, options);
+  add_verbose(verb, options);
+  verb.add_flag("--auto", options.automatic, "also add what discover accepts and search again, until nothing is accepted");
 }
 
 void track_options(CLI::App& verb, Options& options) {
@@ -134,6 +140,7 @@ void discover_options(CLI::App& verb, Options& options) {
   add_work(verb, options);
   add_time_limit(verb, options);
   add_round_limit(verb, options);
+  add_verbose(verb, options);
 }
 
 void add_verb_options(CLI::App& verb, Options& options) {
@@ -346,6 +353,7 @@ int with_output_checked(int status, PrintableStream& out) {
 int run_command_line(int argc, char** argv, const Registry& registry) {
   reserve_standard_streams();
   PrintableStream out(std::cout);
+  if (terminal_style().colour) out.allow_colours();
   const PrintableStream errors(std::cerr);
   const int status = with_output_checked(status_of(argc, argv, registry, out), out);
   try {

@@ -10,23 +10,34 @@
 namespace misfit {
 namespace {
 
-int extend(ModelLadder& ladder, const Registry& registry, bool json) {
-  LadderListener listener;
-  if (!json) {
-    listener.discovered = [](const Discovery& discovery) { print(discovery); };
-    listener.added = [&](const Rung& rung) { print(ladder.ladder(), rung, ladder.last_fit()); };
-  }
-  extend_ladder(ladder, registry, listener);
+int extend(ModelLadder& ladder, const Registry& registry, const Options& options) {
+  extend_ladder(ladder, registry, ladder_listener(ladder, options));
   report_ladder(ladder);
-  if (json) {
+  if (options.json) {
     print_file(ladder.root().folder.file("ladder.json"));
-  } else {
-    print(ladder.ladder());
+    return 0;
   }
+  if (!options.verbose) std::cout << '\n';
+  print(ladder.ladder());
+  Session& root = ladder.root();
+  print_verdict(verdict_of(root, fit_stage(root)), root.folder.file("report.html"));
   return 0;
 }
 
 }  // namespace
+
+LadderListener ladder_listener(ModelLadder& ladder, const Options& options) {
+  LadderListener listener;
+  if (options.json) return listener;
+  if (options.verbose) {
+    listener.discovered = [](const Discovery& discovery) { print(discovery); };
+    listener.added = [&](const Rung& rung) { print(ladder.ladder(), rung, ladder.last_fit()); };
+  } else {
+    listener.discovered = [](const Discovery& discovery) { print_stage("discover", discovery.verdict); };
+    listener.added = [](const Rung& rung) { print_stage("add", rung.added + ": " + line_of(rung)); };
+  }
+  return listener;
+}
 
 int discover_verb(const Options& options, const Registry& registry) {
   SessionOptions own = options.session;
@@ -40,7 +51,7 @@ int discover_verb(const Options& options, const Registry& registry) {
   });
   if (own.threads == 0) own.threads = threads_of_rank();
   if (!ladder) ladder.emplace(own, registry);
-  if (options.automatic) return extend(*ladder, registry, options.json);
+  if (options.automatic) return extend(*ladder, registry, options);
   Session& session = ladder->last();
   session.options.threads = own.threads;
   const Discovery discovery = discovered(session);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include "misfit/core/shown.h"
 
@@ -60,8 +61,18 @@ std::optional<double> Progress::due(bool at_once) {
   return std::chrono::duration<double>(now - start_).count();
 }
 
+void clear_progress_line() {
+  if (::isatty(STDERR_FILENO) != 1) return;
+  fmt::print(stderr, "{}", clear_line);
+  std::fflush(stderr);
+}
+
 Listener terminal_listener() {
-  return {[](const std::string& line) { std::cerr << line << '\n'; },
+  return {[said = std::make_shared<std::set<std::string>>()](const std::string& line) {
+            if (!said->insert(line).second) return;  // as before, of another fit of the same data
+            clear_progress_line();
+            std::cerr << line << '\n';
+          },
           [](const std::string& name) -> ProgressFn {
             return [line = std::make_shared<Progress>(name)](std::size_t done, std::size_t total) { line->update(done, total); };
           },

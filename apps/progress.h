@@ -35,6 +35,9 @@ class Progress {
   std::chrono::steady_clock::time_point last_;
 };
 
+/// What is printed next begins on a line of its own, also where a line of progress stands.
+void clear_progress_line();
+
 /// Notes as lines on stderr, progress as a line that is rewritten there.
 [[nodiscard]] Listener terminal_listener();
 

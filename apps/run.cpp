@@ -5,41 +5,87 @@
 #include "apps/verbs.h"
 #include "misfit/compare/compare.h"
 #include "misfit/data/estimators.h"
-#include "misfit/workflow/stages.h"
+#include "misfit/workflow/ladder.h"
 
 namespace misfit {
+namespace {
+
+/// What a run prints while it goes on: a line per stage, or its tables; nothing where JSON is asked for.
+class Told {
+ public:
+  explicit Told(const Options& options) : silent_(options.json), tables_(options.verbose) {}
+
+  template <class Result>
+  void result(const std::string& stage, const Result& result) const {
+    if (silent_) return;
+    tables_ ? print(result) : print_stage(stage, line_of(result));
+  }
+  template <class Result>
+  void result(const std::string& stage, const std::string& experiment, const Result& result) const {
+    if (silent_) return;
+    tables_ ? print(experiment, result) : print_stage(stage, line_of(result));
+  }
+  void heading(const Study& study) const {
+    if (silent_) return;
+    Blocks blocks;
+    blocks.heading(study.name);
+    blocks.paragraph(study.question);
+    print(blocks);
+  }
+
+ private:
+  bool silent_, tables_;
+};
+
+/// "track", or with several experiments "track of flight".
+std::string stage_of(const char* stage, const Study& study, std::size_t experiment) {
+  return study.experiments.size() > 1 ? stage + std::string(" of ") + study.experiments[experiment].name : stage;
+}
+
+template <class Results>
+void tell(const Told& told, const char* stage, const Study& study, const Results& results) {
+  for (std::size_t e = 0; e < results.size(); ++e) {
+    if (results[e]) told.result(stage_of(stage, study, e), study.experiments[e].name, *results[e]);
+  }
+}
+
+std::vector<Fit> fits_told(Session& session, const Told& told) {
+  session.options.listener.fitted = [&told](const Fit& fit) { told.result(fit.method, std::vector<Fit>{fit}); };
+  std::vector<Fit> fits = fit_stage(session);
+  session.options.listener.fitted = {};
+  return fits;
+}
+
+}  // namespace
 
 int run_verb(const Options& options, const Registry& registry) {
-  Session session(options.session, registry);
-  const auto videos = track_stage(session);
-  const auto calibration = calibrate_stage(session);
-  const auto attitudes = attitude_stage(session);
-  const std::vector<Fit> fits = fit_stage(session);
-  const Comparison comparison = compare_stage(session, fits);
-  const bool filtered = std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name; });
-  const auto diagnosis = filtered ? diagnose_stage(session) : std::nullopt;
-  const auto discovery = filtered ? discover_stage(session) : std::nullopt;
+  ModelLadder ladder(options.session, registry);
+  Session& session = ladder.root();
+  const Told told(options);
+  told.heading(session.study);
+  tell(told, "track", session.study, track_stage(session));
+  if (const auto calibration = calibrate_stage(session)) told.result("calibrate", *calibration);
+  tell(told, "attitude", session.study, attitude_stage(session));
+  const std::vector<Fit> fits = fits_told(session, told);
+  told.result("compare", compare_stage(session, fits));
+  const bool filtered =
+      std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name && fit.usable(); });
+  if (const auto diagnosis = filtered ? diagnose_stage(session) : std::nullopt) told.result("diagnose", *diagnosis);
+  if (filtered && options.automatic) {
+    extend_ladder(ladder, registry, ladder_listener(ladder, options));
+    diagnose_rungs(ladder);
+  } else if (const auto discovery = filtered ? discover_stage(session) : std::nullopt) {
+    told.result("discover", *discovery);
+  }
+  if (const auto known = known_ladder(session)) told.result("ladder", *known);
   const auto page = report_stage(session, fits);
   if (options.json) {
     print_file(session.folder.file("compare.json"));
     return status_of(fits);
   }
-  std::cout << session.study.name << '\n' << session.study.question << "\n\n";
-  for (std::size_t e = 0; e < videos.size(); ++e) {
-    if (videos[e]) print(session.study.experiments[e].name, *videos[e]);
-  }
-  if (calibration) print(*calibration);
-  for (std::size_t e = 0; e < attitudes.size(); ++e) {
-    if (attitudes[e]) print(session.study.experiments[e].name, *attitudes[e]);
-  }
-  print(fits);
-  print(comparison);
-  if (diagnosis) print(*diagnosis);
-  if (discovery) print(*discovery);
-  if (const auto ladder = known_ladder(session)) print(*ladder);
-  std::cout << "report: " << page.string() << '\n';
+  print_verdict(verdict_of(session, fits), page);
   if (session.study.uncertainty && !known_uncertainty(session) && !known_resampling(session))
-    std::cout << "[uncertainty] is not part of `run`; start it with: misfit uncertainty " << options.session.study << '\n';
+    std::cout << "  [uncertainty] is not part of `run`; start it with: misfit uncertainty " << options.session.study << '\n';
   return status_of(fits);
 }
 

@@ -1,9 +1,12 @@
 #include "apps/terminal.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <streambuf>
 #include <string>
 #include <system_error>
@@ -19,6 +22,7 @@ class PrintableStream::Buffer : public std::streambuf {
   explicit Buffer(std::streambuf* to) : to_(to) {}
 
   Escapes escapes = Escapes::plain;
+  bool colours = false;
 
   [[nodiscard]] std::streambuf* to() const { return to_; }
   [[nodiscard]] int error() const { return error_; }
@@ -44,11 +48,28 @@ class PrintableStream::Buffer : public std::streambuf {
 
  private:
   bool hand_on(std::size_t bytes) {
-    const std::string text = printable(std::string_view(pending_).substr(0, bytes), escapes);
+    const std::string text = passed(std::string_view(pending_).substr(0, bytes));
     pending_.erase(0, bytes);
     const auto size = static_cast<std::streamsize>(text.size());
     errno = 0;
     return noted(to_->sputn(text.data(), size) == size);
+  }
+
+  /// Printable, but for the sequences that may pass.
+  [[nodiscard]] std::string passed(std::string_view text) const {
+    if (!colours) return printable(text, escapes);
+    std::string out;
+    while (!text.empty()) {
+      const std::size_t escape = std::min(text.find('\033'), text.size());
+      out += printable(text.substr(0, escape), escapes);
+      text.remove_prefix(escape);
+      const auto known = std::find_if(terminal_colours::all.begin(), terminal_colours::all.end(),
+                                      [&](std::string_view sequence) { return text.starts_with(sequence); });
+      const std::size_t length = known != terminal_colours::all.end() ? known->size() : std::min<std::size_t>(text.size(), 1);
+      out += known != terminal_colours::all.end() ? std::string(*known) : printable(text.substr(0, length), escapes);
+      text.remove_prefix(length);
+    }
+    return out;
   }
 
   bool noted(bool good) {
@@ -72,10 +93,28 @@ PrintableStream::~PrintableStream() {
 
 void PrintableStream::use_json_escapes() { buffer_->escapes = Escapes::json; }
 
+void PrintableStream::allow_colours() { buffer_->colours = true; }
+
 std::string PrintableStream::failure() {
   stream_.flush();
   if (stream_.good()) return {};
   return buffer_->error() == 0 ? "it cannot be written to" : std::generic_category().message(buffer_->error());
+}
+
+TextStyle terminal_style() {
+  TextStyle style;
+  if (::isatty(STDOUT_FILENO) != 1) return style;
+  constexpr std::size_t narrowest = 40;
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+    style.table = std::max<std::size_t>(size.ws_col - 1, narrowest);
+    style.width = std::min(style.table, style.width);
+  }
+  const char* no_colour = std::getenv("NO_COLOR");
+  const char* terminal = std::getenv("TERM");
+  const bool refused = no_colour != nullptr && *no_colour != '\0';
+  style.colour = !refused && terminal != nullptr && std::string_view(terminal) != "dumb";
+  return style;
 }
 
 void reserve_standard_streams() {

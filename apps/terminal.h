@@ -4,6 +4,8 @@
 #include <ostream>
 #include <string>
 
+#include "misfit/show/blocks.h"
+
 namespace misfit {
 
 /// While it lives, what is written to `stream` goes on with control characters (but newline and tab) and bytes that are no UTF-8 as "\x1b":
@@ -18,6 +20,9 @@ class PrintableStream {
   /// Escapes of JSON ("\u009b") from now on.
   void use_json_escapes();
 
+  /// The sequences of terminal_colours (show/blocks.h) pass from now on.
+  void allow_colours();
+
   /// Flushes; empty if all that was written has arrived, else why not.
   [[nodiscard]] std::string failure();
 
@@ -26,6 +31,10 @@ class PrintableStream {
   std::ostream& stream_;
   std::unique_ptr<Buffer> buffer_;
 };
+
+/// Of standard output: the width of a terminal, at most 110 characters, and colour unless NO_COLOR is set or TERM is "dumb"; a pipe or a
+/// file gets 110 characters without colour.
+[[nodiscard]] TextStyle terminal_style();
 
 /// Opens what stands in for standard input, output and error where the caller has closed them: else the first file of results would get
 /// their numbers, and what is printed would land in it. Writing to a closed standard output fails, as it should.

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "misfit/workflow/session/session.h"
+#include "misfit/workflow/ladder.h"
 
 namespace misfit {
 
@@ -11,9 +11,10 @@ namespace misfit {
 struct Options {
   SessionOptions session;
   bool quiet = false, json = false;
+  bool verbose = false;              ///< tables of every stage instead of a line
   std::vector<std::string> studies;  ///< batch: lists, folders, studies
   std::string effect;                ///< add
-  bool automatic = false;            ///< discover --auto
+  bool automatic = false;            ///< discover --auto, run --auto
   std::string check_video;           ///< track: write the video with the track drawn to this file
 };
 
@@ -33,5 +34,8 @@ int add_verb(const Options& options, const Registry& registry);
 int run_verb(const Options& options, const Registry& registry);
 int init_verb(const Options& options, const Registry& registry);
 int effects_verb(const Options& options, const Registry& registry);
+
+/// Tells what happens while a ladder is extended: a line each, with --verbose the tables, with --json nothing.
+[[nodiscard]] LadderListener ladder_listener(ModelLadder& ladder, const Options& options);
 
 }  // namespace misfit

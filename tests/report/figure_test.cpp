@@ -162,6 +162,7 @@ TEST(Figure, BadNamesAndLengthsAreRefused) {
 TEST(Symbols, KnownWordsAreTypesetAndOthersEscaped) {
   EXPECT_EQ(html_text("C_m of alpha_T < 3"), "C<sub>m</sub> of α<sub>T</sub> &lt; 3");
   EXPECT_EQ(html_text("my_C_m alphabet"), "my_C_m alphabet");
+  EXPECT_EQ(html_text("V^0.5/s and x^2."), "V<sup>0.5</sup>/s and x<sup>2</sup>.");
   EXPECT_EQ(html_text("m/s^2 and kg^-1 and a^b"), "m/s<sup>2</sup> and kg<sup>-1</sup> and a^b");
   EXPECT_EQ(gnuplot_text("C_m run_7"), "C_{m}\u200b run\\_7");
   EXPECT_EQ(gnuplot_text("it's {x}"), "it’s \\{x\\}");

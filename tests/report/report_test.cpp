@@ -7,6 +7,7 @@
 #include "misfit/core/files.h"
 #include "misfit/report/page.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/report/html_faults.h"
 
 namespace misfit::report {
 namespace {
@@ -41,14 +42,75 @@ ReportInput example() {
   return input;
 }
 
+Verdict example_verdict() {
+  Verdict verdict;
+  verdict.kind = VerdictKind::effect_added;
+  verdict.sentence = "drag was missing <b>";
+  ErrorChange error;
+  error.what = "RMS error of w, 32 samples ahead";
+  error.before = {8.0, 0.0, "V"};
+  error.after = Estimate{1.2, 0.0, "V"};
+  verdict.errors = {error};
+  verdict.next = "misfit discover configs/motor";
+  return verdict;
+}
+
 TEST(Report, ThePageNeedsNothingFromElsewhere) {
   const TemporaryFolder folder;
   const std::string page = read_file(write_report(folder.path(), example()));
   for (const char* outside : {"http:", "https:", "src=", "@import", "<link", "<script", "url(h"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   for (std::size_t at = page.find("href="); at != std::string::npos; at = page.find("href=", at + 1)) {
-    EXPECT_EQ(page[at + 6], '#') << page.substr(at, 40);
+    const bool within = page[at + 6] == '#', figure = page.compare(at + 6, 8, "figures/") == 0;
+    EXPECT_TRUE(within || figure) << page.substr(at, 40);
   }
+}
+
+TEST(Report, LinksToFiguresLeadToFilesThatAreThere) {
+  const TemporaryFolder folder;
+  const std::string page = read_file(write_report(folder.path(), example()));
+  std::size_t links = 0;
+  for (std::size_t at = page.find("href=\"figures/"); at != std::string::npos; at = page.find("href=\"figures/", at + 1), ++links) {
+    const std::string file = page.substr(at + 6, page.find('"', at + 6) - at - 6);
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / file)) << file;
+  }
+  EXPECT_GE(links, 9U);
+}
+
+TEST(Report, IsValidHtml) {
+  const TemporaryFolder folder;
+  ReportInput input = example();
+  input.verdict = example_verdict();
+  EXPECT_EQ(html_faults(read_file(write_report(folder.path(), input))), std::vector<std::string>{});
+}
+
+TEST(Report, TheVerdictAndItsPictureComeFirstAndWhatFollowsIsFolded) {
+  const TemporaryFolder folder;
+  ReportInput input = example();
+  input.verdict = example_verdict();
+  const std::string page = read_file(write_report(folder.path(), input));
+  const auto place = [&](const char* text) {
+    EXPECT_NE(page.find(text), std::string::npos) << text;
+    return page.find(text);
+  };
+  EXPECT_LT(place("drag was missing"), place("8 V to 1.2 V (-85 %)"));
+  EXPECT_LT(place("misfit discover configs/motor"), place("<figure>"));
+  EXPECT_LT(place("<figure>"), place("<h2>Results</h2>"));
+  EXPECT_LT(place("<h2>Curves</h2>"), place("<details><summary><h2>"));
+  for (const char* folded : {"Predicted motion and residuals", "Parameters", "Provenance"})
+    EXPECT_NE(page.find(std::string("<details><summary><h2>") + folded), std::string::npos) << folded;
+  const std::string drawn = "id=\"motion_filter_error_flight_P_y-gnuplot_canvas\"";
+  EXPECT_EQ(page.find(drawn), page.rfind(drawn)) << "nothing is drawn twice";
+}
+
+TEST(Report, PagesOnPaperHaveNumbersTheStudyAndTheDate) {
+  const TemporaryFolder folder;
+  ReportInput input = example();
+  input.run.date = "2026-11-22";
+  const std::string page = read_file(write_report(folder.path(), input));
+  expect_parts(page, {"counter(page)", "2026-11-22", "@page"});
+  const std::string style = page.substr(0, page.find("</style>"));
+  EXPECT_EQ(style.find("<canopy>"), std::string::npos) << "a name cannot end the style sheet";
 }
 
 TEST(Report, TextsAreEscaped) {
@@ -86,6 +148,37 @@ TEST(Report, AnEmptyStudyStillGivesAPage) {
   const std::string page = read_file(write_report(folder.path(), {}));
   expect_parts(page, {"<h1>Report</h1>", "No sample was dropped or rejected", "Provenance"});
   EXPECT_EQ(page.find("<figure>"), std::string::npos);
+}
+
+TEST(Page, ColumnsOfNumbersAreAlignedToTheRight) {
+  Page page("title");
+  Blocks blocks;
+  blocks.heading("Results");
+  blocks.table({columns("method|trim|why"), {{"one", "12.0 ± 0.1 deg", "3 reasons"}, {"two", "–", "none"}}});
+  page.show(blocks);
+  expect_parts(page.text(), {"<th scope=\"col\" class=\"number\">trim</th>", "<td class=\"number\">12.0 ± 0.1 deg</td>",
+                             "<td>3 reasons</td>", "<td>one</td>"});
+}
+
+TEST(Page, WhatAFigureShowsIsSaidWithAxesRangesAndNames) {
+  Figure figure;
+  figure.title = "Missing moment against rate";
+  figure.x_label = "rate", figure.x_unit = "deg/s";
+  Panel panel{"moment", "N m", {}, std::nullopt, 0.0, 230.0, true, {}};
+  panel.series = {{"a", "before (p = 1e-19)", Style::line, black, {-80.0, 80.0}, {-17.0, 14.0}, {}, {}}};
+  figure.panels = {panel};
+  EXPECT_EQ(alt_text(figure),
+            "Missing moment against rate; moment in N m: -17 to 14; over rate in deg/s: -80 to 80. Drawn: before (p = 1e-19).");
+}
+
+TEST(HtmlFaults, AreFound) {
+  const auto page = [](const std::string& body) {
+    return "<!DOCTYPE html>\n<html lang=\"en\"><head><title>t</title></head><body>" + body + "</body></html>";
+  };
+  EXPECT_TRUE(html_faults(page("<p>one &amp; two</p><img alt=\"x\" src=\"y\">")).empty());
+  for (const char* body : {"<p>one", "<p>one</div>", "<p><div></div></p>", "a & b", "<i id=\"a\"></i><i id=\"a\"></i>",
+                           "<a href=\"#none\">x</a>", "<th>x</th>", "<p class=x>y</p>", "<img src=\"y\">", "<svg></svg>"})
+    EXPECT_FALSE(html_faults(page(body)).empty()) << body;
 }
 
 TEST(Page, IdsOfDrawingsAreKeptApart) {

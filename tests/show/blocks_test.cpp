@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace misfit {
 namespace {
 
@@ -42,6 +44,39 @@ TEST(Blocks, ATerminalGetsAnExcerptAndTheFileWithTheRest) {
   blocks.list({{"a", "b", "c"}, Tone::plain, {2, "all.json"}});
   blocks.list({{"d", "e"}, Tone::plain, {0, "more.json"}});
   EXPECT_EQ(as_text(blocks), "  a\n  b\n  … and 1 more in all.json\n  2 in more.json\n");
+}
+
+std::size_t longest_line(const std::string& text) {
+  std::size_t longest = 0, here = 0;
+  for (const char c : text) longest = std::max(longest, here = c == '\n' ? 0 : here + 1);
+  return longest;
+}
+
+TEST(Blocks, ANarrowTerminalGetsNarrowLinesAndWholeTables) {
+  Blocks blocks;
+  blocks.paragraph("The residuals of the method are not white, since forces that it does not have drive the motion.", Tone::lead);
+  blocks.table({{{"method"}, {"why it stopped"}, {"time [s]", Align::right}},
+                {{"output_error", "the parameters no longer move by more than the tolerance", "12.5"}}});
+  EXPECT_LE(longest_line(as_text(blocks, {60, 60, false})), 60U);
+  EXPECT_GT(longest_line(as_text(blocks)), 60U);
+  std::string words = as_text(blocks, {60, 60, false});
+  for (const char* word : {"parameters", "longer", "tolerance", "12.5"}) EXPECT_NE(words.find(word), std::string::npos) << words;
+}
+
+TEST(Blocks, ColourIsOnlyWhereItIsAskedForAndTextsCannotBringTheirOwn) {
+  Blocks blocks;
+  blocks.heading("Verdict");
+  blocks.paragraph("Missing: \033[2Jdrag.", Tone::lead);
+  blocks.paragraph("misfit add study drag", Tone::command);
+  EXPECT_EQ(as_text(blocks, {110, 110, true}),
+            "\033[1mVerdict\033[0m\n\033[1;32mMissing: \\x1b[2Jdrag.\033[0m\n  \033[1mmisfit add study drag\033[0m\n");
+  EXPECT_EQ(as_text(blocks).find("\033[1"), std::string::npos);
+}
+
+TEST(Blocks, AStageIsNamedOnceAndItsWordsStandBesideIt) {
+  EXPECT_EQ(stage_line("fit", "one two three four five", {32, 32, false}),
+            "  fit             one two three\n                  four five\n");
+  EXPECT_EQ(stage_line("a_method_with_a_long_name", "done"), "  a_method_with_a_long_name done\n");
 }
 
 TEST(Blocks, SentencesBeginWithACapitalLetterUnlessWithAName) {

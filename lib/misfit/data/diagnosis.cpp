@@ -126,6 +126,13 @@ void fields(Archive& json, MaybeConst<StoredDiagnosis> auto& stored) {
   json("whiteness", d.whiteness), json("nis", d.nis), json("missing", stored.missing), json("seconds", d.seconds);
 }
 
+const ForceMap* find_map(const Diagnosis& diagnosis, const std::string& port, const std::string& quantity) {
+  for (const ForceMap& map : diagnosis.maps) {
+    if (map.port == port && map.quantity == quantity) return &map;
+  }
+  return nullptr;
+}
+
 void write_diagnosis(const fs::path& dir, const Diagnosis& diagnosis) {
   make_writable_folder(dir);
   StoredDiagnosis stored{diagnosis, {}};

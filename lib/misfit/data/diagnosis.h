@@ -76,6 +76,9 @@ struct Diagnosis {
   double seconds = 0.0;
 };
 
+/// nullptr: there is no such map.
+[[nodiscard]] const ForceMap* find_map(const Diagnosis& diagnosis, const std::string& port, const std::string& quantity);
+
 /// diagnosis.json (everything but the missing force) and missing_force.csv (missing_force_NAME.csv for further experiments).
 void write_diagnosis(const std::filesystem::path& dir, const Diagnosis& diagnosis);
 [[nodiscard]] Diagnosis read_diagnosis(const std::filesystem::path& dir);

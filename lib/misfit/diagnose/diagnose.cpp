@@ -19,9 +19,11 @@ namespace {
 
 constexpr double significant = 0.01;  // corrected for all maps
 
-std::string place(double value, const std::string& unit) {
-  const std::string shown = display_unit(unit);
-  return format_value(std::round(10.0 * convert(value, unit, shown)) / 10.0) + " " + shown;
+/// To a tenth of the first digit of `width`.
+std::string place(double value, double width, const std::string& unit) {
+  const double shown = display_value(width, unit);
+  const double step = shown > 0.0 ? std::pow(10.0, std::floor(std::log10(shown)) - 1.0) : 1e-3;
+  return with_display_unit(format_value(std::round(display_value(value, unit) / step) * step), unit);
 }
 
 /// A sentence on the most significant run of neighbouring hats of one sign.
@@ -52,7 +54,7 @@ std::string where_it_fails(const ForceMap& map) {
   const double half = map.x.size() > 1 ? 0.5 * (map.x[1] - map.x[0]) : 0.0;
   return "the model's " + map.port + " is " + in_display_unit(std::abs(value), map.port_unit, sigma) +
          (value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " +
-         place(map.x[best_from] - half, map.quantity_unit) + " and " + place(map.x[best_to] + half, map.quantity_unit);
+         place(map.x[best_from] - half, half, map.quantity_unit) + " and " + place(map.x[best_to] + half, half, map.quantity_unit);
 }
 
 /// What missing forces are sought with: score test of the estimate, sensitivity to a force, and the quantities over which it may vary.

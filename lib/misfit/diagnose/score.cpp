@@ -98,6 +98,9 @@ std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& V, const Ei
 }
 
 /// sᵀ V⁻¹ s with amplitudes V⁻¹ s over the given columns, in the eigenvectors of the correlation matrix whose eigenvalue is not rounding.
+/// Amplitudes leave out those combinations of columns of which the data see less than a hundredth of what they see of the columns: the free
+/// parameters make up for them (hats over a speed whose drag is free: any straight line), so that their size, a hundred times the rest,
+/// would say nothing of the force.
 void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::vector<Eigen::Index>& columns, ScoreResult& out) {
   const Eigen::MatrixXd A = V(columns, columns);
   const Eigen::VectorXd scale = A.diagonal().cwiseSqrt().cwiseInverse();
@@ -111,6 +114,8 @@ void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::
     if (value < min_eigenvalue) continue;
     ++out.dof;
     out.chi2 += rotated[i] * rotated[i] / value;
+    constexpr double min_seen = 1e-4;  // (1/100)²
+    if (value < min_seen) continue;
     amplitude += eigen.eigenvectors().col(i) * (rotated[i] / value);
     variance += eigen.eigenvectors().col(i).cwiseAbs2() / value;
   }

@@ -89,7 +89,11 @@ void show(const Discovery& d, const Subject& subject, Page& page, const Draw& dr
 
 void ladder_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (!input.ladder || input.ladder->rungs.size() < 2) return;
-  page.show(blocks_of(*input.ladder), [&](const std::string&) { draw(ladder_figure(*input.ladder)); });
+  page.show(blocks_of(*input.ladder), [&](const std::string&) {
+    draw(ladder_figure(*input.ladder));
+    page.fold("The rungs in numbers");
+  });
+  page.unfold();
 }
 
 void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw) {

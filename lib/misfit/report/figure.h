@@ -57,6 +57,7 @@ struct Panel {
   double height = 300.0;                         ///< of the axes [px]
   bool zero_line = false;
   std::vector<Mark> y_marks = {};   ///< names instead of numbers
+  std::string ground = {};          ///< colour behind the series where they leave it free; empty: paper
   std::optional<OwnX> beside = {};  ///< stands to the right of the panel before it, with this x axis and the same places along y, unnamed
 };
 

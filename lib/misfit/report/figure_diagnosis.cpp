@@ -40,33 +40,50 @@ double round_step(double most) {
   return power;
 }
 
-std::size_t quantity_index(const MissingForce& missing, const std::string& quantity) {
-  const auto found = std::find(missing.quantities.begin(), missing.quantities.end(), quantity);
-  return found - missing.quantities.begin();
+/// How a map is drawn among others.
+struct MapLook {
+  std::string key, legend, colour;
+};
+
+/// Grey where a map has no estimate although samples lie there: held out, or too few.
+Series gaps_of(const ForceMap& map, double low, double high) {
+  Series gaps{"no_estimate", "no estimate: held out, or too few samples", Style::band, grey, {}, {}, {}, {}};
+  const std::vector<double> x = display_values(map.x, map.quantity_unit), half = half_steps(x);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (map.sigma[i] > 0.0) continue;
+    gaps.x.insert(gaps.x.end(), {x[i] - half[i], x[i] + half[i], nan});
+    gaps.lo.insert(gaps.lo.end(), {low, low, nan});
+    gaps.hi.insert(gaps.hi.end(), {high, high, nan});
+  }
+  return gaps;
 }
 
-}  // namespace
+/// Amplitudes ± 1 sigma where there is an estimate.
+void add_map(const ForceMap& map, const MapLook& look, Panel& panel) {
+  const std::vector<double> x = display_values(map.x, map.quantity_unit), sigma = display_values(map.sigma, map.port_unit);
+  Series amplitude{
+      look.key + "amplitude", look.legend, Style::error_bars, look.colour, x, display_values(map.amplitude, map.port_unit), {}, {}};
+  double low = 0.0, high = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!(sigma[i] > 0.0)) amplitude.y[i] = nan;
+    amplitude.lo.push_back(amplitude.y[i] - sigma[i]);
+    amplitude.hi.push_back(amplitude.y[i] + sigma[i]);
+    if (sigma[i] > 0.0) low = std::min(low, amplitude.lo[i]), high = std::max(high, amplitude.hi[i]);
+  }
+  Series gaps = gaps_of(map, low, high);
+  if (panel.series.empty() && !gaps.x.empty()) panel.series.push_back(std::move(gaps));
+  panel.series.push_back({look.key + "line", "", Style::line, look.colour, x, amplitude.y, {}, {}, 1.2});
+  panel.series.push_back(std::move(amplitude));
+}
 
-Figure map_figure(const ForceMap& map) {
+/// The axes of a map, and how many samples each place has.
+Figure figure_of_map(const ForceMap& map) {
   Figure figure;
-  figure.name = "map_" + as_key(map.port) + "_by_" + as_key(map.quantity);
-  figure.title = fmt::format("Missing {} against {} ({})", map.port, map.quantity, p_equals(map.p_corrected));
-  figure.caption =
-      fmt::format("Estimated unmodelled {} as a function of {} (free parameters re-adjusted), ± 1 sigma. {}", map.port, map.quantity,
-                  map.sentence.empty() ? "No value differs significantly from zero." : "Here " + map.sentence + ".");
   figure.x_label = map.quantity;
   figure.x_unit = display_unit(map.quantity_unit);
   Panel panel{map.port, display_unit(map.port_unit), {}, std::nullopt, 0.0, 230.0, true, {}};
-  const std::vector<double> x = display_values(map.x, map.quantity_unit), sigma = display_values(map.sigma, map.port_unit);
-  Series amplitude{
-      "amplitude", "missing force, ± 1 sigma", Style::error_bars, palette(1), x, display_values(map.amplitude, map.port_unit), {}, {}};
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    amplitude.lo.push_back(amplitude.y[i] - sigma[i]);
-    amplitude.hi.push_back(amplitude.y[i] + sigma[i]);
-  }
-  Series line{"line", "", Style::line, palette(1), x, amplitude.y, {}, {}, 1.2};
-  panel.series = {line, amplitude};
   Panel counts{"samples", "-", {}, std::nullopt, 0.0, 80.0, false, {}};
+  const std::vector<double> x = display_values(map.x, map.quantity_unit);
   Series samples{"samples", "", Style::boxes, grey, x, map.count, {}, {}};
   set_edges(half_steps(x), 0.9, samples);
   for (const double count : map.count) counts.y_step = std::max(counts.y_step, round_step(count));
@@ -75,12 +92,41 @@ Figure map_figure(const ForceMap& map) {
   return figure;
 }
 
+std::size_t quantity_index(const MissingForce& missing, const std::string& quantity) {
+  const auto found = std::find(missing.quantities.begin(), missing.quantities.end(), quantity);
+  return found - missing.quantities.begin();
+}
+
+}  // namespace
+
+Figure map_figure(const ForceMap& map) {
+  Figure figure = figure_of_map(map);
+  figure.name = "map_" + as_key(map.port) + "_by_" + as_key(map.quantity);
+  figure.title = fmt::format("Missing {} against {} ({})", map.port, map.quantity, p_equals(map.p_corrected));
+  figure.caption =
+      fmt::format("Estimated unmodelled {} as a function of {} (free parameters re-adjusted), ± 1 sigma. {}", map.port, map.quantity,
+                  map.sentence.empty() ? "No value differs significantly from zero." : "Here " + map.sentence + ".");
+  add_map(map, {"", "missing force, ± 1 sigma", palette(1)}, figure.panels.front());
+  return figure;
+}
+
+Figure map_change_figure(const ForceMap& before, const ForceMap& after, const std::string& added) {
+  Figure figure = figure_of_map(before);
+  figure.name = "missing_force_before_and_after";
+  figure.title = fmt::format("Missing {} against {}, before and after", before.port, before.quantity);
+  figure.caption =
+      fmt::format("The force that the model lacks at each {}, ± 1 sigma: before, and with {} in it. At zero nothing is missing.",
+                  before.quantity, added);
+  add_map(before, {"before_", fmt::format("before ({})", p_equals(before.p_corrected)), palette(1)}, figure.panels.front());
+  add_map(after, {"after_", fmt::format("with {} ({})", added, p_equals(after.p_corrected)), palette(0)}, figure.panels.front());
+  return figure;
+}
+
 Figure pair_figure(const PairMap& map) {
   Figure figure;
   figure.name = "map_" + as_key(map.port) + "_by_" + as_key(map.quantity_x) + "_and_" + as_key(map.quantity_y);
   figure.title = fmt::format("Missing {} against {} and {} ({})", map.port, map.quantity_x, map.quantity_y, p_equals(map.p_corrected));
-  figure.caption =
-      "Estimated unmodelled force in units of its sigma: beyond 3 is unlikely by chance. White also where there are too few samples.";
+  figure.caption = "Estimated unmodelled force in units of its sigma: beyond 3 is unlikely by chance. Grey: too few samples.";
   figure.x_label = map.quantity_x;
   figure.x_unit = display_unit(map.unit_x);
   figure.z_label = "force over its sigma";
@@ -102,6 +148,7 @@ Figure pair_figure(const PairMap& map) {
   }
   if (!y.empty()) panel.y_range = {y.front() - half_y.front(), y.back() + half_y.back()};
   panel.series = {cells};
+  panel.ground = "#dcdcdc";
   figure.panels = {panel};
   return figure;
 }

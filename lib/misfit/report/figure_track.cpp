@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -44,13 +45,15 @@ Figure track_figure(const std::string& experiment, const Track& track) {
   figure.name = "track_" + file_name_for(experiment);
   figure.title = experiment + ": the marker in the image";
   figure.caption =
-      "P_y and P_z of the marker from the image centre, one sample per field or frame; lost samples are marked at the lower edge. Below: "
-      "the standard deviation of one coordinate at each sample.";
+      "P_y and P_z of the marker from the image centre, one sample per field or frame; lost samples are marked at the lower edge. Below, "
+      "where it is known: the standard deviation of one coordinate at each sample.";
   figure.x_label = "time";
   figure.x_unit = std::string("s");
   Panel sigma{"sigma", "px", {}, std::nullopt, 0.0, 110.0, false};
   sigma.series.push_back({"sigma", "", Style::points, palette(2), track.t, track.sigma, {}, {}});
-  figure.panels = {place_panel("P_y", track, track.P_y, 0), place_panel("P_z", track, track.P_z, 0), std::move(sigma)};
+  figure.panels = {place_panel("P_y", track, track.P_y, 0), place_panel("P_z", track, track.P_z, 0)};
+  const bool known = std::any_of(track.sigma.begin(), track.sigma.end(), [](double v) { return std::isfinite(v); });
+  if (known) figure.panels.push_back(std::move(sigma));
   return figure;
 }
 

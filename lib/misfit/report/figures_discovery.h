@@ -16,6 +16,8 @@ namespace misfit::report {
 
 /// Amplitude of the missing force ± 1 sigma over the places of one quantity; below, how many samples each place has.
 [[nodiscard]] Figure map_figure(const ForceMap& map);
+/// A map of the study's own model and the same with `added` in it, on one pair of axes.
+[[nodiscard]] Figure map_change_figure(const ForceMap& before, const ForceMap& after, const std::string& added);
 /// The same over two quantities: the colour is the amplitude.
 [[nodiscard]] Figure pair_figure(const PairMap& map);
 /// Autocorrelation of the innovations, one panel per channel, with the band that white ones keep to at 95 % of the lags.

@@ -237,6 +237,9 @@ std::string panel_text(const Figure& figure, std::size_t k, const Place& place, 
       "set key at screen {:.5f}, screen {:.5f} left bottom vertical maxrows {} Left reverse samplen 2.2 width 1 spacing 1.15 tc rgb "
       "'#222222'\n",
       (m.left - 12.0) / width, from_below(place.top - 5.0), std::max(place.legend_rows, 1));
+  text += panel.ground.empty()
+              ? "unset object 1\n"
+              : fmt::format("set object 1 rect from graph 0,0 to graph 1,1 fc rgb '{}' fs solid noborder behind\n", panel.ground);
   const std::string y_tics = panel.beside             ? marks_text(blank(figure.panels[k - 1].y_marks))
                              : !panel.y_marks.empty() ? marks_text(panel.y_marks)
                              : panel.y_step > 0.0     ? fmt::format("{}", panel.y_step)

@@ -18,6 +18,7 @@
 #include "misfit/data/track.h"
 #include "misfit/data/track_facts.h"
 #include "misfit/data/uncertainty.h"
+#include "misfit/data/verdict.h"
 
 namespace misfit::report {
 
@@ -36,6 +37,7 @@ struct RunFacts {
   unsigned long seed = 0;
   std::map<std::string, std::string> hashes;           ///< file, as the study names it → hash
   std::vector<std::pair<std::string, double>> stages;  ///< stage → seconds
+  std::string date = {};                               ///< "2026-11-22"
 };
 
 /// What was found of the model of a rung.
@@ -49,6 +51,7 @@ struct RungInput {
 /// All that a report shows. The report computes nothing: what is not here is not in it.
 struct ReportInput {
   std::string study, question;
+  std::optional<Verdict> verdict;
   std::vector<Fit> fits;
   std::vector<ExperimentInput> experiments;
   std::optional<Calibration> calibration;

@@ -1,12 +1,32 @@
 #include "misfit/report/page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
 
 #include "misfit/report/style.h"
 #include "misfit/report/symbols.h"
+#include "misfit/show/rows.h"
 
 namespace misfit::report {
 namespace {
+
+const char* css_of(Tone tone) {
+  switch (tone) {
+    case Tone::lead:
+      return "answer";
+    case Tone::warning:
+      return "bad";
+    case Tone::command:
+      return "command";
+    default:
+      return "";
+  }
+}
 
 std::string anchor(std::size_t number) { return "section-" + std::to_string(number + 1); }
 
@@ -22,15 +42,57 @@ void remove_between(std::string& text, const std::string& begin, const std::stri
   }
 }
 
-std::string table_row(const std::vector<std::string>& cells, const std::vector<Column>& columns, const char* tag) {
+/// "12.0 ± 0.1", "−3", "< 1e-300", "(1.2 ± 0.1)e7": text that begins as a number does.
+bool is_number(const std::string& cell) {
+  const std::size_t first = cell.find_first_not_of(" +-(<≈");
+  return first != std::string::npos && std::isdigit(static_cast<unsigned char>(cell[first])) != 0;
+}
+
+bool holds_nothing(const std::string& cell) { return cell.empty() || cell == kMissing; }
+
+/// Columns that are marked so, and those that hold nothing but numbers.
+std::vector<bool> number_columns(const TableBlock& table) {
+  std::vector<bool> out;
+  for (std::size_t j = 0; j < table.columns.size(); ++j) {
+    bool any = false, all = true;
+    for (const auto& row : table.rows) {
+      if (j >= row.size() || holds_nothing(row[j])) continue;
+      any = true;
+      all = all && is_number(row[j]);
+    }
+    out.push_back(table.columns[j].align == Align::right || (j > 0 && any && all));
+  }
+  return out;
+}
+
+std::string table_row(const std::vector<std::string>& cells, const std::vector<bool>& numbers, bool head) {
   std::string html = "<tr>";
-  constexpr std::size_t short_cell = 32;  // bytes that are not broken into lines
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    const bool number = k < columns.size() && columns[k].align == Align::right;
-    const char* css = number ? " class=\"number\"" : cells[k].size() < short_cell ? " class=\"short\"" : "";
-    html += fmt::format("<{0}{1}>{2}</{0}>", tag, css, html_text(cells[k]));
+    const bool number = k < numbers.size() && numbers[k];
+    const char* css = number ? " class=\"number\"" : "";
+    html += head ? fmt::format("<th scope=\"col\"{}>{}</th>", css, html_text(cells[k]))
+                 : fmt::format("<td{}>{}</td>", css, html_text(cells[k]));
   }
   return html + "</tr>\n";
+}
+
+/// A text within quotation marks in a style sheet.
+std::string css_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = byte > 127 || std::isalnum(byte) != 0 || c == ' ' || c == ',' || c == '.' || c == '-';
+    out += plain ? std::string(1, c) : fmt::format("\\{:06x}", byte);
+  }
+  return out;
+}
+
+/// Number of the page, name of the study and date in the margins of the paper.
+std::string margins_of_paper(const std::string& title, const std::string& date) {
+  return fmt::format(
+      "@page {{ size: A4; margin: 16mm 15mm 18mm; @bottom-left {{ content: \"{} · {}\"; font: 8pt sans-serif; color: #5b6670; }} "
+      "@bottom-right {{ content: counter(page) \" / \" counter(pages); font: 8pt sans-serif; color: #5b6670; }} }}\n",
+      css_text(title), css_text(date));
 }
 
 }  // namespace
@@ -40,7 +102,7 @@ void Page::show(const Blocks& blocks, const std::function<void(const std::string
     if (const auto* heading = std::get_if<Heading>(&block)) {
       heading->level == 1 ? section(heading->text + note) : subsection(heading->text);
     } else if (const auto* text = std::get_if<Paragraph>(&block)) {
-      paragraph(text->text, text->tone == Tone::lead ? "question" : text->tone == Tone::warning ? "bad" : "");
+      paragraph(text->text, css_of(text->tone));
     } else if (const auto* items = std::get_if<List>(&block)) {
       list(*items);
     } else if (const auto* rows = std::get_if<TableBlock>(&block)) {
@@ -51,11 +113,21 @@ void Page::show(const Blocks& blocks, const std::function<void(const std::string
   }
 }
 
+void Page::end_section() {
+  if (sections_.empty()) return;
+  body_ += folded_ ? "</div></details>\n</section>\n" : "</section>\n";
+}
+
 void Page::section(const std::string& heading) {
-  if (!sections_.empty()) body_ += "</section>\n";
-  body_ += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", anchor(sections_.size()), html_text(heading));
+  end_section();
+  folded_ = folds_;
+  const std::string id = anchor(sections_.size());
+  body_ += folded_ ? fmt::format("<section>\n<details><summary><h2>{}</h2></summary><div id=\"{}\">\n", html_text(heading), id)
+                   : fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", id, html_text(heading));
   sections_.push_back(heading);
 }
+
+void Page::fold(const std::string& summary) { body_ += "<details class=\"inner\"><summary>" + html_text(summary) + "</summary><div>\n"; }
 
 void Page::subsection(const std::string& heading) { body_ += "<h3>" + html_text(heading) + "</h3>\n"; }
 
@@ -72,15 +144,49 @@ void Page::list(const List& list) {
 void Page::table(const TableBlock& table) {
   std::vector<std::string> header;
   for (const Column& column : table.columns) header.push_back(column.heading);
-  body_ += "<div class=\"wide\"><table><thead>" + table_row(header, table.columns, "th") + "</thead><tbody>\n";
-  for (const auto& row : table.rows) body_ += table_row(row, table.columns, "td");
+  const std::vector<bool> numbers = number_columns(table);
+  body_ += "<div class=\"wide\" tabindex=\"0\"><table><thead>" + table_row(header, numbers, true) + "</thead><tbody>\n";
+  for (const auto& row : table.rows) body_ += table_row(row, numbers, false);
   body_ += "</tbody></table></div>\n";
 }
 
 void Page::figure(const Figure& figure, const std::string& svg) {
-  body_ += "<figure>\n" + inline_svg(svg, figure.name, figure.title) + "<figcaption>" + html_text(figure.caption);
+  body_ += "<figure>\n<div class=\"wide drawing\" tabindex=\"0\">" + inline_svg(svg, figure.name, alt_text(figure)) + "</div><figcaption>" +
+           html_text(figure.caption);
   for (const std::string& note : figure.notes) body_ += " <span class=\"note\">" + html_text(note) + "</span>";
-  body_ += fmt::format(" <span class=\"files\">figures/{0}.svg, .csv, .gp</span></figcaption>\n</figure>\n", escape_html(figure.name));
+  body_ += fmt::format(
+      " <span class=\"files\"><a href=\"figures/{0}.svg\">SVG</a> <a href=\"figures/{0}.csv\">CSV</a> <a "
+      "href=\"figures/{0}.gp\">gnuplot</a></span></figcaption>\n</figure>\n",
+      escape_html(figure.name));
+}
+
+std::string alt_text(const Figure& figure) {
+  const auto named = [](const std::string& label, const std::string& unit) {
+    return label + (unit.empty() || unit == "-" ? "" : " in " + unit);
+  };
+  const auto range = [](double low, double high) {
+    return low > high ? std::string("no data") : fmt::format("{:.3g} to {:.3g}", low, high);
+  };
+  const auto widen = [](const std::vector<double>& values, double& low, double& high) {
+    for (const double v : values) {
+      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+    }
+  };
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  std::string out = figure.title;
+  double left = infinite, right = -infinite;
+  std::vector<std::string> curves;
+  for (const Panel& panel : figure.panels) {
+    double low = infinite, high = -infinite;
+    for (const Series& s : panel.series) {
+      widen(s.y, low, high);
+      if (!panel.beside) widen(s.x, left, right);
+      if (!s.legend.empty()) curves.push_back(s.legend);
+    }
+    out += fmt::format("{} {}: {}", out.empty() ? "" : ";", named(panel.y_label, panel.y_unit), range(low, high));
+  }
+  if (!figure.x_label.empty()) out += fmt::format("; over {}: {}", named(figure.x_label, figure.x_unit), range(left, right));
+  return curves.empty() ? out + "." : fmt::format("{}. Drawn: {}.", out, fmt::join(curves, "; "));
 }
 
 std::string Page::text() const {
@@ -90,8 +196,13 @@ std::string Page::text() const {
   contents += "</ul></nav>\n";
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, "
          "initial-scale=1\">\n<title>" +
-         escape_html(title_) + "</title>\n<style>\n" + page_style + "</style>\n</head>\n<body>\n<header><p class=\"brand\">misfit</p><h1>" +
-         html_text(title_) + "</h1></header>\n" + contents + "<main>\n" + body_ + (sections_.empty() ? "" : "</section>\n") +
+         escape_html(title_) + "</title>\n<style>\n" + page_style + margins_of_paper(title_, date_) +
+         "</style>\n</head>\n<body>\n<header><p class=\"brand\">misfit</p><h1>" + html_text(title_) + "</h1>" +
+         (question_.empty() ? "" : "<p class=\"question\">" + html_text(question_) + "</p>") + "</header>\n" + contents + "<main>\n" +
+         body_ +
+         (sections_.empty() ? ""
+          : folded_         ? "</div></details>\n</section>\n"
+                            : "</section>\n") +
          "</main>\n</body>\n</html>\n";
 }
 

@@ -14,7 +14,14 @@ namespace misfit::report {
 /// An HTML page under construction. Every text given to it is plain and is escaped here; only `html` takes markup.
 class Page {
  public:
-  explicit Page(std::string title) : title_(std::move(title)) {}
+  explicit Page(std::string title, std::string date = "") : title_(std::move(title)), date_(std::move(date)) {}
+
+  void question(const std::string& text) { question_ = text; }  ///< below the title
+  /// Sections that begin from now on are folded: their heading opens them. In print they are open.
+  void fold_sections() { folds_ = true; }
+  /// What follows up to unfold() is folded, under `summary`.
+  void fold(const std::string& summary);
+  void unfold() { body_ += "</div></details>\n"; }
 
   /// `figures` draws what belongs to a place; `note` is added to the headings of sections.
   void show(const Blocks& blocks, const std::function<void(const std::string& place)>& figures = {}, const std::string& note = "");
@@ -33,10 +40,16 @@ class Page {
   void list(const List& list);
   void table(const TableBlock& table);
 
-  std::string title_, body_;
+  void end_section();
+
+  std::string title_, date_, question_, body_;
+  bool folds_ = false, folded_ = false;
   std::vector<std::string> sections_;
   std::set<std::string> figure_names_;
 };
+
+/// What a figure shows, in a sentence for those who do not see it: title, axes with the ranges that are drawn, curves by their names.
+[[nodiscard]] std::string alt_text(const Figure& figure);
 
 /// An SVG file as an element of a page: without prolog and namespaces, scaling with the page, every id and reference to it led by `prefix`
 /// (ids are shared by all drawings of a page), named `label` for screen readers.

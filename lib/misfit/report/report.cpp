@@ -7,13 +7,16 @@ namespace misfit::report {
 
 std::filesystem::path write_report(const std::filesystem::path& dir, const ReportInput& input) {
   make_writable_folder(dir);
-  Page page(input.study.empty() ? "Report" : input.study);
-  const Draw draw(dir / "figures", page);
-  summary_section(input, page);
+  Page page(input.study.empty() ? "Report" : input.study, input.run.date);
+  page.question(input.question);
+  Draw draw(dir / "figures", page);
+  verdict_section(input, page, draw);
   ladder_section(input, page, draw);
+  summary_section(input, page);
+  curves_section(input, page, draw);
+  page.fold_sections();
   diagnosis_section(input, page, draw);
   discovery_section(input, page, draw);
-  curves_section(input, page, draw);
   uncertainty_section(input, page, draw);
   resampling_section(input, page, draw);
   prediction_section(input, page, draw);

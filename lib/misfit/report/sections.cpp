@@ -32,18 +32,28 @@ std::vector<std::pair<std::string, std::string>> curves_of(const ReportInput& in
 }  // namespace
 
 void Draw::operator()(Figure figure) const {
+  if (figure.name == first_) return;
   figure.name = page_.free_figure_name(figure.name);
   page_.figure(figure, read_file(write_figure(folder_, figure)));
+}
+
+void Draw::first(const Figure& figure) {
+  (*this)(figure);
+  first_ = figure.name;
 }
 
 void curves_section(const ReportInput& input, Page& page, const Draw& draw) {
   const auto names = curves_of(input);
   Blocks differences;
   if (input.comparison) differences.append(curve_difference_blocks(*input.comparison));
-  if (names.empty() && differences.all().empty()) return;
+  if (names.empty()) return;
   page.section("Curves");
-  for (const auto& [curve, of] : names) draw(curve_figure(curve, of, input.fits, input.references));
+  draw(curve_figure(names.front().first, names.front().second, input.fits, input.references));
+  if (names.size() == 1 && differences.all().empty()) return;
+  page.fold(names.size() > 1 ? "More curves, and where they differ" : "Where they differ");
+  for (std::size_t k = 1; k < names.size(); ++k) draw(curve_figure(names[k].first, names[k].second, input.fits, input.references));
   page.show(differences);
+  page.unfold();
 }
 
 void uncertainty_section(const ReportInput& input, Page& page, const Draw& draw) {
@@ -132,6 +142,7 @@ void notes_section(const ReportInput& input, Page& page) {
 void provenance_section(const ReportInput& input, Page& page) {
   const RunFacts& run = input.run;
   TableBlock facts{columns("|"), {{"misfit", run.version}, {"commit", run.commit}, {"seed", std::to_string(run.seed)}}};
+  if (!run.date.empty()) facts.rows.push_back({"date", run.date});
   if (!run.command.empty()) facts.rows.push_back({"command", run.command});
   TableBlock files{columns("file|hash (FNV-1a, 64 bit)")};
   for (const auto& [file, hash] : run.hashes) files.rows.push_back({file, hash});

@@ -14,13 +14,17 @@ class Draw {
  public:
   Draw(std::filesystem::path folder, Page& page) : folder_(std::move(folder)), page_(page) {}
   void operator()(Figure figure) const;
+  /// The same, on the first screen: when its section comes to it, it is not drawn again.
+  void first(const Figure& figure);
 
  private:
   std::filesystem::path folder_;
   Page& page_;
+  std::string first_;
 };
 
 // The sections of the page in their order; each is left out when there is nothing to show.
+void verdict_section(const ReportInput& input, Page& page, Draw& draw);
 void summary_section(const ReportInput& input, Page& page);
 void ladder_section(const ReportInput& input, Page& page, const Draw& draw);
 void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw);

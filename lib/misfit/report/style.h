@@ -2,42 +2,59 @@
 
 namespace misfit::report {
 
-/// Style sheet of the page: sober, readable on narrow screens and in print; no font or picture from elsewhere.
+/// Style sheet of the page: sober, light or dark as the reader's screen is, readable on narrow screens and in print; no font or picture
+/// from elsewhere. Drawings are made for white paper: on a dark screen they are inverted, with their hues turned back.
 inline constexpr const char* page_style = R"css(
-:root { --ink: #1d2327; --soft: #5b6670; --line: #d9dee2; --accent: #0b5c8c; --bad: #a63a00; }
+:root { color-scheme: light dark; --paper: #fff; --box: #f2f6f9; --ink: #1d2327; --soft: #5b6670; --line: #d9dee2; --accent: #0b5c8c;
+  --bad: #a63a00; }
+@media screen and (prefers-color-scheme: dark) { :root { --paper: #191919; --box: #22292e; --ink: #e4e7ea; --soft: #a3adb5; --line: #3a4147;
+  --accent: #7cc0ea; --bad: #ff9d66; } figure svg { filter: invert(.902) hue-rotate(180deg); } }
 * { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 62rem; padding: 1.5rem 1.25rem 4rem; color: var(--ink); background: #fff;
-  font: 16px/1.55 "Segoe UI", "Helvetica Neue", Helvetica, Arial, "DejaVu Sans", sans-serif; }
-header { border-bottom: 2px solid var(--ink); margin-bottom: 1rem; }
+html { scroll-padding-top: 5rem; }
+body { margin: 0 auto; max-width: 66rem; padding: 1rem 1.25rem 4rem; color: var(--ink); background: var(--paper);
+  font: 16px/1.5 "Segoe UI", "Helvetica Neue", Helvetica, Arial, "DejaVu Sans", sans-serif; }
 .brand { margin: 0; color: var(--soft); letter-spacing: .12em; text-transform: uppercase; font-size: .75rem; }
-h1 { margin: .1rem 0 .6rem; font-size: 1.8rem; line-height: 1.2; font-weight: 600; overflow-wrap: anywhere; }
-h2 { margin: 2.4rem 0 .6rem; padding-bottom: .25rem; border-bottom: 1px solid var(--line); font-size: 1.3rem; font-weight: 600; }
-h3 { margin: 1.6rem 0 .4rem; font-size: 1.05rem; font-weight: 600; }
-p { margin: .5rem 0; max-width: 46rem; }
-.question { font-size: 1.15rem; font-style: italic; }
-nav ul { list-style: none; display: flex; flex-wrap: wrap; gap: .2rem 1.2rem; padding: 0; margin: 0; font-size: .9rem; }
+h1 { margin: .1rem 0 .4rem; font-size: 1.7rem; line-height: 1.2; font-weight: 600; overflow-wrap: anywhere; }
+h2 { margin: 1.6rem 0 .5rem; padding-bottom: .25rem; border-bottom: 1px solid var(--line); font-size: 1.25rem; font-weight: 600; }
+h3 { margin: 1.4rem 0 .4rem; font-size: 1.05rem; font-weight: 600; }
+p { margin: .5rem 0; max-width: 50rem; }
+nav { position: sticky; top: 0; z-index: 1; padding: .4rem 0; background: var(--paper); border-bottom: 2px solid var(--ink); }
+nav ul { list-style: none; display: flex; flex-wrap: wrap; gap: .1rem 1.1rem; padding: 0; margin: 0; font-size: .85rem; }
 a { color: var(--accent); text-decoration: none; }
 a:hover { text-decoration: underline; }
 ul { padding-left: 1.2rem; }
-main li { max-width: 46rem; margin: .2rem 0; }
-.wide { overflow-x: auto; margin: .8rem 0; }
-table { border-collapse: collapse; font-size: .92rem; }
-th, td { padding: .32rem .9rem .32rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
+main li { max-width: 50rem; margin: .2rem 0; }
+section:first-child { margin-top: 1rem; padding: .1rem 1.25rem .6rem; background: var(--box); border-left: 4px solid var(--accent); }
+section:first-child figure { margin: .8rem 0 .4rem; }
+.answer { font-size: 1.2rem; font-weight: 600; line-height: 1.35; }
+.question { font-style: italic; color: var(--soft); }
+.command { font: .9rem "DejaVu Sans Mono", Consolas, monospace; overflow-wrap: anywhere; }
+summary { cursor: pointer; }
+summary h2 { display: inline-block; width: calc(100% - 1.6rem); margin: .5rem 0; font-size: 1.1rem; }
+details.inner { margin: .8rem 0; }
+details.inner > summary { color: var(--accent); }
+.wide { overflow-x: auto; margin: .6rem 0; }
+table { border-collapse: collapse; font-size: .9rem; }
+th, td { padding: .28rem 1rem .28rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
 thead th { border-bottom: 1.5px solid var(--ink); font-weight: 600; }
-.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-.short { white-space: nowrap; }
+th.number, td.number { text-align: right; font-variant-numeric: tabular-nums; }
+td.number { white-space: nowrap; }
 .bad { color: var(--bad); }
 .warnings { list-style: "!  "; }
 .warnings li::marker { color: var(--bad); font-weight: 600; }
-figure { margin: 1.4rem 0 2rem; }
+figure { margin: 1rem 0 1.4rem; }
 figure svg { display: block; width: 100%; height: auto; }
-figcaption { max-width: 46rem; margin-top: .3rem; font-size: .9rem; color: var(--soft); }
+figcaption { max-width: 50rem; margin-top: .3rem; font-size: .9rem; color: var(--soft); }
 figcaption .note { display: block; color: var(--bad); }
-figcaption .files { display: block; font-size: .78rem; }
+figcaption .files { white-space: nowrap; font-size: .8rem; }
 code { font: .85rem "DejaVu Sans Mono", Consolas, monospace; overflow-wrap: anywhere; }
-@media (max-width: 40rem) { body { padding: 1rem .8rem 3rem; font-size: 15px; } h1 { font-size: 1.4rem; } }
-@media print { body { max-width: none; padding: 0; font-size: 10.5pt; } nav { display: none; } a { color: inherit; }
-  figure, table { break-inside: avoid; } h2, h3 { break-after: avoid; } .wide { overflow: visible; } }
+@media (max-width: 44rem) { body { padding: .8rem .8rem 3rem; font-size: 15px; } h1 { font-size: 1.35rem; } .answer { font-size: 1.05rem; }
+  nav { position: static; } html { scroll-padding-top: 0; } section:first-child { padding: .1rem .8rem .4rem; }
+  .drawing svg { width: 42rem; } }
+@media print { body { max-width: none; padding: 0; font-size: 10pt; } nav { display: none; } a { color: inherit; } h2 { margin-top: 1rem; }
+  figure, tr, .warnings li { break-inside: avoid; } h2, h3, summary { break-after: avoid; } .wide { overflow: visible; }
+  table { font-size: 8.5pt; } td.number { white-space: normal; } summary { list-style: none; } figcaption .files { display: none; }
+  details::details-content { content-visibility: visible; height: auto; } details:not([open])::details-content { display: block; } }
 )css";
 
 }  // namespace misfit::report

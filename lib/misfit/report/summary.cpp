@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "misfit/core/display.h"
+#include "misfit/report/figures_discovery.h"
 #include "misfit/report/sections.h"
 #include "misfit/show/results.h"
+#include "misfit/show/verdict.h"
 
 namespace misfit::report {
 namespace {
@@ -15,24 +17,16 @@ std::string driven_sentence(const Fit& fit) {
   return fit.method + ": the motion is driven by forces that the model does not describe, estimated as a random force (see Parameters)";
 }
 
+/// What the verdict does not say: methods without a result, references, and without a verdict the trims and what drives the motion.
 std::vector<std::string> findings(const ReportInput& input) {
   std::vector<std::string> sentences;
   for (const Fit& fit : input.fits) {
-    if (!fit.usable()) {
-      sentences.push_back(fit.method + " gives no result: " + (fit.message.empty() ? to_string(fit.status) : fit.message));
-    } else if (fit.trim) {
+    if (!fit.usable()) sentences.push_back(fit.method + " gives no result: " + (fit.message.empty() ? to_string(fit.status) : fit.message));
+    if (input.verdict) continue;
+    if (fit.usable() && fit.trim)
       sentences.push_back(
           fmt::format("{} finds the trim at {}", fit.method, in_display_unit(fit.trim->value, fit.trim->unit, fit.trim->sigma)));
-    }
     if (fit.driven) sentences.push_back(driven_sentence(fit));
-  }
-  for (const Fit& fit : input.fits) {
-    for (const CurveEstimate& curve : fit.curves) {
-      if (fit.usable() && !curve.informative) {
-        sentences.push_back(
-            fmt::format("curve {} of {} is not informative{}", curve.name, fit.method, curve.why.empty() ? "" : ": " + curve.why));
-      }
-    }
   }
   if (input.comparison) {
     for (const TrimDifference& d : input.comparison->trims) {
@@ -43,18 +37,57 @@ std::vector<std::string> findings(const ReportInput& input) {
   return as_sentences(sentences);
 }
 
+/// Of the method with a random force where it was used, else of the last one that predicts.
+const Fit* leading_fit(const ReportInput& input) {
+  const Fit* last = nullptr;
+  for (const Fit& fit : input.fits) {
+    if (fit.predictions.empty()) continue;
+    if (fit.usable() || last == nullptr) last = &fit;
+    if (fit.usable() && !fit.force.empty()) return &fit;
+  }
+  return last;
+}
+
+/// The picture in which one sees the verdict: the missing force before and after, or where it is missing, or the camera's residuals, or the
+/// motion that the model follows or does not.
+std::optional<Figure> picture_of(const ReportInput& input) {
+  const Verdict& verdict = *input.verdict;
+  if (verdict.kind == VerdictKind::calibration && input.calibration && !input.calibration->residuals.empty())
+    return calibration_residual_figure(*input.calibration);
+  const bool maps = input.diagnosis && !input.diagnosis->maps.empty();
+  if (maps && input.rung && input.rung->diagnosis) {
+    const ForceMap& before = input.diagnosis->maps.front();
+    if (const ForceMap* after = find_map(*input.rung->diagnosis, before.port, before.quantity))
+      return map_change_figure(before, *after, input.rung->added);
+  }
+  if (maps) return map_figure(input.diagnosis->maps.front());
+  const Fit* fit = leading_fit(input);
+  return fit == nullptr ? std::nullopt : std::optional(motion_figure(fit->method, fit->predictions.front(), std::nullopt));
+}
+
 }  // namespace
+
+void verdict_section(const ReportInput& input, Page& page, Draw& draw) {
+  if (!input.verdict) return;
+  page.show(blocks_of(*input.verdict));
+  if (const auto picture = picture_of(input)) draw.first(*picture);
+}
 
 void summary_section(const ReportInput& input, Page& page) {
   Blocks out;
-  out.heading("Summary");
-  out.paragraph(input.question, Tone::lead);
-  out.subheading("Findings");
-  out.list({findings(input)});
-  if (input.comparison) out.table(method_table(*input.comparison));
-  if (!input.fits.empty()) out.subheading("Methods");
-  out.append(status_blocks(input.fits));
+  const bool climbed = input.ladder && input.ladder->rungs.size() > 1;
+  out.heading(std::string(input.verdict ? "Results" : "Summary") + (climbed ? " (rung 0, the study's model)" : ""));
   page.show(out);
+  Blocks results;
+  if (input.comparison) results.table(method_table(*input.comparison));
+  page.show(results);
+  Blocks found;
+  found.list({findings(input)});
+  page.show(found);
+  if (input.fits.empty()) return;
+  page.fold("How the methods ended, and their warnings");
+  page.show(status_blocks(input.fits));
+  page.unfold();
 }
 
 void parameters_section(const ReportInput& input, Page& page) {

@@ -47,6 +47,9 @@ std::size_t power_length(const std::string& text, std::size_t at) {
   if (end < text.size() && text[end] == '-') ++end;
   const std::size_t digits = end;
   while (end < text.size() && is_digit(text[end])) ++end;
+  if (end > digits && end + 1 < text.size() && text[end] == '.' && is_digit(text[end + 1])) {  // V^0.5
+    for (++end; end < text.size() && is_digit(text[end]);) ++end;
+  }
   return end > digits ? end - at : 0;
 }
 

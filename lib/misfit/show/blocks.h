@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -11,7 +12,7 @@ namespace misfit {
 
 // What is shown of a result: a list of blocks, written to a terminal by as_text() and to a page by report/page.h.
 
-enum class Tone { plain, lead, warning };  ///< lead: the answer itself, before everything else
+enum class Tone { plain, lead, warning, command };  ///< lead: the answer itself, before everything else; command: what to type
 
 /// Level 1: of a result; 2: of a part of it.
 struct Heading {
@@ -82,7 +83,23 @@ class Blocks {
 [[nodiscard]] std::string as_sentence(std::string text);
 [[nodiscard]] std::vector<std::string> as_sentences(std::vector<std::string> texts);
 
-/// For a terminal: paragraphs wrapped at 110 characters, columns aligned, warnings led by "! ".
-[[nodiscard]] std::string as_text(const Blocks& blocks);
+/// How a terminal gets text.
+struct TextStyle {
+  std::size_t width = 110;                                      ///< [characters] of a line
+  std::size_t table = std::numeric_limits<std::size_t>::max();  ///< of a line of a table
+  bool colour = false;  ///< headings, the answer and warnings stand out (bold, colours of the terminal)
+};
+
+/// For a terminal: paragraphs and the longest cells of tables wrapped at the width, columns aligned, warnings led by "! ". With colour all
+/// texts are printable (core/shown.h), and the only control characters are those of terminal_colours.
+[[nodiscard]] std::string as_text(const Blocks& blocks, const TextStyle& style = {});
+
+/// What a line of a stage begins with, and what it says, wrapped beside it: "  calibrate     h_c 0.152 m, …".
+[[nodiscard]] std::string stage_line(const std::string& stage, const std::string& words, const TextStyle& style = {});
+
+namespace terminal_colours {
+inline constexpr std::string_view bold = "\033[1m", green = "\033[1;32m", yellow = "\033[33m", faint = "\033[2m", off = "\033[0m";
+inline constexpr std::array all{bold, green, yellow, faint, off};
+}  // namespace terminal_colours
 
 }  // namespace misfit

@@ -130,8 +130,8 @@ class BeforeAndAfter {
     }
   }
   static double strength(const Rung& r) {
-    const auto found = std::find_if(r.force.begin(), r.force.end(), [](const auto& f) { return f.second.unit != "s"; });
-    return found == r.force.end() ? std::nan("") : found->second.value;
+    const auto force = force_strength(r.force);
+    return force ? force->value : std::nan("");
   }
 };
 

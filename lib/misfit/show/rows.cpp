@@ -51,7 +51,16 @@ TableBlock subjects_table(const std::string& what, const std::vector<Subject>& s
 
 std::string shown(const Estimate& e) { return in_display_unit(e.value, e.unit, e.sigma); }
 
+std::string briefly(const Estimate& e) {
+  return e.sigma > 0.0 ? shown(e) : with_display_unit(fmt::format("{:.3g}", display_value(e.value, e.unit)), e.unit);
+}
+
 std::string shown(const std::optional<Estimate>& e) { return e ? shown(*e) : kMissing; }
+
+std::optional<Estimate> force_strength(const std::map<std::string, Estimate>& force) {
+  const auto found = std::find_if(force.begin(), force.end(), [](const auto& f) { return f.second.unit != "s"; });
+  return found == force.end() ? std::nullopt : std::optional(found->second);
+}
 
 std::string shown_drop(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.1f}", *value) : kMissing;

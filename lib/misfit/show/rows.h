@@ -46,8 +46,12 @@ inline constexpr const char* kMissing = "–";
 
 /// An estimate in a table with others: "12.03 ± 0.21 deg".
 [[nodiscard]] std::string shown(const Estimate& e);
+/// For a sentence: without a sigma, to three significant digits.
+[[nodiscard]] std::string briefly(const Estimate& e);
 /// kMissing without a value, as the next two.
 [[nodiscard]] std::string shown(const std::optional<Estimate>& e);
+/// The strength of a random force, the first in the order of its ports: without correlation times. nullopt: there is none.
+[[nodiscard]] std::optional<Estimate> force_strength(const std::map<std::string, Estimate>& force);
 /// With one decimal and, for a change, its sign.
 [[nodiscard]] std::string shown_drop(const std::optional<double>& value);
 [[nodiscard]] std::string shown_gain(const std::optional<double>& value);

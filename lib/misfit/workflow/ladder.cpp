@@ -285,9 +285,15 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   return ladder_.rungs.back();
 }
 
+void diagnose_rungs(ModelLadder& ladder) {
+  std::ignore = diagnose_stage(ladder.root());
+  if (ladder.ladder().rungs.size() > 1) std::ignore = diagnose_stage(ladder.last());
+}
+
 void report_ladder(ModelLadder& ladder) {
   Session& session = ladder.root();
   try {
+    diagnose_rungs(ladder);
     session.note("report: " + report_stage(session, fit_stage(session)).lexically_normal().string());
   } catch (const RunError& error) {
     session.note(std::string("no report: ") + error.what());  // the rung is valid without a report

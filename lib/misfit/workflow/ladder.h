@@ -77,6 +77,9 @@ void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderLi
 /// The same options for another study, its results in the out/ beside it.
 [[nodiscard]] SessionOptions options_for(const SessionOptions& options, const std::filesystem::path& study);
 
+/// Diagnoses the study's own model and that of the last rung: where the force was missing, before and after.
+void diagnose_rungs(ModelLadder& ladder);
+
 /// The report of the study, written anew after its ladder has grown: a note has its path, or why there is none.
 void report_ladder(ModelLadder& ladder);
 

@@ -1,4 +1,7 @@
+#include <fmt/chrono.h>
 #include <fmt/format.h>
+
+#include <ctime>
 
 #include "misfit/core/files.h"
 #include "misfit/core/version.h"
@@ -34,6 +37,7 @@ report::RunFacts facts_of(const Session& session) {
   report::RunFacts facts;
   facts.version = version();
   facts.commit = commit();
+  facts.date = fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr)));
   facts.command = session.options.command;
   facts.seed = session.study.seed;
   for (const auto& [name, stage] : session.folder.stages()) {
@@ -86,14 +90,16 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   for (const char* file : {"resampling.json", "bootstrap.json", "profile.json"}) {
     if (input.resampling && fs::exists(session.folder.file(file))) files.push_back(session.folder.file(file));
   }
+  input.verdict = verdict_of(session, fits);
   const auto inputs = session.inputs(session.study.text + fmt::format("{}", fmt::join(input.notes, "\n")), files);
-  session.do_stage("report", inputs, {"report.html"}, [&](const fs::path& dir) {
+  session.do_stage("report", inputs, {"report.html", "verdict.json"}, [&](const fs::path& dir) {
     input.study = session.study.name;
     input.question = session.study.question;
     input.fits = fits;
     input.references = references(session);
     input.run = facts_of(session);
     report::write_report(dir, input);
+    write_verdict(dir / "verdict.json", *input.verdict);
   });
   return session.folder.file("report.html");
 }

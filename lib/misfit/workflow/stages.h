@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "misfit/data/ladder.h"
+#include "misfit/data/verdict.h"
 #include "misfit/workflow/assess/assess.h"
 #include "misfit/workflow/uncertainty/uncertainty.h"
 
@@ -16,6 +17,10 @@ namespace misfit {
 
 /// figures/ and report.html; returns the page.
 std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fits);
+
+/// What the study has come to, from what is on disk and still belongs to these fits: the sentence that a run ends with. The report's
+/// stage writes it to verdict.json.
+[[nodiscard]] Verdict verdict_of(Session& session, const std::vector<Fit>& fits);
 
 /// Both, and the files they are in; what is on disk but of another fit is said in `notes`.
 struct Findings {

@@ -63,6 +63,7 @@ std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& nam
       write_fit(dir / stage, run.at.fitted.fit);
     });
     fits.push_back(read_fit(session.folder.file(stage)));
+    if (session.options.listener.fitted) session.options.listener.fitted(fits.back());
     progress(k + 1, names.size());
   }
   return fits;

@@ -16,6 +16,8 @@
 
 namespace misfit {
 
+struct Fit;
+
 /// Hears of long work while it goes on. An empty function: nobody listens.
 struct Listener {
   std::function<void(const std::string& line)> note;  ///< what is made again, and why; where work continues
@@ -23,6 +25,7 @@ struct Listener {
   std::function<ProgressFn(const std::string& name)> progress;
   /// A fit of this name begins: what is returned is told of the searches in it, and destroyed when it has ended.
   std::function<Watch::Hearer(const std::string& name)> searches;
+  std::function<void(const Fit&)> fitted = {};  ///< by one of the methods of a study; the others are still to come
 
   void hear(const std::string& line) const;  ///< a note
   /// Work of this name begins: to be called with (done, total) as long as it goes on.

@@ -1,0 +1,29 @@
+#include "misfit/data/verdict.h"
+
+#include <cmath>
+
+#include "misfit/data/json_fields.h"
+
+namespace misfit {
+
+std::optional<double> ErrorChange::per_cent() const {
+  if (!after || !(std::abs(before.value) > 0.0) || !std::isfinite(after->value)) return std::nullopt;
+  return 100.0 * (after->value / before.value - 1.0);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<ErrorChange> auto& e) {
+  json("what", e.what), json("before", e.before), json("after", e.after);
+  json.derived("change_per_cent", e.per_cent());
+  json("remark", e.remark);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<Verdict> auto& v) {
+  json("verdict", NameOf(v.kind, verdict_names)), json("sentence", v.sentence), json("where", v.where);
+  json("errors", v.errors), json("trim", v.trim), json("next", v.next);
+}
+
+void write_verdict(const std::filesystem::path& path, const Verdict& verdict) { write_json(path, verdict); }
+
+}  // namespace misfit

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/data/fit.h"
+
+namespace misfit {
+
+enum class VerdictKind {
+  nothing_missing,   ///< no effect is needed
+  random_force,      ///< the same; what drives the motion is a random force
+  not_searched,      ///< something is missing; discover has not been asked which effect
+  missing,           ///< one effect is named
+  several_possible,  ///< one of several that the data cannot distinguish
+  unknown_form,      ///< something is missing that no effect of the library explains
+  effect_added,      ///< the ladder has what was missing, and nothing more is
+  calibration,       ///< the camera's calibration is to be mended first
+  not_decided,       ///< not tested to the end, or the best candidate was rejected
+  no_result          ///< no method could be used
+};
+inline constexpr std::array<const char*, 10> verdict_names = {"nothing_missing",  "random_force", "not_searched", "missing",
+                                                              "several_possible", "unknown_form", "effect_added", "calibration",
+                                                              "not_decided",      "no_result"};
+
+/// An error of the model before and after an effect is in it.
+struct ErrorChange {
+  std::string what;               ///< "RMS error of P_y, 32 samples ahead"
+  Estimate before;                ///< SI
+  std::optional<Estimate> after;  ///< missing: no effect was added
+  std::string remark;             ///< in words: "1.1 % of the motion"
+
+  /// 100 (after/before − 1); nullopt where either is not there.
+  [[nodiscard]] std::optional<double> per_cent() const;
+};
+
+/// What a study has come to: one sentence from calibration, fits, diagnosis, discovery and ladder together.
+struct Verdict {
+  VerdictKind kind = VerdictKind::no_result;
+  std::string sentence;
+  std::string where;                ///< where the study's own model fails, in a sentence; empty: nowhere that stands out
+  std::vector<ErrorChange> errors;  ///< the most telling first
+  std::optional<ErrorChange> trim;  ///< before and after, beside the references of the study (remark)
+  std::string next;                 ///< what to do: a command, or a line of the study and a command; empty: nothing
+};
+
+/// verdict.json:
+/// {"verdict","sentence","where","errors":[{"what","before":{"value","sigma","unit"},"after","change_per_cent","remark"}],"trim","next"};
+/// null for what is not known.
+void write_verdict(const std::filesystem::path& path, const Verdict& verdict);
+
+}  // namespace misfit

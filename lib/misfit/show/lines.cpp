@@ -1,0 +1,129 @@
+#include "misfit/show/lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/text.h"
+#include "misfit/data/curve_coefficient.h"
+#include "misfit/show/rows.h"
+
+namespace misfit {
+namespace {
+
+constexpr std::size_t most_named = 4;
+
+std::string joined(const std::vector<std::string>& parts, const char* between) {
+  std::string out;
+  for (const std::string& part : parts) out += (out.empty() ? "" : between) + part;
+  return out;
+}
+
+/// "P_y 1.78 px, 1.1 % of the motion" of "residuals of P_y in 'flight'": "RMS 1.78 px, 1.1 % of the motion; held out: …".
+std::vector<std::string> residuals(const Fit& fit) {
+  constexpr std::string_view begin = "residuals of ";
+  std::vector<std::string> out;
+  for (const auto& [name, words] : fit.facts) {
+    if (!name.starts_with(begin)) continue;
+    const std::string fitted = words.substr(0, words.find("; held out"));
+    if (fitted.starts_with("RMS ")) out.push_back(name.substr(begin.size(), name.find(" in '") - begin.size()) + " " + fitted.substr(4));
+    if (out.size() == most_named) break;
+  }
+  return out;
+}
+
+std::vector<std::string> scalars(const Fit& fit) {
+  std::vector<std::string> out;
+  for (const auto& [name, e] : fit.parameters) {
+    if (!is_curve_coefficient(name) && out.size() < most_named) out.push_back(name + " " + shown(e));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string line_of(const TrackFacts& facts) {
+  const std::vector<std::string> all = sentences(facts);
+  return all.empty() ? "" : all.back();
+}
+
+std::string line_of(const Calibration& c) {
+  std::vector<std::string> parts;
+  for (const std::string& name : c.names) {
+    const auto found = std::find(camera_parameter_names.begin(), camera_parameter_names.end(), name);
+    if (found == camera_parameter_names.end()) continue;
+    parts.push_back(name + " " +
+                    shown(Estimate{c.value(name), c.sigma(name), camera_parameter_units[found - camera_parameter_names.begin()]}));
+  }
+  std::string out = joined(parts, ", ");
+  if (!c.residuals.empty()) out += fmt::format("; residuals {} RMS", briefly({c.rms_px, 0.0, "px"}));
+  return out;
+}
+
+std::string line_of(const Attitude& a) {
+  std::vector<double> known;
+  std::copy_if(a.alpha_T.begin(), a.alpha_T.end(), std::back_inserter(known), [](double v) { return std::isfinite(v); });
+  if (known.empty()) return "no sample could be read";
+  const auto [least, most] = std::minmax_element(known.begin(), known.end());
+  return fmt::format("{} samples, alpha_T from {} to {}", known.size(), briefly({*least, 0.0, "rad"}), briefly({*most, 0.0, "rad"}));
+}
+
+std::string line_of(const Fit& fit) {
+  if (!fit.usable()) return to_string(fit.status) + ": " + fit.message.substr(0, fit.message.find(": "));
+  std::vector<std::string> parts;
+  if (fit.trim) parts.push_back("trim " + shown(*fit.trim));
+  if (!fit.trim) parts.push_back(joined(scalars(fit), ", "));
+  const std::vector<std::string> errors = residuals(fit);
+  if (!errors.empty()) parts.push_back("RMS error of " + joined(errors, ", of "));
+  if (const auto force = force_strength(fit.force)) parts.push_back("random force " + shown(*force));
+  if (fit.status == FitStatus::not_converged) parts.push_back("not converged: " + fit.message);
+  std::erase(parts, "");
+  const auto silent = std::count_if(fit.curves.begin(), fit.curves.end(), [](const CurveEstimate& curve) { return !curve.informative; });
+  if (silent > 0) parts.emplace_back("damping not informative, the motion being driven");
+  return joined(parts, "; ");
+}
+
+std::string line_of(const Comparison& c) {
+  if (c.motion && !c.motion->sentences.empty()) return c.motion->sentences.front();
+  return c.trims.empty() ? "" : c.trims.front().sentence;
+}
+
+std::string line_of(const Diagnosis& d) {
+  if (d.maps.empty()) return "no map could be made";
+  const ForceMap& first = d.maps.front();
+  const std::string words = first.sentence.empty() ? std::string("the model fails nowhere that stands out") : first.sentence;
+  return fmt::format("{} ({})", words, p_equals(first.p_corrected));
+}
+
+std::string line_of(const Discovery& d) {
+  std::vector<const Candidate*> best;
+  for (const Candidate& c : d.candidates) {
+    if (best.size() < 3) best.push_back(&c);
+  }
+  std::string out = fmt::format("{} effects tested", d.candidates.size());
+  for (const Candidate* c : best)
+    out += (c == best.front() ? "; nearest: " : ", ") + effect_at(c->effect, c->roles) + " (" + p_equals(c->p_value) + ")";
+  return out;
+}
+
+std::string line_of(const Ladder& ladder) {
+  std::string out;
+  for (const Rung& rung : ladder.rungs) out += rung.added.empty() ? rung.system : " → " + rung.added;
+  return ladder.rungs.size() < 2 ? "" : out;
+}
+
+std::string line_of(const std::vector<Fit>& fits) { return fits.empty() ? "" : line_of(fits.front()); }
+
+std::string line_of(const Rung& rung) {
+  std::vector<std::string> parts;
+  if (rung.trim) parts.push_back("trim " + shown(*rung.trim));
+  for (const auto& [name, e] : rung.parameters) {
+    if (parts.size() < most_named + 1) parts.push_back(name + " " + shown(e));
+  }
+  if (const auto force = force_strength(rung.force)) parts.push_back("random force " + shown(*force));
+  if (rung.actual_drop) parts.push_back("drop " + shown_drop(rung.actual_drop));
+  return joined(parts, ", ");
+}
+
+}  // namespace misfit

@@ -1,0 +1,310 @@
+#include "misfit/show/verdict.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/display.h"
+#include "misfit/core/text.h"
+#include "misfit/data/estimators.h"
+#include "misfit/show/rows.h"
+
+namespace misfit {
+namespace {
+
+using Estimates = std::map<std::string, Estimate>;
+
+/// "1.1 % of the motion" out of what a fit says of the residuals of a channel.
+std::string share_of_motion(const Fit& fit, const std::string& channel) {
+  const std::string begin = "residuals of " + channel + " in ";
+  for (const auto& [name, words] : fit.facts) {
+    const std::string fitted = words.substr(0, words.find("; held out"));
+    const std::size_t comma = fitted.rfind(", ");
+    if (name.starts_with(begin) && comma != std::string::npos && !fitted.starts_with("held out")) return fitted.substr(comma + 2);
+  }
+  return "";
+}
+
+/// The fit that the verdict is about: of the method with a random force where that was used, else the last one that has residuals.
+const Fit* leading_fit(const std::vector<Fit>& fits) {
+  const Fit* last = nullptr;
+  for (const Fit& fit : fits) {
+    if (!fit.usable()) continue;
+    if (fit.method == random_force_estimator().name) return &fit;
+    if (last == nullptr || !fit.rms.empty()) last = &fit;
+  }
+  return last;
+}
+
+std::vector<ErrorChange> errors_of(const Fit& fit) {
+  std::vector<ErrorChange> out;
+  for (const auto& [channel, rms] : fit.rms) out.push_back({"RMS error of " + channel, rms, std::nullopt, share_of_motion(fit, channel)});
+  if (const auto force = force_strength(fit.force)) out.push_back({"random force", *force, std::nullopt, ""});
+  return out;
+}
+
+/// A fall of the error in what was measured says more than one of the random force, unless it is small beside that.
+void most_telling_first(std::vector<ErrorChange>& errors) {
+  constexpr double clear_fall = -20.0;  // [%]
+  const auto rank = [](const ErrorChange& e) {
+    const double change = e.per_cent().value_or(0.0);
+    const bool measured = e.what != "random force" && change <= clear_fall;
+    return measured ? change - 100.0 : change;
+  };
+  std::stable_sort(errors.begin(), errors.end(), [&](const ErrorChange& a, const ErrorChange& b) { return rank(a) < rank(b); });
+}
+
+std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last) {
+  std::vector<ErrorChange> out;
+  constexpr std::size_t farthest = std::size(kLadderSteps) - 1;
+  for (const auto& [channel, steps] : first.k_step) {
+    const auto after = last.k_step.find(channel);
+    const auto rms = first.rms.find(channel);
+    if (after == last.k_step.end() || rms == first.rms.end() || steps.size() <= farthest || after->second.size() <= farthest) continue;
+    ErrorChange change;
+    change.what = fmt::format("RMS error of {}, {} samples ahead", channel, kLadderSteps[farthest]);
+    change.before.value = steps[farthest];
+    change.before.unit = rms->second.unit;
+    change.after = change.before;
+    change.after->value = after->second[farthest];
+    out.push_back(std::move(change));
+  }
+  const auto before = force_strength(first.force), force = force_strength(last.force);
+  if (before && force) out.push_back({"random force", *before, *force, ""});
+  most_telling_first(out);
+  return out;
+}
+
+std::string change_in_words(const ErrorChange& e) {
+  const double change = e.per_cent().value_or(0.0);
+  return fmt::format("the {} {} from {}", e.what, change < 0.0 ? "falls" : "rises", shown(e));
+}
+
+std::string values_of(const Estimates& parameters) {
+  std::vector<std::string> out;
+  for (const auto& [name, e] : parameters) out.push_back(name + " = " + shown(e));
+  return join_words(out);
+}
+
+const Candidate* accepted(const Discovery& d) {
+  const auto found = std::find_if(d.candidates.begin(), d.candidates.end(), [](const Candidate& c) { return c.accepted; });
+  return found == d.candidates.end() ? nullptr : &*found;
+}
+
+class Judge {
+ public:
+  explicit Judge(const VerdictInput& input) : in_(input) {
+    fit_ = in_.fits == nullptr ? nullptr : leading_fit(*in_.fits);
+    climbed_ = in_.ladder != nullptr && in_.ladder->rungs.size() > 1;
+    if (in_.diagnosis != nullptr && !in_.diagnosis->maps.empty()) out_.where = where_it_fails(in_.diagnosis->maps.front());
+    if (climbed_) {
+      out_.errors = errors_between(in_.ladder->rungs.front(), in_.ladder->rungs.back());
+    } else if (fit_ != nullptr) {
+      out_.errors = errors_of(*fit_);
+    }
+    add_trim();
+  }
+
+  Verdict verdict() {
+    if (fit_ == nullptr) {
+      no_result();
+    } else if (in_.discovery == nullptr) {
+      climbed_ ? added("whether more is missing has not been asked", command("discover")) : not_searched();
+    } else if (!in_.discovery->sweep_asks.empty()) {
+      calibration();
+    } else if (const Candidate* best = accepted(*in_.discovery)) {
+      missing(*best);
+    } else {
+      nothing_accepted(*in_.discovery);
+    }
+    return out_;
+  }
+
+ private:
+  void say(VerdictKind kind, const std::string& sentence, const std::string& next) {
+    out_.kind = kind;
+    out_.sentence = as_sentence(sentence);
+    out_.next = next;
+  }
+  [[nodiscard]] std::string command(const std::string& verb, const std::string& effect = "") const {
+    return "misfit " + verb + " " + shell_word(in_.study) + (effect.empty() ? "" : " " + effect) +
+           (in_.out.empty() ? "" : " --out " + shell_word(in_.out));
+  }
+
+  /// With the 95 % interval of the last one and what the references say.
+  void add_trim() {
+    const Rung* last = climbed_ ? &in_.ladder->rungs.back() : nullptr;
+    const std::optional<Estimate> before = last != nullptr ? in_.ladder->rungs.front().trim : fit_ != nullptr ? fit_->trim : std::nullopt;
+    if (!before) return;
+    out_.trim.emplace();
+    out_.trim->what = "trim";
+    out_.trim->before = *before;
+    if (last != nullptr) out_.trim->after = last->trim;
+    const Estimate& best = out_.trim->after ? *out_.trim->after : *before;
+    constexpr double sigmas = 1.96;
+    const auto [low, high] = best.interval.value_or(std::pair(best.value - sigmas * best.sigma, best.value + sigmas * best.sigma));
+    if (best.sigma > 0.0) out_.trim->remark = "95 %: " + interval_in_display_unit(low, high, best.unit, best.sigma);
+    if (in_.comparison == nullptr) return;
+    for (const auto& [name, trim] : in_.comparison->reference_trims) {
+      constexpr double negligible = 0.1;  // beside the sigma of the fit
+      const Estimate shown_trim{trim.value, trim.sigma > negligible * best.sigma ? trim.sigma : 0.0, trim.unit};
+      out_.trim->remark += (out_.trim->remark.empty() ? "" : "; ") + name + ": " + briefly(shown_trim);
+    }
+  }
+
+  /// Of the study's own model, and what the ladder has left of it.
+  [[nodiscard]] std::string where_it_fails(const ForceMap& map) const {
+    if (map.sentence.empty()) return "";
+    const ForceMap* after = in_.rung_diagnosis == nullptr ? nullptr : find_map(*in_.rung_diagnosis, map.port, map.quantity);
+    if (after == nullptr) return as_sentence(map.sentence + " (" + p_equals(map.p_corrected) + ")");
+    return as_sentence(
+        fmt::format("{} ({}); with {}: {}", map.sentence, p_equals(map.p_corrected), names_added(), p_equals(after->p_corrected)));
+  }
+
+  void no_result() {
+    std::vector<std::string> why;
+    if (in_.fits != nullptr) {
+      for (const Fit& fit : *in_.fits) why.push_back(fit.method + " " + to_string(fit.status) + ": " + fit.message);
+    }
+    say(VerdictKind::no_result,
+        why.empty() ? "no method was asked for" : "no method gives a result: " + fmt::format("{}", fmt::join(why, "; ")), "");
+  }
+
+  /// What fits and diagnosis alone say.
+  void not_searched() {
+    const std::string ask = "; which effect it is has not been asked";
+    const bool coloured = std::any_of(fit_->warnings.begin(), fit_->warnings.end(),
+                                      [](const std::string& w) { return w.find("residuals are not white") != std::string::npos; });
+    if (fit_->force.empty() && (fit_->driven || coloured)) {
+      say(VerdictKind::not_searched,
+          "something is missing from the model: the residuals of " + fit_->method + " are not white" +
+              (fit_->driven ? ", since forces that it does not have drive the motion" : "") + ask,
+          command("discover"));
+    } else if (!out_.where.empty()) {
+      say(VerdictKind::not_searched, "something is missing from the model" + ask, command("discover"));
+    } else {
+      say(VerdictKind::nothing_missing,
+          "nothing shows that an effect is missing: " + residuals() + "; the effects of the library were not tested", command("discover"));
+    }
+  }
+  [[nodiscard]] std::string residuals() const {
+    if (!fit_->force.empty()) return "no map of the missing force stands out";
+    return "the residuals of " + fit_->method + " look like noise";
+  }
+
+  void calibration() {
+    const std::vector<std::string>& asks = in_.discovery->sweep_asks;
+    const double rms = in_.calibration == nullptr ? 0.0 : in_.calibration->rms_px;
+    const std::string residual = rms > 0.0 ? fmt::format(" (its residuals are {} RMS)", briefly({rms, 0.0, "px"})) : "";
+    const bool flight_too = in_.discovery->verdict.starts_with("Sweep and flight disagree");
+    say(VerdictKind::calibration,
+        (flight_too ? "the camera comes first: its" : "it is the camera, not the physics: its") +
+            std::string(" calibration sweep asks for ") + join_words(asks) + ", which the camera of this study does not have" + residual,
+        fmt::format("set [camera] take_in = [\"{}\"] in the study, then {}", fmt::join(asks, "\", \""), command("run")));
+  }
+
+  void missing(const Candidate& best) {
+    const std::string name = effect_at(best.effect, best.roles);
+    const std::string values = best.parameters.empty() ? "" : ", with " + values_of(best.parameters);
+    if (!climbed_) with_candidate(best);
+    std::string sentence = best.group.size() > 1
+                               ? "one of " + join_words(best.group) + " is missing, and these data cannot say which: " + name + " fits best"
+                               : (climbed_ ? "still missing: " : "missing: ") + name;
+    sentence += values + " (" + p_equals(best.p_value) + ")";
+    if (climbed_ && !out_.errors.empty()) sentence += "; with " + names_added() + " " + change_in_words(out_.errors.front());
+    say(best.group.size() > 1 ? VerdictKind::several_possible : VerdictKind::missing, sentence, command("add", best.effect));
+  }
+  /// The random force that the refit with the candidate leaves.
+  void with_candidate(const Candidate& best) {
+    const auto after = force_strength(best.force);
+    for (ErrorChange& e : out_.errors) {
+      if (e.what == "random force" && after) e.after = after;
+    }
+    std::stable_partition(out_.errors.begin(), out_.errors.end(), [](const ErrorChange& e) { return e.after.has_value(); });
+  }
+
+  void nothing_accepted(const Discovery& d) {
+    if (d.verdict.starts_with("Not ")) {  // decided, finished
+      say(VerdictKind::not_decided, d.verdict, command("discover") + " --round-limit 3600");
+    } else if (!d.unexplained_port.empty()) {
+      say(VerdictKind::unknown_form,
+          fmt::format("something is missing that depends on {}: a force on {} that no effect of the library explains",
+                      d.unexplained_quantity, d.unexplained_port),
+          "look at the picture, then write the effect as one line of the study: misfit help study");
+    } else if (d.verdict.starts_with("No effect")) {  // accepted, or none suits the system
+      say(VerdictKind::not_decided, d.verdict, "");
+    } else if (climbed_) {
+      added("nothing more is found missing", "");
+    } else {
+      nothing_missing(d);
+    }
+  }
+  void nothing_missing(const Discovery& d) {
+    const std::string tested = fmt::format("no effect is found missing: none of {} that were tested is needed", d.candidates.size());
+    const auto force = fit_->driven ? force_strength(fit_->force) : std::nullopt;
+    if (force) {
+      say(VerdictKind::random_force, tested + ", and what drives the motion is a random force of " + shown(*force), "");
+    } else {
+      say(VerdictKind::nothing_missing, tested, "");
+    }
+  }
+
+  [[nodiscard]] std::string names_added() const {
+    std::vector<std::string> names;
+    for (const Rung& rung : in_.ladder->rungs) {
+      if (!rung.added.empty()) names.push_back(rung.added);
+    }
+    return join_words(names);
+  }
+  void added(const std::string& rest, const std::string& next) {
+    const std::string names = names_added();
+    const bool one = in_.ladder->rungs.size() == 2;
+    const std::string change = out_.errors.empty() ? "" : (one ? "with it " : "with them ") + change_in_words(out_.errors.front()) + "; ";
+    say(VerdictKind::effect_added, names + (one ? " was" : " were") + " missing: " + change + rest, next);
+  }
+
+  const VerdictInput& in_;
+  const Fit* fit_ = nullptr;
+  bool climbed_ = false;
+  Verdict out_;
+};
+
+}  // namespace
+
+Verdict verdict_of(const VerdictInput& input) { return Judge(input).verdict(); }
+
+std::string shown(const ErrorChange& e) {
+  const std::string remark = e.remark.empty() ? "" : " (" + e.remark + ")";
+  if (!e.after) return briefly(e.before) + remark;
+  if (e.what == "trim") return briefly(e.before) + " to " + briefly(*e.after) + remark;
+  const auto change = e.per_cent();
+  return briefly(e.before) + " to " + briefly(*e.after) +
+         (change ? fmt::format(" ({:+.{}f} %)", *change, std::abs(*change) < 10.0 || std::abs(*change) > 99.0 ? 1 : 0) : "");
+}
+
+Blocks blocks_of(const Verdict& v) {
+  Blocks out;
+  out.heading("Verdict");
+  out.paragraph(v.sentence, Tone::lead);
+  out.paragraph(v.where);
+  std::vector<std::string> errors;
+  for (const ErrorChange& e : v.errors) errors.push_back(e.what + ": " + shown(e));
+  if (v.trim) errors.push_back(v.trim->what + ": " + shown(*v.trim));
+  out.list({errors});
+  if (!v.next.empty()) out.paragraph("next: " + v.next, Tone::command);
+  return out;
+}
+
+std::string shell_word(const std::string& text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c > 127 || std::string_view("./-_:+,@%").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (plain) return text;
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace misfit

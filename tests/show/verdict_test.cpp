@@ -1,0 +1,250 @@
+// The sentence that a run ends with, over what may have come out.
+#include "misfit/show/verdict.h"
+
+#include <gmock/gmock.h>
+
+#include "misfit/core/files.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+Fit filter_fit() {
+  Fit fit;
+  fit.method = "filter_error";
+  fit.status = FitStatus::converged;
+  fit.driven = true;
+  fit.rms = {{"w", {0.30, 0.0, "V"}}};
+  fit.facts = {{"residuals of w in 'bench'", "RMS 0.3 V, 1.5 % of the motion; held out: RMS 0.4 V, 2 % of the motion"}};
+  fit.force = {{"correlation_time", {0.2, 0.01, "s"}}, {"dw/dt", {20.0, 1.0, "V/s"}}};
+  return fit;
+}
+
+Candidate candidate(const std::string& effect, double p, bool accepted) {
+  Candidate c;
+  c.effect = effect;
+  c.p_value = p;
+  c.accepted = accepted;
+  if (accepted) {
+    c.parameters = {{"friction", {5.0, 0.5, "V/s"}}};
+    c.force = {{"dw/dt", {5.0, 0.4, "V/s"}}};
+  }
+  return c;
+}
+
+/// Everything that a verdict may be made of; `input()` points at what a test has put there.
+struct Case {
+  std::vector<Fit> fits{filter_fit()};
+  std::optional<Calibration> calibration;
+  std::optional<Diagnosis> diagnosis, rung_diagnosis;
+  std::optional<Discovery> discovery;
+  std::optional<Ladder> ladder;
+
+  [[nodiscard]] Verdict verdict() const {
+    VerdictInput input{"configs/motor", "", &fits};
+    if (calibration) input.calibration = &*calibration;
+    if (diagnosis) input.diagnosis = &*diagnosis;
+    if (rung_diagnosis) input.rung_diagnosis = &*rung_diagnosis;
+    if (discovery) input.discovery = &*discovery;
+    if (ladder) input.ladder = &*ladder;
+    return verdict_of(input);
+  }
+  void climb() {
+    Rung first, second;
+    first.rms = {{"w", {0.30, 0.0, "V"}}};
+    first.k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 8.0}}};
+    first.force = filter_fit().force;
+    second = first;
+    second.id = 1;
+    second.parent = 0;
+    second.added = "coulomb_friction";
+    second.k_step = {{"w", {0.3, 0.3, 0.4, 0.5, 0.8, 1.2}}};
+    second.force = {{"dw/dt", {5.0, 0.4, "V/s"}}};
+    ladder = Ladder{{first, second}};
+  }
+  void fail_at_rest() {
+    ForceMap map;
+    map.port = "dw/dt", map.quantity = "w";
+    map.p_corrected = 1e-20;
+    map.sentence = "the model's dw/dt is 5.0 ± 0.5 V/s too low where w is between 0 V and 1 V";
+    diagnosis.emplace().maps = {map};
+  }
+};
+
+Discovery searched(const std::vector<Candidate>& candidates, const std::string& verdict) {
+  Discovery d;
+  d.candidates = candidates;
+  d.verdict = verdict;
+  return d;
+}
+
+TEST(Verdict, NothingMissingNamesTheRandomForceThatDrivesTheMotion) {
+  Case c;
+  c.discovery = searched({candidate("drag", 0.9, false), candidate("lag", 1.0, false)}, "No missing effect detected: none of 2 candidates");
+  Verdict v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::random_force);
+  EXPECT_THAT(v.sentence, AllOf(HasSubstr("none of 2"), EndsWith("a random force of 20.0 ± 1.0 V/s.")));
+  c.fits.front().driven = false;
+  v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::nothing_missing);
+  EXPECT_THAT(v.sentence, Not(HasSubstr("random force")));
+}
+
+TEST(Verdict, WithoutASearchTheResidualsSpeakAndDiscoverIsNext) {
+  Case c;
+  c.fail_at_rest();
+  Verdict v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::not_searched);
+  EXPECT_THAT(v.where, HasSubstr("between 0 V and 1 V (p = 1e-20)."));
+  EXPECT_EQ(v.next, "misfit discover configs/motor");
+
+  c.diagnosis.reset();
+  EXPECT_EQ(c.verdict().kind, VerdictKind::nothing_missing);
+  c.fits.front().force.clear();
+  c.fits.front().method = "output_error";
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("output_error are not white, since forces that it does not have drive the motion"));
+  c.fits.front().driven = false;
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("the residuals of output_error look like noise"));
+  c.fits.front().warnings = {"residuals are not white (…): something is missing"};
+  EXPECT_EQ(c.verdict().kind, VerdictKind::not_searched);
+}
+
+TEST(Verdict, AnAcceptedEffectIsNamedWithItsValuesTheForceThatItLeavesAndTheCommandThatAddsIt) {
+  Case c;
+  c.discovery = searched({candidate("coulomb_friction", 1e-60, true)}, "Missing: coulomb_friction");
+  const Verdict v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::missing);
+  EXPECT_EQ(v.sentence, "Missing: coulomb_friction, with friction = 5.00 ± 0.50 V/s (p = 1e-60).");
+  EXPECT_EQ(v.next, "misfit add configs/motor coulomb_friction");
+  ASSERT_EQ(v.errors.size(), 2U);
+  EXPECT_EQ(shown(v.errors[0]), "20.0 ± 1.0 V/s to 5.00 ± 0.40 V/s (-75 %)");
+  EXPECT_EQ(shown(v.errors[1]), "0.3 V (1.5 % of the motion)");
+}
+
+TEST(Verdict, EffectsThatTheDataCannotDistinguishAreAllNamed) {
+  Case c;
+  Candidate best = candidate("camera_roll", 1e-9, true);
+  best.group = {"camera_roll", "image_centre"};
+  c.discovery = searched({best}, "Missing: camera_roll");
+  const Verdict v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::several_possible);
+  EXPECT_THAT(v.sentence, HasSubstr("One of camera_roll and image_centre is missing, and these data cannot say which"));
+}
+
+TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCent) {
+  Case c;
+  c.climb();
+  c.fail_at_rest();
+  c.rung_diagnosis = c.diagnosis;
+  c.rung_diagnosis->maps.front().p_corrected = 0.7;
+  c.discovery = searched({candidate("drag", 0.9, false)}, "No missing effect detected: none of 1 candidates");
+  Verdict v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::effect_added);
+  EXPECT_EQ(
+      v.sentence,
+      "coulomb_friction was missing: with it the RMS error of w, 32 samples ahead falls from 8 V to 1.2 V (-85 %); nothing more is found "
+      "missing.");
+  EXPECT_THAT(v.where, EndsWith("(p = 1e-20); with coulomb_friction: p = 0.7."));
+  EXPECT_THAT(v.next, IsEmpty());
+
+  c.discovery.reset();
+  v = c.verdict();
+  EXPECT_THAT(v.sentence, EndsWith("whether more is missing has not been asked."));
+  EXPECT_EQ(v.next, "misfit discover configs/motor");
+}
+
+TEST(Verdict, WhatIsStillMissingComesBeforeWhatWasAdded) {
+  Case c;
+  c.climb();
+  c.discovery = searched({candidate("drag", 1e-12, true)}, "Missing: drag");
+  const Verdict v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::missing);
+  EXPECT_THAT(v.sentence, AllOf(testing::StartsWith("Still missing: drag"), HasSubstr("with coulomb_friction the RMS error")));
+}
+
+TEST(Verdict, AnErrorThatRisesIsNotSaidToFall) {
+  Case c;
+  c.climb();
+  c.ladder->rungs[1].force = {{"dw/dt", {22.0, 1.0, "V/s"}}};
+  c.ladder->rungs[1].k_step = {};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the random force rises from 20.0 ± 1.0 V/s to 22.0 ± 1.0 V/s (+10 %)"));
+}
+
+TEST(Verdict, ACalibrationThatItsSweepContradictsComesBeforeEveryEffect) {
+  Case c;
+  c.calibration.emplace().rms_px = 4.58;
+  c.discovery = searched({candidate("camera_roll", 0.0, false)}, "The camera model is incomplete: …");
+  c.discovery->sweep_asks = {"camera_roll", "image_centre"};
+  const Verdict v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::calibration);
+  EXPECT_THAT(v.sentence, AllOf(testing::StartsWith("It is the camera, not the physics"), HasSubstr("4.58 px RMS")));
+  EXPECT_EQ(v.next, "set [camera] take_in = [\"camera_roll\", \"image_centre\"] in the study, then misfit run configs/motor");
+  c.discovery->verdict = "Sweep and flight disagree: …";
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("The camera comes first"));
+}
+
+TEST(Verdict, ASearchThatWasCutOffOrRefusesItsBestDecidesNothing) {
+  Case c;
+  for (const char* words : {"Not finished: the time limit of 1 s was reached", "Not decided: the refit of lag was not finished",
+                            "No effect accepted; best candidate lag (drop 50), rejected: its strength is not determined."}) {
+    c.discovery = searched({candidate("lag", 1e-9, false)}, words);
+    EXPECT_EQ(c.verdict().kind, VerdictKind::not_decided) << words;
+    EXPECT_THAT(c.verdict().sentence, testing::StartsWith("No"));
+  }
+}
+
+TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
+  Case c;
+  c.discovery = searched({candidate("lag", 0.5, false)}, "Something is missing that depends on w");
+  c.discovery->unexplained_port = "dw/dt";
+  c.discovery->unexplained_quantity = "w";
+  EXPECT_EQ(c.verdict().kind, VerdictKind::unknown_form);
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("depends on w: a force on dw/dt that no effect of the library explains"));
+}
+
+TEST(Verdict, WithoutAUsableFitItSaysWhy) {
+  Case c;
+  c.fits.front().status = FitStatus::declined;
+  c.fits.front().message = "too few samples";
+  EXPECT_EQ(c.verdict().kind, VerdictKind::no_result);
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("filter_error declined: too few samples"));
+}
+
+TEST(Verdict, TheTrimStandsWithItsIntervalBesideTheReferences) {
+  Case c;
+  c.climb();
+  c.ladder->rungs[0].trim = Estimate{0.20, 0.01, "m"};
+  c.ladder->rungs[1].trim = Estimate{0.30, 0.01, "m"};
+  Comparison comparison;
+  comparison.reference_trims = {{"truth", {0.31, 0.0, "m"}}};
+  VerdictInput input{"configs/motor", "", &c.fits};
+  input.ladder = &*c.ladder;
+  input.comparison = &comparison;
+  ASSERT_TRUE(verdict_of(input).trim);
+  EXPECT_EQ(shown(*verdict_of(input).trim), "0.200 ± 0.010 m to 0.300 ± 0.010 m (95 %: 0.280 to 0.320 m; truth: 0.31 m)");
+}
+
+TEST(Verdict, IsWrittenWithTheChangeInPerCent) {
+  const TemporaryFolder folder;
+  Case c;
+  c.climb();
+  write_verdict(folder.path() / "verdict.json", c.verdict());
+  expect_parts(read_file(folder.path() / "verdict.json"), {"\"verdict\": \"effect_added\"", "\"change_per_cent\": -85.0", "\"unit\": \"V\"",
+                                                           "\"next\": \"misfit discover configs/motor\""});
+}
+
+TEST(Verdict, CommandsNameTheRunFolderAndQuoteWhatAShellWouldSplit) {
+  const std::vector<Fit> fits{filter_fit()};
+  const VerdictInput input{"my studies/motor", "out 2", &fits};
+  EXPECT_EQ(verdict_of(input).next, "misfit discover 'my studies/motor' --out 'out 2'");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+}
+
+}  // namespace
+}  // namespace misfit
