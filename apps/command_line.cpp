@@ -172,6 +172,21 @@ void init_options(CLI::App& verb, Options& options) {
   verb.add_flag("--json", options.json, "print what was found as JSON");
 }
 
+void export_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  ExportRequest& request = options.export_request;
+  verb.add_option("--to", request.format, "json, csv, c, python or jsbsim")->type_name("FORMAT")->required();
+  verb.add_option("--out", request.out, "the file (of csv: the folder) to write (default: in export/ of the run folder)")
+      ->type_name("PATH");
+  verb.add_option("--method", request.method, "the estimate by this method (default: the last of the study that has one)")
+      ->type_name("NAME");
+  verb.add_option("--rung", request.rung, "number or effect of a rung of the ladder; 0 is the study's own model (default: the last)")
+      ->type_name("RUNG");
+  verb.add_option("--run", options.session.out, "run folder (default: out/ beside the study)")->type_name("DIR");
+  add_force(verb, options);
+  verb.add_flag("--quiet", options.quiet, "print no notes to stderr");
+}
+
 void effects_options(CLI::App& verb, Options& options) {
   verb.add_option("what", options.session.study, "key of an effect, or a study: study.toml, or the folder that holds it")
       ->type_name("KEY|STUDY");
@@ -202,6 +217,8 @@ constexpr VerbEntry verbs[] = {
     {"report", "write the figures and one self-contained page", report_verb, fit_options},
     {"simulate", "simulate the model as described in [simulate], or as fitted", simulate_verb, study_options},
     {"batch", "fit many studies as one job, on threads or under mpirun; tabulate how their results vary", batch_verb, batch_options},
+    {"export", "write the estimate for other programs: curves and parameters with covariance, as a model in C or Python, for JSBSim",
+     export_verb, export_options},
     {"init", "write a first study for a CSV file: column roles, linear model, figures", init_verb, init_options},
     {"effects", "list the effects of the program, or of a study; with the key of an effect, print it in full", effects_verb,
      effects_options},

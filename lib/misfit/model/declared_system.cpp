@@ -81,6 +81,15 @@ class DeclaredSystem final : public System {
     block(tape.by_k, r, rows * spec_.constants.size(), y_k);
   }
 
+  [[nodiscard]] bool traceable() const override { return true; }
+  void trace_quantities(const SymbolPoint& at, const formula::Symbol* P, formula::Symbol* q) const override {
+    trace(c_->quantities, leaves_of(at, P, nullptr), q);
+  }
+  void trace_rates(const SymbolPoint& at, const formula::Symbol* P, const formula::Symbol* F, formula::Symbol* dx) const override {
+    trace(c_->rates, leaves_of(at, P, F), dx);
+  }
+  void trace_outputs(const SymbolPoint& at, formula::Symbol* y) const override { trace(c_->outputs, leaves_of(at, nullptr, nullptr), y); }
+
   bool read_states(const double* y, const double* k, double* x) const override {
     const std::array<double, kMaxStates> zero{};
     std::array<double, kMaxOutputs> y0{};
@@ -147,6 +156,24 @@ class DeclaredSystem final : public System {
     for (int i = 0; i < n.np; ++i) *to++ = P[i];
     for (int i = 0; i < n.nf; ++i) *to++ = F[i];
     tape.program.run(r.data());
+  }
+  /// Ports that are not given are 0.
+  [[nodiscard]] std::vector<formula::Symbol> leaves_of(const SymbolPoint& at, const formula::Symbol* P, const formula::Symbol* F) const {
+    const Leaves& n = c_->leaves;
+    std::vector<formula::Symbol> all(at.x, at.x + n.nx);
+    all.insert(all.end(), at.u, at.u + n.nu);
+    all.push_back(at.t);
+    all.insert(all.end(), at.k, at.k + n.nk);
+    const auto add = [&all](const formula::Symbol* ports, int count) {
+      for (int i = 0; i < count; ++i) all.push_back(ports == nullptr ? formula::Symbol() : ports[i]);
+    };
+    add(P, n.np);
+    add(F, n.nf);
+    return all;
+  }
+  static void trace(const Tape& tape, std::vector<formula::Symbol> leaves, formula::Symbol* to) {
+    const std::vector<formula::Symbol> roots = tape.program.trace(std::move(leaves));
+    std::copy_n(roots.begin(), tape.value.size(), to);
   }
   static void write(const std::vector<Tape::Entry>& entries, const Registers& r, double* to) {
     for (const Tape::Entry& e : entries) to[e.place] = r[e.from];

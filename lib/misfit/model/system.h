@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "misfit/data/folded_angle.h"
+#include "misfit/formula/symbol.h"
 #include "misfit/model/limits.h"
 
 namespace misfit {
@@ -137,6 +138,13 @@ struct Point {
   const double* k;  ///< constants
 };
 
+/// The same with symbols.
+struct SymbolPoint {
+  const formula::Symbol *x, *u;
+  formula::Symbol t;
+  const formula::Symbol* k;
+};
+
 /// The skeleton of a model. `needed` has bit i set if quantity i is read by somebody: others may be left 0.
 class System {
  public:
@@ -158,6 +166,12 @@ class System {
   /// Why rates() is not finite here, in words: the part of the formula, the states and parameters in it. Empty if it is finite or not
   /// known.
   [[nodiscard]] virtual std::string explain(const Point& /*at*/, const double* /*P*/, const double* /*F*/) const { return {}; }
+  /// quantities(), rates() and outputs() over symbols, inside of formula::trace(), where traceable() says so.
+  [[nodiscard]] virtual bool traceable() const { return false; }
+  virtual void trace_quantities(const SymbolPoint& /*at*/, const formula::Symbol* /*P*/, formula::Symbol* /*q*/) const {}
+  virtual void trace_rates(const SymbolPoint& /*at*/, const formula::Symbol* /*P*/, const formula::Symbol* /*F*/,
+                           formula::Symbol* /*dx*/) const {}
+  virtual void trace_outputs(const SymbolPoint& /*at*/, formula::Symbol* /*y*/) const {}
   /// The inverse of outputs() for SystemSpec::readable_states: fills those entries of x. False where the outputs have no such state.
   virtual bool read_states(const double* /*y*/, const double* /*k*/, double* /*x*/) const { return false; }
 };
