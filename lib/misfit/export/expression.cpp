@@ -87,7 +87,7 @@ class Writer {
     std::string& known = text_[node];
     if (!known.empty()) return known;
     std::vector<std::string> parts;
-    for (const int argument : arguments(node)) parts.push_back(text(argument));
+    for (const int argument : arguments(node)) parts.push_back(is_condition_of(argument, node) ? condition_text(argument) : text(argument));
     std::string value = operation(node, parts);
     constexpr std::size_t longest = 100;
     if (!parts.empty() && (uses_[node] > 1 || value.size() > longest)) {
@@ -96,6 +96,20 @@ class Writer {
       value = name;
     }
     return known = value;
+  }
+
+  /// What a choice depends on stands in it as a condition, other truths as 1 or 0.
+  [[nodiscard]] bool is_condition_of(int argument, int node) const {
+    const Node& at = graph_.node(node);
+    return at.op == Op::select && at.a == argument && argument != at.b && argument != at.c;
+  }
+  std::string condition_text(int node) {
+    const Op op = graph_.node(node).op;
+    const bool compares = op == Op::less || op == Op::less_equal || op == Op::equal;
+    if (!compares || uses_[node] > 1) return text(node) + " != 0.0";
+    std::vector<std::string> parts;
+    for (const int argument : arguments(node)) parts.push_back(text(argument));
+    return condition(op, parts);
   }
 
   [[nodiscard]] std::string operation(int node, const std::vector<std::string>& p) const {
@@ -131,7 +145,7 @@ class Writer {
       case Op::max:
         return choose(p[1] + " > " + p[0], p[1], p[0]);
       case Op::select:
-        return choose(p[0] + " != 0.0", p[1], p[2]);
+        return choose(p[0], p[1], p[2]);
       case Op::gate:
         return choose(p[0] + " == 0.0", "0.0", "(" + p[0] + " * " + p[1] + ")");
       case Op::ratio:

@@ -79,18 +79,20 @@ bool is_there(const Session& session, const std::string& method) {
   return session.folder.stages().contains("fit/" + method) && fs::exists(session.folder.file("fit/" + method + "/fit.json"));
 }
 
-std::string made_by(const Session& session) { return "misfit fit " + session.study.file.lexically_normal().string() + " makes it"; }
+std::string made_by(const Session& session, const std::string& method) {
+  return "misfit fit " + session.study.file.lexically_normal().string() + " --method " + method + " makes it";
+}
 
 /// The fit of that method as it lies in the run folder.
 Fit stored_fit(const Session& session, const std::string& method) {
   if (!is_there(session, method))
-    throw InputError(
-        fmt::format("{}: there is no estimate by {} yet; {}", session.folder.path().lexically_normal().string(), method, made_by(session)));
+    throw InputError(fmt::format("{}: there is no estimate by {} yet; {}", session.folder.path().lexically_normal().string(), method,
+                                 made_by(session, method)));
   const std::string stage = "fit/" + method;
   if (essential(session.folder.stages().at(stage).inputs) != essential(inputs_of_fit(session, method)) ||
       !session.folder.damaged(stage).empty())
-    throw InputError(
-        fmt::format("the estimate by {} is of another state of the study, its data or its results; {} again", method, made_by(session)));
+    throw InputError(fmt::format("the estimate by {} is of another state of the study, its data or its results; {} again", method,
+                                 made_by(session, method)));
   return read_fit(session.folder.file(stage));
 }
 
@@ -123,7 +125,7 @@ Model model_at(Session& session, const Fit& fit) {
       p.value = estimate->second.value;
     } else if (p.free) {
       throw InputError(
-          fmt::format("the estimate by {} has no parameter '{}' of the model; {} again", fit.method, p.name, made_by(session)));
+          fmt::format("the estimate by {} has no parameter '{}' of the model; {} again", fit.method, p.name, made_by(session, fit.method)));
     }
   }
   return model;
