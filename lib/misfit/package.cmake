@@ -76,26 +76,25 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "grey-box system identification: find out what your model is missing")
 set(CPACK_PACKAGE_CONTACT "the misfit developers <misfit@localhost>")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME misfit)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "grey-box system identification: find out what your model is missing
- misfit fits a model made of named physical effects to recordings, shows
- where it fails, ranks the effects that it may be missing, adds them and
- fits again. No number without its unit and uncertainty. Studies to run are
- in /usr/share/doc/misfit/examples.")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "misfit fits a model made of named physical effects to recordings, shows
+where it fails, ranks the effects that it may be missing, adds them and
+fits again. No number without its unit and uncertainty. Studies to run are
+in /usr/share/doc/misfit/examples.")
 misfit_debian_packages(misfit_runtime "# runtime$")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), ${misfit_runtime}")
 misfit_debian_packages(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "-bin # recommended$")  # mpirun brings the library of misfit_mpi.so
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libmisfit-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_COMPONENT_DEV_DESCRIPTION "grey-box system identification: libraries and headers
- For C++ programs that fit models and search for missing effects with
- misfit, and for effects of one's own: find_package(misfit). Static
- libraries, headers, CMake files and an example.")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "Libraries and headers: for C++ programs that fit models and search for
+missing effects with misfit, and for effects of one's own. Static
+libraries, headers, find_package(misfit) and an example.")
 misfit_debian_packages(misfit_headers "-dev$")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "misfit (= ${PROJECT_VERSION}), ${misfit_headers}")  # it has the modules for video and MPI
 include(CPack)

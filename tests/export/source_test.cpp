@@ -133,7 +133,7 @@ TEST(GeneratedCode, AgreesWithCurvesOutsideOfTheirKnotsToo) {
   ModelRequest request = request_of("body", {effect("static_moment"), effect("pitch_damping"), effect("viscous_friction")});
   request.curves["C_m"] = {"alpha_T", {0.05, 0.1, 0.2, 0.45, 0.7}, {}, {}};
   request.curves["C_mq"] = {"alpha_T", {0.08, 0.3, 0.6}, {}, {}};
-  request.curves["viscous"] = {"angle", {-0.4, 0.1, 0.5, 0.8}, {}, {}};
+  request.curves["viscosity"] = {"angle", {-0.4, 0.1, 0.5, 0.8}, {}, {}};
   expect_agreement(request, *known, 5);
 }
 
