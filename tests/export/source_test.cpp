@@ -137,31 +137,38 @@ TEST(GeneratedCode, AgreesWithCurvesOutsideOfTheirKnotsToo) {
   expect_agreement(request, *known, 5);
 }
 
-TEST(GeneratedCode, OfACompiledSystemHasCurvesAndItsFormulaInWords) {
-  std::mt19937_64 random(6);
-  Exported exported{"a study", "", "misfit", {}, assemble(parachute(true), registry())};
-  scatter(*exported.model, random);
+TEST(GeneratedCode, AgreesOnTheParachute) {
+  expect_agreement(parachute(true, {effect("coulomb_friction"), effect("apparent_inertia")}), registry(), 6);
+  expect_agreement(parachute(false, {effect("relative_dynamic_pressure"), effect("aerodynamic_lag")}), registry(), 7);
+  expect_agreement(
+      spherical({effect("magnus"), effect("vortex_shedding"), effect("strut_wake"), effect("lateral_damping"), effect("flow_angularity"),
+                 effect("camera_roll"), effect("lens_distortion"), effect("dynamic_pressure_drift")}),
+      registry(), 8);
+}
+
+/// The test's cart takes inputs as numbers alone.
+TEST(GeneratedCode, WithoutFormulasSaysSoAndHasThemInWords) {
+  const Exported exported{"a study", "", "misfit", {}, assemble(cart({effect("viscous_friction")}), registry())};
   for (const std::string& text : {c_source(exported), python_source(exported)}) {
-    EXPECT_THAT(text, testing::HasSubstr("No right-hand side: the equations of system 'parachute_planar' are compiled C++"));
-    EXPECT_THAT(text, testing::HasSubstr("I eta'' = sum of moments"));
-    EXPECT_THAT(text, testing::HasSubstr("static_moment: M = "));
+    EXPECT_THAT(text, testing::HasSubstr("No right-hand side: the equations of system 'test_oscillator'"));
+    EXPECT_THAT(text, testing::HasSubstr("test_oscillator: (mass + P) v' = drive - stiffness x + force"));
+    EXPECT_THAT(text, testing::HasSubstr("viscous_friction: F = "));
     EXPECT_THAT(text, testing::Not(testing::HasSubstr("rates(")));
   }
+  const Exported field{"a study", "", "misfit", {}, assemble(spherical({effect("field_offset")}), registry())};
+  EXPECT_THAT(c_source(field), testing::HasSubstr("No right-hand side: effect 'field_offset' is compiled C++"));
+}
+
+/// A fit in bins has no model: its curves are straight lines between the bins.
+TEST(GeneratedCode, OfBinsHasThemOnTheirGrid) {
+  Exported exported{"a study", "", "misfit", {}, std::nullopt};
+  exported.fit.method = "sliding_bin";
+  exported.fit.curves.push_back(
+      {"C_m", "alpha_T", "rad", "-", {0.1, 0.2, 0.4}, {1.0, 3.0, -2.0}, {0.1, 0.2, 0.3}, {5, 5, 5}, true, "", true});
   Questions ask;
-  ask.curves = {"curve_C_m", "curve_C_mq"};
-  std::vector<Row> wanted;
-  for (int i = 0; i < 300; ++i) ask.points.push_back({uniform(random, -0.8, 0.8)});
-  for (const Row& point : ask.points) {
-    Row row;
-    for (const Curve& curve : exported.model->curves) {
-      const CurvePoint at = curve.spline.at(point[0]);
-      double value = 0.0;
-      for (int j = 0; j < 4; ++j) value += at.w[j] * exported.model->parameters[curve.first + at.first + j].value;
-      row.push_back(value);
-    }
-    wanted.push_back(row);
-  }
-  expect_both_give(exported, ask, wanted);
+  ask.curves = {"curve_C_m", "curve_C_m_sigma"};
+  ask.points = {{0.0}, {0.1}, {0.15}, {0.25}, {0.4}, {0.9}};
+  expect_both_give(exported, ask, {{1.0, 0.1}, {1.0, 0.1}, {2.0, 0.15}, {1.75, 0.225}, {-2.0, 0.3}, {-2.0, 0.3}});
 }
 
 /// Names in code, units and texts are a user's: nothing of them may end a comment or begin a statement.

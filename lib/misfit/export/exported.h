@@ -42,7 +42,7 @@ struct ExportedParameter {
 /// Those of the model in its order (without one: as the fit has them).
 [[nodiscard]] std::vector<ExportedParameter> parameters_of(const Exported& exported);
 
-/// The C99 file: curves as functions, and for systems declared as text the right-hand side and outputs. Needs math.h alone.
+/// The C99 file: curves as functions, and the right-hand side and outputs where they can be had (model_formulas()). Needs math.h alone.
 [[nodiscard]] std::string c_source(const Exported& exported);
 /// The same as a module of Python 3; needs math alone.
 [[nodiscard]] std::string python_source(const Exported& exported);

@@ -77,8 +77,8 @@ Points points_of(const ExportedCurve& curve, const Exported& exported) {
 }
 
 std::string function_text(const Term& term, const Points& points) {
-  std::string out = fmt::format("      <function name=\"{}\">\n        <description>{} [moment]</description>\n        <product>\n",
-                                term.function, term.doc);
+  std::string out =
+      fmt::format("      <function name=\"{}\">\n        <description>{}</description>\n        <product>\n", term.function, term.doc);
   std::vector<const char*> factors = {"aero/qbar-psf", "metrics/Sw-sqft", "metrics/cbarw-ft"};
   if (term.rate != nullptr) factors.insert(factors.end(), {"aero/ci2vel", term.rate});
   for (const char* property : factors) out += fmt::format("          <property>{}</property>\n", property);

@@ -43,7 +43,7 @@ class Builder {
   [[nodiscard]] std::string lack() const {
     if (!system_.traceable())
       return "the equations of system '" + system_.spec().key +
-             "' are compiled C++: only those of systems declared as text can be exported";
+             "', as the study sets it up, are compiled C++ that cannot be read back as formulas";
     for (const BoundEffect& bound : model_.effects) {
       if (!traceable(*bound.effect)) return "effect '" + bound.name + "' is compiled C++ that cannot be read back as a formula";
     }

@@ -28,8 +28,8 @@ struct ModelFormulas {
   [[nodiscard]] int first_curve() const { return parameter(parameters); }
 };
 
-/// Of a system that is declared as text, with effects declared or of the program. The equations of a system in C++ cannot be read back:
-/// `lack` says so.
+/// Of a system declared as text, and of one in C++ whose formulas can be called with symbols (model/system_of.h); likewise its effects
+/// (model/effect.h). `lack` says which cannot.
 [[nodiscard]] ModelFormulas model_formulas(const Model& model);
 
 }  // namespace misfit

@@ -17,6 +17,11 @@
 #define MISFIT_FLATTEN
 #endif
 
+namespace misfit::formula {
+/// As of a Jet (math/scalar.h).
+inline bool vanishes(const Symbol& a) { return a == 0.0; }
+}  // namespace misfit::formula
+
 namespace misfit {
 
 /// Turns a struct with templated formulas into a System. `S` has static NX, NU, NP (quantity ports), NF (dynamic ports), NQ, NK, NY and
@@ -24,7 +29,9 @@ namespace misfit {
 ///   const template <class T, class K> void rates(const T* x, const double* u, double t, const K* k, const T* P, const T* F, T* dx) const
 ///   template <class T, class K> void outputs(const T* x, const double* u, double t, const K* k, T* y) const
 ///   SystemSpec spec() const;   std::vector<DerivedCurve> derived_curves(const double* k) const
-/// All first derivatives come from Jets as wide as what varies: states alone in the common case.
+/// A system whose formulas take inputs and time as a third type, template <class T, class K, class U> … (const T* x, const U* u, U t, …),
+/// is called with symbols, too, so that it can be exported; `bool traceable() const` may refuse that for some options. All first
+/// derivatives come from Jets as wide as what varies: states alone in the common case.
 template <class S>
 class SystemOf final : public System {
  public:
@@ -62,12 +69,34 @@ class SystemOf final : public System {
       differentiate_outputs<S::NX>(at, y, y_x, y_k);
     }
   }
+  [[nodiscard]] bool traceable() const override {
+    if constexpr (requires { system_.traceable(); }) return system_.traceable();
+    return takes_symbols();
+  }
+  void trace_quantities(const SymbolPoint& at, const formula::Symbol* P, formula::Symbol* q) const override {
+    if constexpr (takes_symbols()) system_.template quantities<Symbol, Symbol>(at.x, at.u, at.t, at.k, P, ~std::uint64_t{0}, q);
+  }
+  void trace_rates(const SymbolPoint& at, const formula::Symbol* P, const formula::Symbol* F, formula::Symbol* dx) const override {
+    if constexpr (takes_symbols()) system_.template rates<Symbol, Symbol>(at.x, at.u, at.t, at.k, P, F, dx);
+  }
+  void trace_outputs(const SymbolPoint& at, formula::Symbol* y) const override {
+    if constexpr (takes_symbols()) system_.template outputs<Symbol, Symbol>(at.x, at.u, at.t, at.k, y);
+  }
   bool read_states(const double* y, const double* k, double* x) const override {
     if constexpr (requires { system_.read_states(y, k, x); }) return system_.read_states(y, k, x);
     return false;
   }
 
  private:
+  using Symbol = formula::Symbol;
+  static consteval bool takes_symbols() {
+    return requires(const S& system, const Symbol* in, Symbol* out) {
+      system.template quantities<Symbol, Symbol>(in, in, *in, in, in, std::uint64_t{0}, out);
+      system.template rates<Symbol, Symbol>(in, in, *in, in, in, in, out);
+      system.template outputs<Symbol, Symbol>(in, in, *in, in, out);
+    };
+  }
+
   template <class T>
   static void seed(T* jets, const double* values, int count, int first) {
     for (int i = 0; i < count; ++i) jets[i] = T(values[i], first + i);
