@@ -339,7 +339,7 @@ int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& o
     std::cout << *answer;
     return 0;
   }
-  const std::string name = words.front();
+  const std::string& name = words.front();
   refuse_unknown_verb(name);
   CLI::App verb("", name);
   Options options;

@@ -116,7 +116,7 @@ class Writer {
     const Node& at = graph_.node(node);
     if (at.op == Op::constant) return at.value < 0.0 ? "(" + number_text(at.value) + ")" : number_text(at.value);
     if (at.op == Op::leaf) return leaf(at.a, p);
-    if (const char* name = function_name(at.op)) return language_.function_prefix + name + "(" + joined(p) + ")";
+    if (const char* name = function_name(at.op)) return std::string(language_.function_prefix) + name + "(" + joined(p) + ")";
     return arithmetic(at.op, p);
   }
   [[nodiscard]] std::string leaf(int number, const std::vector<std::string>& p) const {

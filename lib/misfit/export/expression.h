@@ -12,7 +12,7 @@ struct Language {
   std::string (*choose)(const std::string& condition, const std::string& yes, const std::string& no);
   std::string (*divide)(const std::string& a, const std::string& b);
   const char *both, *either;    ///< " && "
-  std::string function_prefix;  ///< before sqrt, sin, …
+  const char* function_prefix;  ///< before sqrt, sin, …
   const char* declare;          ///< before the name of an intermediate value: "const double "
   const char* end;              ///< of a statement: ";"
 };

@@ -93,8 +93,8 @@ std::string metrics_words(const Exported& exported) {
   const std::vector<ExportedParameter> parameters = parameters_of(exported);
   const auto add = [&](const char* name, const char* element, const char* unit) {
     const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const ExportedParameter& p) { return p.name == name; });
-    if (found != parameters.end())
-      out += fmt::format("  In <metrics>: <{0} unit=\"{1}\">{2:.17g}</{0}>\n", element, unit, found->estimate.value);
+    if (found == parameters.end()) return;
+    out += fmt::format("  In <metrics>: <{0} unit=\"{1}\">{2:.17g}</{0}>\n", element, unit, found->estimate.value);
   };
   add("S", "wingarea", "M2");
   add("D", "chord", "M");
