@@ -112,10 +112,11 @@ std::string jsbsim_text(const Exported& exported) {
     if (curve.grid && !curve.grid->informative) continue;
     functions += function_text(*term, points_of(curve, exported));
   }
-  if (functions.empty())
+  if (functions.empty()) {
     throw InputError(
         "the model has no curve of a pitching moment (C_m, C_mq, C_m_alphadot of an angle) to write for JSBSim; "
         "--to json, csv, c and python write all curves");
+  }
   std::string head;
   for (const std::string& line : provenance(exported)) head += "  " + line + "\n";
   return "<?xml version=\"1.0\"?>\n<!--\n" + comment_text(head + metrics_words(exported)) +
