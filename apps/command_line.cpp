@@ -10,7 +10,6 @@
 #include <csignal>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <new>
 #include <string_view>
 #include <thread>
@@ -19,7 +18,9 @@
 #include "apps/help.h"
 #include "apps/progress.h"
 #include "apps/terminal.h"
+#include "apps/verb_texts.h"
 #include "apps/verbs.h"
+#include "apps/what_next.h"
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
@@ -41,8 +42,16 @@ extern "C" void on_interrupt(int) {
 
 using Verb = int (*)(const Options&, const Registry&);
 
+/// One of these words, else the nearest is named.
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  const auto check = [words](const std::string& text) -> std::string {
+    return std::find(words.begin(), words.end(), text) != words.end() ? "" : "there is no '" + shown(text) + "'" + suggest(text, words);
+  };
+  return {check, ""};
+}
+
 void add_method(CLI::App& verb, Options& options) {
-  verb.add_option("--method", options.session.methods, "only these methods")->type_name("NAME")->check(CLI::IsMember(estimator_names()));
+  verb.add_option("--method", options.session.methods, "only these methods")->type_name("NAME")->check(one_of(estimator_names()));
 }
 
 /// CLI11 takes what does not fit for the largest number that does. As in a study, where TOML sets the limit.
@@ -179,6 +188,22 @@ void init_options(CLI::App& verb, Options& options) {
   verb.add_flag("--json", options.json, "print what was found as JSON");
 }
 
+void export_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  ExportRequest& request = options.export_request;
+  verb.add_option("--to", request.format, "format")->type_name("FORMAT")->required()->check(one_of(export_formats()));
+  verb.add_option("--out", request.out, "the file (of csv: the folder) to write (default: in export/ of the run folder)")
+      ->type_name("PATH");
+  verb.add_option("--method", request.method, "the estimate by this method (default: the last of the study that has one)")
+      ->type_name("NAME")
+      ->check(one_of(estimator_names()));
+  verb.add_option("--rung", request.rung, "number or effect of a rung of the ladder; 0 is the study's own model (default: the last)")
+      ->type_name("RUNG");
+  verb.add_option("--run", options.session.out, "run folder (default: out/ beside the study)")->type_name("DIR");
+  add_force(verb, options);
+  verb.add_flag("--quiet", options.quiet, "print no notes to stderr");
+}
+
 void effects_options(CLI::App& verb, Options& options) {
   verb.add_option("what", options.session.study, "key of an effect, or a study: study.toml, or the folder that holds it")
       ->type_name("KEY|STUDY");
@@ -187,32 +212,32 @@ void effects_options(CLI::App& verb, Options& options) {
 }
 
 struct VerbEntry {
-  const char* name;
-  const char* doc;
+  std::string_view name;
   Verb call;
   void (*add_options)(CLI::App&, Options&);
 };
 
-constexpr VerbEntry verbs[] = {
-    {"run", "run all stages of the study and write the report; stages whose inputs have not changed are skipped", run_verb, run_options},
-    {"track", "follow the marker through the video: track.csv, contact sheet, lost samples and their reasons", track_verb, track_options},
-    {"calibrate", "estimate camera height, scale and the further parameters that the static sweep supports", calibrate_verb, study_options},
-    {"attitude", "compute the angles of the axis from the track", attitude_verb, study_options},
-    {"fit", "estimate the model's curves and parameters", fit_verb, fit_options},
-    {"diagnose", "residual diagnostics: unexplained force against states, inputs and time; whiteness tests", diagnose_verb, fit_options},
-    {"discover", "rank the effects the model may be missing; continues from the last model of the ladder", discover_verb, discover_options},
-    {"add", "add an effect (or system:KIND) to the last rung: writes and fits a new study, prints the error before and after", add_verb,
-     add_verb_options},
-    {"compare", "compare methods with each other and with reference curves, simulated with measured motion", compare_verb, fit_options},
-    {"uncertainty", "propagate geometry, camera and mass uncertainty to the results (Monte Carlo, on threads or under mpirun)",
-     uncertainty_verb, uncertainty_options},
-    {"report", "write the figures and one self-contained page", report_verb, fit_options},
-    {"simulate", "simulate the model as described in [simulate], or as fitted", simulate_verb, study_options},
-    {"batch", "fit many studies as one job, on threads or under mpirun; tabulate how their results vary", batch_verb, batch_options},
-    {"init", "write a first study for a CSV file: column roles, linear model, figures", init_verb, init_options},
-    {"effects", "list the effects of the program, or of a study; with the key of an effect, print it in full", effects_verb,
-     effects_options},
-};
+/// In any order: verb_texts() has the one in which they are listed.
+constexpr VerbEntry verbs[] = {{"run", run_verb, run_options},
+                               {"track", track_verb, track_options},
+                               {"calibrate", calibrate_verb, study_options},
+                               {"attitude", attitude_verb, study_options},
+                               {"fit", fit_verb, fit_options},
+                               {"diagnose", diagnose_verb, fit_options},
+                               {"discover", discover_verb, discover_options},
+                               {"add", add_verb, add_verb_options},
+                               {"compare", compare_verb, fit_options},
+                               {"uncertainty", uncertainty_verb, uncertainty_options},
+                               {"report", report_verb, fit_options},
+                               {"simulate", simulate_verb, study_options},
+                               {"batch", batch_verb, batch_options},
+                               {"export", export_verb, export_options},
+                               {"init", init_verb, init_options},
+                               {"effects", effects_verb, effects_options}};
+
+const VerbEntry& entry_of(std::string_view name) {
+  return *std::find_if(std::begin(verbs), std::end(verbs), [&](const VerbEntry& entry) { return entry.name == name; });
+}
 
 std::string command_text(int argc, char** argv) {
   std::string out = "misfit";
@@ -222,37 +247,63 @@ std::string command_text(int argc, char** argv) {
 
 std::vector<std::string> verb_names() {
   std::vector<std::string> names;
-  for (const auto& verb : verbs) names.emplace_back(verb.name);
+  for (const VerbText& verb : verb_texts()) names.emplace_back(verb.name);
   return names;
 }
 
-/// What `misfit help` alone prints: the verbs, and the topics beside them.
-std::string contents_of_help() {
-  constexpr std::size_t columns = 100;
-  std::string out;
-  const auto add = [&](const std::string& name, const std::string& doc) {
-    out += "  " + name + wrap_text(doc, columns, std::string(14, ' ')).substr(2 + name.size()) + "\n";
-  };
-  out += "misfit help VERB (the same as misfit VERB --help)\n";
-  for (const auto& verb : verbs) add(verb.name, verb.doc);
-  out += "\nmisfit help TOPIC\n";
-  for (const auto& [topic, doc] : help_topics()) add(topic, doc);
+/// What the parser knows of a verb's options, as plain data.
+VerbManual manual_of(const VerbText& text) {
+  CLI::App verb;
+  Options options;
+  entry_of(text.name).add_options(verb, options);
+  VerbManual out{text, {}};
+  for (const CLI::Option* option : verb.get_options([](const CLI::Option* o) { return o->get_name() != "--help"; })) {
+    const bool argument = option->get_positional();
+    const bool is_switch = option->get_items_expected_max() == 0;
+    OptionText one{argument ? option->get_type_name() : option->get_name(), is_switch || argument ? "" : option->get_type_name(),
+                   option->get_description(), argument, option->get_required()};
+    if (one.name == "--method") one.choices = estimator_names();
+    if (one.name == "--to") one.choices = export_formats();
+    out.options.push_back(std::move(one));
+  }
   return out;
 }
+std::vector<VerbManual> all_manuals() {
+  std::vector<VerbManual> out;
+  for (const VerbText& text : verb_texts()) out.push_back(manual_of(text));
+  return out;
+}
+const VerbText& text_of(const std::string& name) {
+  const auto texts = verb_texts();
+  return *std::find_if(texts.begin(), texts.end(), [&](const VerbText& text) { return name == text.name; });
+}
 
-/// `misfit help …`; nullopt for a verb, whose own help is to be printed.
-std::optional<std::string> help_on(int argc, char** argv, const Registry& registry) {
-  if (argc < 3) return contents_of_help();
-  if (argc > 3) throw InputError("misfit help takes one verb or topic");
-  const std::string topic = argv[2];
+/// `misfit help …`.
+std::string help_on(const std::vector<std::string>& words, const Registry& registry) {
+  if (words.empty()) return contents_of_help(verb_texts());
+  if (words.size() > 1) throw InputError("misfit help takes one verb or topic");
+  const std::string& topic = words.front();
   std::vector<std::string> names = verb_names();
-  for (const auto& [name, doc] : help_topics()) names.push_back(name);
-  if (std::find(names.begin(), names.end(), topic) == names.end())
-    throw InputError("misfit help knows no '" + shown(topic) + "'" + suggest(topic, names));
+  if (std::find(names.begin(), names.end(), topic) != names.end()) return verb_help(manual_of(text_of(topic)));
   for (const auto& [name, doc] : help_topics()) {
     if (name == topic) return help_text(topic, registry);
+    names.push_back(name);
   }
-  return std::nullopt;
+  throw InputError("misfit help knows no '" + shown(topic) + "'" + suggest(topic, names));
+}
+
+/// Answers without a verb: `misfit` alone, help, the version.
+std::optional<std::string> answer_without_verb(const std::vector<std::string>& words, const Registry& registry) {
+  if (words.empty()) return what_next(".", installed_examples());
+  const std::string& first = words.front();
+  if (first == "--version") return std::string("misfit ") + version() + " (" + commit() + ")\n";
+  if (first == "--help" || first == "-h") return help_on({}, registry);
+  if (first != "help") return std::nullopt;
+  if (words.size() == 3 && words[1] == "--manual") {  // for the build: not in any help
+    write_manual(words[2], all_manuals());
+    return "";
+  }
+  return help_on({words.begin() + 1, words.end()}, registry);
 }
 
 /// Verbs that are one job would do it several times over, in one folder.
@@ -268,45 +319,55 @@ void refuse_unknown_verb(const std::string& verb) {
     throw InputError("unknown verb '" + shown(verb) + "'" + suggest(verb, names));
 }
 
-int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out);
-
-int print_help(int argc, char** argv, const Registry& registry, PrintableStream& out) {
-  if (const auto text = help_on(argc, argv, registry)) {
-    std::cout << *text;
-    return 0;
+/// Why the parser did not take the words behind a verb; an option that the verb does not have is named before all else.
+[[noreturn]] void refuse_words(const VerbManual& verb, const std::vector<std::string>& words, const CLI::ParseError& error) {
+  const std::string name = verb.text.name;
+  std::vector<std::string> names{"--help"};
+  for (const OptionText& option : verb.options) {
+    if (!option.argument) names.push_back(option.name);
   }
-  std::string own_help = "--help";
-  std::array<char*, 3> of_verb = {argv[0], argv[2], own_help.data()};
-  return dispatch(3, of_verb.data(), registry, out);
+  for (const std::string& word : words) {
+    const std::string option = word.substr(0, word.find('='));
+    if (option.starts_with("--") && option.size() > 2 && std::find(names.begin(), names.end(), option) == names.end())
+      throw InputError(name + " has no option '" + shown(option) + "'" + suggest(option, names));
+  }
+  throw InputError(name + ": " + shortened(error.what(), longest_message / 2) + "; see misfit help " + name);
+}
+
+/// A table is no study: what makes one of it.
+void refuse_table(const std::string& verb, const std::string& study) {
+  if (verb != "init" && study.ends_with(".csv"))
+    throw InputError(shown(study) + " is a table of data, not a study; misfit init " + shown(study) + " makes a study of it");
 }
 
 int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out) {
-  if (argc > 1 && std::string_view(argv[1]) == "help") return print_help(argc, argv, registry, out);
-  CLI::App app{"misfit — find out what your model is missing"};
-  app.set_version_flag("--version", std::string("misfit ") + version() + " (" + commit() + ")");
-  app.require_subcommand(1);
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (const auto answer = answer_without_verb(words, registry)) {
+    std::cout << *answer;
+    return 0;
+  }
+  const std::string& name = words.front();
+  refuse_unknown_verb(name);
+  CLI::App verb("", name);
   Options options;
   options.session.command = command_text(argc, argv);
-  std::map<const CLI::App*, Verb> calls;
-  for (const auto& entry : verbs) {
-    CLI::App* verb = app.add_subcommand(entry.name, entry.doc);
-    entry.add_options(*verb, options);
-    calls[verb] = entry.call;
-  }
-  if (argc > 1 && argv[1][0] != '-') refuse_unknown_verb(argv[1]);
+  entry_of(name).add_options(verb, options);
+  std::vector<std::string> rest(words.rbegin(), words.rend() - 1);  // the last word first, as CLI11 wants them
   try {
-    app.parse(argc, argv);
+    verb.parse(rest);
+  } catch (const CLI::CallForHelp&) {
+    std::cout << verb_help(manual_of(text_of(name)));
+    return 0;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    throw InputError(shortened(error.what(), longest_message / 2) + "; see misfit --help and misfit VERB --help");
+    refuse_words(manual_of(text_of(name)), {words.begin() + 1, words.end()}, error);
   }
-  const CLI::App* chosen = app.get_subcommands().front();
+  refuse_table(name, options.session.study);
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  refuse_ranks(chosen->get_name());
+  refuse_ranks(name);
   if (!options.quiet && (ranks_started() == 1 || ranks().first())) options.session.listener = terminal_listener();
   if (options.json) out.use_json_escapes();
-  return calls.at(chosen)(options, registry);
+  return entry_of(name).call(options, registry);
 }
 
 /// An error in the study occurs on every rank: the first reports it and ends them all. A rank still alive after three seconds has an

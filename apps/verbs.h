@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/workflow/export.h"
 #include "misfit/workflow/ladder.h"
 
 namespace misfit {
@@ -16,6 +17,7 @@ struct Options {
   std::string effect;                ///< add
   bool automatic = false;            ///< discover --auto, run --auto
   std::string check_video;           ///< track: write the video with the track drawn to this file
+  ExportRequest export_request;      ///< export
 };
 
 // One function per verb: open the study, call the stages, print. Each in apps/NAME.cpp. Return the exit status.
@@ -32,6 +34,7 @@ int uncertainty_verb(const Options& options, const Registry& registry);
 int batch_verb(const Options& options, const Registry& registry);
 int add_verb(const Options& options, const Registry& registry);
 int run_verb(const Options& options, const Registry& registry);
+int export_verb(const Options& options, const Registry& registry);
 int init_verb(const Options& options, const Registry& registry);
 int effects_verb(const Options& options, const Registry& registry);
 

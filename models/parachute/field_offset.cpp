@@ -33,6 +33,8 @@ struct FieldOffset {
        .fixed = true},
   };
 
+  static constexpr bool traceable = false;  // the field is rounded off the number itself
+
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* P) {
     const double field = std::round(in.t * value_of(in.c[field_rate]));

@@ -37,8 +37,8 @@ struct ParachutePlanar {
     return (k[m] + k[m_a]) * (k[R_cp] * k[R_cp]) + P[inertia_port];
   }
 
-  template <class T, class K>
-  void quantities(const PointOf<T, K>& at, std::uint64_t needed, T* q) const {
+  template <class T, class K, class U>
+  void quantities(const PointOf<T, K, U>& at, std::uint64_t needed, T* q) const {
     const auto& [x, u, t, k, P] = at;
     using std::cos;
     using std::sqrt;
@@ -48,7 +48,7 @@ struct ParachutePlanar {
     q[phi_rate] = T(u[clock_angle_rate]);
     q[dynamic_pressure] = k[qbar] + P[pressure_port];
     q[inertia] = moment_of_inertia(k, P);
-    if (wants(needed, gravity_direction)) q[gravity_direction] = std::cos(u[clock_angle]) * cos(x[tilt]);
+    if (wants(needed, gravity_direction)) q[gravity_direction] = cos(u[clock_angle]) * cos(x[tilt]);
     // The root only where the pressure is changed: it costs as much as everything else here.
     q[wind_speed] = vanishes(P[pressure_port]) ? T(k[V]) : T(k[V] * sqrt(T(q[dynamic_pressure] / k[qbar])));
     if (!induced) {
@@ -61,8 +61,8 @@ struct ParachutePlanar {
 
   /// Regular everywhere but at alpha_T = 0 exactly, where the derivative of the (even) angle is taken as 0; every use of alpha_T there is
   /// even or odd-over-sine, so nothing is lost.
-  template <class T, class K>
-  static void relative_wind(const T* x, const double* u, const K* k, T* q) {
+  template <class T, class K, class U>
+  static void relative_wind(const T* x, const U* u, const K* k, T* q) {
     using std::atan2;
     using std::cos;
     using std::sin;
@@ -77,15 +77,15 @@ struct ParachutePlanar {
         value_of(cross_squared) > 0.0 ? T(atan2(T(sqrt(cross_squared)), along)) : T(value_of(along) < 0.0 ? 3.14159265358979323846 : 0.0);
   }
 
-  template <class T, class K>
-  void rates(const PointOf<T, K>& at, const T* F, T* dx) const {
+  template <class T, class K, class U>
+  void rates(const PointOf<T, K, U>& at, const T* F, T* dx) const {
     const auto& [x, u, t, k, P] = at;
     dx[tilt] = x[tilt_rate];
     dx[tilt_rate] = F[in_plane] / moment_of_inertia(k, P);
   }
 
-  template <class T, class K>
-  void outputs(const PointOf<T, K>& at, T* y) const {
+  template <class T, class K, class U>
+  void outputs(const PointOf<T, K, U>& at, T* y) const {
     y[measured_tilt] = at.x[tilt];
   }
 

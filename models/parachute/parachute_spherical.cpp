@@ -1,3 +1,5 @@
+#include <type_traits>
+
 #include "misfit/math/camera.h"
 #include "misfit/model/system_of.h"
 
@@ -88,8 +90,8 @@ struct ParachuteSpherical {
     return (k[m] + k[m_a]) * (k[R_cp] * k[R_cp]) + P[inertia_port];
   }
 
-  template <class T, class K>
-  void quantities(const PointOf<T, K>& at, std::uint64_t needed, T* q) const {
+  template <class T, class K, class U>
+  void quantities(const PointOf<T, K, U>& at, std::uint64_t needed, T* q) const {
     const auto& [n, u, t, k, P] = at;
     using std::atan2;
     using std::sqrt;
@@ -116,8 +118,8 @@ struct ParachuteSpherical {
   }
 
   /// Components of (v × n)/|v| about the axes of in-plane and lateral rotation; alpha_T between n and v.
-  template <class T, class K>
-  static void relative_wind(const PointOf<T, K>& at, const Axis<T>& a, const T& n_x_rate, T* q) {
+  template <class T, class K, class U>
+  static void relative_wind(const PointOf<T, K, U>& at, const Axis<T>& a, const T& n_x_rate, T* q) {
     const auto& [n, u, t, k, P] = at;
     using std::atan2;
     using std::sqrt;
@@ -136,8 +138,8 @@ struct ParachuteSpherical {
         value_of(cross_squared) > 0.0 ? T(atan2(T(sqrt(cross_squared)), along)) : T(value_of(along) < 0.0 ? 3.14159265358979323846 : 0.0);
   }
 
-  template <class T, class K>
-  void rates(const PointOf<T, K>& at, const T* F, T* dx) const {
+  template <class T, class K, class U>
+  void rates(const PointOf<T, K, U>& at, const T* F, T* dx) const {
     const auto& [n, u, t, k, P] = at;
     const Axis<T> a = axis_of(n);
     const T n_x_rate = axial_rate(n, a.x);
@@ -157,8 +159,8 @@ struct ParachuteSpherical {
     return camera;
   }
 
-  template <class T, class K>
-  void outputs(const PointOf<T, K>& at, T* pixels) const {
+  template <class T, class K, class U>
+  void outputs(const PointOf<T, K, U>& at, T* pixels) const {
     const T* n = at.x;
     const K* k = at.k;
     using std::atan2;
@@ -170,13 +172,16 @@ struct ParachuteSpherical {
       const T focal = T(k[l_b]) * camera.K;
       const T depth = T(k[l_s]) + camera.camera_distance - k[R] * n_x;
       P = to_image(camera, focal, T(focal * (k[R] * n[y]) / depth), T(focal * (k[R] * n[z] + camera.h_c) / depth));
-    } else {
+    } else if constexpr (!std::is_same_v<T, formula::Symbol>) {
       const AxisGeometry rig{value_of(k[R]), value_of(k[l_b]), value_of(k[l_s])};
       P = project_axis(CameraModel::plane_by_plane, camera, rig, T(atan2(n[z], n_x)), T(atan2(n[y], n_x)));
     }
     pixels[0] = P[0];
     pixels[1] = P[1];
   }
+
+  /// The geometry of plane_by_plane is numbers.
+  [[nodiscard]] bool traceable() const { return pinhole; }
 
   /// n_y and n_z from pixels; false where no direction explains them.
   bool read_states(const double* pixels, const double* k, double* n) const {

@@ -25,11 +25,17 @@ TEST(CommandLine, AMistakeIsNamedAndEndsWithTwo) {
     std::vector<std::string> arguments;
     const char* named;
   };
-  for (const auto& [arguments, named] : std::vector<Case>{{{}, "subcommand"},
-                                                          {{"calibrat", "x"}, "did you mean 'calibrate'"},
+  for (const auto& [arguments, named] : std::vector<Case>{{{"calibrat", "x"}, "did you mean 'calibrate'"},
+                                                          {{"fti", "x"}, "did you mean 'fit'"},
                                                           {{"nonsense"}, "nonsense"},
                                                           {{"run"}, "study"},
                                                           {{"run", "--fast", "x"}, "--fast"},
+                                                          {{"fit", "x", "--metod", "output_error"}, "did you mean '--method'"},
+                                                          {{"fit", "x", "--metod=output_error"}, "did you mean '--method'"},
+                                                          {{"fit", "x", "--method", "outputerror"}, "did you mean 'output_error'"},
+                                                          {{"fit", "motor.csv"}, "misfit init motor.csv"},
+                                                          {{"export", "x"}, "--to"},
+                                                          {{"export", "x", "--to", "pyton"}, "did you mean 'python'"},
                                                           {{"run", "x", "--threads", "many"}, "--threads"},
                                                           {{"run", "x", "--method", "magic"}, "magic"},
                                                           {{"run", "x", "--seed", "-1"}, "--seed"},

@@ -1,6 +1,7 @@
 // misfit help, and the keys of files: the reference names every key that the readers know, and they know every key that it names.
 
 #include <set>
+#include <tuple>
 
 #include "misfit/core/keys.h"
 #include "misfit/data/study_keys.h"
@@ -33,6 +34,85 @@ TEST(Help, NamesTheNearestTopic) {
     EXPECT_NE(outcome.err.find("did you mean '" + std::string(meant) + "'?"), std::string::npos) << outcome.err;
   }
   EXPECT_EQ(run({"help", "fit", "study"}).status, 2);
+}
+
+TEST(Help, OfAVerbSaysWhatItReadsAndWritesWithAnExample) {
+  const std::string all = run({"help"}).out;
+  int verbs = 0;
+  for (const char* verb : {"run", "track", "calibrate", "attitude", "fit", "diagnose", "discover", "add", "compare", "uncertainty",
+                           "report", "simulate", "batch", "export", "init", "effects"}) {
+    const Outcome outcome = run({verb, "--help"});
+    EXPECT_EQ(outcome.status, 0) << verb;
+    EXPECT_TRUE(outcome.out.starts_with(std::string("misfit ") + verb + ":")) << outcome.out;
+    expect_parts(outcome.out, {"\n  reads ", "\n  writes ", "\n  example  misfit ", "\n  -h, --help "});
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 102U) << verb << ": " << line;  // … is three bytes
+    verbs += all.find(std::string("\n  ") + verb) != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(verbs, 16);
+}
+
+TEST(Help, ManualAndCompletionNameEveryOptionOfTheHelp) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run({"help", "--manual", folder.path().string()}).status, 0);
+  const std::string completion = content(folder.path() / "bash-completion/misfit");
+  int pages = 0;
+  for (const auto& page : fs::directory_iterator(folder.path() / "man1")) {
+    ++pages;
+    const std::string name = page.path().stem().string(), text = content(page.path());
+    EXPECT_TRUE(text.starts_with(".TH \"misfit")) << name;
+    if (name == "misfit") continue;
+    const std::string verb = name.substr(std::string("misfit-").size());
+    std::istringstream lines(run({verb, "--help"}).out);
+    for (std::string line; std::getline(lines, line);) {
+      std::smatch option;
+      if (!std::regex_search(line, option, std::regex("^  (--[a-z-]+)"))) continue;
+      EXPECT_NE(text.find(std::regex_replace(option[1].str(), std::regex("-"), "\\-")), std::string::npos) << verb << option[1];
+      EXPECT_NE(completion.find(option[1].str()), std::string::npos) << verb << option[1];
+    }
+  }
+  EXPECT_EQ(pages, 17);
+}
+
+/// As readline asks for it.
+std::string completed(const fs::path& file, const std::string& words, int at) {
+  const TemporaryFolder folder;
+  const std::string command = "bash -c '. " + file.string() + "; COMP_WORDS=(" + words + "); COMP_CWORD=" + std::to_string(at) +
+                              "; _misfit; echo \"${COMPREPLY[*]}\"' > " + (folder.path() / "said").string();
+  EXPECT_EQ(std::system(command.c_str()), 0);  // NOLINT(cert-env33-c)
+  return content(folder.path() / "said");
+}
+
+TEST(Help, CompletionKnowsVerbsOptionsAndValues) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run({"help", "--manual", folder.path().string()}).status, 0);
+  const fs::path file = folder.path() / "bash-completion/misfit";
+  EXPECT_EQ(completed(file, "misfit cal", 1), "calibrate\n");
+  EXPECT_EQ(completed(file, "misfit fit --me", 2), "--method\n");
+  EXPECT_EQ(completed(file, "misfit fit x --method filt", 4), "filter_error\n");
+  EXPECT_EQ(completed(file, "misfit export --to ", 3), "json csv c python jsbsim\n");
+  EXPECT_EQ(completed(file, "misfit help wor", 2), "words\n");
+}
+
+TEST(NoVerb, SaysWhatToDoNext) {
+  const TemporaryFolder folder;
+  const auto here = [&] {
+    const Outcome outcome = run({}, [&] { std::ignore = ::chdir(folder.path().c_str()); });
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  expect_parts(here(), {"No study and no CSV file in this folder", "misfit init DATA.csv", "misfit help"});
+  folder.write("my motor.csv", "t,u,y\n");
+  expect_parts(here(), {"misfit init 'my motor.csv'"});
+  fs::create_directories(folder.path() / "flight");
+  folder.write("flight/study.toml", "");
+  expect_parts(here(), {"misfit run flight", "misfit init 'my motor.csv'"});
+  folder.write("study.toml", "");
+  expect_parts(here(), {"a study that has not been run", "misfit run ."});
+  fs::create_directories(folder.path() / "out/fit");
+  folder.write("out/run.json", "");
+  folder.write("out/report.html", "");
+  expect_parts(here(), {"misfit discover . --auto", "misfit export . --to json", "out/report.html"});
 }
 
 std::size_t characters(const std::string& line) {

@@ -104,6 +104,8 @@ TEST(NearestName, IsNoneForATextThatIsNoName) { EXPECT_EQ(nearest_name(std::stri
 TEST(EditDistance, CountsChangesWithoutRegardToCapitals) {
   EXPECT_EQ(edit_distance("kitten", "SITTING"), 3U);
   EXPECT_EQ(edit_distance("", "abc"), 3U);
+  EXPECT_EQ(edit_distance("fti", "fit"), 1U) << "neighbours that changed places";
+  EXPECT_EQ(edit_distance("abcd", "badc"), 2U);
   EXPECT_EQ(edit_distance("abc", "abc"), 0U);
   EXPECT_EQ(edit_distance(std::string(1'000'000, 'a'), "a"), 1'000'000U);
 }

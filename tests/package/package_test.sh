@@ -42,6 +42,32 @@ for program in "$work/prefix/bin/misfit" "$work/build/own_misfit"; do
   rm -rf "$work/tracked"
 done
 
+# The two packages: what Debian wants is there, and the program runs from where it is unpacked, on an example that came with it.
+cpack --config "$build/CPackConfig.cmake" -B "$work/packages" > "$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
+rm -rf "$work/packages/_CPack_Packages"
+for name in misfit libmisfit-dev; do
+  file=$(echo "$work/packages/${name}"_*.deb)
+  [ -f "$file" ] || fail "no package $name"
+  dpkg-deb -x "$file" "$work/root"
+  [ "$(dpkg-deb -f "$file" Package)" = "$name" ] || fail "$file is called $(dpkg-deb -f "$file" Package)"
+  for document in copyright changelog.gz; do
+    [ -s "$work/root/usr/share/doc/$name/$document" ] || fail "$name has no $document"
+  done
+done
+dpkg-deb -f "$work"/packages/libmisfit-dev_*.deb Depends | grep -q "misfit (= $(dpkg-deb -f "$work"/packages/misfit_*.deb Version))" ||
+  fail "libmisfit-dev does not want the program of its version"
+! dpkg-deb -c "$work"/packages/misfit_*.deb | grep -qE '\.(h|a)$' || fail "the program's package has headers or libraries"
+for page in misfit misfit-fit misfit-export; do
+  gzip -dc "$work/root/usr/share/man/man1/$page.1.gz" | grep -q "^.TH \"${page//-/\\\\-}\"" || fail "no manual page $page"
+done
+[ -s "$work/root/usr/share/bash-completion/completions/misfit" ] || fail "no completion"
+mkdir "$work/home"
+(cd "$work/home" && "$work/root/usr/bin/misfit") > "$work/next.txt"
+grep -q "cp -r $work/root/usr/share/doc/misfit/examples/cascaded_tanks ." "$work/next.txt" || fail "misfit alone says: $(cat "$work/next.txt")"
+cp -r "$work/root/usr/share/doc/misfit/examples/cascaded_tanks" "$work/home"
+(cd "$work/home" && env -u LD_LIBRARY_PATH "$work/root/usr/bin/misfit" fit cascaded_tanks --quiet) > "$work/fit.txt" || fail "the unpacked program: $(cat "$work/fit.txt")"
+[ -s "$work/home/cascaded_tanks/out/fit/output_error/fit.json" ] || fail "the unpacked program leaves no fit"
+
 # broken NAME: a copy of the project under WORK/NAME, to be spoilt.
 broken() {
   mkdir "$work/$1"

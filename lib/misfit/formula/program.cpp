@@ -41,6 +41,15 @@ Program::Program(const Graph& graph, const std::vector<int>& roots, int leaves) 
   for (int root : roots) places_.push_back(place[root]);
 }
 
+std::vector<Symbol> Program::trace(std::vector<Symbol> leaves) const {
+  leaves.resize(registers_);
+  for (const Constant& c : constants_) leaves[c.at] = c.value;
+  for (const Step& s : steps_) leaves[s.to] = Symbol::apply(s.op, leaves[s.a], leaves[s.b], leaves[s.c]);
+  std::vector<Symbol> roots;
+  for (const int at : places_) roots.push_back(leaves[at]);
+  return roots;
+}
+
 const Program::Step* Program::culprit(std::size_t root, const double* registers) const {
   int at = places_[root];
   const Step* found = nullptr;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "misfit/formula/graph.h"
+#include "misfit/formula/symbol.h"
 
 namespace misfit::formula {
 
@@ -21,6 +21,8 @@ class Program {
     for (const Constant& c : constants_) registers[c.at] = c.value;
     for (const Step& s : steps_) registers[s.to] = apply(s.op, registers[s.a], registers[s.b], registers[s.c]);
   }
+  /// The same over symbols, inside of trace(): its roots.
+  [[nodiscard]] std::vector<Symbol> trace(std::vector<Symbol> leaves) const;
   [[nodiscard]] int place(std::size_t root) const { return places_[root]; }  ///< register of a root
   [[nodiscard]] int registers() const { return registers_; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
@@ -33,6 +34,14 @@ class FormulaEffect final : public Effect {
     fill(in, r);
     value_.run(r.data());
     out[0] = r[value_.place(0)];
+  }
+  bool trace(const SymbolReads& in, formula::Symbol* out) const override {
+    std::vector<formula::Symbol> leaves(in.q, in.q + spec_.quantities.size());
+    leaves.insert(leaves.end(), in.c, in.c + spec_.coefficients.size());
+    leaves.insert(leaves.end(), in.k, in.k + spec_.constants.size());
+    leaves.push_back(in.t);
+    out[0] = value_.trace(std::move(leaves)).front();
+    return true;
   }
   void linearise(const Reads<double, double>& in, double* out, double* J, bool constants_too) const override {
     Registers r;

@@ -82,6 +82,13 @@ class DeclaredSystem final : public System {
     block(tape.by_k, r, rows * spec_.constants.size(), y_k);
   }
 
+  [[nodiscard]] bool traceable() const override { return true; }
+  void trace_quantities(const SymbolPoint& at, formula::Symbol* q) const override { trace(c_->quantities, leaves_of(at, nullptr), q); }
+  void trace_rates(const SymbolPoint& at, const formula::Symbol* F, formula::Symbol* dx) const override {
+    trace(c_->rates, leaves_of(at, F), dx);
+  }
+  void trace_outputs(const SymbolPoint& at, formula::Symbol* y) const override { trace(c_->outputs, leaves_of(at, nullptr), y); }
+
   bool read_states(const double* y, const double* k, double* x) const override {
     const std::array<double, kMaxStates> zero{};
     std::array<double, kMaxOutputs> y0{};
@@ -150,6 +157,24 @@ class DeclaredSystem final : public System {
     for (int i = 0; i < n.nf; ++i) *to++ = F[i];
     tape.program.run(r.data());
   }
+  /// Ports that are not given are 0.
+  [[nodiscard]] std::vector<formula::Symbol> leaves_of(const SymbolPoint& at, const formula::Symbol* F) const {
+    const Leaves& n = c_->leaves;
+    std::vector<formula::Symbol> all(at.x, at.x + n.nx);
+    all.insert(all.end(), at.u, at.u + n.nu);
+    all.push_back(at.t);
+    all.insert(all.end(), at.k, at.k + n.nk);
+    const auto add = [&all](const formula::Symbol* ports, int count) {
+      for (int i = 0; i < count; ++i) all.push_back(ports == nullptr ? formula::Symbol() : ports[i]);
+    };
+    add(at.P, n.np);
+    add(F, n.nf);
+    return all;
+  }
+  static void trace(const Tape& tape, std::vector<formula::Symbol> leaves, formula::Symbol* to) {
+    const std::vector<formula::Symbol> roots = tape.program.trace(std::move(leaves));
+    std::copy_n(roots.begin(), tape.value.size(), to);
+  }
   static void write(const std::vector<Tape::Entry>& entries, const Registers& r, double* to) {
     for (const Tape::Entry& e : entries) to[e.place] = r[e.from];
   }
@@ -212,10 +237,10 @@ class DeclaredSystem final : public System {
     std::vector<std::vector<bool>> is_rate(count, std::vector<bool>(count, true));  // of [rate][moved]
     for (unsigned number = 0; number < places; ++number) {
       const Place place = some_place(number);
-      const Point at{place.x.data(), place.u.data(), 0.0, place.k.data()};
+      const Point at{place.x.data(), place.u.data(), 0.0, place.k.data(), no_forces.data()};
       std::vector<double> q(count), slope(count * states), dx(states);
-      linearise_quantities(at, no_forces.data(), ~std::uint64_t{0}, q.data(), {slope.data(), nullptr, nullptr});
-      rates(at, no_forces.data(), no_forces.data(), dx.data());
+      linearise_quantities(at, ~std::uint64_t{0}, q.data(), {slope.data(), nullptr, nullptr});
+      rates(at, no_forces.data(), dx.data());
       for (std::size_t moved = first; moved < count; ++moved) {
         double rate = 0.0, size = 0.0;
         for (std::size_t j = 0; j < states; ++j) {

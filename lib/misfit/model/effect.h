@@ -6,6 +6,9 @@
 // `quantities`, `ports`, `coefficients`, `constants` and `states` in their order, in.q[wind_speed], F[pitching_moment]. Where two arrays
 // share a name, one of the enumerators says of which it is: P_y_port. An enum that differs from its array does not compile.
 //
+// The formula is called with numbers, with Jets for derivatives, and with symbols (formula/symbol.h) to be exported. Where it needs the
+// number behind value_of(…) for more than a comparison, `static constexpr bool traceable = false;` says so, and it is not exported.
+//
 // What this interface cannot express: forces that depend on accelerations (declare them as a change of `inertia`, a quantity port), jumps
 // of the state, and memory without a finite state (a pure delay: use own states that approximate it).
 
@@ -14,9 +17,11 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "misfit/core/lists.h"
+#include "misfit/formula/symbol.h"
 #include "misfit/math/bspline.h"
 #include "misfit/math/scalar.h"
 #include "misfit/model/index_names.h"
@@ -117,12 +122,13 @@ struct EffectSpec {
 /// What a formula sees. K is double when constants are fixed, T when one of them is free.
 template <class T, class K>
 struct Reads {
-  const T* q;  ///< quantities, order of `quantities`
-  const T* c;  ///< coefficients, order of `coefficients`
-  const T* z;  ///< own states, order of `states`
-  const K* k;  ///< constants, order of `constants`
-  double t;    ///< [s]
+  const T* q;                                                           ///< quantities, order of `quantities`
+  const T* c;                                                           ///< coefficients, order of `coefficients`
+  const T* z;                                                           ///< own states, order of `states`
+  const K* k;                                                           ///< constants, order of `constants`
+  std::conditional_t<std::is_same_v<T, formula::Symbol>, T, double> t;  ///< [s]
 };
+using SymbolReads = Reads<formula::Symbol, formula::Symbol>;
 
 /// An effect behind a virtual call. Outputs are ordered ports first, then drifts of own states; they are set, not added.
 class Effect {
@@ -139,6 +145,8 @@ class Effect {
   [[nodiscard]] virtual bool responds() const { return false; }
   /// Noise intensity of each own state [unit/sqrt(s)]; zeros for deterministic memory.
   virtual void diffusion(const Reads<double, double>& in, double* out) const = 0;
+  /// evaluate() over symbols, inside of formula::trace(). False, with nothing done, where the formula cannot be read that way.
+  virtual bool trace(const SymbolReads& /*in*/, formula::Symbol* /*out*/) const { return false; }
 };
 
 /// Turns a struct with a templated formula into an Effect. Required: `static constexpr` texts formula, symbols, valid, size, source,
@@ -156,6 +164,14 @@ class EffectOf final : public Effect {
   [[nodiscard]] std::vector<Example> examples() const override { return E::examples(); }
 
   void evaluate(const Reads<double, double>& in, double* out) const override { call<double, double>(in, out); }
+
+  bool trace(const SymbolReads& in, formula::Symbol* out) const override {
+    if constexpr (requires { requires !E::traceable; })
+      return false;
+    else
+      call<formula::Symbol, formula::Symbol>(in, out);
+    return true;
+  }
 
   void linearise(const Reads<double, double>& in, double* out, double* J, bool constants_too) const override {
     if (constants_too && NK > 0) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "misfit/data/folded_angle.h"
+#include "misfit/formula/symbol.h"
 #include "misfit/model/limits.h"
 
 namespace misfit {
@@ -130,16 +131,18 @@ struct RateDerivatives {
   double* k = nullptr;  ///< states × constants
 };
 
-/// Where a system is evaluated. T, K: double, or Jets where derivatives by states and ports, by constants, are taken.
-template <class T, class K>
+/// Where a system is evaluated. T, K: double, or Jets where derivatives by states and ports, by constants, are taken; all three symbols
+/// where its formulas are read.
+template <class T, class K, class U = double>
 struct PointOf {
   const T* x;            ///< states
-  const double* u;       ///< inputs
-  double t;              ///< [s]
+  const U* u;            ///< inputs
+  U t;                   ///< [s]
   const K* k;            ///< constants
   const T* P = nullptr;  ///< what effects add on the quantity ports; outputs do not depend on it
 };
 using Point = PointOf<double, double>;
+using SymbolPoint = PointOf<formula::Symbol, formula::Symbol, formula::Symbol>;
 
 /// The skeleton of a model. `needed` has bit i set if quantity i is read by somebody: others may be left 0.
 class System {
@@ -161,6 +164,11 @@ class System {
   /// Why rates() is not finite here, in words: the part of the formula, the states and parameters in it. Empty if it is finite or not
   /// known.
   [[nodiscard]] virtual std::string explain(const Point& /*at*/, const double* /*F*/) const { return {}; }
+  /// quantities(), rates() and outputs() over symbols, inside of formula::trace(), where traceable() says so.
+  [[nodiscard]] virtual bool traceable() const { return false; }
+  virtual void trace_quantities(const SymbolPoint& /*at*/, formula::Symbol* /*q*/) const {}
+  virtual void trace_rates(const SymbolPoint& /*at*/, const formula::Symbol* /*F*/, formula::Symbol* /*dx*/) const {}
+  virtual void trace_outputs(const SymbolPoint& /*at*/, formula::Symbol* /*y*/) const {}
   /// The inverse of outputs() for SystemSpec::readable_states: fills those entries of x. False where the outputs have no such state.
   virtual bool read_states(const double* /*y*/, const double* /*k*/, double* /*x*/) const { return false; }
 };

@@ -17,6 +17,11 @@
 #define MISFIT_FLATTEN
 #endif
 
+namespace misfit::formula {
+/// As of a Jet (math/scalar.h).
+inline bool vanishes(const Symbol& a) { return a == 0.0; }
+}  // namespace misfit::formula
+
 namespace misfit {
 
 /// Turns a struct with templated formulas into a System. `S` has static NX, NU, NP (quantity ports), NF (dynamic ports), NQ, NK, NY and
@@ -24,7 +29,9 @@ namespace misfit {
 ///   template <class T, class K> void rates(const PointOf<T, K>& at, const T* F, T* dx) const
 ///   template <class T, class K> void outputs(const PointOf<T, K>& at, T* y) const
 ///   SystemSpec spec() const;   std::vector<DerivedCurve> derived_curves(const double* k) const
-/// All first derivatives come from Jets as wide as what varies: states alone in the common case.
+/// A system whose formulas take inputs and time as a third type, template <class T, class K, class U> … (const PointOf<T, K, U>& at, …),
+/// is called with symbols, too, so that it can be exported; `bool traceable() const` may refuse that for some options. All first
+/// derivatives come from Jets as wide as what varies: states alone in the common case.
 template <class S>
 class SystemOf final : public System {
  public:
@@ -59,12 +66,34 @@ class SystemOf final : public System {
       differentiate_outputs<S::NX>(at, y, y_x, y_k);
     }
   }
+  [[nodiscard]] bool traceable() const override {
+    if constexpr (requires { system_.traceable(); }) return system_.traceable();
+    return takes_symbols();
+  }
+  void trace_quantities(const SymbolPoint& at, formula::Symbol* q) const override {
+    if constexpr (takes_symbols()) system_.template quantities<Symbol, Symbol>(at, ~std::uint64_t{0}, q);
+  }
+  void trace_rates(const SymbolPoint& at, const formula::Symbol* F, formula::Symbol* dx) const override {
+    if constexpr (takes_symbols()) system_.template rates<Symbol, Symbol>(at, F, dx);
+  }
+  void trace_outputs(const SymbolPoint& at, formula::Symbol* y) const override {
+    if constexpr (takes_symbols()) system_.template outputs<Symbol, Symbol>(at, y);
+  }
   bool read_states(const double* y, const double* k, double* x) const override {
     if constexpr (requires { system_.read_states(y, k, x); }) return system_.read_states(y, k, x);
     return false;
   }
 
  private:
+  using Symbol = formula::Symbol;
+  static consteval bool takes_symbols() {
+    return requires(const S& system, const SymbolPoint& at, const Symbol* in, Symbol* out) {
+      system.template quantities<Symbol, Symbol>(at, std::uint64_t{0}, out);
+      system.template rates<Symbol, Symbol>(at, in, out);
+      system.template outputs<Symbol, Symbol>(at, out);
+    };
+  }
+
   template <class T>
   static void seed(T* jets, const double* values, int count, int first) {
     for (int i = 0; i < count; ++i) jets[i] = T(values[i], first + i);
@@ -96,9 +125,9 @@ class SystemOf final : public System {
     if constexpr (with_k) {
       std::array<T, at_least_one(S::NK)> k;
       seed(k.data(), at.k, S::NK, S::NX + S::NP);
-      system_.template quantities<T, T>({x.data(), at.u, at.t, k.data(), ports.data()}, needed, out.data());
+      system_.template quantities<T, T>(PointOf<T, T>{x.data(), at.u, at.t, k.data(), ports.data()}, needed, out.data());
     } else {
-      system_.template quantities<T, double>({x.data(), at.u, at.t, at.k, ports.data()}, needed, out.data());
+      system_.template quantities<T, double>(PointOf<T, double>{x.data(), at.u, at.t, at.k, ports.data()}, needed, out.data());
     }
     for (int i = 0; i < S::NQ; ++i) {
       if ((needed >> i & 1U) == 0U) continue;
@@ -131,9 +160,9 @@ class SystemOf final : public System {
     if constexpr (with_k) {
       std::array<T, at_least_one(S::NK)> k;
       seed(k.data(), at.k, S::NK, S::NX + S::NF + S::NP);
-      system_.template rates<T, T>({x.data(), at.u, at.t, k.data(), ports.data()}, forces.data(), out.data());
+      system_.template rates<T, T>(PointOf<T, T>{x.data(), at.u, at.t, k.data(), ports.data()}, forces.data(), out.data());
     } else {
-      system_.template rates<T, double>({x.data(), at.u, at.t, at.k, ports.data()}, forces.data(), out.data());
+      system_.template rates<T, double>(PointOf<T, double>{x.data(), at.u, at.t, at.k, ports.data()}, forces.data(), out.data());
     }
     for (int i = 0; i < S::NX; ++i) {
       const T& jet = out[i];
@@ -156,9 +185,9 @@ class SystemOf final : public System {
     if constexpr (W > S::NX) {
       std::array<T, at_least_one(S::NK)> k;
       seed(k.data(), at.k, S::NK, S::NX);
-      system_.template outputs<T, T>({x.data(), at.u, at.t, k.data()}, out.data());
+      system_.template outputs<T, T>(PointOf<T, T>{x.data(), at.u, at.t, k.data()}, out.data());
     } else {
-      system_.template outputs<T, double>({x.data(), at.u, at.t, at.k}, out.data());
+      system_.template outputs<T, double>(PointOf<T, double>{x.data(), at.u, at.t, at.k}, out.data());
     }
     for (int i = 0; i < S::NY; ++i) {
       const T& jet = out[i];

@@ -16,5 +16,5 @@ set_target_properties(misfit_video_opencv PROPERTIES PREFIX "" CXX_VISIBILITY_PR
 add_dependencies(misfit misfit_video_opencv)
 
 # Programs of other projects look for it by the run path that misfit::video gives them, wherever misfit was installed.
-install(TARGETS misfit_video_opencv DESTINATION ${CMAKE_INSTALL_LIBDIR}/misfit)
+install(TARGETS misfit_video_opencv DESTINATION ${CMAKE_INSTALL_LIBDIR}/misfit COMPONENT program)
 target_link_options(misfit_video INTERFACE "$<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${CMAKE_INSTALL_LIBDIR}/misfit>")

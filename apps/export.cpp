@@ -1,0 +1,20 @@
+#include "misfit/workflow/export.h"
+
+#include <iostream>
+
+#include "apps/verbs.h"
+
+namespace misfit {
+
+int export_verb(const Options& options, const Registry& registry) {
+  const ExportReport report = export_stage(options.session, registry, options.export_request);
+  const Exported& exported = report.exported;
+  if (!options.quiet) {
+    std::cerr << "exporting the estimate by " << exported.fit.method << (exported.rung.empty() ? "" : " of " + exported.rung) << '\n';
+    if (!report.lack.empty()) std::cerr << "note: curves and parameters without a right-hand side: " << report.lack << '\n';
+  }
+  for (const auto& file : report.files) std::cout << file.lexically_normal().string() << '\n';
+  return 0;
+}
+
+}  // namespace misfit

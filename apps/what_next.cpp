@@ -1,0 +1,87 @@
+#include "apps/what_next.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+#include "misfit/core/shown.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Found {
+  std::vector<std::string> studies;  ///< folders
+  std::vector<std::string> tables;   ///< CSV files
+};
+
+Found look(const fs::path& folder) {
+  Found out;
+  std::error_code none;
+  for (const fs::directory_entry& item : fs::directory_iterator(folder, none)) {
+    const std::string name = item.path().filename().string();
+    if (item.is_directory(none) && fs::exists(item.path() / "study.toml", none)) out.studies.push_back(name);
+    if (item.is_regular_file(none) && item.path().extension() == ".csv") out.tables.push_back(name);
+  }
+  std::sort(out.studies.begin(), out.studies.end());
+  std::sort(out.tables.begin(), out.tables.end());
+  return out;
+}
+
+/// As a shell takes it.
+std::string argument(const std::string& name) {
+  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-' || c == '/' || (c & 0x80) != 0;
+  });
+  return plain ? shown(name) : "'" + shown(name) + "'";
+}
+
+/// One command per name, five at most.
+std::string commands(const std::vector<std::string>& names, const char* before) {
+  constexpr std::size_t most = 5;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) out += fmt::format("  misfit {} {}\n", before, argument(names[i]));
+  if (names.size() > most) out += fmt::format("  … and {} more\n", names.size() - most);
+  return out;
+}
+
+std::string of_study(const fs::path& folder) {
+  std::error_code none;
+  if (!fs::exists(folder / "out/run.json", none)) return "This folder is a study that has not been run:\n  misfit run .\n";
+  std::string out = "This folder is a study with results in out/:\n  misfit run .               what has changed is done again\n";
+  out += "  misfit discover . --auto   finds and adds what the model is missing\n";
+  if (fs::exists(folder / "out/fit", none)) out += "  misfit export . --to json  the estimate for other programs\n";
+  if (fs::exists(folder / "out/report.html", none)) out += "The report: out/report.html\n";
+  return out;
+}
+
+}  // namespace
+
+std::string what_next(const fs::path& folder, const fs::path& examples) {
+  std::error_code none;
+  std::string out = "misfit finds out what your model is missing.\n\n";
+  const Found found = look(folder);
+  const bool study = fs::exists(folder / "study.toml", none);
+  if (study) out += of_study(folder);
+  if (!study && !found.studies.empty()) out += "Studies in this folder:\n" + commands(found.studies, "run");
+  if (!study && !found.tables.empty()) out += "Recordings in this folder; a first study of one:\n" + commands(found.tables, "init");
+  if (!study && found.studies.empty() && found.tables.empty()) {
+    out += "No study and no CSV file in this folder. With a recording of your own (a header line, then numbers):\n  misfit init DATA.csv\n";
+    if (!examples.empty())
+      out +=
+          fmt::format("An example that came with misfit:\n  cp -r {}/cascaded_tanks . && misfit run cascaded_tanks\n", examples.string());
+  }
+  return out + "\nmisfit help lists verbs and topics; misfit help words says what its words mean.\n";
+}
+
+fs::path installed_examples() {
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  const fs::path examples = (program.parent_path().parent_path() / "share/doc/misfit/examples").lexically_normal();
+  return !none && fs::is_directory(examples, none) ? examples : fs::path();
+}
+
+}  // namespace misfit
