@@ -22,6 +22,12 @@ TEST(Bindings, ALevelEffectHasOnePerPortThatALevelDrives) {
               ElementsAre(Roles{}, Roles{{"level", "x1"}, {"port", "dx1/dt"}}, Roles{{"level", "x2"}, {"port", "dx2/dt"}}));
 }
 
+TEST(Bindings, ALeakIsOfWhatThePortFills) {
+  EXPECT_THAT(bindings("leak", "test_tanks"),
+              ElementsAre(Roles{}, Roles{{"content", "x1"}, {"port", "dx1/dt"}}, Roles{{"content", "x2"}, {"port", "dx2/dt"}}));
+  EXPECT_THAT(bindings("leak", "test_oscillator"), ElementsAre(Roles{})) << "of a displacement it would be a spring";
+}
+
 TEST(Bindings, WhatSpillsGoesToEachOtherPort) {
   EXPECT_THAT(bindings("overflow_into", "test_tanks"),
               ElementsAre(Roles{}, Roles{{"level", "x1"}, {"to_port", "dx2/dt"}}, Roles{{"level", "x2"}, {"to_port", "dx1/dt"}}));
@@ -57,6 +63,11 @@ TEST(Bindings, AQuantityThatAPortCallsItsRateHasNoLevelToExchange) {
   EXPECT_THAT(enumerate_bindings(registry().effect("coulomb_friction").spec(), twisted),
               Contains(Roles{{"port", "torque"}, {"rate", "twist"}}));
   EXPECT_THAT(enumerate_bindings(registry().effect("exchange").spec(), twisted), ElementsAre(Roles{}));
+  twisted.quantities.push_back({.name = "angle", .unit = "rad", .doc = "between two ends"});
+  twisted.quantities[twisted.quantities.size() - 2].rate_of = "angle";
+  EXPECT_THAT(enumerate_bindings(registry().effect("cubic_stiffness").spec(), twisted),
+              Contains(Roles{{"port", "torque"}, {"displacement", "angle"}}));
+  EXPECT_THAT(enumerate_bindings(registry().effect("exchange").spec(), twisted), ElementsAre(Roles{})) << "no state, hence no other one";
 }
 
 TEST(Bindings, SensorsAndInputsAreTriedWhereTheSystemHasADefaultForThem) {

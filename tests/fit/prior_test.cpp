@@ -36,6 +36,24 @@ Model model_of(const std::vector<Signals>& experiments, std::optional<double> me
   return assemble(request, testing_planar::registry());
 }
 
+TEST(RegularisedPriors, GiveWayWhereATypicalSizeIsFarTooSmall) {
+  ModelRequest request = testing_planar::eq_8();
+  request.effects.push_back(testing_planar::effect("viscous_friction"));
+  const Model model = assemble(request, testing_planar::registry());
+  const std::vector<int> free = model.free_parameters();
+  const auto place = std::find(free.begin(), free.end(), model.find_parameter("viscosity")) - free.begin();
+  ASSERT_EQ(model.parameters[static_cast<std::size_t>(model.find_parameter("viscosity"))].scale, 1.0);
+  const auto precision = [&](double sigma_of_data) {
+    Eigen::VectorXd information = Eigen::VectorXd::Zero(std::ssize(free));
+    if (sigma_of_data > 0.0) information[place] = 1.0 / (sigma_of_data * sigma_of_data);
+    return regularised_priors(model, information).precision[place];
+  };
+  EXPECT_DOUBLE_EQ(precision(0.1), 1e-6);
+  EXPECT_DOUBLE_EQ(precision(50.0), 1e-6) << "a thousand typical sizes are wide enough";
+  EXPECT_NEAR(precision(2e5), 1e-6 / 4e10, 1e-22) << "they would hold what the measurements know";
+  EXPECT_DOUBLE_EQ(precision(0.0), 1e-6) << "of which nothing is measured";
+}
+
 /// Values of the damping curve's coefficients.
 Eigen::VectorXd damping_of(const Model& model) {
   const Curve& curve = *model.find_curve("C_m_alphadot");

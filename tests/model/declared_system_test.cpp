@@ -47,6 +47,38 @@ TEST(DeclaredDuffing, HasTheRatesAndDerivativesOfTheClosedForm) {
   for (int s = 0; s < 3; ++s) EXPECT_NEAR(D[kRowStride + 2 + s], by_parameter[slots.column(s)], 1e-15) << slots.column(s);
 }
 
+/// A strut between a body and a wheel: its rate is the derivative of its stroke, which only the equations say.
+TEST(DeclaredQuantities, ThatAreRatesOfOthersAreFound) {
+  const auto known = registry_with(R"toml([states]
+zs = { unit = "m" }
+vs = { unit = "m/s" }
+zu = { unit = "m" }
+vu = { unit = "m/s" }
+[parameters]
+k = { unit = "1/s^2", value = 3.0 }
+[quantities]
+stroke = { unit = "m", formula = "zs - zu" }
+stroke_rate = { unit = "m/s", formula = "vs - vu" }
+sum_rate = { unit = "m/s", formula = "vs + vu" }
+[ports]
+strut = { unit = "m/s^2", rate = "stroke_rate" }
+[equations]
+zs = "vs"
+vs = "-k*stroke + strut"
+zu = "vu"
+vu = "k*stroke - strut"
+[outputs]
+d = { unit = "m", formula = "zs - zu" }
+)toml");
+  const SystemSpec spec = known->system("text").make({})->spec();
+  const auto rate_of = [&](const std::string& name) {
+    return std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const auto& q) { return q.name == name; })->rate_of;
+  };
+  EXPECT_EQ(rate_of("stroke_rate"), "stroke");
+  EXPECT_EQ(rate_of("sum_rate"), "");
+  EXPECT_EQ(rate_of("stroke"), "");
+}
+
 TEST(DeclaredDuffing, SaysWhatMisfitWantsToKnow) {
   const auto known = registry_with(duffing_text);
   const SystemSpec spec = known->system("text").make({})->spec();

@@ -111,11 +111,12 @@ Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole)
 
 /// "late_share = 0.12 ± 0.01, where the whole effect would have 1.00"; empty where the strengths are about whole.
 std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
-  constexpr double about = 0.2;  // of the whole: formulas idealise
+  constexpr double less = 0.3, more = 0.2;  // of the whole: formulas idealise, which takes away rather than adds
   for (const WholeStrength& w : whole) {
     const Parameter& p = estimate.model.parameters[w.parameter];
     const double sigma = sigma_of(estimate, w.parameter);
-    if (std::abs(p.value - w.value) <= std::max(about * std::abs(w.value), 2.0 * sigma)) continue;
+    const double share = p.value / w.value, of_sigma = 2.0 * sigma / std::abs(w.value);
+    if (share >= 1.0 - std::max(less, of_sigma) && share <= 1.0 + std::max(more, of_sigma)) continue;
     return p.name + " = " + in_display_unit(p.value, p.unit, sigma) + ", where the whole effect would have " +
            in_display_unit(w.value, p.unit);
   }
@@ -143,7 +144,7 @@ bool hold_whole(const RefitWork& work, Refit& out) {
   try {
     FilterEstimate held = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
     if (held.out_of_time) return false;
-    if (held.converged && (!out.estimate.converged || held.objective > out.estimate.objective - allowed)) {
+    if (held.converged && held.objective > out.estimate.objective - allowed) {
       out.estimate = std::move(held);
       return true;
     }

@@ -121,6 +121,7 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
 
 std::optional<std::string> undetermined_strengths(const Model& model, const Eigen::MatrixXd& covariance,
                                                   const std::vector<int>& strengths) {
+  constexpr double least = 2.0;  // sigmas
   const std::vector<int> free = model.free_parameters();
   std::string values;
   for (const int strength : strengths) {
@@ -128,7 +129,7 @@ std::optional<std::string> undetermined_strengths(const Model& model, const Eige
     if (column < 0 || column >= covariance.rows()) return std::nullopt;
     const double sigma = std::sqrt(std::max(covariance(column, column), 0.0));
     const Parameter& p = model.parameters[strength];
-    if (!(std::abs(p.value) < sigma)) return std::nullopt;
+    if (!(std::abs(p.value) < least * sigma)) return std::nullopt;
     values += (values.empty() ? "" : ", ") + p.name + " = " + in_display_unit(p.value, p.unit, sigma);
   }
   if (values.empty()) return std::nullopt;

@@ -19,7 +19,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// scale of a bound other than 0; nullopt if none does. A strength at 0 is an effect that is off, and its drop says so.
 [[nodiscard]] std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths);
 
-/// "its strength is not determined: lag_stiffness = 140 ± 920 N m/rad" where every one of these parameters is smaller than its sigma: a
+/// "its strength is not determined: lag_stiffness = 140 ± 920 N m/rad" where every one of these parameters is smaller than two sigmas: a
 /// drop that no strength shows by itself, but only something like their ratio to a shape (a lag of a time constant beyond the record is an
 /// integral), so that the effect is not what its name says. nullopt: it is determined, or `covariance` (of the free parameters) is not
 /// known.

@@ -241,7 +241,7 @@ class DeclaredSystem final : public System {
       std::vector<double> q(count), slope(count * states), dx(states);
       linearise_quantities(at, ~std::uint64_t{0}, q.data(), {slope.data(), nullptr, nullptr});
       rates(at, no_forces.data(), dx.data());
-      for (std::size_t moved = first; moved < count; ++moved) {
+      for (std::size_t moved = 0; moved < count; ++moved) {
         double rate = 0.0, size = 0.0;
         for (std::size_t j = 0; j < states; ++j) {
           rate += slope[moved * states + j] * dx[j];
@@ -251,7 +251,7 @@ class DeclaredSystem final : public System {
       }
     }
     for (std::size_t i = first; i < count; ++i) {
-      const auto moved = std::find(is_rate[i].begin() + static_cast<std::ptrdiff_t>(first), is_rate[i].end(), true);
+      const auto moved = std::find(is_rate[i].begin(), is_rate[i].end(), true);
       if (moved != is_rate[i].end()) spec_.quantities[i].rate_of = spec_.quantities[moved - is_rate[i].begin()].name;
     }
   }
