@@ -83,6 +83,34 @@ TEST(SolvedStates, FindTheAngleFromBothCoordinates) {
   }
 }
 
+/// One output is a state, the other depends on it and on one that nothing shows alone.
+TEST(SolvedStates, TakeStatesThatAreShownAsMeasured) {
+  const auto known = registry_with(R"toml(
+[states]
+a = { unit = "m" }
+b = { unit = "m" }
+[parameters]
+k = { unit = "1/s", value = 1.0, free = true }
+[equations]
+a = "-k*a"
+b = "-k*b"
+[outputs]
+a = { unit = "m" }
+distance = { unit = "m", formula = "sqrt(a^2 + b^2)" }
+)toml");
+  Signals s;
+  s.name = "record";
+  s.measured = {{"a", "m", {}, 0.0}, {"distance", "m", {}, 0.0}};
+  for (int i = 0; i < 20; ++i) {
+    s.t.push_back(0.1 * i);
+    s.measured[0].values.push_back(30.0 + i);
+    s.measured[1].values.push_back(std::hypot(30.0 + i, 40.0));
+  }
+  const SolvedStates solved = solve_outputs(assemble(request_of("text"), *known), s, {true, false});
+  ASSERT_EQ(solved.states, std::vector<int>{1});
+  for (const double b : solved.values[0]) EXPECT_NEAR(std::abs(b), 40.0, 1e-6);
+}
+
 TEST(SolvedStates, FindTheAngleFromOneCoordinateWhereItsBranchIsKnown) {
   const Swing truth = swing(1.0, 300, 1);
   const Model model = model_of("x = { unit = \"m\", formula = \"L*sin(theta)\" }\n");

@@ -38,6 +38,10 @@ class OutputSolver {
       if (!shown[j] && depends_on(j)) unknown_.push_back(static_cast<int>(j));
     }
     if (unknown_.size() > spec_.outputs.size()) unknown_.clear();
+    for (int o = 0; o < int_size(spec_.outputs); ++o) {
+      const int state = spec_.outputs[o].observes;
+      if (state >= 0 && shown[state]) observed_.push_back({o, state});
+    }
   }
 
   SolvedStates run() {
@@ -95,6 +99,7 @@ class OutputSolver {
   [[nodiscard]] std::optional<States> solve(std::size_t i, States x) const {
     constexpr int most_steps = 30;
     constexpr double still = 1e-10;
+    for (const Observed& known : observed_) x[known.state] = signals_.measured[known.output].values[i];
     Linear here = linearise(i, x);
     double damping = 1e-6;
     for (int step = 0; step < most_steps && here.residual.allFinite(); ++step) {
@@ -163,6 +168,10 @@ class OutputSolver {
   std::vector<double> constants_, weight_;
   States start_{};
   std::vector<int> unknown_;
+  struct Observed {
+    int output, state;
+  };
+  std::vector<Observed> observed_;  // known at every sample: other outputs may depend on them
 };
 
 }  // namespace

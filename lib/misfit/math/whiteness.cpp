@@ -110,7 +110,7 @@ WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int
   constexpr double min_values_per_parameter = 10.0;
   if (n < min_values_per_parameter * fitted) test.last_lag = 0;
   if (test.last_lag < first_lag) return test;
-  const std::vector<Pairs> pairs = pairs_of(residuals, 2 * test.last_lag);
+  const std::vector<Pairs> pairs = pairs_of(residuals, std::size_t{2} * test.last_lag);
   const auto length = static_cast<double>(residuals.size());
   std::vector<std::size_t> lags;
   for (int lag = first_lag; lag <= test.last_lag; ++lag) {
