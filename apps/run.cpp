@@ -13,28 +13,32 @@ namespace {
 /// What a run prints while it goes on: a line per stage, or its tables; nothing where JSON is asked for.
 class Told {
  public:
-  explicit Told(const Options& options) : silent_(options.json), tables_(options.verbose) {}
+  Told(const Options& options, const Study& study) : silent_(options.json), tables_(options.verbose) {
+    heading_.heading(study.name);
+    heading_.paragraph(study.question);
+  }
 
   template <class Result>
-  void result(const std::string& stage, const Result& result) const {
+  void result(const std::string& stage, const Result& result) {
     if (silent_) return;
+    head();
     tables_ ? print(result) : print_stage(stage, line_of(result));
   }
   template <class Result>
-  void result(const std::string& stage, const std::string& experiment, const Result& result) const {
+  void result(const std::string& stage, const std::string& experiment, const Result& result) {
     if (silent_) return;
+    head();
     tables_ ? print(experiment, result) : print_stage(stage, line_of(result));
   }
-  void heading(const Study& study) const {
-    if (silent_) return;
-    Blocks blocks;
-    blocks.heading(study.name);
-    blocks.paragraph(study.question);
-    print(blocks);
+  /// Name and question of the study, before the first result.
+  void head() {
+    if (!headed_) print(heading_);
+    headed_ = true;
   }
 
  private:
-  bool silent_, tables_;
+  bool silent_, tables_, headed_ = false;
+  Blocks heading_;
 };
 
 /// "track", or with several experiments "track of flight".
@@ -43,13 +47,13 @@ std::string stage_of(const char* stage, const Study& study, std::size_t experime
 }
 
 template <class Results>
-void tell(const Told& told, const char* stage, const Study& study, const Results& results) {
+void tell(Told& told, const char* stage, const Study& study, const Results& results) {
   for (std::size_t e = 0; e < results.size(); ++e) {
     if (results[e]) told.result(stage_of(stage, study, e), study.experiments[e].name, *results[e]);
   }
 }
 
-std::vector<Fit> fits_told(Session& session, const Told& told) {
+std::vector<Fit> fits_told(Session& session, Told& told) {
   session.options.listener.fitted = [&told](const Fit& fit) { told.result(fit.method, std::vector<Fit>{fit}); };
   std::vector<Fit> fits = fit_stage(session);
   session.options.listener.fitted = {};
@@ -61,8 +65,7 @@ std::vector<Fit> fits_told(Session& session, const Told& told) {
 int run_verb(const Options& options, const Registry& registry) {
   ModelLadder ladder(options.session, registry);
   Session& session = ladder.root();
-  const Told told(options);
-  told.heading(session.study);
+  Told told(options, session.study);
   tell(told, "track", session.study, track_stage(session));
   if (const auto calibration = calibrate_stage(session)) told.result("calibrate", *calibration);
   tell(told, "attitude", session.study, attitude_stage(session));
@@ -72,6 +75,7 @@ int run_verb(const Options& options, const Registry& registry) {
       std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name && fit.usable(); });
   if (const auto diagnosis = filtered ? diagnose_stage(session) : std::nullopt) told.result("diagnose", *diagnosis);
   if (filtered && options.automatic) {
+    if (!options.json) told.head();
     extend_ladder(ladder, registry, ladder_listener(ladder, options));
     diagnose_rungs(ladder);
   } else if (const auto discovery = filtered ? discover_stage(session) : std::nullopt) {

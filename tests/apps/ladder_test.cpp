@@ -87,13 +87,18 @@ TEST_F(Climbing, AnEffectWithoutStrengthIsAddedWithoutAPredictionAndThatIsSaid) 
   expect_parts(rung.at("note").get<std::string>(), {"it has no coefficient that switches it off"});
 }
 
-TEST_F(Climbing, AddWritesTheReportAndItBeginsWithTheLadder) {
+TEST_F(Climbing, AddWritesTheReportAndItBeginsWithTheVerdictAndTheLadder) {
   expect_parts(spherical.err, {"report: ", "report.html"});
   const std::string page = content(study->out("report.html"));
   expect_parts(page, {"no drop is predicted for coning"});
-  const std::size_t first = page.find("-gnuplot_canvas\"");
-  ASSERT_NE(first, std::string::npos);
-  EXPECT_EQ(page.substr(first - 6, 6), "ladder");
+  expect_parts(spherical.out, {"Verdict\n", "coning and system:parachute_spherical were missing"});
+  const std::size_t verdict = page.find("<h2>Verdict</h2>"), ladder = page.find("id=\"ladder-gnuplot_canvas\"");
+  ASSERT_NE(ladder, std::string::npos);
+  EXPECT_LT(verdict, ladder);
+  const std::string before = page.substr(verdict, ladder - verdict);
+  EXPECT_NE(before.find("<h2>Model ladder</h2>"), std::string::npos);
+  const std::string drawn = "-gnuplot_canvas\"";
+  EXPECT_EQ(before.find(drawn), before.rfind(drawn)) << "one picture before it";
 }
 
 TEST_F(Climbing, ARungIsAStudyThatRunsWhereItLies) {

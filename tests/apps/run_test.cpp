@@ -1,12 +1,15 @@
 // `misfit run` on the shipped studies: the files and names that others rely on, and the numbers that are known.
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/apps/program.h"
+#include "tests/report/html_faults.h"
 
 namespace {
 
 using namespace program;
+using misfit::report::html_faults;
 
 void expect_contract_of_fit(const StudyCopy& study, const std::string& method) {
   const json fit = study.fit(method);
@@ -72,6 +75,51 @@ TEST_F(RunOnValidation, SaysThatUncertaintyIsAnotherVerb) {
   EXPECT_NE(outcome.out.find(hint), std::string::npos) << outcome.out;
   ASSERT_EQ(study->run("uncertainty", {"--method", "sliding_bin", "--runs", "20"}).status, 0);
   EXPECT_EQ(study->run().out.find(hint), std::string::npos) << "it has been done";
+}
+
+TEST_F(RunOnValidation, SaysALinePerStageAndEndsWithTheVerdictThatFileAndReportHave) {
+  EXPECT_LE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 40) << outcome.out;
+  for (const char* method : {"sliding_bin", "equation_error", "output_error"}) {
+    const std::size_t at = outcome.out.find(std::string("\n  ") + method + " ");
+    ASSERT_NE(at, std::string::npos) << method << "\n" << outcome.out;
+    EXPECT_LT(at, outcome.out.find("\nVerdict\n"));
+  }
+  const json verdict = study->result("verdict.json");
+  for (const char* key : {"verdict", "sentence", "where", "errors", "trim", "next"}) EXPECT_TRUE(verdict.contains(key)) << key;
+  const std::string sentence = verdict.at("sentence");
+  EXPECT_NE(outcome.out.find("\nVerdict\n" + sentence.substr(0, 60)), std::string::npos) << sentence << outcome.out;
+  const std::string page = content(study->out("report.html"));
+  EXPECT_LT(page.find("<h2>Verdict</h2>"), page.find("<figure>"));
+  EXPECT_NE(outcome.out.find("report: " + study->out("report.html").string()), std::string::npos);
+  EXPECT_EQ(html_faults(page), std::vector<std::string>{});
+}
+
+TEST_F(RunOnValidation, VerbosePrintsTheTablesInsteadOfLines) {
+  const Outcome verbose = study->run("run", {"--verbose"});
+  for (const char* table : {"Comparison of methods", "linearisations)", "curve C_m"}) {
+    EXPECT_NE(verbose.out.find(table), std::string::npos) << table;
+    EXPECT_EQ(outcome.out.find(table), std::string::npos) << table;
+  }
+}
+
+TEST(RunOnAMotor, FindsAddsAndShowsTheFrictionThatItsModelLacks) {
+  const StudyCopy study("dc_motor");
+  const Outcome outcome = study.run("run", {"--auto"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json verdict = study.result("verdict.json");
+  EXPECT_EQ(verdict.at("verdict"), "effect_added");
+  const json error = verdict.at("errors").at(0);
+  EXPECT_NE(error.at("what").get<std::string>().find("RMS error of w"), std::string::npos);
+  EXPECT_LT(error.at("change_per_cent").get<double>(), -75.0);
+  const json ladder = study.result("ladder.json");
+  ASSERT_EQ(ladder.size(), 2U);
+  EXPECT_EQ(ladder[1].at("added"), "coulomb_friction");
+  const json friction = ladder[1].at("parameters").at("friction");
+  EXPECT_NEAR(friction.at("value").get<double>(), 100.0, 4.0 * friction.at("sigma").get<double>()) << "simulate.awk: c/J [rad/s^2]";
+  EXPECT_TRUE(fs::exists(study.out("figures/missing_force_before_and_after.svg")));
+  const json map = study.result("diagnosis.json").at("maps").at(0);
+  for (const auto& amplitude : map.at("amplitude"))
+    EXPECT_LT(std::abs(amplitude.get<double>()), 500.0) << "a force of the size of the friction, not what the drag makes up for";
 }
 
 TEST_F(RunOnValidation, APipeGetsNoProgressCharacters) {

@@ -17,11 +17,16 @@ std::string driven_sentence(const Fit& fit) {
   return fit.method + ": the motion is driven by forces that the model does not describe, estimated as a random force (see Parameters)";
 }
 
+/// Why a method ended, without what follows a colon: its evidence is in the table of the methods.
+std::string first_clause(const Fit& fit) {
+  return fit.message.empty() ? to_string(fit.status) : fit.message.substr(0, fit.message.find(": "));
+}
+
 /// What the verdict does not say: methods without a result, references, and without a verdict the trims and what drives the motion.
 std::vector<std::string> findings(const ReportInput& input) {
   std::vector<std::string> sentences;
   for (const Fit& fit : input.fits) {
-    if (!fit.usable()) sentences.push_back(fit.method + " gives no result: " + (fit.message.empty() ? to_string(fit.status) : fit.message));
+    if (!fit.usable()) sentences.push_back(fit.method + " gives no result: " + first_clause(fit));
     if (input.verdict) continue;
     if (fit.usable() && fit.trim)
       sentences.push_back(

@@ -263,6 +263,7 @@ class Judge {
     const bool one = in_.ladder->rungs.size() == 2;
     const std::string change = out_.errors.empty() ? "" : (one ? "with it " : "with them ") + change_in_words(out_.errors.front()) + "; ";
     say(VerdictKind::effect_added, names + (one ? " was" : " were") + " missing: " + change + rest, next);
+    out_.sentence.replace(0, names.size(), names);  // names of effects keep their small letters
   }
 
   const VerdictInput& in_;
