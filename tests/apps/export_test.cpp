@@ -22,8 +22,9 @@ class Exporting : public testing::Test {
   static void TearDownTestSuite() { delete study; }
 
   static std::string where() { return study->path("study.toml").string(); }
-  static Outcome ask(std::vector<std::string> words) {
-    words.insert(words.begin(), {"export", where()});
+  static Outcome ask(const std::vector<std::string>& options) {
+    std::vector<std::string> words{"export", where()};
+    words.insert(words.end(), options.begin(), options.end());
     return run(words);
   }
   static json exported(const std::vector<std::string>& more) {
