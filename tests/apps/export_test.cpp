@@ -74,6 +74,12 @@ TEST_F(Exporting, IsTheLastRungUnlessAnotherIsAskedFor) {
   EXPECT_THAT(wrong.err, HasSubstr("did you mean 'coulomb_friction'?"));
 }
 
+TEST_F(Exporting, GoesToStandardOutputWhereItsPathIsADash) {
+  const Outcome outcome = ask({"--to", "json", "--out", "-"});
+  EXPECT_EQ(json::parse(outcome.out), exported({}));
+  EXPECT_EQ(ask({"--to", "csv", "--out", "-"}).status, 2);
+}
+
 TEST_F(Exporting, CodeRunsAsItIs) {
   const fs::path c = study->path("made/m.c"), python = study->path("made/m.py");
   ASSERT_EQ(ask({"--to", "c", "--out", c.string()}).status, 0);
