@@ -192,7 +192,8 @@ void export_options(CLI::App& verb, Options& options) {
   add_study(verb, options);
   ExportRequest& request = options.export_request;
   verb.add_option("--to", request.format, "format")->type_name("FORMAT")->required()->check(one_of(export_formats()));
-  verb.add_option("--out", request.out, "the file (of csv: the folder) to write (default: in export/ of the run folder)")
+  verb.add_option("--out", request.out,
+                  "the file (of csv: the folder) to write, - for standard output (default: in export/ of the run folder)")
       ->type_name("PATH");
   verb.add_option("--method", request.method, "the estimate by this method (default: the last of the study that has one)")
       ->type_name("NAME")

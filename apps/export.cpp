@@ -13,6 +13,7 @@ int export_verb(const Options& options, const Registry& registry) {
     std::cerr << "exporting the estimate by " << exported.fit.method << (exported.rung.empty() ? "" : " of " + exported.rung) << '\n';
     if (!report.lack.empty()) std::cerr << "note: curves and parameters without a right-hand side: " << report.lack << '\n';
   }
+  std::cout << report.text;
   for (const auto& file : report.files) std::cout << file.lexically_normal().string() << '\n';
   return 0;
 }

@@ -22,8 +22,9 @@ class Exporting : public testing::Test {
   static void TearDownTestSuite() { delete study; }
 
   static std::string where() { return study->path("study.toml").string(); }
-  static Outcome ask(std::vector<std::string> words) {
-    words.insert(words.begin(), {"export", where()});
+  static Outcome ask(const std::vector<std::string>& options) {
+    std::vector<std::string> words{"export", where()};
+    words.insert(words.end(), options.begin(), options.end());
     return run(words);
   }
   static json exported(const std::vector<std::string>& more) {
@@ -71,6 +72,12 @@ TEST_F(Exporting, IsTheLastRungUnlessAnotherIsAskedFor) {
   const Outcome wrong = ask({"--to", "json", "--rung", "coulomb_fricton"});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_THAT(wrong.err, HasSubstr("did you mean 'coulomb_friction'?"));
+}
+
+TEST_F(Exporting, GoesToStandardOutputWhereItsPathIsADash) {
+  const Outcome outcome = ask({"--to", "json", "--out", "-"});
+  EXPECT_EQ(json::parse(outcome.out), exported({}));
+  EXPECT_EQ(ask({"--to", "csv", "--out", "-"}).status, 2);
 }
 
 TEST_F(Exporting, CodeRunsAsItIs) {

@@ -117,6 +117,7 @@ class Writer {
     if (at.op == Op::constant) return at.value < 0.0 ? "(" + number_text(at.value) + ")" : number_text(at.value);
     if (at.op == Op::leaf) return leaf(at.a, p);
     if (const char* name = function_name(at.op)) return std::string(language_.function_prefix) + name + "(" + joined(p) + ")";
+    if (at.op == Op::div && graph_.is_constant(at.b) && !graph_.is(at.b, 0.0)) return "(" + p[0] + " / " + p[1] + ")";
     return arithmetic(at.op, p);
   }
   [[nodiscard]] std::string leaf(int number, const std::vector<std::string>& p) const {

@@ -201,11 +201,14 @@ Exported exported_estimate(const SessionOptions& options, const Registry& regist
 
 ExportReport export_stage(const SessionOptions& options, const Registry& registry, const ExportRequest& request) {
   const Format& format = format_of(request.format);
+  if (request.out == "-" && format.text == nullptr) throw InputError("--out -: " + request.format + " is several files; --out FOLDER");
   Opened opened = opened_estimate(options, registry, request);
   const Texts texts = texts_of(format, opened.exported, request.out);
   ExportReport out;
   if (request.out.empty()) {
     out.files = write_stage(*opened.session, std::string("export/") + format.name, texts);
+  } else if (request.out == "-") {
+    out.text = texts.begin()->second;
   } else {
     fs::path folder = format.text == nullptr ? request.out : request.out.parent_path();
     if (folder.empty()) folder = ".";

@@ -12,7 +12,7 @@ namespace misfit {
 /// What to export, and how.
 struct ExportRequest {
   std::string format;              ///< one of export_formats()
-  std::filesystem::path out = {};  ///< the file (of csv: the folder); empty: in export/ of the run folder
+  std::filesystem::path out = {};  ///< the file (of csv: the folder); "-": none, the text alone; empty: in export/ of the run folder
   std::string method = {};         ///< empty: the last of the study that has an estimate
   std::string rung = {};           ///< number or added effect; empty: the last of the ladder
 };
@@ -21,6 +21,7 @@ struct ExportRequest {
 struct ExportReport {
   Exported exported;
   std::vector<std::filesystem::path> files;
+  std::string text;  ///< instead of a file where the path is "-"
   std::string lack;  ///< why a C or Python file has no right-hand side; empty: it has one, or the format has none
 };
 
