@@ -10,20 +10,25 @@ namespace {
 
 using namespace testing_records;
 
-FilterEstimate estimate_of(const Signals& recorded) {
+/// Keeps pointers to the recordings.
+FilterEstimate estimate_of(const std::vector<Signals>& recorded) {
   ModelRequest model = cart({effect("viscous_friction")});
   model.parameters["stiffness"].free = true;
-  return estimate_filter(assemble(model, registry()), {}, {recorded});
+  return estimate_filter(assemble(model, registry()), {}, recorded);
 }
 
-TEST(FreeRun, IsNotLookedAtWhereTheRandomForceDoesNothing) { EXPECT_FALSE(free_run(estimate_of(record_of_cart({}, {})))); }
+TEST(FreeRun, IsNotLookedAtWhereTheRandomForceDoesNothing) {
+  const std::vector<Signals> recorded = {record_of_cart({}, {})};
+  EXPECT_FALSE(free_run(estimate_of(recorded)));
+}
 
 TEST(FreeRun, ShowsWhatTheRandomForceTakesOver) {
-  const Signals recorded = record_of_cart({effect("periodic_forcing")}, {{"cosine", 0.4}, {"sine", 0.3}, {"frequency", 0.15}});
+  const std::vector<Signals> recorded = {
+      record_of_cart({effect("periodic_forcing")}, {{"cosine", 0.4}, {"sine", 0.3}, {"frequency", 0.15}})};
   const FilterEstimate estimate = estimate_of(recorded);
   const auto calm = free_run(estimate);
   ASSERT_TRUE(calm);
-  EXPECT_LT(calm->noise.force, 0.01 * estimate.noise.force);
+  EXPECT_LT(calm->noise.force, 0.05 * estimate.noise.force);
   EXPECT_GT(calm->noise.channels.front().white, 1.2 * estimate.noise.channels.front().white);
   EXPECT_LT(calm->objective, estimate.objective) << "the estimate is the maximum";
 }

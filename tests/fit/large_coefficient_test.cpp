@@ -21,7 +21,7 @@ y = { unit = "m", scale = 0.001 }
 v = { unit = "m/s", scale = 0.01 }
 [parameters]
 stiffness = { unit = "1/s^2", value = 20.0, free = true }
-cubic = { unit = "1/m^2/s^2", free = true }
+cubic = { unit = "1/m^2/s^2", value = 0.0, free = true }
 [equations]
 y = "v"
 v = "-stiffness*y - cubic*y^3"

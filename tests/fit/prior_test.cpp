@@ -38,7 +38,7 @@ Model model_of(const std::vector<Signals>& experiments, std::optional<double> me
 
 TEST(RegularisedPriors, GiveWayWhereATypicalSizeIsFarTooSmall) {
   ModelRequest request = testing_planar::eq_8();
-  request.effects.push_back(testing_planar::effect("viscous_friction"));
+  request.effects.push_back(EffectRequest{"viscous_friction", "viscous_friction", {}, {}});
   const Model model = assemble(request, testing_planar::registry());
   const std::vector<int> free = model.free_parameters();
   const auto place = std::find(free.begin(), free.end(), model.find_parameter("viscosity")) - free.begin();

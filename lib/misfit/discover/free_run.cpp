@@ -6,28 +6,36 @@
 namespace misfit {
 namespace {
 
-/// RMS of the counted innovations of every output, and how many times larger they are than expected.
+/// Usual size of the counted innovations of every output, and how many times larger than expected they are: medians of their sizes, so that
+/// the first samples, which are far from a start that nobody knows, do not count.
 struct Sizes {
-  std::vector<double> rms, ratio;
+  std::vector<double> size, ratio;
 };
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 Sizes sizes_of(const std::vector<FilterTrace>& traces, const std::vector<FilterData>& data, std::size_t outputs) {
-  Sizes out{std::vector<double>(outputs, 0.0), std::vector<double>(outputs, 0.0)};
-  std::vector<double> count(outputs, 0.0);
+  constexpr double of_normal = 0.6745;  // median of |z|
+  std::vector<std::vector<double>> size(outputs), ratio(outputs);
   for (std::size_t e = 0; e < traces.size(); ++e) {
     for (std::size_t k = data[e].first; k < traces[e].samples; ++k) {
       for (std::size_t o = 0; o < outputs; ++o) {
         const std::size_t at = traces[e].place(k, o);
         if (!(traces[e].S[at] > 0.0) || data[e].use[at] != SampleRole::counted) continue;
-        out.rms[o] += traces[e].e[at] * traces[e].e[at];
-        out.ratio[o] += traces[e].e[at] * traces[e].e[at] / traces[e].S[at];
-        count[o] += 1.0;
+        size[o].push_back(std::abs(traces[e].e[at]));
+        ratio[o].push_back(std::abs(traces[e].e[at]) / std::sqrt(traces[e].S[at]));
       }
     }
   }
+  Sizes out;
   for (std::size_t o = 0; o < outputs; ++o) {
-    out.rms[o] = std::sqrt(out.rms[o] / std::max(count[o], 1.0));
-    out.ratio[o] = std::sqrt(out.ratio[o] / std::max(count[o], 1.0));
+    out.size.push_back(median(std::move(size[o])) / of_normal);
+    out.ratio.push_back(median(std::move(ratio[o])) / of_normal);
   }
   return out;
 }
@@ -63,8 +71,8 @@ std::optional<FilterEstimate> free_run(const FilterEstimate& estimate) {
     }
     const Sizes now = sizes_of(out.traces, out.data, out.noise.channels.size());
     bool larger = false;
-    for (std::size_t o = 0; o < now.rms.size(); ++o) {
-      larger = larger || now.rms[o] > least * one_step.rms[o];
+    for (std::size_t o = 0; o < now.size.size(); ++o) {
+      larger = larger || now.size[o] > least * one_step.size[o];
       if (round + 1 < rounds && now.ratio[o] > 0.0) out.noise.channels[o].white *= now.ratio[o];
     }
     if (!larger) return std::nullopt;
