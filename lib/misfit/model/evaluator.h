@@ -76,10 +76,10 @@ class Evaluator {
 
   void rates(const double* x, const double* u, double t, double* dx);
   /// dx and its derivative rows D[i·kRowStride + …] for i < states(): ∂/∂x, then ∂/∂(slot). New slots may be added.
-  void linearise_rates(const Instant& at, Slots& slots, double* dx, double* D);
+  void linearise_rates(const Instant& instant, Slots& slots, double* dx, double* D);
   /// The same for the inner loop: D gets the columns ∂/∂x only, and B the (few) derivatives by slots. False, with nothing done, where the
   /// model needs full rows (effects on quantity ports).
-  bool linearise_rates_sparsely(const Instant& at, Slots& slots, double* dx, double* D);
+  bool linearise_rates_sparsely(const Instant& instant, Slots& slots, double* dx, double* D);
   /// ∂(dx_row)/∂(slot) of the last linearise_rates_sparsely(); several entries of one place add up.
   struct Entry {
     int row, slot;
@@ -94,7 +94,7 @@ class Evaluator {
   /// y and, last, the shift of the sample time [s] (outputs() + 1 values).
   void predict(const double* x, const double* u, double t, double* y);
   /// The same with derivative rows for each of the outputs() + 1 values.
-  void linearise_outputs(const Instant& at, Slots& slots, double* y, double* D);
+  void linearise_outputs(const Instant& instant, Slots& slots, double* y, double* D);
 
   /// Fastest rate of the system and its effects at this state, jumps at their steepest [1/s].
   [[nodiscard]] double fastest_rate(const double* x, const double* u, double t);
@@ -120,7 +120,7 @@ class Evaluator {
   Reads<double, double> reads(const Use& use, const double* values, double t) const;
   struct Linearisation {                               // of one effect at the present quantities, by the numbers that it reads
     std::array<double, kMaxWidth> values, out, slope;  // slope: of the curve behind a coefficient
-    std::array<double, kMaxWidth * kMaxWidth> J;
+    std::array<double, std::size_t{kMaxWidth} * kMaxWidth> J;
     std::array<CurvePoint, kMaxWidth> points;
   };
   struct Targets {  // to which an effect adds: ports, and the drifts of its own states, with rows of kRowStride
