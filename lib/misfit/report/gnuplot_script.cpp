@@ -36,7 +36,7 @@ struct Place {
 };
 
 std::string axis_text(const std::string& label, const std::string& unit) {
-  const std::string plain = label + (unit.empty() ? "" : "  [" + unit + "]");
+  const std::string plain = label + (unit.empty() || unit == "-" ? "" : "  [" + unit + "]");
   return gnuplot_text(plain);
 }
 
