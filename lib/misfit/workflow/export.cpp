@@ -105,12 +105,13 @@ Fit chosen_fit(const Session& session, const std::string& asked) {
   std::vector<std::string> names = session.methods();
   const std::string driven = random_force_estimator().name;  // discover and add estimate it, whatever the study names
   if (std::find(names.begin(), names.end(), driven) == names.end()) names.insert(names.begin(), driven);
+  std::reverse(names.begin(), names.end());
   std::string why;
-  for (auto name = names.rbegin(); name != names.rend(); ++name) {
-    if (!is_there(session, *name)) continue;
-    Fit fit = stored_fit(session, *name);
+  for (const std::string& name : names) {
+    if (!is_there(session, name)) continue;
+    Fit fit = stored_fit(session, name);
     if (fit.usable()) return fit;
-    why += (why.empty() ? "" : "; ") + *name + " " + to_string(fit.status) + ": " + fit.message;
+    why += (why.empty() ? "" : "; ") + name + " " + to_string(fit.status) + ": " + fit.message;
   }
   if (!why.empty()) throw RunError("no estimate to export: " + why);
   throw InputError(fmt::format("{}: there is no estimate to export yet; misfit run {} makes one",
