@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "misfit/discover/discover.h"
 #include "tests/discover/record.h"
 
@@ -18,7 +21,20 @@ FilterEstimate estimate_of(const std::vector<Signals>& recorded) {
 }
 
 TEST(FreeRun, IsNotLookedAtWhereTheRandomForceDoesNothing) {
-  const std::vector<Signals> recorded = {record_of_cart({}, {})};
+  Signals swing;  // of a free cart
+  swing.name = "swing";
+  swing.inputs.push_back({"drive", "N", {}});
+  swing.measured = {{"position_reading", "-", {}}, {"speed_reading", "m/s", {}}};
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  const double w = std::sqrt(30.0 / 2.0);
+  for (int i = 0; i < 600; ++i) {
+    swing.t.push_back(0.05 * i);
+    swing.inputs[0].values.push_back(0.0);
+    swing.measured[0].values.push_back(0.5 * std::cos(w * swing.t.back()) + 2e-3 * normal(random));
+    swing.measured[1].values.push_back(-0.5 * w * std::sin(w * swing.t.back()) + 1e-2 * normal(random));
+  }
+  const std::vector<Signals> recorded = {swing};
   EXPECT_FALSE(free_run(estimate_of(recorded)));
 }
 
