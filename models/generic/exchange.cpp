@@ -20,7 +20,7 @@ struct Exchange {
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { exchange };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "exchange", .unit = "{port}/{level}", .lower = -1e15, .upper = 1e15, .scale = 0.1, .doc = "flow per difference of the levels"},
+      {.name = "exchange", .unit = "{port}/{level}", .lower = 0.0, .upper = 1e15, .scale = 0.1, .doc = "flow per difference of the levels"},
   };
 
   template <class T, class K>

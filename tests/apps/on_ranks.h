@@ -6,12 +6,14 @@
 
 namespace program {
 
-/// mpirun -n RANKS misfit …, its words to the folder's stdout and stderr. OpenMPI does not free all that it takes: under sanitizers that is
+/// mpirun -n RANKS misfit …, its words to the folder's stdout and stderr, without the colours of
+/// a terminal, which it gives its ranks. OpenMPI does not free all that it takes: under sanitizers that is
 /// not counted as a leak of ours.
 inline Outcome on_ranks(int ranks, const std::vector<std::string>& arguments) {
   const TemporaryFolder captured;
-  std::string command = "ASAN_OPTIONS=detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n " +
-                        std::to_string(ranks) + " " + MISFIT_PROGRAM;
+  std::string command =
+      "NO_COLOR=1 ASAN_OPTIONS=detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n " +
+      std::to_string(ranks) + " " + MISFIT_PROGRAM;
   for (const auto& argument : arguments) command += " '" + argument + "'";
   command += " > '" + (captured.path() / "stdout").string() + "' 2> '" + (captured.path() / "stderr").string() + "'";
   const int status = std::system(command.c_str());  // NOLINT(cert-env33-c): a test

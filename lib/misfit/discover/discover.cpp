@@ -176,7 +176,7 @@ class Search {
         {.begin = [this](const RankedCandidate& e) { return significant(e) && has_shapes(e) ? e.screening : nullptr; }, .name = "_shapes"});
   }
 
-  /// The effects that explain most of the free run, each at least a fifth of it, begun from there.
+  /// The forces that explain most of the free run, each at least a fifth of it, begun from there.
   void refit_what_the_free_run_shows() {
     constexpr double least_share = 0.2;
     constexpr std::size_t most = 3;
@@ -189,7 +189,8 @@ class Search {
     for (const FilterTrace& trace : calm_->traces) counted += static_cast<double>(trace.counted);
     std::vector<const ScreeningResult*> best;
     for (const ScreeningResult& s : calm_screening_) {
-      if (s.runs && s.result.dof > 0 && s.result.chi2 > least_share * counted) best.push_back(&s);
+      const bool a_force = s.candidate_model->family != "sensor";  // the random force takes over nothing else
+      if (a_force && s.runs && s.result.dof > 0 && s.result.chi2 > least_share * counted) best.push_back(&s);
     }
     std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });
     best.resize(std::min(best.size(), most));
@@ -203,7 +204,28 @@ class Search {
                 .name = "_free_run",
                 .screened = &*calm_,
                 .score = &score});
+    for (RankedCandidate& e : ranked_) {
+      const bool nominated =
+          std::any_of(best.begin(), best.end(), [&](const auto* s) { return s->candidate_model == e.screening->candidate_model; });
+      if (nominated && e.refit && !significant_in_screening(e)) require_of_free_run(e, least_share);
+    }
+    sort_ranked();
   }
+
+  /// What the free run alone nominated must explain there what it promised: else its refit went elsewhere, and is not counted.
+  void require_of_free_run(RankedCandidate& e, double share) {
+    const std::optional<FilterEstimate> after = free_run(e.refit->estimate);
+    if (!after) return;  // nothing is left to the random force
+    double log_ratio = 0.0;
+    for (std::size_t o = 0; o < after->noise.channels.size(); ++o)
+      log_ratio += std::log(after->noise.channels[o].white / calm_->noise.channels[o].white);
+    if (std::exp(2.0 * log_ratio / static_cast<double>(after->noise.channels.size())) < 1.0 - share) return;
+    e.refit.reset();
+    e.log_p = e.screening->log_p;
+    e.candidate = named_candidate(*e.screening, families_);
+    e.candidate.why = "not significant: family-wise " + p_equals(e.candidate.p_value) + "; its refit does not explain the free run";
+  }
+  bool significant_in_screening(const RankedCandidate& e) const { return sidak(e.screening->p_value, families_) < options_.p_accept; }
 
   /// False: there is none.
   bool refit_the_other_significant_ones() {
