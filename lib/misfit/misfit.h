@@ -41,7 +41,7 @@ class Identification {
   /// The rungs so far.
   [[nodiscard]] const Ladder& ladder() const { return ladder_.ladder(); }
   /// Figures and report.html of the study with its ladder; the path of the page.
-  std::filesystem::path report() { return report_stage(ladder_.root(), fit_stage(ladder_.root())); }
+  std::filesystem::path report() { return write_report(ladder_); }
   /// The study of the last rung, for all other stages: workflow/stages.h, workflow/simulate.h.
   [[nodiscard]] Session& session() { return ladder_.last(); }
 

@@ -1,5 +1,6 @@
 // Data that are broken, short, holed or at awkward places: an answer, or words that say why there is none.
 
+#include <fmt/format.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -17,7 +18,7 @@ using Cells = std::vector<std::string>;
 void expect_refused(const StudyCopy& study, int status, std::initializer_list<const char*> expected) {
   const Outcome outcome = study.run();
   EXPECT_EQ(outcome.status, status) << outcome.err;
-  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.out.find("Verdict"), std::string::npos) << outcome.out;
   expect_parts(outcome.err, expected);
   EXPECT_FALSE(fs::exists(study.out("report.html")));
 }
@@ -127,7 +128,7 @@ TEST(HoledData, AHoleInTheTrackIsCarriedToTheAttitude) {
   }
   EXPECT_EQ(rows, 4761U);
   EXPECT_GT(empty, 170U);
-  expect_parts(outcome.out, {"samples read", std::to_string(rows - empty).c_str()});
+  expect_parts(outcome.out, {fmt::format("{} of 4761 samples read", rows - empty).c_str()});
 }
 
 TEST(Outliers, ManyWildMeasurementsAreAnswered) {

@@ -90,7 +90,12 @@ starts = 5
   TemporaryFolder folder_;
 };
 
-/// Every file below `folder` but run.json, "seconds" of JSON and reports' times left out: name → content.
+inline std::string without(std::string text, const std::string& part) {
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at)) text.erase(at, part.size());
+  return text;
+}
+
+/// Every file below `folder` but run.json; "seconds" of JSON, reports' times and the folder's own name left out: name → content.
 inline std::map<std::string, std::string> results_in(const fs::path& folder) {
   static const std::regex times(R"("seconds": [-+.0-9e]+)");
   std::map<std::string, std::string> out;
@@ -101,7 +106,7 @@ inline std::map<std::string, std::string> results_in(const fs::path& folder) {
       out[name] = "";  // contains how long the stages took
       continue;
     }
-    out[name] = std::regex_replace(content(entry.path()), times, "");
+    out[name] = without(std::regex_replace(content(entry.path()), times, ""), folder.string());
   }
   return out;
 }

@@ -1,6 +1,8 @@
 #include "misfit/data/attitude.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "misfit/core/table.h"
@@ -34,6 +36,10 @@ constexpr std::array<Field, 16> fields = {{{"t", "s", &Attitude::t, true},
                                            {"sigma_phi", "deg", &Attitude::sigma_phi, false}}};
 
 }  // namespace
+
+std::size_t samples_read(const Attitude& attitude) {
+  return static_cast<std::size_t>(std::count_if(attitude.eta.begin(), attitude.eta.end(), [](double v) { return std::isfinite(v); }));
+}
 
 void write_attitude(const std::filesystem::path& path, const Attitude& attitude) {
   Table table;

@@ -21,6 +21,9 @@ struct Attitude {
   std::vector<std::string> notes;                                        ///< what was dropped and why, in words
 };
 
+/// How many samples have an axis that could be read; alpha_T, which is computed from seven successive samples, may have fewer.
+[[nodiscard]] std::size_t samples_read(const Attitude& attitude);
+
 /// attitude.csv: `t[s],theta[deg],psi[deg],alpha[deg],beta[deg],alpha_T[deg],phi[deg]`, then eta[deg], the averages, rates and sigmas.
 void write_attitude(const std::filesystem::path& path, const Attitude& attitude);
 [[nodiscard]] Attitude read_attitude(const std::filesystem::path& path);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
@@ -129,20 +130,22 @@ namespace {
 /// A value with its sigma, both above 0.
 config::Number read_strength(const Section& force) {
   const DescribedSection table = described(force, "strength", "force.strength");
-  const auto positive = [&](const char* key) {
-    if (!table.has(key)) {
-      table.finish();  // a key that is none comes first
-      table.fail(key, "is missing: a prior has a value and a sigma");
-    }
-    const config::Number out = number_as_written(table, key);
-    if (!(out.value > 0.0)) table.fail(key, fmt::format("{} must be above 0: the logarithm of the strength has a normal prior", out.value));
-    return out;
-  };
-  config::Number out = positive("value");
-  const config::Number sigma = positive("sigma");
+  std::map<std::string, config::Number> read;
+  for (const char* key : {"value", "sigma"}) {
+    if (!table.has(key)) continue;
+    const config::Number number = number_as_written(table, key);
+    if (!(number.value > 0.0))
+      table.fail(key, fmt::format("{} must be above 0: the logarithm of the strength has a normal prior", number.value));
+    read[key] = number;
+  }
+  table.finish();
+  for (const char* key : {"value", "sigma"}) {
+    if (!read.contains(key)) table.fail(key, "is missing: a prior has a value and a sigma");
+  }
+  config::Number out = read["value"];
+  const config::Number& sigma = read["sigma"];
   if (!sigma.unit.empty() && !parse_unit(sigma.unit).same_dimension(parse_unit(out.unit)))
     table.fail("sigma", fmt::format("[{}] is no unit of the value, [{}]", sigma.unit, out.unit));
-  table.finish();
   out.sigma = sigma.value;
   out.where = force.where("strength");
   return out;

@@ -8,6 +8,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/unique_name.h"
+#include "misfit/data/estimators.h"
 
 namespace misfit {
 namespace {
@@ -69,7 +70,7 @@ std::vector<std::string> signature_lines(const SourceParts& parts, const Model& 
   for (int i = 0; i < int_size(spec.outputs); ++i)
     out.push_back(fmt::format("y[{}]  {}", i, in_unit(spec.outputs[i].name, spec.outputs[i].unit)));
   out.emplace_back("t     time of the recording [s]");
-  out.emplace_back("Without noise, and without the random force that filter_error estimates.");
+  out.push_back(fmt::format("Without noise, and without the random force that {} estimates.", random_force_estimator().name));
   if (parts.formulas.sample_time >= 0) out.emplace_back("The outputs belong to the time t + sample_time.");
   return out;
 }

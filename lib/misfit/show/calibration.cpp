@@ -72,7 +72,6 @@ Blocks blocks_of(const std::string& experiment, const TrackFacts& facts) {
 }
 
 Blocks blocks_of(const std::string& experiment, const Attitude& a) {
-  const auto known = std::count_if(a.eta.begin(), a.eta.end(), [](double v) { return std::isfinite(v); });
   double sum = 0.0, squares = 0.0, n = 0.0;
   for (double v : a.alpha_T) {
     if (std::isfinite(v)) sum += v, squares += v * v, n += 1.0;
@@ -82,7 +81,7 @@ Blocks blocks_of(const std::string& experiment, const Attitude& a) {
   Blocks out;
   out.subheading("Attitude of " + experiment);
   out.table({columns("quantity|value"),
-             {{"samples read", fmt::format("{} of {}", known, a.t.size())},
+             {{"samples read", fmt::format("{} of {}", samples_read(a), a.t.size())},
               {"mean of alpha_T", Row("", mean, 0.0, "rad").shown()},
               {"standard deviation of alpha_T", Row("", spread, 0.0, "rad").shown()}}});
   out.warnings(a.notes);

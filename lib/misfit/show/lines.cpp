@@ -66,7 +66,8 @@ std::string line_of(const Attitude& a) {
   std::copy_if(a.alpha_T.begin(), a.alpha_T.end(), std::back_inserter(known), [](double v) { return std::isfinite(v); });
   if (known.empty()) return "no sample could be read";
   const auto [least, most] = std::minmax_element(known.begin(), known.end());
-  return fmt::format("{} samples, alpha_T from {} to {}", known.size(), briefly({*least, 0.0, "rad"}), briefly({*most, 0.0, "rad"}));
+  return fmt::format("{} of {} samples read, alpha_T from {} to {}", samples_read(a), a.t.size(), briefly({*least, 0.0, "rad"}),
+                     briefly({*most, 0.0, "rad"}));
 }
 
 std::string line_of(const Fit& fit) {

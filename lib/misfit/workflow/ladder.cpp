@@ -290,11 +290,15 @@ void diagnose_rungs(ModelLadder& ladder) {
   if (ladder.ladder().rungs.size() > 1) std::ignore = diagnose_stage(ladder.last());
 }
 
+std::filesystem::path write_report(ModelLadder& ladder) {
+  diagnose_rungs(ladder);
+  return report_stage(ladder.root(), fit_stage(ladder.root()));
+}
+
 void report_ladder(ModelLadder& ladder) {
   Session& session = ladder.root();
   try {
-    diagnose_rungs(ladder);
-    session.note("report: " + report_stage(session, fit_stage(session)).lexically_normal().string());
+    session.note("report: " + write_report(ladder).lexically_normal().string());
   } catch (const RunError& error) {
     session.note(std::string("no report: ") + error.what());  // the rung is valid without a report
   }

@@ -80,7 +80,10 @@ void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderLi
 /// Diagnoses the study's own model and that of the last rung: where the force was missing, before and after.
 void diagnose_rungs(ModelLadder& ladder);
 
-/// The report of the study, written anew after its ladder has grown: a note has its path, or why there is none.
+/// Diagnoses both and writes the report of the study with its ladder; the path of the page.
+std::filesystem::path write_report(ModelLadder& ladder);
+
+/// The same after the ladder has grown: a note has the path, or why there is none.
 void report_ladder(ModelLadder& ladder);
 
 /// The study's text with the effect added, for `folder`. InputError as ModelLadder::add.
