@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "misfit/core/watch.h"
+#include "misfit/inference/own_states.h"
 #include "misfit/inference/solved_states.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/evaluator.h"
@@ -134,12 +135,7 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
 
 void add_own_states(const Model& model, const Signals& signals, ReconstructedStates& states) {
   if (model.own_states.empty() || states.x.rows() == 0) return;
-  const auto known = std::find(states.ok.begin(), states.ok.end(), true);
-  const std::size_t first = known == states.ok.end() ? 0 : known - states.ok.begin();
-  Eigen::VectorXd at = states.x.row(static_cast<Eigen::Index>(first)).transpose();
-  set_own_states_at_rest(model, input_table(signals, model.inputs()).at(first), signals.t[first], at);
-  const Eigen::Index own = model.own_states.size();
-  states.x.rightCols(own).rowwise() = at.tail(own).transpose();
+  states.x.rightCols(static_cast<Eigen::Index>(model.own_states.size())) = own_states_along(model, signals, states).z;
 }
 
 void set_own_states_at_rest(const Model& model, const double* u, double t, Eigen::Ref<Eigen::VectorXd> at) {

@@ -20,7 +20,7 @@ struct ReconstructedStates {
 /// Quadratic least squares over five neighbouring samples, or, where fewer than four of them are there, over seven or nine (uneven times
 /// and missing samples allowed; never stretched over a gap of more than five usual steps): value, slope, second derivative. A state is
 /// shown if an output observes it, if System::read_states() gives it, if solve_outputs() finds it, or if it is the rate of one that is. Own
-/// states of effects are at rest where the states are first known (set_own_states_at_rest()).
+/// states of effects are computed along these (own_states_along()).
 [[nodiscard]] ReconstructedStates reconstruct_states(const Model& model, const Signals& signals);
 
 /// What a state is taken to be before anything shows it: its declared start, else one scale inside its range, else 0.
@@ -31,7 +31,7 @@ struct ReconstructedStates {
 /// Those whose drift does not tell them (play inside its clearance) stay at their declared initial value.
 void set_own_states_at_rest(const Model& model, const double* u, double t, Eigen::Ref<Eigen::VectorXd> at);
 
-/// Fills the columns of own states: at rest where the states are first known.
+/// Fills the columns of own states: the memories of effects along the motion (own_states.h).
 void add_own_states(const Model& model, const Signals& signals, ReconstructedStates& states);
 
 /// Circular frequency of the motion [rad/s]: sqrt(var(x')/var(x)) over the shown pairs of state and rate, the largest; 0 if there is none.

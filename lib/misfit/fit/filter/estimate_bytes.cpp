@@ -52,11 +52,12 @@ void fields(Bytes& bytes, MaybeConst<InputTable> auto& data) {
   bytes(inputs, values, plan);
 }
 
-/// All but the measurements.
+/// All but the measurements and what is read from them.
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterData> auto& data) {
-  auto& [signals, inputs, use, first, start, scale] = data;
+  auto& [signals, inputs, use, first, start, scale, read] = data;
   static_cast<void>(signals);
+  static_cast<void>(read);
   bytes(inputs, use, first, start, scale);
 }
 
@@ -108,7 +109,10 @@ FilterEstimate read_estimate(ByteReader& bytes, const Model& model, const std::v
   out.forced = with_random_force(out.model);
   set_values(out.forced.model, forced);
   if (out.data.size() != experiments.size()) throw RunError("a stored estimate is of other experiments");
-  for (std::size_t e = 0; e < experiments.size(); ++e) out.data[e].signals = &experiments[e];
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    out.data[e].signals = &experiments[e];
+    out.data[e].read = std::make_shared<const ReconstructedStates>(reconstruct_states(model, experiments[e]));
+  }
   return out;
 }
 

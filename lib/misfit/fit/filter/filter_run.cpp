@@ -5,6 +5,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/fit/filter/filter_pass.h"
+#include "misfit/inference/own_states.h"
 
 namespace misfit {
 namespace {
@@ -30,6 +31,17 @@ void resize(FilterTrace& trace, int n, int ny, std::size_t samples) {
   trace.counted = trace.validated = 0;
 }
 
+/// The memories of effects where the filter begins; forces begin at 0, as uncertain as they are strong (start_covariance()).
+void begin_own_states(const FilterModel& model, FilterData& data) {
+  const Eigen::Index system = model.model.system_states(), own = model.model.states() - system;
+  ReconstructedStates states = *data.read;
+  states.x.conservativeResize(Eigen::NoChange, system + own);
+  const OwnStates along = own_states_along(model.model, *data.signals, states);
+  data.start.tail(own) = along.start;
+  data.scale.tail(own) = along.sigma;
+  for (int f : model.force_states) data.start[f] = data.scale[f] = 0.0;
+}
+
 }  // namespace
 
 FilterData filter_data(const FilterModel& model, const Signals& signals, double integration, const IntegrationPlan* plan) {
@@ -37,7 +49,8 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
   out.signals = &signals;
   out.inputs = input_table(signals, model.model.inputs());
   const std::size_t ny = model.model.outputs();
-  const ReconstructedStates states = reconstruct_states(model.model, signals);
+  out.read = std::make_shared<const ReconstructedStates>(reconstruct_states(model.model, signals));
+  const ReconstructedStates& states = *out.read;
   const auto known = std::find(states.ok.begin(), states.ok.end(), true);
   if (known == states.ok.end())
     throw RunError("experiment '" + signals.name + "': no sample at which the states of system '" + model.model.system->spec().key +
@@ -54,7 +67,7 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
   out.scale = Eigen::VectorXd::Zero(model.model.states());
   const auto& specs = model.model.system->spec().states;
   for (std::size_t i = 0; i < specs.size(); ++i) out.scale[i] = specs[i].scale;
-  for (int f : model.force_states) out.start[f] = 0.0;
+  begin_own_states(model, out);
   Stepper stepper(model.model);
   out.inputs.plan = plan != nullptr ? *plan : plan_along({stepper, signals, out.inputs}, states.x, integration);
   return out;
@@ -66,8 +79,7 @@ FilterData filter_data_like(const FilterModel& model, const FilterData& data) {
   out.start = out.scale = Eigen::VectorXd::Zero(all);
   out.start.head(system) = data.start.head(system);
   out.scale.head(system) = data.scale.head(system);
-  set_own_states_at_rest(model.model, data.inputs.at(data.first), data.signals->t[data.first], out.start);
-  for (int f : model.force_states) out.start[f] = 0.0;
+  begin_own_states(model, out);
   return out;
 }
 

@@ -5,6 +5,7 @@
 //   [DK] J. Durbin, S. J. Koopman, Time Series Analysis by State Space Methods (2012): disturbance smoother.
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "misfit/fit/filter/filter_model.h"
@@ -26,9 +27,10 @@ enum class SampleRole : std::uint8_t {
 struct FilterData {
   const Signals* signals = nullptr;
   InputTable inputs;
-  std::vector<SampleRole> use;   ///< samples × channels
-  std::size_t first = 0;         ///< first sample at which all states can be read
-  Eigen::VectorXd start, scale;  ///< model states there and their sigmas, force states excluded (0)
+  std::vector<SampleRole> use;                           ///< samples × channels
+  std::size_t first = 0;                                 ///< first sample at which all states can be read
+  Eigen::VectorXd start, scale;                          ///< model states there and their sigmas, force states excluded (0)
+  std::shared_ptr<const ReconstructedStates> read = {};  ///< the system's states as the channels show them
 };
 /// Planned along the states that the channels show, to `integration` (IntegrationPlan::tolerance), or as `plan` says.
 [[nodiscard]] FilterData filter_data(const FilterModel& model, const Signals& signals, double integration = kSearchTolerance,

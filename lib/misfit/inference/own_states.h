@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "misfit/inference/states.h"
+
+namespace misfit {
+
+/// Own states of effects (the memories of lags and delays) along the motion that the channels show, one column per own state.
+struct OwnStates {
+  RowMatrix z;            ///< samples × own states
+  Eigen::VectorXd start;  ///< at the first sample whose states are known
+  Eigen::VectorXd sigma;  ///< how uncertain they are there
+};
+
+/// A recording begins in the middle of a motion, and a memory then holds what was before it: neither 0 nor the level that it would reach at
+/// rest (a delay of 0.13 s of a pendulum that swings by 15 deg begins 40 deg wrong if its rate is taken to be 0). Where an effect's own
+/// dynamics are linear with constant coefficients, z' = A z + b(x, u), its memory is computed along the states read from the channels:
+///   rest r = -A^-1 b, departure d = z - r, d' = A d - r' with r' constant between samples (exact for A),
+/// begun at rest; what is remembered of that beginning is left out (three times the slowest time constant, half of the recording at most),
+/// as are held-out samples. The departure at the first sample is the least-squares prediction from states, their derivatives and inputs
+/// there, learnt from the other samples; its sigma is the RMS of all departures, since it was computed with the effect's parameters as they
+/// are now. Other own states (play inside its clearance, forces) are at rest (set_own_states_at_rest()) and taken as known.
+[[nodiscard]] OwnStates own_states_along(const Model& model, const Signals& signals, const ReconstructedStates& states);
+
+}  // namespace misfit
