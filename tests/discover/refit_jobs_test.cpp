@@ -18,7 +18,9 @@ using namespace testing_records;
 
 class RefitJobs : public testing::Test {
  protected:
-  RefitJobs() {
+  RefitJobs() : RefitJobs("coulomb_friction", {{"friction", 3.0}}) {}
+  RefitJobs(const std::string& hidden, const std::map<std::string, double>& values)
+      : signals_{record_of_cart({testing_models::effect(hidden)}, values)} {
     request_.parameters["stiffness"].free = true;
     estimate_ = estimate_filter(assemble(request_, registry()), {}, signals_);
     score_.emplace(estimate_);
@@ -42,7 +44,7 @@ class RefitJobs : public testing::Test {
     return out;
   }
 
-  std::vector<Signals> signals_{record_of_cart({testing_models::effect("coulomb_friction")}, {{"friction", 3.0}})};
+  std::vector<Signals> signals_;
   ModelRequest request_ = cart({testing_models::effect("viscous_friction")});
   FilterEstimate estimate_;
   std::optional<ScoreTest> score_;
@@ -78,6 +80,24 @@ TEST_F(RefitJobs, WhatComesBackCanBeGoneOnWith) {
     return score_cell(in.estimate, ScoreTest(in.estimate), *found, other.cell).result.chi2;
   };
   EXPECT_EQ(score_in(after), score_in(before));
+}
+
+class RefitOfAWholeLag : public RefitJobs {
+ protected:
+  RefitOfAWholeLag() : RefitJobs("input_lag", {{"lagged_gain", 1.0}, {"input_tau", 0.06}}) {}
+};
+
+TEST_F(RefitOfAWholeLag, ComesBackWithItsGainHeld) {
+  const ScreeningResult& lag = effect("input_lag");
+  const auto made = refit_all(work(0), *score_, {&lag});
+  ASSERT_TRUE(made && made->front().refit.ok);
+  const std::vector<int> held = made->front().refit.estimate.model.free_parameters();
+  const Model& model = made->front().refit.estimate.model;
+  ASSERT_FALSE(model.parameters[model.find_parameter("lagged_gain")].free);
+  const Refit after = unpack_refit(pack(made->front(), lag), work(), lag).refit;
+  EXPECT_EQ(after.estimate.model.free_parameters(), held);
+  EXPECT_EQ(after.estimate.forced.model.free_parameters(), made->front().refit.estimate.forced.model.free_parameters());
+  EXPECT_EQ(after.estimate.covariance.rows(), std::ssize(held));
 }
 
 TEST_F(RefitJobs, AreNotMadeAgain) {

@@ -173,20 +173,26 @@ const Key* find_key(std::span<const KeyGroup> groups, const TomlPath& path) {
   return any;
 }
 
+namespace {
+
+void fill_default(const TomlPath& table, const Key& key, TomlDocument& document) {
+  const auto in_table = [&](const std::string& name) {
+    TomlPath path = table;
+    path.push_back(name);
+    return path;
+  };
+  const auto there = [&](const std::string& name) { return document.has(in_table(name)); };
+  const bool needless = !key.needs.empty() && std::none_of(key.needs.begin(), key.needs.end(), there);
+  const bool said = key.fallback.empty() || key.fallback == "\"\"";
+  if (!said && !needless && !key.any && !there(key.name)) document.set(in_table(key.name), key.fallback);
+}
+
+}  // namespace
+
 void fill_defaults(std::span<const KeyGroup> groups, TomlDocument& document) {
   for (const KeyGroup& group : groups) {
     for (const TomlPath& table : tables_of(group, document)) {
-      for (const Key& key : group.keys) {
-        const auto in_table = [&](const std::string& name) {
-          TomlPath path = table;
-          path.push_back(name);
-          return path;
-        };
-        const bool needless = !key.needs.empty() &&
-                              std::none_of(key.needs.begin(), key.needs.end(), [&](const auto& n) { return document.has(in_table(n)); });
-        const bool said = key.fallback.empty() || key.fallback == "\"\"";
-        if (!said && !needless && !key.any && !document.has(in_table(key.name))) document.set(in_table(key.name), key.fallback);
-      }
+      for (const Key& key : group.keys) fill_default(table, key, document);
     }
   }
 }

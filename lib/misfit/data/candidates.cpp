@@ -35,7 +35,7 @@ void write_discovery(const std::filesystem::path& dir, const Discovery& discover
 }
 
 Discovery read_discovery(const std::filesystem::path& dir) {
-  Discovery discovery = read_json<Discovery>(dir / "discovery.json");
+  auto discovery = read_json<Discovery>(dir / "discovery.json");
   discovery.candidates = read_json<std::vector<Candidate>>(dir / "candidates.json");
   return discovery;
 }

@@ -146,7 +146,7 @@ void write_diagnosis(const fs::path& dir, const Diagnosis& diagnosis) {
 }
 
 Diagnosis read_diagnosis(const fs::path& dir) {
-  StoredDiagnosis stored = read_json<StoredDiagnosis>(dir / "diagnosis.json");
+  auto stored = read_json<StoredDiagnosis>(dir / "diagnosis.json");
   for (const MissingForceTable& table : stored.missing) stored.diagnosis.missing.push_back(read_missing(dir, table));
   return std::move(stored.diagnosis);
 }

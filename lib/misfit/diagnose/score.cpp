@@ -49,8 +49,7 @@ Model probed(const FilterEstimate& estimate) {
 }  // namespace
 
 ScoreTest::ScoreTest(const FilterEstimate& estimate) {
-  Eigen::Index rows = 0;
-  for (const auto& jacobian : estimate.jacobians) rows += jacobian.r.size();
+  const Eigen::Index rows = counted_rows(estimate);
   const Eigen::VectorXd theta = estimate.model.theta();
   J_.resize(rows, theta.size());
   r_.resize(rows);
@@ -186,9 +185,7 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
 
 Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
   const Eigen::Index m = f.cols();
-  Eigen::Index rows = 0;
-  for (const auto& jacobian : estimate_.jacobians) rows += jacobian.r.size();
-  RowMatrix out(rows, m);
+  RowMatrix out(counted_rows(estimate_), m);
   Eigen::Index row = 0;
   std::size_t offset = 0;
   for (std::size_t e = 0; e < estimate_.traces.size(); ++e) {

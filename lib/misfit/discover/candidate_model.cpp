@@ -165,12 +165,6 @@ std::vector<std::string> names_of_ports(const Model& model) {
   return out;
 }
 
-Eigen::Index counted_rows(const FilterEstimate& estimate) {
-  Eigen::Index rows = 0;
-  for (const auto& jacobian : estimate.jacobians) rows += jacobian.r.size();
-  return rows;
-}
-
 Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
   FilterRunner runner(forced, true);
   runner.set_parameters(forced.model.values());

@@ -82,11 +82,11 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
     const int at = bound.coefficients[c].parameter;
     if (at < 0 || bound.effect->spec().coefficients[c].shared) continue;
     const int strength = place_of(candidate_model.strengths, at);
+    const Parameter& p = estimate.model.parameters[at];
     double sigma = sigma_of(estimate, at);
     // With Kalman gains held the covariance of a sensor effect is too small (sensitivity_columns); screening uses whole runs.
     const bool screened = strength >= 0 && strength < screening.result.sigma.size();
-    if (candidate_model.family == "sensor" && screened) sigma = screening.result.sigma[strength];
-    const Parameter& p = estimate.model.parameters[at];
+    if (candidate_model.family == "sensor" && screened && p.free) sigma = screening.result.sigma[strength];
     out[p.name] = {p.value, sigma, p.unit};
   }
   return out;

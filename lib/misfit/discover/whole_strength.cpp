@@ -83,10 +83,11 @@ std::vector<WholeStrength> whole_strengths(const FilterEstimate& estimate) {
     if (parameter < 0 || value == 0.0) continue;
     const std::string_view of = spec.coefficients[c].whole_of;
     const auto input = std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const Role& role) { return of == role.name; });
-    if (!of.empty())
+    if (!of.empty()) {
       value *= input == spec.quantities.end()
                    ? 0.0
                    : gain_of_input(estimate, others, bound.quantities[input - spec.quantities.begin()], bound.ports.front());
+    }
     if (value != 0.0) out.push_back({parameter, value});
   }
   return out;

@@ -70,7 +70,7 @@ class OutputSolver {
 
   [[nodiscard]] Linear linearise(std::size_t i, const States& x) const {
     std::array<double, kMaxOutputs> y{};
-    std::array<double, kMaxOutputs * kMaxStates> slope{};
+    std::array<double, std::size_t{kMaxOutputs} * kMaxStates> slope{};
     model_.system->linearise_outputs({x.data(), inputs_.at(i), signals_.t[i], constants_.data()}, y.data(), slope.data(), nullptr);
     Linear out{Eigen::VectorXd(spec_.outputs.size()), Eigen::MatrixXd(spec_.outputs.size(), unknown_.size())};
     for (Eigen::Index o = 0; o < out.residual.size(); ++o) {
@@ -83,7 +83,7 @@ class OutputSolver {
   /// At the start or half a scale of all states beside it.
   [[nodiscard]] bool depends_on(std::size_t state) const {
     std::array<double, kMaxOutputs> y{};
-    std::array<double, kMaxOutputs * kMaxStates> slope{};
+    std::array<double, std::size_t{kMaxOutputs} * kMaxStates> slope{};
     for (const double beside : {0.0, 0.5, -0.5}) {
       States x = start_;
       for (std::size_t j = 0; j < spec_.states.size(); ++j) x[j] += beside * spec_.states[j].scale;

@@ -92,7 +92,7 @@ class DeclaredSystem final : public System {
   bool read_states(const double* y, const double* k, double* x) const override {
     const std::array<double, kMaxStates> zero{};
     std::array<double, kMaxOutputs> y0{};
-    std::array<double, kMaxOutputs * kMaxStates> slope{};
+    std::array<double, std::size_t{kMaxOutputs} * kMaxStates> slope{};
     linearise_outputs({zero.data(), zero.data(), 0.0, k}, y0.data(), slope.data(), nullptr);
     bool known = true;
     for (const auto& [output, state] : c_->readable) {
@@ -116,7 +116,7 @@ class DeclaredSystem final : public System {
       if (std::isfinite(state.upper)) x[i] = std::min(x[i], state.upper - inside * state.scale);
     }
     Registers r;
-    std::array<double, kMaxStates * kMaxStates> J;
+    std::array<double, std::size_t{kMaxStates} * kMaxStates> J;
     run(c_->rates_steep, without_ports({x.data(), at.u, at.t, at.k}), no_forces.data(), r);
     write(c_->rates_steep.value, r, dx.data());
     block(c_->rates_steep.by_x, r, spec_.states.size() * spec_.states.size(), J.data());

@@ -91,7 +91,7 @@ void Evaluator::fill_numbers() {
 template <int NX>
 void Evaluator::add_entries(Plan& plan, const Point& at, Slots& slots, double* drifts) {
   std::array<double, kMaxWidth> out;
-  std::array<double, kMaxWidth * kMaxWidth> J;
+  std::array<double, std::size_t{kMaxWidth} * kMaxWidth> J;
   double* values = plan.values.data();
   for (const Link& link : plan.quantities) values[link.place] = q_[link.other];
   for (const Link& link : plan.curves) values[link.place] = curve_[link.other].value;

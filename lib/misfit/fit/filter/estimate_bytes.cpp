@@ -1,5 +1,7 @@
 #include "misfit/fit/filter/estimate_bytes.h"
 
+#include "misfit/core/lists.h"
+
 namespace misfit {
 
 // The structured bindings name every field: one more and they no longer compile.
@@ -97,15 +99,17 @@ void set_values(Model& model, const std::vector<double>& values) {
 }  // namespace
 
 void write_estimate(ByteWriter& bytes, const FilterEstimate& estimate) {
-  bytes(estimate.model.values(), estimate.forced.model.values(), estimate);
+  bytes(estimate.model.values(), estimate.forced.model.values(), estimate.model.free_parameters(), estimate);
 }
 
 FilterEstimate read_estimate(ByteReader& bytes, const Model& model, const std::vector<Signals>& experiments) {
   FilterEstimate out;
   std::vector<double> values, forced;
-  bytes(values, forced, out);
+  std::vector<int> free;
+  bytes(values, forced, free, out);
   out.model = model;
   set_values(out.model, values);
+  for (int i = 0; i < int_size(out.model.parameters); ++i) out.model.parameters[i].free = place_of(free, i) >= 0;
   out.forced = with_random_force(out.model);
   set_values(out.forced.model, forced);
   if (out.data.size() != experiments.size()) throw RunError("a stored estimate is of other experiments");

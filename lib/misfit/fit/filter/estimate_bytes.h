@@ -9,8 +9,8 @@ namespace misfit {
 /// have.
 void write_estimate(ByteWriter& bytes, const FilterEstimate& estimate);
 
-/// `model`: the estimate's but for the parameters' values; `experiments`: those it was made of, kept by reference. RunError: the bytes are
-/// of no such estimate.
+/// `model`: the estimate's but for the values of the parameters and which of them are free; `experiments`: those it was made of, kept by
+/// reference. RunError: the bytes are of no such estimate.
 [[nodiscard]] FilterEstimate read_estimate(ByteReader& bytes, const Model& model, const std::vector<Signals>& experiments);
 
 }  // namespace misfit

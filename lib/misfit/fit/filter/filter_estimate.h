@@ -62,6 +62,13 @@ struct FilterEstimate {
   }
 };
 
+/// Innovations that count, of all experiments: rows of the Jacobians.
+[[nodiscard]] inline Eigen::Index counted_rows(const FilterEstimate& estimate) {
+  Eigen::Index rows = 0;
+  for (const auto& jacobian : estimate.jacobians) rows += jacobian.r.size();
+  return rows;
+}
+
 /// The steps of integration that it was found with, per experiment.
 [[nodiscard]] std::vector<IntegrationPlan> plans_of(const FilterEstimate& estimate);
 

@@ -1,5 +1,6 @@
 #include "misfit/fit/regression/equation_error.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
