@@ -155,8 +155,8 @@ Interval interval_after(const Simulation& run, std::size_t i) {
 
 void prepare_at(const Simulation& run, std::size_t i, const double* x) {
   const auto& [stepper, signals, inputs] = run;
-  constexpr double unplanned = std::numeric_limits<double>::infinity();
-  stepper.prepare(x, inputs.at(i), signals.t[i], i < inputs.plan.rate.size() ? inputs.plan.rate[i] : unplanned);
+  const bool planned = i < inputs.plan.rate.size();
+  stepper.prepare(x, inputs.at(i), signals.t[i], planned ? inputs.plan.rate[i] : std::numeric_limits<double>::infinity());
 }
 
 bool predict_at(const Simulation& simulation, std::size_t i, const double* x, double* y) {

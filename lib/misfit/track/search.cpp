@@ -28,7 +28,7 @@ struct Cut {
 Pitch pitch_of(const Marker& marker, int row_step) {
   const double size = 2.0 * std::min(marker.reach_x(), marker.reach_y()) + 1.0;
   const int pitch = std::clamp(static_cast<int>(size / 8.0), 1, 8);
-  return {pitch, std::max(1, static_cast<int>(std::lround(pitch / row_step - 0.01))), row_step};
+  return {pitch, std::max(1, pitch / row_step), row_step};
 }
 
 Grid shrink(const Image& image, const Cut& cut, const Pitch& pitch) {
