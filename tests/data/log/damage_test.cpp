@@ -60,9 +60,9 @@ TEST_P(DamagedLog, WithBitsTurnedOverIsReadOrRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DamagedLog,
-                         testing::Values("plain.mat", "structs.mat", "big_endian.mat", "version73.mat", "plain.h5", "chunked.h5", "table.h5",
-                                         "columns.npy", "fortran.npy", "records.npy", "stored.npz", "deflated.npz", "one.npz", "simple.ulg",
-                                         "instances.ulg", "appended.ulg", "instances.bin", "letters.bin", "damaged.bin"),
+                         testing::Values("plain.mat", "structs.mat", "big_endian.mat", "version73.mat", "plain.h5", "chunked.h5",
+                                         "table.h5", "columns.npy", "fortran.npy", "records.npy", "stored.npz", "deflated.npz", "one.npz",
+                                         "simple.ulg", "instances.ulg", "appended.ulg", "instances.bin", "letters.bin", "damaged.bin"),
                          [](const auto& file) {
                            std::string name = file.param;
                            std::replace(name.begin(), name.end(), '.', '_');

@@ -68,7 +68,8 @@ TEST_P(LogFile, HasTheReferenceReadersValuesToTheBit) {
     EXPECT_EQ(c.samples, e.values.size());
     ASSERT_EQ(c.values.size(), e.values.size());
     for (std::size_t i = 0; i < c.values.size(); ++i)
-      ASSERT_EQ(std::bit_cast<std::uint64_t>(c.values[i]), std::bit_cast<std::uint64_t>(e.values[i])) << i << ": " << c.values[i] << ", " << e.values[i];
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(c.values[i]), std::bit_cast<std::uint64_t>(e.values[i]))
+          << i << ": " << c.values[i] << ", " << e.values[i];
   }
 }
 
@@ -85,9 +86,9 @@ TEST_P(LogFile, GivesOneChannelAloneAsWithAllOthers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LogFile,
-                         testing::Values("plain.mat", "structs.mat", "big_endian.mat", "version73.mat", "plain.h5", "chunked.h5", "table.h5",
-                                         "columns.npy", "fortran.npy", "records.npy", "stored.npz", "deflated.npz", "one.npz", "simple.ulg",
-                                         "instances.ulg", "appended.ulg", "instances.bin", "letters.bin", "damaged.bin"),
+                         testing::Values("plain.mat", "structs.mat", "big_endian.mat", "version73.mat", "plain.h5", "chunked.h5",
+                                         "table.h5", "columns.npy", "fortran.npy", "records.npy", "stored.npz", "deflated.npz", "one.npz",
+                                         "simple.ulg", "instances.ulg", "appended.ulg", "instances.bin", "letters.bin", "damaged.bin"),
                          [](const auto& file) {
                            std::string name = file.param;
                            std::replace(name.begin(), name.end(), '.', '_');
@@ -114,20 +115,18 @@ TEST(Logs, FormatsThatAreNotReadSayWhatToDo) {
   EXPECT_THAT(refusal("a.bin", "\0\1\2\3 and so on, of no format"s), HasSubstr("no format that is read; read are CSV, MAT"));
 }
 
-std::string npy(const std::string& head) {
-  return "\x93NUMPY\x01\0"s + static_cast<char>(head.size()) + '\0' + head;
-}
+std::string npy(const std::string& head) { return "\x93NUMPY\x01\0"s + static_cast<char>(head.size()) + '\0' + head; }
 
 TEST(Logs, ADamagedFileNamesTheByteAndWhatWasExpected) {
   EXPECT_THAT(refusal("a.npy", npy("{'descr': '<f8' ")), HasSubstr("byte "));
   EXPECT_THAT(refusal("a.npy", npy("{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000,), }")),
               HasSubstr("bytes of numbers are expected, as the shape says"));
-  EXPECT_THAT(refusal("a.npy", npy("{'descr': '|O', 'fortran_order': False, 'shape': (3,), }")),
-              HasSubstr("objects of Python"));
+  EXPECT_THAT(refusal("a.npy", npy("{'descr': '|O', 'fortran_order': False, 'shape': (3,), }")), HasSubstr("objects of Python"));
 }
 
 TEST(Logs, NotesWhatADamagedLogHasLost) {
-  EXPECT_THAT(open_log(logs() / "damaged.bin")->log().notes, ElementsAre(HasSubstr("no message is there, 15 bytes of the log are left out")));
+  EXPECT_THAT(open_log(logs() / "damaged.bin")->log().notes,
+              ElementsAre(HasSubstr("no message is there, 15 bytes of the log are left out")));
   EXPECT_THAT(open_log(logs() / "appended.ulg")->log().notes, ElementsAre(HasSubstr("no message is there, up to where the log goes on")));
 }
 

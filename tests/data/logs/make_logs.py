@@ -131,7 +131,7 @@ def numpy_files():
     record["t"], record["w[rad/s]"], record["xy"], record["on"] = t, w, xy, u > 0
     np.save(here / "records.npy", record)
     a = np.load(here / "records.npy")
-    expect("records.npy", [("t", "", "t", a["t"]), ("w[rad/s]", "", "t", a["w[rad/s]"]), ("xy[0]", "", "t", a["xy"][:, 0]),
+    expect("records.npy", [("t", "", "t", a["t"]), ("w", "rad/s", "t", a["w[rad/s]"]), ("xy[0]", "", "t", a["xy"][:, 0]),
                            ("xy[1]", "", "t", a["xy"][:, 1]), ("on", "", "t", a["on"])])
     when = np.datetime64("2026-01-02T03:04:05", "ns") + (t * 1e9).astype("timedelta64[ns]")
     arrays = {"time": when, "w": w, "xy": xy, "slow/t": np.arange(6) * 0.1, "slow/T": np.arange(6, dtype=np.uint8)}

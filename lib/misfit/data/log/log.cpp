@@ -131,18 +131,34 @@ bool has_hdf5_mark(const fs::path& path) {
 
 }  // namespace
 
-std::size_t Log::index_of(const std::string& name) const {
-  std::vector<std::string> names, ends;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    const std::string& own = channels[i].name;
-    if (own == name) return i;
-    names.push_back(own);
-    if (own.ends_with("." + name) || own.ends_with("/" + name)) ends.push_back(own);
-  }
+namespace {
 
-  if (ends.size() == 1) return static_cast<std::size_t>(std::find(names.begin(), names.end(), ends.front()) - names.begin());
-  if (ends.size() > 1)
-    throw InputError({source, 0, 0}, "'" + shown(name) + "' may be one of " + some_names(name, ends) + ": write it in full");
+/// The channels that `name` may be: the one of that name, or all that end with it.
+std::vector<std::size_t> meant_by(const Log& log, const std::string& name) {
+  std::vector<std::size_t> ends;
+  for (std::size_t i = 0; i < log.channels.size(); ++i) {
+    const std::string& own = log.channels[i].name;
+    if (own == name) return {i};
+    if (own.ends_with("." + name) || own.ends_with("/" + name)) ends.push_back(i);
+  }
+  return ends;
+}
+
+}  // namespace
+
+std::optional<std::size_t> Log::find(const std::string& name) const {
+  const std::vector<std::size_t> meant = meant_by(*this, name);
+  return meant.size() == 1 ? std::optional(meant.front()) : std::nullopt;
+}
+
+std::size_t Log::index_of(const std::string& name) const {
+  const std::vector<std::size_t> meant = meant_by(*this, name);
+  if (meant.size() == 1) return meant.front();
+  std::vector<std::string> names;
+  for (const std::size_t i : meant) names.push_back(channels[i].name);
+  if (!names.empty())
+    throw InputError({source, 0, 0}, "'" + shown(name) + "' may be one of " + some_names(name, names) + ": write it in full");
+  for (const LogChannel& c : channels) names.push_back(c.name);
   throw InputError({source, 0, 0}, "no channel '" + shown(name) + "'" + suggest(name, names));
 }
 

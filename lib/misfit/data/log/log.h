@@ -33,6 +33,8 @@ struct Log {
   /// The channel of that name, or the only one whose name ends with it behind a '.' or '/': "w" for "motor.w".
   /// InputError naming the file and the nearest names, or those that it could be.
   [[nodiscard]] std::size_t index_of(const std::string& name) const;
+  /// The same; nullopt where it is none, or could be several.
+  [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
 };
 
 /// An open file: what is in it is known at once, values are read when they are asked for, so that a file may be larger than the memory.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "misfit/core/column_header.h"
 #include "misfit/core/shown.h"
 #include "misfit/data/log/arrays.h"
 #include "misfit/data/log/inflate.h"
@@ -28,6 +29,16 @@ struct Part {
   std::size_t member = 0, field = 0;
 };
 
+/// "w[rad/s]" → "w" in rad/s.
+void take_unit_from_name(ArrayInfo& info) {
+  const auto open = info.name.rfind('[');
+  if (open == std::string::npos || open == 0 || !info.name.ends_with(']')) return;
+  const std::string inside = info.name.substr(open + 1, info.name.size() - open - 2);
+  if (inside.find_first_not_of("0123456789") == std::string::npos || read_header("x[" + inside + "]").unit.empty()) return;
+  info.unit = inside;
+  info.name.resize(open);
+}
+
 class NumpyReader : public LogReader {
  public:
   explicit NumpyReader(std::string format, const std::string& source) {
@@ -46,6 +57,7 @@ class NumpyReader : public LogReader {
         continue;
       }
       ArrayInfo info{whole, field.name.empty() ? "" : name, field.unit, h.shape, h.column_major};
+      take_unit_from_name(info);
       if (field.count > 1) info.shape.push_back(field.count);
       if (field.count > 1) info.column_major = false;  // the numbers of a record stand together
       parts_.push_back({members_.size() - 1, f});
