@@ -26,6 +26,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/version.h"
 #include "misfit/data/estimators.h"
+#include "misfit/data/log/log.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/ranks.h"
 
@@ -181,7 +182,19 @@ void batch_options(CLI::App& verb, Options& options) {
 }
 
 void init_options(CLI::App& verb, Options& options) {
-  verb.add_option("data", options.session.study, "CSV file with a header line")->type_name("DATA.csv")->required();
+  verb.add_option("data", options.session.study, "recording: CSV, MAT, HDF5, NPY, NPZ, ULog or DataFlash .bin (misfit help data)")
+      ->type_name("DATA")
+      ->required();
+  RecordingChoice& choice = options.recording;
+  verb.add_option("--output", choice.outputs, "what was measured and is to be modelled, by names")->type_name("NAME,...")->delimiter(',');
+  verb.add_option("--input", choice.inputs, "what drove it")->type_name("NAME,...")->delimiter(',');
+  verb.add_option("--time", choice.time, "the column or channel of time")->type_name("NAME");
+  verb.add_option("--topic", choice.topics, "topics, groups or structs of a log; the first gives the times")
+      ->type_name("TOPIC,...")
+      ->delimiter(',');
+  verb.add_option("--names", choice.names, "headers of a CSV file without any, as t[s],u[V],w[rad/s]")
+      ->type_name("NAME,...")
+      ->delimiter(',');
   verb.add_flag("--force", options.session.force, "overwrite an existing study (never the data)");
   verb.add_option("--out", options.session.out, "folder of the study (default: named after the data file, in the current directory)")
       ->type_name("DIR");
@@ -337,8 +350,8 @@ void refuse_unknown_verb(const std::string& verb) {
 
 /// A table is no study: what makes one of it.
 void refuse_table(const std::string& verb, const std::string& study) {
-  if (verb != "init" && study.ends_with(".csv"))
-    throw InputError(shown(study) + " is a table of data, not a study; misfit init " + shown(study) + " makes a study of it");
+  if (verb != "init" && !study.ends_with(".toml") && is_recording_name(study))
+    throw InputError(shown(study) + " is a recording, not a study; misfit init " + shown(study) + " makes a study of it");
 }
 
 int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out) {

@@ -44,7 +44,7 @@ std::string study_text(const Registry& registry) {
 
 std::string system_text() {
   return paragraph(
-             "A system declared as text (TOML), named by [system] file of a study. misfit init writes one for a table of data; "
+             "A system declared as text (TOML), named by [system] file of a study. misfit init writes one for a recording; "
              "models/*.toml are examples.") +
          "\n" + config::key_reference(declared::system_keys(), columns) +
          paragraph(fmt::format("Names that formulas reserve: {}.", fmt::join(formula::reserved_names(), ", ")));
@@ -107,6 +107,40 @@ std::string words_text() {
   return out;
 }
 
+std::string data_text() {
+  const std::vector<std::pair<const char*, const char*>> formats = {
+      {"CSV", "columns under a line of names with units, t[s],u[V],w[rad/s]; commas, semicolons, tabs or blanks; dates as a time"},
+      {"MAT", "MATLAB 5 to 7.3: arrays of numbers, also in structs (s.w) and cells (c{1})"},
+      {"HDF5", "arrays and tables of numbers (run1/w); units from the attribute \"units\""},
+      {"NPY, NPZ", "NumPy: arrays, records, datetime64"},
+      {"ULog", "PX4's .ulg: topic.field, topic[1].field of a second instance"},
+      {"DataFlash", "ArduPilot's .bin: IMU[0].GyrX; units from the log"}};
+  std::string out =
+      paragraph("Recordings that misfit init and [[experiment]] data of a study read, told apart by their first bytes:") + "\n";
+  for (const auto& [name, meaning] : formats) {
+    const std::string lines = wrap_text(meaning, columns, std::string(13, ' '));
+    out += "  " + (name + lines.substr(2 + std::string(name).size()));
+    out += "\n";
+  }
+  return out + "\n" +
+         paragraph(
+             "A matrix is a channel per column: x[0], x[1]. The time of an array is the one called t, time or timestamp beside it, of as "
+             "many "
+             "numbers. Channels with clocks of their own are brought to the times of the outputs: inputs held or interpolated as the model "
+             "says, "
+             "slower measurements once each at the nearest time; notes say what was done and left out.") +
+         "\n" +
+         paragraph(
+             "misfit init LOG lists the channels of a log of several clocks; then say which: --topic TOPIC, or --output CHANNEL and "
+             "--input "
+             "CHANNEL. In a study:") +
+         "\n  [[experiment]]\n  data = \"flight.ulg\"\n  columns = { w = \"vehicle_angular_velocity.xyz[0]\", u = "
+         "\"actuator_controls_0.control[0]\" }\n\n" +
+         paragraph(
+             "Units: SI and their kin, as us, ns, min, rpm, degC, \xC2\xB0, kW, mA, bar, km/h. A unit of time that is not known "
+             "stops; any other is said, and its numbers are taken as they are. Excel and Parquet files are not read: save them as CSV.");
+}
+
 }  // namespace
 
 const std::vector<std::pair<std::string, std::string>>& help_topics() {
@@ -114,6 +148,7 @@ const std::vector<std::pair<std::string, std::string>>& help_topics() {
       {"study", "every key of study.toml: type, unit, default, meaning; systems and their constants"},
       {"system", "every key of a system declared as text"},
       {"effects", "the effects, one line each"},
+      {"data", "the formats of recordings, channels, clocks and units"},
       {"words", "the words that misfit uses in a sense of its own"}};
   return topics;
 }
@@ -122,6 +157,7 @@ std::string help_text(const std::string& topic, const Registry& registry) {
   if (topic == "study") return study_text(registry);
   if (topic == "system") return system_text();
   if (topic == "effects") return effects_text(registry);
+  if (topic == "data") return data_text();
   return words_text();
 }
 

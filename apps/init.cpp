@@ -54,10 +54,19 @@ nlohmann::ordered_json as_json(const RecordingSurvey& survey) {
   return json;
 }
 
+FirstStudy first_study(const Options& options) {
+  try {
+    return init_study(options.session.study, options.recording, options.session.out, options.session.force);
+  } catch (const ChannelsUndecided& undecided) {
+    if (!options.json) std::cout << undecided.channels() << '\n';
+    throw;
+  }
+}
+
 }  // namespace
 
 int init_verb(const Options& options, const Registry& /*registry*/) {
-  const FirstStudy made = init_study(options.session.study, options.session.out, options.session.force);
+  const FirstStudy made = first_study(options);
   if (options.json) {
     std::cout << as_json(made.survey).dump(1) << '\n';
     return 0;

@@ -120,7 +120,7 @@ std::size_t characters(const std::string& line) {
 }
 
 TEST(Help, KeepsTo100Columns) {
-  for (const char* topic : {"", "study", "system", "effects", "words"}) {
+  for (const char* topic : {"", "study", "system", "effects", "data", "words"}) {
     std::istringstream lines(run(*topic == '\0' ? std::vector<std::string>{"help"} : std::vector<std::string>{"help", topic}).out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(characters(line), 100U) << topic << ": " << line;
   }

@@ -18,9 +18,27 @@ TEST(ColumnHeader, NameAndUnitAreSeparated) {
   expect("Druck (kPa)", "Druck", "kPa");
   expect("v_m_s", "v", "m/s");
   expect("torque_Nm", "torque", "N m");
+  expect("Flow [l/min]", "Flow", "l/min");
+  expect("timestamp [us]", "timestamp", "us");
+  expect("time_ns", "time", "ns");
+  expect(
+      "Temperatur (\xC2\xB0"
+      "C)",
+      "Temperatur", "degC");
+  expect(
+      "Temperatur (\xB0"
+      "C)",
+      "Temperatur", "degC");  // Latin-1
+  expect("angle [\xC2\xB0]", "angle", "deg");
+  expect("rate [\xC2\xB0/s]", "rate", "deg/s");
+  expect("t [\xC2\xB5s]", "t", "us");
+  expect("speed_rpm", "speed", "rpm");
+  expect("speed_kmh", "speed", "km/h");
+  expect("P [kW]", "P", "kW");
+  expect("t [sec]", "t", "s");
   expect("x1", "x1", "");
   expect("a_b", "a_b", "");
-  EXPECT_EQ(read_header("Flow [l/min]").not_understood, "l/min");
+  EXPECT_EQ(read_header("Flow [gal/min]").not_understood, "gal/min");
   EXPECT_EQ(read_header("1st \xC3\xA4ngle").name, "c1st_ngle");
 }
 

@@ -72,6 +72,33 @@ TEST(LooseCsv, KeepsCountOfWhatIsMissingOrText) {
   EXPECT_EQ(table.columns[2].first_text, "x");
 }
 
+TEST(LooseCsv, ReadsDatesAsSecondsSinceTheFirst) {
+  const LooseTable table = read("when,y\n2026-01-02T03:04:05.5Z,1\n2026-01-02T03:04:06Z,2\n,3\n2026-01-02T04:04:06+01:00,4\n");
+  EXPECT_TRUE(table.columns[0].dates);
+  EXPECT_EQ(table.columns[0].text, 0U);
+  EXPECT_EQ(table.columns[0].first_date, "2026-01-02T03:04:05.5Z");
+  EXPECT_EQ(table.columns[0].values[1], 0.5);
+  EXPECT_TRUE(std::isnan(table.columns[0].values[2]));
+  EXPECT_EQ(table.columns[0].values[3], 0.5);
+  const LooseTable mixed = read("when,y\n2026-01-02T03:04:05Z,1\nyesterday,2\n");
+  EXPECT_FALSE(mixed.columns[0].dates);
+  EXPECT_EQ(mixed.columns[0].text, 2U);
+}
+
+LooseTable read_with_names(const std::string& text, const std::vector<std::string>& names) {
+  const TemporaryFolder folder;
+  return read_loose_csv(folder.write("x.csv", text), names);
+}
+
+TEST(LooseCsv, TakesNamesThatAreGivenWhereTheFileHasNone) {
+  const LooseTable table = read_with_names("0,1\n1,2\n", {"t[s]", "y"});
+  EXPECT_EQ(table.columns[0].header, "t[s]");
+  EXPECT_THAT(table.columns[1].values, ElementsAre(1.0, 2.0));
+  EXPECT_THAT(read_with_names("a,b\n0,1\n1,2\n", {"t", "y"}).columns[1].values, ElementsAre(1.0, 2.0));
+  EXPECT_THAT(message_of<InputError>([] { static_cast<void>(read_with_names("0,1\n1,2\n", {"t"})); }),
+              HasSubstr("1 names are given for 2 columns"));
+}
+
 TEST(LooseCsv, SaysWhatIsWrong) {
   EXPECT_THAT(refusal(""), HasSubstr("the file is empty"));
   EXPECT_THAT(refusal("\n \n# only words\n"), HasSubstr("the file is empty"));

@@ -48,6 +48,46 @@ TEST(ParseUnit, TakesNothingAndADashAsDimensionless) {
   for (const char* text : {"", "-", "%", "1", "rad", "deg"}) EXPECT_EQ(parse_unit(text).dimension, Dimension{}) << text;
 }
 
+TEST(ParseUnit, ReadsSignsAsTheirLetters) {
+  EXPECT_DOUBLE_EQ(parse_unit("°/s").to_si, parse_unit("deg/s").to_si);
+  EXPECT_DOUBLE_EQ(parse_unit("µs").to_si, 1e-6);
+  EXPECT_EQ(plain_unit("\xC2\xB0"
+                       "C"),
+            "degC");
+  EXPECT_EQ(plain_unit("m/s²"), "m/s^2");
+  EXPECT_EQ(plain_unit("kΩ"), "kOhm");
+  EXPECT_EQ(plain_unit("é"), "é");
+}
+
+TEST(ParseUnit, HasTheFactorsOfLogs) {
+  EXPECT_DOUBLE_EQ(parse_unit("rpm").to_si, 2.0 * std::numbers::pi / 60.0);
+  EXPECT_DOUBLE_EQ(parse_unit("km/h").to_si, 1.0 / 3.6);
+  EXPECT_DOUBLE_EQ(parse_unit("ns").to_si, 1e-9);
+  EXPECT_DOUBLE_EQ(parse_unit("kW").to_si, 1e3);
+  EXPECT_DOUBLE_EQ(parse_unit("mA").to_si, 1e-3);
+  EXPECT_EQ(parse_unit("kWh").dimension, parse_unit("J").dimension);
+  EXPECT_EQ(parse_unit("l/min").dimension, parse_unit("m^3/s").dimension);
+}
+
+TEST(Temperature, IsShiftedWhereItStandsAloneAndNotAsADifference) {
+  EXPECT_DOUBLE_EQ(convert(20.0, "degC", "K"), 293.15);
+  EXPECT_DOUBLE_EQ(convert(212.0, "degF", "degC"), 100.0);
+  EXPECT_DOUBLE_EQ(convert(1.0, "degC/s", "K/s"), 1.0);
+  EXPECT_DOUBLE_EQ(convert_difference(9.0, "degF", "degC"), 5.0);
+  expect_parts(message_of<InputError>([] { (void)parse_quantity("20 degC"); }), {"293.15 K", "difference, 20 K"});
+}
+
+TEST(UnitInSi, ReplacesEverySymbol) {
+  EXPECT_EQ(unit_in_si("deg/s"), "rad/s");
+  EXPECT_EQ(unit_in_si("kPa"), "Pa");
+  EXPECT_EQ(unit_in_si("rpm/V"), "rad/s/V");
+  EXPECT_EQ(unit_in_si("1/rpm"), "s/rad");
+  EXPECT_EQ(unit_in_si("degC"), "K");
+  EXPECT_EQ(unit_in_si("km/h"), "m/s");
+  EXPECT_EQ(unit_in_si("%"), "-");
+  EXPECT_EQ(unit_in_si("m/s/s"), "m/s^2");
+}
+
 TEST(ParseUnit, KnowsAnAngle) {
   EXPECT_TRUE(parse_unit("deg").angle);
   EXPECT_TRUE(parse_unit("rad/s").angle);

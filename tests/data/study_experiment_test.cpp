@@ -30,7 +30,7 @@ TEST_F(Experiments, ValidationHasThreeForms) {
   EXPECT_LT(two[1].from, -1e9);
   EXPECT_GT(two[1].to, 1e9);
   for (const char* wrong : {"\"first 25 %\"", "\"last 25\"", "\"last -5 %\"", "25", "true"}) {
-    expect_parts(error_with(head + wrong), {"study.toml:5", "\"last 25 %\", [t0, t1] in seconds, or a file ending in .csv"});
+    expect_parts(error_with(head + wrong), {"study.toml:5", "\"last 25 %\", [t0, t1] in seconds, or a file (.csv, .mat, .ulg"});
   }
   for (const char* wrong : {"\"last 0 %\"", "\"last 100 %\""}) expect_parts(error_with(head + wrong), {"study.toml:5", "above 0 %"});
   for (const char* wrong : {"[1]", "[2, 1]", "[1, 1]", "[1, 2, 3]"}) expect_parts(error_with(head + wrong), {"study.toml:5", "two times"});

@@ -73,15 +73,86 @@ TEST(Recording, AMeasuredRateIsKnownByItsValues) {
 
 /// Of an unknown unit one thing is said: what its numbers are taken as.
 TEST(Recording, AnUnknownUnitIsSaidOnceWithWhatItIsTakenAs) {
-  const RecordingSurvey s = survey(rows("t[ticks],theta[rad],omega[foo],level[blob]", 300, [](int k) {
+  const RecordingSurvey s = survey(rows("t[s],theta[rad],omega[foo],level[blob]", 300, [](int k) {
     const double t = 0.01 * k;
     return fmt::format("{},{},{},{}", t, std::sin(3.0 * t), 3.0 * std::cos(3.0 * t), std::cos(7.0 * t));
   }));
   EXPECT_EQ(column(s, "omega").unit, "rad/s");
   EXPECT_THAT(s.remarks,
-              testing::UnorderedElementsAre("column 't[ticks]': the unit 'ticks' is not known: taken as seconds",
-                                            "column 'omega[foo]': the unit 'foo' is not known: taken as rad/s",
+              testing::UnorderedElementsAre("column 'omega[foo]': the unit 'foo' is not known: taken as rad/s",
                                             "column 'level[blob]': the unit 'blob' is not known, its numbers are taken as they are"));
+}
+
+RecordingSurvey survey_with(const std::string& content, const RecordingChoice& choice) {
+  const TemporaryFolder folder;
+  return survey_recording(folder.write("x.csv", content), {}, choice);
+}
+
+TEST(Recording, AnUnknownUnitOfTimeStopsAndKnownOnesAreConverted) {
+  const auto with = [](const std::string& time) {
+    return rows(time + ",y", 50, [](int k) { return fmt::format("{},{}", 2000 * k, std::sin(0.1 * k)); });
+  };
+  EXPECT_THAT(refusal(with("t[ticks]")), HasSubstr("'ticks' is no known unit of time; known are s, ms, us, ns, min, h and d, and dates"));
+  EXPECT_DOUBLE_EQ(survey(with("time[us]")).step, 2e-3);
+  EXPECT_DOUBLE_EQ(survey(with("timestamp_ns")).step, 2e-6);
+}
+
+TEST(Recording, DatesAreATimeInSeconds) {
+  const RecordingSurvey s =
+      survey(rows("when,T [\xC2\xB0"
+                  "C]",
+                  30, [](int k) { return fmt::format("2026-01-02T03:04:{:02}.5Z,{}", k, 20.0 + std::sin(0.3 * k)); }));
+  EXPECT_DOUBLE_EQ(s.step, 1.0);
+  EXPECT_EQ(s.parts[0].columns[0].values.front(), 0.0);
+  EXPECT_EQ(column(s, "T").unit, "degC");
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("column 'when' holds dates: read as seconds since 2026-01-02T03:04:00.5Z")));
+}
+
+TEST(Recording, AnIdSplitsAndIsNoInputAlsoWhereRowsAlternate) {
+  const auto row = [](int k) { return fmt::format("{},{},{}", 0.1 * (k / 2), k % 2 + 1, std::sin(0.1 * k)); };
+  const RecordingSurvey s = survey(rows("t_s,id,y", 60, row));
+  EXPECT_EQ(column(s, "id").use, ColumnUse::segment);
+  ASSERT_EQ(s.parts.size(), 2U);
+  EXPECT_EQ(s.parts[0].rows(), 30U);
+  EXPECT_EQ(s.parts[1].rows(), 30U);
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("column 'id' numbers 2 recordings, 1 to 2: an experiment each")));
+  const RecordingSurvey counted =
+      survey(rows("t_s,id,y", 60, [](int k) { return fmt::format("{},{},{}", 0.1 * k, k, std::sin(0.1 * k)); }));
+  EXPECT_EQ(column(counted, "id").use, ColumnUse::unused);
+  EXPECT_EQ(counted.parts.size(), 1U);
+}
+
+TEST(Recording, WhatIsChosenIsTakenAndSaid) {
+  const std::string content = rows("t_s,clock_ms,a,b,c", 100, [](int k) {
+    return fmt::format("{},{},{},{},{}", 0.1 * k, 50 * k, std::sin(0.3 * k), std::cos(0.2 * k), k / 10 % 2);
+  });
+  const RecordingSurvey s = survey_with(content, {{"a"}, {"b"}, "clock_ms", {}, {}});
+  EXPECT_DOUBLE_EQ(s.step, 0.05);
+  EXPECT_EQ(column(s, "a").why, "named by --input");
+  EXPECT_EQ(column(s, "b").use, ColumnUse::output);
+  EXPECT_EQ(column(s, "c").use, ColumnUse::unused);
+  EXPECT_EQ(s.parts[0].columns.size(), 3U);
+  const RecordingSurvey by_output = survey_with(content, {{}, {"b"}, "", {}, {}});
+  EXPECT_EQ(column(by_output, "c").use, ColumnUse::input);
+  EXPECT_EQ(column(by_output, "a").use, ColumnUse::unused);
+  EXPECT_THAT(message_of<InputError>([&] {
+                static_cast<void>(survey_with(content, {{"aa"}, {}, "", {}, {}}));
+              }),
+              HasSubstr("no column 'aa' — did you mean 'a'"));
+}
+
+TEST(Recording, NamesMayBeGivenWhereTheFileHasNone) {
+  const std::string content = rows("", 50, [](int k) { return fmt::format("{},{}", 0.1 * k, std::sin(0.3 * k)); });
+  const RecordingSurvey s = survey_with(content, {{}, {}, "", {"t[s]", "w[rpm]"}, {}});
+  EXPECT_EQ(column(s, "w").unit, "rpm");
+}
+
+TEST(Recording, OfALogIsReadLikeATable) {
+  const RecordingSurvey s =
+      survey_recording(std::filesystem::path(MISFIT_SOURCE_DIR) / "tests/data/logs/records.npy", {}, {{"on"}, {"w"}, "", {}, {}});
+  EXPECT_EQ(s.format, "NPY (NumPy)");
+  EXPECT_EQ(s.rows, 40U);
+  EXPECT_EQ(column(s, "w").unit, "rad/s");
 }
 
 TEST(Recording, GapsRepeatedTimesMissingValuesAndConstantsAreSaid) {
@@ -94,7 +165,9 @@ TEST(Recording, GapsRepeatedTimesMissingValuesAndConstantsAreSaid) {
   EXPECT_EQ(column(s, "segment").use, ColumnUse::segment);
   ASSERT_EQ(s.gaps.size(), 2U) << "the row left out, and the pause";
   EXPECT_NEAR(s.gaps.back().to - s.gaps.back().from, 5.1, 1e-9);
-  EXPECT_EQ(s.parts[0].rows(), 99U);
+  ASSERT_EQ(s.parts.size(), 2U) << "an experiment per number of the segment";
+  EXPECT_EQ(s.parts[0].rows(), 49U);
+  EXPECT_EQ(s.parts[1].rows(), 50U);
   EXPECT_THAT(s.remarks, Contains(HasSubstr("repeat")));
   EXPECT_THAT(s.remarks, Contains(HasSubstr("2 of 100 values are missing")));
   EXPECT_THAT(s.remarks, Contains(HasSubstr("gaps in time")));

@@ -13,18 +13,26 @@ namespace {
 struct Spelling {
   std::string_view written, unit;
 };
-/// Units as they are written behind an underscore, where neither blanks nor '/' may stand.
-constexpr std::array<Spelling, 42> spellings = {{{"s", "s"},         {"sec", "s"},       {"seconds", "s"},   {"ms", "ms"},
-                                                 {"min", "min"},     {"h", "h"},         {"Hz", "Hz"},       {"V", "V"},
-                                                 {"volt", "V"},      {"volts", "V"},     {"mV", "mV"},       {"A", "A"},
-                                                 {"N", "N"},         {"kN", "kN"},       {"Nm", "N m"},      {"m", "m"},
-                                                 {"mm", "mm"},       {"cm", "cm"},       {"km", "km"},       {"kg", "kg"},
-                                                 {"g", "g"},         {"Pa", "Pa"},       {"kPa", "kPa"},     {"bar", "bar"},
-                                                 {"K", "K"},         {"W", "W"},         {"J", "J"},         {"rad", "rad"},
-                                                 {"deg", "deg"},     {"radps", "rad/s"}, {"rad_s", "rad/s"}, {"radps2", "rad/s^2"},
-                                                 {"degps", "deg/s"}, {"deg_s", "deg/s"}, {"mps", "m/s"},     {"m_s", "m/s"},
-                                                 {"mps2", "m/s^2"},  {"m_s2", "m/s^2"},  {"px", "px"},       {"pix", "px"},
-                                                 {"pct", "%"},       {"percent", "%"}}};
+/// Units as they are written behind an underscore, where neither blanks nor '/' may stand, and in words.
+constexpr std::array<Spelling, 86> spellings = {
+    {{"s", "s"},         {"sec", "s"},       {"secs", "s"},      {"second", "s"},     {"seconds", "s"},
+     {"ms", "ms"},       {"msec", "ms"},     {"us", "us"},       {"usec", "us"},      {"ns", "ns"},
+     {"nsec", "ns"},     {"min", "min"},     {"minutes", "min"}, {"h", "h"},          {"hr", "h"},
+     {"hours", "h"},     {"days", "d"},      {"Hz", "Hz"},       {"kHz", "kHz"},      {"V", "V"},
+     {"volt", "V"},      {"volts", "V"},     {"mV", "mV"},       {"kV", "kV"},        {"A", "A"},
+     {"amp", "A"},       {"amps", "A"},      {"mA", "mA"},       {"N", "N"},          {"kN", "kN"},
+     {"Nm", "N m"},      {"mNm", "mN m"},    {"m", "m"},         {"mm", "mm"},        {"cm", "cm"},
+     {"um", "um"},       {"km", "km"},       {"kg", "kg"},       {"g", "g"},          {"Pa", "Pa"},
+     {"kPa", "kPa"},     {"hPa", "hPa"},     {"MPa", "MPa"},     {"bar", "bar"},      {"mbar", "mbar"},
+     {"psi", "psi"},     {"K", "K"},         {"degC", "degC"},   {"celsius", "degC"}, {"Celsius", "degC"},
+     {"degF", "degF"},   {"W", "W"},         {"kW", "kW"},       {"mW", "mW"},        {"J", "J"},
+     {"kJ", "kJ"},       {"rad", "rad"},     {"mrad", "mrad"},   {"deg", "deg"},      {"degrees", "deg"},
+     {"rpm", "rpm"},     {"RPM", "rpm"},     {"radps", "rad/s"}, {"rad_s", "rad/s"},  {"radps2", "rad/s^2"},
+     {"degps", "deg/s"}, {"deg_s", "deg/s"}, {"dps", "deg/s"},   {"mps", "m/s"},      {"m_s", "m/s"},
+     {"mps2", "m/s^2"},  {"m_s2", "m/s^2"},  {"kmh", "km/h"},    {"kph", "km/h"},     {"km_h", "km/h"},
+     {"mph", "mph"},     {"knots", "knot"},  {"px", "px"},       {"pix", "px"},       {"pct", "%"},
+     {"percent", "%"},   {"uT", "uT"},       {"L", "l"},         {"mL", "ml"},        {"litre", "l"},
+     {"liter", "l"}}};
 
 bool is_unit(const std::string& text) {
   try {
@@ -53,7 +61,7 @@ NameAndUnit read_header(const std::string& header) {
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
     const auto from = header.rfind(open), to = header.rfind(close);
     if (from == std::string::npos || to == std::string::npos || to < from || from == 0) continue;
-    const std::string inside = header.substr(from + 1, to - from - 1);
+    const std::string inside = plain_unit(header.substr(from + 1, to - from - 1));
     NameAndUnit out{as_name(header.substr(0, from)), "", ""};
     const auto spelt = std::find_if(spellings.begin(), spellings.end(), [&](const Spelling& s) { return s.written == inside; });
     if (is_unit(inside)) {

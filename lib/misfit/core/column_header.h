@@ -4,7 +4,8 @@
 
 namespace misfit {
 
-/// "omega1_radps" → {"omega1", "rad/s"}; "theta[deg]" → {"theta", "deg"}; "Flow (l/min)" → {"Flow", ""} as litres are not known.
+/// "omega1_radps" → {"omega1", "rad/s"}; "theta[deg]" → {"theta", "deg"}; "Flow (gal/min)" → {"Flow", ""} as gallons are not known; "T
+/// (°C)" → {"T", "degC"}.
 struct NameAndUnit {
   std::string name, unit;      ///< unit empty if the header names none that is known
   std::string not_understood;  ///< a unit in brackets that is not known

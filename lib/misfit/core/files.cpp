@@ -10,7 +10,9 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <functional>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace misfit {
@@ -59,6 +61,7 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   [[nodiscard]] int number() const { return number_; }
+  int release() { return std::exchange(number_, -1); }
   int close() {
     const int result = ::close(number_);
     number_ = -1;
@@ -113,22 +116,34 @@ int try_writing(const fs::path& dir) {
 
 }  // namespace
 
-std::string read_file(const fs::path& path) {
+int open_for_reading(const fs::path& path) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.number() < 0 && (errno == ENOENT || errno == ENOTDIR)) throw InputError(no_such_file(path));
   if (file.number() < 0) refuse_reading(path, errno);
   struct stat status {};
   if (::fstat(file.number(), &status) == 0 && S_ISDIR(status.st_mode)) throw InputError(path.string() + ": is a folder, a file is needed");
-  std::string content;
-  if (status.st_size > 0) content.reserve(status.st_size);
+  return file.release();
+}
+
+void read_pieces(const fs::path& path, const std::function<void(std::string_view)>& take) {
+  const Descriptor file(open_for_reading(path));
   std::vector<char> buffer(1 << 16);
   for (;;) {
     const ssize_t n = ::read(file.number(), buffer.data(), buffer.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) refuse_reading(path, errno);
-    if (n == 0) return content;
-    content.append(buffer.data(), n);
+    if (n == 0) return;
+    take({buffer.data(), static_cast<std::size_t>(n)});
   }
+}
+
+std::string read_file(const fs::path& path) {
+  std::string content;
+  std::error_code error;
+  const auto size = fs::file_size(path, error);
+  if (!error) content.reserve(size);
+  read_pieces(path, [&](std::string_view piece) { content.append(piece); });
+  return content;
 }
 
 void write_atomically(const fs::path& path, std::string_view content) {
@@ -150,17 +165,40 @@ void make_writable_folder(const fs::path& dir) {
   if (const int failure = try_writing(dir)) refuse_folder(dir, "written to", failure);
 }
 
-std::string hash_text(std::string_view content) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : content) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 1099511628211ULL;
+namespace {
+
+/// FNV-1a, piece by piece.
+class Hash {
+ public:
+  void add(std::string_view content) {
+    for (const char c : content) {
+      hash_ ^= static_cast<unsigned char>(c);
+      hash_ *= 1099511628211ULL;
+    }
   }
-  std::string out(16, '0');
-  for (std::size_t i = 16; i-- > 0; hash >>= 4) out[i] = "0123456789abcdef"[hash & 15U];
-  return out;
+  [[nodiscard]] std::string text() const {
+    std::uint64_t rest = hash_;
+    std::string out(16, '0');
+    for (std::size_t i = 16; i-- > 0; rest >>= 4) out[i] = "0123456789abcdef"[rest & 15U];
+    return out;
+  }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ULL;
+};
+
+}  // namespace
+
+std::string hash_text(std::string_view content) {
+  Hash hash;
+  hash.add(content);
+  return hash.text();
 }
 
-std::string hash_file(const fs::path& path) { return hash_text(read_file(path)); }
+std::string hash_file(const fs::path& path) {
+  Hash hash;
+  read_pieces(path, [&](std::string_view piece) { hash.add(piece); });
+  return hash.text();
+}
 
 }  // namespace misfit

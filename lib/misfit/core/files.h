@@ -22,6 +22,9 @@ class WriteError : public MachineError {
   explicit WriteError(const std::string& message) : MachineError(message) {}
 };
 
+/// A descriptor of the file, to be closed by the caller; InputError and MachineError as read_file().
+[[nodiscard]] int open_for_reading(const std::filesystem::path& path);
+
 /// Reads a whole file; InputError "FILE: no such file" (with the nearest name in that folder), or why it may not be read; MachineError
 /// where the machine fails in it.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);

@@ -10,6 +10,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/iso_date.h"
 #include "misfit/core/shown.h"
 
 namespace misfit {
@@ -72,7 +73,9 @@ struct Line {
 
 class LooseReader {
  public:
-  explicit LooseReader(const std::filesystem::path& path) : content_(read_file(path)) { table_.source = path.string(); }
+  LooseReader(const std::filesystem::path& path, const std::vector<std::string>& names) : content_(read_file(path)), given_(names) {
+    table_.source = path.string();
+  }
 
   LooseTable read() {
     split_lines();
@@ -84,6 +87,7 @@ class LooseReader {
            "one column alone ('" + shown(table_.columns.front().header) + "') is no recording: a time and what was measured are needed");
     if (first_row_ >= lines_.size()) fail(0, "no rows below the header");
     for (std::size_t i = first_row_; i < lines_.size(); ++i) read_row(lines_[i]);
+    for (std::size_t j = 0; j < table_.columns.size(); ++j) read_dates(j);
     return std::move(table_);
   }
 
@@ -131,13 +135,46 @@ class LooseReader {
     return std::all_of(cells.begin(), cells.end(), [&](std::string_view c) { return !c.empty() && number_of(c, table_.decimal_comma); });
   }
 
+  [[nodiscard]] static bool begins_with_date(const std::vector<std::string_view>& cells) {
+    return std::any_of(cells.begin(), cells.end(), [](std::string_view c) { return read_iso_date(c).has_value(); });
+  }
+
+  /// A column in which every cell that is not empty is a date is one of seconds.
+  void read_dates(std::size_t j) {
+    LooseColumn& column = table_.columns[j];
+    if (column.text == 0 || !read_iso_date(column.first_text)) return;
+    std::vector<double> seconds;
+    std::optional<IsoDate> first;
+    for (std::size_t i = first_row_; i < lines_.size(); ++i) {
+      const std::string_view cell = cells_of(lines_[i].text, table_.delimiter)[j];
+      const auto date = read_iso_date(cell);
+      if (!date && !is_missing(cell)) return;
+      if (date && !first) {
+        first = date;
+        column.first_date = std::string(cell);
+      }
+      seconds.push_back(date ? seconds_between(*first, *date) : std::numeric_limits<double>::quiet_NaN());
+    }
+    column.values = std::move(seconds);
+    column.dates = true;
+    column.text = 0;
+  }
+
   void read_header() {
     std::vector<std::string_view> names = cells_of(lines_.front().text, table_.delimiter);
     first_row_ = 1;
-    if (all_numbers(names)) {
+    const bool headless = all_numbers(names) || begins_with_date(names);
+    if (!given_.empty()) {
+      if (given_.size() != names.size())
+        fail(lines_.front().number, std::to_string(given_.size()) + " names are given for " + std::to_string(names.size()) + " columns");
+      names.assign(given_.begin(), given_.end());
+      first_row_ = headless ? 0 : 1;
+    } else if (headless) {
       const auto commented = cells_of(last_comment_, table_.delimiter);
       if (commented.size() != names.size() || all_numbers(commented))
-        fail(lines_.front().number, "no header: the first line holds numbers; put the names of the columns above it, as t[s],u[V],y[V]");
+        fail(lines_.front().number,
+             "no header: the first line holds numbers; put the names of the columns above it, as t[s],u[V],y[V], or give them: --names "
+             "t[s],u[V],y[V]");
       names = commented;
       first_row_ = 0;
     }
@@ -168,6 +205,7 @@ class LooseReader {
   }
 
   std::string content_;
+  const std::vector<std::string>& given_;
   std::string_view last_comment_;
   std::vector<Line> lines_;
   std::size_t first_row_ = 1;
@@ -176,6 +214,8 @@ class LooseReader {
 
 }  // namespace
 
-LooseTable read_loose_csv(const std::filesystem::path& path) { return LooseReader(path).read(); }
+LooseTable read_loose_csv(const std::filesystem::path& path, const std::vector<std::string>& names) {
+  return LooseReader(path, names).read();
+}
 
 }  // namespace misfit

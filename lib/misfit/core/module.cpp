@@ -23,7 +23,32 @@ std::vector<std::string> places(const std::string& file) {
   return out;
 }
 
+/// Folders in which the dynamic linker looks: the program's run path among them.
+std::vector<std::string> linker_folders() {
+  std::vector<std::string> out;
+  void* program = ::dlopen(nullptr, RTLD_NOW);
+  Dl_serinfo size{};
+  if (program == nullptr || ::dlinfo(program, RTLD_DI_SERINFOSIZE, &size) != 0) return out;
+  std::vector<Dl_serinfo> room(size.dls_size / sizeof(Dl_serinfo) + 1);  // paths stand behind the structure
+  room.front() = size;
+  if (::dlinfo(program, RTLD_DI_SERINFO, room.data()) != 0) return out;
+  const Dl_serpath* paths = &room.front().dls_serpath[0];
+  for (unsigned i = 0; i < size.dls_cnt; ++i) out.emplace_back(paths[i].dls_name);
+  return out;
+}
+
 }  // namespace
+
+fs::path helper_program(const std::string& file, const std::string& complaint) {
+  std::vector<std::string> tried = places(file);
+  tried.front() = (fs::path(tried.size() > 1 ? tried[1] : ".").parent_path() / file).string();
+  for (const std::string& folder : linker_folders()) tried.push_back(folder + "/" + file);
+  std::error_code error;
+  for (const std::string& place : tried) {
+    if (fs::is_regular_file(place, error)) return place;
+  }
+  throw RunError(complaint + ": the program " + file + " is not installed beside misfit, as in " + tried.front());
+}
 
 const void* load_module(const ModuleRequest& request) {
   std::string tried;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace misfit {
@@ -17,5 +18,8 @@ struct ModuleRequest {
 /// in ../lib*/misfit. It must begin with an int, its version. Never closed: what stands behind keeps threads and static objects. RunError
 /// naming what was tried if none is there or of this version.
 [[nodiscard]] const void* load_module(const ModuleRequest& request);
+
+/// A program that misfit starts to do one thing, looked for in the same places. RunError, begun by `complaint`, if it is in none.
+[[nodiscard]] std::filesystem::path helper_program(const std::string& file, const std::string& complaint);
 
 }  // namespace misfit

@@ -54,14 +54,12 @@ const Column& Table::at(std::string_view name) const {
 std::vector<double> Table::values(std::string_view name, std::string_view unit) const {
   const Column& column = at(name);
   if (column.unit.empty() || column.unit == unit) return column.values;
-  double factor = 1.0;
+  std::vector<double> out = column.values;
   try {
-    factor = convert(1.0, column.unit, unit);
+    convert(out, column.unit, unit);
   } catch (const InputError& error) {
     throw InputError({source, 0, 0}, "column '" + shown(column.header()) + "': " + error.what());
   }
-  std::vector<double> out = column.values;
-  for (double& value : out) value *= factor;
   return out;
 }
 

@@ -21,6 +21,8 @@ struct Known {
   double to_si;
   Dimension dimension;
   bool angle = false;
+  const char* si = nullptr;  ///< the same in SI, where it is not itself
+  double offset = 0.0;       ///< of a temperature [K]
 };
 
 constexpr Dimension none{};
@@ -38,44 +40,88 @@ constexpr double pound_force = pound * 9.80665;
 constexpr double foot = 0.3048;
 constexpr double inch = 0.0254;
 
+constexpr Dimension rate{0, 0, -1, 0, 0, 0};
+constexpr Dimension power{2, 1, -3, 0, 0, 0};
+constexpr Dimension energy{2, 1, -2, 0, 0, 0};
+constexpr Dimension current{0, 0, 0, 1, 0, 0};
+constexpr Dimension temperature{0, 0, 0, 0, 1, 0};
+constexpr Dimension flux_density{0, 1, -2, -1, 0, 0};
+constexpr Dimension volume{3, 0, 0, 0, 0, 0};
+constexpr Dimension speed{1, 0, -1, 0, 0, 0};
+constexpr double turn = 2.0 * std::numbers::pi;
+constexpr double celsius = 273.15;
+constexpr double rankine = 5.0 / 9.0;  // a degree of Fahrenheit [K]
+
 constexpr Known known_units[] = {
     {"m", 1.0, length},
-    {"mm", 1e-3, length},
-    {"cm", 1e-2, length},
-    {"km", 1e3, length},
-    {"in", inch, length},
-    {"ft", foot, length},
+    {"mm", 1e-3, length, false, "m"},
+    {"cm", 1e-2, length, false, "m"},
+    {"um", 1e-6, length, false, "m"},
+    {"km", 1e3, length, false, "m"},
+    {"in", inch, length, false, "m"},
+    {"ft", foot, length, false, "m"},
+    {"l", 1e-3, volume, false, "m^3"},
+    {"ml", 1e-6, volume, false, "m^3"},
     {"kg", 1.0, mass},
-    {"g", 1e-3, mass},
-    {"lb", pound, mass},
+    {"g", 1e-3, mass, false, "kg"},
+    {"mg", 1e-6, mass, false, "kg"},
+    {"lb", pound, mass, false, "kg"},
     {"s", 1.0, duration},
-    {"ms", 1e-3, duration},
-    {"min", 60.0, duration},
-    {"h", 3600.0, duration},
-    {"Hz", 1.0, {0, 0, -1, 0, 0, 0}},
+    {"ms", 1e-3, duration, false, "s"},
+    {"us", 1e-6, duration, false, "s"},
+    {"ns", 1e-9, duration, false, "s"},
+    {"min", 60.0, duration, false, "s"},
+    {"h", 3600.0, duration, false, "s"},
+    {"d", 86400.0, duration, false, "s"},
+    {"Hz", 1.0, rate},
+    {"kHz", 1e3, rate, false, "Hz"},
+    {"MHz", 1e6, rate, false, "Hz"},
+    {"mph", 1609.344 / 3600.0, speed, false, "m/s"},
+    {"knot", 1852.0 / 3600.0, speed, false, "m/s"},
     {"rad", 1.0, none, true},
-    {"deg", std::numbers::pi / 180.0, none, true},
+    {"deg", std::numbers::pi / 180.0, none, true, "rad"},
+    {"mrad", 1e-3, none, true, "rad"},
+    {"rev", turn, none, true, "rad"},
+    {"rpm", turn / 60.0, rate, true, "rad/s"},
     {"N", 1.0, force},
-    {"kN", 1e3, force},
-    {"lbf", pound_force, force},
+    {"kN", 1e3, force, false, "N"},
+    {"mN", 1e-3, force, false, "N"},
+    {"lbf", pound_force, force, false, "N"},
     {"Pa", 1.0, pressure},
-    {"kPa", 1e3, pressure},
-    {"hPa", 1e2, pressure},
-    {"bar", 1e5, pressure},
-    {"psf", pound_force / (foot * foot), pressure},
-    {"psi", pound_force / (inch * inch), pressure},
-    {"J", 1.0, {2, 1, -2, 0, 0, 0}},
-    {"W", 1.0, {2, 1, -3, 0, 0, 0}},
-    {"A", 1.0, {0, 0, 0, 1, 0, 0}},
-    {"mV", 1e-3, voltage},
+    {"kPa", 1e3, pressure, false, "Pa"},
+    {"hPa", 1e2, pressure, false, "Pa"},
+    {"MPa", 1e6, pressure, false, "Pa"},
+    {"bar", 1e5, pressure, false, "Pa"},
+    {"mbar", 1e2, pressure, false, "Pa"},
+    {"psf", pound_force / (foot * foot), pressure, false, "Pa"},
+    {"psi", pound_force / (inch * inch), pressure, false, "Pa"},
+    {"J", 1.0, energy},
+    {"kJ", 1e3, energy, false, "J"},
+    {"Wh", 3600.0, energy, false, "J"},
+    {"kWh", 3.6e6, energy, false, "J"},
+    {"W", 1.0, power},
+    {"mW", 1e-3, power, false, "W"},
+    {"kW", 1e3, power, false, "W"},
+    {"MW", 1e6, power, false, "W"},
+    {"A", 1.0, current},
+    {"mA", 1e-3, current, false, "A"},
+    {"uA", 1e-6, current, false, "A"},
+    {"mV", 1e-3, voltage, false, "V"},
     {"V", 1.0, voltage},
+    {"uV", 1e-6, voltage, false, "V"},
+    {"kV", 1e3, voltage, false, "V"},
     {"Ohm", 1.0, {2, 1, -3, -2, 0, 0}},
-    {"K", 1.0, {0, 0, 0, 0, 1, 0}},
+    {"T", 1.0, flux_density},
+    {"mT", 1e-3, flux_density, false, "T"},
+    {"uT", 1e-6, flux_density, false, "T"},
+    {"K", 1.0, temperature},
+    {"degC", 1.0, temperature, false, "K", celsius},
+    {"degF", rankine, temperature, false, "K", celsius - 32.0 * rankine},
     {"px", 1.0, pixel},
     {"pix", 1.0, pixel},
     {"pixel", 1.0, pixel},
     {"-", 1.0, none},
-    {"%", 0.01, none},
+    {"%", 0.01, none, false, "-"},
     {"1", 1.0, none},
 };
 
@@ -112,6 +158,7 @@ class UnitReader {
       }
     }
     if (expected) refuse("a unit is missing at the end");
+    if (factors_ != 1 || power_of_last_ != 1.0) unit_.offset = 0.0;  // per degree: of differences
     unit_.angle = angle_power_ == 1.0;
     return unit_;
   }
@@ -178,12 +225,16 @@ class UnitReader {
     unit_.to_si *= std::pow(known.to_si, exponent);
     for (std::size_t i = 0; i < unit_.dimension.size(); ++i) unit_.dimension[i] += exponent * known.dimension[i];
     if (known.angle) angle_power_ += exponent;
+    unit_.offset = known.offset;
+    power_of_last_ = exponent;
+    ++factors_;
     started_ = true;
   }
 
   std::string_view whole_, rest_;
   Unit unit_;
-  double angle_power_ = 0.0;
+  double angle_power_ = 0.0, power_of_last_ = 0.0;
+  int factors_ = 0;
   std::vector<std::pair<std::string, double>> symbols_;
   bool started_ = false;
 };
@@ -204,9 +255,56 @@ bool Unit::same_dimension(const Unit& other) const {
   return true;
 }
 
-std::vector<std::pair<std::string, double>> unit_symbols(std::string_view text) { return UnitReader(trim(text)).symbols(); }
+std::string plain_unit(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 7> signs = {
+      {{"°", "deg"}, {"℃", "degC"}, {"℉", "degF"}, {"µ", "u"}, {"μ", "u"}, {"Ω", "Ohm"}, {"²", "^2"}}};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 3> latin = {{{"\xB0", "deg"}, {"\xB5", "u"}, {"\xB2", "^2"}}};
+  std::string out;
+  const auto take = [&](const auto& table) {
+    const auto sign = std::find_if(table.begin(), table.end(), [&](const auto& s) { return text.starts_with(s.first); });
+    if (sign == table.end()) return false;
+    out += sign->second;
+    text.remove_prefix(sign->first.size());
+    return true;
+  };
+  bool inside = false;  // bytes of another character of UTF-8 are not those of Latin-1
+  while (!text.empty()) {
+    if (take(signs) || (!inside && take(latin))) continue;
+    inside = static_cast<unsigned char>(text.front()) >= 0x80U;
+    out += text.front();
+    text.remove_prefix(1);
+  }
+  return out;
+}
 
-Unit parse_unit(std::string_view text) { return UnitReader(trim(text)).read(); }
+std::vector<std::pair<std::string, double>> unit_symbols(std::string_view text) {
+  const std::string plain = plain_unit(trim(text));
+  return UnitReader(plain).symbols();
+}
+
+Unit parse_unit(std::string_view text) {
+  const std::string plain = plain_unit(trim(text));
+  return UnitReader(plain).read();
+}
+
+std::string unit_in_si(std::string_view text) {
+  const auto known = [](const std::string& symbol) {
+    return std::find_if(std::begin(known_units), std::end(known_units), [&](const Known& k) { return symbol == k.name; });
+  };
+  std::vector<std::pair<std::string, double>> out;
+  const auto add = [&](const std::string& symbol, double exponent) {
+    const auto same = std::find_if(out.begin(), out.end(), [&](const auto& factor) { return factor.first == symbol; });
+    if (same != out.end()) same->second += exponent;
+    if (same == out.end()) out.emplace_back(symbol, exponent);
+  };
+  for (const auto& [symbol, exponent] : unit_symbols(text)) {
+    const char* si = known(symbol)->si;
+    if (si == nullptr) add(symbol, exponent);
+    for (const auto& [own, inner] : si == nullptr ? std::vector<std::pair<std::string, double>>{} : unit_symbols(si))
+      add(own, inner * exponent);
+  }
+  return unit_text(out);
+}
 
 Quantity parse_quantity(std::string_view text) {
   std::string_view rest = trim(text);
@@ -220,17 +318,42 @@ Quantity parse_quantity(std::string_view text) {
   const std::string_view unit = trim(rest.substr(end - rest.data()));
   if (unit.empty()) return {value, ""};
   const Unit parsed = parse_unit(unit);
+  if (parsed.offset != 0.0)
+    throw InputError(fmt::format("{}: write it in K: {:.10g} K, or, if it is a difference, {:.10g} K", quoted,
+                                 value * parsed.to_si + parsed.offset, value * parsed.to_si));
   return {value * parsed.to_si, std::string(unit)};
 }
 
-double convert(double value, std::string_view from, std::string_view to) {
+namespace {
+
+std::pair<Unit, Unit> convertible(std::string_view from, std::string_view to) {
   const Unit source = parse_unit(from);
   const Unit target = parse_unit(to);
   if (!source.same_dimension(target)) {
     throw InputError("unit '" + shown(from) + "' cannot be converted to '" + shown(to) + "': they measure different things");
   }
-  if (source.to_si == target.to_si) return value;
-  return value * (source.to_si / target.to_si);
+  return {source, target};
+}
+
+}  // namespace
+
+double convert(double value, std::string_view from, std::string_view to) {
+  convert(std::span(&value, 1), from, to);
+  return value;
+}
+
+void convert(std::span<double> values, std::string_view from, std::string_view to) {
+  const auto [source, target] = convertible(from, to);
+  if (source.to_si == target.to_si && source.offset == target.offset) return;
+  const double factor = source.to_si / target.to_si, inverse = target.to_si / source.to_si;
+  const double shift = (source.offset - target.offset) / target.to_si;
+  const bool whole = inverse > 1.0 && inverse == std::round(inverse);  // 3 ms is 3/1000 s, which 3 times a rounded 0.001 may not be
+  for (double& value : values) value = (whole ? value / inverse : factor * value) + shift;
+}
+
+double convert_difference(double value, std::string_view from, std::string_view to) {
+  const auto [source, target] = convertible(from, to);
+  return source.to_si == target.to_si ? value : value * (source.to_si / target.to_si);
 }
 
 namespace {

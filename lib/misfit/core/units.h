@@ -2,6 +2,7 @@
 
 #include <array>
 #include <numbers>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,9 +13,10 @@ namespace misfit {
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< [rad]
 
 /// A unit as factor to SI and exponents of (m, kg, s, A, K, px). Angles are dimensionless: rad = 1, deg = pi/180; so are
-/// "-", "" and "%" (0.01). No offsets: temperatures are differences or kelvin.
+/// "-", "" and "%" (0.01). degC and degF have an offset where they stand alone: in a product ("W/degC") they are differences.
 struct Unit {
   double to_si = 1.0;
+  double offset = 0.0;                ///< SI value = to_si · value + offset
   std::array<double, 6> dimension{};  ///< may be broken: V^0.5
   bool angle = false;                 ///< rad or deg to the first power: kept only to choose the printed unit
 
@@ -24,9 +26,17 @@ struct Unit {
 
 /// Parses "kg m^2", "px/m", "N m", "deg/s", "1/s", "m/s^2", "in", "Pa", "V". Factors are separated by blank, '*' or '·', a '/'
 /// divides by the ONE factor that follows it; powers stand after '^' (also negative or broken: "V^0.5", "V^(1/2)") or are a digit ("m2").
-/// Known: m mm cm km in ft; kg g lb; s ms min h Hz; rad deg; N kN lbf; Pa kPa hPa bar psf psi; J W; A V mV Ohm; K; px pix pixel; - % 1.
+/// Known: m mm cm um km in ft; l ml; kg g mg lb; s ms us ns min h d; Hz kHz MHz; mph knot; rad deg mrad rev rpm; N kN mN lbf; Pa kPa hPa
+/// MPa bar mbar psf psi; J kJ Wh kWh; W mW kW MW; A mA uA; V mV uV kV; Ohm; T mT uT; K degC degF; px pix pixel; - % 1; with the signs of
+/// plain_unit().
 /// Throws InputError naming the unknown part and the nearest known unit.
 [[nodiscard]] Unit parse_unit(std::string_view text);
+
+/// Signs as letters: "°" → "deg", "°C" → "degC", "µs" → "us", "Ω" → "Ohm", "²" → "^2", in UTF-8 or Latin-1.
+[[nodiscard]] std::string plain_unit(std::string_view text);
+
+/// The same in SI: "deg/s" → "rad/s", "kPa" → "Pa", "rpm/V" → "rad/s/V", "degC" → "K". Throws as parse_unit().
+[[nodiscard]] std::string unit_in_si(std::string_view text);
 
 /// The factors of a unit as written, with their powers: "V^0.5/s" → (V, 0.5), (s, −1). "-" and "1" are left out. Throws as parse_unit().
 [[nodiscard]] std::vector<std::pair<std::string, double>> unit_symbols(std::string_view text);
@@ -34,7 +44,8 @@ struct Unit {
 /// The unit of such factors as text, those with negative powers behind '/': "V^0.5/s"; "-" where none is left. Powers are rounded to 1e-6.
 [[nodiscard]] std::string unit_text(const std::vector<std::pair<std::string, double>>& factors);
 
-/// A number with its unit, as written by a user: "24 in" → 0.6096 with dimension m. A bare number has an empty unit.
+/// A number with its unit, as written by a user: "24 in" → 0.6096 with dimension m. A bare number has an empty unit. A temperature in degC
+/// is refused: nothing says whether it is a difference.
 struct Quantity {
   double value = 0.0;  ///< in SI if `unit` was given, as written otherwise
   std::string unit;    ///< as written; empty for a bare number
@@ -43,6 +54,9 @@ struct Quantity {
 
 /// `value` given in unit `from`, expressed in unit `to`. Throws InputError if the dimensions differ.
 [[nodiscard]] double convert(double value, std::string_view from, std::string_view to);
+void convert(std::span<double> values, std::string_view from, std::string_view to);
+/// The same for a difference of two values, a sigma or a step: one degC is one K.
+[[nodiscard]] double convert_difference(double value, std::string_view from, std::string_view to);
 
 /// The unit of a time derivative: "rad/s" → "rad/s^2", "V" → "V/s", "-" → "1/s".
 [[nodiscard]] std::string rate_unit(std::string_view unit);

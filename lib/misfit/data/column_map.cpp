@@ -27,9 +27,8 @@ std::vector<double> ColumnMap::values(const Table& table, const std::string& nam
       notes.push_back(fmt::format("column '{}' has no unit for {}: its values are taken as {}", shown(column.name), name, unit));
     return column.values;
   }
-  const double factor = convert(1.0, column_unit, unit);
   std::vector<double> out = column.values;
-  for (double& value : out) value *= factor;
+  convert(out, column_unit, unit);
   notes.push_back(fmt::format("column '{}' is read in {}, as its name says", shown(column.name), column_unit));
   return out;
 }

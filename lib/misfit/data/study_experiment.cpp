@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "misfit/core/shown.h"
+#include "misfit/data/log/log.h"
 #include "misfit/data/study_parts.h"
 
 namespace misfit::study_parts {
@@ -12,7 +13,7 @@ namespace {
 using config::DescribedSection;
 using config::Section;
 
-constexpr const char* validation_forms = "\"last 25 %\", [t0, t1] in seconds, or a file ending in .csv is expected";
+constexpr const char* validation_forms = "\"last 25 %\", [t0, t1] in seconds, or a file (.csv, .mat, .ulg, …) is expected";
 
 void read_source(const Section& section, const Study& study, ExperimentStudy& experiment) {
   experiment.track = existing_file(section, "track", study.folder);
@@ -70,7 +71,7 @@ void read_validation(const Section& section, ExperimentStudy& experiment) {
     experiment.fraction = std::stod(match[1]) / 100.0;
     if (experiment.fraction <= 0.0 || experiment.fraction >= 1.0)
       section.fail("validation", "the part held out must be above 0 % and below 100 %");
-  } else if (!text.ends_with(".csv")) {
+  } else if (!is_recording_name(text)) {
     section.fail("validation", "'" + shown(text) + "': " + validation_forms);
   }
 }
@@ -97,7 +98,7 @@ void read_name(const Section& section, const Study& study, ExperimentStudy& expe
 }
 
 bool names_a_file(const Section& section) {
-  return section.has("validation") && section.is_text("validation") && section.text("validation")->ends_with(".csv");
+  return section.has("validation") && section.is_text("validation") && is_recording_name(*section.text("validation"));
 }
 
 }  // namespace

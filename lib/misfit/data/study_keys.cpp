@@ -123,15 +123,16 @@ KeyGroup video_group() {
 KeyGroup experiment_group() {
   return {"experiment", "One recording. Exactly one of data, track and video is needed.",
      {{.name = "name", .otherwise = "name of the file", .meaning = "Part of file names and headings."},
-      {.name = "data", .type = Type::file, .otherwise = "none", .meaning = "Table (CSV) of time, inputs and outputs."},
+      {.name = "data", .type = Type::file, .otherwise = "none", .meaning = "Recording of time, inputs and outputs: CSV, MAT, HDF5, NPY, NPZ, ULog (.ulg), DataFlash (.bin)."},
       {.name = "track", .type = Type::file, .otherwise = "none", .meaning = "Table (CSV) of the marker's pixels."},
       {.name = "video", .type = Type::file, .otherwise = "none", .meaning = "Video in which the marker is followed."},
       {.name = "columns", .type = Type::table, .otherwise = "headers are called as the signals",
-       .meaning = "Signal = header of its column: { t = \"t_s\", y = \"y_V\" }."},
+       .meaning = "Signal = header of its column, { t = \"t_s\", y = \"y_V\" }, or channel of a log: { y = \"topic.field\" }. In a log, "
+                  "channels of other clocks are brought to the times of the outputs', or to `t`; what was done is noted."},
       {.name = "exclude", .type = Type::integer, .fallback = "0", .least = 0, .most = max_excluded,
        .meaning = "Samples at the beginning that do not count: a transient of the rig."},
       {.name = "validation", .type = Type::file, .otherwise = "nothing is held out",
-       .form = "\"last 25 %\", [t0, t1] or a file ending in .csv",
+       .form = "\"last 25 %\", [t0, t1] or a file (.csv, .mat, .ulg, …)",
        .meaning = "What is held out of the estimation: the end of the recording, an interval [s], or a recording of its own."}}, true};
 }
 

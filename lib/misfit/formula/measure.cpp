@@ -32,7 +32,7 @@ std::string Measure::text() const {
 Measure measure_of(const std::string& unit) {
   Measure out;
   out.unit = parse_unit(unit);
-  if (std::abs(out.unit.to_si - 1.0) > 1e-12) {
+  if (std::abs(out.unit.to_si - 1.0) > 1e-12 || out.unit.offset != 0.0) {
     throw InputError("[" + unit + "] is not an SI unit: formulas are computed in SI, declare it so (data and values may have any unit)");
   }
   for (const auto& [symbol, power] : unit_symbols(unit)) multiply(out, {Unit{}, {{symbol, 1.0}}, false, false}, power);

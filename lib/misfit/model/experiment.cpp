@@ -7,6 +7,8 @@
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/log/log.h"
+#include "misfit/data/log/time_base.h"
 #include "misfit/math/angle.h"
 #include "misfit/math/statistics.h"
 
@@ -210,6 +212,24 @@ class Reader {
 };
 
 }  // namespace
+
+Table read_recording(const ExperimentStudy& study, const Model& model, std::vector<std::string>& notes) {
+  if (!is_binary_log(*study.data)) return read_csv(*study.data);
+  const std::unique_ptr<LogReader> reader = open_log(*study.data);
+  notes.insert(notes.end(), reader->log().notes.begin(), reader->log().notes.end());
+  std::vector<WantedChannel> wanted;
+  for (const auto& output : model.system->spec().outputs) wanted.push_back({study.columns.header(output.name), Between::nearest});
+  const std::vector<std::string> needed = model.needed_inputs();
+  for (const auto& input : model.system->spec().inputs) {
+    if (std::find(needed.begin(), needed.end(), input.name) == needed.end()) continue;
+    const std::string level = level_of(input.name), own = study.columns.header(input.name);
+    const bool differentiated = !level.empty() && !reader->log().find(own) && reader->log().find(study.columns.header(level));
+    wanted.push_back(
+        {differentiated ? study.columns.header(level) : own, input.hold == Hold::zero_order ? Between::held : Between::linear});
+  }
+  const std::string time = study.columns.header("t");
+  return on_one_time_base(*reader, wanted, time == "t" ? std::nullopt : std::optional(time), notes);
+}
 
 Signals signals_from(const Table& table, const Model& model, const ExperimentStudy& study) { return Reader(table, model, study).run(); }
 

@@ -7,6 +7,11 @@
 
 namespace misfit {
 
+/// The table of an experiment's `data`: CSV as it is; of other logs (data/log/log.h) the channels of what the model measures and needs, on
+/// the time base of its outputs, or of `columns.t`: inputs held or interpolated as the model says, all of it said in `notes`. InputError:
+/// what read_csv(), open_log() and on_one_time_base() refuse.
+[[nodiscard]] Table read_recording(const ExperimentStudy& study, const Model& model, std::vector<std::string>& notes);
+
 /// Columns of a recording (any units, of the header or of the end of a mapped column's name: ColumnMap::values) → what a model measures and
 /// is driven by, in SI. Outputs are looked for under their names in the system, through `columns`; so are inputs that the model needs. An
 /// input NAME_rate that is not there is differentiated from NAME (angles are unwrapped first). Gaps of inputs are bridged linearly and the

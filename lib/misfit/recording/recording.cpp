@@ -6,16 +6,17 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "misfit/core/column_header.h"
 #include "misfit/core/error.h"
-#include "misfit/core/loose_csv.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/unique_name.h"
 #include "misfit/core/units.h"
 #include "misfit/recording/column_facts.h"
+#include "misfit/recording/log_columns.h"
 #include "misfit/recording/recording_time.h"
 
 namespace misfit {
@@ -23,19 +24,22 @@ namespace {
 
 class ColumnClassifier {
  public:
-  ColumnClassifier(const std::filesystem::path& path, const std::vector<std::string>& reserved)
-      : table_(read_loose_csv(path)), taken_(reserved.begin(), reserved.end()) {
+  ColumnClassifier(RecordingTable recording, const std::vector<std::string>& reserved, const RecordingChoice& choice)
+      : table_(std::move(recording.table)), taken_(reserved.begin(), reserved.end()), choice_(choice) {
     taken_.insert("t");
     out_.source = table_.source;
     out_.rows = table_.rows();
+    out_.format = recording.format;
+    out_.remarks = recording.notes;
   }
 
   RecordingSurvey run() {
-    describe_format();
+    if (out_.format.empty()) describe_format();
     for (const auto& column : table_.columns) out_.columns.push_back(characterise(column));
     find_time();
-    run_time();
     find_segments();
+    run_time();
+    take_choice();
     find_inputs_and_outputs();
     make_names_usable();
     find_rates();
@@ -47,6 +51,7 @@ class ColumnClassifier {
  private:
   [[noreturn]] void fail(int line, const std::string& message) const { throw InputError({table_.source, line, 0}, message); }
   const std::vector<double>& values(std::size_t column) const { return table_.columns[column].values; }
+  std::vector<const ColumnSurvey*> of_use(ColumnUse use) const { return out_.of_use(use); }
 
   void describe_format() {
     const char* between = table_.delimiter == ','    ? "commas"
@@ -62,7 +67,9 @@ class ColumnClassifier {
     const NameAndUnit header = read_header(column.header);
     s.header = shown(column.header, longest_header);
     s.name = header.name;
-    s.unit = header.unit.empty() ? "-" : header.unit;
+    s.unit = column.dates ? "s" : header.unit.empty() ? "-" : header.unit;
+    if (column.dates)
+      out_.remarks.push_back(fmt::format("column '{}' holds dates: read as seconds since {}", s.header, shown(column.first_date)));
     not_understood_.push_back(shown(header.not_understood, longest_header));
     const std::vector<double> known = finite(column.values);
     s.missing = column.values.size() - known.size() - column.text;
@@ -108,21 +115,42 @@ class ColumnClassifier {
     }
   }
 
-  /// Share of the steps that run forward.
-  double forward(std::size_t column) const {
+  /// Share of the steps that run forward; of those that are no stand, where several rows may have one time.
+  double forward(std::size_t column, bool stands_count = true) const {
     const std::vector<double> t = finite(values(column));
-    std::size_t count = 0;
-    for (std::size_t i = 1; i < t.size(); ++i) count += t[i] > t[i - 1] ? 1U : 0U;
-    return t.size() < 2 ? 0.0 : static_cast<double>(count) / static_cast<double>(t.size() - 1);
+    std::size_t count = 0, steps = 0;
+    for (std::size_t i = 1; i < t.size(); ++i) {
+      count += t[i] > t[i - 1] ? 1U : 0U;
+      steps += stands_count || t[i] != t[i - 1] ? 1U : 0U;
+    }
+    return steps == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(steps);
+  }
+
+  /// The column of that header or name.
+  std::size_t column_named(const std::string& name) const {
+    std::vector<std::string> names;
+    const std::string last = name.substr(name.find_last_of("./") + 1);
+    for (const std::string& wanted : {name, last}) {
+      for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+        const std::string& header = table_.columns[i].header;
+        if (header == wanted || out_.columns[i].name == wanted || header.substr(0, header.rfind('[')) == wanted) return i;
+      }
+    }
+    for (const auto& column : table_.columns) names.push_back(column.header);
+    fail(0, "no column '" + shown(name) + "'" + suggest(name, names));
   }
 
   void find_time() {
     constexpr double min_forward_share = 0.5;
     std::string counter;
+    const bool given = !choice_.time.empty() && table_.columns.front().header != "t[s]";
+    if (given) time_ = column_named(choice_.time);
+    if (given && (out_.columns[time_].use != ColumnUse::unused || !(forward(time_) > min_forward_share)))
+      fail(0, fmt::format("column '{}' is no time: it does not run forward", out_.columns[time_].header));
     for (const bool by_name : {true, false}) {
       for (std::size_t i = 0; i < out_.columns.size() && time_ == none; ++i) {
         ColumnSurvey& c = out_.columns[i];
-        if (c.use != ColumnUse::unused || !(forward(i) > min_forward_share)) continue;
+        if (c.use != ColumnUse::unused || !(forward(i, !by_name) > min_forward_share)) continue;
         const Unit unit = parse_unit(c.unit);
         const bool of_time = unit.same_dimension(parse_unit("s"));
         if (by_name ? is_called_time(c.name) && (of_time || c.unit == "-") : of_time) time_ = i;
@@ -135,6 +163,7 @@ class ColumnClassifier {
     ColumnSurvey& c = out_.columns[time_];
     c.use = ColumnUse::time;
     c.resolution = 0.0;
+    refuse_unit_of_time(c);
     if (c.unit == "-") {
       c.unit = std::string("s");
       out_.remarks.push_back(unit_found(time_, "taken as seconds"));
@@ -144,8 +173,17 @@ class ColumnClassifier {
     for (const double v : values(time_)) t_.push_back(factor * v);
   }
 
+  void refuse_unit_of_time(const ColumnSurvey& c) const {
+    const std::string& unknown = not_understood_[time_];
+    if (!unknown.empty())
+      fail(0,
+           fmt::format("column '{}': '{}' is no known unit of time; known are s, ms, us, ns, min, h and d, and dates", c.header, unknown));
+    if (c.unit != "-" && !parse_unit(c.unit).same_dimension(parse_unit("s")))
+      fail(0, fmt::format("column '{}' is in {}, which is no unit of time", c.header, c.unit));
+  }
+
   void run_time() {
-    RecordingTime time = recording_time(t_, table_.source);
+    RecordingTime time = recording_time(t_, segments_, table_.source);
     pieces_ = std::move(time.pieces);
     out_.step = time.step;
     out_.jitter = time.jitter;
@@ -153,32 +191,70 @@ class ColumnClassifier {
     out_.remarks.insert(out_.remarks.end(), time.remarks.begin(), time.remarks.end());
   }
 
+  /// Of the first column called segment, id, run or the like; one that only counts rows is passed over.
   void find_segments() {
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       ColumnSurvey& c = out_.columns[i];
-      constexpr double min_held_share = 0.95;
-      if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i))) || c.held < min_held_share) continue;
+      if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i)))) continue;
+      const std::vector<double> known = finite(values(i));
+      const std::set<double> numbers(known.begin(), known.end());
+      constexpr std::size_t fewest_rows = 10;  // of a recording
+      if (numbers.size() * fewest_rows > known.size() || !segments_.empty()) {
+        leave_out(i, "numbers rows, or a second number of recordings: left out");
+        continue;
+      }
       c.use = ColumnUse::segment;
-      c.why = "constant whole numbers: a number of the recording";
-      out_.remarks.push_back(
-          fmt::format("column '{}' numbers recordings {} to {}, time continues across them: kept together as one recording", c.header,
-                      format_value(c.low), format_value(c.high)));
+      c.why = "whole numbers: the number of a recording";
+      segments_ = values(i);
+      out_.remarks.push_back(fmt::format("column '{}' numbers {} recordings, {} to {}: an experiment each", c.header, numbers.size(),
+                                         format_value(c.low), format_value(c.high)));
+    }
+  }
+
+  void leave_out(std::size_t i, const std::string& why) {
+    out_.columns[i].why = why;
+    left_out_.insert(i);
+  }
+
+  /// What --input and --output name; with both, nothing else is taken.
+  void take_choice() {
+    for (const auto& [names, use, option] :
+         {std::tuple{&choice_.inputs, ColumnUse::input, "--input"}, {&choice_.outputs, ColumnUse::output, "--output"}}) {
+      for (const std::string& name : *names) {
+        ColumnSurvey& c = out_.columns[column_named(name)];
+        if (c.use == ColumnUse::constant || c.use == ColumnUse::text || c.use == ColumnUse::time)
+          fail(0, fmt::format("column '{}', named by {}, is no signal: {}", c.header, option, c.why));
+        c.use = use;
+        c.why = fmt::format("named by {}", option);
+      }
+    }
+    if (choice_.outputs.empty()) return;
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      ColumnSurvey& c = out_.columns[i];
+      constexpr double held_share = 0.5;
+      if (c.use != ColumnUse::unused || left_out_.contains(i) ||
+          (choice_.inputs.empty() && (is_called_input(c.name) || c.held > held_share)))
+        continue;
+      leave_out(i, choice_.inputs.empty() ? "not named by --output, and no input by its looks: left out"
+                                          : "named by neither --input nor --output: left out");
     }
   }
 
   void find_inputs_and_outputs() {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
-      if (out_.columns[i].use == ColumnUse::unused) open.push_back(i);
+      if (out_.columns[i].use == ColumnUse::unused && !left_out_.contains(i)) open.push_back(i);
     }
+    const bool named = !of_use(ColumnUse::output).empty();
+    if (open.empty() && named) return;
     if (open.empty()) fail(0, "no column but time changes: nothing was measured");
     constexpr double held_share = 0.5;
     for (const std::size_t i : open) {
       ColumnSurvey& c = out_.columns[i];
-      if (open.size() > 1 && is_called_input(c.name)) {
+      if ((open.size() > 1 || named) && is_called_input(c.name)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
-      } else if (open.size() > 1 && c.held > held_share) {
+      } else if ((open.size() > 1 || named) && c.held > held_share) {
         c.use = ColumnUse::input;
         c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
@@ -187,8 +263,7 @@ class ColumnClassifier {
         for (auto& remark : limit_remarks(c.header, values(i))) out_.remarks.push_back(std::move(remark));
       }
     }
-    const bool any = std::any_of(open.begin(), open.end(), [&](std::size_t i) { return out_.columns[i].use == ColumnUse::output; });
-    if (any) return;
+    if (!of_use(ColumnUse::output).empty()) return;
     ColumnSurvey& last = out_.columns[open.back()];
     last.use = ColumnUse::output;
     last.why = "every column looks like an input; the last is taken as the output";
@@ -268,7 +343,10 @@ class ColumnClassifier {
   LooseTable table_;
   std::set<std::string> taken_;  // names that are reserved or given
   RecordingSurvey out_;
+  const RecordingChoice& choice_;
+  std::set<std::size_t> left_out_;
   std::size_t time_ = none;
+  std::vector<double> segments_;                  // the number of its recording, a value per row; empty: none
   std::vector<double> t_;                         // [s], a value per row
   std::vector<std::vector<std::size_t>> pieces_;  // rows in which time runs forward
 };
@@ -283,8 +361,9 @@ std::vector<const ColumnSurvey*> RecordingSurvey::of_use(ColumnUse use) const {
   return out;
 }
 
-RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved) {
-  return ColumnClassifier(path, reserved).run();
+RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved,
+                                 const RecordingChoice& choice) {
+  return ColumnClassifier(recording_table(path, choice), reserved, choice).run();
 }
 
 }  // namespace misfit

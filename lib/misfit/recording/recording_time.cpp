@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
@@ -13,25 +14,31 @@ namespace misfit {
 namespace {
 
 /// Rows in which time runs forward.
-void cut(const std::vector<double>& t, RecordingTime& out) {
-  std::size_t without = 0, repeated = 0;
+void cut(const std::vector<double>& t, const std::vector<double>& segments, RecordingTime& out) {
+  std::size_t without = 0, repeated = 0, backward = 0;
+  std::map<double, std::size_t> piece_of;  // the last of each segment
   for (std::size_t i = 0; i < t.size(); ++i) {
-    if (!std::isfinite(t[i])) {
+    const double segment = segments.empty() ? 0.0 : segments[i];
+    if (!std::isfinite(t[i]) || !std::isfinite(segment)) {
       ++without;
       continue;
     }
-    if (!out.pieces.empty() && t[i] == t[out.pieces.back().back()]) {
+    const auto [own, is_new] = piece_of.emplace(segment, out.pieces.size());
+    if (!is_new && t[i] == t[out.pieces[own->second].back()]) {
       ++repeated;
       continue;
     }
-    if (out.pieces.empty() || t[i] < t[out.pieces.back().back()]) out.pieces.emplace_back();
-    out.pieces.back().push_back(i);
+    const bool runs_back = !is_new && t[i] < t[out.pieces[own->second].back()];
+    backward += runs_back ? 1U : 0U;
+    if (runs_back) own->second = out.pieces.size();
+    if (is_new || runs_back) out.pieces.emplace_back();
+    out.pieces[own->second].push_back(i);
   }
   if (without > 0) out.remarks.push_back(fmt::format("{} rows without a time are left out", without));
   if (repeated > 0) out.remarks.push_back(fmt::format("{} rows repeat the time of the row before and are left out", repeated));
-  if (out.pieces.size() > 1) {
-    out.remarks.push_back(fmt::format("time runs backward {} time{}: {} recordings in one file, an experiment each", out.pieces.size() - 1,
-                                      out.pieces.size() == 2 ? "" : "s", out.pieces.size()));
+  if (backward > 0) {
+    out.remarks.push_back(fmt::format("time runs backward {} time{}: {} recordings in one file, an experiment each", backward,
+                                      backward == 1 ? "" : "s", out.pieces.size()));
   }
 }
 
@@ -67,9 +74,9 @@ void find_gaps(const std::vector<double>& t, RecordingTime& out) {
 
 }  // namespace
 
-RecordingTime recording_time(const std::vector<double>& t, const std::string& source) {
+RecordingTime recording_time(const std::vector<double>& t, const std::vector<double>& segments, const std::string& source) {
   RecordingTime out;
-  cut(t, out);
+  cut(t, segments, out);
   leave_out_short_ones(t.size(), source, out);
   find_gaps(t, out);
   return out;

@@ -17,7 +17,8 @@ struct RecordingTime {
   std::vector<std::string> remarks;              ///< what was left out, what is odd: one sentence each
 };
 
-/// Of times `t` [s], a value per row. InputError naming `source` if no ten rows run forward.
-[[nodiscard]] RecordingTime recording_time(const std::vector<double>& t, const std::string& source);
+/// Of times `t` [s], a value per row. `segments`: the number of its recording for each row, each of which has time of its own, also where
+/// their rows alternate; empty: one. InputError naming `source` if no ten rows run forward.
+[[nodiscard]] RecordingTime recording_time(const std::vector<double>& t, const std::vector<double>& segments, const std::string& source);
 
 }  // namespace misfit

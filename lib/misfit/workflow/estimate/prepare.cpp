@@ -68,7 +68,10 @@ std::vector<Signals> read_experiments(Session& session, const Model& model, Gaps
       plain.columns = {};
       out.push_back(signals_from(attitude_table(*attitudes[e]), model, plain));
     } else {
-      Signals whole = signals_from(read_csv(*experiment.data), model, experiment);
+      std::vector<std::string> notes;
+      const Table table = read_recording(experiment, model, notes);
+      Signals whole = signals_from(table, model, experiment);
+      whole.notes.insert(whole.notes.begin(), notes.begin(), notes.end());
       std::vector<Signals> parts = gaps == Gaps::cut ? split_at_gaps(model, std::move(whole)) : std::vector<Signals>{std::move(whole)};
       std::move(parts.begin(), parts.end(), std::back_inserter(out));
     }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "misfit/core/error.h"
@@ -21,9 +20,9 @@ namespace {
 /// White noise of the measurements, at least that of their rounding (Widrow: step/sqrt(12)), in `unit`.
 double noise_of(const std::vector<double>& values, const ColumnSurvey& column, const std::string& unit) {
   const double sigma = measurement_noise(values);
-  const double rounding = convert(column.resolution, column.unit, unit) / std::sqrt(12.0);
+  const double rounding = convert_difference(column.resolution, column.unit, unit) / std::sqrt(12.0);
   constexpr double least = 1e-5;  // of the range: smoothed measurements seem to have no noise at all
-  return std::max({std::isfinite(sigma) ? sigma : 0.0, rounding, least * convert(column.high - column.low, column.unit, unit)});
+  return std::max({std::isfinite(sigma) ? sigma : 0.0, rounding, least * convert_difference(column.high - column.low, column.unit, unit)});
 }
 
 double largest(const ColumnSurvey& column, const std::string& unit) {
@@ -117,29 +116,7 @@ GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, co
 
 }  // namespace
 
-std::string si_unit(const std::string& unit) {
-  static const std::map<std::string, std::string> si = {{"mm", "m"},    {"cm", "m"},   {"km", "m"},   {"in", "m"},   {"ft", "m"},
-                                                        {"ms", "s"},    {"min", "s"},  {"h", "s"},    {"g", "kg"},   {"lb", "kg"},
-                                                        {"deg", "rad"}, {"kN", "N"},   {"lbf", "N"},  {"kPa", "Pa"}, {"hPa", "Pa"},
-                                                        {"bar", "Pa"},  {"psf", "Pa"}, {"psi", "Pa"}, {"mV", "V"},   {"%", "-"}};
-  std::string out, word;
-  const auto flush = [&] {
-    const auto found = si.find(word);
-    out += found == si.end() ? word : found->second;
-    word.clear();
-  };
-  for (const char c : unit) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%';
-    if (letter) {
-      word += c;
-    } else {
-      flush();
-      out += c;
-    }
-  }
-  flush();
-  return out;
-}
+std::string si_unit(const std::string& unit) { return unit_in_si(unit); }
 
 const ColumnSurvey& column_called(const RecordingSurvey& survey, const std::string& name) {
   return *std::find_if(survey.columns.begin(), survey.columns.end(), [&](const ColumnSurvey& c) { return c.name == name; });

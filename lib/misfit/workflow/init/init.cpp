@@ -39,9 +39,9 @@ void draw(const RecordingSurvey& survey, const GuessedModel& model, const std::v
 
 }  // namespace
 
-FirstStudy init_study(const fs::path& data, const fs::path& folder, bool force) {
+FirstStudy init_study(const fs::path& data, const RecordingChoice& choice, const fs::path& folder, bool force) {
   FirstStudy out;
-  out.survey = survey_recording(data, names_of_formulas());
+  out.survey = survey_recording(data, names_of_formulas(), choice);
   out.model = guess_model(out.survey);
   out.survey.remarks.insert(out.survey.remarks.end(), out.model.remarks.begin(), out.model.remarks.end());
   out.parts = part_names(data, out.survey.parts.size());

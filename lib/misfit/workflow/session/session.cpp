@@ -12,6 +12,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/table.h"
+#include "misfit/data/log/log.h"
 #include "misfit/data/sweep.h"
 #include "misfit/data/track.h"
 #include "misfit/jobs/ranks.h"
@@ -82,7 +83,11 @@ void check_small_files(const Study& study) {
   if (study.camera.sweep) std::ignore = read_sweep(*study.camera.sweep);
   if (study.camera.sweep_images) std::ignore = read_sweep_pictures(*study.camera.sweep_images);
   for (const ExperimentStudy& e : study.experiments) {
-    if (e.data) std::ignore = read_csv(*e.data);
+    if (e.data && is_binary_log(*e.data)) {
+      std::ignore = open_log(*e.data);
+    } else if (e.data) {
+      std::ignore = read_csv(*e.data);
+    }
     if (e.track) std::ignore = read_track(*e.track, e.columns);
   }
 }

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace misfit {
+
+/// A moment: whole seconds since 1970-01-01T00:00:00 (UTC, if the text says its zone), and a part of one.
+struct IsoDate {
+  std::int64_t seconds = 0;
+  double part = 0.0;  ///< [s], 0 to 1
+};
+
+/// "2026-01-02T03:04:05.678Z", "2026-01-02 03:04:05,678+01:00", "2026-01-02 03:04", "2026/01/02 03:04:05" (ISO 8601, and a blank for its T).
+/// nullopt where the text is no such date, or names a day or an hour that is none.
+[[nodiscard]] std::optional<IsoDate> read_iso_date(std::string_view text);
+
+[[nodiscard]] double seconds_between(const IsoDate& from, const IsoDate& to);
+
+}  // namespace misfit

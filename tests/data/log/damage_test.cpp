@@ -1,0 +1,73 @@
+// Files cut off at every hundredth byte, and with bits turned over: read, or refused in words; never a crash.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <numeric>
+
+#include "misfit/core/error.h"
+#include "misfit/data/log/log.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// All of it; whatever is wrong is an InputError with words that begin with the file.
+void read_or_refuse(const fs::path& file) {
+  try {
+    const auto reader = open_log(file);
+    std::vector<std::size_t> all(reader->log().channels.size());
+    std::iota(all.begin(), all.end(), 0U);
+    reader->read(all);
+    for (const LogChannel& c : reader->log().channels) EXPECT_EQ(c.values.size(), c.samples) << c.name;
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(file.filename().string()), std::string::npos) << error.what();
+  }
+}
+
+class DamagedLog : public testing::TestWithParam<std::string> {
+ protected:
+  const fs::path file_ = fs::path(MISFIT_SOURCE_DIR) / "tests/data/logs" / GetParam();
+  const std::string content_ = content_of(file_);
+  const bool by_a_program_ = file_.extension() == ".h5" || GetParam() == "version73.mat";  // which takes longer
+  const TemporaryFolder folder_;
+};
+
+TEST_P(DamagedLog, CutOffAnywhereIsReadOrRefused) {
+  ASSERT_FALSE(content_.empty());
+  const std::size_t step = 100;
+  for (std::size_t size = 0; size < content_.size(); size += step) read_or_refuse(folder_.write(GetParam(), content_.substr(0, size)));
+  read_or_refuse(folder_.write(GetParam(), content_.substr(0, content_.size() - 1)));
+}
+
+TEST_P(DamagedLog, WithBitsTurnedOverIsReadOrRefused) {
+  const int runs = by_a_program_ ? 50 : 400;
+  std::uint64_t state = 12345;
+  const auto next = [&] { return state = state * 6364136223846793005ULL + 1442695040888963407ULL, state >> 33U; };
+  for (int run = 0; run < runs; ++run) {
+    std::string damaged = content_;
+    const std::uint64_t bits = 1 + next() % 8;
+    for (std::uint64_t i = 0; i < bits; ++i) damaged[next() % damaged.size()] ^= static_cast<char>(1U << (next() % 8));
+    read_or_refuse(folder_.write(GetParam(), damaged));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DamagedLog,
+                         testing::Values("plain.mat", "structs.mat", "big_endian.mat", "version73.mat", "plain.h5", "chunked.h5",
+                                         "table.h5", "columns.npy", "fortran.npy", "records.npy", "stored.npz", "deflated.npz", "one.npz",
+                                         "simple.ulg", "instances.ulg", "appended.ulg", "instances.bin", "letters.bin", "damaged.bin"),
+                         [](const auto& file) {
+                           std::string name = file.param;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace misfit
