@@ -26,7 +26,8 @@ class UlogWriter {
     message('A', std::string(1, '\0') + bytes(number) + name);
   }
   void record(std::uint16_t number, double seconds, double x) {
-    message('D', bytes(number) + bytes(static_cast<std::uint64_t>(std::llround(1e6 * seconds))) + bytes(static_cast<float>(x)) + bytes(25.0F));
+    message('D',
+            bytes(number) + bytes(static_cast<std::uint64_t>(std::llround(1e6 * seconds))) + bytes(static_cast<float>(x)) + bytes(25.0F));
   }
   [[nodiscard]] const std::string& text() const { return text_; }
 
@@ -77,7 +78,8 @@ w = { unit = "rad/s", noise = 0.01 }
 )";
 
 std::string study(const std::string& columns) {
-  return "[study]\nname = \"motor\"\nmethods = [\"output_error\"]\n[system]\nfile = \"model.toml\"\n[[experiment]]\ndata = \"log.ulg\"\ncolumns = " +
+  return "[study]\nname = \"motor\"\nmethods = [\"output_error\"]\n[system]\nfile = \"model.toml\"\n[[experiment]]\ndata = "
+         "\"log.ulg\"\ncolumns = " +
          columns + "\n[effects]\n";
 }
 
@@ -131,7 +133,8 @@ TEST(InitOfALog, ListsChannelsWhereItCannotDecideAndTakesThoseThatAreNamed) {
 
 TEST(InitOfALog, ThatIsDamagedSaysWhereWithStatusTwo) {
   const TemporaryFolder folder;
-  const auto file = folder.write("log.mat", "MATLAB 5.0 MAT-file" + std::string(105, ' ') + std::string("\0\1IM\x0E\0\0\0\xFF\xFF\xFF\x7F", 12));
+  const auto file =
+      folder.write("log.mat", "MATLAB 5.0 MAT-file" + std::string(105, ' ') + std::string("\0\1IM\x0E\0\0\0\xFF\xFF\xFF\x7F", 12));
   const Outcome outcome = run({"init", file.string()});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("log.mat: byte "), HasSubstr("expected")));

@@ -192,5 +192,20 @@ TEST(Accept, ARefitThatHasNotConvergedIsNot) {
   EXPECT_EQ(ranked[0].candidate.why, "its refit has not converged: iteration limit");
 }
 
+TEST(Accept, ARefitThatCouldGainLittleMoreIs) {
+  const World world = with_friction(0.2);
+  std::vector<RankedCandidate> ranked = {world.entry("coulomb_friction")};
+  Refit& refit = *ranked[0].refit;
+  refit.estimate.converged = false;
+  refit.estimate.message = "the log-likelihood could still rise";
+  refit.estimate.newton_decrement = 0.02 * refit.drop;
+  EXPECT_FALSE(world.accept(ranked).has_value());
+  EXPECT_FALSE(ranked[0].candidate.accepted) << "4 % of the drop";
+  refit.estimate.newton_decrement = 0.002 * refit.drop;
+  EXPECT_FALSE(world.accept(ranked).has_value());
+  EXPECT_TRUE(ranked[0].candidate.accepted);
+  EXPECT_NE(ranked[0].candidate.why.find(refit.estimate.message), std::string::npos);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -1,12 +1,12 @@
 // Whatever bytes come in, the readers of logs answer with channels or with an InputError: no crash, no hang, no leak, no memory beyond what
 // the bytes can hold. HDF5 is read by a program of its own and is not in here.
+#include <unistd.h>
+
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <numeric>
 #include <string>
-
-#include <unistd.h>
 
 #include "misfit/core/error.h"
 #include "misfit/data/log/log.h"

@@ -12,8 +12,8 @@ struct IsoDate {
   double part = 0.0;  ///< [s], 0 to 1
 };
 
-/// "2026-01-02T03:04:05.678Z", "2026-01-02 03:04:05,678+01:00", "2026-01-02 03:04", "2026/01/02 03:04:05" (ISO 8601, and a blank for its T).
-/// nullopt where the text is no such date, or names a day or an hour that is none.
+/// "2026-01-02T03:04:05.678Z", "2026-01-02 03:04:05,678+01:00", "2026-01-02 03:04", "2026/01/02 03:04:05" (ISO 8601, and a blank for its
+/// T). nullopt where the text is no such date, or names a day or an hour that is none.
 [[nodiscard]] std::optional<IsoDate> read_iso_date(std::string_view text);
 
 [[nodiscard]] double seconds_between(const IsoDate& from, const IsoDate& to);

@@ -127,11 +127,18 @@ double longest_recording(const std::vector<Signals>& experiments) {
   return longest;
 }
 
+/// What the search could still gain is little beside what it has: enough to choose by; `add` goes on from there.
+bool near_a_maximum(const Refit& refit) {
+  constexpr double little = 0.01;  // of the drop
+  const std::optional<double>& left = refit.estimate.newton_decrement;
+  return refit.estimate.converged || (left && 2.0 * *left < little * refit.drop);
+}
+
 /// Step 1: the reason why it cannot be accepted; empty if there is none.
 std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
   Candidate& c = e.candidate;
   if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
-  if (!e.refit->estimate.converged) return "its refit has not converged: " + e.refit->estimate.message;
+  if (!near_a_maximum(*e.refit)) return "its refit has not converged: " + e.refit->estimate.message;
   const auto memory = outlasts_recording(e.refit->estimate.model, longest_recording(context.experiments));
   e.misnamed = memory || !e.refit->partial.empty();
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
@@ -267,6 +274,7 @@ void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   Candidate& c = choice.at->candidate;
   c.accepted = true;
   c.why = "family-wise " + p_equals(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
+  if (!choice.at->refit->estimate.converged) c.why += "; " + choice.at->refit->estimate.message;
   if (choice.second != nullptr) c.why += "; " + label(choice.second->candidate) + " explains what remains: add it next";
   if (choice.leaves_something) c.why += "; lack of fit remains: something else is missing too";
   std::rotate(ranked.begin(), choice.at, choice.at + 1);

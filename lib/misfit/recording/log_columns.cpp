@@ -83,7 +83,8 @@ std::vector<WantedChannel> wanted_of(const Log& log, const RecordingChoice& choi
   for (const std::string& name : choice.outputs) add(log.index_of(name), Between::nearest);
   for (const std::string& name : choice.inputs) add(log.index_of(name), Between::held);
   for (std::size_t i = 0; i < choice.topics.size(); ++i) {
-    for (const std::size_t c : channels_in(log, choice.topics[i])) add(c, i == 0 && choice.outputs.empty() ? Between::nearest : Between::held);
+    for (const std::size_t c : channels_in(log, choice.topics[i]))
+      add(c, i == 0 && choice.outputs.empty() ? Between::nearest : Between::held);
   }
   if (!choice.topics.empty() || !choice.outputs.empty()) return out;
   std::vector<std::size_t> all = of_one_clock(log);

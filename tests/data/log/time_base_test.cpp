@@ -102,8 +102,9 @@ TEST(OneTimeBase, TimesThatDoNotIncreaseAreLeftOutAndCounted) {
 TEST(OneTimeBase, WithoutATimeAsksForItByNameAndTakesIt) {
   MadeUpLog log;
   log.without_time("w", {1, 2, 3}).without_time("clock_ms", {0, 10, 20});
-  EXPECT_THAT(message_of<InputError>([&] { static_cast<void>(brought(log, {{"w"}})); }),
-              HasSubstr("has no time of its own: say which one is it, as columns = { t = \"…\" } or --time; of as many samples are: clock_ms"));
+  EXPECT_THAT(
+      message_of<InputError>([&] { static_cast<void>(brought(log, {{"w"}})); }),
+      HasSubstr("has no time of its own: say which one is it, as columns = { t = \"…\" } or --time; of as many samples are: clock_ms"));
   const Result r = brought(log, {{"w"}}, "clock_ms");
   EXPECT_THAT(r.table.columns[0].values, ElementsAre(0.0, 0.01, 0.02));
   EXPECT_EQ(r.table.columns[0].name, "clock_ms");
@@ -115,7 +116,8 @@ TEST(OneTimeBase, RefusesATimeInAnUnknownUnit) {
   EXPECT_THAT(message_of<InputError>([&] { static_cast<void>(brought(log, {{"a.x"}})); }), HasSubstr("the unit 'ticks' is not known"));
   MadeUpLog volts;
   volts.topic("a", {0, 1, 2}, {1, 2, 3}, "V");
-  EXPECT_THAT(message_of<InputError>([&] { static_cast<void>(brought(volts, {{"a.x"}})); }), HasSubstr("is in V, which is no unit of time"));
+  EXPECT_THAT(message_of<InputError>([&] { static_cast<void>(brought(volts, {{"a.x"}})); }),
+              HasSubstr("is in V, which is no unit of time"));
 }
 
 TEST(OneTimeBase, TheUnitMayStandAtTheEndOfAName) {

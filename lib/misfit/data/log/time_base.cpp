@@ -65,7 +65,8 @@ class TimeBase {
     for (const LogChannel& c : log_.channels) {
       if (c.samples == channel.samples && c.name != channel.name) alike.push_back(c.name);
     }
-    fail("channel '" + shown(channel.name) + "' has no time of its own: say which one is it, as columns = { t = \"…\" } or --time; of as many " +
+    fail("channel '" + shown(channel.name) +
+         "' has no time of its own: say which one is it, as columns = { t = \"…\" } or --time; of as many " +
          "samples are: " + (alike.empty() ? "none" : some_names("time", alike)));
   }
 
@@ -87,8 +88,10 @@ class TimeBase {
   [[nodiscard]] std::string unit_of_time(std::size_t channel) const {
     const LogChannel& c = log_.channels[channel];
     const std::string unit = known_unit(c);
-    if (unit.empty() && !c.unit.empty()) fail("time '" + name(channel) + "': the unit '" + shown(c.unit) + "' is not known: s, ms, us, ns, min, h, d are");
-    if (!unit.empty() && !parse_unit(unit).same_dimension(parse_unit("s"))) fail("time '" + name(channel) + "' is in " + unit + ", which is no unit of time");
+    if (unit.empty() && !c.unit.empty())
+      fail("time '" + name(channel) + "': the unit '" + shown(c.unit) + "' is not known: s, ms, us, ns, min, h, d are");
+    if (!unit.empty() && !parse_unit(unit).same_dimension(parse_unit("s")))
+      fail("time '" + name(channel) + "' is in " + unit + ", which is no unit of time");
     if (unit.empty()) note_once("time '" + name(channel) + "' names no unit: taken as seconds");
     return unit.empty() ? "s" : unit;
   }
@@ -133,16 +136,19 @@ class TimeBase {
     std::size_t placed = 0;
     for (std::size_t k = 0, j = 0; k < own.t.size(); ++k) {
       while (j + 1 < base.t.size() && std::abs(base.t[j + 1] - own.t[k]) <= std::abs(base.t[j] - own.t[k])) ++j;
-      const double d = std::abs(base.t[j] - own.t[k]), step = j > 0 ? base.t[j] - base.t[j - 1] : base.t.size() > 1 ? base.t[1] - base.t[0] : 0.0;
+      const double d = std::abs(base.t[j] - own.t[k]), step = j > 0               ? base.t[j] - base.t[j - 1]
+                                                              : base.t.size() > 1 ? base.t[1] - base.t[0]
+                                                                                  : 0.0;
       if (d > step / 2.0 * (1.0 + 1e-9) || d >= distance[j]) continue;
       if (std::isinf(distance[j])) ++placed;
       distance[j] = d;
       out[j] = channel.values[own.rows[k]];
     }
     for (const double d : distance) farthest = std::isinf(d) ? farthest : std::max(farthest, d);
-    notes_.push_back(fmt::format("'{}' has a clock of its own: {} of its {} samples stand at the nearest time of '{}', moved by at most {} s; the others "
-                                 "are left out, for another stands there or no time is near",
-                                 shown(channel.name, longest_name), placed, own.t.size(), name(base_), format_value(farthest)));
+    notes_.push_back(fmt::format(
+        "'{}' has a clock of its own: {} of its {} samples stand at the nearest time of '{}', moved by at most {} s; the others "
+        "are left out, for another stands there or no time is near",
+        shown(channel.name, longest_name), placed, own.t.size(), name(base_), format_value(farthest)));
     return out;
   }
 
@@ -171,8 +177,9 @@ class TimeBase {
         names[most] = fmt::format("{} more", names.size() - most);
         names.resize(most + 1);
       }
-      notes_.push_back(fmt::format("{} ({} samples) {} of {} own: {} at the times of '{}'", join_words(names), how.first, one ? "has a clock" : "have a clock",
-                                   one ? "its" : "their", how.second ? "interpolated linearly" : "the last value is held", name(base_)));
+      notes_.push_back(fmt::format("{} ({} samples) {} of {} own: {} at the times of '{}'", join_words(names), how.first,
+                                   one ? "has a clock" : "have a clock", one ? "its" : "their",
+                                   how.second ? "interpolated linearly" : "the last value is held", name(base_)));
     }
   }
 
@@ -197,8 +204,8 @@ class TimeBase {
   const Log& log_;
   const std::vector<WantedChannel>& wanted_;
   std::vector<std::string>& notes_;
-  std::vector<std::size_t> channels_;  // of each wanted one
-  std::vector<std::size_t> inputs_;    // columns of inputs that were brought from another clock
+  std::vector<std::size_t> channels_;                                         // of each wanted one
+  std::vector<std::size_t> inputs_;                                           // columns of inputs that were brought from another clock
   std::map<std::pair<std::size_t, bool>, std::vector<std::string>> brought_;  // held or linear channels, by samples
   std::size_t base_ = 0;
   Table table_;
@@ -214,7 +221,8 @@ Table on_one_time_base(LogReader& reader, const std::vector<WantedChannel>& want
 std::string known_unit(const LogChannel& channel) {
   if (!channel.unit.empty()) return read_header("x[" + channel.unit + "]").unit;
   std::string last = channel.name.substr(channel.name.find_last_of("./") + 1);
-  if (last.ends_with(']') && last.find_first_not_of("0123456789", last.rfind('[') + 1) == last.size() - 1) last.resize(last.rfind('['));  // q[0]
+  if (last.ends_with(']') && last.find_first_not_of("0123456789", last.rfind('[') + 1) == last.size() - 1)
+    last.resize(last.rfind('['));  // q[0]
   return read_header(last).unit;
 }
 

@@ -23,10 +23,10 @@ struct WantedChannel {
   Between between = Between::nearest;
 };
 
-/// Time in seconds (column `time`, or "t"), then the wanted channels in their own units. The time base is the clock `time`, if that is given,
-/// else that of the `nearest` channels; if they have several, that of most samples. What was done to channels of other clocks, and how many
-/// samples were left out and why, is said in `notes`. InputError: no such channel (with the nearest names), a channel without a time,
-/// a time whose unit is none of time.
+/// Time in seconds (column `time`, or "t"), then the wanted channels in their own units. The time base is the clock `time`, if that is
+/// given, else that of the `nearest` channels; if they have several, that of most samples. What was done to channels of other clocks, and
+/// how many samples were left out and why, is said in `notes`. InputError: no such channel (with the nearest names), a channel without a
+/// time, a time whose unit is none of time.
 [[nodiscard]] Table on_one_time_base(LogReader& reader, const std::vector<WantedChannel>& wanted, const std::optional<std::string>& time,
                                      std::vector<std::string>& notes);
 
