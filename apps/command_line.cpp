@@ -185,6 +185,12 @@ void init_options(CLI::App& verb, Options& options) {
   verb.add_flag("--force", options.session.force, "overwrite an existing study (never the data)");
   verb.add_option("--out", options.session.out, "folder of the study (default: named after the data file, in the current directory)")
       ->type_name("DIR");
+  verb.add_option("--input", options.chosen.inputs, "columns that are inputs, with commas between (default: by name and by the data)")
+      ->type_name("NAMES")
+      ->delimiter(',');
+  verb.add_option("--output", options.chosen.outputs, "columns that are outputs; others that are no inputs are left out")
+      ->type_name("NAMES")
+      ->delimiter(',');
   verb.add_flag("--json", options.json, "print what was found as JSON");
 }
 

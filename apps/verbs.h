@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/recording/chosen_columns.h"
 #include "misfit/workflow/export.h"
 #include "misfit/workflow/ladder.h"
 
@@ -18,6 +19,7 @@ struct Options {
   bool automatic = false;            ///< discover --auto, run --auto
   std::string check_video;           ///< track: write the video with the track drawn to this file
   ExportRequest export_request;      ///< export
+  ChosenColumns chosen;              ///< init
 };
 
 // One function per verb: open the study, call the stages, print. Each in apps/NAME.cpp. Return the exit status.

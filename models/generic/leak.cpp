@@ -20,7 +20,12 @@ struct Leak {
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { leak, surroundings };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "leak", .unit = "{port}/{content}", .lower = 0.0, .upper = 1e15, .scale = 0.1, .doc = "loss per content above the surroundings"},
+      {.name = "leak",
+       .unit = "{port}/{content}",
+       .lower = 0.0,
+       .upper = 1e15,
+       .scale = 0.1,
+       .doc = "loss per content above the surroundings"},
       {.name = "surroundings",
        .kind = CoefficientKind::shape,
        .value = 0.0,

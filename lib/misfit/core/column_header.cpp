@@ -14,7 +14,7 @@ struct Spelling {
   std::string_view written, unit;
 };
 /// Units as they are written behind an underscore, where neither blanks nor '/' may stand.
-constexpr std::array<Spelling, 42> spellings = {{{"s", "s"},         {"sec", "s"},       {"seconds", "s"},   {"ms", "ms"},
+constexpr std::array<Spelling, 46> spellings = {{{"s", "s"},         {"sec", "s"},       {"seconds", "s"},   {"ms", "ms"},
                                                  {"min", "min"},     {"h", "h"},         {"Hz", "Hz"},       {"V", "V"},
                                                  {"volt", "V"},      {"volts", "V"},     {"mV", "mV"},       {"A", "A"},
                                                  {"N", "N"},         {"kN", "kN"},       {"Nm", "N m"},      {"m", "m"},
@@ -24,6 +24,7 @@ constexpr std::array<Spelling, 42> spellings = {{{"s", "s"},         {"sec", "s"
                                                  {"deg", "deg"},     {"radps", "rad/s"}, {"rad_s", "rad/s"}, {"radps2", "rad/s^2"},
                                                  {"degps", "deg/s"}, {"deg_s", "deg/s"}, {"mps", "m/s"},     {"m_s", "m/s"},
                                                  {"mps2", "m/s^2"},  {"m_s2", "m/s^2"},  {"px", "px"},       {"pix", "px"},
+                                                 {"us", "us"},       {"ns", "ns"},       {"rpm", "rpm"},     {"kW", "kW"},
                                                  {"pct", "%"},       {"percent", "%"}}};
 
 bool is_unit(const std::string& text) {

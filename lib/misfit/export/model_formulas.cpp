@@ -31,9 +31,7 @@ class Builder {
     if (!out_.lack.empty()) return std::move(out_);
     find_quantities();
     const Nodes forces = add_effects(PortKind::dynamic, zeros(system_.spec().dynamic_ports.size()));
-    out_.rates = trace(model_.system_states(), [&](Symbol* dx) {
-      system_.trace_rates(point(), symbols_of(forces).data(), dx);
-    });
+    out_.rates = trace(model_.system_states(), [&](Symbol* dx) { system_.trace_rates(point(), symbols_of(forces).data(), dx); });
     find_outputs();
     out_.rates.insert(out_.rates.end(), drifts_.begin(), drifts_.end());
     return std::move(out_);
@@ -89,8 +87,7 @@ class Builder {
     static_cast<void>(add_effects(PortKind::quantity, quantity_ports_));
   }
   Nodes quantities() {
-    return trace(system_.spec().quantities.size(),
-                 [&](Symbol* q) { system_.trace_quantities(point(), q); });
+    return trace(system_.spec().quantities.size(), [&](Symbol* q) { system_.trace_quantities(point(), q); });
   }
 
   void find_outputs() {

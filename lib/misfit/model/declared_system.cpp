@@ -247,7 +247,8 @@ class DeclaredSystem final : public System {
           rate += slope[moved * states + j] * dx[j];
           size += std::abs(slope[moved * states + j] * dx[j]);
         }
-        for (std::size_t i = first; i < count; ++i) is_rate[i][moved] = is_rate[i][moved] && size > 0.0 && std::abs(q[i] - rate) < rounding * size;
+        for (std::size_t i = first; i < count; ++i)
+          is_rate[i][moved] = is_rate[i][moved] && size > 0.0 && std::abs(q[i] - rate) < rounding * size;
       }
     }
     for (std::size_t i = first; i < count; ++i) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "misfit/core/column_header.h"
@@ -23,8 +24,8 @@ namespace {
 
 class ColumnClassifier {
  public:
-  ColumnClassifier(const std::filesystem::path& path, const std::vector<std::string>& reserved)
-      : table_(read_loose_csv(path)), taken_(reserved.begin(), reserved.end()) {
+  ColumnClassifier(const std::filesystem::path& path, const std::vector<std::string>& reserved, ChosenColumns chosen)
+      : table_(read_loose_csv(path)), taken_(reserved.begin(), reserved.end()), chosen_(std::move(chosen)) {
     taken_.insert("t");
     out_.source = table_.source;
     out_.rows = table_.rows();
@@ -36,6 +37,7 @@ class ColumnClassifier {
     find_time();
     run_time();
     find_segments();
+    take_chosen();
     find_inputs_and_outputs();
     make_names_usable();
     find_rates();
@@ -64,6 +66,11 @@ class ColumnClassifier {
     s.name = header.name;
     s.unit = header.unit.empty() ? "-" : header.unit;
     not_understood_.push_back(shown(header.not_understood, longest_header));
+    if (is_called_celsius(header.not_understood)) {
+      s.unit = "K";
+      not_understood_.back().clear();
+      out_.remarks.push_back(fmt::format("column '{}': its numbers are taken as K above 0 degC", s.header));
+    }
     const std::vector<double> known = finite(column.values);
     s.missing = column.values.size() - known.size() - column.text;
     if (column.text > 0) {
@@ -166,19 +173,52 @@ class ColumnClassifier {
     }
   }
 
+  /// What the user chose; with chosen inputs no other column is one, with chosen outputs neither.
+  void take_chosen() {
+    for (const auto& [names, use, word] :
+         {std::tuple{&chosen_.inputs, ColumnUse::input, "--input"}, std::tuple{&chosen_.outputs, ColumnUse::output, "--output"}}) {
+      for (const std::string& name : *names) {
+        ColumnSurvey& c = chosen_column(name, word);
+        c.use = use;
+        c.chosen = true;
+        c.why = std::string("chosen by ") + word;
+      }
+    }
+    if (chosen_.outputs.empty()) return;
+    for (auto& c : out_.columns) {
+      if (c.use != ColumnUse::unused || (chosen_.inputs.empty() && looks_like_input(c))) continue;
+      c.use = ColumnUse::constant;
+      c.why = "not among the columns chosen";
+    }
+  }
+
+  ColumnSurvey& chosen_column(const std::string& name, const std::string& option) {
+    std::vector<std::string> names;
+    for (auto& c : out_.columns) {
+      if ((c.name == name || c.header == name) && (c.use == ColumnUse::unused || c.use == ColumnUse::segment)) return c;
+      if (c.use == ColumnUse::unused) names.push_back(c.name);
+      if ((c.name == name || c.header == name)) fail(0, fmt::format("{}: column '{}' cannot be one: {}", option, c.header, c.why));
+    }
+    fail(0, fmt::format("{}: there is no column '{}'{}", option, shown(name, longest_header), suggest(name, names)));
+  }
+
+  static constexpr double held_share_ = 0.5;
+  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.held > held_share_; }
+
   void find_inputs_and_outputs() {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       if (out_.columns[i].use == ColumnUse::unused) open.push_back(i);
     }
-    if (open.empty()) fail(0, "no column but time changes: nothing was measured");
-    constexpr double held_share = 0.5;
+    const bool measured = !chosen_.outputs.empty();
+    if (open.empty() && !measured) fail(0, "no column but time changes: nothing was measured");
+    const bool may_be_input = chosen_.inputs.empty() && (measured || open.size() > 1);
     for (const std::size_t i : open) {
       ColumnSurvey& c = out_.columns[i];
-      if (open.size() > 1 && is_called_input(c.name)) {
+      if (may_be_input && is_called_input(c.name)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
-      } else if (open.size() > 1 && c.held > held_share) {
+      } else if (may_be_input && c.held > held_share_) {
         c.use = ColumnUse::input;
         c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
@@ -187,8 +227,12 @@ class ColumnClassifier {
         for (auto& remark : limit_remarks(c.header, values(i))) out_.remarks.push_back(std::move(remark));
       }
     }
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      ColumnSurvey& c = out_.columns[i];
+      c.measured = c.use == ColumnUse::input && is_smooth(values(i));
+    }
     const bool any = std::any_of(open.begin(), open.end(), [&](std::size_t i) { return out_.columns[i].use == ColumnUse::output; });
-    if (any) return;
+    if (any || measured) return;
     ColumnSurvey& last = out_.columns[open.back()];
     last.use = ColumnUse::output;
     last.why = "every column looks like an input; the last is taken as the output";
@@ -224,15 +268,24 @@ class ColumnClassifier {
     }
   }
 
+  /// With differences over 1, 2, 4 … samples: noise hides the derivative of what is sampled quickly.
   bool is_rate(std::size_t rate, std::size_t of) const {
+    constexpr std::size_t longest = 64;
+    for (std::size_t span = 1; span <= longest && 40 * span < table_.rows(); span *= 2) {
+      if (is_rate_over(span, rate, of)) return true;
+    }
+    return false;
+  }
+
+  bool is_rate_over(std::size_t span, std::size_t rate, std::size_t of) const {
     const Unit a = parse_unit(out_.columns[rate].unit), b = parse_unit(rate_unit(out_.columns[of].unit));
     if (out_.columns[rate].unit != "-" && !a.same_dimension(b)) return false;
     const double factor = out_.columns[rate].unit == "-" ? 1.0 : b.to_si / a.to_si;
     double xx = 0.0, xy = 0.0, yy = 0.0;
     for (const auto& piece : pieces_) {
-      for (std::size_t k = 1; k + 1 < piece.size(); ++k) {
-        const double x = factor * (values(of)[piece[k + 1]] - values(of)[piece[k - 1]]) / (t_[piece[k + 1]] - t_[piece[k - 1]]);
-        const double y = values(rate)[piece[k]];
+      for (std::size_t k = span; k + span < piece.size(); ++k) {
+        const double x = factor * (values(of)[piece[k + span]] - values(of)[piece[k - span]]) / (t_[piece[k + span]] - t_[piece[k - span]]);
+        const double y = mean_between(rate, piece[k - span], piece[k + span]);
         if (!std::isfinite(x) || !std::isfinite(y)) continue;
         xx += x * x;
         xy += x * y;
@@ -241,6 +294,14 @@ class ColumnClassifier {
     }
     constexpr double alike = 0.98, near_one = 0.1;
     return xx > 0.0 && yy > 0.0 && xy * xy > alike * xx * yy && std::abs(xy / xx - 1.0) < near_one;
+  }
+
+  /// Trapezium rule over the rows from … to, as of equal intervals.
+  double mean_between(std::size_t column, std::size_t from, std::size_t to) const {
+    if (to - from == 2) return values(column)[from + 1];
+    double sum = 0.5 * (values(column)[from] + values(column)[to]);
+    for (std::size_t i = from + 1; i < to; ++i) sum += values(column)[i];
+    return sum / static_cast<double>(to - from);
   }
 
   void fill_parts() {
@@ -267,6 +328,7 @@ class ColumnClassifier {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   LooseTable table_;
   std::set<std::string> taken_;  // names that are reserved or given
+  ChosenColumns chosen_;
   RecordingSurvey out_;
   std::size_t time_ = none;
   std::vector<double> t_;                         // [s], a value per row
@@ -283,8 +345,8 @@ std::vector<const ColumnSurvey*> RecordingSurvey::of_use(ColumnUse use) const {
   return out;
 }
 
-RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved) {
-  return ColumnClassifier(path, reserved).run();
+RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved, const ChosenColumns& chosen) {
+  return ColumnClassifier(path, reserved, chosen).run();
 }
 
 }  // namespace misfit

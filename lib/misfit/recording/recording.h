@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "misfit/core/table.h"
+#include "misfit/recording/chosen_columns.h"
 
 namespace misfit {
 
@@ -21,6 +22,8 @@ struct ColumnSurvey {
   double low = 0.0, high = 0.0;
   double resolution = 0.0;  ///< all values are multiples of it apart [unit]; 0: no such step found
   double held = 0.0;        ///< share of samples equal to the one before
+  bool chosen = false;      ///< its use is the user's choice
+  bool measured = false;    ///< an input that is no command held between samples: it changes smoothly, or nothing in the file moves it
   std::string rate_of;      ///< rate: name of the column whose derivative it is
 };
 
@@ -48,7 +51,9 @@ struct RecordingSurvey {
 /// Looks at a file of columns, asking nothing. Time: a column called so or in a unit of time that runs forward; inputs by name ("u",
 /// "force", "valve", …) or because they stand still between jumps; the rest are outputs, one that is the derivative of another its rate.
 /// InputError: what read_loose_csv() refuses, text among numbers, no time column, nothing that could be an output, too few rows.
+/// A chosen column that is not there, or does not vary: refused as well.
 /// `reserved`: names that no input, output or rate may have ("t" is always one).
-[[nodiscard]] RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved = {});
+[[nodiscard]] RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved = {},
+                                               const ChosenColumns& chosen = {});
 
 }  // namespace misfit

@@ -87,8 +87,7 @@ bool Stepper::for_each_part(const Interval& interval, const Advance& advance) co
     const double length = part.to - from;
     for (int k = 0; k < pieces; ++k) {
       look_at_watch();
-      if (!advance(Share{from + length * k / pieces, k + 1 == pieces ? part.to : from + length * (k + 1) / pieces}, implicit))
-        return false;
+      if (!advance(Share{from + length * k / pieces, k + 1 == pieces ? part.to : from + length * (k + 1) / pieces}, implicit)) return false;
     }
     from = part.to;
   }

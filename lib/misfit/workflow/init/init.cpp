@@ -7,6 +7,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/written_files.h"
 #include "misfit/report/recording_figure.h"
+#include "misfit/workflow/init/drivers.h"
 #include "misfit/workflow/init/names.h"
 #include "misfit/workflow/init/text.h"
 
@@ -39,9 +40,10 @@ void draw(const RecordingSurvey& survey, const GuessedModel& model, const std::v
 
 }  // namespace
 
-FirstStudy init_study(const fs::path& data, const fs::path& folder, bool force) {
+FirstStudy init_study(const fs::path& data, const fs::path& folder, bool force, const ChosenColumns& chosen) {
   FirstStudy out;
-  out.survey = survey_recording(data, names_of_formulas());
+  out.survey = survey_recording(data, names_of_formulas(), chosen);
+  if (chosen.inputs.empty()) take_measured_inputs(out.survey);
   out.model = guess_model(out.survey);
   out.survey.remarks.insert(out.survey.remarks.end(), out.model.remarks.begin(), out.model.remarks.end());
   out.parts = part_names(data, out.survey.parts.size());

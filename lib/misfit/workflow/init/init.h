@@ -19,6 +19,7 @@ struct FirstStudy {
 
 /// Writes study.toml, model.toml, the data as CSV files and figures/ into `folder` (empty: one called like the data in the current one).
 /// InputError: what survey_recording() and guess_model() refuse; files that are there, unless `force` (never the data).
-[[nodiscard]] FirstStudy init_study(const std::filesystem::path& data, const std::filesystem::path& folder, bool force);
+[[nodiscard]] FirstStudy init_study(const std::filesystem::path& data, const std::filesystem::path& folder, bool force,
+                                    const ChosenColumns& chosen = {});
 
 }  // namespace misfit
