@@ -40,8 +40,11 @@ class Identification {
   const Rung& add(const Candidate& candidate) { return ladder_.add(candidate.effect, candidate); }
   /// The rungs so far.
   [[nodiscard]] const Ladder& ladder() const { return ladder_.ladder(); }
-  /// Figures and report.html of the study with its ladder; the path of the page.
-  std::filesystem::path report() { return report_stage(ladder_.root(), fit_stage(ladder_.root())); }
+  /// Figures and report.html of the study with its ladder, where it fails before and after; the path of the page.
+  std::filesystem::path report() {
+    if (ladder_.ladder().rungs.size() > 1) diagnose_rungs(ladder_);
+    return report_stage(ladder_.root(), fit_stage(ladder_.root()));
+  }
   /// The study of the last rung, for all other stages: workflow/stages.h, workflow/simulate.h.
   [[nodiscard]] Session& session() { return ladder_.last(); }
 
