@@ -38,7 +38,7 @@ LadderListener ladder_listener(ModelLadder& ladder, const Options& options) {
     listener.discovered = [](const Discovery& discovery) { print(discovery); };
     listener.added = [&](const Rung& rung) { print(ladder.ladder(), rung, ladder.last_fit()); };
   } else {
-    listener.discovered = [](const Discovery& discovery) { print_stage("discover", discovery.verdict); };
+    listener.discovered = [](const Discovery& discovery) { print_stage("discover", line_of(discovery)); };
     listener.added = [](const Rung& rung) { print_stage("add", rung.added + ": " + line_of(rung)); };
   }
   return listener;

@@ -5,7 +5,8 @@
 
 namespace misfit {
 
-/// Columns by the user's choice, named as in the file, with or without the unit. Where inputs are given there are no others; of outputs too.
+/// Columns by the user's choice, named as in the file, with or without the unit. Where inputs are given there are no others; of outputs
+/// too.
 struct ChosenColumns {
   std::vector<std::string> inputs, outputs;
 };

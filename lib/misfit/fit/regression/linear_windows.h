@@ -2,8 +2,8 @@
 
 // Output error of linear models over short windows: what linear_guess.cpp searches with; not for other files.
 //
-// Over a window of the record y^(n) = −Σ a_j y^(j) + Σ b_i u_i + c is solved exactly; for given poles the solution is linear in b, c and the
-// state at the window's begin, which is projected out. White measurement noise does not bias it, as it does a regression on past values
+// Over a window of the record y^(n) = −Σ a_j y^(j) + Σ b_i u_i + c is solved exactly; for given poles the solution is linear in b, c and
+// the state at the window's begin, which is projected out. White measurement noise does not bias it, as it does a regression on past values
 // (Ljung, System Identification (1999), 7.3).
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@ struct Poles {
 /// A record ready to be solved: y and drivers of mean 0 and sigma 1; drivers known everywhere, y NaN where it is missing.
 struct WindowedRecord {
   std::vector<double> t, y;
-  double step = 0.0;  ///< usual interval [s]
+  double step = 0.0;        ///< usual interval [s]
   Eigen::MatrixXd drivers;  ///< samples × drivers; mean over the interval from the sample to the next
   struct Window {
     std::size_t from = 0, to = 0;
