@@ -186,8 +186,10 @@ void init_options(CLI::App& verb, Options& options) {
       ->type_name("DATA")
       ->required();
   RecordingChoice& choice = options.recording;
-  verb.add_option("--output", choice.outputs, "what was measured and is to be modelled, by names")->type_name("NAME,...")->delimiter(',');
-  verb.add_option("--input", choice.inputs, "what drove it")->type_name("NAME,...")->delimiter(',');
+  verb.add_option("--output", choice.outputs, "outputs, by names; others that are no inputs are left out")
+      ->type_name("NAME,...")
+      ->delimiter(',');
+  verb.add_option("--input", choice.inputs, "inputs, by names (default: by name and by the data)")->type_name("NAME,...")->delimiter(',');
   verb.add_option("--time", choice.time, "the column or channel of time")->type_name("NAME");
   verb.add_option("--topic", choice.topics, "topics, groups or structs of a log; the first gives the times")
       ->type_name("TOPIC,...")

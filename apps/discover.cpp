@@ -10,6 +10,12 @@
 namespace misfit {
 namespace {
 
+/// The report, and what it begins with, as `run` ends.
+void end_with_verdict(ModelLadder& ladder) {
+  Session& root = ladder.root();
+  print_verdict(verdict_of(root, fit_stage(root)), root.folder.file("report.html"));
+}
+
 int extend(ModelLadder& ladder, const Registry& registry, const Options& options) {
   extend_ladder(ladder, registry, ladder_listener(ladder, options));
   report_ladder(ladder);
@@ -19,8 +25,7 @@ int extend(ModelLadder& ladder, const Registry& registry, const Options& options
   }
   if (!options.verbose) std::cout << '\n';
   print(ladder.ladder());
-  Session& root = ladder.root();
-  print_verdict(verdict_of(root, fit_stage(root)), root.folder.file("report.html"));
+  end_with_verdict(ladder);
   return 0;
 }
 
@@ -33,7 +38,7 @@ LadderListener ladder_listener(ModelLadder& ladder, const Options& options) {
     listener.discovered = [](const Discovery& discovery) { print(discovery); };
     listener.added = [&](const Rung& rung) { print(ladder.ladder(), rung, ladder.last_fit()); };
   } else {
-    listener.discovered = [](const Discovery& discovery) { print_stage("discover", discovery.verdict); };
+    listener.discovered = [](const Discovery& discovery) { print_stage("discover", line_of(discovery)); };
     listener.added = [](const Rung& rung) { print_stage("add", rung.added + ": " + line_of(rung)); };
   }
   return listener;
@@ -61,8 +66,8 @@ int discover_verb(const Options& options, const Registry& registry) {
     return 0;
   }
   print(discovery);
-  if (const auto next = accepted_candidate(discovery, registry))
-    std::cout << "to add it: misfit add " << options.session.study << " " << next->effect << '\n';
+  report_ladder(*ladder);
+  end_with_verdict(*ladder);
   return 0;
 }
 

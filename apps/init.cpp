@@ -73,8 +73,10 @@ int init_verb(const Options& options, const Registry& /*registry*/) {
   }
   std::cout << survey_text(made.survey) << '\n';
   for (const auto& o : made.model.outputs) std::cout << wrap_text("model of " + o.name + ": " + o.guess.why, 110, "  ") << '\n';
-  std::cout << fmt::format("\nwritten: {0}, model.toml, the data as {1}.csv{2}, figures/\nnext: look at the figures, then misfit run {0}\n",
-                           made.study.string(), made.parts.front(), made.parts.size() > 1 ? " …" : "");
+  std::cout << fmt::format(
+      "\nwritten: {0}, model.toml, the data as {1}.csv{2}, figures/\nnext: misfit run {3} --auto   (fit, where it fails, which effect is "
+      "missing, verdict; a column read wrongly: --input, --output)\n",
+      made.study.string(), made.parts.front(), made.parts.size() > 1 ? " …" : "", made.study.parent_path().string());
   return 0;
 }
 

@@ -44,6 +44,10 @@ TEST(Discover, APlanarModelOfAConingFlightLacksWhatNoEffectIs) {
   const ShortFlight study("parachute_planar", 40.0);
   const Outcome outcome = study.run("discover");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::size_t box = outcome.out.find("\nVerdict\n");
+  ASSERT_NE(box, std::string::npos) << outcome.out;
+  EXPECT_GT(box, outcome.out.find("predicted drop")) << "the table first, the answer last";
+  expect_parts(outcome.out.substr(box), {"Something is missing that depends on", "random force", "report.html"});
   const std::string verdict = study.result("discovery.json").at("verdict");
   expect_parts(verdict, {"Something is missing that depends on", "a force on pitching_moment", "no effect of the library explains it"});
   for (const auto& candidate : study.result("candidates.json")) EXPECT_FALSE(candidate.at("accepted")) << candidate.at("effect");

@@ -61,7 +61,7 @@ TEST(Init, WritesAStudyThatFits) {
   ASSERT_EQ(run({"init", data.string(), "--out", out.string()}).status, 0);
   const Outcome fitted = run({"fit", (out / "study.toml").string()});
   ASSERT_EQ(fitted.status, 0) << fitted.err;
-  const json fit = json::parse(content(out / "out" / "fit" / "output_error" / "fit.json"));
+  const json fit = json::parse(content(out / "out" / "fit" / "filter_error" / "fit.json"));
   EXPECT_NE(fit.at("status"), "failed");
   EXPECT_LT(fit.at("rms").at("angle").at("value").get<double>(), 2.0) << "deg; the swing is some 10 deg";
 }

@@ -149,6 +149,8 @@ Discovery example_discovery() {
   d.tried = {"14 effects"};
   d.force = {{"moment", {31.0, 0.8, "N m"}}};
   d.sweep_asks = {"camera_roll"};
+  d.unexplained_port = "dw/dt";
+  d.unexplained_quantity = "w";
   d.seconds = 12.0;
   return d;
 }
@@ -177,6 +179,8 @@ TEST(DiscoveryFiles, ReadBackWhatWasWritten) {
   EXPECT_EQ(back.sentences, d.sentences);
   EXPECT_EQ(back.tried, d.tried);
   EXPECT_EQ(back.sweep_asks, d.sweep_asks);
+  EXPECT_EQ(back.unexplained_port, "dw/dt");
+  EXPECT_EQ(back.unexplained_quantity, "w");
   EXPECT_EQ(back.force.at("moment").sigma, 0.8);
   ASSERT_EQ(back.candidates.size(), 2U);
   const Candidate& wake = back.candidates[0];

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <random>
 
 namespace misfit {
@@ -11,7 +12,7 @@ namespace {
 /// tau y' = gain u + rest − y under a held random input.
 GuessData first_order(double step, double noise) {
   GuessData data;
-  data.inputs.emplace_back();
+  data.drivers.emplace_back();
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   constexpr double tau = 5.0, gain = 2.0, rest = 1.0;
@@ -20,7 +21,7 @@ GuessData first_order(double step, double noise) {
     if (k % 40 == 0) u = normal(random);
     data.t.push_back(step * k);
     data.y.push_back(y + noise * normal(random));
-    data.inputs[0].push_back(u);
+    data.drivers[0].values.push_back(u);
     y += (gain * u + rest - y) * (1.0 - std::exp(-step / tau));
   }
   return data;
@@ -58,6 +59,120 @@ TEST(LinearGuess, GapsAndMissingValuesDoNotSpoilIt) {
   for (std::size_t k = 1000; k < data.t.size(); ++k) data.t[k] += 500.0;
   const LinearGuess guess = guess_linear(data);
   EXPECT_NEAR(guess.tau, 5.0, 2.0);
+}
+
+/// A state that a function advances, measured with noise, under steps of a random input; rate in `velocities` if it has one.
+struct World {
+  double step = 0.01, noise = 0.0;
+  int count = 3000, hold = 60;
+  std::vector<double> velocities = {};
+
+  GuessData run(const std::function<double(double, double, double)>& rate, bool second = false) {
+    GuessData data;
+    data.drivers.emplace_back();
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    double y = 0.0, v = 0.0, u = 0.0;
+    for (int k = 0; k < count; ++k) {
+      if (k % hold == 0) u = normal(random);
+      data.t.push_back(step * k);
+      data.y.push_back(y + noise * normal(random));
+      data.drivers[0].values.push_back(u);
+      velocities.push_back(v + noise * normal(random));
+      constexpr int parts = 50;
+      for (int i = 0; i < parts; ++i) {
+        const double slope = rate(y, v, u) * step / parts;
+        v += second ? slope : 0.0;
+        y += second ? v * step / parts : slope;
+      }
+    }
+    return data;
+  }
+};
+
+/// The motor of the first tutorial: dry friction in a lag must not be taken for a swing.
+TEST(LinearGuess, DryFrictionDoesNotMakeALagAnOscillator) {
+  World world{.step = 0.005, .noise = 0.3, .hold = 120};
+  const LinearGuess guess =
+      guess_linear(world.run([](double w, double, double u) { return 1000.0 * u - 10.0 * w - 100.0 * std::tanh(w / 0.1); }));
+  EXPECT_EQ(guess.order, 1) << guess.why;
+  EXPECT_NEAR(guess.tau, 0.1, 0.02);
+  EXPECT_NEAR(guess.gain[0], 100.0, 10.0);
+  EXPECT_NE(guess.why.find("a second order"), std::string::npos) << guess.why;
+}
+
+TEST(LinearGuess, ADrivenSwingIsOfSecondOrderThroughNoise) {
+  World world{.step = 0.02, .noise = 0.02, .hold = 30};
+  const LinearGuess guess = guess_linear(world.run([](double y, double v, double u) { return u - 9.0 * y - 0.6 * v; }, true));
+  ASSERT_EQ(guess.order, 2) << guess.why;
+  EXPECT_NEAR(std::sqrt(guess.stiffness), 3.0, 0.1);
+  EXPECT_NEAR(guess.damping, 0.6, 0.15);
+  EXPECT_NEAR(guess.gain[0], 1.0 / 9.0, 0.01);
+}
+
+/// Two time constants: the second is a lag, which discovery names.
+TEST(LinearGuess, AnOverdampedAnswerIsOfFirstOrder) {
+  World world{.step = 0.02, .noise = 0.002};
+  const LinearGuess guess = guess_linear(world.run([](double y, double v, double u) { return 20.0 * (u - y) - 12.0 * v; }, true));
+  EXPECT_EQ(guess.order, 1) << guess.why;
+}
+
+TEST(LinearGuess, AMeasuredRateMakesSecondOrderWithoutAPullBackWhereThereIsNone) {
+  World world{.step = 0.01, .noise = 0.002};
+  GuessData data = world.run([](double, double v, double u) { return 3.0 * u - 1.5 * v + 0.2; }, true);
+  data.rate = world.velocities;
+  const LinearGuess guess = guess_linear(data);
+  ASSERT_EQ(guess.order, 2);
+  EXPECT_TRUE(guess.integrates) << guess.why;
+  EXPECT_NEAR(guess.damping, 1.5, 0.1);
+  EXPECT_NEAR(guess.gain[0], 3.0, 0.1);
+  EXPECT_NEAR(guess.rest, 0.2, 0.05);
+}
+
+TEST(LinearGuess, AMeasuredRateOfASwingGivesItsPull) {
+  World world{.step = 0.01, .noise = 0.002};
+  GuessData data = world.run([](double y, double v, double u) { return u - 25.0 * y - 0.5 * v; }, true);
+  data.rate = world.velocities;
+  const LinearGuess guess = guess_linear(data);
+  EXPECT_FALSE(guess.integrates) << guess.why;
+  EXPECT_NEAR(std::sqrt(guess.stiffness), 5.0, 0.1);
+  EXPECT_NEAR(guess.gain[0], 0.04, 0.004);
+}
+
+/// Of two tanks the second is filled by the first, not by the pump; the first by the pump alone.
+TEST(LinearGuess, ADriverIsInTheModelOnlyWhereItIsNeeded) {
+  World world{.step = 1.0, .noise = 0.01, .hold = 40};
+  const GuessData first = world.run([](double y, double, double u) { return (u - y) / 20.0; });
+  GuessData second = first;
+  double y = 0.0;
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  for (std::size_t k = 0; k < first.t.size(); ++k) {
+    second.y[k] = y + 0.01 * normal(random);
+    y += (first.y[k] - y) / 30.0;
+  }
+  second.drivers.push_back({first.y, true, true});
+  const LinearGuess filled = guess_linear(second);
+  EXPECT_EQ(filled.order, 1) << filled.why;
+  EXPECT_EQ(filled.gain[0], 0.0);
+  EXPECT_NEAR(filled.gain[1], 1.0, 0.05);
+  GuessData pumped = first;
+  pumped.drivers.push_back({second.y, true, true});
+  const LinearGuess lower = guess_linear(pumped);
+  EXPECT_NEAR(lower.gain[0], 1.0, 0.05);
+  EXPECT_EQ(lower.gain[1], 0.0);
+}
+
+TEST(LinearGuess, WhereNothingCanBeFittedNoInputHasTheGainZero) {
+  GuessData few;
+  few.drivers.emplace_back();
+  for (int k = 0; k < 8; ++k) {
+    few.t.push_back(k);
+    few.y.push_back(k % 3);
+    few.drivers[0].values.push_back(k % 2);
+  }
+  const LinearGuess guess = guess_linear(few);
+  EXPECT_GT(std::abs(guess.gain[0]), 0.0);
 }
 
 TEST(LinearGuess, SaysWhereThereIsNone) {

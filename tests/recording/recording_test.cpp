@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 
 #include "misfit/core/error.h"
 #include "tests/core/temporary_folder.h"
@@ -69,6 +70,56 @@ TEST(Recording, AMeasuredRateIsKnownByItsValues) {
   }));
   EXPECT_EQ(column(s, "omega").use, ColumnUse::rate);
   EXPECT_EQ(column(s, "omega").rate_of, "theta");
+}
+
+/// At 250 Hz the difference of neighbouring samples is noise.
+TEST(Recording, AMeasuredRateIsKnownThroughTheNoiseOfQuickSampling) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const RecordingSurvey s = survey(rows("t_s,phi_rad,p_radps", 3000, [&](int k) {
+    const double t = 0.004 * k;
+    return fmt::format("{},{},{}", t, std::sin(2.0 * t) + 0.002 * normal(random), 2.0 * std::cos(2.0 * t) + 0.02 * normal(random));
+  }));
+  EXPECT_EQ(column(s, "p").use, ColumnUse::rate);
+}
+
+TEST(Recording, CommandsBehindAnotherWordAreInputsAndSmoothOnesAreSaidToBe) {
+  const RecordingSurvey s = survey(rows("t_us,roll_cmd,rudder_deg,T_in[degC]", 300, [](int k) {
+    return fmt::format("{},{},{},{}", 4000 * k, std::sin(0.8 * k * k), std::sin(0.05 * k), 20.0 + std::cos(0.03 * k));
+  }));
+  EXPECT_NEAR(s.step, 0.004, 1e-9) << "microseconds";
+  EXPECT_EQ(column(s, "roll_cmd").use, ColumnUse::input);
+  EXPECT_FALSE(column(s, "roll_cmd").measured);
+  EXPECT_EQ(column(s, "rudder").use, ColumnUse::input);
+  EXPECT_TRUE(column(s, "rudder").measured);
+  EXPECT_EQ(column(s, "T_in").unit, "K");
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("K above 0 degC")));
+}
+
+TEST(Recording, ColumnsAreWhatTheUserChooses) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("x.csv", rows("t_s,u_V,a,b_m,c", 300, [](int k) {
+                                   return fmt::format("{},{},{},{},{}", 0.1 * k, std::sin(0.1 * k), std::cos(0.2 * k), std::sin(0.3 * k),
+                                                      std::cos(0.7 * k));
+                                 }));
+  const RecordingSurvey s = survey_recording(file, {}, {{"a"}, {"b"}});
+  EXPECT_EQ(column(s, "a").use, ColumnUse::input);
+  EXPECT_EQ(column(s, "a").why, "chosen by --input");
+  EXPECT_EQ(column(s, "b").use, ColumnUse::output);
+  EXPECT_NE(column(s, "u").use, ColumnUse::input) << "others are none";
+  EXPECT_NE(column(s, "c").use, ColumnUse::output);
+  const RecordingSurvey outputs = survey_recording(file, {}, {{}, {"b_m"}});
+  EXPECT_EQ(column(outputs, "b").use, ColumnUse::output);
+  EXPECT_EQ(column(outputs, "u").use, ColumnUse::input) << "by its name";
+  EXPECT_NE(column(outputs, "a").use, ColumnUse::output);
+  expect_parts(message_of<InputError>([&] {
+                 static_cast<void>(survey_recording(file, {}, {{"bb"}, {}}));
+               }),
+               {"--input", "'bb'", "did you mean 'b'"});
+  expect_parts(message_of<InputError>([&] {
+                 static_cast<void>(survey_recording(file, {}, {{}, {"t"}}));
+               }),
+               {"--output", "'t_s'", "increases"});
 }
 
 /// Of an unknown unit one thing is said: what its numbers are taken as.

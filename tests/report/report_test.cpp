@@ -103,6 +103,34 @@ TEST(Report, TheVerdictAndItsPictureComeFirstAndWhatFollowsIsFolded) {
   EXPECT_EQ(page.find(drawn), page.rfind(drawn)) << "nothing is drawn twice";
 }
 
+TEST(Report, OfALadderTheLastRungIsOpenTheOthersCanBeChosenAndTheWordsAreExplained) {
+  const TemporaryFolder folder;
+  ReportInput input = example();
+  Rung first, second;
+  first.system = "motor";
+  first.rms = {{"w", {0.30, 0.0, "V"}}};
+  first.force = {{"dw/dt", {20.0, 1.0, "V/s"}}};
+  second = first;
+  second.id = 1;
+  second.parent = 0;
+  second.added = "coulomb_friction";
+  second.actual_drop = 50.0;
+  second.parameters = {{"friction", {5.0, 0.5, "V/s"}}};
+  second.force = {{"dw/dt", {5.0, 0.4, "V/s"}}};
+  input.ladder = Ladder{{first, second}};
+  const std::string page = read_file(write_report(folder.path(), input));
+  EXPECT_EQ(html_faults(page), std::vector<std::string>{});
+  const std::size_t last = page.find("name=\"rung\" open><summary>Rung 1: coulomb_friction added");
+  const std::size_t study = page.find("name=\"rung\"><summary>Rung 0: motor, the study");
+  ASSERT_NE(last, std::string::npos);
+  ASSERT_NE(study, std::string::npos);
+  EXPECT_LT(last, study);
+  const std::string shown = page.substr(last, study - last);
+  for (const char* part : {"friction = 5.00 ± 0.50 V/s", "20.0 ± 1.0 V/s", "-75.0 %", "Drop: none predicted, 50.0 actual"})
+    EXPECT_NE(shown.find(part), std::string::npos) << part << "\n" << shown;
+  EXPECT_NE(page.find("<td>held-out gain</td>"), std::string::npos);
+}
+
 TEST(Report, PagesOnPaperHaveNumbersTheStudyAndTheDate) {
   const TemporaryFolder folder;
   ReportInput input = example();

@@ -90,6 +90,8 @@ TEST(Verdict, NothingMissingNamesTheRandomForceThatDrivesTheMotion) {
   Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::random_force);
   EXPECT_THAT(v.sentence, AllOf(HasSubstr("none of 2"), EndsWith("a random force of 20.0 ± 1.0 V/s.")));
+  c.fits.front().force.at("dw/dt") = {1.0, 14.0, "V/s"};
+  EXPECT_EQ(c.verdict().kind, VerdictKind::nothing_missing) << "none that is not known to be there";
   c.fits.front().driven = false;
   v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::nothing_missing);
@@ -159,6 +161,17 @@ TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCen
   EXPECT_EQ(v.next, "misfit discover configs/motor");
 }
 
+TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
+  Case c;
+  c.climb();
+  c.discovery = searched({candidate("lag", 1e-9, false)}, "No effect accepted; best candidate lag (drop 50), rejected: its size is odd.");
+  const Verdict v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::not_decided);
+  EXPECT_THAT(v.sentence,
+              AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("(-85 %); whether more is missing is not decided"),
+                    EndsWith("best candidate lag (drop 50), rejected: its size is odd.")));
+}
+
 TEST(Verdict, WhatIsStillMissingComesBeforeWhatWasAdded) {
   Case c;
   c.climb();
@@ -206,6 +219,10 @@ TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
   c.discovery->unexplained_quantity = "w";
   EXPECT_EQ(c.verdict().kind, VerdictKind::unknown_form);
   EXPECT_THAT(c.verdict().sentence, HasSubstr("depends on w: a force on dw/dt that no effect of the library explains"));
+  c.climb();
+  EXPECT_EQ(c.verdict().kind, VerdictKind::unknown_form);
+  EXPECT_THAT(c.verdict().sentence,
+              AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("still missing that depends on w")));
 }
 
 TEST(Verdict, WithoutAUsableFitItSaysWhy) {

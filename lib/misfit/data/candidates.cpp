@@ -19,6 +19,7 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
 template <class Archive>
 void fields(Archive& json, MaybeConst<Discovery> auto& d) {
   json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("force", d.force);
+  json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
   json("sweep_asks", d.sweep_asks), json("seconds", d.seconds);
 }
 

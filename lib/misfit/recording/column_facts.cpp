@@ -26,9 +26,13 @@ bool is_called(const std::string& name, const std::array<std::string_view, N>& w
 }
 
 constexpr std::array<std::string_view, 8> time_words = {"t", "time", "zeit", "timestamp", "sec", "seconds", "tijd", "temps"};
-constexpr std::array<std::string_view, 24> input_words = {
-    "u",     "in",    "input",    "force",  "torque", "voltage", "cmd",     "command",  "ref",        "setpoint", "valve",    "pump",
-    "drive", "motor", "throttle", "heater", "power",  "pwm",     "control", "stimulus", "excitation", "demand",   "actuator", "duty"};
+constexpr std::array<std::string_view, 38> input_words = {
+    "u",          "in",         "input",    "force",   "torque",   "voltage", "cmd",      "command", "ref",     "setpoint",
+    "valve",      "pump",       "drive",    "motor",   "throttle", "heater",  "power",    "pwm",     "control", "stimulus",
+    "excitation", "demand",     "actuator", "duty",    "rudder",   "aileron", "elevator", "flap",    "flaps",   "sun",
+    "solar",      "irradiance", "ambient",  "outdoor", "outside",  "wind",    "heating",  "cooling"};
+/// Behind another word: "roll_cmd", "motor_voltage".
+constexpr std::array<std::string_view, 8> last_words = {"cmd", "command", "setpoint", "demand", "pwm", "duty", "voltage", "input"};
 constexpr std::array<std::string_view, 7> segment_words = {"segment", "seg", "trial", "run", "episode", "block", "id"};
 
 /// How many samples in a row stand at one value: the longest stand at `value`, and the longest at any other.
@@ -92,6 +96,18 @@ double share_held(const std::vector<double>& values) {
   return pairs == 0 ? 0.0 : static_cast<double>(equal) / static_cast<double>(pairs);
 }
 
+bool is_smooth(const std::vector<double>& values) {
+  double squares = 0.0, products = 0.0;
+  for (std::size_t i = 2; i < values.size(); ++i) {
+    const double now = values[i] - values[i - 1], before = values[i - 1] - values[i - 2];
+    if (!std::isfinite(now) || !std::isfinite(before)) continue;
+    squares += now * now;
+    products += now * before;
+  }
+  constexpr double alike = 0.5;
+  return squares > 0.0 && products > alike * squares;
+}
+
 std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values) {
   std::vector<std::string> out;
   const std::vector<double> known = finite(values);
@@ -108,7 +124,10 @@ std::vector<std::string> limit_remarks(const std::string& header, const std::vec
 }
 
 bool is_called_time(const std::string& name) { return is_called(name, time_words); }
-bool is_called_input(const std::string& name) { return is_called(name, input_words); }
+bool is_called_input(const std::string& name) {
+  const auto before = name.rfind('_');
+  return is_called(name, input_words) || (before != std::string::npos && is_called(name.substr(before + 1), last_words));
+}
 bool is_called_segment(const std::string& name) { return is_called(name, segment_words); }
 
 }  // namespace misfit

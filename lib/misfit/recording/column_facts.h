@@ -22,6 +22,9 @@ namespace misfit {
 /// as long as anywhere else.
 [[nodiscard]] std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values);
 
+/// Neighbouring differences are alike (their autocorrelation is above 0.5): a ramp or a wave, not jumps and not noise.
+[[nodiscard]] bool is_smooth(const std::vector<double>& values);
+
 // By name, case and a number behind it ("u1") aside.
 [[nodiscard]] bool is_called_time(const std::string& name);
 [[nodiscard]] bool is_called_input(const std::string& name);

@@ -225,36 +225,37 @@ class ColumnClassifier {
         if (c.use == ColumnUse::constant || c.use == ColumnUse::text || c.use == ColumnUse::time)
           fail(0, fmt::format("column '{}', named by {}, is no signal: {}", c.header, option, c.why));
         c.use = use;
+        c.chosen = true;
         c.why = fmt::format("named by {}", option);
       }
     }
     if (choice_.outputs.empty()) return;
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       ColumnSurvey& c = out_.columns[i];
-      constexpr double held_share = 0.5;
-      if (c.use != ColumnUse::unused || left_out_.contains(i) ||
-          (choice_.inputs.empty() && (is_called_input(c.name) || c.held > held_share)))
-        continue;
+      if (c.use != ColumnUse::unused || left_out_.contains(i) || (choice_.inputs.empty() && looks_like_input(c))) continue;
       leave_out(i, choice_.inputs.empty() ? "not named by --output, and no input by its looks: left out"
                                           : "named by neither --input nor --output: left out");
     }
   }
+
+  static constexpr double held_share_ = 0.5;
+  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.held > held_share_; }
 
   void find_inputs_and_outputs() {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       if (out_.columns[i].use == ColumnUse::unused && !left_out_.contains(i)) open.push_back(i);
     }
-    const bool named = !of_use(ColumnUse::output).empty();
-    if (open.empty() && named) return;
+    const bool measured = !of_use(ColumnUse::output).empty();
+    if (open.empty() && measured) return;
     if (open.empty()) fail(0, "no column but time changes: nothing was measured");
-    constexpr double held_share = 0.5;
+    const bool may_be_input = choice_.inputs.empty() && (measured || open.size() > 1);
     for (const std::size_t i : open) {
       ColumnSurvey& c = out_.columns[i];
-      if ((open.size() > 1 || named) && is_called_input(c.name)) {
+      if (may_be_input && is_called_input(c.name)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
-      } else if ((open.size() > 1 || named) && c.held > held_share) {
+      } else if (may_be_input && c.held > held_share_) {
         c.use = ColumnUse::input;
         c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
@@ -262,6 +263,10 @@ class ColumnClassifier {
         c.why = open.size() == 1 ? "the only column that was measured" : "not named like an input, and it varies";
         for (auto& remark : limit_remarks(c.header, values(i))) out_.remarks.push_back(std::move(remark));
       }
+    }
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      ColumnSurvey& c = out_.columns[i];
+      c.measured = c.use == ColumnUse::input && is_smooth(values(i));
     }
     if (!of_use(ColumnUse::output).empty()) return;
     ColumnSurvey& last = out_.columns[open.back()];
@@ -299,15 +304,24 @@ class ColumnClassifier {
     }
   }
 
+  /// With differences over 1, 2, 4 … samples: noise hides the derivative of what is sampled quickly.
   bool is_rate(std::size_t rate, std::size_t of) const {
+    constexpr std::size_t longest = 64;
+    for (std::size_t span = 1; span <= longest && 40 * span < table_.rows(); span *= 2) {
+      if (is_rate_over(span, rate, of)) return true;
+    }
+    return false;
+  }
+
+  bool is_rate_over(std::size_t span, std::size_t rate, std::size_t of) const {
     const Unit a = parse_unit(out_.columns[rate].unit), b = parse_unit(rate_unit(out_.columns[of].unit));
     if (out_.columns[rate].unit != "-" && !a.same_dimension(b)) return false;
     const double factor = out_.columns[rate].unit == "-" ? 1.0 : b.to_si / a.to_si;
     double xx = 0.0, xy = 0.0, yy = 0.0;
     for (const auto& piece : pieces_) {
-      for (std::size_t k = 1; k + 1 < piece.size(); ++k) {
-        const double x = factor * (values(of)[piece[k + 1]] - values(of)[piece[k - 1]]) / (t_[piece[k + 1]] - t_[piece[k - 1]]);
-        const double y = values(rate)[piece[k]];
+      for (std::size_t k = span; k + span < piece.size(); ++k) {
+        const double x = factor * (values(of)[piece[k + span]] - values(of)[piece[k - span]]) / (t_[piece[k + span]] - t_[piece[k - span]]);
+        const double y = mean_between(rate, piece[k - span], piece[k + span]);
         if (!std::isfinite(x) || !std::isfinite(y)) continue;
         xx += x * x;
         xy += x * y;
@@ -316,6 +330,14 @@ class ColumnClassifier {
     }
     constexpr double alike = 0.98, near_one = 0.1;
     return xx > 0.0 && yy > 0.0 && xy * xy > alike * xx * yy && std::abs(xy / xx - 1.0) < near_one;
+  }
+
+  /// Trapezium rule over the rows from … to, as of equal intervals.
+  double mean_between(std::size_t column, std::size_t from, std::size_t to) const {
+    if (to - from == 2) return values(column)[from + 1];
+    double sum = 0.5 * (values(column)[from] + values(column)[to]);
+    for (std::size_t i = from + 1; i < to; ++i) sum += values(column)[i];
+    return sum / static_cast<double>(to - from);
   }
 
   void fill_parts() {

@@ -23,6 +23,8 @@ struct ColumnSurvey {
   double low = 0.0, high = 0.0;
   double resolution = 0.0;  ///< all values are multiples of it apart [unit]; 0: no such step found
   double held = 0.0;        ///< share of samples equal to the one before
+  bool chosen = false;      ///< its use is the user's choice
+  bool measured = false;    ///< an input that is no command held between samples: it changes smoothly, or nothing in the file moves it
   std::string rate_of;      ///< rate: name of the column whose derivative it is
 };
 

@@ -85,13 +85,25 @@ void show(const Discovery& d, const Subject& subject, Page& page, const Draw& dr
   page.show(blocks_of(d), figures, subject.note);
 }
 
+/// One under the other, the last first and open.
+void show_rungs(const Ladder& ladder, Page& page) {
+  for (auto rung = ladder.rungs.rbegin(); rung != ladder.rungs.rend(); ++rung) {
+    const bool first = rung->added.empty();
+    page.choice("rung", fmt::format("Rung {}: {}", rung->id, first ? rung->system + ", the study's model" : rung->added + " added"),
+                rung == ladder.rungs.rbegin());
+    page.show(rung_blocks(ladder, *rung));
+    page.unfold();
+  }
+}
+
 }  // namespace
 
 void ladder_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (!input.ladder || input.ladder->rungs.size() < 2) return;
   page.show(blocks_of(*input.ladder), [&](const std::string&) {
     draw(ladder_figure(*input.ladder));
-    page.fold("The rungs in numbers");
+    show_rungs(*input.ladder, page);
+    page.fold("All rungs in numbers");
   });
   page.unfold();
 }

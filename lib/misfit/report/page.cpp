@@ -129,6 +129,11 @@ void Page::section(const std::string& heading) {
 
 void Page::fold(const std::string& summary) { body_ += "<details class=\"inner\"><summary>" + html_text(summary) + "</summary><div>\n"; }
 
+void Page::choice(const std::string& group, const std::string& summary, bool open) {
+  body_ += fmt::format("<details class=\"inner choice\" name=\"{}\"{}><summary>{}</summary><div>\n", escape_html(group),
+                       open ? " open" : "", html_text(summary));
+}
+
 void Page::subsection(const std::string& heading) { body_ += "<h3>" + html_text(heading) + "</h3>\n"; }
 
 void Page::paragraph(const std::string& text, const std::string& css_class) {

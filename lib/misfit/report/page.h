@@ -21,6 +21,8 @@ class Page {
   void fold_sections() { folds_ = true; }
   /// What follows up to unfold() is folded, under `summary`.
   void fold(const std::string& summary);
+  /// The same as one of several of `group`, of which a reader opens one at a time; `open`: this one to begin with.
+  void choice(const std::string& group, const std::string& summary, bool open);
   void unfold() { body_ += "</div></details>\n"; }
 
   /// `figures` draws what belongs to a place; `note` is added to the headings of sections.

@@ -26,6 +26,7 @@ std::filesystem::path write_report(const std::filesystem::path& dir, const Repor
   parameters_section(input, page);
   calibration_section(input, page, draw);
   notes_section(input, page);
+  words_section(page);
   provenance_section(input, page);
   std::filesystem::path path = dir / "report.html";
   write_atomically(path, page.text());

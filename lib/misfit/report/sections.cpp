@@ -11,6 +11,7 @@
 #include "misfit/report/figures_simulated.h"
 #include "misfit/report/figures_uncertainty.h"
 #include "misfit/show/results.h"
+#include "misfit/show/words.h"
 
 namespace misfit::report {
 namespace {
@@ -136,6 +137,15 @@ void notes_section(const ReportInput& input, Page& page) {
   out.heading("Data notes");
   if (notes.empty()) out.paragraph("No sample was dropped or rejected.");
   out.list({notes});
+  page.show(out);
+}
+
+void words_section(Page& page) {
+  TableBlock words{columns("word|meaning")};
+  for (const auto& [word, meaning] : twelve_words()) words.rows.push_back({word, as_sentence(meaning)});
+  Blocks out;
+  out.heading("Words");
+  out.table(std::move(words));
   page.show(out);
 }
 

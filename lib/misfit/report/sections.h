@@ -39,6 +39,7 @@ void simulated_section(const ReportInput& input, Page& page, const Draw& draw);
 void parameters_section(const ReportInput& input, Page& page);
 void calibration_section(const ReportInput& input, Page& page, const Draw& draw);
 void notes_section(const ReportInput& input, Page& page);
+void words_section(Page& page);  ///< the glossary
 void provenance_section(const ReportInput& input, Page& page);
 
 }  // namespace misfit::report

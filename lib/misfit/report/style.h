@@ -33,6 +33,9 @@ summary { cursor: pointer; }
 summary h2 { display: inline-block; width: calc(100% - 1.6rem); margin: .5rem 0; font-size: 1.1rem; }
 details.inner { margin: .8rem 0; }
 details.inner > summary { color: var(--accent); }
+details.choice { margin: .3rem 0; padding: .1rem .8rem; border: 1px solid var(--line); }
+details.choice[open] { border-left: 4px solid var(--accent); }
+details.choice > summary { padding: .25rem 0; font-weight: 600; }
 .wide { overflow-x: auto; margin: .6rem 0; }
 table { border-collapse: collapse; font-size: .9rem; }
 th, td { padding: .28rem 1rem .28rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }

@@ -200,13 +200,15 @@ Blocks blocks_of(const Discovery& d) {
   return out;
 }
 
-Blocks blocks_of(const Ladder& ladder, const Rung& rung, const Fit& fit) {
+Blocks rung_blocks(const Ladder& ladder, const Rung& rung) {
   const Rung* parent = parent_of(ladder, rung);
-  const Rung none;
-  const Rung& before = parent != nullptr ? *parent : none;
   Blocks out;
-  out.heading(fmt::format("Rung {}: {} added to {}", rung.id, rung.added, before.system));
-  out.table(BeforeAndAfter(before, rung).table);
+  TableBlock table = BeforeAndAfter(parent != nullptr ? *parent : Rung{}, rung).table;
+  if (parent == nullptr) {
+    table.columns = columns("|value");
+    for (auto& row : table.rows) row = {row[0], row[2]};
+  }
+  out.table(std::move(table));
   constexpr double negligible_drop = 1.0;  // of the drop
   if (rung.actual_drop) {
     out.paragraph(drop_sentence(rung));
@@ -216,6 +218,14 @@ Blocks blocks_of(const Ladder& ladder, const Rung& rung, const Fit& fit) {
   std::vector<std::string> parameters;
   for (const auto& [name, e] : rung.parameters) parameters.push_back(name + " = " + shown(e));
   out.list({parameters});
+  return out;
+}
+
+Blocks blocks_of(const Ladder& ladder, const Rung& rung, const Fit& fit) {
+  const Rung* parent = parent_of(ladder, rung);
+  Blocks out;
+  out.heading(fmt::format("Rung {}: {} added to {}", rung.id, rung.added, parent != nullptr ? parent->system : ""));
+  out.append(rung_blocks(ladder, rung));
   out.warnings(fit.warnings);
   return out;
 }

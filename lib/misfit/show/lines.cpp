@@ -71,13 +71,15 @@ std::string line_of(const Attitude& a) {
 }
 
 std::string line_of(const Fit& fit) {
-  if (!fit.usable()) return to_string(fit.status) + ": " + fit.message.substr(0, fit.message.find(": "));
+  if (!fit.usable())
+    return to_string(fit.status) + ": " + fit.message.substr(0, std::min(fit.message.find(": "), fit.message.find(", so ")));
   std::vector<std::string> parts;
   if (fit.trim) parts.push_back("trim " + shown(*fit.trim));
   if (!fit.trim) parts.push_back(joined(scalars(fit), ", "));
   const std::vector<std::string> errors = residuals(fit);
-  if (!errors.empty()) parts.push_back("RMS error of " + joined(errors, ", of "));
-  if (const auto force = force_strength(fit.force)) parts.push_back("random force " + shown(*force));
+  const auto force = force_strength(fit.force);
+  if (!errors.empty() && !force) parts.push_back("RMS error of " + joined(errors, ", of "));
+  if (force) parts.push_back("random force " + shown(*force));
   if (fit.status == FitStatus::not_converged) parts.push_back("not converged: " + fit.message);
   std::erase(parts, "");
   const auto silent = std::count_if(fit.curves.begin(), fit.curves.end(), [](const CurveEstimate& curve) { return !curve.informative; });
@@ -86,26 +88,28 @@ std::string line_of(const Fit& fit) {
 }
 
 std::string line_of(const Comparison& c) {
-  if (c.motion && !c.motion->sentences.empty()) return c.motion->sentences.front();
+  if (c.motion && !c.motion->sentences.empty()) return c.motion->sentences.front().substr(0, c.motion->sentences.front().find(" over "));
   return c.trims.empty() ? "" : c.trims.front().sentence;
 }
 
 std::string line_of(const Diagnosis& d) {
   if (d.maps.empty()) return "no map could be made";
   const ForceMap& first = d.maps.front();
-  const std::string words = first.sentence.empty() ? std::string("the model fails nowhere that stands out") : first.sentence;
-  return fmt::format("{} ({})", words, p_equals(first.p_corrected));
+  if (!first.sentence.empty()) return first.sentence;
+  return fmt::format("the model fails nowhere that stands out ({})", p_equals(first.p_corrected));
 }
 
 std::string line_of(const Discovery& d) {
-  std::vector<const Candidate*> best;
-  for (const Candidate& c : d.candidates) {
-    if (best.size() < 3) best.push_back(&c);
-  }
-  std::string out = fmt::format("{} effects tested", d.candidates.size());
-  for (const Candidate* c : best)
-    out += (c == best.front() ? "; nearest: " : ", ") + effect_at(c->effect, c->roles) + " (" + p_equals(c->p_value) + ")";
-  return out;
+  if (d.candidates.empty()) return d.verdict;
+  const auto nearer = [](const Candidate& a, const Candidate& b) { return a.p_value < b.p_value; };
+  const bool accepted = d.candidates.front().accepted;
+  const Candidate& best = accepted ? d.candidates.front() : *std::min_element(d.candidates.begin(), d.candidates.end(), nearer);
+  const std::string name = effect_at(best.effect, best.roles);
+  if (accepted) return fmt::format("missing: {} (drop {}, {})", name, shown_drop(best.actual_drop), p_equals(best.p_value));
+  const std::string tested = fmt::format("{} effects tested, none accepted", d.candidates.size());
+  if (!d.unexplained_port.empty())
+    return fmt::format("{}: a force on {} that depends on {} is of unknown form", tested, d.unexplained_port, d.unexplained_quantity);
+  return fmt::format("{}; nearest: {} ({})", tested, name, p_equals(best.p_value));
 }
 
 std::string line_of(const Ladder& ladder) {
@@ -118,12 +122,11 @@ std::string line_of(const std::vector<Fit>& fits) { return fits.empty() ? "" : l
 
 std::string line_of(const Rung& rung) {
   std::vector<std::string> parts;
-  if (rung.trim) parts.push_back("trim " + shown(*rung.trim));
+  constexpr std::size_t most_parameters = 2;
   for (const auto& [name, e] : rung.parameters) {
-    if (parts.size() < most_named + 1) parts.push_back(name + " " + shown(e));
+    if (parts.size() < most_parameters) parts.push_back(name + " " + shown(e));
   }
   if (const auto force = force_strength(rung.force)) parts.push_back("random force " + shown(*force));
-  if (rung.actual_drop) parts.push_back("drop " + shown_drop(rung.actual_drop));
   return joined(parts, ", ");
 }
 

@@ -19,11 +19,12 @@ namespace misfit {
 [[nodiscard]] std::string line_of(const TrackFacts& facts);
 [[nodiscard]] std::string line_of(const Calibration& calibration);
 [[nodiscard]] std::string line_of(const Attitude& attitude);
-/// Trim or else the parameters; residuals in their unit and in per cent of the motion; the random force.
+/// Trim or else the parameters; the random force, or without one the residuals in their unit and in per cent of the motion.
 [[nodiscard]] std::string line_of(const Fit& fit);
 /// Whether the model reproduces the statistics of the motion, else by how much the methods differ; empty: nothing to compare.
 [[nodiscard]] std::string line_of(const Comparison& comparison);
 [[nodiscard]] std::string line_of(const Diagnosis& diagnosis);
+/// The accepted effect, or how many were tested and which is nearest.
 [[nodiscard]] std::string line_of(const Discovery& discovery);
 [[nodiscard]] std::string line_of(const Rung& rung);
 /// Its rungs: "planar → coning → strut_wake"; empty for a ladder without rungs above the first.

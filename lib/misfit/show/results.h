@@ -32,6 +32,8 @@ namespace misfit {
 [[nodiscard]] Blocks blocks_of(const Diagnosis& diagnosis);      ///< [maps], [innovations], [force]
 [[nodiscard]] Blocks blocks_of(const Discovery& discovery);      ///< [candidates]
 [[nodiscard]] Blocks blocks_of(const Ladder& ladder);            ///< [ladder]
+/// Errors of a rung beside those of its parent, its drop, its parameters; without a heading.
+[[nodiscard]] Blocks rung_blocks(const Ladder& ladder, const Rung& rung);
 /// Error before and after of a rung and its parent, per channel in its unit; what the fit of the rung warns of.
 [[nodiscard]] Blocks blocks_of(const Ladder& ladder, const Rung& rung, const Fit& fit);
 

@@ -229,10 +229,13 @@ class Judge {
     if (d.verdict.starts_with("Not ")) {  // decided, finished
       say(VerdictKind::not_decided, d.verdict, command("discover") + " --round-limit 3600");
     } else if (!d.unexplained_port.empty()) {
-      say(VerdictKind::unknown_form,
-          fmt::format("something is missing that depends on {}: a force on {} that no effect of the library explains",
-                      d.unexplained_quantity, d.unexplained_port),
-          "look at the picture, then write the effect as one line of the study: misfit help study");
+      const std::string unknown =
+          fmt::format("something is {}missing that depends on {}: a force on {} that no effect of the library explains",
+                      climbed_ ? "still " : "", d.unexplained_quantity, d.unexplained_port);
+      const std::string next = "look at the picture, then write the effect as one line of the study: misfit help study";
+      climbed_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
+    } else if (climbed_ && d.verdict.starts_with("No effect accepted")) {
+      added("whether more is missing is not decided" + best_refused(d), "", VerdictKind::not_decided);
     } else if (d.verdict.starts_with("No effect")) {  // accepted, or none suits the system
       say(VerdictKind::not_decided, d.verdict, "");
     } else if (climbed_) {
@@ -241,10 +244,16 @@ class Judge {
       nothing_missing(d);
     }
   }
+  /// "; best candidate …" out of the verdict of a search that accepts nothing.
+  [[nodiscard]] static std::string best_refused(const Discovery& d) {
+    const std::size_t at = d.verdict.find("; ");
+    return at == std::string::npos ? "" : d.verdict.substr(at, d.verdict.find_last_not_of('.') + 1 - at);
+  }
   void nothing_missing(const Discovery& d) {
     const std::string tested = fmt::format("no effect is found missing: none of {} that were tested is needed", d.candidates.size());
     const auto force = fit_->driven ? force_strength(fit_->force) : std::nullopt;
-    if (force) {
+    constexpr double sigmas = 2.0;
+    if (force && force->value > sigmas * force->sigma) {
       say(VerdictKind::random_force, tested + ", and what drives the motion is a random force of " + shown(*force), "");
     } else {
       say(VerdictKind::nothing_missing, tested, "");
@@ -258,11 +267,11 @@ class Judge {
     }
     return join_words(names);
   }
-  void added(const std::string& rest, const std::string& next) {
+  void added(const std::string& rest, const std::string& next, VerdictKind kind = VerdictKind::effect_added) {
     const std::string names = names_added();
     const bool one = in_.ladder->rungs.size() == 2;
     const std::string change = out_.errors.empty() ? "" : (one ? "with it " : "with them ") + change_in_words(out_.errors.front()) + "; ";
-    say(VerdictKind::effect_added, names + (one ? " was" : " were") + " missing: " + change + rest, next);
+    say(kind, names + (one ? " was" : " were") + " missing: " + change + rest, next);
     out_.sentence.replace(0, names.size(), names);  // names of effects keep their small letters
   }
 

@@ -5,10 +5,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <optional>
 
+#include "misfit/fit/regression/linear_windows.h"
+#include "misfit/inference/states.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -32,129 +33,334 @@ Spread spread_of(const std::vector<double>& values) {
   return {mean, count > 0.0 ? std::sqrt(squares / count) : 0.0};
 }
 
-/// Crossings of the mean, counted once the value has been 0.3 sigma beyond it on either side.
-std::size_t crossings(const std::vector<double>& y, const Spread& spread) {
-  constexpr double beyond = 0.3;
-  std::size_t count = 0;
-  int side = 0;
-  for (const double v : y) {
-    const double away = v - spread.mean;
-    const int now = away > beyond * spread.sigma ? 1 : away < -beyond * spread.sigma ? -1 : 0;
-    if (now == 0) continue;
-    count += side != 0 && now != side ? 1U : 0U;
-    side = now;
-  }
-  return count;
-}
-
-struct Regression {
-  double a1 = 0.0, a2 = 0.0, constant = 0.0;
-  std::vector<double> inputs;
-};
-
-/// Means of an input over stretches of rows.
-class Means {
- public:
-  explicit Means(const std::vector<double>& u) : sum_(u.size() + 1, 0.0), count_(u.size() + 1, 0.0) {
-    for (std::size_t k = 0; k < u.size(); ++k) {
-      const bool known = std::isfinite(u[k]);
-      sum_[k + 1] = sum_[k] + (known ? u[k] : 0.0);
-      count_[k + 1] = count_[k] + (known ? 1.0 : 0.0);
-    }
-  }
-  /// Over rows from … to − 1; NaN if none is known.
-  [[nodiscard]] double operator()(std::size_t from, std::size_t to) const { return (sum_[to] - sum_[from]) / (count_[to] - count_[from]); }
-
- private:
-  std::vector<double> sum_, count_;
-};
-
-/// y(k) = a1 y(k − d) + a2 y(k − 2d) + Σ (c1 u1 + c2 u2) + constant, u1 and u2 the means of an input over the last d rows and those before
-/// (an input may change many times between the rows compared), over the rows where nothing is missing and no gap lies between.
-std::optional<Regression> regress(const GuessData& data, std::size_t d, double step, const Spread& spread) {
-  const auto inputs = static_cast<Eigen::Index>(data.inputs.size());
-  const Eigen::Index n = 3 + 2 * inputs;
-  std::vector<Means> means;
-  for (const auto& u : data.inputs) means.emplace_back(u);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n), row(n);
-  Eigen::Index rows = 0;
-  const double expected = step * static_cast<double>(d);
-  constexpr double tolerance = 0.2;
-  for (std::size_t k = 2 * d; k < data.t.size(); ++k) {
-    const double first = data.t[k - d] - data.t[k - 2 * d], second = data.t[k] - data.t[k - d];
-    if (std::abs(first - expected) > tolerance * expected || std::abs(second - expected) > tolerance * expected) continue;
-    row[0] = (data.y[k - d] - spread.mean) / spread.sigma;
-    row[1] = (data.y[k - 2 * d] - spread.mean) / spread.sigma;
-    row[2] = 1.0;
-    for (Eigen::Index i = 0; i < inputs; ++i) {
-      const Means& mean = means[i];
-      row[3 + 2 * i] = mean(k - d, k);
-      row[4 + 2 * i] = mean(k - 2 * d, k - d);
-    }
-    const double y = (data.y[k] - spread.mean) / spread.sigma;
-    if (!row.allFinite() || !std::isfinite(y)) continue;
-    normal.noalias() += row * row.transpose();
-    right += y * row;
-    ++rows;
-  }
-  if (rows < 4 * n) return std::nullopt;
-  const Eigen::VectorXd solved = normal.completeOrthogonalDecomposition().solve(right);
-  if (!solved.allFinite()) return std::nullopt;
-  Regression out{solved[0], solved[1], solved[2] * spread.sigma, {}};
-  for (Eigen::Index i = 3; i < n; i += 2) out.inputs.push_back((solved[i] + solved[i + 1]) * spread.sigma);
+/// Values in sigmas from their mean.
+std::vector<double> standard(const std::vector<double>& values, const Spread& spread) {
+  std::vector<double> out;
+  out.reserve(values.size());
+  for (const double v : values) out.push_back((v - spread.mean) / spread.sigma);
   return out;
 }
 
-/// Gains and rest of the static answer.
-void set_static(const Regression& r, const Spread& spread, LinearGuess& out) {
-  const double answer = 1.0 - r.a1 - r.a2;
-  for (std::size_t i = 0; i < r.inputs.size(); ++i) out.gain[i] = r.inputs[i] / answer;
-  out.rest = spread.mean + r.constant / answer;
+/// The last known value where one is missing, 0 before the first; of a smooth driver the mean over the interval to the next sample.
+Eigen::VectorXd known_everywhere(std::vector<double> values, bool smooth) {
+  double last = 0.0;
+  for (double& v : values) last = v = std::isfinite(v) ? v : last;
+  for (std::size_t k = 0; smooth && k + 1 < values.size(); ++k) values[k] = 0.5 * (values[k] + values[k + 1]);
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// Means over `count` rows each.
+std::vector<double> thinned(const std::vector<double>& values, std::size_t count) {
+  if (count <= 1) return values;
+  std::vector<double> out;
+  for (std::size_t k = 0; k + count <= values.size(); k += count) {
+    double sum = 0.0;
+    for (std::size_t i = k; i < k + count; ++i) sum += values[i];
+    out.push_back(sum / static_cast<double>(count));
+  }
+  return out;
+}
+
+/// A model found: which terms (drivers, then the constant), their coefficients, and the mean square it leaves in the windows held out.
+struct Found {
+  std::vector<Eigen::Index> terms;
+  Poles poles;
+  double mean_square = 0.0;
+};
+
+/// Fits of one target (an output, or its measured rate) over poles on a grid.
+class WindowSearch {
+ public:
+  WindowSearch(const std::vector<double>& t, const std::vector<double>& y, std::vector<GuessDriver> drivers);
+
+  [[nodiscard]] bool possible() const { return record_.windows.size() > 1 && target_.sigma > 0.0; }
+  /// The best model of that order; `pulled`: with a pull back to rest.
+  [[nodiscard]] Found best(int order, bool pulled) const;
+  [[nodiscard]] double excess(double mean_square) const { return std::max(mean_square - noise_, least_excess_ * noise_) + 1e-12; }
+  /// Coefficients in the units given: of the drivers, then the constant.
+  [[nodiscard]] std::vector<double> coefficients(const Found& found) const;
+
+ private:
+  using Fits = std::vector<FittedAndHeldOut>;
+  [[nodiscard]] Fits on_grid(int order, bool pulled) const;
+  [[nodiscard]] Found best_of(const Fits& fits, const std::vector<Eigen::Index>& terms) const;
+  void add_drivers(const Fits& fits, bool outputs, Found& found) const;
+  void drop_drivers(const Fits& fits, Found& found) const;
+  void refine(Found& found) const;
+
+  static constexpr double least_excess_ = 0.3;
+  std::vector<GuessDriver> drivers_;
+  WindowedRecord record_;
+  Spread target_;
+  std::vector<Spread> spreads_;
+  double noise_ = 0.0;
+};
+
+WindowSearch::WindowSearch(const std::vector<double>& t, const std::vector<double>& y, std::vector<GuessDriver> drivers)
+    : drivers_(std::move(drivers)), target_(spread_of(y)) {
+  constexpr std::size_t longest = 4000;
+  if (!(target_.sigma > 0.0) || y.size() < 3) return;
+  const std::size_t together = window_length(standard(y, target_)) / longest + 1;
+  record_.t = thinned(t, together);
+  record_.y = thinned(standard(y, target_), together);
+  record_.drivers.resize(static_cast<Eigen::Index>(record_.t.size()), static_cast<Eigen::Index>(drivers_.size()));
+  for (std::size_t i = 0; i < drivers_.size(); ++i) {
+    Spread spread = spread_of(drivers_[i].values);
+    if (!(spread.sigma > 0.0)) spread.sigma = 1.0;
+    const Eigen::VectorXd all = known_everywhere(standard(drivers_[i].values, spread), drivers_[i].smooth);
+    const std::vector<double> mean = thinned({all.begin(), all.end()}, together);
+    record_.drivers.col(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::VectorXd>(mean.data(), record_.drivers.rows());
+    spreads_.push_back(spread);
+  }
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < record_.t.size(); ++k) steps.push_back(record_.t[k] - record_.t[k - 1]);
+  record_.step = median(steps);
+  record_.windows = windows_of(record_.t, record_.step, window_length(record_.y));
+  const double sigma = measurement_noise(record_.y);
+  noise_ = std::isfinite(sigma) ? sigma * sigma : 0.0;
+}
+
+std::vector<double> spaced(double from, double to, int count) {
+  std::vector<double> out;
+  for (int i = 0; i < count; ++i) out.push_back(from * std::pow(to / from, static_cast<double>(i) / (count - 1)));
+  return out;
+}
+
+WindowSearch::Fits WindowSearch::on_grid(int order, bool pulled) const {
+  const double window = record_.step * static_cast<double>(window_length(record_.y));
+  const std::vector<double> rates = spaced(0.05 / window, 1.5 / record_.step, 28);
+  Fits out;
+  if (order == 1) {
+    if (!pulled) out.push_back(squares_of(record_, {1, 0.0, 0.0}));
+    for (const double rate : rates) {
+      if (pulled) out.push_back(squares_of(record_, {1, 0.0, rate}));
+    }
+    return out;
+  }
+  if (!pulled) {
+    out.push_back(squares_of(record_, {2, 0.0, 0.0}));
+    for (const double rate : rates) out.push_back(squares_of(record_, {2, 0.0, rate}));
+    return out;
+  }
+  const double swing = 4.0 * std::numbers::pi / window;  // two swings are a window
+  for (const double omega : spaced(0.25 * swing, std::min(8.0 * swing, 1.0 / record_.step), 15)) {
+    for (const double zeta : {0.01, 0.05, 0.15, 0.35, 0.7, 1.1, 2.0, 4.0})
+      out.push_back(squares_of(record_, {2, omega * omega, 2.0 * zeta * omega}));
+  }
+  return out;
+}
+
+/// The poles by the windows fitted, the error by those held out.
+Found WindowSearch::best_of(const Fits& fits, const std::vector<Eigen::Index>& terms) const {
+  Found out{terms, {}, 0.0};
+  double least = HUGE_VAL;
+  for (const FittedAndHeldOut& fit : fits) {
+    const Eigen::VectorXd solved = fit.fitted.solve(terms);
+    const double own = fit.fitted.mean_square(solved);
+    if (!(own < least)) continue;
+    least = own;
+    out.poles = fit.poles;
+    out.mean_square = fit.held_out.mean_square(solved);
+  }
+  return out;
+}
+
+void WindowSearch::add_drivers(const Fits& fits, bool outputs, Found& found) const {
+  constexpr double enough = 0.8, enough_of_output = 0.5;
+  for (;;) {
+    std::optional<Found> best;
+    for (std::size_t i = 0; i < drivers_.size(); ++i) {
+      const auto term = static_cast<Eigen::Index>(i);
+      if (drivers_[i].output != outputs || std::find(found.terms.begin(), found.terms.end(), term) != found.terms.end()) continue;
+      std::vector<Eigen::Index> terms = found.terms;
+      terms.push_back(term);
+      const Found with = best_of(fits, terms);
+      if (!best || with.mean_square < best->mean_square) best = with;
+    }
+    if (!best) return;
+    const bool first = !outputs && found.terms.size() == 1;
+    if (!first && !(excess(best->mean_square) < (outputs ? enough_of_output : enough) * excess(found.mean_square))) return;
+    found = *best;
+  }
+}
+
+/// What is not needed any more once another driver is there.
+void WindowSearch::drop_drivers(const Fits& fits, Found& found) const {
+  constexpr double enough = 0.8, enough_of_output = 0.5;
+  for (std::size_t i = 1; i < found.terms.size() && found.terms.size() > 2;) {
+    std::vector<Eigen::Index> terms = found.terms;
+    terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(i));
+    const Found without = best_of(fits, terms);
+    const bool output = drivers_[static_cast<std::size_t>(found.terms[i])].output;
+    if (excess(found.mean_square) < (output ? enough_of_output : enough) * excess(without.mean_square)) {
+      ++i;
+    } else {
+      found = without;
+    }
+  }
+}
+
+/// Finer poles about the best ones.
+void WindowSearch::refine(Found& found) const {
+  for (double factor = 1.15; factor > 1.01; factor = std::sqrt(factor)) {
+    Fits around;
+    for (const double s : {1.0 / (factor * factor), 1.0, factor * factor}) {
+      for (const double d : {1.0 / factor, 1.0, factor})
+        around.push_back(squares_of(record_, {found.poles.order, s * found.poles.stiffness, d * found.poles.damping}));
+    }
+    const Found finer = best_of(around, found.terms);
+    found.poles = finer.poles;
+    found.mean_square = finer.mean_square;
+  }
+}
+
+Found WindowSearch::best(int order, bool pulled) const {
+  const Fits fits = on_grid(order, pulled);
+  Found found = best_of(fits, {static_cast<Eigen::Index>(drivers_.size())});
+  add_drivers(fits, false, found);
+  add_drivers(fits, true, found);
+  drop_drivers(fits, found);
+  refine(found);
+  return found;
+}
+
+std::vector<double> WindowSearch::coefficients(const Found& found) const {
+  FittedAndHeldOut fit = squares_of(record_, found.poles);
+  fit.fitted += fit.held_out;
+  const Eigen::VectorXd solved = fit.fitted.solve(found.terms);
+  std::vector<double> out(drivers_.size() + 1, 0.0);
+  const double pull = found.poles.order == 1 ? found.poles.damping : found.poles.stiffness;
+  out.back() = target_.sigma * solved[solved.size() - 1] + pull * target_.mean;
+  for (std::size_t i = 0; i < drivers_.size(); ++i) {
+    out[i] = solved[static_cast<Eigen::Index>(i)] * target_.sigma / spreads_[i].sigma;
+    out.back() -= out[i] * spreads_[i].mean;
+  }
+  return out;
+}
+
+LinearGuess none_found(const GuessData& data) {
+  LinearGuess out;
+  const Spread spread = spread_of(data.y);
+  out.rest = spread.mean;
+  out.tau = 0.1 * (data.t.back() - data.t.front());
+  for (const auto& driver : data.drivers) {
+    const double sigma = spread_of(driver.values).sigma;
+    out.gain.push_back(driver.output || !(sigma > 0.0) || !(spread.sigma > 0.0) ? 0.0 : spread.sigma / sigma);
+  }
+  out.why = "no linear model could be estimated from the data: tau is a tenth of the record";
+  return out;
+}
+
+/// Of a motion that nothing damps: still positive, so that it may be estimated.
+double positive_damping(double damping, const GuessData& data) { return std::max(damping, 1e-2 / (data.t.back() - data.t.front())); }
+
+/// Static gains and rest, where the model is pulled back.
+void divide(double by, LinearGuess& out) {
+  for (double& gain : out.gain) gain /= by;
+  out.rest /= by;
+}
+
+std::string words_of_oscillator(double stiffness, double damping) {
+  const double omega = std::sqrt(stiffness);
+  return fmt::format("natural frequency about {:.3g} Hz, damping ratio {:.3g}", omega / (2.0 * std::numbers::pi), 0.5 * damping / omega);
+}
+
+/// How much lower the error of `a` is than that of `b`, in per cent.
+double percent_lower(const WindowSearch& search, const Found& a, const Found& b) {
+  return 100.0 * (1.0 - std::sqrt(search.excess(a.mean_square) / search.excess(b.mean_square)));
+}
+
+std::string compared(double percent) {
+  return percent < 1.0 ? std::string("does not lower the held-out error")
+                       : fmt::format("lowers the held-out error by only {:.0f} %", percent);
+}
+
+/// With or without a pull back to rest: without, if the error is hardly higher.
+Found simplest(const WindowSearch& search, int order) {
+  const Found pulled = search.best(order, true), free = search.best(order, false);
+  constexpr double higher = 1.005;
+  return free.mean_square < higher * pulled.mean_square ? free : pulled;
+}
+
+/// Its rate is measured: y'' from the rate's own equation, in which y stands as a driver.
+std::optional<LinearGuess> with_measured_rate(const GuessData& data) {
+  GuessData of_rate = data;
+  of_rate.drivers.push_back({data.y, true, true});
+  const WindowSearch search(data.t, data.rate, of_rate.drivers);
+  if (!search.possible()) return std::nullopt;
+  const Found found = simplest(search, 1);
+  LinearGuess out;
+  out.order = 2;
+  out.gain = search.coefficients(found);
+  out.rest = out.gain.back();
+  out.gain.pop_back();
+  out.stiffness = -out.gain.back();
+  out.gain.pop_back();
+  out.damping = positive_damping(found.poles.damping, data);
+  out.integrates = !(out.stiffness > 0.0);
+  const std::string measured = "second order, its rate is measured: ";
+  if (out.integrates) {
+    out.stiffness = 0.0;
+    out.why = measured + fmt::format("no pull back to a rest; time constant of the rate about {:.3g} s", 1.0 / out.damping);
+    return out;
+  }
+  divide(out.stiffness, out);
+  out.why = measured + words_of_oscillator(out.stiffness, out.damping);
+  return out;
+}
+
+LinearGuess first_order(const WindowSearch& search, const Found& found, double lower) {
+  LinearGuess out;
+  out.gain = search.coefficients(found);
+  out.rest = out.gain.back();
+  out.gain.pop_back();
+  out.integrates = found.poles.damping == 0.0;
+  if (out.integrates) {
+    out.why = "first order without a pull back to a rest (it integrates): a second order " + compared(lower);
+    return out;
+  }
+  out.tau = 1.0 / found.poles.damping;
+  divide(found.poles.damping, out);
+  out.why = fmt::format("first order, time constant about {:.3g} s: a second order {}", out.tau, compared(lower));
+  return out;
+}
+
+LinearGuess second_order(const GuessData& data, const WindowSearch& search, const Found& found, double lower) {
+  LinearGuess out;
+  out.order = 2;
+  out.gain = search.coefficients(found);
+  out.rest = out.gain.back();
+  out.gain.pop_back();
+  out.integrates = found.poles.stiffness == 0.0;
+  out.damping = positive_damping(found.poles.damping, data);
+  out.stiffness = found.poles.stiffness;
+  const std::string reason = fmt::format("; its held-out error is {:.0f} % below that of a first order", lower);
+  if (out.integrates) {
+    out.why = "second order without a pull back to a rest" + reason;
+    return out;
+  }
+  divide(out.stiffness, out);
+  out.why = "second order, " + words_of_oscillator(out.stiffness, out.damping) + reason;
+  return out;
 }
 
 }  // namespace
 
 LinearGuess guess_linear(const GuessData& data) {
-  LinearGuess out;
-  out.gain.assign(data.inputs.size(), 0.0);
-  const Spread spread = spread_of(data.y);
-  out.rest = spread.mean;
-  const double length = data.t.back() - data.t.front();
-  out.tau = 0.1 * length;
-  out.why = "no linear model could be estimated from the data: tau is a tenth of the record";
-  if (!(spread.sigma > 0.0) || data.t.size() < 3) return out;
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < data.t.size(); ++k) steps.push_back(data.t[k] - data.t[k - 1]);
-  const double step = median(steps);
-  const double swing = 2.0 * length / static_cast<double>(std::max<std::size_t>(crossings(data.y, spread), 1));
-  constexpr double samples_per_period = 10.0;
-  const auto d = static_cast<std::size_t>(
-      std::clamp(std::round(swing / samples_per_period / step), 1.0, static_cast<double>(data.t.size()) / 20.0 + 1.0));
-  const auto r = regress(data, d, step, spread);
-  if (!r) return out;
-  const double h = step * static_cast<double>(d);
-  const std::complex<double> root = std::sqrt(std::complex<double>(0.25 * r->a1 * r->a1 + r->a2));
-  const std::complex<double> slow = 0.5 * r->a1 + root;
-  if (!(std::abs(slow) < 1.02) || std::abs(slow) < 1e-6) return out;
-  const std::complex<double> pole = std::log(slow) / h;
-  const double omega = std::abs(pole), zeta = -pole.real() / omega;
-  constexpr double max_damping_ratio = 0.9;
-  if (std::abs(slow.imag()) > 1e-9 && zeta < max_damping_ratio) {
-    out.order = 2;
-    out.stiffness = omega * omega;
-    out.damping = std::max(2.0 * zeta * omega, 1e-3 * omega);
-    set_static(*r, spread, out);
-    out.why = fmt::format("oscillatory: natural frequency about {:.3g} Hz, damping ratio {:.3g}", omega / (2.0 * std::numbers::pi),
-                          std::max(zeta, 0.0));
-    return out;
+  if (!data.rate.empty()) {
+    if (const auto known = with_measured_rate(data)) return *known;
   }
-  const double modulus = std::abs(slow);
-  if (!(slow.real() > 0.0) || !(modulus < 0.9999)) return out;
-  out.tau = -h / std::log(modulus);
-  set_static(*r, spread, out);
-  out.why = fmt::format("not oscillatory: time constant about {:.3g} s", out.tau);
-  return out;
+  const WindowSearch search(data.t, data.y, data.drivers);
+  if (!search.possible()) return none_found(data);
+  const Found first = simplest(search, 1), second = simplest(search, 2);
+  const double lower = percent_lower(search, second, first);
+  constexpr double half = 0.5, most_damped = 0.9;  // of the mean square; damping ratio
+  const bool swings = second.poles.damping < 2.0 * most_damped * std::sqrt(second.poles.stiffness) || second.poles.stiffness == 0.0;
+  const bool oscillates = swings && search.excess(second.mean_square) < half * search.excess(first.mean_square);
+  const LinearGuess out = oscillates ? second_order(data, search, second, lower) : first_order(search, first, lower);
+  const bool numbers = std::isfinite(out.rest + out.tau + out.damping + out.stiffness) &&
+                       std::all_of(out.gain.begin(), out.gain.end(), [](double g) { return std::isfinite(g); });
+  return numbers ? out : none_found(data);
 }
 
 }  // namespace misfit

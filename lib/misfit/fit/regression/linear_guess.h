@@ -1,33 +1,44 @@
 #pragma once
 
-// References
-//   [L]  L. Ljung, System Identification (1999), section 4.2: ARX models by linear regression; 7.3: their bias under measurement noise.
-
 #include <string>
 #include <vector>
 
 namespace misfit {
 
-/// One output with what drives it; NaN: missing.
-struct GuessData {
-  std::vector<double> t;                    ///< [s], increasing
-  std::vector<double> y;                    ///< [output]
-  std::vector<std::vector<double>> inputs;  ///< each as long as t
+/// What may drive an output.
+struct GuessDriver {
+  std::vector<double> values;  ///< as long as t; NaN: missing
+  bool smooth = false;         ///< measured: straight between samples; else held until the next
+  bool output = false;         ///< another output: taken only if it explains much
 };
 
-/// A linear model to start from: order 1, tau y' = Σ gain u + rest − y, or order 2, y'' = −stiffness (y − rest − Σ gain u) − damping y'.
+/// One output with what may drive it; NaN: missing.
+struct GuessData {
+  std::vector<double> t;     ///< [s], increasing
+  std::vector<double> y;     ///< [output]
+  std::vector<double> rate;  ///< [output/s], its measured rate; empty: none
+  std::vector<GuessDriver> drivers;
+};
+
+/// A linear model to start from:
+///   order 1: tau y' = Σ gain u + rest − y;  order 2: y'' = −stiffness (y − rest − Σ gain u) − damping y';
+///   integrates: without the pull back to rest, y' = Σ gain u + rest, or y'' = Σ gain u + rest − damping y'.
 struct LinearGuess {
   int order = 1;
+  bool integrates = false;
   double tau = 1.0;                       ///< [s], order 1
   double stiffness = 0.0, damping = 0.0;  ///< [1/s^2], [1/s], order 2
-  double rest = 0.0;                      ///< [output]
-  std::vector<double> gain;               ///< static, per input [output/input]
+  double rest = 0.0;                      ///< [output], or [output/s^order] where it integrates
+  std::vector<double> gain;               ///< per driver, static or (integrates) to y^(order); 0: that driver is not in the model
   std::string why;                        ///< in words
 };
 
-/// Regression of y on its own two last values and the inputs [L], at about ten samples per swing (mean crossings): a complex pair of poles
-/// below 0.9 of critical damping makes order 2, else the slower pole order 1. Only a start: noise biases it towards quick decay [L, 7.3].
-/// Where the regression has no stable answer, order 1 with a tenth of the record as tau, and gain 0.
+/// Order, drivers and parameters by the data: models are fitted over every second window of about two swings, each with its own initial
+/// state (linear_windows.h), and compared over the windows between. A driver is in the model if the held-out error (mean square less the
+/// measurement noise, at least 0.3 of it) falls with it by 20 %, another output if it falls by half; of inputs the best one always is.
+/// Order 2 is taken if the rate is measured, or if it halves the held-out error of order 1 and its damping ratio is below 0.9 (two time
+/// constants are one and a lag, which discovery names); a pull back to rest if the mean square is 0.5 % higher without. Where nothing can
+/// be fitted: order 1 with a tenth of the record as tau, and every input with the gain σ(y)/σ(u).
 [[nodiscard]] LinearGuess guess_linear(const GuessData& data);
 
 }  // namespace misfit

@@ -13,6 +13,7 @@
 #include "misfit/formula/syntax.h"
 #include "misfit/inference/states.h"
 #include "misfit/model/limits.h"
+#include "misfit/model/role_units.h"
 
 namespace misfit {
 namespace {
@@ -46,10 +47,10 @@ void refuse_extremes(const RecordingSurvey& survey) {
 struct Room {
   int states = kMaxStates, outputs = kMaxOutputs, parameters = kMaxConstants;
 
-  bool take(const GuessedOutput& output, std::size_t inputs) {
+  bool take(const GuessedOutput& output) {
     const bool oscillatory = output.guess.order == 2;
     const int of_states = oscillatory ? 2 : 1, of_outputs = oscillatory && !output.rate.empty() ? 2 : 1;
-    const int of_parameters = (oscillatory ? 3 : 2) + static_cast<int>(inputs);
+    const int of_parameters = (oscillatory ? 3 : 2) + static_cast<int>(output.gains.size());
     if (of_states > states || of_outputs > outputs || of_parameters > parameters) return false;
     states -= of_states;
     outputs -= of_outputs;
@@ -68,17 +69,16 @@ void note_left_out(const char* what, const std::vector<std::string>& names, cons
 }
 
 /// Names for what the equation of an output needs, each unlike all others.
-void name_parts(const GuessedModel& model, std::set<std::string>& taken, GuessedOutput& output) {
-  const auto part = [&](const char* end) { return unique_name(output.name + end, taken); };
-  if (output.guess.order == 2) {
+void name_parts(std::set<std::string>& taken, GuessedOutput& output) {
+  const auto part = [&](const std::string& end) { return unique_name(output.name + end, taken); };
+  const bool second = output.guess.order == 2, pulled = !output.guess.integrates;
+  if (second) {
     output.rate_state = output.rate.empty() ? part("_rate") : output.rate;
-    output.stiffness = part("_stiffness");
     output.damping = part("_damping");
-  } else {
-    output.tau = part("_tau");
   }
-  for (const auto& input : model.inputs) output.gains.push_back(unique_name(output.name + "_gain_" + input, taken));
-  output.rest = part("_rest");
+  if (pulled) (second ? output.stiffness : output.tau) = part(second ? "_stiffness" : "_tau");
+  for (auto& gain : output.gains) gain.name = part("_gain_" + gain.of);
+  output.rest = part(pulled ? "_rest" : "_offset");
 }
 
 void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedModel& model, GuessData& data) {
@@ -91,26 +91,77 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
     model.inputs.push_back(c->name);
     model.input_units.push_back(si_unit(c->unit));
     const bool steps = c->held > 0.2;
+    model.holds.emplace_back(c->measured ? "first_order" : "zero_order");
     model.hold_reasons.emplace_back(
-        steps ? "" : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
-    data.inputs.push_back(table.values(c->name, model.input_units.back()));
+        c->measured ? "; it varies smoothly, so straight between samples"
+        : steps     ? ""
+                    : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
+    data.drivers.push_back({table.values(c->name, model.input_units.back()), c->measured, false});
   }
   note_left_out("inputs", left_out, fmt::format("a system has at most {} inputs", kMaxInputs), model.remarks);
 }
 
-GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, const ColumnSurvey& c, GuessData& data) {
+/// A measured column and what the model says of it.
+struct Candidate {
+  const ColumnSurvey* column;
+  std::vector<double> values;  ///< SI
+};
+
+/// Other outputs as drivers of one: only where every output with all its terms has room in a system.
+bool may_couple(std::size_t outputs, std::size_t inputs) {
+  const int n = static_cast<int>(outputs), terms = n + 2 + static_cast<int>(inputs);
+  return n > 1 && 2 * n <= std::min(kMaxStates, kMaxOutputs) && n * terms <= kMaxConstants;
+}
+
+std::string unit_ratio(const std::string& above, const std::string& below) { return bind_unit("{a}/{b}", {{"a", above}, {"b", below}}); }
+
+void take_gains(const GuessedModel& model, const std::vector<Candidate>& others, GuessedOutput& output) {
+  const bool second = output.guess.order == 2;
+  std::string driven = output.unit;
+  if (output.guess.integrates) driven = second ? rate_unit(rate_unit(output.unit)) : rate_unit(output.unit);
+  output.rest_unit = driven;
+  output.rest_doc = output.guess.integrates ? "rate of change without input"
+                    : model.inputs.empty()  ? "equilibrium"
+                                            : "output without input";
+  for (std::size_t i = 0; i < output.guess.gain.size(); ++i) {
+    if (output.guess.gain[i] == 0.0) continue;
+    const bool input = i < model.inputs.size();
+    const Candidate* other = input ? nullptr : &others[i - model.inputs.size()];
+    const std::string of = input ? model.inputs[i] : other->column->name,
+                      unit = input ? model.input_units[i] : si_unit(other->column->unit);
+    const std::string doc = output.guess.integrates ? "what " + of + " adds to the rate of change" : "static gain of " + of;
+    output.gains.push_back({"", of, unit_ratio(driven, unit), doc, output.guess.gain[i]});
+  }
+}
+
+/// `data`: time and inputs; `others`: the outputs that may drive this one.
+GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, const Candidate& of, GuessData data) {
   GuessedOutput output;
+  const ColumnSurvey& c = *of.column;
   output.name = c.name;
   output.unit = si_unit(c.unit);
-  data.y = table.values(c.name, output.unit);
+  data.y = of.values;
   output.noise = noise_of(data.y, c, output.unit);
-  output.guess = guess_linear(data);
   for (const ColumnSurvey* r : survey.of_use(ColumnUse::rate)) {
     if (r->rate_of != c.name) continue;
     output.rate = r->name;
     output.rate_unit = rate_unit(output.unit);
-    output.rate_noise = noise_of(table.values(r->name, output.rate_unit), *r, output.rate_unit);
+    data.rate = table.values(r->name, output.rate_unit);
+    output.rate_noise = noise_of(data.rate, *r, output.rate_unit);
   }
+  output.guess = guess_linear(data);
+  return output;
+}
+
+GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, const std::vector<Candidate>& all, std::size_t which,
+                           const GuessedModel& model, GuessData data) {
+  std::vector<Candidate> others;
+  for (std::size_t i = 0; may_couple(all.size(), model.inputs.size()) && i < all.size(); ++i) {
+    if (i != which) others.push_back(all[i]);
+  }
+  for (const Candidate& other : others) data.drivers.push_back({other.values, true, true});
+  GuessedOutput output = guess_output(survey, table, all[which], std::move(data));
+  take_gains(model, others, output);
   return output;
 }
 
@@ -137,14 +188,16 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
   for (const auto& c : survey.columns) taken.insert(c.name);
   Room room;
   std::vector<std::string> left_out;
-  for (const ColumnSurvey* c : survey.of_use(ColumnUse::output)) {
+  std::vector<Candidate> outputs;
+  for (const ColumnSurvey* c : survey.of_use(ColumnUse::output)) outputs.push_back({c, longest->values(c->name, si_unit(c->unit))});
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
     const bool none_fits = room.states == 0 || room.outputs == 0;
-    GuessedOutput output = none_fits ? GuessedOutput{} : guess_output(survey, *longest, *c, data);
-    if (none_fits || !room.take(output, model.inputs.size())) {
-      left_out.push_back(c->name);
+    GuessedOutput output = none_fits ? GuessedOutput{} : guess_output(survey, *longest, outputs, i, model, data);
+    if (none_fits || !room.take(output)) {
+      left_out.push_back(outputs[i].column->name);
       continue;
     }
-    name_parts(model, taken, output);
+    name_parts(taken, output);
     model.outputs.push_back(std::move(output));
   }
   note_left_out("outputs", left_out,

@@ -8,20 +8,28 @@
 
 namespace misfit {
 
+/// What one driver does to an output.
+struct GuessedGain {
+  std::string name, of;  ///< the parameter; the input or output that drives
+  std::string unit, doc;
+  double value = 0.0;
+};
+
 /// An output with the linear model guessed for it.
 struct GuessedOutput {
   std::string name, unit;                     ///< SI
   std::string rate, rate_unit;                ///< column that is its measured rate; empty: none
   std::string rate_state;                     ///< order 2: the state that is its rate
   std::string stiffness, damping, tau, rest;  ///< parameters of its equation
-  std::vector<std::string> gains;             ///< one per input
-  double noise = 0.0, rate_noise = 0.0;       ///< measurement noise [unit]
+  std::string rest_unit, rest_doc;
+  std::vector<GuessedGain> gains;        ///< of what drives it
+  double noise = 0.0, rate_noise = 0.0;  ///< measurement noise [unit]
   LinearGuess guess;
 };
 
 struct GuessedModel {
   std::vector<std::string> inputs, input_units;  ///< SI
-  std::vector<std::string> hold_reasons;
+  std::vector<std::string> holds, hold_reasons;
   std::vector<GuessedOutput> outputs;
   std::vector<std::string> remarks;  ///< which columns are not in it, and why: one sentence each
 };

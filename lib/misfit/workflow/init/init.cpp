@@ -7,6 +7,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/written_files.h"
 #include "misfit/report/recording_figure.h"
+#include "misfit/workflow/init/drivers.h"
 #include "misfit/workflow/init/names.h"
 #include "misfit/workflow/init/text.h"
 
@@ -42,6 +43,7 @@ void draw(const RecordingSurvey& survey, const GuessedModel& model, const std::v
 FirstStudy init_study(const fs::path& data, const RecordingChoice& choice, const fs::path& folder, bool force) {
   FirstStudy out;
   out.survey = survey_recording(data, names_of_formulas(), choice);
+  if (choice.inputs.empty()) take_measured_inputs(out.survey);
   out.model = guess_model(out.survey);
   out.survey.remarks.insert(out.survey.remarks.end(), out.model.remarks.begin(), out.model.remarks.end());
   out.parts = part_names(data, out.survey.parts.size());

@@ -20,8 +20,6 @@ std::string number(double value) {
   return text;
 }
 
-std::string ratio(const std::string& above, const std::string& below) { return bind_unit("{a}/{b}", {{"a", above}, {"b", below}}); }
-
 /// Within a factor of 1000.
 std::string positive_bounds(double value) { return fmt::format("bounds = [{}, {}]", number(1e-3 * value), number(1e3 * value)); }
 
@@ -30,32 +28,36 @@ std::string parameter(const std::string& name, const std::string& unit, double v
                      more.empty() ? "" : ", " + more, toml_string(doc));
 }
 
-std::string driven_by(const GuessedModel& model, const GuessedOutput& output) {
-  std::string sum;
-  for (std::size_t i = 0; i < model.inputs.size(); ++i) sum += fmt::format(" + {}*{}", output.gains[i], model.inputs[i]);
+std::string driven_by(const GuessedOutput& output) {
+  std::string sum = output.rest;
+  for (const auto& gain : output.gains) sum += fmt::format(" + {}*{}", gain.name, gain.of);
   return sum;
 }
 
-std::string parameters_of(const GuessedModel& model, const GuessedOutput& output) {
+std::string parameters_of(const GuessedOutput& output) {
   const LinearGuess& g = output.guess;
   std::string text = fmt::format("# {}: {}.\n", output.name, g.why);
-  if (g.order == 2) {
+  if (!output.stiffness.empty())
     text += parameter(output.stiffness, "1/s^2", g.stiffness, positive_bounds(g.stiffness), "square of the natural frequency");
-    text += parameter(output.damping, "1/s", g.damping, positive_bounds(g.damping), "twice the damping ratio times the natural frequency");
-  } else {
-    text += parameter(output.tau, "s", g.tau, positive_bounds(g.tau), "time constant");
+  if (!output.damping.empty()) {
+    const char* doc = g.integrates ? "1/time constant of the rate" : "twice the damping ratio times the natural frequency";
+    text += parameter(output.damping, "1/s", g.damping, positive_bounds(g.damping), doc);
   }
-  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    text += parameter(output.gains[i], ratio(output.unit, model.input_units[i]), g.gain[i], "", "static gain of " + model.inputs[i]);
-  }
-  return text + parameter(output.rest, output.unit, g.rest, "", model.inputs.empty() ? "equilibrium" : "output without input");
+  if (!output.tau.empty()) text += parameter(output.tau, "s", g.tau, positive_bounds(g.tau), "time constant");
+  for (const auto& gain : output.gains) text += parameter(gain.name, gain.unit, gain.value, "", gain.doc);
+  return text + parameter(output.rest, output.rest_unit, g.rest, "", output.rest_doc);
 }
 
-std::string equations_of(const GuessedModel& model, const GuessedOutput& output) {
-  const std::string target = output.rest + driven_by(model, output);
-  if (output.guess.order == 1) return fmt::format("{} = \"({} - {})/{}\"\n", output.name, target, output.name, output.tau);
-  return fmt::format("{} = \"{}*({} - {}) - {}*{}\"   # d{}/dt = {} by rate_of\n", output.rate_state, output.stiffness, target, output.name,
-                     output.damping, output.rate_state, output.name, output.rate_state);
+std::string equations_of(const GuessedOutput& output) {
+  const std::string target = driven_by(output);
+  const bool pulled = !output.guess.integrates;
+  if (output.guess.order == 1) {
+    if (!pulled) return fmt::format("{} = \"{}\"\n", output.name, target);
+    return fmt::format("{} = \"({} - {})/{}\"\n", output.name, target, output.name, output.tau);
+  }
+  const std::string driven = pulled ? fmt::format("{}*({} - {})", output.stiffness, target, output.name) : target;
+  return fmt::format("{} = \"{} - {}*{}\"   # d{}/dt = {} by rate_of\n", output.rate_state, driven, output.damping, output.rate_state,
+                     output.name, output.rate_state);
 }
 
 /// What the comment behind a column says, with its header where that is not simply its name.
@@ -80,13 +82,13 @@ std::string model_text(const GuessedModel& model, const RecordingSurvey& survey)
   }
   if (!model.inputs.empty()) text += "\n[inputs]\n";
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    text += fmt::format("{} = {{ unit = {}, hold = \"zero_order\" }}   # {}{}\n", model.inputs[i], toml_string(model.input_units[i]),
-                        remark_on(column_called(survey, model.inputs[i])), model.hold_reasons[i]);
+    text += fmt::format("{} = {{ unit = {}, hold = \"{}\" }}   # {}{}\n", model.inputs[i], toml_string(model.input_units[i]),
+                        model.holds[i], remark_on(column_called(survey, model.inputs[i])), model.hold_reasons[i]);
   }
   text += "\n[parameters]\n";
-  for (const auto& o : model.outputs) text += parameters_of(model, o);
+  for (const auto& o : model.outputs) text += parameters_of(o);
   text += "\n[equations]                # right-hand side: rate of change of the state\n";
-  for (const auto& o : model.outputs) text += equations_of(model, o);
+  for (const auto& o : model.outputs) text += equations_of(o);
   text += "\n[outputs]                  # the measured columns; noise: sigma of the white measurement noise, a start\n";
   for (const auto& o : model.outputs) {
     text += fmt::format("{} = {{ unit = {}, noise = {} }}   # {}\n", o.name, toml_string(o.unit), number(o.noise),
@@ -106,12 +108,12 @@ std::string study_text(const std::string& name, const std::vector<std::string>& 
   text += fmt::format(
       "[study]\n"
       "name = {}\n"
-      "question = \"What does a linear model of this recording miss?\"\n"
-      "methods = [\"{}\"]   # \"{}\" where something unmeasured drives the motion; misfit discover needs it\n"
+      "question = \"What does the linear model of this recording lack?\"\n"
+      "methods = [\"{}\"]   # with a random force beside the model: it shows where the model fails; \"{}\": without\n"
       "seed = 1\n\n"
       "[system]\n"
       "file = \"model.toml\"          # the equations, as text\n",
-      toml_string(name), trajectory_estimator().name, random_force_estimator().name);
+      toml_string(name), random_force_estimator().name, trajectory_estimator().name);
   for (const auto& part : parts) {
     text += fmt::format(
         "\n[[experiment]]\n"

@@ -1,0 +1,36 @@
+#include "misfit/show/words.h"
+
+#include "misfit/data/estimators.h"
+
+namespace misfit {
+
+Words twelve_words() {
+  return {{"study", "a folder with study.toml and data: one question put to one or more recordings"},
+          {"system", "the skeleton of a model: states, inputs, outputs, quantities, ports, constants"},
+          {"quantity", "a named function of state and input that effects read, with a unit: alpha_T [rad]"},
+          {"port", "a named place where effects add up: a force, a rate, a quantity, an output"},
+          {"role", "what an effect calls the quantities and ports that it acts on: [roles] of a system and a study say which are meant"},
+          {"effect", "one physical cause: reads quantities, owns parameters, adds to ports"},
+          {"strength, shape", "kinds of parameter: with all strengths 0 an effect is off; shapes are the rest"},
+          {"random force", "what drives the motion beside the model, per degree of freedom, estimated by " +
+                               std::string(random_force_estimator().name) +
+                               "; smoothed over time it is the missing force, and what the model lacks is in it"},
+          {"drop", "2 log likelihood ratio: by how much an effect improves the fit; chance gives about 1 per parameter"},
+          {"held-out gain", "the same for the time that was kept out of the estimation (validation): above 0, the effect predicts better"},
+          {"family-wise p", "the probability that chance gives any one of all tested candidates such a drop; accepted below 0.01"},
+          {"ladder, rung", "the sequence of models, each with one effect more; a rung is one of them"}};
+}
+
+Words further_words() {
+  return {
+      {"curve", "a parameter as a function of a quantity: a cubic spline with a roughness penalty"},
+      {"driven", "motion excited by more than the model has: residuals are correlated, or a random force is estimated"},
+      {"jitter", "the coloured part of a channel's measurement noise: a damped resonance with a standard deviation and a frequency"},
+      {"candidate", "an effect, or an unknown curve, that the model may lack"},
+      {"cell", "one combination of the shapes at which a candidate is tested; effective: how many independent tests the cells are worth"},
+      {"alias",
+       "a candidate that imitates the missing effect: it explains much, but with it a curve of a quantity that it reads is still "
+       "significant"}};
+}
+
+}  // namespace misfit

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "misfit/recording/recording.h"
+
+namespace misfit {
+
+/// Columns that survey_recording() took for outputs, but that are measured inputs (the weather, a rudder): no other column helps
+/// to predict them, and they go on by themselves, or help to predict an output that others move (fit/regression/influence.h). One output
+/// always stays.
+void take_measured_inputs(RecordingSurvey& survey);
+
+}  // namespace misfit

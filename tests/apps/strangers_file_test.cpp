@@ -1,0 +1,75 @@
+// A file of somebody else's, from nothing to a verdict: misfit init DATA.csv, misfit run DATA --auto.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/apps/program.h"
+
+namespace {
+
+using namespace program;
+using testing::HasSubstr;
+
+/// Voltage in, speed out; dry friction of 100 rad/s^2.
+std::string motor() {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> level(-12.0, 12.0);
+  std::string text = "t[s],u[V],w[rad/s]\n";
+  double w = 0.0, u = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    if (k % 120 == 0) u = level(random);
+    text += fmt::format("{:.3f},{:.3f},{:.3f}\n", 0.005 * k, u, w + 0.3 * normal(random));
+    for (int i = 0; i < 100; ++i) w += 5e-5 * (200.0 * u - 10.0 * w - 100.0 * std::tanh(w / 0.1));
+  }
+  return text;
+}
+
+/// Of a house the weather, measured but no command, and a thermostat's heater; nothing is missing.
+std::string house() {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::string text = "t[s],T_out[degC],heater[W],T_in[degC]\n";
+  double inside = 20.0, heat = 4500.0;
+  const auto outside = [](double t) { return 4.0 + 5.0 * std::sin(7.27e-5 * t) + 2.0 * std::sin(9e-6 * t); };
+  for (int k = 0; k < 1500; ++k) {
+    if (inside < 19.5) heat = 4500.0;
+    if (inside > 21.0) heat = 0.0;
+    text += fmt::format("{},{:.3f},{},{:.3f}\n", 600 * k, outside(600.0 * k) + 0.05 * normal(random), heat, inside + 0.03 * normal(random));
+    for (int i = 0; i < 60; ++i) inside += 10.0 * (180.0 * (outside(600.0 * k + 10.0 * i) - inside) + heat) / 6e6;
+  }
+  return text;
+}
+
+struct Verdict {
+  std::string model, kind, sentence;
+};
+
+Verdict verdict_on(const std::string& name, const std::string& text) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.write(name + ".csv", text), study = folder.path() / name;
+  const Outcome begun = run({"init", data.string(), "--out", study.string()});
+  EXPECT_EQ(begun.status, 0) << begun.err;
+  EXPECT_THAT(begun.out, HasSubstr("next: misfit run " + study.string() + " --auto"));
+  const Outcome outcome = run({"run", study.string(), "--auto"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const json verdict = json::parse(content(study / "out" / "verdict.json"));
+  return {content(study / "model.toml"), verdict.at("verdict"), verdict.at("sentence")};
+}
+
+TEST(StrangersFile, OfAMotorWithDryFrictionItNamesTheFriction) {
+  const Verdict v = verdict_on("motor", motor());
+  EXPECT_THAT(v.model, HasSubstr("w = \"(w_rest + w_gain_u*u - w)/w_tau\""));
+  EXPECT_THAT(v.sentence, testing::StartsWith("coulomb_friction was missing"));
+}
+
+TEST(StrangersFile, OfAHouseItTakesTheWeatherAsAnInputAndAddsNothing) {
+  const Verdict v = verdict_on("house", house());
+  EXPECT_THAT(v.model, HasSubstr("T_in = \"(T_in_rest + T_in_gain_T_out*T_out + T_in_gain_heater*heater - T_in)/T_in_tau\""));
+  EXPECT_THAT(v.model, HasSubstr("T_out = { unit = \"K\", hold = \"first_order\" }"));
+  EXPECT_TRUE(v.kind == "nothing_missing" || v.kind == "random_force" || v.kind == "not_decided") << v.sentence;
+}
+
+}  // namespace

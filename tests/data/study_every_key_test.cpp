@@ -1,0 +1,127 @@
+// Every key of the reference is in a test; those that no other test writes are read here.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <regex>
+
+#include "misfit/core/files.h"
+#include "misfit/data/study_keys.h"
+#include "tests/data/study_folder.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+using EveryKey = StudyFolder;
+
+TEST_F(EveryKey, OfACameraGivenAsNumbersIsRead) {
+  const Study study = read_with(R"([geometry]
+R = "3.4 m"
+[camera]
+h_c = { value = "15 cm", sigma = 0.002 }
+K = "133 px/m"
+camera_roll = "2 deg"
+centre_y = 6
+centre_z = "-4 px"
+pixel_aspect = 0.02
+lens_k1 = -0.1
+camera_distance = "5 cm"
+)");
+  const auto& given = study.camera.given;
+  EXPECT_FALSE(study.camera.from_sweep());
+  EXPECT_DOUBLE_EQ(given.at("h_c").value, 0.15);
+  EXPECT_EQ(given.at("h_c").sigma, 0.002);
+  EXPECT_DOUBLE_EQ(given.at("K").value, 133.0);
+  EXPECT_DOUBLE_EQ(given.at("camera_roll").value, 2.0 * 3.14159265358979323846 / 180.0);
+  EXPECT_EQ(given.at("centre_y").value, 6.0);
+  EXPECT_EQ(given.at("centre_z").value, -4.0);
+  EXPECT_EQ(given.at("pixel_aspect").value, 0.02);
+  EXPECT_EQ(given.at("lens_k1").value, -0.1);
+  EXPECT_DOUBLE_EQ(given.at("camera_distance").value, 0.05);
+  EXPECT_EQ(given.size(), 8U);
+}
+
+TEST_F(EveryKey, OfVideoAndPicturesIsRead) {
+  const std::string experiment = "[[experiment]]\nvideo = \"flight.mkv\"\n";
+  const Study study = read_with(experiment + R"([camera]
+sweep_images = "other.csv"
+sweep_marker = "bright"
+sweep_points = [10, 20, 30, 40, 50, 60]
+[video]
+fields = "progressive"
+check_fields = false
+marker = "template.png"
+start = [120, 80]
+region = [10, 20, 300, 200]
+)");
+  EXPECT_EQ(study.experiments.front().video->filename(), "flight.mkv");
+  EXPECT_EQ(study.camera.sweep_images->filename(), "other.csv");
+  EXPECT_EQ(study.camera.sweep_marker.kind, "bright");
+  ASSERT_EQ(study.camera.sweep_points.size(), 3U);
+  EXPECT_EQ(study.video.fields, "progressive");
+  EXPECT_FALSE(study.video.check_fields);
+  EXPECT_EQ(study.video.marker.kind, "picture");
+  EXPECT_EQ(study.video.marker.picture->filename(), "template.png");
+  EXPECT_TRUE(study.video.start.has_value());
+  EXPECT_EQ(study.video.region, (std::array<double, 4>{10.0, 20.0, 300.0, 200.0}));
+  const Study plain = read_with(experiment + "[camera]\nsweep_images = \"other.csv\"\n[video]\nmarker = \"dark\"\n");
+  EXPECT_TRUE(plain.video.check_fields);
+  EXPECT_EQ(plain.camera.sweep_marker.kind, "dark") << "that of [video]";
+}
+
+TEST_F(EveryKey, OfForceLimitsAndResamplingIsRead) {
+  const Study study = read_with(R"([force]
+correlation_time = "20 ms"
+strength = { value = 3, sigma = 1 }
+[fit]
+time_limit = "2 min"
+[discover]
+time_limit = 90
+[camera]
+sweep = "static_sweep.csv"
+[uncertainty]
+bootstrap = 20
+block = 64
+camera = "calibration"
+recalibrate = true
+perturb = { R1 = "1 in" }
+)");
+  EXPECT_DOUBLE_EQ(study.force_time.value_or(0.0), 0.02);
+  EXPECT_EQ(study.force_strength->value, 3.0);
+  EXPECT_EQ(study.force_strength->sigma, 1.0);
+  EXPECT_EQ(study.fit_time_limit, 120.0);
+  EXPECT_EQ(study.discover_time_limit, 90.0);
+  EXPECT_EQ(study.uncertainty->bootstrap, 20);
+  EXPECT_EQ(study.uncertainty->block, 64);
+  EXPECT_TRUE(study.uncertainty->recalibrate);
+  EXPECT_FALSE(read_with("[uncertainty]\nbootstrap = 20\n").uncertainty->recalibrate);
+}
+
+/// "fit" of "fit", "curves" of "curves.NAME".
+std::string section_of(const config::KeyGroup& group) { return group.path.substr(0, group.path.find('.')); }
+
+/// A test that writes neither the table nor `key =` does not try the key.
+TEST(KeysOfTheReference, AreEachWrittenInATest) {
+  std::vector<std::string> tests;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(MISFIT_SOURCE_DIR) / "tests")) {
+    const std::string end = entry.path().extension().string();
+    if (end == ".cpp" || end == ".h") tests.push_back(read_file(entry.path()));
+  }
+  std::vector<std::string> untried;
+  for (const config::KeyGroup& group : study_keys()) {
+    for (const config::Key& key : group.keys) {
+      if (key.any) continue;
+      const std::string named = group.path == "geometry" ? "|\"" + key.name + "\"" : "";  // those of the rig are tried in a loop
+      const std::regex written("(^|[^A-Za-z_0-9]|\\\\n)" + key.name + " *=[^=]" + named);
+      const bool tried = std::any_of(tests.begin(), tests.end(), [&](const std::string& text) {
+        return text.find("[" + section_of(group)) != std::string::npos && std::regex_search(text, written);
+      });
+      if (!tried) untried.push_back(group.path + " " + key.name);
+    }
+  }
+  EXPECT_THAT(untried, testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace misfit

@@ -1,0 +1,56 @@
+// One line per stage, for whoever watches a run.
+#include "misfit/show/lines.h"
+
+#include <gmock/gmock.h>
+
+namespace misfit {
+namespace {
+
+Fit filter() {
+  Fit fit;
+  fit.method = "filter_error";
+  fit.status = FitStatus::converged;
+  fit.parameters = {{"gain", {2.0, 0.1, "V"}}};
+  fit.facts = {{"residuals of w in 'bench'", "RMS 0.3 V, 1.5 % of the motion; held out: RMS 0.4 V, 2 % of the motion"}};
+  return fit;
+}
+
+TEST(LineOfAFit, GivesTheRandomForceOrWithoutOneTheResiduals) {
+  Fit fit = filter();
+  EXPECT_EQ(line_of(fit), "gain 2.00 ± 0.10 V; RMS error of w 0.3 V, 1.5 % of the motion");
+  fit.force = {{"dw/dt", {20.0, 1.0, "V/s"}}};
+  EXPECT_EQ(line_of(fit), "gain 2.00 ± 0.10 V; random force 20.0 ± 1.0 V/s");
+}
+
+TEST(LineOfAFit, ThatDeclinedGivesTheReasonWithoutItsConsequence) {
+  Fit fit = filter();
+  fit.status = FitStatus::declined;
+  fit.message = "a force drives it, so it cannot follow: more words";
+  EXPECT_EQ(line_of(fit), "declined: a force drives it");
+}
+
+TEST(LineOfADiscovery, NamesTheAcceptedEffectElseTheNearest) {
+  Discovery d;
+  Candidate c;
+  c.effect = "lag";
+  c.p_value = 0.7;
+  d.candidates = {c, c};
+  EXPECT_EQ(line_of(d), "2 effects tested, none accepted; nearest: lag (p = 0.7)");
+  d.unexplained_port = "dw/dt";
+  d.unexplained_quantity = "w";
+  EXPECT_THAT(line_of(d), testing::HasSubstr("a force on dw/dt that depends on w is of unknown form"));
+  d.candidates.front().accepted = true;
+  d.candidates.front().actual_drop = 270.7;
+  d.candidates.front().p_value = 1e-60;
+  EXPECT_EQ(line_of(d), "missing: lag (drop 270.7, p = 1e-60)");
+}
+
+TEST(LineOfARung, GivesItsFirstParametersAndTheForceThatIsLeft) {
+  Rung rung;
+  rung.parameters = {{"a", {1.0, 0.1, "V"}}, {"b", {2.0, 0.1, "V"}}, {"c", {3.0, 0.1, "V"}}};
+  rung.force = {{"dw/dt", {20.0, 1.0, "V/s"}}};
+  EXPECT_EQ(line_of(rung), "a 1.00 ± 0.10 V, b 2.00 ± 0.10 V, random force 20.0 ± 1.0 V/s");
+}
+
+}  // namespace
+}  // namespace misfit
