@@ -65,7 +65,7 @@ std::vector<Recipe> own_effects() {
            [](Dice&, double size) {
              return std::map<std::string, double>{{"friction", 13.0 * size}};
            }},
-          {{"lateral_damping", "lateral_damping", {"lateral_rate"}, {}}, one("C_lateral", 0.7)},
+          {{"lateral_damping", "lateral_damping", {"pitch_rate", "lateral_rate"}, {}}, one("C_lateral", 0.7)},
           {{"aerodynamic_lag", "aerodynamic_lag", {}, {}},
            [](Dice& dice, double size) {
              return std::map<std::string, double>{{"C_lag", 0.12 * size}, {"tau_lag", dice.uniform(0.05, 0.3)}};

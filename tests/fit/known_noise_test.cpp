@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "misfit/fit/filter/filter_error.h"
+#include "misfit/fit/methods.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/trajectory_start.h"
 #include "tests/fit/decay.h"
+#include "tests/fit/planar_model.h"
 
 namespace misfit {
 namespace {
@@ -80,6 +82,53 @@ TEST(KnownForceTime, IsHeld) {
     EXPECT_EQ(fit.force.at("correlation_time").sigma, 0.0);
   }
 }
+
+/// A tilt of which every method makes something: [noise], [force] of its study are set in the model.
+Fit tilt_fitted(const EstimatorInfo& method, const std::optional<KnownNoise>& noise_of_tilt, const std::optional<double>& force_time) {
+  constexpr std::size_t samples = 600;
+  Model model = assemble(testing_planar::eq_8(), testing_planar::registry());
+  if (noise_of_tilt) model.known_noise = {*noise_of_tilt};
+  model.force_time = force_time;
+  Signals record = testing_planar::validation_signals();
+  record.t.resize(samples);
+  for (auto* channels : {&record.measured, &record.inputs})
+    for (Signal& channel : *channels) channel.values.resize(samples);
+  return estimator(method.name).run({model, {record}, {}, {}, 1, {}}).at.fitted.fit;
+}
+
+class KnownInEveryMethod : public testing::TestWithParam<const EstimatorInfo*> {
+ protected:
+  [[nodiscard]] Fit fitted_with(const std::optional<KnownNoise>& noise_of_tilt, const std::optional<double>& force_time) const {
+    return tilt_fitted(*GetParam(), noise_of_tilt, force_time);
+  }
+  static void expect_same_curves(const Fit& a, const Fit& b) {
+    ASSERT_EQ(a.curves.size(), b.curves.size());
+    ASSERT_FALSE(a.curves.empty());
+    for (std::size_t c = 0; c < a.curves.size(); ++c) {
+      EXPECT_EQ(a.curves[c].value, b.curves[c].value) << a.curves[c].name;
+      EXPECT_EQ(a.curves[c].sigma, b.curves[c].sigma) << a.curves[c].name;
+    }
+  }
+};
+
+TEST_P(KnownInEveryMethod, NoiseIsHeldWhereOutputsAreWeighedByItAndChangesNothingElsewhere) {
+  constexpr KnownNoise held{0.2 * testing_planar::degree, true};  // 0.1 deg is in the record
+  const Fit with = fitted_with(held, {});
+  if (!GetParam()->has_likelihood) return expect_same_curves(with, fitted_with({}, {}));
+  ASSERT_EQ(with.status, FitStatus::converged) << with.message;
+  EXPECT_DOUBLE_EQ(with.noise.at("alpha_T").value, held.sigma);
+  EXPECT_EQ(with.noise.at("alpha_T").sigma, 0.0);
+}
+
+TEST_P(KnownInEveryMethod, AWhiteForceIsThatOfTheMethodThatHasOne) {
+  const Fit white = fitted_with({}, 0.0);
+  if (GetParam()->deterministic) return expect_same_curves(white, fitted_with({}, {}));
+  EXPECT_NEAR(white.force.at("correlation_time").value, 0.3 * testing_planar::validation_signals().t[1], 1e-9);  // of a sample
+  EXPECT_EQ(white.force.at("correlation_time").sigma, 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, KnownInEveryMethod, testing::ValuesIn(estimators::all),
+                         [](const auto& of) { return std::string(of.param->name); });
 
 }  // namespace
 }  // namespace misfit

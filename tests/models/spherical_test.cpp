@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 
 #include "tests/model/differences.h"
@@ -104,6 +105,21 @@ TEST(SphericalParachute, WithoutGravityNothingKnowsWhereUpIs) {
       const State expected = turned(rates(m, x), angle), got = rates(m, turned(x, angle));
       for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(got[i], expected[i], 1e-10 * (1.0 + std::abs(expected[i])));
     }
+  }
+}
+
+/// Written out with vectors: l = v x n/|v x n| is across the plane of axis and relative wind, whatever the tilt.
+TEST(SphericalParachute, LateralDampingActsAcrossThePlaneOfAxisAndRelativeWind) {
+  constexpr double C = -1.2, V = 35.1, factor = 736.0 * 1.9554 * 1.5816 * 1.5816 / (2.0 * V);
+  const Model free = with({}), damped = with({effect("lateral_damping")}, {{"C_lateral", C}});
+  for (const State& x : some_states) {
+    const Eigen::Vector3d n(n_x(x), x[0], x[1]), rate(n_x_rate(x), x[2], x[3]);
+    const Eigen::Vector3d cross = (Eigen::Vector3d(V, 0.0, 0.0) - R * rate).cross(n);
+    const double sine = cross.norm() / (Eigen::Vector3d(V, 0.0, 0.0) - R * rate).norm();
+    const Eigen::Vector3d l = cross.normalized();
+    const Eigen::Vector3d expected = C * factor / I * rate.dot(l) * l * std::pow(sine, 4) / (std::pow(sine, 4) + std::pow(0.02, 4));
+    const State a = rates(free, x), b = rates(damped, x);
+    for (int i = 0; i < 2; ++i) EXPECT_NEAR(b[i + 2] - a[i + 2], expected[i + 1], 1e-9);
   }
 }
 
