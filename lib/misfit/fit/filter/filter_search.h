@@ -254,9 +254,8 @@ class FilterSearch {
   ///   3. `restrict_likelihood`: correction of the noise's gradient and information for the estimated parameters (REML).
   ///   4. `invert_joint`: covariance of parameters and noise with roughness and priors.
   ///   5. `step_jointly`: a Newton step inside the bounds that raises the exact objective.
-  /// Ends when no step rises, not even along the axes of the covariance (climb_along_axes()), or after a step of less than a sigma.
+  /// Ends when no step rises, or after a step of less than a sigma.
   void refine_jointly() {
-    at_kink_ = false;
     constexpr int most_steps = 20;
     constexpr double short_step = 8.0, as_promised = 0.2;  // promised gain: of four sigmas of one parameter; share of it
     LikelihoodDerivatives exact;
@@ -272,10 +271,7 @@ class FilterSearch {
       restrict_likelihood();
       if (!invert_joint(exact)) return;
       const std::optional<double> gained = step_jointly(exact);
-      if (!gained) {
-        if (*out_.newton_decrement < kDecrementOfOneSigma || !climb_along_axes()) return;
-        continue;
-      }
+      if (!gained) return;
       const double promised = *out_.newton_decrement;
       if (promised < kDecrementOfOneSigma) {
         out_.newton_decrement = std::abs(promised - *gained);
@@ -367,14 +363,6 @@ class FilterSearch {
     return at_.joint_step(gradient, out_.joint_covariance, restricted_.slope);
   }
 
-  /// No step that the derivatives propose rises. False: none along the axes does either, so that this is a maximum, at a kink.
-  bool climb_along_axes() {
-    bfgs_ = {};
-    at_kink_ = !at_.axis_step(out_.joint_covariance, restricted_.slope);
-    if (at_kink_) out_.newton_decrement = 0.0;
-    return !at_kink_;
-  }
-
   void conclude() {
     const bool runs = std::all_of(out_.traces.begin(), out_.traces.end(), [](const FilterTrace& trace) { return trace.finite; });
     if (!runs && !at_.linearise()) throw RunError(at_.failure());
@@ -408,8 +396,6 @@ class FilterSearch {
       return "by its exact derivatives the log-likelihood could still rise by " + format_value(*left) +
              (out_.converged ? ", less than a change of one parameter by two sigmas is worth" : "");
     }
-    if (out_.converged && at_kink_)
-      return "a kink of the likelihood (a corner or a threshold that samples meet): no change of a parameter by a sigma or less raises it";
     if (out_.converged) return "the likelihood no longer rises";
     if (options_.verify && !left) return "whether the likelihood is at its maximum could not be verified: " + unverified_;
     return "iteration limit: the likelihood may still rise";
@@ -426,7 +412,6 @@ class FilterSearch {
   bool noise_given_;
   std::string replaced_;
   int rounds_left_ = all_rounds;
-  bool at_kink_ = false;
   std::optional<Floor> floor_;
   BfgsInverse bfgs_;
   RestrictedLikelihood restricted_;

@@ -28,17 +28,6 @@ Box bounds_of(const Model& model) {
   return box;
 }
 
-/// The same with every free shape where `theta` has it.
-Box with_shapes_held(const Model& model, const Eigen::VectorXd& theta) {
-  const std::vector<int> free = model.free_parameters();
-  Box box = bounds_of(model);
-  for (Eigen::Index c = 0; c < std::ssize(free); ++c) {
-    const Parameter& p = model.parameters[free[c]];
-    if (p.curve < 0 && p.kind == CoefficientKind::shape) box.lower[c] = box.upper[c] = theta[c];
-  }
-  return box;
-}
-
 Eigen::VectorXd joined(const Eigen::VectorXd& a, const std::vector<double>& b) {
   Eigen::VectorXd both(a.size() + std::ssize(b));
   both << a, Eigen::Map<const Eigen::VectorXd>(b.data(), std::ssize(b));
@@ -154,25 +143,7 @@ NormalEquations LikelihoodAscent::normal_equations() const {
   }
   sums.N = Eigen::MatrixXd(sums.N.selfadjointView<Eigen::Lower>());
   sums.prior = regularised_priors(out.model, sums.N.diagonal());
-  const Eigen::VectorXd stated = parameter_priors(out.model).precision;
-  sums.prior.mean = (stated.array() > 0.0).select(sums.prior.mean, theta);
   return sums;
-}
-
-bool LikelihoodAscent::rises_along(const Eigen::VectorXd& step) {
-  for (double share = 1.0; share > 0.05; share *= 0.4) {
-    const Eigen::VectorXd there = theta + share * step;
-    const double value = objective_at(there, out.noise);
-    if (!(value > objective - 1e-6)) continue;
-    const Eigen::VectorXd before = theta;
-    theta = there;
-    if (linearise()) {
-      remember();
-      return true;
-    }
-    theta = before;
-  }
-  return false;
 }
 
 double LikelihoodAscent::gauss_newton_step() {
@@ -185,10 +156,19 @@ double LikelihoodAscent::gauss_newton_step() {
   objective = out.loglik + log_prior();  // the roughness may have changed
   const auto [lower, upper] = bounds_of(out.model);
   const BoundedMaximum best = maximum_inside(smoothed.theta, smoothed.covariance, lower, upper);
-  if (rises_along(best.at - theta)) return nothing;
-  const Box held = with_shapes_held(out.model, theta);
-  const bool shapes = held.lower != lower || held.upper != upper;
-  if (shapes && rises_along(maximum_inside(smoothed.theta, smoothed.covariance, held.lower, held.upper).at - theta)) return nothing;
+  const Eigen::VectorXd step = best.at - theta;
+  for (double share = 1.0; share > 0.05; share *= 0.4) {
+    const Eigen::VectorXd there = theta + share * step;
+    const double value = objective_at(there, out.noise);
+    if (!(value > objective - 1e-6)) continue;
+    const Eigen::VectorXd before = theta;
+    theta = there;
+    if (linearise()) {
+      remember();
+      return nothing;
+    }
+    theta = before;
+  }
   linearise();
   Eigen::MatrixXd precision;
   if (!invert_scaled(smoothed.covariance, precision)) return unknown;
@@ -284,7 +264,11 @@ std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradie
   const double promised = 0.5 * gradient.dot(newton) - there.below;
   out.newton_decrement = promised;
   if (promised < least_gain) return std::nullopt;
-  const auto gain = [&](double share) { return gain_at((here + share * step).cwiseMax(lowest).cwiseMin(highest), slope); };
+  const auto gain = [&](double share) {
+    const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
+    return objective_at(at.head(n), unpack({at.data() + n, at.data() + at.size()}, out.model.system->spec())) - objective +
+           slope.dot((at - here).tail(slope.size()));
+  };
   constexpr double shortest = 0.005;  // at a kink of the likelihood only a short step rises
   double share = 1.0, gained = gain(share);
   while (!(gained > 0.0) && share > shortest) gained = gain(share *= 0.5);
@@ -298,37 +282,6 @@ std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradie
   }
   const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
   return move_to(at.head(n), {at.data() + n, at.data() + at.size()}) ? std::optional(gained) : std::nullopt;
-}
-
-double LikelihoodAscent::gain_at(const Eigen::VectorXd& at, const Eigen::VectorXd& slope) const {
-  const Eigen::Index n = theta.size();
-  return objective_at(at.head(n), unpack({at.data() + n, at.data() + at.size()}, out.model.system->spec())) - objective +
-         slope.dot((at - joint()).tail(slope.size()));
-}
-
-std::optional<double> LikelihoodAscent::axis_step(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& slope) {
-  constexpr double least_gain = 0.02;
-  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(sigma.cwiseInverse().asDiagonal() * covariance *
-                                                            sigma.cwiseInverse().asDiagonal());
-  const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
-  const auto [lower, upper] = bounds_of(out.model);
-  const Eigen::VectorXd here = joint(), lowest = joined(lower, noise.lower), highest = joined(upper, noise.upper);
-  Eigen::VectorXd best = here;
-  double most = least_gain;
-  for (Eigen::Index a = 0; a < axes.eigenvalues().size(); ++a) {
-    const Eigen::VectorXd axis = std::sqrt(std::max(axes.eigenvalues()[a], 0.0)) * sigma.cwiseProduct(axes.eigenvectors().col(a));
-    for (const double share : {1.0, -1.0, 0.25, -0.25, 0.05, -0.05}) {
-      const Eigen::VectorXd at = (here + share * axis).cwiseMax(lowest).cwiseMin(highest);
-      const double gain = gain_at(at, slope);
-      if (!(gain > most)) continue;
-      most = gain;
-      best = at;
-    }
-  }
-  const Eigen::Index n = theta.size();
-  if (best == here || !move_to(best.head(n), {best.data() + n, best.data() + best.size()})) return std::nullopt;
-  return most;
 }
 
 std::string LikelihoodAscent::failure() const {

@@ -16,9 +16,8 @@ class LikelihoodAscent {
 
   /// Full run with derivatives at `theta`. False: the model cannot be run there, failure() says where it ended.
   bool linearise();
-  /// One Gauss–Newton step of the physical parameters with new roughness; shortened until the exact objective rises. Where no length does,
-  /// the step with shapes held: of an effect that is nearly off a time constant or a width is nearly undetermined, and its step goes far
-  /// beyond what is linear. Returns what a step promised of which no length rises: 0 if one did, or nothing was promised.
+  /// One Gauss–Newton step of the physical parameters with new roughness; shortened until the exact objective rises. Returns what a step
+  /// promised of which no length rises: 0 if one did, or nothing was promised.
   double gauss_newton_step();
   /// Alternates the blocks, physical parameters and noise, until neither gains `tolerance`: then `out.converged`, unless a step that
   /// promised as much as a sigma of one parameter found no way up.
@@ -36,10 +35,6 @@ class LikelihoodAscent {
   /// their sum rises, lengthened where it gains more than it promised. `out.newton_decrement` is what it promises. What it gained; nullopt:
   /// it promises less than 0.02, or no length of it rises.
   std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope);
-  /// The highest of the points a sigma, a quarter and a twentieth of one away along the principal axes of `covariance`, of parameters and
-  /// log noise together: the way up where the objective has a kink, of which derivatives say nothing. `slope` as above. What it gained;
-  /// nullopt: less than 0.02, all is as before.
-  std::optional<double> axis_step(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& slope);
   /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
   bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
   /// The present point is the one to return to; every step that has risen does this by itself.
@@ -53,7 +48,6 @@ class LikelihoodAscent {
 
   [[nodiscard]] std::vector<double> values() const { return out.forced.model.values_at(theta); }
   [[nodiscard]] LinearisedRuns runs() const { return {&out.forced, &out.data, &out.traces}; }
-  /// The very wide prior of what has none is about the present point: it keeps the step of an undetermined parameter short.
   [[nodiscard]] NormalEquations normal_equations() const;
   [[nodiscard]] std::string failure() const;
 
@@ -62,11 +56,7 @@ class LikelihoodAscent {
   double objective = 0.0;  ///< at `theta` and `out.noise`
 
  private:
-  /// Takes the longest share of the step by which the exact objective rises. False: there is none.
-  bool rises_along(const Eigen::VectorXd& step);
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
-  /// Of the objective and what is linear in the log noise, over the present point.
-  [[nodiscard]] double gain_at(const Eigen::VectorXd& at, const Eigen::VectorXd& slope) const;
   [[nodiscard]] double log_prior() const;  ///< of parameters, roughness and noise, at `theta` and `out.noise`
 
   struct Point {
