@@ -127,7 +127,7 @@ class ColumnClassifier {
   }
 
   /// The column of that header or name.
-  std::size_t column_named(const std::string& name) const {
+  std::size_t column_named(const std::string& name, const std::string& option) const {
     std::vector<std::string> names;
     const std::string last = name.substr(name.find_last_of("./") + 1);
     for (const std::string& wanted : {name, last}) {
@@ -136,15 +136,15 @@ class ColumnClassifier {
         if (header == wanted || out_.columns[i].name == wanted || header.substr(0, header.rfind('[')) == wanted) return i;
       }
     }
-    for (const auto& column : table_.columns) names.push_back(column.header);
-    fail(0, "no column '" + shown(name) + "'" + suggest(name, names));
+    for (const auto& column : out_.columns) names.push_back(column.name);
+    fail(0, option + ": no column '" + shown(name) + "'" + suggest(name, names));
   }
 
   void find_time() {
     constexpr double min_forward_share = 0.5;
     std::string counter;
     const bool given = !choice_.time.empty() && table_.columns.front().header != "t[s]";
-    if (given) time_ = column_named(choice_.time);
+    if (given) time_ = column_named(choice_.time, "--time");
     if (given && (out_.columns[time_].use != ColumnUse::unused || !(forward(time_) > min_forward_share)))
       fail(0, fmt::format("column '{}' is no time: it does not run forward", out_.columns[time_].header));
     for (const bool by_name : {true, false}) {
@@ -221,7 +221,7 @@ class ColumnClassifier {
     for (const auto& [names, use, option] :
          {std::tuple{&choice_.inputs, ColumnUse::input, "--input"}, {&choice_.outputs, ColumnUse::output, "--output"}}) {
       for (const std::string& name : *names) {
-        ColumnSurvey& c = out_.columns[column_named(name)];
+        ColumnSurvey& c = out_.columns[column_named(name, option)];
         if (c.use == ColumnUse::constant || c.use == ColumnUse::text || c.use == ColumnUse::time)
           fail(0, fmt::format("column '{}', named by {}, is no signal: {}", c.header, option, c.why));
         c.use = use;
