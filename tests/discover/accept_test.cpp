@@ -187,6 +187,7 @@ TEST(Accept, ARefitThatHasNotConvergedIsNot) {
   std::vector<RankedCandidate> ranked = {world.entry("coulomb_friction")};
   ranked[0].refit->estimate.converged = false;
   ranked[0].refit->estimate.message = "iteration limit";
+  ranked[0].refit->estimate.newton_decrement.reset();
   EXPECT_FALSE(world.accept(ranked).has_value());
   EXPECT_FALSE(ranked[0].candidate.accepted);
   EXPECT_EQ(ranked[0].candidate.why, "its refit has not converged: iteration limit");
