@@ -171,10 +171,11 @@ class LooseReader {
       first_row_ = headless ? 0 : 1;
     } else if (headless) {
       const auto commented = cells_of(last_comment_, table_.delimiter);
-      if (commented.size() != names.size() || all_numbers(commented))
+      if (commented.size() != names.size() || all_numbers(commented)) {
         fail(lines_.front().number,
              "no header: the first line holds numbers; put the names of the columns above it, as t[s],u[V],y[V], or give them: --names "
              "t[s],u[V],y[V]");
+      }
       names = commented;
       first_row_ = 0;
     }

@@ -386,12 +386,12 @@ std::string rate_unit(std::string_view unit) {
 
 std::string unit_text(const std::vector<std::pair<std::string, double>>& factors) {
   std::string above, below;
-  for (const auto& [symbol, power] : factors) {
-    const double size = std::round(1e6 * std::abs(power)) / 1e6;
+  for (const auto& [symbol, exponent] : factors) {
+    const double size = std::round(1e6 * std::abs(exponent)) / 1e6;
     if (size == 0.0) continue;
-    std::string& side = power > 0.0 ? above : below;
-    if (power < 0.0) side += '/';
-    if (power > 0.0 && !side.empty()) side += ' ';
+    std::string& side = exponent > 0.0 ? above : below;
+    if (exponent < 0.0) side += '/';
+    if (exponent > 0.0 && !side.empty()) side += ' ';
     side += symbol;
     if (size != 1.0) side += fmt::format("^{}", size);
   }

@@ -32,7 +32,7 @@ Directory find_directory(const Bytes& zip) {
 }
 
 /// Sizes of 64 bits stand in an extra field, in this order, where those of 32 are full.
-void read_extra(const Bytes& zip, std::size_t at, std::size_t end, std::vector<std::uint64_t*> full) {
+void read_extra(const Bytes& zip, std::size_t at, std::size_t end, const std::vector<std::uint64_t*>& full) {
   while (at + 4 <= end) {
     const std::uint64_t tag = zip.unsigned_at(at, 2, "extra field"), length = zip.unsigned_at(at + 2, 2, "extra field");
     at += 4;

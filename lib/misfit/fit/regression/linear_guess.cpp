@@ -76,7 +76,7 @@ class WindowSearch {
   [[nodiscard]] bool possible() const { return record_.windows.size() > 1 && target_.sigma > 0.0; }
   /// The best model of that order; `pulled`: with a pull back to rest.
   [[nodiscard]] Found best(int order, bool pulled) const;
-  [[nodiscard]] double excess(double mean_square) const { return std::max(mean_square - noise_, least_excess_ * noise_) + 1e-12; }
+  [[nodiscard]] double excess(double mean_square) const { return std::max(mean_square - noise_, least_excess * noise_) + 1e-12; }
   /// Coefficients in the units given: of the drivers, then the constant.
   [[nodiscard]] std::vector<double> coefficients(const Found& found) const;
 
@@ -88,7 +88,7 @@ class WindowSearch {
   void drop_drivers(const Fits& fits, Found& found) const;
   void refine(Found& found) const;
 
-  static constexpr double least_excess_ = 0.3;
+  static constexpr double least_excess = 0.3;
   std::vector<GuessDriver> drivers_;
   WindowedRecord record_;
   Spread target_;
