@@ -188,17 +188,18 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Cand
   std::vector<double> values = forced.model.values();
   Eigen::MatrixXd out(counted_rows(estimate), candidate_model.strengths.size());
   std::array<FilterTrace, 2> sides;
+  std::vector<FilterData> data;
+  for (const FilterData& known : estimate.data) data.push_back(filter_data_like(forced, known));
   for (std::size_t c = 0; c < candidate_model.strengths.size(); ++c) {
     const std::size_t parameter = candidate_model.strengths[c];
     constexpr double share_of_scale = 1e-2;
     const double h = share_of_scale * forced.model.parameters[parameter].scale;
     Eigen::Index row = 0;
     for (std::size_t e = 0; e < estimate.data.size(); ++e) {
-      const FilterData data = filter_data_like(forced, estimate.data[e]);
       for (std::size_t side = 0; side < 2; ++side) {
         values[parameter] = side == 0 ? -h : h;
         runner.set_parameters(values);
-        if (!runner.run(data, estimate.noise, sides[side])) return {};
+        if (!runner.run(data[e], estimate.noise, sides[side])) return {};
       }
       for (std::size_t at : estimate.jacobians[e].index)
         out(row++, c) = (sides[0].e[at] - sides[1].e[at]) / (2.0 * h * std::sqrt(estimate.traces[e].S[at]));

@@ -43,26 +43,29 @@ class Along {
         states_(recording.states),
         inputs_(recording.inputs),
         first_(first_known(states_)),
-        at_(states_.x.row(first_).transpose()) {
+        at_(Eigen::VectorXd::Zero(model_.states())) {
+    set_system_states(first_);
     set_own_states_at_rest(model_, inputs_.at(first_), signals_.t[first_], at_);
     const Eigen::Index system = model_.system_states();
     own_ = at_.tail(at_.size() - system);
     for (const BoundEffect& effect : model_.effects) {
-      const auto size = static_cast<Eigen::Index>(effect.effect->spec().states.size());
-      if (size > 0)
+      const EffectSpec& spec = effect.effect->spec();
+      const auto size = static_cast<Eigen::Index>(spec.states.size());
+      if (size > 0 && !spec.quantities.empty())  // what reads nothing (a random force) remembers nothing of the motion
         memories_.push_back({system + effect.first_state, Eigen::MatrixXd::Zero(size, size), RowMatrix::Zero(states_.x.rows(), size)});
     }
   }
 
   /// Those with constant A.
   [[nodiscard]] std::vector<Memory> memories() {
+    if (memories_.empty()) return {};
     Evaluator evaluator(model_);
     Slots slots;
     std::vector<double> dx(model_.states()), D(model_.states() * kRowStride);
     std::vector<bool> linear(memories_.size(), true);
     for (Eigen::Index i = first_; i < states_.x.rows(); ++i) {
       if (!states_.ok[i]) continue;
-      at_.head(model_.system_states()) = states_.x.row(i).head(model_.system_states()).transpose();
+      set_system_states(i);
       evaluator.linearise_rates({at_.data(), inputs_.at(i), signals_.t[i]}, slots, dx.data(), D.data());
       for (std::size_t m = 0; m < memories_.size(); ++m) linear[m] = linear[m] && take(memories_[m], dx, D, i);
     }
@@ -76,6 +79,10 @@ class Along {
   [[nodiscard]] const Eigen::VectorXd& at_rest() const { return own_; }
 
  private:
+  void set_system_states(Eigen::Index sample) {
+    at_.head(model_.system_states()) = states_.x.row(sample).head(model_.system_states()).transpose();
+  }
+
   /// False if the effect's own dynamics are not linear with the A of the first sample.
   bool take(Memory& memory, const std::vector<double>& dx, const std::vector<double>& D, Eigen::Index sample) const {
     const Eigen::Index size = memory.A.rows();

@@ -20,7 +20,8 @@ struct OwnStates {
 /// begun at rest; what is remembered of that beginning is left out (three times the slowest time constant, half of the recording at most),
 /// as are held-out samples. The departure at the first sample is the least-squares prediction from states, their derivatives and inputs
 /// there, learnt from the other samples; its sigma is the RMS of all departures, since it was computed with the effect's parameters as they
-/// are now. Other own states (play inside its clearance, forces) are at rest (set_own_states_at_rest()) and taken as known.
+/// are now. Other own states (play inside its clearance, forces) are at rest (set_own_states_at_rest()) and taken as known. Of `states`
+/// only those of the system are read.
 [[nodiscard]] OwnStates own_states_along(const Model& model, const Signals& signals, const ReconstructedStates& states);
 
 }  // namespace misfit

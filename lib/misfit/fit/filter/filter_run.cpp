@@ -34,9 +34,7 @@ void resize(FilterTrace& trace, int n, int ny, std::size_t samples) {
 /// The memories of effects where the filter begins; forces begin at 0, as uncertain as they are strong (start_covariance()).
 void begin_own_states(const FilterModel& model, FilterData& data) {
   const Eigen::Index system = model.model.system_states(), own = model.model.states() - system;
-  ReconstructedStates states = *data.read;
-  states.x.conservativeResize(Eigen::NoChange, system + own);
-  const OwnStates along = own_states_along(model.model, *data.signals, states);
+  const OwnStates along = own_states_along(model.model, *data.signals, *data.read);
   data.start.tail(own) = along.start;
   data.scale.tail(own) = along.sigma;
   for (int f : model.force_states) data.start[f] = data.scale[f] = 0.0;
