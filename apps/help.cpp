@@ -94,17 +94,14 @@ std::string data_text() {
   return out + "\n" +
          paragraph(
              "A matrix is a channel per column: x[0], x[1]. The time of an array is the one called t, time or timestamp beside it, of as "
-             "many "
-             "numbers. Channels with clocks of their own are brought to the times of the outputs: inputs held or interpolated as the model "
-             "says, "
-             "slower measurements once each at the nearest time; notes say what was done and left out.") +
+             "many numbers. Channels with clocks of their own are brought to the times of the outputs: inputs held or interpolated as the "
+             "model says, slower measurements once each at the nearest time; notes say what was done and left out.") +
          "\n" +
          paragraph(
              "misfit init LOG lists the channels of a log of several clocks; then say which: --topic TOPIC, or --output CHANNEL and "
-             "--input "
-             "CHANNEL. In a study:") +
-         "\n  [[experiment]]\n  data = \"flight.ulg\"\n  columns = { w = \"vehicle_angular_velocity.xyz[0]\", u = "
-         "\"actuator_controls_0.control[0]\" }\n\n" +
+             "--input CHANNEL. In a study:") +
+         "\n  [[experiment]]\n  data = \"flight.ulg\"\n"
+         "  columns = { w = \"vehicle_angular_velocity.xyz[0]\", u = \"actuator_controls_0.control[0]\" }\n\n" +
          paragraph(
              "Units: SI and their kin, as us, ns, min, rpm, degC, \xC2\xB0, kW, mA, bar, km/h. A unit of time that is not known "
              "stops; any other is said, and its numbers are taken as they are. Excel and Parquet files are not read: save them as CSV.");

@@ -115,6 +115,10 @@ TEST(Recording, ColumnsAreWhatTheUserChooses) {
                {"--input", "'bb'", "did you mean 'b'"});
   expect_parts(message_of<InputError>([&] { static_cast<void>(survey_recording(file, {}, {.outputs = {"t"}})); }),
                {"--output", "'t_s'", "increases"});
+  expect_parts(message_of<InputError>([&] {
+                 static_cast<void>(survey_recording(file, {}, {.inputs = {"a"}, .outputs = {"b_m", "a"}}));
+               }),
+               {"column 'a'", "--input and by --output"});
 }
 
 /// Of an unknown unit one thing is said: what its numbers are taken as.

@@ -1,22 +1,12 @@
 #include "misfit/core/error.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "misfit/core/edit_distance.h"
 #include "misfit/core/shown.h"
+#include "misfit/core/text.h"
 
 namespace misfit {
-namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
-
-}  // namespace
-
 std::string Source::text() const {
   if (file.empty()) return {};
   std::string out = file;
@@ -30,12 +20,12 @@ InputError::InputError(const Source& where, const std::string& message)
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& valid) {
   if (name.empty() || name.size() > longest_name_compared) return {};
-  const std::string wanted = lower(name);
+  const std::string wanted = lower_case(name);
   std::string best;
   std::size_t best_distance = 0;
   for (const std::string& candidate : valid) {
     if (candidate.empty() || candidate.size() > longest_name_compared) continue;
-    const std::string other = lower(candidate);
+    const std::string other = lower_case(candidate);
     const std::size_t distance = edit_distance(name, candidate);
     const bool contained = other.find(wanted) != std::string::npos || wanted.find(other) != std::string::npos;
     if (2 * distance > wanted.size() && !contained) continue;

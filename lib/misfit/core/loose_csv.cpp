@@ -12,6 +12,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/iso_date.h"
 #include "misfit/core/shown.h"
+#include "misfit/core/text.h"
 
 namespace misfit {
 namespace {
@@ -49,10 +50,8 @@ std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
 }
 
 bool is_missing(std::string_view cell) {
-  std::string lower;
-  for (const char c : cell) lower += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
   constexpr std::array<std::string_view, 7> words = {"", "nan", "-nan", "na", "n/a", "null", "none"};
-  return std::find(words.begin(), words.end(), lower) != words.end();
+  return std::find(words.begin(), words.end(), lower_case(cell)) != words.end();
 }
 
 /// nullopt if the cell is neither a finite number nor a word for a missing one.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace misfit {
@@ -24,6 +25,9 @@ namespace misfit {
 
 /// Breaks at blanks to at most `width` code points.
 [[nodiscard]] std::string wrap_text(const std::string& text, std::size_t width = 100, const std::string& indent = "");
+
+/// ASCII letters only: "KW" → "kw".
+[[nodiscard]] std::string lower_case(std::string_view text);
 
 /// "a", "a and b", "a, b and c".
 [[nodiscard]] std::string join_words(const std::vector<std::string>& words);

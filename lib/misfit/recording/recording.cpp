@@ -224,6 +224,8 @@ class ColumnClassifier {
         ColumnSurvey& c = out_.columns[column_named(name, option)];
         if (c.use == ColumnUse::constant || c.use == ColumnUse::text || c.use == ColumnUse::time)
           fail(0, fmt::format("column '{}', named by {}, is no signal: {}", c.header, option, c.why));
+        if (c.chosen && c.use != use)
+          fail(0, fmt::format("column '{}' is named by --input and by --output: it can be one of them", c.header));
         c.use = use;
         c.chosen = true;
         c.why = fmt::format("named by {}", option);

@@ -8,6 +8,7 @@
 #include "misfit/core/error.h"
 #include "misfit/data/log/log.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/data/log/logs_of_the_tests.h"
 
 namespace misfit {
 namespace {
@@ -59,15 +60,7 @@ TEST_P(DamagedLog, WithBitsTurnedOverIsReadOrRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DamagedLog,
-                         testing::Values("plain.mat", "structs.mat", "big_endian.mat", "version73.mat", "plain.h5", "chunked.h5",
-                                         "table.h5", "columns.npy", "fortran.npy", "records.npy", "stored.npz", "deflated.npz", "one.npz",
-                                         "simple.ulg", "instances.ulg", "appended.ulg", "instances.bin", "letters.bin", "damaged.bin"),
-                         [](const auto& file) {
-                           std::string name = file.param;
-                           std::replace(name.begin(), name.end(), '.', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, DamagedLog, logs_of_the_tests(), name_of_log);
 
 }  // namespace
 }  // namespace misfit

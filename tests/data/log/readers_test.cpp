@@ -10,8 +10,10 @@
 #include <sstream>
 
 #include "misfit/core/error.h"
+#include "misfit/core/text.h"
 #include "misfit/data/log/log.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/data/log/logs_of_the_tests.h"
 
 namespace misfit {
 namespace {
@@ -85,15 +87,7 @@ TEST_P(LogFile, GivesOneChannelAloneAsWithAllOthers) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LogFile,
-                         testing::Values("plain.mat", "structs.mat", "big_endian.mat", "version73.mat", "plain.h5", "chunked.h5",
-                                         "table.h5", "columns.npy", "fortran.npy", "records.npy", "stored.npz", "deflated.npz", "one.npz",
-                                         "simple.ulg", "instances.ulg", "appended.ulg", "instances.bin", "letters.bin", "damaged.bin"),
-                         [](const auto& file) {
-                           std::string name = file.param;
-                           std::replace(name.begin(), name.end(), '.', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, LogFile, logs_of_the_tests(), name_of_log);
 
 std::string refusal(const std::string& name, const std::string& content) {
   const TemporaryFolder folder;
@@ -113,6 +107,17 @@ TEST(Logs, FormatsThatAreNotReadSayWhatToDo) {
   EXPECT_THAT(refusal("a.xls", "\xD0\xCF\x11\xE0\xA1\xB1"s), HasSubstr("save the sheet as CSV"));
   EXPECT_THAT(refusal("a.csv.gz", "\x1F\x8B\x08"s), HasSubstr("gunzip"));
   EXPECT_THAT(refusal("a.bin", "\0\1\2\3 and so on, of no format"s), HasSubstr("no format that is read; read are CSV, MAT"));
+}
+
+TEST(Logs, ANameOfAFormatWithOtherContentIsNoCsv) {
+  for (const std::string& end : std::vector<std::string>{".mat", ".h5", ".npy", ".NPZ", ".ulg", ".bin"}) {
+    SCOPED_TRACE(end);
+    EXPECT_THAT(refusal("a" + end, "<html>not found</html>"), HasSubstr("its first bytes are those of no "));
+    EXPECT_THAT(refusal("a" + end, ""), HasSubstr("called " + lower_case(end)));
+  }
+  EXPECT_THAT(refusal("a.xlsx", "PK\x03\x04 cut off"s), HasSubstr("Excel workbook (.xlsx) is not read: save the sheet as CSV"));
+  EXPECT_THAT(refusal("a.nc", "CDF\x01\0\0"s), HasSubstr("nccopy"));
+  EXPECT_EQ(refusal("a.dat", "t,y\n0,1\n1,2\n"), "read");
 }
 
 std::string npy(const std::string& head) { return "\x93NUMPY\x01\0"s + static_cast<char>(head.size()) + '\0' + head; }

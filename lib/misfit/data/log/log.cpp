@@ -1,5 +1,7 @@
 #include "misfit/data/log/log.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -7,6 +9,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
+#include "misfit/core/text.h"
 #include "misfit/data/log/csv_log.h"
 #include "misfit/data/log/mapped_file.h"
 #include "misfit/data/log/readers.h"
@@ -49,6 +52,9 @@ constexpr std::array marks = {
     Mark{0, "#ROSBAG"sv, Format::refused, "a ROS bag is not read: write its topics as CSV (rostopic echo -p)"},
     Mark{0, "\x89MCAP0"sv, Format::refused, "an MCAP file is not read: write its topics as CSV"},
     Mark{0, "SQLite format 3"sv, Format::refused, "a database (ROS 2 bag?) is not read: write its topics as CSV"},
+    Mark{0, "CDF\x01"sv, Format::refused, "a classic NetCDF file is not read: write it as NetCDF 4 (nccopy -k nc4 FILE FILE4)"},
+    Mark{0, "CDF\x02"sv, Format::refused, "a classic NetCDF file is not read: write it as NetCDF 4 (nccopy -k nc4 FILE FILE4)"},
+    Mark{0, "CDF\x05"sv, Format::refused, "a classic NetCDF file is not read: write it as NetCDF 4 (nccopy -k nc4 FILE FILE4)"},
     Mark{0, "TDSm"sv, Format::refused, "a TDMS file is not read: write it as CSV (Python: nptdms)"},
     Mark{0, "\x80\x04\x95"sv, Format::refused, "a pickle of Python is not read, for it is a program: save numbers as NPZ or CSV"},
     Mark{0, "RIFF"sv, Format::refused, "sound or film is not read as a log: write numbers as CSV, or give a film as video"},
@@ -56,12 +62,22 @@ constexpr std::array marks = {
 
 struct Found {
   Format format = Format::csv;
-  std::string_view what_to_do;
+  std::string what_to_do;
 };
 
-Found format_of(std::string_view front) {
+/// What a file of this ending has to begin with: text under such a name is a damaged or a renamed file, and no CSV.
+struct Ending {
+  std::string_view end, what;
+};
+constexpr std::array endings = {Ending{".mat", "MAT file"},  Ending{".h5", "HDF5 file"},     Ending{".hdf5", "HDF5 file"},
+                                Ending{".hdf", "HDF5 file"}, Ending{".nc", "NetCDF 4 file"}, Ending{".npy", "NPY file"},
+                                Ending{".npz", "NPZ file"},  Ending{".ulg", "ULog"},         Ending{".bin", "DataFlash log"}};
+constexpr std::array sheets = {Ending{".xlsx", "an Excel workbook (.xlsx)"}, Ending{".xls", "an Excel workbook (.xls)"},
+                               Ending{".ods", "a sheet of LibreOffice (.ods)"}};
+
+Found format_of_bytes(std::string_view front) {
   for (const Mark& m : marks) {
-    if (front.size() >= m.at && front.substr(m.at).starts_with(m.bytes)) return {m.format, m.what_to_do};
+    if (front.size() >= m.at && front.substr(m.at).starts_with(m.bytes)) return {m.format, std::string(m.what_to_do)};
   }
   constexpr std::size_t mat4_head = 20;
   const bool zeros = front.size() >= mat4_head && front.substr(0, mat4_head).find('\0') != std::string_view::npos;
@@ -77,7 +93,21 @@ std::string front_of(const fs::path& path) {
   return front;
 }
 
-/// XLSX, ODS and others are ZIP archives too.
+Found format_of(const fs::path& path) {
+  const std::string end = lower_case(path.extension().string());
+  for (const Ending& sheet : sheets) {
+    if (end == sheet.end) return {Format::refused, fmt::format("{} is not read: save the sheet as CSV", sheet.what)};
+  }
+  Found found = format_of_bytes(front_of(path));
+  if (found.format != Format::csv) return found;
+  for (const Ending& ending : endings) {
+    if (end == ending.end)
+      return {Format::refused, fmt::format("called {}, but its first bytes are those of no {}: damaged, or renamed?", end, ending.what)};
+  }
+  return found;
+}
+
+/// XLSX, ODS and others are ZIP archives too, whatever they are called.
 void refuse_other_archive(const Bytes& bytes, const std::vector<ZipMember>& members) {
   const auto has = [&](std::string_view name) {
     return std::any_of(members.begin(), members.end(), [&](const ZipMember& m) { return m.name.find(name) != std::string::npos; });
@@ -172,10 +202,9 @@ void LogReader::read(const std::vector<std::size_t>& channels) {
 
 std::unique_ptr<LogReader> open_log(const fs::path& path) {
   const MappedFile readable(path);  // throws if not
-  const Found found = format_of(front_of(path));
+  const Found found = format_of(path);
   if (found.format == Format::refused && has_hdf5_mark(path)) return read_hdf5(path);
-  if (found.format == Format::refused)
-    throw InputError({path.string(), 0, 0}, std::string(found.what_to_do) + "; read are " + formats_of_logs());
+  if (found.format == Format::refused) throw InputError({path.string(), 0, 0}, found.what_to_do + "; read are " + formats_of_logs());
   if (found.format == Format::hdf5) return read_hdf5(path);
   if (found.format == Format::csv) return read_csv_log(path);
   return std::make_unique<MappedReader>(path, found.format);
@@ -183,7 +212,7 @@ std::unique_ptr<LogReader> open_log(const fs::path& path) {
 
 bool is_binary_log(const fs::path& path) {
   std::error_code error;
-  return fs::is_regular_file(path, error) && format_of(front_of(path)).format != Format::csv;
+  return fs::is_regular_file(path, error) && format_of(path).format != Format::csv;
 }
 
 bool is_recording_name(std::string_view name) {
