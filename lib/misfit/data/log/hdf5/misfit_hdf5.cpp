@@ -220,12 +220,13 @@ void read(hid_t file, const Array& array) {
 void limit(const char* path) {
   struct stat status {};
   const rlim_t size = ::stat(path, &status) == 0 ? static_cast<rlim_t>(status.st_size) : 0;
-  constexpr rlim_t least_seconds = 10, bytes_per_second = 4'000'000, least_memory = rlim_t{2} << 30U;
+  constexpr rlim_t least_seconds = 10, bytes_per_second = 4'000'000;
   const rlimit seconds{least_seconds + size / bytes_per_second, least_seconds + size / bytes_per_second};
   ::setrlimit(RLIMIT_CPU, &seconds);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-#ifndef __SANITIZE_ADDRESS__
+#ifndef __SANITIZE_ADDRESS__  // which maps terabytes
+  constexpr rlim_t least_memory = rlim_t{2} << 30U;
   const rlimit memory{least_memory + size, least_memory + size};
   ::setrlimit(RLIMIT_AS, &memory);
 #endif
