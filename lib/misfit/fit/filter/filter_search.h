@@ -254,13 +254,16 @@ class FilterSearch {
   ///   3. `restrict_likelihood`: correction of the noise's gradient and information for the estimated parameters (REML).
   ///   4. `invert_joint`: covariance of parameters and noise with roughness and priors.
   ///   5. `step_jointly`: a Newton step inside the bounds that raises the exact objective.
-  /// Ends when no step rises, or after a step of less than a sigma.
+  /// Ends when no step rises, not even along the axes of the covariance (climb_along_axes(), where a step promised little, twice at
+  /// most: each costs about as much as a Newton step), or after a step of less than a sigma.
   void refine_jointly() {
-    constexpr int most_steps = 20;
+    constexpr int most_steps = 20, most_climbs = 2;
     constexpr double short_step = 8.0, as_promised = 0.2;  // promised gain: of four sigmas of one parameter; share of it
+    constexpr double of_ten_sigmas = 50.0, little = 0.1;   // promised gain; gain, and share of what was promised
     LikelihoodDerivatives exact;
     bool one_sided = false;
-    for (int k = 0; k < most_steps; ++k) {
+    at_kink_ = false;
+    for (int k = 0, climbs = 0; k < most_steps; ++k) {
       if (!differentiate(one_sided, exact)) return;
       one_sided = false;
       if (!options_.use && exclude_nonlinear(exact.nonlinear)) {
@@ -271,8 +274,12 @@ class FilterSearch {
       restrict_likelihood();
       if (!invert_joint(exact)) return;
       const std::optional<double> gained = step_jointly(exact);
-      if (!gained) return;
       const double promised = *out_.newton_decrement;
+      if (promised >= kDecrementOfOneSigma && gained.value_or(0.0) < std::min(little, little * promised)) {
+        if (promised >= of_ten_sigmas || climbs++ == most_climbs || !climb_along_axes()) return;
+        continue;
+      }
+      if (!gained) return;
       if (promised < kDecrementOfOneSigma) {
         out_.newton_decrement = std::abs(promised - *gained);
         return;
@@ -363,6 +370,16 @@ class FilterSearch {
     return at_.joint_step(gradient, out_.joint_covariance, restricted_.slope);
   }
 
+  /// No step that the derivatives propose rises as it promised. False: none along the axes rises by what a sigma is worth either, so that
+  /// this is a maximum, at a kink.
+  bool climb_along_axes() {
+    bfgs_ = {};
+    const double gained = at_.axis_step(out_.joint_covariance, restricted_.slope).value_or(0.0);
+    at_kink_ = gained < kDecrementOfOneSigma;
+    if (at_kink_) out_.newton_decrement = gained;
+    return !at_kink_;
+  }
+
   void conclude() {
     const bool runs = std::all_of(out_.traces.begin(), out_.traces.end(), [](const FilterTrace& trace) { return trace.finite; });
     if (!runs && !at_.linearise()) throw RunError(at_.failure());
@@ -396,6 +413,9 @@ class FilterSearch {
       return "by its exact derivatives the log-likelihood could still rise by " + format_value(*left) +
              (out_.converged ? ", less than a change of one parameter by two sigmas is worth" : "");
     }
+    if (out_.converged && at_kink_)
+      return "a kink of the likelihood (a corner or a threshold that samples meet): no change of a parameter by a sigma raises it by what "
+             "that is worth";
     if (out_.converged) return "the likelihood no longer rises";
     if (options_.verify && !left) return "whether the likelihood is at its maximum could not be verified: " + unverified_;
     return "iteration limit: the likelihood may still rise";
@@ -412,6 +432,7 @@ class FilterSearch {
   bool noise_given_;
   std::string replaced_;
   int rounds_left_ = all_rounds;
+  bool at_kink_ = false;
   std::optional<Floor> floor_;
   BfgsInverse bfgs_;
   RestrictedLikelihood restricted_;

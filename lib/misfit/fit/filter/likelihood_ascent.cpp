@@ -146,6 +146,22 @@ NormalEquations LikelihoodAscent::normal_equations() const {
   return sums;
 }
 
+bool LikelihoodAscent::rises_along(const Eigen::VectorXd& step) {
+  for (double share = 1.0; share > 0.05; share *= 0.4) {
+    const Eigen::VectorXd there = theta + share * step;
+    const double value = objective_at(there, out.noise);
+    if (!(value > objective - 1e-6)) continue;
+    const Eigen::VectorXd before = theta;
+    theta = there;
+    if (linearise()) {
+      remember();
+      return true;
+    }
+    theta = before;
+  }
+  return false;
+}
+
 double LikelihoodAscent::gauss_newton_step() {
   constexpr double nothing = 0.0, unknown = std::numeric_limits<double>::infinity();
   if (theta.size() == 0) return nothing;
@@ -156,19 +172,7 @@ double LikelihoodAscent::gauss_newton_step() {
   objective = out.loglik + log_prior();  // the roughness may have changed
   const auto [lower, upper] = bounds_of(out.model);
   const BoundedMaximum best = maximum_inside(smoothed.theta, smoothed.covariance, lower, upper);
-  const Eigen::VectorXd step = best.at - theta;
-  for (double share = 1.0; share > 0.05; share *= 0.4) {
-    const Eigen::VectorXd there = theta + share * step;
-    const double value = objective_at(there, out.noise);
-    if (!(value > objective - 1e-6)) continue;
-    const Eigen::VectorXd before = theta;
-    theta = there;
-    if (linearise()) {
-      remember();
-      return nothing;
-    }
-    theta = before;
-  }
+  if (rises_along(best.at - theta)) return nothing;
   linearise();
   Eigen::MatrixXd precision;
   if (!invert_scaled(smoothed.covariance, precision)) return unknown;
@@ -264,11 +268,7 @@ std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradie
   const double promised = 0.5 * gradient.dot(newton) - there.below;
   out.newton_decrement = promised;
   if (promised < least_gain) return std::nullopt;
-  const auto gain = [&](double share) {
-    const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
-    return objective_at(at.head(n), unpack({at.data() + n, at.data() + at.size()}, out.model.system->spec())) - objective +
-           slope.dot((at - here).tail(slope.size()));
-  };
+  const auto gain = [&](double share) { return gain_at((here + share * step).cwiseMax(lowest).cwiseMin(highest), slope); };
   constexpr double shortest = 0.005;  // at a kink of the likelihood only a short step rises
   double share = 1.0, gained = gain(share);
   while (!(gained > 0.0) && share > shortest) gained = gain(share *= 0.5);
@@ -282,6 +282,37 @@ std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradie
   }
   const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
   return move_to(at.head(n), {at.data() + n, at.data() + at.size()}) ? std::optional(gained) : std::nullopt;
+}
+
+double LikelihoodAscent::gain_at(const Eigen::VectorXd& at, const Eigen::VectorXd& slope) const {
+  const Eigen::Index n = theta.size();
+  return objective_at(at.head(n), unpack({at.data() + n, at.data() + at.size()}, out.model.system->spec())) - objective +
+         slope.dot((at - joint()).tail(slope.size()));
+}
+
+std::optional<double> LikelihoodAscent::axis_step(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& slope) {
+  constexpr double least_gain = 0.02;
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(sigma.cwiseInverse().asDiagonal() * covariance *
+                                                            sigma.cwiseInverse().asDiagonal());
+  const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
+  const auto [lower, upper] = bounds_of(out.model);
+  const Eigen::VectorXd here = joint(), lowest = joined(lower, noise.lower), highest = joined(upper, noise.upper);
+  Eigen::VectorXd best = here;
+  double most = least_gain;
+  for (Eigen::Index a = 0; a < axes.eigenvalues().size(); ++a) {
+    const Eigen::VectorXd axis = std::sqrt(std::max(axes.eigenvalues()[a], 0.0)) * sigma.cwiseProduct(axes.eigenvectors().col(a));
+    for (const double share : {1.0, -1.0, 0.25, -0.25, 0.05, -0.05}) {
+      const Eigen::VectorXd at = (here + share * axis).cwiseMax(lowest).cwiseMin(highest);
+      const double gain = gain_at(at, slope);
+      if (!(gain > most)) continue;
+      most = gain;
+      best = at;
+    }
+  }
+  const Eigen::Index n = theta.size();
+  if (best == here || !move_to(best.head(n), {best.data() + n, best.data() + best.size()})) return std::nullopt;
+  return most;
 }
 
 std::string LikelihoodAscent::failure() const {

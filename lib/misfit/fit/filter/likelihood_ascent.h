@@ -35,6 +35,10 @@ class LikelihoodAscent {
   /// their sum rises, lengthened where it gains more than it promised. `out.newton_decrement` is what it promises. What it gained; nullopt:
   /// it promises less than 0.02, or no length of it rises.
   std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope);
+  /// The highest of the points a sigma, a quarter and a twentieth of one away along the principal axes of `covariance`, of parameters and
+  /// log noise together: the way up where the objective has a kink, of which derivatives say nothing. `slope` as above. What it gained;
+  /// nullopt: less than 0.02, all is as before.
+  std::optional<double> axis_step(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& slope);
   /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
   bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
   /// The present point is the one to return to; every step that has risen does this by itself.
@@ -56,7 +60,11 @@ class LikelihoodAscent {
   double objective = 0.0;  ///< at `theta` and `out.noise`
 
  private:
+  /// Takes the longest share of the step by which the exact objective rises. False: there is none.
+  bool rises_along(const Eigen::VectorXd& step);
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
+  /// Of the objective and what is linear in the log noise, over the present point.
+  [[nodiscard]] double gain_at(const Eigen::VectorXd& at, const Eigen::VectorXd& slope) const;
   [[nodiscard]] double log_prior() const;  ///< of parameters, roughness and noise, at `theta` and `out.noise`
 
   struct Point {

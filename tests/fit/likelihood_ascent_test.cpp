@@ -1,0 +1,38 @@
+// Steps where derivatives do not lead: the objective has a kink.
+#include "misfit/fit/filter/likelihood_ascent.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "misfit/fit/trajectory_start.h"
+#include "tests/fit/decay.h"
+
+namespace misfit {
+namespace {
+
+TEST(AxisStep, RisesTowardsAMaximumAndNotFromIt) {
+  const auto known = testing_decay::registry_with(testing_decay::decay_text);
+  const Model model = assemble(testing_decay::request_of("text"), *known);
+  const std::vector<Signals> experiments{testing_decay::decay(200, 5)};
+  LikelihoodAscent ascent(trajectory_start(model, experiments).from.model, {}, experiments, {});
+  ASSERT_TRUE(ascent.linearise());
+  ascent.iterate(25, 1e-6);
+  const Eigen::VectorXd maximum = ascent.joint(), slope = Eigen::VectorXd::Zero(maximum.size() - 1);
+  Eigen::VectorXd variances = Eigen::VectorXd::Constant(maximum.size(), 1e-12);  // the noise stays
+  variances[0] = ascent.out.covariance(0, 0);
+  const Eigen::MatrixXd covariance = variances.asDiagonal();
+  EXPECT_FALSE(ascent.axis_step(covariance, slope));
+  EXPECT_EQ(ascent.joint(), maximum);
+  const double highest = ascent.objective;
+  ASSERT_TRUE(ascent.move_to(maximum.head(1).array() + 2.0 * std::sqrt(variances[0]), ascent.out.noise_fit.logs));
+  const double before = ascent.objective;
+  const std::optional<double> gained = ascent.axis_step(covariance, slope);
+  ASSERT_TRUE(gained);
+  EXPECT_NEAR(ascent.objective - before, *gained, 1e-9);
+  EXPECT_NEAR(*gained, 1.5, 0.2);  // from two sigmas to one: (4 - 1)/2 of a parabola
+  EXPECT_LT(ascent.objective, highest);
+}
+
+}  // namespace
+}  // namespace misfit
