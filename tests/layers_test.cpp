@@ -228,4 +228,58 @@ TEST_F(MadeUpTree, FolderWithoutALayerLineIsFound) {
   EXPECT_THAT(faults_of(root_), ElementsAre(HasSubstr("folder 'extra' has no misfit_layer line")));
 }
 
+/// Types that a file defines outside of unnamed namespaces, with the namespaces they are in.
+std::set<std::string> types_of(const std::string& text) {
+  static const std::regex opened(R"(^(?:inline )?namespace\s*([\w:]*)\s*\{)"), closed(R"(^\}\s*// namespace)"),
+      type(R"(^(?:struct|class|enum class|enum)\s+(\w+)\s*(?:final\s*)?(?::[^:;{][^;{]*)?\{)");
+  std::set<std::string> out;
+  std::vector<std::string> inside;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || std::string("nisce}").find(line.front()) == std::string::npos) continue;
+    std::smatch found;
+    if (std::regex_search(line, found, opened)) inside.push_back(found[1]);
+    if (std::regex_search(line, closed) && !inside.empty()) inside.pop_back();
+    if (!std::regex_search(line, found, type) || std::find(inside.begin(), inside.end(), "") != inside.end()) continue;
+    std::string name;
+    for (const std::string& space : inside) name += space + "::";
+    out.insert(name + found[1].str());
+  }
+  return out;
+}
+
+/// "misfit::Column: a.h, b.h" for every type that two files define: one program must not hold both (the linker joins their functions).
+std::vector<std::string> types_defined_twice(const fs::path& root) {
+  std::map<std::string, std::vector<std::string>> files;
+  for (const std::string folder : {"lib", "apps", "models"}) {
+    if (!fs::exists(root / folder)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      for (const std::string& type : types_of(read(entry.path()))) files[type].push_back(fs::relative(entry.path(), root).string());
+    }
+  }
+  std::vector<std::string> out;
+  for (auto& [type, in] : files) {
+    if (in.size() < 2) continue;
+    std::sort(in.begin(), in.end());
+    std::string line = type + ":";
+    for (const std::string& file : in) line += " " + file;
+    out.push_back(line);
+  }
+  return out;
+}
+
+TEST(Types, AreDefinedOnce) {
+  EXPECT_THAT(types_of(read(fs::path(MISFIT_SOURCE_DIR) / "lib/misfit/core/table.h")), testing::Contains("misfit::Column"));
+  EXPECT_THAT(types_defined_twice(MISFIT_SOURCE_DIR), IsEmpty());
+}
+
+TEST_F(MadeUpTree, ATypeDefinedTwiceIsFound) {
+  write("lib/misfit/fit/a.h", "namespace misfit {\nstruct Row {\n};\n}  // namespace misfit\n");
+  write("apps/b.h", "namespace misfit {\nenum class Row { one };\nclass Line : Row {\n};\n}  // namespace misfit\n");
+  write("lib/misfit/fit/c.cpp",
+        "namespace misfit {\nnamespace {\nstruct Row {\n};\n}  // namespace\nstruct Row::Part {\n};\n}  // namespace misfit\n");
+  EXPECT_THAT(types_defined_twice(root_), ElementsAre("misfit::Row: apps/b.h lib/misfit/fit/a.h"));
+}
+
 }  // namespace

@@ -8,12 +8,12 @@
 
 namespace misfit {
 
-enum class Colour { red, green };
+enum class Paint { red, green };
 struct Dot {
   std::string name;
   double x = 0.0, sigma = 0.0;
   std::string unit = "rad";
-  Colour colour = Colour::red;
+  Paint colour = Paint::red;
   std::vector<int> counts;
   std::optional<double> extra;
 };
@@ -38,7 +38,7 @@ void fields(Archive& json, MaybeConst<Dots> auto& d) {
 
 namespace {
 
-const Dots example{{{"a", 0.5, 0.0, "rad", Colour::green, {1, 2}, std::nullopt}, {"b", std::nan(""), 0.1, "-", Colour::red, {}, 3.0}}};
+const Dots example{{{"a", 0.5, 0.0, "rad", Paint::green, {1, 2}, std::nullopt}, {"b", std::nan(""), 0.1, "-", Paint::red, {}, 3.0}}};
 
 TEST(JsonFields, AreWrittenInTheirOrderInDisplayUnitsAndNeverAsNan) {
   EXPECT_EQ(JsonWriter::json_of(example).dump(),
@@ -53,7 +53,7 @@ TEST(JsonFields, AreReadAsTheyWereWritten) {
   EXPECT_EQ(back.all[0].name, "a");
   EXPECT_NEAR(back.all[0].x, 0.5, 1e-15);
   EXPECT_EQ(back.all[0].unit, "rad");
-  EXPECT_EQ(back.all[0].colour, Colour::green);
+  EXPECT_EQ(back.all[0].colour, Paint::green);
   EXPECT_EQ(back.all[0].counts, (std::vector<int>{1, 2}));
   EXPECT_FALSE(back.all[0].extra.has_value());
   EXPECT_TRUE(std::isnan(back.all[1].x));

@@ -7,7 +7,7 @@
 
 namespace misfit {
 
-enum class Colour : std::uint8_t { red, green };
+enum class Paint : std::uint8_t { red, green };
 struct Point {
   double x = 0.0;
   std::string name;
@@ -25,7 +25,7 @@ struct Everything {
   double number = -0.1, infinite = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
   int count = -3;
   bool yes = true;
-  Colour colour = Colour::green;
+  Paint colour = Paint::green;
   std::string text{"a\0b", 3}, empty;
   std::vector<double> numbers{1.0, 5e-324};
   std::vector<bool> flags{true, false, true};

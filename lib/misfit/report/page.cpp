@@ -148,7 +148,7 @@ void Page::list(const List& list) {
 
 void Page::table(const TableBlock& table) {
   std::vector<std::string> header;
-  for (const Column& column : table.columns) header.push_back(column.heading);
+  for (const TableColumn& column : table.columns) header.push_back(column.heading);
   const std::vector<bool> numbers = number_columns(table);
   body_ += "<div class=\"wide\" tabindex=\"0\"><table><thead>" + table_row(header, numbers, true) + "</thead><tbody>\n";
   for (const auto& row : table.rows) body_ += table_row(row, numbers, false);

@@ -97,7 +97,7 @@ class TextWriter {
     if (last_ == Last::line || last_ == Last::table) text += "\n";
     Rows cells(1);
     std::vector<bool> right;
-    for (const Column& column : table.columns) {
+    for (const TableColumn& column : table.columns) {
       cells.front().push_back(column.heading);
       right.push_back(column.align == Align::right);
     }
@@ -145,8 +145,8 @@ class TextWriter {
 
 }  // namespace
 
-std::vector<Column> columns(std::string_view headings) {
-  std::vector<Column> out;
+std::vector<TableColumn> columns(std::string_view headings) {
+  std::vector<TableColumn> out;
   for (std::size_t at = 0; at <= headings.size();) {
     const std::size_t end = std::min(headings.find('|', at), headings.size());
     const std::string_view heading = headings.substr(at, end - at);

@@ -39,17 +39,17 @@ struct List {
 
 enum class Align { left, right };
 
-struct Column {
+struct TableColumn {
   std::string heading;
   Align align = Align::left;
 };
 
 /// From their headings, parted by '|'; those that begin with '>' are aligned to the right: "effect|>drop|accepted".
-[[nodiscard]] std::vector<Column> columns(std::string_view headings);
+[[nodiscard]] std::vector<TableColumn> columns(std::string_view headings);
 
 /// A value stands with its unit in its cell, or the heading has the unit.
 struct TableBlock {
-  std::vector<Column> columns = {};
+  std::vector<TableColumn> columns = {};
   std::vector<std::vector<std::string>> rows = {};
   Excerpt excerpt = {};
 };
