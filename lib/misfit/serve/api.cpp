@@ -17,7 +17,6 @@
 namespace misfit::serve {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 
 Answer failure(int status, const std::string& why) { return {status, fmt::format(R"({{"error":{}}})", json_string(why))}; }

@@ -123,6 +123,12 @@ void put(const Answer& answer, httplib::Response& to) {
 
 Answer refusal(int status, const std::string& why) { return {status, why + "\n", "text/plain; charset=utf-8"}; }
 
+[[noreturn]] void refuse_port(int port) {
+  if (port <= 0) throw RunError("no port of 127.0.0.1 can be used");
+  throw RunError(
+      fmt::format("port {} of 127.0.0.1 cannot be used: another program has it, or it is a system's (--port N; 0: a free one)", port));
+}
+
 const httplib::Headers headers = {
     {"Content-Security-Policy",
      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; base-uri 'none'; "
@@ -153,11 +159,7 @@ class HttpServer::Server : public httplib::Server {
           put(refusal(500, "misfit could not answer this"), to);
         });
     port_ = port > 0 ? (bind_to_port("127.0.0.1", port) ? port : -1) : bind_to_any_port("127.0.0.1");
-    if (port_ <= 0)
-      throw RunError(
-          port > 0 ? fmt::format(
-                         "port {} of 127.0.0.1 cannot be used: another program has it, or it is a system's (--port N; 0: a free one)", port)
-                   : "no port of 127.0.0.1 can be used");
+    if (port_ <= 0) refuse_port(port);
   }
 
   [[nodiscard]] int port() const { return port_; }

@@ -11,7 +11,7 @@ namespace misfit {
 struct ServeOptions {
   SessionOptions session;                         ///< study and run folder, as typed
   int port = 0;                                   ///< 0: a free one
-  std::string program = "/proc/self/exe";         ///< that does the work
+  std::string program = {};                       ///< that does the work; empty: this one
   std::function<void(const std::string&)> ready;  ///< told the address of the page when the server answers
 };
 

@@ -27,7 +27,7 @@ function say(error) {
 
 // ---- state and jobs
 
-let version = null, jobNumber = null, busy = false;
+let version = null, jobNumber = null, busy = false, again = false;
 
 /** Asks what there is; shows what has changed. */
 async function look() {
@@ -64,7 +64,7 @@ async function watch() {
       }
     }
     document.body.dataset.ready = 'yes';
-    await new Promise((go) => setTimeout(go, running ? 400 : 1500));
+    await new Promise((go) => setTimeout(go, running ? 400 : document.hidden ? 6000 : 1500));
   }
 }
 
@@ -196,6 +196,14 @@ function mark(intervals, text, fixed) {
   at('time').dataset.marks = shownNow.length;
   markPoints();
 }
+function unmark() {
+  for (const figure of here.figures) {
+    if (!figure.fixedCells && !figure.fixedBoxes) continue;
+    figure.cells = figure.boxes = figure.fixedCells = figure.fixedBoxes = undefined;
+    figure.redraw();
+  }
+  mark([], '', true);
+}
 time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${shown(from, 5)} s to ${shown(to, 5)} s`, true);
 
 /** The samples of the marked times, in the view of force against a quantity. */
@@ -214,10 +222,6 @@ function markPoints() {
 
 // ---- views
 
-function drop() {
-  for (const figure of here.figures.splice(0)) figure.destroy();
-  here.samples = null;
-}
 function draw(parent, figure, options) {
   const out = new Figure(parent, figure, options);
   here.figures.push(out);
@@ -297,13 +301,14 @@ async function showMap(body, map, current) {
     if (hot === k && !fixed) return;
     hot = k;
     figure.cells = [[from, to]];
+    if (fixed) figure.fixedCells = figure.cells;
     figure.redraw();
     const { out, count } = intervals(t, (i) => values[i] !== null && values[i] >= from && values[i] < to);
     mark(out, `Marked: ${count} samples with ${map.quantity} from ${shown(from, 4)} to ${shown(to, 4)} ${unit}`, fixed);
   };
   const figure = draw(body, map.change ?? map.figure, { height: 0.8,
     onpoint: (plot, x) => choose(plot.view, x, false), onpick: (plot, x) => choose(plot.view, x, true), onkeypoint: (plot, x) => choose(plot.view, x, true),
-    onleave: (plot) => { hot = null; plot.view.cells = []; plot.view.redraw(); mark([], '', false); } });
+    onleave: (plot) => { hot = null; plot.view.cells = plot.view.fixedCells ?? []; plot.view.redraw(); mark([], '', false); } });
   figure.node.append(element('p', { class: 'soft' }, 'Point at a place: its samples are marked in the motion. A click keeps them marked.'));
   if (samples) {
     here.samples = { t: samples.t, figure: draw(body, samples.figure, { height: 0.7 }) };
@@ -322,6 +327,7 @@ async function showPair(body, map, current) {
     hot = k;
     const box = [xs[k] - cells.lo[k], xs[k] + cells.lo[k], cells.y[k] - cells.hi[k], cells.y[k] + cells.hi[k]];
     figure.boxes = [box];
+    if (fixed) figure.fixedBoxes = figure.boxes;
     figure.redraw();
     if (!x || !y) return;
     const { out, count } = intervals(x.t, (i) => x.values[i] !== null && y.values[i] !== null && x.values[i] >= box[0] && x.values[i] < box[1] &&
@@ -330,7 +336,7 @@ async function showPair(body, map, current) {
       `${shown(box[2], 4)} to ${shown(box[3], 4)} ${plain(map.figure.panels[0].unit)}; force ${shown(cells.z[k], 2)} sigma`, fixed);
   };
   draw(body, map.figure, { height: 0.9, onpoint: (plot, px, py) => choose(plot.view, px, py, false), onpick: (plot, px, py) => choose(plot.view, px, py, true),
-    onleave: (plot) => { hot = null; plot.view.boxes = []; plot.view.redraw(); mark([], '', false); } });
+    onleave: (plot) => { hot = null; plot.view.boxes = plot.view.fixedBoxes ?? []; plot.view.redraw(); mark([], '', false); } });
 }
 
 async function showCandidates(view) {
@@ -431,13 +437,17 @@ async function showView() {
 }
 
 async function showAll() {
-  if (busy) return;
+  again = true;
+  if (busy) return; // who is at it does it again
   busy = true;
   try {
-    here.where = await get('where', { model: here.model });
-    await showMotion();
-    mark([], '', true);
-    await showView();
+    while (again) {
+      again = false;
+      here.where = await get('where', { model: here.model });
+      await showMotion();
+      mark([], '', true);
+      if (here.tab !== 'study' || !study.changed()) await showView(); // not under the hands of somebody who types
+    }
   } finally {
     busy = false;
   }
@@ -472,8 +482,8 @@ function begin() {
   at('method').addEventListener('change', (event) => { here.method = Number(event.target.value); showMotion().catch(say); });
   at('experiment').addEventListener('change', (event) => { here.experiment = Number(event.target.value); showMotion().then(showView).catch(say); });
   at('whole').addEventListener('click', () => time.zoom(null));
-  at('unmark').addEventListener('click', () => mark([], '', true));
-  addEventListener('keydown', (event) => { if (event.key === 'Escape') mark([], '', true); });
+  at('unmark').addEventListener('click', unmark);
+  addEventListener('keydown', (event) => { if (event.key === 'Escape') unmark(); });
   addEventListener('beforeunload', (event) => { if (study.changed()) event.preventDefault(); });
   onScreenChange(() => { drawTime(); showView().catch(say); });
   watch();
