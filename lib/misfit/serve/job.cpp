@@ -59,18 +59,27 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
   return out;
 }
 
+/// What a child is to become.
+struct Start {
+  const char* program;
+  char* const* words;
+  char* const* variables;
+  int out, err;  ///< descriptors
+  pid_t parent;
+};
+
 /// In the child, between fork and exec: nothing here takes memory or a lock.
-[[noreturn]] void become(const char* program, char** words, char** variables, int out, int err, pid_t parent) {
+[[noreturn]] void become(const Start& start) {
   ::prctl(PR_SET_PDEATHSIG, SIGINT);
-  if (::getppid() != parent) ::_exit(1);
+  if (::getppid() != start.parent) ::_exit(1);
   ::setpgid(0, 0);  // Ctrl-C is for the server, which tells its job
   ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
-  ::dup2(out, STDOUT_FILENO);
-  ::dup2(err, STDERR_FILENO);
+  ::dup2(start.out, STDOUT_FILENO);
+  ::dup2(start.err, STDERR_FILENO);
   ::signal(SIGINT, SIG_DFL);
   ::signal(SIGTERM, SIG_DFL);
   ::signal(SIGPIPE, SIG_IGN);
-  ::execve(program, words, variables);
+  ::execve(start.program, start.words, start.variables);
   ::_exit(127);
 }
 
@@ -150,11 +159,10 @@ void Jobs::run(const std::vector<std::string>& words) {
   std::vector<std::string> arguments{"misfit"}, variables = environment();
   arguments.insert(arguments.end(), words.begin(), words.end());
   const std::vector<char*> argv = pointers(arguments), envp = pointers(variables);
-  const pid_t self = ::getpid();
+  const Start start{program_.c_str(), argv.data(), envp.data(), process.out.to, process.err.to, ::getpid()};
   process.pid = ::fork();
   if (process.pid < 0) throw RunError("no process can be started");
-  if (process.pid == 0)
-    become(program_.c_str(), const_cast<char**>(argv.data()), const_cast<char**>(envp.data()), process.out.to, process.err.to, self);
+  if (process.pid == 0) become(start);
   Pipe::close_end(process.out.to);
   Pipe::close_end(process.err.to);
   {

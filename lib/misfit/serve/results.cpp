@@ -102,13 +102,11 @@ std::optional<Calibration> calibration_of(const Place& place) {
 std::vector<std::string> outdated(const Session& session) {
   std::vector<std::string> old;
   const auto look = [&](const std::string& file, const std::string& name, const auto& current) {
-    if (fs::exists(session.folder.file(file)) && !current()) old.push_back(name);
+    if (!read_if(session.folder.file(file), current).value_or(!fs::exists(session.folder.file(file)))) old.push_back(name);
   };
   for (const std::string& method : session.methods()) {
     const std::string stage = "fit/" + method;
-    look(stage + "/fit.json", "the fit by " + method, [&] {
-      return read_if(session.study.file, [&] { return session.folder.up_to_date(stage, inputs_of_fit(session, method)); }).value_or(false);
-    });
+    look(stage + "/fit.json", "the fit by " + method, [&] { return session.folder.up_to_date(stage, inputs_of_fit(session, method)); });
   }
   look("diagnosis.json", "the diagnosis", [&] { return known_diagnosis(session).has_value(); });
   look("discovery.json", "the candidates", [&] { return known_discovery(session).has_value(); });

@@ -89,7 +89,7 @@ class Plot {
     this.node.append(this.legend, this.host);
     if ((last && view.options.xLabel !== false) || panel.beside)
       this.node.append(element('p', { class: 'xlabel' }, words(panel.beside?.label ?? xLabel), panel.beside ? '' : this.unitText(this.figure.xUnit)));
-    view.node.append(this.node);
+    (view.row ?? view.node).append(this.node);
     this.make();
   }
 
@@ -188,16 +188,19 @@ class Plot {
     const marks = this.panel.beside ? this.view.marks : this.panel.marks;
     if (marks.length > 0) {
       const longest = Math.max(...marks.map(([, text]) => plain(text).length));
-      Object.assign(y, marked(marks), { size: Math.min(7 * longest + 14, 0.42 * this.width()) });
+      Object.assign(y, marked(marks), { size: Math.min(7 * longest + 14, 0.48 * this.width()) });
+      if (this.panel.beside && this.view.row) Object.assign(y, { values: () => marks.map(() => ''), size: 10 });
     }
     return [x, y];
   }
   width() {
-    return Math.max(this.view.node.clientWidth, 200);
+    const all = Math.max(this.view.node.clientWidth, 200);
+    return this.view.row ? Math.floor((all - 12) * (this.panel.beside ? 0.4 : 0.6)) : all;
   }
   height() {
     const scale = this.view.options.height ?? 0.75;
-    return Math.round(Math.max(this.panel.height * scale, this.last ? 100 : 74) + (this.last ? 18 : 0));
+    const foot = this.last || this.panel.beside;
+    return Math.round(Math.max(this.panel.height * scale, foot ? 100 : 74) + (foot ? 18 : 0));
   }
 
   make() {
@@ -568,6 +571,8 @@ export class Figure {
     parent.append(this.node);
     this.width = this.node.clientWidth;
     if (options.title !== false) this.node.append(element('h3', {}, words(figure.title)));
+    this.row = figure.panels.some((p) => p.beside) && this.width >= 520 ? element('div', { class: 'row' }) : null;
+    if (this.row) this.node.append(this.row);
     this.marks = figure.panels.find((p) => p.marks.length > 0)?.marks ?? [];
     const own = figure.panels.filter((p) => !p.beside);
     const shared = this.sharedRange(own);
