@@ -220,6 +220,12 @@ void export_options(CLI::App& verb, Options& options) {
   verb.add_flag("--quiet", options.quiet, "print no notes to stderr");
 }
 
+void open_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  verb.add_option("--out", options.session.out, "run folder (default: out/ beside the study)")->type_name("DIR");
+  verb.add_option("--port", options.port, "port of 127.0.0.1 (default: a free one)")->type_name("N")->check(CLI::Range(0, 65535));
+}
+
 void effects_options(CLI::App& verb, Options& options) {
   verb.add_option("what", options.session.study, "key of an effect, or a study: study.toml, or the folder that holds it")
       ->type_name("KEY|STUDY");
@@ -249,6 +255,7 @@ constexpr VerbEntry verbs[] = {{"run", run_verb, run_options},
                                {"batch", batch_verb, batch_options},
                                {"export", export_verb, export_options},
                                {"init", init_verb, init_options},
+                               {"open", open_verb, open_options},
                                {"effects", effects_verb, effects_options}};
 
 const VerbEntry& entry_of(std::string_view name) {

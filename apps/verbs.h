@@ -20,6 +20,7 @@ struct Options {
   std::string check_video;           ///< track: write the video with the track drawn to this file
   ExportRequest export_request;      ///< export
   RecordingChoice recording;         ///< init
+  int port = 0;                      ///< open; 0: a free one
 };
 
 // One function per verb: open the study, call the stages, print. Each in apps/NAME.cpp. Return the exit status.
@@ -38,6 +39,7 @@ int add_verb(const Options& options, const Registry& registry);
 int run_verb(const Options& options, const Registry& registry);
 int export_verb(const Options& options, const Registry& registry);
 int init_verb(const Options& options, const Registry& registry);
+int open_verb(const Options& options, const Registry& registry);
 int effects_verb(const Options& options, const Registry& registry);
 
 /// Tells what happens while a ladder is extended: a line each, with --verbose the tables, with --json nothing.

@@ -85,8 +85,9 @@ INSTANTIATE_TEST_SUITE_P(EachVerb, FullOutput,
                          testing::Values(Printed{"Fit", {"fit", "--quiet"}}, Printed{"FitAsJson", {"fit", "--quiet", "--json"}},
                                          Printed{"Run", {"run", "--quiet"}}, Printed{"RunAsJson", {"run", "--quiet", "--json"}},
                                          Printed{"Compare", {"compare", "--quiet"}}, Printed{"Simulate", {"simulate", "--quiet"}},
-                                         Printed{"Report", {"report", "--quiet"}}, Printed{"Effects", {"effects"}},
-                                         Printed{"Init", {"init"}}, Printed{"Version", {"--version"}}, Printed{"Help", {"--help"}}),
+                                         Printed{"Report", {"report", "--quiet"}}, Printed{"Open", {"open"}},
+                                         Printed{"Effects", {"effects"}}, Printed{"Init", {"init"}}, Printed{"Version", {"--version"}},
+                                         Printed{"Help", {"--help"}}),
                          [](const auto& instance) { return instance.param.name; });
 
 TEST(FullOutputOfAFit, LeavesTheResultsInFiles) {

@@ -3,6 +3,7 @@
 #include "misfit/core/files.h"
 #include "misfit/data/estimators.h"
 #include "misfit/data/study_parts.h"
+#include "misfit/data/study_reader.h"
 
 namespace misfit {
 namespace {
@@ -66,12 +67,18 @@ std::optional<double> read_time_limit(const Section& root, const char* group) {
 
 }  // namespace
 
-Study read_study(const fs::path& path) {
-  Study study;
+fs::path study_file(const fs::path& path) {
   std::error_code none;  // what cannot be looked at cannot be read either, which read_file() says
-  study.file = fs::is_directory(path, none) ? path / "study.toml" : path;
+  return fs::is_directory(path, none) ? path / "study.toml" : path;
+}
+
+Study read_study(const fs::path& path) { return read_study_text(study_file(path), read_file(study_file(path))); }
+
+Study read_study_text(const fs::path& file, std::string text) {
+  Study study;
+  study.file = file;
   study.folder = study.file.has_parent_path() ? study.file.parent_path() : fs::path(".");
-  study.text = read_file(study.file);
+  study.text = std::move(text);
   const Section root = Section::parse(study.text, study.file.string());
   read_head(root, study);
   read_system(root, study);

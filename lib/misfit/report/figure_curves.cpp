@@ -127,6 +127,18 @@ std::string first_quantity(const std::string& curve, const std::vector<Fit>& fit
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> curve_names(const std::vector<Fit>& fits, const std::vector<Reference>& references) {
+  std::vector<std::pair<std::string, std::string>> names;
+  const auto add = [&](const std::string& curve, const std::string& of) {
+    if (std::find(names.begin(), names.end(), std::pair(curve, of)) == names.end()) names.emplace_back(curve, of);
+  };
+  for (const Fit& fit : fits) {
+    for (const CurveEstimate& curve : fit.curves) add(curve.name, curve.of);
+  }
+  for (const Reference& reference : references) add(reference.curve, reference.of);
+  return names;
+}
+
 Figure curve_figure(const std::string& curve, const std::string& of, const std::vector<Fit>& fits,
                     const std::vector<Reference>& references) {
   Figure figure;

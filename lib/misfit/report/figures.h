@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "misfit/data/attitude.h"
@@ -22,6 +23,10 @@ namespace misfit::report {
 /// curves of the quantity `of`; fits that declined or failed are noted.
 [[nodiscard]] Figure curve_figure(const std::string& curve, const std::string& of, const std::vector<Fit>& fits,
                                   const std::vector<Reference>& references);
+
+/// Every curve that fits or references have, with its quantity, in order of first appearance.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> curve_names(const std::vector<Fit>& fits,
+                                                                           const std::vector<Reference>& references);
 
 /// Interval of time [s].
 struct Interval {

@@ -18,18 +18,6 @@ namespace {
 
 constexpr double zoom_seconds = 5.0;
 
-std::vector<std::pair<std::string, std::string>> curves_of(const ReportInput& input) {
-  std::vector<std::pair<std::string, std::string>> names;
-  const auto add = [&](const std::string& curve, const std::string& of) {
-    if (std::find(names.begin(), names.end(), std::pair(curve, of)) == names.end()) names.emplace_back(curve, of);
-  };
-  for (const Fit& fit : input.fits) {
-    for (const CurveEstimate& curve : fit.curves) add(curve.name, curve.of);
-  }
-  for (const Reference& reference : input.references) add(reference.curve, reference.of);
-  return names;
-}
-
 }  // namespace
 
 void Draw::operator()(Figure figure) const {
@@ -44,7 +32,7 @@ void Draw::first(const Figure& figure) {
 }
 
 void curves_section(const ReportInput& input, Page& page, const Draw& draw) {
-  const auto names = curves_of(input);
+  const auto names = curve_names(input.fits, input.references);
   Blocks differences;
   if (input.comparison) differences.append(curve_difference_blocks(*input.comparison));
   if (names.empty()) return;

@@ -1,0 +1,211 @@
+#include "misfit/serve/api.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/data/study_reader.h"
+#include "misfit/serve/json_text.h"
+#include "misfit/serve/study_text.h"
+#include "misfit/serve/views.h"
+
+namespace misfit::serve {
+namespace {
+
+using nlohmann::json;
+
+Answer failure(int status, const std::string& why) { return {status, fmt::format(R"({{"error":{}}})", json_string(why))}; }
+
+/// A number of a list of `size`; 0 where the request has none. InputError: anything else.
+std::size_t number(const Ask& ask, const std::string& name, std::size_t size) {
+  const auto found = ask.parameters.find(name);
+  if (found == ask.parameters.end()) return 0;
+  const std::string& text = found->second;
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value >= size)
+    throw InputError(fmt::format("{}: a number below {} is expected", name, size));
+  return value;
+}
+
+std::string strings(const std::vector<std::string>& texts) {
+  std::vector<std::string> out;
+  for (const std::string& text : texts) out.push_back(json_string(text));
+  return json_list(out);
+}
+
+std::string json_of(const std::optional<TextFault>& fault) {
+  if (!fault) return "null";
+  return fmt::format(R"({{"message":{},"line":{}}})", json_string(fault->message), fault->line);
+}
+
+std::string json_of(const CostTrace& trace) {
+  std::vector<std::string> points;
+  for (const auto& [iteration, value] : trace.points) points.push_back(fmt::format("[{},{}]", iteration, json_number(value)));
+  return fmt::format(R"({{"work":{},"what":{},"points":{}}})", json_string(trace.work), json_string(trace.what), json_list(points));
+}
+
+std::string json_of(const JobReport& job) {
+  constexpr std::array states = {"none", "running", "done", "failed", "stopped"};
+  std::vector<std::string> costs;
+  for (const CostTrace& trace : job.costs) costs.push_back(json_of(trace));
+  const auto optional = [](const std::optional<double>& value) { return value ? json_number(*value) : "null"; };
+  return fmt::format(
+      R"({{"number":{},"command":{},"state":"{}","stopping":{},"status":{},"seconds":{},"work":{},"part":{},"left":{},"costs":{},)"
+      R"("notes":{},"output":{}}})",
+      job.number, json_string(job.command), states.at(static_cast<std::size_t>(job.state)), job.stopping, job.status,
+      json_number(job.seconds), json_string(job.work), optional(job.part), optional(job.left), json_list(costs), strings(job.notes),
+      json_string(job.output));
+}
+
+std::string text_in(const json& body, const char* name) {
+  const auto found = body.find(name);
+  if (found == body.end()) return "";
+  if (!found->is_string()) throw InputError(std::string(name) + ": a text is expected");
+  return found->get<std::string>();
+}
+
+}  // namespace
+
+Api::Api(SessionOptions options, const Registry& registry, std::string program)
+    : options_(std::move(options)), registry_(registry), results_(options_), script_(results_.folder()), jobs_(std::move(program)) {
+  (void)read_file(results_.study());  // InputError: there is none
+}
+
+Answer Api::answer(const Ask& ask) {
+  try {
+    return ask.method == "POST" ? post(ask) : get(ask);
+  } catch (const InputError& error) {
+    return failure(400, error.what());
+  } catch (const json::exception&) {
+    return failure(400, "the body is no JSON of the form that is expected");
+  } catch (const RunError& error) {
+    return failure(500, error.what());
+  }
+}
+
+Place Api::place(const Ask& ask) const {
+  const std::vector<Place> places = results_.places();
+  return places[number(ask, "model", places.size())];
+}
+
+std::string Api::where(const Ask& ask) const {
+  const std::vector<Place> places = results_.places();
+  const std::size_t model = number(ask, "model", places.size());
+  return where_view(places[model], model > 0 ? &places[model - 1] : nullptr);
+}
+
+Answer Api::get(const Ask& ask) {
+  constexpr std::size_t many = 10'000;
+  if (ask.path == "/api/state") return {200, state()};
+  if (ask.path == "/api/motion") return {200, motion_view(place(ask), number(ask, "method", many))};
+  if (ask.path == "/api/where") return {200, where(ask)};
+  if (ask.path == "/api/samples") return {200, samples_view(place(ask), number(ask, "experiment", many), number(ask, "quantity", many))};
+  if (ask.path == "/api/candidates") return {200, candidates_view(place(ask), registry_)};
+  if (ask.path == "/api/curves") return {200, curves_view(place(ask), known()->references)};
+  if (ask.path == "/api/calibration") return {200, calibration_view(results_.places().front())};
+  if (ask.path == "/api/ladder") return {200, ladder_view(results_)};
+  if (ask.path == "/api/study") return study(place(ask));
+  if (ask.path == "/api/session") return {200, fmt::format(R"({{"text":{}}})", json_string(script_.text()))};
+  return failure(404, "there is no such page");
+}
+
+Answer Api::post(const Ask& ask) {
+  const json body = ask.body.empty() ? json::object() : json::parse(ask.body);
+  if (!body.is_object()) throw InputError("a JSON object is expected");
+  if (ask.path == "/api/stop") {
+    jobs_.stop();
+    return {200, json_of(jobs_.report())};
+  }
+  if (ask.path == "/api/check")
+    return {200, fmt::format(R"({{"fault":{}}})", json_of(fault_of(results_.study(), text_in(body, "text"), registry_)))};
+  if (ask.path == "/api/save") return save(text_in(body, "text"), text_in(body, "hash"));
+  if (ask.path == "/api/job") return start(text_in(body, "verb"), text_in(body, "effect"));
+  return failure(404, "there is no such page");
+}
+
+/// Tells what the study is, and what of the results is not its own any more.
+void Api::open_study(Known& known) const {
+  std::string name = results_.study().filename().string(), question;
+  std::optional<TextFault> fault = fault_of(results_.study(), read_file(results_.study()), registry_);
+  if (!fault) {
+    try {
+      const Session session(options_, registry_, RunFolder::Access::read);
+      name = session.study.name;
+      question = session.study.question;
+      known.outdated = outdated(session);
+      known.references = references(session);
+    } catch (const std::exception& error) {
+      fault = TextFault{error.what(), 0};
+    }
+  }
+  known.study = fmt::format(R"({{"name":{},"question":{},"file":{},"folder":{},"fault":{}}})", json_string(name), json_words(question),
+                            json_string(results_.study().string()), json_string(results_.folder().string()), json_of(fault));
+}
+
+std::shared_ptr<const Api::Known> Api::known() {
+  const std::string version = results_.version();
+  const std::lock_guard lock(mutex_);
+  if (known_ && known_->version == version) return known_;
+  auto fresh = std::make_shared<Known>();
+  fresh->version = version;
+  open_study(*fresh);
+  fresh->verdict = verdict_view(results_, options_);
+  std::vector<std::string> models;
+  for (const Place& one : results_.places()) models.push_back(fmt::format(R"({{"id":{},"added":{}}})", one.id, json_string(one.added)));
+  fresh->models = json_list(models);
+  known_ = fresh;
+  return fresh;
+}
+
+std::string Api::state() {
+  const auto all = known();
+  return fmt::format(R"({{"version":"{}","study":{},"models":{},"outdated":{},"verdict":{},"effects":{},"job":{}}})", all->version,
+                     all->study, all->models, strings(all->outdated), all->verdict, strings(registry_.effect_keys()),
+                     json_of(jobs_.report()));
+}
+
+Answer Api::study(const Place& place) const {
+  const std::string text = read_file(place.study);
+  return {200, fmt::format(R"({{"text":{},"hash":"{}","file":{},"editable":{},"fault":{}}})", json_string(text), hash_text(text),
+                           json_string(place.study.string()), place.id == 0, json_of(fault_of(place.study, text, registry_)))};
+}
+
+Answer Api::save(const std::string& text, const std::string& hash) {
+  if (jobs_.report().state == JobState::running)
+    return failure(409, "a command is at work: wait for its end, or stop it, before the study is changed");
+  const std::string whole = text.ends_with('\n') ? text : text + "\n";
+  if (const auto fault = fault_of(results_.study(), whole, registry_))
+    return {422, fmt::format(R"({{"error":{},"fault":{}}})", json_string(fault->message), json_of(fault))};
+  const std::lock_guard lock(mutex_);
+  save_text(results_.study(), whole, hash, registry_);
+  script_.record_text(results_.study().string(), whole);
+  return {200, fmt::format(R"({{"hash":"{}"}})", hash_text(whole))};
+}
+
+Answer Api::start(const std::string& verb, const std::string& effect) {
+  constexpr std::array verbs = {"run", "fit", "discover", "add"};
+  const auto known_verb = std::find(verbs.begin(), verbs.end(), verb);
+  if (known_verb == verbs.end()) throw InputError("verb: run, fit, discover or add is expected");
+  std::vector<std::string> words{*known_verb, options_.study};
+  if (verb == "add") {
+    const std::vector<std::string> effects = registry_.effect_keys();
+    const auto known_effect = std::find(effects.begin(), effects.end(), effect);
+    if (known_effect == effects.end()) throw InputError("effect: a key of `misfit effects` is expected");
+    words.push_back(*known_effect);
+  }
+  if (!options_.out.empty()) words.insert(words.end(), {"--out", options_.out});
+  const std::string command = command_of(words);
+  const std::lock_guard lock(mutex_);
+  if (jobs_.report().state == JobState::running) return failure(409, "a command is at work already: wait for its end, or stop it");
+  script_.record(command);  // first: nothing is done that is not recorded
+  if (!jobs_.start(words, command)) return failure(503, "misfit is about to end");
+  return {200, json_of(jobs_.report())};
+}
+
+}  // namespace misfit::serve

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+
+#include "misfit/serve/http.h"
+#include "misfit/serve/job.h"
+#include "misfit/serve/results.h"
+#include "misfit/serve/session_script.h"
+
+namespace misfit::serve {
+
+/// What the page may ask for. Of a request only numbers of a list, keys of effects, and the text of the study itself are used; none becomes
+/// a path or part of a command line.
+///
+/// GET  /api/state; /api/motion?model&method; /api/where?model; /api/samples?model&experiment&quantity; /api/candidates?model;
+///      /api/curves?model; /api/calibration; /api/ladder; /api/study?model; /api/session
+/// POST /api/job {"verb": "run"|"fit"|"discover"|"add", "effect"}; /api/stop; /api/check {"text"}; /api/save {"text", "hash"}
+class Api {
+ public:
+  Api(SessionOptions options, const Registry& registry, std::string program);
+
+  [[nodiscard]] Answer answer(const Ask& ask);
+
+ private:
+  /// What must be computed to know it, kept until a file changes.
+  struct Known {
+    std::string version;
+    std::string study;  ///< "study" of /api/state
+    std::string verdict, models;
+    std::vector<std::string> outdated;  ///< sentences
+    std::vector<Reference> references;
+  };
+
+  [[nodiscard]] Answer get(const Ask& ask);
+  [[nodiscard]] Answer post(const Ask& ask);
+  [[nodiscard]] std::string state();
+  [[nodiscard]] std::shared_ptr<const Known> known();
+  void open_study(Known& known) const;
+  [[nodiscard]] Answer study(const Place& place) const;
+  [[nodiscard]] Answer start(const std::string& verb, const std::string& effect);
+  [[nodiscard]] Answer save(const std::string& text, const std::string& hash);
+  [[nodiscard]] Place place(const Ask& ask) const;
+  [[nodiscard]] std::string where(const Ask& ask) const;
+
+  SessionOptions options_;
+  const Registry& registry_;
+  Results results_;
+  SessionScript script_;
+  std::mutex mutex_;  ///< of known_, and of what is written
+  std::shared_ptr<const Known> known_;
+  Jobs jobs_;
+};
+
+}  // namespace misfit::serve

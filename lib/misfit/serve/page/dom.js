@@ -1,0 +1,60 @@
+// Building the document. Every text is set as text: names of a study never become markup.
+
+/** element('p', {class: 'soft'}, 'text', child, …); properties that begin with "on" are listeners. */
+export function element(name, properties = {}, ...children) {
+  const out = document.createElement(name);
+  for (const [key, value] of Object.entries(properties)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (key.startsWith('on')) out.addEventListener(key.slice(2), value);
+    else out.setAttribute(key, value === true ? '' : value);
+  }
+  for (const child of children) if (child !== null && child !== undefined) out.append(child);
+  return out;
+}
+
+/** Text from the server: plain, or pieces on (0), below (−1) and above (1) the line. */
+export function words(text) {
+  const out = document.createDocumentFragment();
+  if (typeof text === 'string') {
+    out.append(text);
+    return out;
+  }
+  for (const [piece, place] of text ?? []) out.append(place === 0 ? piece : element(place < 0 ? 'sub' : 'sup', {}, piece));
+  return out;
+}
+
+export const plain = (text) => (typeof text === 'string' ? text : (text ?? []).map(([piece]) => piece).join(''));
+
+function table(block) {
+  const align = (k) => (block.columns[k]?.right ? { class: 'number' } : {});
+  const head = element('tr', {}, ...block.columns.map((c, k) => element('th', { scope: 'col', ...align(k) }, words(c.heading))));
+  const body = element('tbody', {}, ...block.rows.map((row) => element('tr', {}, ...row.map((cell, k) => element('td', align(k), words(cell))))));
+  return element('div', { class: 'wide' }, element('table', {}, element('thead', {}, head), body));
+}
+
+/** Blocks as of a terminal or the report. `figures(name, parent)` draws what belongs to a place; `skip(block)`: left out. */
+export function blocks(list, { figures = () => {}, skip = () => false } = {}) {
+  const out = document.createDocumentFragment();
+  for (const block of list ?? []) {
+    if (skip(block)) continue;
+    const tone = { class: block.tone === 'plain' ? null : block.tone };
+    if (block.kind === 'heading') out.append(element(block.level === 1 ? 'h3' : 'h3', {}, words(block.text)));
+    if (block.kind === 'paragraph') out.append(element('p', tone, words(block.text)));
+    if (block.kind === 'list') out.append(element('ul', tone, ...block.items.map((item) => element('li', {}, words(item)))));
+    if (block.kind === 'table') out.append(table(block));
+    if (block.kind === 'figures') {
+      const place = element('div');
+      out.append(place);
+      figures(block.name, place);
+    }
+  }
+  return out;
+}
+
+/** A number for readers: `digits` significant ones, a real minus sign. */
+export function shown(value, digits = 4) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return '–';
+  const size = Math.abs(value);
+  const text = size !== 0 && (size >= 1e6 || size < 1e-4) ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
+  return text.replace('-', '−');
+}

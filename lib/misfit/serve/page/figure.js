@@ -1,0 +1,624 @@
+// Draws a figure of the report (lib/misfit/report/figure.h) with uPlot: axes, zoom and cursor are uPlot's, the series are painted here, thinned
+// to what the screen has pixels for (least and largest value of each column).
+import uPlot from '/uPlot.esm.js';
+import { element, plain, shown, words } from '/dom.js';
+
+const darkScreen = matchMedia('(prefers-color-scheme: dark)');
+const onDark = { '#000000': '#e4e7ea', '#8a8a8a': '#8f989f', '#0072b2': '#5fb4ea', '#d55e00': '#ff8c42', '#009e73': '#37c79b', '#cc79a7': '#e39cc4',
+  '#e69f00': '#f0b73a', '#56b4e9': '#8fd0f7', '#dcdcdc': '#2c3237' };
+
+/** The colour on this screen: those of the report are made for white paper. */
+export const colour = (hex) => (darkScreen.matches ? onDark[hex.toLowerCase()] ?? hex : hex);
+const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** Of numbers that ascend: the first place whose number is not below `value`. */
+export function lowerBound(numbers, value) {
+  let low = 0, high = numbers.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (numbers[middle] < value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** Place of the number nearest to `value`. */
+export function nearest(numbers, value) {
+  const at = lowerBound(numbers, value);
+  if (at === 0) return 0;
+  if (at === numbers.length) return at - 1;
+  return value - numbers[at - 1] <= numbers[at] - value ? at - 1 : at;
+}
+
+function ascends(x) {
+  for (let i = 1; i < x.length; ++i) if (!(x[i] >= x[i - 1])) return false;
+  return x.length > 1;
+}
+
+/** Plots over time that share cursor, zoom and marks. */
+export class TimeGroup {
+  constructor() {
+    this.plots = new Set();
+    this.window = null; // [from, to] of the zoom; null: all
+    this.marks = []; // intervals of time [s]
+    this.onmark = () => {};
+    this.sync = uPlot.sync('time');
+  }
+  zoom(window) {
+    this.window = window;
+    for (const plot of this.plots) plot.showX(window);
+  }
+  setMarks(marks) {
+    this.marks = marks;
+    for (const plot of this.plots) plot.u.redraw(false);
+  }
+  point(t) {
+    for (const plot of this.plots) plot.pointAt(t);
+  }
+}
+
+/** Extent of numbers between two places; null entries left out. */
+function extent(lists, from, to, out) {
+  for (const list of lists) {
+    if (!list) continue;
+    for (let i = from; i < to; ++i) {
+      const v = list[i];
+      if (v === null) continue;
+      if (v < out[0]) out[0] = v;
+      if (v > out[1]) out[1] = v;
+    }
+  }
+}
+
+const withX = { boxes: true, cells: true, x_bars: true };
+
+class Plot {
+  constructor(view, panel, { last, xLabel }) {
+    this.view = view;
+    this.panel = panel;
+    this.figure = view.figure;
+    this.last = last;
+    this.series = panel.series.map((s) => {
+      const x = this.figure.xs[s.x];
+      return { ...s, x, sorted: (view.sortedX[s.x] ??= ascends(x)) };
+    });
+    this.xRange = panel.beside?.range ?? this.figure.xRange ?? this.extentOfX();
+    this.node = element('div', { class: 'panel' });
+    this.legend = this.makeLegend();
+    this.host = element('div', { class: 'plot', tabindex: 0, role: 'img', 'aria-label': this.spoken() });
+    this.node.append(this.legend, this.host);
+    if ((last && view.options.xLabel !== false) || panel.beside)
+      this.node.append(element('p', { class: 'xlabel' }, words(panel.beside?.label ?? xLabel), panel.beside ? '' : this.unitText(this.figure.xUnit)));
+    (view.row ?? view.node).append(this.node);
+    this.make();
+  }
+
+  unitText(unit) {
+    const out = document.createDocumentFragment();
+    if (unit && plain(unit) !== '' && plain(unit) !== '-') out.append(' [', words(unit), ']');
+    return out;
+  }
+  spoken() {
+    const names = this.series.map((s) => plain(s.legend)).filter((name) => name !== '');
+    return `${plain(this.figure.title)}: ${plain(this.panel.label)} [${plain(this.panel.unit)}] against ${plain(this.figure.xLabel)}` +
+      (names.length > 0 ? `; ${names.join(', ')}` : '');
+  }
+
+  extentOfX() {
+    const out = [Infinity, -Infinity];
+    for (const s of this.series) {
+      extent([s.x, ...(s.style === 'boxes' || s.style === 'x_bars' ? [s.lo, s.hi] : [])], 0, s.x.length, out);
+      if (s.style === 'bars') extent([[0]], 0, 1, out);
+      if (s.style === 'cells') for (let i = 0; i < s.x.length; ++i) extent([[s.x[i] - s.lo[i], s.x[i] + s.lo[i]]], 0, 2, out);
+    }
+    if (!(out[1] > out[0])) return Number.isFinite(out[0]) ? [out[0] - 0.5, out[0] + 0.5] : [0, 1];
+    const time = this.view.group !== null;
+    const space = time || this.series.some((s) => withX[s.style] && s.style !== 'x_bars') ? 0 : 0.02 * (out[1] - out[0]);
+    return [out[0] - space, out[1] + space];
+  }
+
+  /** Of what is seen between two values of x. */
+  extentOfY([from, to]) {
+    if (this.panel.range) return this.panel.range;
+    const out = [Infinity, -Infinity], bands = [Infinity, -Infinity];
+    for (const s of this.series) {
+      const begin = s.sorted ? Math.max(lowerBound(s.x, from) - 1, 0) : 0, end = s.sorted ? Math.min(lowerBound(s.x, to) + 1, s.x.length) : s.x.length;
+      if (s.style === 'band' || s.style === 'pale_band') extent([s.lo, s.hi], begin, end, bands);
+      if (s.style === 'error_bars') extent([s.lo, s.hi], begin, end, out);
+      if (s.style === 'bars') extent([s.lo, s.hi], begin, end, out);
+      else if (s.style === 'cells') for (let i = 0; i < s.x.length; ++i) extent([[s.y[i] - s.hi[i], s.y[i] + s.hi[i]]], 0, 2, out);
+      else extent([s.y], begin, end, out);
+      if (s.style === 'boxes') extent([[0]], 0, 1, out);
+    }
+    // A band may be wide where nothing is known yet: it must not make all else small.
+    const span = out[1] > out[0] ? 0.3 * (out[1] - out[0]) : Infinity;
+    extent([[Math.max(bands[0], out[0] - span), Math.min(bands[1], out[1] + span)].map((v) => (Number.isFinite(v) ? v : null))], 0, 2, out);
+    if (this.panel.zero) extent([[0]], 0, 1, out);
+    if (!(out[1] > out[0])) return Number.isFinite(out[0]) ? [out[0] - 1, out[0] + 1] : [-1, 1];
+    const tight = this.series.some((s) => s.style === 'cells' || s.style === 'bars');
+    const space = tight ? 0 : 0.05 * (out[1] - out[0]);
+    const boxes = this.series.some((s) => s.style === 'boxes') && out[0] === 0;
+    return [boxes ? 0 : out[0] - space, out[1] + space];
+  }
+
+  makeLegend() {
+    const out = element('div', { class: 'legend' }, element('span', { class: 'axis' }, words(this.panel.label), this.unitText(this.panel.unit)));
+    this.values = [];
+    for (const s of this.series) {
+      if (plain(s.legend) === '') continue;
+      const swatch = element('span', { class: 'swatch' });
+      swatch.style.background = colour(s.colour);
+      if (s.style === 'band' || s.style === 'pale_band') swatch.style.opacity = 0.35;
+      if (['points', 'markers', 'error_bars', 'x_bars'].includes(s.style)) {
+        swatch.style.width = swatch.style.height = '.5rem';
+        swatch.style.borderRadius = '50%';
+      }
+      if (['line', 'dashed', 'dotted', 'steps'].includes(s.style)) swatch.style.height = '3px';
+      const value = element('span', { class: 'value' });
+      out.append(element('span', {}, swatch, words(s.legend), value));
+      if (s.sorted && s.y && s.style !== 'bars') this.values.push([s, value]);
+    }
+    if (this.series.some((s) => s.style === 'cells')) out.append(this.scale());
+    return out;
+  }
+
+  /** The scale of the colours of cells. */
+  scale() {
+    const bar = element('span', { class: 'swatch' });
+    bar.style.width = '7rem';
+    bar.style.background = `linear-gradient(to right, ${[-1, -0.5, 0, 0.5, 1].map((v) => shade(v)).join(', ')})`;
+    const most = this.most();
+    return element('span', {}, words(this.figure.zLabel), ` ${shown(-most, 2)} `, bar, ` ${shown(most, 2)}`);
+  }
+  most() {
+    const out = [0, 3];
+    for (const s of this.series) for (const z of s.z ?? []) if (z !== null) out[1] = Math.max(out[1], Math.abs(z));
+    return Math.ceil(out[1]);
+  }
+
+  axes() {
+    const ink = style('--soft'), line = style('--line'), font = '12px "Segoe UI", Helvetica, Arial, "DejaVu Sans", sans-serif';
+    const axis = { stroke: ink, font, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1, size: 4 }, gap: 4 };
+    const values = (u, splits) => splits.map((v) => (v === null ? '' : shown(v, 6)));
+    const marked = (marks) => ({ splits: () => marks.map(([at]) => at), values: () => marks.map(([, text]) => plain(text)) });
+    const x = { ...axis, values, show: true, size: this.last || this.panel.beside ? 26 : 8 };
+    if (this.figure.xMarks.length > 0 && !this.panel.beside) Object.assign(x, marked(this.figure.xMarks));
+    if (!this.last && !this.panel.beside) x.values = (u, splits) => splits.map(() => '');
+    const y = { ...axis, values, size: 54, space: 20 };
+    const marks = this.panel.beside ? this.view.marks : this.panel.marks;
+    if (marks.length > 0) {
+      const longest = Math.max(...marks.map(([, text]) => plain(text).length));
+      Object.assign(y, marked(marks), { size: Math.min(7 * longest + 14, 0.48 * this.width()) });
+      if (this.panel.beside && this.view.row) Object.assign(y, { values: () => marks.map(() => ''), size: 10 });
+    }
+    return [x, y];
+  }
+  width() {
+    const all = Math.max(this.view.node.clientWidth, 200);
+    return this.view.row ? Math.floor((all - 12) * (this.panel.beside ? 0.4 : 0.6)) : all;
+  }
+  height() {
+    const scale = this.view.options.height ?? 0.75;
+    const foot = this.last || this.panel.beside;
+    return Math.round(Math.max(this.panel.height * scale, foot ? 100 : 74) + (foot ? 18 : 0));
+  }
+
+  make() {
+    const group = this.view.group;
+    this.window = group?.window ?? this.xRange;
+    const options = {
+      width: this.width(), height: this.height(), legend: { show: false }, padding: [6, 10, 0, 0],
+      scales: { x: { time: false, auto: false, range: (u, a, b) => [a, b] }, y: { auto: false, range: (u, a, b) => [a, b] } },
+      axes: this.axes(), series: [{}, { points: { show: false } }],
+      cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, ...(group ? { sync: { key: 'time', setSeries: false } } : {}),
+        bind: { mousedown: (u, target, handler) => (event) => { this.shift = event.shiftKey; handler(event); }, dblclick: () => () => this.all() } },
+      hooks: { draw: [() => this.paint()], setCursor: [() => this.read()], setSelect: [() => this.selected()] },
+    };
+    this.u = new uPlot(options, [this.xRange, [null, null]], this.host);
+    this.showX(this.window);
+    this.host.addEventListener('keydown', (event) => this.key(event));
+    this.u.over.addEventListener('mousemove', (event) => this.hover(event));
+    this.u.over.addEventListener('mouseleave', () => this.view.options.onleave?.(this));
+    this.u.over.addEventListener('click', (event) => { if (!this.dragged) this.click(event); this.dragged = false; });
+    group?.plots.add(this);
+  }
+  destroy() {
+    this.view.group?.plots.delete(this);
+    this.u.destroy();
+  }
+
+  showX(window) {
+    this.window = window ?? this.xRange;
+    const [low, high] = this.extentOfY(this.window);
+    this.u.batch(() => {
+      this.u.setScale('x', { min: this.window[0], max: this.window[1] });
+      this.u.setScale('y', { min: low, max: high });
+    });
+  }
+  zoom(window) {
+    if (this.view.group) this.view.group.zoom(window);
+    else this.view.zoom(window);
+  }
+  all() {
+    this.zoom(null);
+  }
+  selected() {
+    const { left, width } = this.u.select;
+    if (width < 4) return;
+    this.dragged = true;
+    const window = [this.u.posToVal(left, 'x'), this.u.posToVal(left + width, 'x')];
+    this.u.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+    if (this.shift && this.view.group) this.view.group.onmark([window]);
+    else if (!this.shift) this.zoom(window);
+  }
+  hover(event) {
+    this.view.options.onpoint?.(this, this.u.posToVal(event.offsetX, 'x'), this.u.posToVal(event.offsetY, 'y'));
+  }
+  click(event) {
+    this.view.options.onpick?.(this, this.u.posToVal(event.offsetX, 'x'), this.u.posToVal(event.offsetY, 'y'));
+  }
+
+  pointAt(x) {
+    this.cursor = x;
+    this.u.setCursor({ left: this.u.valToPos(x, 'x'), top: 10 }, false);
+    this.read();
+  }
+  read() {
+    const left = this.u?.cursor.left;
+    const inside = left !== undefined && left >= 0;
+    if (inside) this.cursor = this.u.posToVal(left, 'x');
+    if (this.view.group && inside) this.view.options.oncursor?.(this.cursor);
+    for (const [s, node] of this.values) {
+      let text = '';
+      if (inside && s.x.length > 0) {
+        const v = s.y[nearest(s.x, this.cursor)];
+        if (v !== null) text = shown(v, 4);
+      }
+      if (node.textContent !== text) node.textContent = text;
+    }
+  }
+  key(event) {
+    const [from, to] = this.window, all = this.xRange;
+    const sorted = this.series.find((s) => s.sorted);
+    const at = this.cursor ?? 0.5 * (from + to);
+    const around = (share) => [Math.max(at - share * (at - from), all[0]), Math.min(at + share * (to - at), all[1])];
+    if (event.key === '+' || event.key === '=') this.zoom(around(0.5));
+    else if (event.key === '-') {
+      const next = around(2);
+      this.zoom(next[0] <= all[0] && next[1] >= all[1] ? null : next);
+    } else if (event.key === '0') this.all();
+    else if ((event.key === 'ArrowLeft' || event.key === 'ArrowRight') && sorted) {
+      const step = (event.key === 'ArrowLeft' ? -1 : 1) * (event.shiftKey ? 10 : 1);
+      const k = Math.min(Math.max(nearest(sorted.x, at) + step, 0), sorted.x.length - 1), x = sorted.x[k];
+      if (x < from || x > to) this.zoom([x - 0.5 * (to - from), x + 0.5 * (to - from)]);
+      if (this.view.group) this.view.group.point(x);
+      else this.pointAt(x);
+      this.view.options.onkeypoint?.(this, x);
+    } else if (event.key === 'Enter') this.view.options.onpick?.(this, at, null);
+    else return;
+    event.preventDefault();
+  }
+
+  /** Everything but the axes. */
+  paint() {
+    const u = this.u;
+    if (!u) return;
+    const { left, top, width, height } = u.bbox, { min: x0, max: x1 } = u.scales.x, { min: y0, max: y1 } = u.scales.y;
+    const pen = { ctx: u.ctx, left, top, width, height, x0, x1, ratio: devicePixelRatio || 1,
+      X: (v) => left + ((v - x0) / (x1 - x0)) * width, Y: (v) => top + ((y1 - v) / (y1 - y0)) * height };
+    const ctx = u.ctx;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(left, top, width, height);
+    ctx.clip();
+    if (this.panel.ground) {
+      ctx.fillStyle = colour(this.panel.ground);
+      ctx.fillRect(left, top, width, height);
+    }
+    if (this.view.group) this.paintMarks(pen, this.view.group.marks);
+    for (const [from, to] of this.view.cells ?? []) {
+      ctx.fillStyle = style('--mark');
+      ctx.fillRect(pen.X(from), top, Math.max(pen.X(to) - pen.X(from), 1), height);
+    }
+    if (this.panel.zero) {
+      ctx.strokeStyle = style('--soft');
+      ctx.lineWidth = pen.ratio;
+      ctx.beginPath();
+      ctx.moveTo(left, pen.Y(0));
+      ctx.lineTo(left + width, pen.Y(0));
+      ctx.stroke();
+    }
+    for (const s of this.series) {
+      ctx.strokeStyle = ctx.fillStyle = colour(s.colour);
+      ctx.lineWidth = Math.max(s.width * 0.8, 1) * pen.ratio;
+      ctx.setLineDash(s.style === 'dashed' ? [7 * pen.ratio, 4 * pen.ratio] : s.style === 'dotted' ? [2 * pen.ratio, 3 * pen.ratio] : []);
+      painters[s.style]?.(pen, s, this);
+      ctx.setLineDash([]);
+      ctx.globalAlpha = 1;
+    }
+    for (const rectangle of this.view.boxes ?? []) {
+      ctx.strokeStyle = style('--ink');
+      ctx.lineWidth = 2.5 * pen.ratio;
+      ctx.strokeRect(pen.X(rectangle[0]), pen.Y(rectangle[3]), pen.X(rectangle[1]) - pen.X(rectangle[0]), pen.Y(rectangle[2]) - pen.Y(rectangle[3]));
+    }
+    if (this.series.every((s) => s.x.length === 0)) {
+      ctx.fillStyle = style('--soft');
+      ctx.font = `${13 * pen.ratio}px sans-serif`;
+      ctx.textAlign = 'center';
+      ctx.fillText('no data', left + width / 2, top + height / 2);
+    }
+    ctx.restore();
+  }
+  paintMarks(pen, marks) {
+    pen.ctx.fillStyle = style('--mark');
+    let last = -1;
+    for (const [from, to] of marks) {
+      if (to < pen.x0 || from > pen.x1) continue;
+      const a = Math.max(pen.X(from), last), b = Math.max(pen.X(to), pen.X(from) + 1.5 * pen.ratio);
+      if (b > a) pen.ctx.fillRect(a, pen.top, b - a, pen.height);
+      last = Math.max(last, b);
+    }
+  }
+}
+
+/** From blue through the paper's colour to orange, of −1…1. */
+function shade(v) {
+  const paper = darkScreen.matches ? [32, 38, 43] : [250, 250, 250];
+  const end = v < 0 ? (darkScreen.matches ? [95, 180, 234] : [0, 114, 178]) : darkScreen.matches ? [255, 140, 66] : [213, 94, 0];
+  const share = Math.min(Math.abs(v), 1);
+  return `rgb(${paper.map((p, k) => Math.round(p + share * (end[k] - p))).join(', ')})`;
+}
+
+/** Places of a series that can be seen. */
+function seen(pen, s) {
+  if (!s.sorted) return [0, s.x.length];
+  return [Math.max(lowerBound(s.x, pen.x0) - 1, 0), Math.min(lowerBound(s.x, pen.x1) + 1, s.x.length)];
+}
+
+/** Calls `column(px, first, least, largest, last)` for each column of pixels; null for a gap. */
+function byColumn(pen, x, low, high, from, to, column) {
+  let px = null, first = 0, least = 0, largest = 0, last = 0;
+  for (let i = from; i < to; ++i) {
+    const a = low[i], b = high[i];
+    if (a === null || b === null || x[i] === null) {
+      if (px !== null) column(px, first, least, largest, last);
+      px = null;
+      column(null);
+      continue;
+    }
+    const at = Math.round(pen.X(x[i]));
+    if (at !== px) {
+      if (px !== null) column(px, first, least, largest, last);
+      px = at;
+      first = least = a;
+      largest = b;
+    }
+    if (a < least) least = a;
+    if (b > largest) largest = b;
+    last = a;
+  }
+  if (px !== null) column(px, first, least, largest, last);
+}
+
+function line(pen, s) {
+  const { ctx } = pen, [from, to] = seen(pen, s);
+  ctx.lineJoin = 'round';
+  ctx.beginPath();
+  let open = false;
+  if (s.sorted && to - from > 3 * pen.width) {
+    byColumn(pen, s.x, s.y, s.y, from, to, (px, first, least, largest, last) => {
+      if (px === null) {
+        open = false;
+        return;
+      }
+      if (!open) ctx.moveTo(px, pen.Y(first));
+      else ctx.lineTo(px, pen.Y(first));
+      ctx.lineTo(px, pen.Y(least));
+      ctx.lineTo(px, pen.Y(largest));
+      ctx.lineTo(px, pen.Y(last));
+      open = true;
+    });
+  } else {
+    for (let i = from; i < to; ++i) {
+      if (s.y[i] === null || s.x[i] === null) {
+        open = false;
+        continue;
+      }
+      if (open) ctx.lineTo(pen.X(s.x[i]), pen.Y(s.y[i]));
+      else ctx.moveTo(pen.X(s.x[i]), pen.Y(s.y[i]));
+      open = true;
+    }
+  }
+  ctx.stroke();
+}
+
+function points(pen, s, plot) {
+  const { ctx } = pen, [from, to] = seen(pen, s), many = to - from > 12000;
+  const size = (to - from > 3000 ? 1.8 : 2.6) * pen.ratio;
+  const marked = plot.view.marked;
+  if (s.sorted && many) {
+    byColumn(pen, s.x, s.y, s.y, from, to, (px, first, least, largest) => {
+      if (px !== null) ctx.fillRect(px, pen.Y(largest) - 1, 1, pen.Y(least) - pen.Y(largest) + 2);
+    });
+    return;
+  }
+  const taken = many ? new Set() : null;
+  const dot = (i, by) => {
+    if (s.y[i] === null || s.x[i] === null) return;
+    const x = pen.X(s.x[i]), y = pen.Y(s.y[i]);
+    if (taken) {
+      const place = Math.round(x / 2) * 100000 + Math.round(y / 2);
+      if (taken.has(place)) return;
+      taken.add(place);
+    }
+    ctx.fillRect(x - by / 2, y - by / 2, by, by);
+  };
+  if (marked) ctx.globalAlpha = 0.35;
+  for (let i = from; i < to; ++i) dot(i, size);
+  if (!marked) return;
+  ctx.globalAlpha = 1;
+  ctx.fillStyle = style('--marked');
+  taken?.clear();
+  for (let i = from; i < to; ++i) if (marked[i]) dot(i, 1.6 * size);
+}
+
+function band(pen, s, alpha) {
+  const { ctx } = pen, [from, to] = seen(pen, s);
+  ctx.globalAlpha = alpha;
+  let upper = [], lower = [];
+  const fill = () => {
+    if (upper.length > 1) {
+      ctx.beginPath();
+      upper.forEach(([x, y], k) => (k === 0 ? ctx.moveTo(x, y) : ctx.lineTo(x, y)));
+      for (const [x, y] of lower.reverse()) ctx.lineTo(x, y);
+      ctx.fill();
+    }
+    upper = [];
+    lower = [];
+  };
+  const add = (x, low, high) => {
+    upper.push([x, pen.Y(high)]);
+    lower.push([x, pen.Y(low)]);
+  };
+  if (s.sorted && to - from > 3 * pen.width)
+    byColumn(pen, s.x, s.lo, s.hi, from, to, (px, first, least, largest) => (px === null ? fill() : add(px, least, largest)));
+  else
+    for (let i = from; i < to; ++i) {
+      if (s.x[i] === null || s.lo[i] === null || s.hi[i] === null) fill();
+      else add(pen.X(s.x[i]), s.lo[i], s.hi[i]);
+    }
+  fill();
+}
+
+function marker(pen, x, y, radius) {
+  pen.ctx.beginPath();
+  pen.ctx.arc(x, y, radius * pen.ratio, 0, 2 * Math.PI);
+  pen.ctx.fill();
+}
+
+function each(s, draw) {
+  for (let i = 0; i < s.x.length; ++i) if (s.x[i] !== null && s.y[i] !== null) draw(i);
+}
+
+const painters = {
+  line, dashed: line, dotted: line, points,
+  markers: (pen, s) => each(s, (i) => marker(pen, pen.X(s.x[i]), pen.Y(s.y[i]), 3.2)),
+  error_bars: (pen, s) => each(s, (i) => {
+    const x = pen.X(s.x[i]);
+    pen.ctx.lineWidth = 1.4 * pen.ratio;
+    pen.ctx.beginPath();
+    pen.ctx.moveTo(x, pen.Y(s.lo[i]));
+    pen.ctx.lineTo(x, pen.Y(s.hi[i]));
+    pen.ctx.stroke();
+    marker(pen, x, pen.Y(s.y[i]), 3.2);
+  }),
+  x_bars: (pen, s) => each(s, (i) => {
+    const x = pen.X(s.x[i]), y = pen.Y(s.y[i]), r = 4.5 * pen.ratio;
+    pen.ctx.beginPath();
+    pen.ctx.moveTo(pen.X(s.lo[i]), y);
+    pen.ctx.lineTo(pen.X(s.hi[i]), y);
+    pen.ctx.stroke();
+    pen.ctx.beginPath();
+    pen.ctx.moveTo(x - r, y);
+    pen.ctx.lineTo(x, y - r);
+    pen.ctx.lineTo(x + r, y);
+    pen.ctx.lineTo(x, y + r);
+    pen.ctx.fill();
+  }),
+  band: (pen, s) => band(pen, s, 0.25),
+  pale_band: (pen, s) => band(pen, s, 0.12),
+  steps: (pen, s) => {
+    const { ctx } = pen;
+    ctx.beginPath();
+    each(s, (i) => {
+      const x = pen.X(s.x[i]), y = pen.Y(s.y[i]);
+      if (i > 0) ctx.lineTo(x, pen.Y(s.y[i - 1]));
+      else ctx.moveTo(x, y);
+      ctx.lineTo(x, y);
+    });
+    ctx.stroke();
+  },
+  boxes: (pen, s) => each(s, (i) => {
+    const a = pen.X(s.lo[i]), b = pen.X(s.hi[i]), zero = pen.Y(0), y = pen.Y(s.y[i]);
+    pen.ctx.globalAlpha = 0.8;
+    pen.ctx.fillRect(a, Math.min(y, zero), Math.max(b - a, 1), Math.max(Math.abs(zero - y), 1));
+  }),
+  bars: (pen, s) => each(s, (i) => {
+    const a = pen.Y(s.hi[i]), b = pen.Y(s.lo[i]), zero = pen.X(0), x = pen.X(s.x[i]);
+    pen.ctx.globalAlpha = 0.85;
+    pen.ctx.fillRect(Math.min(x, zero), a, Math.max(Math.abs(x - zero), 1), Math.max(b - a, 1));
+  }),
+  cells: (pen, s, plot) => {
+    const most = plot.most();
+    each(s, (i) => {
+      if (s.z[i] === null) return;
+      pen.ctx.fillStyle = shade(s.z[i] / most);
+      const x = pen.X(s.x[i] - s.lo[i]), y = pen.Y(s.y[i] + s.hi[i]);
+      pen.ctx.fillRect(x, y, pen.X(s.x[i] + s.lo[i]) - x + 0.5, pen.Y(s.y[i] - s.hi[i]) - y + 0.5);
+    });
+  },
+};
+
+/** A figure in the document. options: group (TimeGroup), height (of panels, in those of the report), title and caption (false: none), onpoint,
+    onleave, onpick, onkeypoint, oncursor. `cells`, `boxes`, `marked`: what is emphasised; redraw() after a change. */
+export class Figure {
+  constructor(parent, figure, options = {}) {
+    this.figure = figure;
+    this.options = options;
+    this.group = options.group ?? null;
+    this.sortedX = [];
+    this.node = element('figure', { 'data-figure': figure.name });
+    parent.append(this.node);
+    this.width = this.node.clientWidth;
+    if (options.title !== false) this.node.append(element('h3', {}, words(figure.title)));
+    this.row = figure.panels.some((p) => p.beside) && this.width >= 520 ? element('div', { class: 'row' }) : null;
+    if (this.row) this.node.append(this.row);
+    this.marks = figure.panels.find((p) => p.marks.length > 0)?.marks ?? [];
+    const own = figure.panels.filter((p) => !p.beside);
+    const shared = this.sharedRange(own);
+    this.plots = figure.panels.map((panel) => {
+      const plot = new Plot(this, panel, { last: panel === own[own.length - 1], xLabel: figure.xLabel });
+      if (!panel.beside) plot.xRange = shared ?? plot.xRange;
+      return plot;
+    });
+    if (shared && !this.group?.window) for (const plot of this.plots) plot.showX(plot.xRange);
+    const caption = element('figcaption', {}, options.caption === false ? '' : words(figure.caption));
+    for (const note of figure.notes) caption.append(element('span', { class: 'note' }, words(note)));
+    if (caption.childNodes.length > 0) this.node.append(caption);
+    this.observer = new ResizeObserver(() => this.resize());
+    this.observer.observe(this.node);
+  }
+  /** Panels above each other have the same x. */
+  sharedRange(panels) {
+    if (this.figure.xRange || panels.length < 2) return null;
+    const out = [Infinity, -Infinity];
+    for (const panel of panels) {
+      const range = Plot.prototype.extentOfX.call({ series: panel.series.map((s) => ({ ...s, x: this.figure.xs[s.x] })), view: this });
+      if (panel.series.some((s) => this.figure.xs[s.x].length > 0)) {
+        out[0] = Math.min(out[0], range[0]);
+        out[1] = Math.max(out[1], range[1]);
+      }
+    }
+    return out[1] > out[0] ? out : null;
+  }
+  zoom(window) {
+    for (const plot of this.plots) if (!plot.panel.beside) plot.showX(window);
+  }
+  redraw() {
+    for (const plot of this.plots) plot.u.redraw(false);
+  }
+  resize() {
+    const width = this.node.clientWidth;
+    if (width === this.width || width === 0) return;
+    this.width = width;
+    for (const plot of this.plots) plot.u.setSize({ width: plot.width(), height: plot.height() });
+  }
+  destroy() {
+    this.observer.disconnect();
+    for (const plot of this.plots) plot.destroy();
+    this.node.remove();
+  }
+}
+
+/** `changed` is called when the screen turns light or dark: colours are drawn, so that figures must be drawn again. */
+export const onScreenChange = (changed) => darkScreen.addEventListener('change', changed);

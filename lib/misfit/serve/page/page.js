@@ -1,0 +1,492 @@
+// The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
+import { blocks, element, plain, shown, words } from '/dom.js';
+import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
+import { get, post, Refused } from '/server.js';
+import { editor } from '/editor.js';
+
+const at = (id) => document.getElementById(id);
+const time = new TimeGroup();
+const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves'], ['calibration', 'Calibration'],
+  ['ladder', 'Ladder'], ['study', 'Study'], ['commands', 'Commands']];
+
+/** What is shown. The address keeps model and tab, so that a reload finds them again. */
+const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], marked: '', fixed: [] };
+
+function readAddress() {
+  const parts = new URLSearchParams(location.hash.slice(1));
+  here.model = Number(parts.get('model') ?? 0) || 0;
+  here.tab = tabs.some(([name]) => name === parts.get('view')) ? parts.get('view') : 'where';
+}
+function writeAddress() {
+  history.replaceState(null, '', `${location.search}#view=${here.tab}&model=${here.model}`);
+}
+
+function say(error) {
+  at('alerts').append(element('p', { class: 'warning' }, String(error?.message ?? error)));
+}
+
+// ---- state and jobs
+
+let version = null, jobNumber = null, busy = false, again = false;
+
+/** Asks what there is; shows what has changed. */
+async function look() {
+  const state = await get('state');
+  const job = state.job;
+  const ended = jobNumber !== null && here.state?.job.state === 'running' && job.state !== 'running';
+  here.state = state;
+  showJob(job);
+  if (state.version !== version || ended) {
+    const grown = here.models !== undefined && state.models.length > here.models;
+    version = state.version;
+    here.models = state.models.length;
+    if (grown || here.model >= state.models.length) here.model = state.models.length - 1;
+    showHead();
+    await showAll();
+  }
+  jobNumber = job.number;
+  return job.state === 'running';
+}
+
+async function watch() {
+  for (;;) {
+    let running = false;
+    try {
+      running = await look();
+      if (document.body.dataset.lost) location.reload();
+    } catch (error) {
+      if (error instanceof Refused) {
+        if (!document.body.dataset.refused) say(error);
+        document.body.dataset.refused = 'yes';
+      } else if (!document.body.dataset.lost) {
+        document.body.dataset.lost = 'yes';
+        say('misfit does not answer any more: start `misfit open` again and use the address that it prints.');
+      }
+    }
+    document.body.dataset.ready = 'yes';
+    await new Promise((go) => setTimeout(go, running ? 400 : document.hidden ? 6000 : 1500));
+  }
+}
+
+function showHead() {
+  const { study, models, outdated, verdict, effects } = here.state;
+  document.title = `${study.name} · misfit`;
+  at('name').textContent = study.name;
+  at('question').replaceChildren(words(study.question));
+  const alerts = at('alerts');
+  alerts.replaceChildren();
+  if (study.fault) alerts.append(element('p', { class: 'warning', id: 'fault' }, `The study has an error: ${study.fault.message} `,
+    element('button', { onclick: () => showTab('study') }, 'Mend it')));
+  for (const sentence of outdated) alerts.append(element('p', { class: 'warning' }, sentence));
+  if (!verdict) alerts.append(element('p', {}, 'There are no results yet: Run makes them.'));
+  at('verdict').replaceChildren(blocks(verdict));
+  at('model').replaceChildren(...models.map((m, k) => element('option', { value: k }, m.added === '' ? "0: the study's own" : `${m.id}: + ${m.added}`)));
+  at('model').value = here.model;
+  const chosen = at('effect').value;
+  at('effect').replaceChildren(element('option', { value: '' }, 'an effect…'), ...effects.map((key) => element('option', { value: key }, key)));
+  if (chosen) at('effect').value = chosen;
+}
+
+function showJob(job) {
+  const running = job.state === 'running', box = at('job');
+  const idle = (here.idle = !running && here.state.study.fault === null);
+  for (const id of ['run', 'fit', 'discover']) at(id).disabled = !idle;
+  at('add').disabled = !idle || at('effect').value === '';
+  for (const button of document.querySelectorAll('button.adds')) button.disabled = !idle;
+  at('stop').hidden = !running;
+  at('stop').textContent = job.stopping ? 'Stop at once' : 'Stop';
+  at('command').hidden = box.hidden = job.state === 'none';
+  if (job.state === 'none') return;
+  at('command').textContent = job.command;
+  box.className = job.state;
+  box.dataset.state = job.state;
+  box.dataset.number = job.number;
+  if (!running && box.dataset.shown === `${job.number}`) return;
+  box.dataset.shown = running ? '' : `${job.number}`;
+  const end = { running: job.stopping ? 'stopping' : 'at work', done: 'done', stopped: 'stopped: what was finished is kept', failed: `ended with status ${job.status}` };
+  const head = element('p', {}, element('b', {}, end[job.state]), ` · ${shown(job.seconds, 3)} s`);
+  if (running && job.work) head.append(` · ${job.work} `, job.part === null ? '' : element('progress', { value: job.part, max: 1 }),
+    job.left === null ? '' : ` at most ${shown(job.left, 2)} s left`);
+  const open = box.querySelector('details')?.open ?? false;
+  const parts = [head, costs(job.costs)];
+  if (!running && job.state === 'failed') parts.push(element('pre', { class: 'warning' }, job.notes.slice(-5).join('\n')));
+  if (job.notes.length > 0 || job.output !== '')
+    parts.push(element('details', { open }, element('summary', {}, 'What it says'), element('pre', {}, [...job.notes, job.output].join('\n'))));
+  box.replaceChildren(...parts);
+}
+
+/** How the searches of a command go on: the last three. */
+function costs(traces) {
+  const out = element('div', { class: 'costs' });
+  for (const trace of traces.slice(-3)) {
+    if (trace.points.length < 2) continue;
+    out.append(element('figure', {}, sparkline(trace.points.map(([, value]) => value)),
+      element('figcaption', {}, `${trace.work}: ${trace.what} ${shown(trace.points[0][1], 6)} → ${shown(trace.points.at(-1)[1], 6)} in ${trace.points.length} iterations`)));
+  }
+  return out;
+}
+
+/** A line without axes, as SVG; its numbers stand below it. */
+function sparkline(values) {
+  const svg = (name, properties) => {
+    const node = document.createElementNS('http://www.w3.org/2000/svg', name);
+    for (const [key, value] of Object.entries(properties)) node.setAttribute(key, value);
+    return node;
+  };
+  const low = Math.min(...values), high = Math.max(...values), span = high - low || 1;
+  const place = values.map((v, k) => `${((k / (values.length - 1)) * 270).toFixed(1)},${(56 - ((v - low) / span) * 52).toFixed(1)}`);
+  const out = svg('svg', { viewBox: '0 0 272 60', width: '100%', role: 'img', 'aria-label': 'value by iteration' });
+  out.append(svg('polyline', { points: place.join(' '), fill: 'none', stroke: 'currentColor', 'stroke-width': 1.6 }));
+  return out;
+}
+
+async function start(verb, effect) {
+  try {
+    if (verb === 'stop') await post('stop');
+    else await post('job', effect ? { verb, effect } : { verb });
+    await look();
+  } catch (error) {
+    say(error);
+  }
+}
+
+// ---- over time
+
+async function showMotion() {
+  const motion = (here.motion = await get('motion', { model: here.model, method: here.method ?? 0 }));
+  if (here.method === null || here.method >= motion.methods.length) {
+    const last = Math.max(motion.methods.length - 1, 0); // filter_error, whose residuals the other views are about
+    here.method = last;
+    if (last > 0) return showMotion();
+  }
+  at('methods').hidden = motion.methods.length === 0;
+  at('method').replaceChildren(...motion.methods.map((name, k) => element('option', { value: k }, name)));
+  at('method').value = here.method;
+  const names = [...new Set([...motion.channels.map((c) => c.experiment), ...(here.where?.force ?? []).map((f) => f.experiment)])];
+  if (here.experiment >= names.length) here.experiment = 0;
+  here.name = names[here.experiment];
+  at('experiments').hidden = names.length < 2;
+  at('experiment').replaceChildren(...names.map((name, k) => element('option', { value: k }, name)));
+  at('experiment').value = here.experiment;
+  drawTime();
+}
+
+function drawTime() {
+  for (const figure of here.timeFigures.splice(0)) figure.destroy();
+  at('motion').replaceChildren();
+  at('force').replaceChildren();
+  const options = { group: time, title: false, caption: false };
+  const channels = here.motion.channels.filter((c) => c.experiment === here.name);
+  const force = here.where?.force.find((f) => f.experiment === here.name);
+  const height = channels.length > 1 ? 0.45 : 0.7;
+  channels.forEach((c, k) => here.timeFigures.push(new Figure(at('motion'), c.figure, { ...options, height, xLabel: !force && k === channels.length - 1 })));
+  if (channels.length === 0) at('motion').append(element('p', { class: 'soft' },
+    here.motion.methods.length === 0 ? 'Nothing is fitted yet.' : 'This method does not predict the motion.'), blocks(here.motion.blocks));
+  if (!force) return;
+  at('force').append(element('h3', {}, 'Force that is missing, ± 1 sigma'));
+  here.timeFigures.push(new Figure(at('force'), force.figure, { ...options, height: 0.5 }));
+}
+
+function mark(intervals, text, fixed) {
+  if (fixed) Object.assign(here, { fixed: intervals, marked: text });
+  const shownNow = intervals.length > 0 || fixed ? intervals : here.fixed;
+  time.setMarks(shownNow);
+  at('marked').textContent = intervals.length > 0 ? text : here.marked;
+  at('unmark').hidden = here.fixed.length === 0;
+  at('time').dataset.marks = shownNow.length;
+  markPoints();
+}
+function unmark() {
+  for (const figure of here.figures) {
+    if (!figure.fixedCells && !figure.fixedBoxes) continue;
+    figure.cells = figure.boxes = figure.fixedCells = figure.fixedBoxes = undefined;
+    figure.redraw();
+  }
+  mark([], '', true);
+}
+time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${shown(from, 5)} s to ${shown(to, 5)} s`, true);
+
+/** The samples of the marked times, in the view of force against a quantity. */
+function markPoints() {
+  const samples = here.samples;
+  if (!samples) return;
+  const marks = time.marks;
+  let mask = null;
+  if (marks.length > 0) {
+    mask = new Uint8Array(samples.t.length);
+    for (const [from, to] of marks) for (let i = lowerBound(samples.t, from); i < samples.t.length && samples.t[i] <= to; ++i) mask[i] = 1;
+  }
+  samples.figure.marked = mask;
+  samples.figure.redraw();
+}
+
+// ---- views
+
+function draw(parent, figure, options) {
+  const out = new Figure(parent, figure, options);
+  here.figures.push(out);
+  return out;
+}
+const nothing = (parent, text) => parent.append(element('p', { class: 'soft' }, text));
+
+/** The pair that a map is over, or the one quantity: its samples, in the order of their times. */
+async function samplesOf(quantity) {
+  const force = here.where.force, experiment = Math.max(force.findIndex((f) => f.experiment === here.name), 0);
+  const k = force[experiment]?.quantities.findIndex((q) => q.name === quantity) ?? -1;
+  if (k >= 0) return get('samples', { model: here.model, experiment, quantity: k });
+  return null;
+}
+
+/** Times whose samples satisfy `inside`, as intervals. */
+function intervals(t, inside) {
+  const out = [];
+  const half = t.length > 1 ? 0.5 * (t[t.length - 1] - t[0]) / (t.length - 1) : 0;
+  let count = 0;
+  for (let i = 0; i < t.length; ++i) {
+    if (!inside(i)) continue;
+    ++count;
+    const last = out[out.length - 1];
+    if (last && t[i] - half <= last[1] + half) last[1] = t[i] + half;
+    else out.push([t[i] - half, t[i] + half]);
+  }
+  return { out, count };
+}
+
+async function showWhere(view) {
+  const where = here.where;
+  if (!where) return nothing(view, 'This model is not diagnosed yet: Run (or misfit diagnose) does it, from the residuals of filter_error.');
+  const conclusions = where.blocks.find((b) => b.kind === 'list');
+  if (conclusions) view.append(blocks([conclusions]));
+  const all = [...where.maps, ...where.pairs];
+  const list = element('div', { class: 'list', role: 'group', 'aria-label': 'Maps of the missing force' });
+  const body = element('div');
+  const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', onclick: () => show(k) }, words(map.portLabel), ' against ',
+    words(map.label ?? map.xLabel), map.yLabel ? ' and ' : '', map.yLabel ? words(map.yLabel) : '', ' ', element('small', {}, `p = ${shown(map.p, 2)}`)));
+  list.append(...buttons);
+  view.append(element('h3', {}, 'Missing force against…'), list, body);
+  const more = element('details', {}, element('summary', {}, 'Tests of the residuals'));
+  more.addEventListener('toggle', () => {
+    if (!more.open || more.dataset.drawn) return;
+    more.dataset.drawn = 'yes';
+    for (const figure of where.whiteness) draw(more, figure);
+    more.append(blocks(where.blocks.filter((b) => b !== conclusions && b.kind !== 'figures')));
+  });
+  view.append(more);
+  let turn = 0;
+  async function show(k) {
+    const mine = ++turn;
+    here.map = all[k].figure.name;
+    buttons.forEach((b, n) => b.setAttribute('aria-pressed', n === k));
+    for (const figure of here.figures.splice(0)) if (body.contains(figure.node)) figure.destroy(); else here.figures.push(figure);
+    here.samples = null;
+    body.replaceChildren();
+    if (k < where.maps.length) await showMap(body, all[k], () => mine === turn);
+    else await showPair(body, all[k], () => mine === turn);
+  }
+  const before = all.findIndex((map) => map.figure.name === here.map);
+  if (all.length > 0) await show(Math.max(before, 0));
+}
+
+async function showMap(body, map, current) {
+  const samples = map.quantity === 'time' ? null : await samplesOf(map.quantity).catch(() => null);
+  if (!current()) return;
+  const places = map.figure.xs[map.figure.panels[0].series.find((s) => s.style === 'error_bars').x];
+  const edge = (k) => (k < 0 ? places[0] - 0.5 * (places[1] - places[0]) : k >= places.length - 1
+    ? places[places.length - 1] + 0.5 * (places[places.length - 1] - places[places.length - 2]) : 0.5 * (places[k] + places[k + 1]));
+  const t = samples?.t ?? here.timeFigures.at(-1)?.figure.xs[0] ?? [], values = samples?.values ?? (map.quantity === 'time' ? t : []);
+  const unit = plain(map.figure.xUnit);
+  let hot = null;
+  const choose = (figure, x, fixed) => {
+    const k = nearest(places, x), from = edge(k - 1), to = edge(k);
+    if (hot === k && !fixed) return;
+    hot = k;
+    figure.cells = [[from, to]];
+    if (fixed) figure.fixedCells = figure.cells;
+    figure.redraw();
+    const { out, count } = intervals(t, (i) => values[i] !== null && values[i] >= from && values[i] < to);
+    mark(out, `Marked: ${count} samples with ${map.quantity} from ${shown(from, 4)} to ${shown(to, 4)} ${unit}`, fixed);
+  };
+  const figure = draw(body, map.change ?? map.figure, { height: 0.8,
+    onpoint: (plot, x) => choose(plot.view, x, false), onpick: (plot, x) => choose(plot.view, x, true), onkeypoint: (plot, x) => choose(plot.view, x, true),
+    onleave: (plot) => { hot = null; plot.view.cells = plot.view.fixedCells ?? []; plot.view.redraw(); mark([], '', false); } });
+  figure.node.append(element('p', { class: 'soft' }, 'Point at a place: its samples are marked in the motion. A click keeps them marked.'));
+  if (samples) {
+    here.samples = { t: samples.t, figure: draw(body, samples.figure, { height: 0.7 }) };
+    markPoints();
+  }
+}
+
+async function showPair(body, map, current) {
+  const [x, y] = await Promise.all([samplesOf(map.x), samplesOf(map.y)].map((p) => p.catch(() => null)));
+  if (!current()) return;
+  const cells = map.figure.panels[0].series[0], xs = map.figure.xs[cells.x];
+  let hot = null;
+  const choose = (figure, px, py, fixed) => {
+    const k = xs.findIndex((v, i) => Math.abs(px - v) <= cells.lo[i] && Math.abs((py ?? cells.y[i]) - cells.y[i]) <= cells.hi[i]);
+    if (k < 0 || (hot === k && !fixed)) return;
+    hot = k;
+    const box = [xs[k] - cells.lo[k], xs[k] + cells.lo[k], cells.y[k] - cells.hi[k], cells.y[k] + cells.hi[k]];
+    figure.boxes = [box];
+    if (fixed) figure.fixedBoxes = figure.boxes;
+    figure.redraw();
+    if (!x || !y) return;
+    const { out, count } = intervals(x.t, (i) => x.values[i] !== null && y.values[i] !== null && x.values[i] >= box[0] && x.values[i] < box[1] &&
+      y.values[i] >= box[2] && y.values[i] < box[3]);
+    mark(out, `Marked: ${count} samples with ${map.x} from ${shown(box[0], 4)} to ${shown(box[1], 4)} ${plain(map.figure.xUnit)} and ${map.y} from ` +
+      `${shown(box[2], 4)} to ${shown(box[3], 4)} ${plain(map.figure.panels[0].unit)}; force ${shown(cells.z[k], 2)} sigma`, fixed);
+  };
+  draw(body, map.figure, { height: 0.9, onpoint: (plot, px, py) => choose(plot.view, px, py, false), onpick: (plot, px, py) => choose(plot.view, px, py, true),
+    onleave: (plot) => { hot = null; plot.view.boxes = plot.view.fixedBoxes ?? []; plot.view.redraw(); mark([], '', false); } });
+}
+
+async function showCandidates(view) {
+  const found = await get('candidates', { model: here.model });
+  if (!found) return nothing(view, 'Nobody has asked yet which effect is missing: Discover ranks them.');
+  const last = here.model === here.state.models.length - 1;
+  const lead = found.blocks.filter((b) => b.kind === 'paragraph' && b.tone === 'lead');
+  const table = found.blocks.find((b) => b.kind === 'table');
+  view.append(blocks(lead));
+  if (!last) nothing(view, 'Effects are added to the last model of the ladder; these are the candidates of an earlier one.');
+  if (table) view.append(candidateTable(table, found.rows, last));
+  if (found.figure) draw(view, found.figure, { height: 0.85 });
+  const rest = found.blocks.filter((b) => !lead.includes(b) && b !== table && b.kind !== 'figures' && !(b.kind === 'heading' && b.level === 1));
+  view.append(element('details', {}, element('summary', {}, 'Remarks, reasons and what was tried'), blocks(rest)));
+}
+
+function candidateTable(table, rows, last) {
+  const most = 12; // rows to begin with
+  const columns = table.columns.map((_, n) => n).filter((n) => !['rank', 'accepted'].includes(plain(table.columns[n].heading)));
+  const side = (n) => (table.columns[n].right ? 'number' : null);
+  const head = element('tr', {}, element('td'), ...columns.map((n) => element('th', { scope: 'col', class: side(n) }, words(table.columns[n].heading))));
+  const body = element('tbody');
+  rows.forEach((row, k) => {
+    const button = row.addable && last
+      ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, title: `misfit add … ${row.effect}`, disabled: !here.idle,
+          onclick: () => start('add', row.effect) }, 'Add') : '';
+    const more = k >= most ? ' more' : '';
+    const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
+      ...columns.map((n) => element('td', { class: side(n) }, words(table.rows[k][n]))));
+    body.append(line, element('tr', { class: 'why' + more }, element('td'), element('td', { colspan: columns.length }, words(row.why))));
+  });
+  const all = element('table', { id: 'candidates' }, element('thead', {}, head), body);
+  const rest = rows.length > most ? element('button', { onclick: () => { all.classList.add('all'); rest.remove(); } }, `All ${rows.length}`) : null;
+  return element('div', { class: 'wide' }, all, rest);
+}
+
+async function showCurves(view) {
+  const curves = await get('curves', { model: here.model });
+  if (curves.figures.length === 0) nothing(view, 'This model has no curves; its parameters:');
+  for (const figure of curves.figures) draw(view, figure, { height: 0.8 });
+  view.append(blocks(curves.blocks));
+}
+
+async function showCalibration(view) {
+  const calibration = await get('calibration');
+  if (!calibration) return nothing(view, 'This study has no calibrated camera.');
+  view.append(blocks(calibration.blocks.filter((b) => b.kind !== 'heading' || b.level !== 1), { figures: (name, parent) => calibration.figures.forEach((f) => draw(parent, f)) }));
+}
+
+async function showLadder(view) {
+  const ladder = await get('ladder');
+  if (!ladder) return nothing(view, 'The ladder begins when an effect is added: each added effect is a rung.');
+  const choice = element('div', { class: 'rungs', role: 'group', 'aria-label': 'Rungs' }, ...ladder.rungs.map((rung) => {
+    const k = here.state.models.findIndex((m) => m.id === rung.id);
+    return element('button', { 'aria-pressed': `${k === here.model}`, onclick: () => choose(k) }, `${rung.id}: ${rung.added === '' ? rung.system : `+ ${rung.added}`}`);
+  }));
+  view.append(element('p', { class: 'soft' }, 'A click shows the results of that model everywhere on this page.'), choice);
+  draw(view, ladder.figure, { height: 0.75 });
+  const current = ladder.rungs.find((rung) => rung.id === here.state.models[here.model].id);
+  if (current) view.append(element('h3', {}, `Rung ${current.id}`), blocks(current.blocks));
+  view.append(element('details', {}, element('summary', {}, 'All rungs in numbers'), blocks(ladder.blocks.filter((b) => b.kind !== 'figures'))));
+}
+
+async function showCommands(view) {
+  const { text } = await get('session');
+  view.append(element('p', {}, 'Every click above is a command. They stand in session.sh of the run folder, ', element('code', {}, here.state.study.folder),
+    '; sh session.sh does them again.'));
+  view.append(text === '' ? element('p', { class: 'soft' }, 'None yet.') : element('pre', { class: 'script', tabindex: 0 }, text));
+}
+
+const study = editor({ get, post, look });
+const views = { where: showWhere, candidates: showCandidates, curves: showCurves, calibration: showCalibration, ladder: showLadder,
+  study: (view) => study.show(view, here.model), commands: showCommands };
+
+let turn = 0;
+async function showView() {
+  const mine = ++turn;
+  writeAddress();
+  for (const tab of at('tabs').children) {
+    const on = tab.dataset.view === here.tab;
+    tab.setAttribute('aria-selected', on);
+    tab.tabIndex = on ? 0 : -1;
+  }
+  const view = element('div');
+  const old = here.figures;
+  here.figures = [];
+  here.samples = null;
+  const scroll = scrollY;
+  for (const figure of old) figure.destroy();
+  at('view').replaceChildren(view);
+  at('view').dataset.view = here.tab;
+  try {
+    await views[here.tab](view);
+  } catch (error) {
+    if (mine === turn) view.append(element('p', { class: 'warning' }, error.message));
+  }
+  if (mine === turn) scrollTo(0, scroll);
+}
+
+async function showAll() {
+  again = true;
+  if (busy) return; // who is at it does it again
+  busy = true;
+  try {
+    while (again) {
+      again = false;
+      here.where = await get('where', { model: here.model });
+      await showMotion();
+      mark([], '', true);
+      if (here.tab !== 'study' || !study.changed()) await showView(); // not under the hands of somebody who types
+    }
+  } finally {
+    busy = false;
+  }
+}
+
+function choose(model) {
+  here.model = model;
+  at('model').value = model;
+  showAll().catch(say);
+}
+
+function showTab(name, focus = false) {
+  here.tab = name;
+  showView().catch(say);
+  if (focus) at('tabs').querySelector('[aria-selected=true]').focus();
+}
+
+function begin() {
+  readAddress();
+  at('tabs').replaceChildren(...tabs.map(([name, text]) => element('button', { role: 'tab', 'data-view': name, 'aria-controls': 'view', onclick: () => showTab(name) }, text)));
+  at('tabs').addEventListener('keydown', (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    const k = tabs.findIndex(([name]) => name === here.tab);
+    showTab(tabs[(k + step + tabs.length) % tabs.length][0], true);
+    event.preventDefault();
+  });
+  for (const verb of ['run', 'fit', 'discover', 'stop']) at(verb).addEventListener('click', () => start(verb));
+  at('add').addEventListener('click', () => start('add', at('effect').value));
+  at('effect').addEventListener('change', () => { at('add').disabled = !here.idle || at('effect').value === ''; });
+  at('model').addEventListener('change', (event) => choose(Number(event.target.value)));
+  at('method').addEventListener('change', (event) => { here.method = Number(event.target.value); showMotion().catch(say); });
+  at('experiment').addEventListener('change', (event) => { here.experiment = Number(event.target.value); showMotion().then(showView).catch(say); });
+  at('whole').addEventListener('click', () => time.zoom(null));
+  at('unmark').addEventListener('click', unmark);
+  addEventListener('keydown', (event) => { if (event.key === 'Escape') unmark(); });
+  addEventListener('beforeunload', (event) => { if (study.changed()) event.preventDefault(); });
+  onScreenChange(() => { drawTime(); showView().catch(say); });
+  watch();
+}
+
+begin();

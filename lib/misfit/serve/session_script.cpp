@@ -1,0 +1,61 @@
+#include "misfit/serve/session_script.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/show/verdict.h"
+
+namespace misfit::serve {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string head() {
+  return "#!/bin/sh\n# What was done in the page of `misfit open`, as commands: sh session.sh does it again, in the same folder of "
+         "results.\n"
+         "set -e\ncd -- " +
+         shell_word(fs::current_path().string()) + "\n";
+}
+
+/// A word that is no line of the text.
+std::string end_mark(const std::string& text) {
+  std::string mark = "END_OF_STUDY";
+  while (text.find(mark) != std::string::npos) mark += "_";
+  return mark;
+}
+
+}  // namespace
+
+std::string command_of(const std::vector<std::string>& words) {
+  std::string out = "misfit";
+  for (const std::string& word : words) out += " " + shell_word(word);
+  return out;
+}
+
+void SessionScript::record_text(const std::string& study, const std::string& text) const {
+  const std::string mark = end_mark(text);
+  append("cat > " + shell_word(study) + " <<'" + mark + "'\n" + text + (text.ends_with('\n') ? "" : "\n") + mark + "\n");
+}
+
+std::string SessionScript::text() const {
+  std::error_code none;
+  return fs::symlink_status(path_, none).type() == fs::file_type::regular ? read_file(path_) : "";
+}
+
+void SessionScript::append(const std::string& lines) const {
+  make_writable_folder(path_.parent_path());
+  const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
+  if (file < 0) throw WriteError(path_.string() + ": cannot be written: " + std::strerror(errno));
+  const std::string all = (::lseek(file, 0, SEEK_END) == 0 ? head() : "") + lines;
+  const bool whole = ::write(file, all.data(), all.size()) == static_cast<ssize_t>(all.size());
+  const int error = errno;
+  ::close(file);
+  if (!whole) throw WriteError(path_.string() + ": cannot be written: " + std::strerror(error));
+}
+
+}  // namespace misfit::serve

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace misfit::serve {
+
+/// "misfit add motor coulomb_friction"
+[[nodiscard]] std::string command_of(const std::vector<std::string>& words);
+
+/// session.sh of a run folder: what was done in the page, as commands that do it again. Made when the first is recorded; never written
+/// through a link.
+class SessionScript {
+ public:
+  /// `folder`: the run folder; commands are those typed in the current folder.
+  explicit SessionScript(const std::filesystem::path& folder) : path_(folder / "session.sh") {}
+
+  void record(const std::string& command) const { append(command + "\n"); }
+  /// That the study was given this text.
+  void record_text(const std::string& study, const std::string& text) const;
+  /// All of it; empty if nothing was recorded.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  void append(const std::string& lines) const;
+
+  std::filesystem::path path_;
+};
+
+}  // namespace misfit::serve

@@ -1,0 +1,147 @@
+#include "misfit/serve/views.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "misfit/core/display.h"
+#include "misfit/core/error.h"
+#include "misfit/core/units.h"
+#include "misfit/report/figures.h"
+#include "misfit/report/figures_discovery.h"
+#include "misfit/serve/json_text.h"
+#include "misfit/show/results.h"
+#include "misfit/show/verdict.h"
+
+namespace misfit::serve {
+namespace {
+
+template <class Items, class Make>
+std::string list_of(const Items& items, const Make& make) {
+  std::vector<std::string> out;
+  for (const auto& item : items) out.push_back(make(item));
+  return json_list(out);
+}
+
+std::string quantities_of(const MissingForce& missing) {
+  std::vector<std::string> out;
+  for (std::size_t q = 0; q < missing.quantities.size(); ++q) {
+    out.push_back(fmt::format(R"({{"name":{},"label":{},"unit":{}}})", json_string(missing.quantities[q]),
+                              json_words(missing.quantities[q]), json_words(display_unit(missing.quantity_units[q]))));
+  }
+  return json_list(out);
+}
+
+std::string force_of(const MissingForce& missing) {
+  return fmt::format(R"({{"experiment":{},"figure":{},"quantities":{}}})", json_string(missing.experiment),
+                     json_of(report::missing_force_figure(missing, std::nullopt)), quantities_of(missing));
+}
+
+/// `change`: the same before the effect was added; nullptr: there is no such map.
+std::string map_of(const ForceMap& map, const ForceMap* before, const std::string& added) {
+  const std::string change = before != nullptr ? json_of(report::map_change_figure(*before, map, added)) : "null";
+  return fmt::format(R"({{"port":{},"quantity":{},"label":{},"portLabel":{},"p":{},"figure":{},"change":{}}})", json_string(map.port),
+                     json_string(map.quantity), json_words(map.quantity), json_words(map.port), json_number(map.p_corrected),
+                     json_of(report::map_figure(map)), change);
+}
+
+std::string pair_of(const PairMap& map) {
+  return fmt::format(R"({{"port":{},"portLabel":{},"x":{},"y":{},"xLabel":{},"yLabel":{},"p":{},"figure":{}}})", json_string(map.port),
+                     json_words(map.port), json_string(map.quantity_x), json_string(map.quantity_y), json_words(map.quantity_x),
+                     json_words(map.quantity_y), json_number(map.p_corrected), json_of(report::pair_figure(map)));
+}
+
+/// What the table of blocks_of(Discovery) has no column for. In its order.
+std::string row_of(const Candidate& c, const std::vector<std::string>& known) {
+  const bool addable = std::find(known.begin(), known.end(), c.effect) != known.end();
+  return fmt::format(R"({{"effect":{},"name":{},"why":{},"accepted":{},"addable":{}}})", json_string(c.effect),
+                     json_string(effect_at(c.effect, c.roles)), json_words(c.why), c.accepted, addable);
+}
+
+}  // namespace
+
+std::string motion_view(const Place& place, std::size_t method) {
+  const std::vector<Fit> fits = fits_of(place);
+  std::vector<std::string> channels;
+  if (method < fits.size()) {
+    for (const ChannelPrediction& c : fits[method].predictions) {
+      channels.push_back(fmt::format(R"({{"experiment":{},"channel":{},"figure":{}}})", json_string(c.experiment), json_words(c.channel),
+                                     json_of(report::motion_figure(fits[method].method, c, std::nullopt))));
+    }
+  }
+  Blocks words;
+  if (method < fits.size()) words.append(status_blocks({fits[method]}));
+  return fmt::format(R"({{"methods":{},"channels":{},"blocks":{}}})", list_of(fits, [](const Fit& f) { return json_string(f.method); }),
+                     json_list(channels), json_of(words));
+}
+
+std::string where_view(const Place& place, const Place* before) {
+  const std::optional<Diagnosis> d = diagnosis_of(place), below = before != nullptr ? diagnosis_of(*before) : std::nullopt;
+  if (!d) return "null";
+  const auto map = [&](const ForceMap& m) { return map_of(m, below ? find_map(*below, m.port, m.quantity) : nullptr, place.added); };
+  return fmt::format(R"({{"blocks":{},"force":{},"maps":{},"pairs":{},"whiteness":[{},{}]}})", json_of(blocks_of(*d)),
+                     list_of(d->missing, force_of), list_of(d->maps, map), list_of(d->pairs, pair_of),
+                     json_of(report::innovation_figure(d->whiteness)), json_of(report::periodogram_figure(d->whiteness)));
+}
+
+std::string samples_view(const Place& place, std::size_t experiment, std::size_t quantity) {
+  const std::optional<Diagnosis> d = diagnosis_of(place);
+  if (!d || experiment >= d->missing.size()) throw InputError("there is no such experiment");
+  const MissingForce& missing = d->missing[experiment];
+  if (quantity >= missing.quantities.size()) throw InputError("there is no such quantity");
+  return fmt::format(R"({{"t":{},"values":{},"figure":{}}})", json_numbers(missing.t, 9),
+                     json_numbers(display_values(missing.values[quantity], missing.quantity_units[quantity])),
+                     json_of(report::missing_force_by_figure(missing, missing.quantities[quantity])));
+}
+
+std::string candidates_view(const Place& place, const Registry& registry) {
+  const std::optional<Discovery> d = discovery_of(place);
+  if (!d) return "null";
+  const std::vector<std::string> known = registry.effect_keys();
+  const std::string figure = d->candidates.empty() ? "null" : json_of(report::candidates_figure(d->candidates));
+  return fmt::format(R"({{"blocks":{},"rows":{},"figure":{}}})", json_of(blocks_of(*d)),
+                     list_of(d->candidates, [&](const Candidate& c) { return row_of(c, known); }), figure);
+}
+
+std::string curves_view(const Place& place, const std::vector<Reference>& references) {
+  const std::vector<Fit> fits = fits_of(place);
+  std::vector<std::string> figures;
+  for (const auto& [curve, of] : report::curve_names(fits, references))
+    figures.push_back(json_of(report::curve_figure(curve, of, fits, references)));
+  return fmt::format(R"({{"figures":{},"blocks":{}}})", json_list(figures), json_of(blocks_of(fits)));
+}
+
+std::string calibration_view(const Place& place) {
+  const std::optional<Calibration> c = calibration_of(place);
+  if (!c) return "null";
+  return fmt::format(R"({{"blocks":{},"figures":[{},{}]}})", json_of(blocks_of(*c)), json_of(report::calibration_figure(*c)),
+                     json_of(report::calibration_residual_figure(*c)));
+}
+
+std::string ladder_view(const Results& results) {
+  const std::optional<Ladder> ladder = results.ladder();
+  if (!ladder || ladder->rungs.empty()) return "null";
+  const auto rung = [&](const Rung& r) {
+    return fmt::format(R"({{"id":{},"added":{},"system":{},"blocks":{}}})", r.id, json_string(r.added), json_string(r.system),
+                       json_of(rung_blocks(*ladder, r)));
+  };
+  return fmt::format(R"({{"blocks":{},"figure":{},"rungs":{}}})", json_of(blocks_of(*ladder)), json_of(report::ladder_figure(*ladder)),
+                     list_of(ladder->rungs, rung));
+}
+
+std::string verdict_view(const Results& results, const SessionOptions& as_typed) {
+  const std::vector<Place> places = results.places();
+  const std::vector<Fit> fits = fits_of(places.front());
+  if (fits.empty()) return "null";
+  const std::optional<Ladder> ladder = results.ladder();
+  const bool climbed = places.size() > 1;
+  const std::optional<Calibration> calibration = calibration_of(places.front());
+  const std::optional<Comparison> comparison = comparison_of(places.front());
+  const std::optional<Diagnosis> diagnosis = diagnosis_of(places.front()), above = climbed ? diagnosis_of(places.back()) : std::nullopt;
+  const std::optional<Discovery> discovery = discovery_of(places.back());
+  const auto pointer = [](const auto& result) { return result ? &*result : nullptr; };
+  return json_of(blocks_of(verdict_of(VerdictInput{as_typed.study, as_typed.out, &fits, pointer(calibration), pointer(comparison),
+                                                   pointer(diagnosis), pointer(above), pointer(discovery), pointer(ladder)})));
+}
+
+}  // namespace misfit::serve

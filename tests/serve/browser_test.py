@@ -1,0 +1,261 @@
+"""misfit open in a real browser (Debian's chromium, driven by python3-selenium). Called by browser_test.cpp: PROGRAM STUDY_FOLDER SCENARIO.
+
+Ends with status 0, or says what was seen and ends with 1.
+"""
+import atexit
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+PROGRAM, FOLDER = sys.argv[1:3]
+STUDY = os.path.join(FOLDER, "study.toml")
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+class Server:
+    def __init__(self):
+        self.process = subprocess.Popen([PROGRAM, "open", STUDY], stdout=subprocess.PIPE, text=True)
+        atexit.register(self.process.kill)
+        for line in self.process.stdout:
+            if line.startswith("http://127.0.0.1:"):
+                self.address = line.strip()
+                return
+        raise AssertionError("no address was printed")
+
+    def end(self, how=signal.SIGINT):
+        self.process.send_signal(how)
+        self.process.wait(60)
+
+
+class Page:
+    """The page, as somebody sees it who has eyes, a mouse and keys."""
+
+    def __init__(self, address):
+        options = Options()
+        for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu", "--window-size=1280,1000",
+                         "--user-data-dir=" + tempfile.mkdtemp(dir=FOLDER)):
+            options.add_argument(argument)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+        atexit.register(self.quit)
+        self.open(address)
+
+    def quit(self):
+        try:
+            self.driver.quit()
+        except Exception:  # it has ended already
+            pass
+
+    def open(self, address):
+        self.driver.get(address)
+        self.wait(lambda: self.js("return document.body.dataset.ready"), "the page is ready")
+
+    def js(self, code, *arguments):
+        return self.driver.execute_script(code, *arguments)
+
+    def wait(self, done, what, seconds=300):
+        end = time.time() + seconds
+        while time.time() < end:
+            try:
+                value = done()
+            except Exception:  # the page is being drawn anew
+                value = None
+            if value:
+                return value
+            time.sleep(0.1)
+        raise AssertionError(f"{what}: not within {seconds} s. The page says: {self.text('body')[:3000]}")
+
+    def one(self, selector):
+        return self.driver.find_element(By.CSS_SELECTOR, selector)
+
+    def text(self, selector):
+        return self.one(selector).text
+
+    def click(self, selector):
+        self.wait(lambda: self.one(selector).is_enabled(), f"{selector} can be clicked")
+        self.js("arguments[0].scrollIntoView({block: 'center'})", self.one(selector))
+        self.one(selector).click()
+
+    def view(self, name):
+        self.click(f"[data-view={name}][role=tab]")
+        self.wait(lambda: self.one("#view").get_attribute("data-view") == name, f"view {name}")
+
+    def job(self, state, number=None):
+        def ended():
+            box = self.one("#job")
+            return box.get_attribute("data-state") == state and (number is None or box.get_attribute("data-number") == str(number))
+        self.wait(ended, f"the command is {state}")
+
+    def no_faults(self):
+        faults = [e["message"] for e in self.driver.get_log("browser") if e["level"] == "SEVERE" and "ERR_CONNECTION_REFUSED" not in e["message"]]
+        assert not faults, faults
+
+    def end(self):
+        self.no_faults()
+        self.driver.quit()
+
+
+def random_force(page):
+    """[unit of the force] As the verdict has it: before, after."""
+    match = re.search(r"random force: ([\d.]+)[^\n]*? to ([\d.]+)", page.text("#verdict"))
+    assert match, page.text("#verdict")
+    return float(match[1]), float(match[2])
+
+
+def point_at_the_worst_place(page):
+    """Over the place of the map whose amplitude is most sigmas from zero; the words that say what is marked."""
+    page.wait(lambda: page.one("#view figure .u-over"), "the map")
+    over = page.one("#view figure .u-over")
+    page.js("arguments[0].scrollIntoView({block: 'center'})", over)
+    width = over.size["width"]
+    seen = {}
+    for k in range(1, 12):
+        ActionChains(page.driver).move_to_element_with_offset(over, int(width * (k / 12 - 0.5)), 0).perform()
+        time.sleep(0.1)
+        seen[page.text("#marked")] = k
+    marked = [words for words in seen if re.match(r"Marked: [1-9]\d* samples with ", words)]
+    assert len(marked) >= 4, seen
+    ActionChains(page.driver).move_to_element_with_offset(over, 0, 0).click().perform()
+    fixed = page.text("#marked")
+    assert int(page.one("#time").get_attribute("data-marks")) > 0
+    ActionChains(page.driver).move_to_element(page.one("h1")).perform()
+    assert page.text("#marked") == fixed, "a click keeps the marks"
+    return fixed
+
+
+def find_and_add():
+    """Run, find where it fails, add the first candidate, see the error fall, reload."""
+    server = Server()
+    page = Page(server.address)
+    assert "There are no results yet" in page.text("#alerts")
+    page.click("#run")
+    page.wait(lambda: page.one("#job progress, #job .costs figure"), "progress or cost of the fit")
+    page.job("done", 1)
+    assert page.text("#command").startswith("misfit run ")
+    page.wait(lambda: "Missing:" in page.text("#verdict"), "the verdict")
+    assert len(page.driver.find_elements(By.CSS_SELECTOR, "#motion .u-over")) >= 2, "measured, residual"
+    assert len(page.driver.find_elements(By.CSS_SELECTOR, "#force .u-over")) >= 1
+    page.view("where")
+    point_at_the_worst_place(page)
+    # The time cursor by keys, in all plots.
+    plot = page.one("#motion .plot")
+    plot.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
+    values = page.js("return [...document.querySelectorAll('#motion .value, #force .value')].filter((v) => v.textContent !== '').length")
+    assert values >= 3, values
+    plot.send_keys(Keys.ESCAPE)
+    assert page.text("#marked") == ""
+    page.view("candidates")
+    first = page.wait(lambda: page.one("#candidates tr.accepted button"), "an accepted candidate").get_attribute("data-effect")
+    page.click("#candidates tr.accepted button")
+    page.job("done", 2)
+    page.wait(lambda: page.one("#model").get_attribute("value") == "1", "the new rung is shown")
+    before, after = random_force(page)
+    assert after < before, (before, after)
+    page.view("ladder")
+    page.wait(lambda: page.one("#view [aria-pressed=true]").text == f"1: + {first}", "the rung")
+    page.view("commands")
+    page.wait(lambda: f"misfit add {STUDY} {first}" in page.text("#view pre"), "session.sh")
+    verdict = page.text("#verdict")
+    page.open(server.address)
+    page.driver.refresh()
+    page.wait(lambda: page.text("#verdict") == verdict, "the same after a reload")
+    for view in ("where", "candidates", "curves", "calibration", "ladder", "study", "commands"):
+        page.view(view)
+        time.sleep(0.3)
+        assert not page.driver.find_elements(By.CSS_SELECTOR, "#view > div > p.warning"), page.text("#view")
+    for width in (800, 400):
+        page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+        time.sleep(0.4)
+        assert page.js("return document.documentElement.scrollWidth") <= width, "nothing is wider than the screen"
+    page.end()
+    server.end()
+
+
+def mend():
+    """A study with an error is mended in the page."""
+    good = read(STUDY)
+    with open(STUDY, "w", encoding="utf-8") as file:
+        file.write(good.replace("seed = 1", "seeds = 1"))
+    server = Server()
+    page = Page(server.address)
+    page.wait(lambda: "The study has an error" in page.text("#alerts"), "the error")
+    assert not page.one("#run").is_enabled()
+    page.click("#fault button")
+    area = page.wait(lambda: page.one("#view textarea"), "the text")
+    assert page.text(".editor pre .bad") == "5"
+    assert "seed" in page.text("#check")
+    page.click("#check button")  # to line 5, which is then chosen
+    area.send_keys("seed = 1")
+    page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked while typed")
+    page.click("#save")
+    page.wait(lambda: "Saved" in page.text("#check"), "saved")
+    assert read(STUDY) == good
+    page.wait(lambda: page.one("#run").is_enabled(), "it can be run")
+    page.end()
+    server.end()
+
+
+def stop_and_kill():
+    """A command is stopped; the server is killed in the middle of another and opened again."""
+    server = Server()
+    page = Page(server.address)
+    page.click("#run")
+    page.job("running", 1)
+    page.click("#stop")
+    page.job("stopped", 1)
+    page.click("#run")
+    page.job("running", 2)
+    time.sleep(0.5)
+    server.end(signal.SIGKILL)
+    page.wait(lambda: "does not answer any more" in page.text("#alerts"), "the page says that nobody answers")
+    server = Server()
+    page.open(server.address)
+
+    def done():
+        page.click("#run")
+        page.wait(lambda: page.one("#job").get_attribute("data-state") in ("done", "failed"), "its end")
+        return page.one("#job").get_attribute("data-state") == "done"
+    page.wait(done, "done, when the command of the killed server has let go of the folder")
+    page.wait(lambda: "Missing:" in page.text("#verdict"), "the verdict")
+    page.end()
+    server.end()
+
+
+def hostile():
+    """Names that are scripts stay names."""
+    picture = "<img src=x onerror=document.title='hit'>"
+    script = picture + "</script><script>document.title='hit'</script>"
+    text = read(STUDY).replace('name = "an oscillator"', f'name = "{script}"').replace('name = "steps"', f'name = "{picture}"')
+    text = text.replace('question = "What does it lack?"', f'question = "{script}"')
+    with open(STUDY, "w", encoding="utf-8") as file:
+        file.write(text)
+    server = Server()
+    page = Page(server.address)
+    page.click("#run")
+    page.job("done", 1)
+    page.wait(lambda: page.text("h1") == script, "the name as a name")
+    for view in ("where", "candidates", "curves", "study", "commands"):
+        page.view(view)
+        time.sleep(0.3)
+    assert page.js("return document.title") == f"{script} · misfit"
+    assert page.js("return document.querySelectorAll('body script:not([src]), body img').length") == 0
+    page.end()
+    server.end()
+
+
+{"find_and_add": find_and_add, "mend": mend, "stop_and_kill": stop_and_kill, "hostile": hostile}[sys.argv[3]]()

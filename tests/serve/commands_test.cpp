@@ -1,0 +1,182 @@
+// What the page does: commands of the program, one at a time, recorded so that they can be done again.
+#include <gmock/gmock.h>
+
+#include "tests/apps/oscillator_study.h"
+#include "tests/serve/page_server.h"
+
+namespace {
+
+using namespace program;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Results of a run folder, by file: without seconds, dates and hashes of them.
+std::map<std::string, std::string> results_in(const fs::path& folder) {
+  std::map<std::string, std::string> out;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_regular_file() || name.ends_with("run.json") || name == "report.html" || name == "session.sh") continue;
+    out[entry.path().lexically_relative(folder).string()] =
+        std::regex_replace(content(entry.path()), std::regex(R"("seconds": [-+.e\d]+)"), "");
+  }
+  return out;
+}
+
+TEST(CommandsOfThePage, AreWhatOneWouldTypeAndGiveTheSameBytesWhenDoneAgain) {
+  const OscillatorStudy study;
+  const std::string file = study.path("study.toml").string();
+  PageServer server({file});
+  EXPECT_EQ(server.state()["verdict"], nullptr);
+  const json started = server.post("/api/job", {{"verb", "run"}}).parsed();
+  EXPECT_EQ(started["command"], "misfit run " + file);
+  EXPECT_EQ(server.post("/api/job", {{"verb", "fit"}}).status, 409) << "one at a time";
+  json job = server.job();
+  ASSERT_EQ(job["state"], "done") << job["notes"] << job["output"];
+  EXPECT_FALSE(job["costs"].empty()) << "its searches are followed";
+  std::size_t iterations = 0;
+  for (const json& trace : job["costs"]) iterations += trace["points"].size();
+  EXPECT_GT(iterations, 2U);
+  EXPECT_THAT(job["output"], HasSubstr("Verdict"));
+  EXPECT_NE(server.state()["verdict"], nullptr);
+  EXPECT_TRUE(server.state()["outdated"].empty());
+
+  const json candidates = server.get("/api/candidates").parsed();
+  ASSERT_FALSE(candidates["rows"].empty());
+  EXPECT_EQ(candidates["rows"].size(),
+            candidates["blocks"][1]["kind"] == "table" ? candidates["blocks"][1]["rows"].size() : candidates["rows"].size());
+  const std::string effect = "coulomb_friction";
+  EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}}).parsed()["command"], "misfit add " + file + " " + effect);
+  ASSERT_EQ(server.job()["state"], "done");
+  EXPECT_EQ(server.state()["models"].size(), 2U);
+  EXPECT_EQ(server.get("/api/ladder").parsed()["rungs"].size(), 2U);
+  EXPECT_NE(server.get("/api/where?model=1").parsed()["maps"][0]["change"], nullptr);
+  EXPECT_EQ(server.end().status, 0);
+
+  fs::rename(study.path("out"), study.path("before"));
+  const std::string path = fs::path(MISFIT_PROGRAM).parent_path().string();
+  ASSERT_EQ(std::system(("PATH='" + path + "':\"$PATH\" sh '" + study.path("before/session.sh").string() + "' > /dev/null 2>&1").c_str()),
+            0);
+  const auto before = results_in(study.path("before")), again = results_in(study.path("out"));
+  EXPECT_GT(before.size(), 30U);
+  for (const auto& [name, text] : before) {
+    ASSERT_TRUE(again.contains(name)) << name;
+    EXPECT_TRUE(again.at(name) == text) << name;
+  }
+  EXPECT_EQ(again.size(), before.size());
+}
+
+TEST(CommandsOfThePage, AStudyWithAnErrorIsMendedInIt) {
+  const OscillatorStudy study;
+  const std::string good = content(study.path("study.toml"));
+  const std::string bad = std::regex_replace(good, std::regex("seed = 1"), "seeds = 1");
+  study.write("study.toml", bad);
+  const PageServer server({study.path("study.toml").string()});
+  const json fault = server.state()["study"]["fault"];
+  EXPECT_EQ(fault["line"], 5);
+  EXPECT_THAT(fault["message"], HasSubstr("seed"));
+  const json shown = server.get("/api/study").parsed();
+  EXPECT_EQ(shown["text"], bad);
+  EXPECT_EQ(server.post("/api/check", {{"text", bad}}).parsed()["fault"]["line"], 5);
+  EXPECT_EQ(server.post("/api/save", {{"text", bad}, {"hash", shown["hash"]}}).status, 422);
+  EXPECT_EQ(content(study.path("study.toml")), bad) << "what is wrong is not written";
+  EXPECT_EQ(server.post("/api/save", {{"text", good}, {"hash", "0123456789abcdef"}}).status, 400) << "changed meanwhile";
+  EXPECT_EQ(content(study.path("study.toml")), bad);
+  EXPECT_EQ(server.post("/api/check", {{"text", good}}).parsed()["fault"], nullptr);
+  ASSERT_EQ(server.post("/api/save", {{"text", good}, {"hash", shown["hash"]}}).status, 200);
+  EXPECT_EQ(content(study.path("study.toml")), good);
+  EXPECT_EQ(server.state()["study"]["fault"], nullptr);
+  EXPECT_THAT(content(study.path("out/session.sh")), HasSubstr(good + "END_OF_STUDY\n"));
+}
+
+TEST(CommandsOfThePage, AreNotWrittenThroughLinks) {
+  const OscillatorStudy study;
+  fs::create_directories(study.path("out"));
+  study.write("elsewhere", "mine\n");
+  fs::create_symlink(study.path("elsewhere"), study.path("out/session.sh"));
+  const PageServer server({study.path("study.toml").string()});
+  const json shown = server.get("/api/study").parsed();
+  fs::rename(study.path("study.toml"), study.path("real.toml"));
+  fs::create_symlink(study.path("real.toml"), study.path("study.toml"));
+  EXPECT_EQ(server.post("/api/save", {{"text", shown["text"].get<std::string>() + "# more\n"}, {"hash", shown["hash"]}}).status, 400);
+  EXPECT_EQ(server.post("/api/job", {{"verb", "fit"}}).status, 500);
+  EXPECT_EQ(server.job()["state"], "none") << "nothing is done that cannot be recorded";
+  EXPECT_EQ(content(study.path("elsewhere")), "mine\n");
+  EXPECT_EQ(content(study.path("real.toml")), shown["text"]);
+}
+
+TEST(CommandsOfThePage, AStoppedOneLeavesAFolderToGoOnWith) {
+  const OscillatorStudy study;
+  PageServer server({study.path("study.toml").string()});
+  ASSERT_EQ(server.post("/api/job", {{"verb", "run"}}).status, 200);
+  for (int k = 0; k < 400 && !fs::exists(study.path("out/fit/output_error/fit.json")); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(server.post("/api/stop", json::object()).status, 200);
+  const json job = server.job();
+  EXPECT_EQ(job["state"], "stopped") << job;
+  EXPECT_EQ(server.get("/api/motion").parsed()["methods"][0], "output_error") << "what was finished is there";
+  ASSERT_EQ(server.post("/api/job", {{"verb", "fit"}}).status, 200);
+  EXPECT_EQ(server.job()["state"], "done");
+  EXPECT_EQ(server.get("/api/motion").parsed()["methods"].size(), 2U);
+}
+
+TEST(CommandsOfThePage, EndWithTheServerThatIsKilledAndAreGoneOnWithByTheNext) {
+  const OscillatorStudy study;
+  PageServer server({study.path("study.toml").string()});
+  ASSERT_EQ(server.post("/api/job", {{"verb", "run"}}).status, 200);
+  for (int k = 0; k < 400 && !fs::exists(study.path("out/fit/output_error/fit.json")); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  server.kill();
+  PageServer next({study.path("study.toml").string()});
+  EXPECT_EQ(next.get("/api/motion").parsed()["methods"][0], "output_error");
+  json job;
+  for (int k = 0; k < 100; ++k) {  // until the command of the killed server has let go of the folder
+    ASSERT_EQ(next.post("/api/job", {{"verb", "run"}}).status, 200);
+    job = next.job();
+    if (job["state"] == "done") break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  EXPECT_EQ(job["state"], "done") << job["notes"];
+  EXPECT_THAT(content(study.path("out/session.sh")), HasSubstr("misfit run"));
+}
+
+TEST(CommandsOfThePage, AServerThatIsAskedToEndStopsItsCommand) {
+  const OscillatorStudy study;
+  PageServer server({study.path("study.toml").string()});
+  ASSERT_EQ(server.post("/api/job", {{"verb", "run"}}).status, 200);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(server.end().status, 0);
+  EXPECT_EQ(run({"fit", study.path("study.toml").string(), "--quiet"}).status, 0) << "the folder is free";
+}
+
+TEST(CommandsOfThePage, GoToTheFolderThatWasAskedFor) {
+  const OscillatorStudy study;
+  const std::string file = study.path("study.toml").string(), out = study.path("my results").string();
+  const PageServer server({file, "--out", out});
+  EXPECT_EQ(server.post("/api/job", {{"verb", "fit"}}).parsed()["command"], "misfit fit " + file + " --out '" + out + "'");
+  EXPECT_EQ(server.job()["state"], "done");
+  EXPECT_TRUE(fs::exists(fs::path(out) / "fit/output_error/fit.json"));
+  EXPECT_FALSE(fs::exists(study.path("out")));
+}
+
+TEST(OpeningAPage, SaysWhatIsWrong) {
+  const OscillatorStudy study;
+  const Outcome none = run({"open", study.path("nothing.toml").string()});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("nothing.toml"));
+  const PageServer server({study.path("study.toml").string()});
+  const Outcome taken = run({"open", study.path("study.toml").string(), "--port", std::to_string(server.port())});
+  EXPECT_EQ(taken.status, 1);
+  EXPECT_THAT(taken.err, HasSubstr("port " + std::to_string(server.port())));
+  EXPECT_EQ(run({"open", study.path("study.toml").string(), "--port", "70000"}).status, 2);
+}
+
+TEST(OpeningAPage, DoesNoWork) {
+  const OscillatorStudy study;
+  PageServer server({study.path("study.toml").string()});
+  for (const char* question : {"state", "motion", "where", "candidates", "curves", "calibration", "ladder", "study", "session"})
+    EXPECT_EQ(server.get(std::string("/api/") + question).status, 200) << question;
+  EXPECT_EQ(server.end().status, 0);
+  EXPECT_FALSE(fs::exists(study.path("out")));
+}
+
+}  // namespace

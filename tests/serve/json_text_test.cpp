@@ -1,0 +1,93 @@
+#include "misfit/serve/json_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "misfit/serve/session_script.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit::serve {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+report::Figure figure_with_text(const std::string& text) {
+  report::Figure figure;
+  figure.name = "name";
+  figure.title = figure.caption = figure.x_label = figure.x_unit = text;
+  report::Panel panel;
+  panel.y_label = panel.y_unit = text;
+  panel.series.push_back({"a", text, report::Style::line, "#000000", {1.0, 2.0}, {3.0, nan}, {}, {}});
+  panel.series.push_back({"b", text, report::Style::band, "#000000", {1.0, 2.0}, {}, {0.0, 0.0}, {1.0, 1.0}});
+  figure.panels = {panel};
+  figure.notes = {text};
+  figure.x_marks = {{1.0, text}};
+  return figure;
+}
+
+TEST(AFigureAsJson, KeepsNumbersAndGivesSharedPlacesOnce) {
+  const json figure = json::parse(json_of(figure_with_text("x")));
+  EXPECT_EQ(figure["xs"], json::parse("[[1,2]]"));
+  const json& series = figure["panels"][0]["series"];
+  EXPECT_EQ(series[0]["x"], 0);
+  EXPECT_EQ(series[1]["x"], 0);
+  EXPECT_EQ(series[0]["y"], json::parse("[3,null]"));
+  EXPECT_EQ(series[0]["style"], "line");
+  EXPECT_EQ(series[1]["style"], "band");
+  EXPECT_FALSE(series[1].contains("y"));
+}
+
+TEST(AFigureAsJson, TakesAnyTextAsText) {
+  for (const std::string text : {"</script><script>alert(1)</script>", "\"},{\"", "\\", "\x01\x1b[31m", "\xff\xfe", "a\nb", "{0} {}"}) {
+    const json figure = json::parse(json_of(figure_with_text(text)));
+    if (text.front() != '\xff') {
+      EXPECT_EQ(figure["title"], text);
+      EXPECT_EQ(figure["panels"][0]["series"][0]["legend"], text);
+    }
+  }
+}
+
+TEST(AFigureAsJson, TypesetsSymbolsAsTheReportDoes) {
+  EXPECT_EQ(json::parse(json_words("alpha_T")), json::parse(R"([["α",0],["T",-1]])"));
+  EXPECT_EQ(json::parse(json_words("m^2")), json::parse(R"([["m",0],["2",1]])"));
+  EXPECT_EQ(json::parse(json_words("plain")), "plain");
+}
+
+TEST(NumbersAsJson, AreNullWhereTheyAreNotFinite) {
+  EXPECT_EQ(json_numbers({1.5, nan, std::numeric_limits<double>::infinity(), -2e-9}), "[1.5,null,null,-2e-09]");
+  EXPECT_EQ(json_number(nan), "null");
+}
+
+TEST(BlocksAsJson, AreTheSameList) {
+  Blocks blocks;
+  blocks.heading("Title");
+  blocks.paragraph("Answer", Tone::lead);
+  blocks.table({columns("a|>b"), {{"1", "<b>"}}});
+  blocks.figures("place");
+  const json list = json::parse(json_of(blocks));
+  ASSERT_EQ(list.size(), 4U);
+  EXPECT_EQ(list[1]["tone"], "lead");
+  EXPECT_EQ(list[2]["columns"][1]["right"], true);
+  EXPECT_EQ(list[2]["rows"][0][1], "<b>");
+  EXPECT_EQ(list[3]["name"], "place");
+}
+
+TEST(TheScriptOfASession, HasCommandsAndTextsInTheirOrder) {
+  const TemporaryFolder folder;
+  const SessionScript script(folder.path());
+  EXPECT_EQ(script.text(), "");
+  script.record(command_of({"add", "my study", "it's", "--out", "o"}));
+  script.record_text("my study/study.toml", "a = 'END_OF_STUDY'");
+  EXPECT_THAT(script.text(), HasSubstr("set -e\n"));
+  EXPECT_THAT(script.text(), HasSubstr("\nmisfit add 'my study' 'it'\\''s' --out o\n"
+                                       "cat > 'my study/study.toml' <<'END_OF_STUDY_'\na = 'END_OF_STUDY'\nEND_OF_STUDY_\n"));
+}
+
+}  // namespace
+}  // namespace misfit::serve
