@@ -16,18 +16,18 @@ using misfit::PixelPoint;
 
 struct Swing {
   int width = 320, height = 200;
-  double radius = 14.0;        ///< of the bob [px]
-  double amplitude = 90.0;     ///< of its column [px]
-  double frequency = 4.0;      ///< [rad/s]
-  double damping = 0.02;       ///< [1/s]
-  double length = 500.0;       ///< of the string [px]
-  double turning = 2.0;        ///< of the bob about itself [rad/s]
-  double light = 0.0;          ///< share by which the light changes over the film, and from left to right
-  double exposure = 0.0;       ///< [s]
-  double noise = 2.0;          ///< [grey levels]
-  double texture = 25.0;       ///< of the wall [grey levels]
-  bool like_the_wall = false;  ///< half of the bob has the wall's colour
-  double duration = 12.0;      ///< [s]
+  double radius = 14.0;                         ///< of the bob [px]
+  double amplitude = 90.0;                      ///< of its column [px]
+  double frequency = 4.0;                       ///< [rad/s]
+  double damping = 0.02;                        ///< [1/s]
+  double length = 500.0;                        ///< of the string [px]
+  double turning = 2.0;                         ///< of the bob about itself [rad/s]
+  double light = 0.0;                           ///< share by which the light changes over the film, and from left to right
+  double exposure = 0.0;                        ///< [s]
+  double noise = 2.0;                           ///< [grey levels]
+  double texture = 25.0;                        ///< of the wall [grey levels]
+  bool like_the_wall = false;                   ///< half of the bob has the wall's colour
+  double duration = 12.0;                       ///< [s]
   std::function<PixelPoint(double)> path = {};  ///< instead of the damped cosine
 
   /// Of the bob's middle [px].

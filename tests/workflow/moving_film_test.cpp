@@ -33,8 +33,9 @@ VideoStudy automatic() {
 Score followed(const std::string& name, const scene::Swing& swing, const std::function<void(misfit::ColourImage&, double)>& change = {}) {
   const TemporaryFolder folder;
   write_film(folder.path() / "swing.mp4", swing, change);
-  return score(name, folder.path() / "swing.mp4", automatic(), [&](std::size_t k) { return std::optional(swing.at(static_cast<double>(k) / rate)); },
-               swing.radius);
+  return score(
+      name, folder.path() / "swing.mp4", automatic(), [&](std::size_t k) { return std::optional(swing.at(static_cast<double>(k) / rate)); },
+      swing.radius);
 }
 
 /// Never on a wrong place, and the sigma is right within 1.5, as for rings.
@@ -76,7 +77,9 @@ TEST(MovingFilm, HalfOfItLooksLikeTheWall) {
 
 TEST(MovingFilm, BehindAPostItIsLost) {
   const scene::Swing swing;
-  const Score s = followed("bob that passes behind a post", swing, [](misfit::ColourImage& image, double) { fill(image, 150, 165, {60, 60, 60}); });
+  const Score s = followed("bob that passes behind a post", swing, [](misfit::ColourImage& image, double) {
+    fill(image, 150, 165, {60, 60, 60});
+  });
   EXPECT_GE(s.share(), 0.5);
   EXPECT_LT(s.share(), 0.95);
   expect_no_lie(s);

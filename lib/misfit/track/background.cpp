@@ -11,7 +11,7 @@ namespace misfit {
 namespace {
 
 constexpr std::size_t min_samples = 5;
-constexpr double light_points = 700.0;  // of the frame, where the light is compared
+constexpr double light_points = 700.0;   // of the frame, where the light is compared
 constexpr float darkest = 8.0F;          // [grey levels] where a gain still shows
 constexpr std::uint8_t brightest = 250;  // beyond, the sensor is saturated
 constexpr float least_noise = 3.0F;      // [grey levels over three channels] rounding and compression
@@ -76,8 +76,8 @@ std::uint8_t median_byte(std::vector<std::uint8_t>& values) {
   return *middle;
 }
 
-/// Mean of the most values that lie within 12 grey levels: what stands still, even where something of many colours is in front of it in half
-/// of the frames.
+/// Mean of the most values that lie within 12 grey levels: what stands still, even where something of many colours is in front of it in
+/// half of the frames.
 float most_common(std::vector<std::uint8_t>& values) {
   constexpr int width = 12;
   std::sort(values.begin(), values.end());

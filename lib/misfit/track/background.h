@@ -12,8 +12,8 @@ namespace misfit {
 using LightGain = std::array<double, 6>;
 
 /// What stands still in the frames of a camera that does not move: in every pixel the value that most frames taken from all of the video
-/// share, each brought to the same light first. Light and exposure may change: what changes smoothly over the whole frame is no object (gain of second
-/// order in x and y per channel, by least squares with Tukey's weights over about 1500 points).
+/// share, each brought to the same light first. Light and exposure may change: what changes smoothly over the whole frame is no object
+/// (gain of second order in x and y per channel, by least squares with Tukey's weights over about 1500 points).
 class Background {
  public:
   /// At least five frames of one size. std::logic_error: fewer.
@@ -38,8 +38,8 @@ class Background {
   [[nodiscard]] std::vector<float> differences(const ColourImage& frame, const std::array<LightGain, 3>& light) const;
 
   int width_ = 0, height_ = 0;
-  std::vector<float> base_;   ///< three per pixel
-  std::vector<float> noise_;  ///< per pixel, of the difference
+  std::vector<float> base_;         ///< three per pixel
+  std::vector<float> noise_;        ///< per pixel, of the difference
   std::vector<float> low_, scale_;  ///< per pixel: foreground = scale (difference − low)
 };
 

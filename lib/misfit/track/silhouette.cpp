@@ -276,8 +276,7 @@ std::optional<Silhouette> find_silhouette(const std::vector<ColourImage>& sample
   foregrounds = foregrounds_of(samples, background, out.shrink);
   const double s = out.shrink, edge = 1.0 + 2.0 * margin;
   out.marker.kind = MarkerKind::picture;
-  out.marker.picture =
-      picture_of(foregrounds, seen, out.shrink, Image(odd(edge * out.width / s + 4.0), odd(edge * out.height / s + 4.0)));
+  out.marker.picture = picture_of(foregrounds, seen, out.shrink, Image(odd(edge * out.width / s + 4.0), odd(edge * out.height / s + 4.0)));
   out.marker.levels = {0.0, 1.0, 0.0};
   if (!out.marker.picture.empty()) return out;
   why = "what moves is hardly ever wholly in the frame";

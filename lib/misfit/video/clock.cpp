@@ -6,8 +6,8 @@
 namespace misfit {
 namespace {
 
-constexpr double rounding = 1.2e-3;       // [s] two times the 0.5 ms of a container that counts milliseconds, and a little
-constexpr double largest_part = 0.3;        // … of an interval, where frames follow that fast
+constexpr double rounding = 1.2e-3;        // [s] two times the 0.5 ms of a container that counts milliseconds, and a little
+constexpr double largest_part = 0.3;       // … of an interval, where frames follow that fast
 constexpr double allowed_outliers = 0.01;  // share of the timestamps
 
 double median_interval(const std::vector<double>& times) {
@@ -34,7 +34,8 @@ bool on_grid(const std::vector<double>& times, double rate) {
 double fitted_rate(const std::vector<double>& times) {
   const double step = median_interval(times), n = static_cast<double>(times.size());
   std::vector<double> places{0.0};
-  for (std::size_t k = 1; k < times.size(); ++k) places.push_back(places.back() + std::max(1.0, std::round((times[k] - times[k - 1]) / step)));
+  for (std::size_t k = 1; k < times.size(); ++k)
+    places.push_back(places.back() + std::max(1.0, std::round((times[k] - times[k - 1]) / step)));
   double mean_t = 0.0, mean_p = 0.0, tt = 0.0, tp = 0.0;
   for (std::size_t k = 0; k < times.size(); ++k) {
     mean_t += times[k] / n;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_bytes = 256'000'000, least_samples = 8, most_samples = 32;
 constexpr std::size_t first_frames = 16;  // in which the order of fields is looked for
-constexpr double most_doubled = 0.15;      // of the frames may show two of it
+constexpr double most_doubled = 0.15;     // of the frames may show two of it
 constexpr double least_part = 0.4;        // of the object's area that a field must show
 
 /// A number that looks random, the same for the same k.
@@ -22,8 +22,8 @@ std::size_t scrambled(std::size_t k) {
   return (z ^ (z >> 29U)) * odd >> 33U;
 }
 
-/// Frames spread over a video whose length is not known: of every stretch of n frames one, at a random place of it (at equal intervals a swing
-/// could be caught at the same places again and again); n is doubled whenever there are too many.
+/// Frames spread over a video whose length is not known: of every stretch of n frames one, at a random place of it (at equal intervals a
+/// swing could be caught at the same places again and again); n is doubled whenever there are too many.
 class SpreadFrames {
  public:
   explicit SpreadFrames(std::size_t most) : most_(most) {}
