@@ -7,7 +7,7 @@ constexpr VerbText texts[] = {
     {"run", "run all stages of the study and write the report; stages whose inputs have not changed are skipped",
      "the study and the data that it names", "the results of track to discover, report.html, figures/, run.json, resolved.toml",
      "misfit run configs/swivel_friction"},
-    {"track", "follow the marker through the video: track.csv, contact sheet, lost samples and their reasons",
+    {"track", "follow a marker, or the object that moves, through the video: track.csv, contact sheet, lost samples and their reasons",
      "the study, its videos and pictures of the static sweep", "track.csv, track.json, figures/contact_sheet.png",
      "misfit track flight --check-video track.avi"},
     {"calibrate", "estimate camera height, scale and the further parameters that the static sweep supports",

@@ -151,6 +151,20 @@ TEST(Survey, FindsNothingWhereNothingIs) {
   EXPECT_FALSE(survey.enough());
 }
 
+TEST(WhiteError, IsSeenInPositionsOfASmoothMotion) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.2);
+  std::vector<TrackedSample> samples;
+  for (int k = 0; k < 600; ++k) {
+    const double angle = 0.13 * k;
+    samples.push_back(
+        {Loss::none, {160.0 + 90.0 * std::cos(angle) + noise(random), 90.0 + 4.0 * std::sin(2.0 * angle) + noise(random)}, 0.01, 0.9});
+    if (k % 50 == 7) samples.back() = {Loss::covered, {}, 0.0, 0.0};
+  }
+  EXPECT_NEAR(white_error(samples), 0.2, 0.02);
+  EXPECT_EQ(white_error(std::vector<TrackedSample>(samples.begin(), samples.begin() + 12)), 0.0);
+}
+
 TEST(PixelLocking, IsSeenInPositionsThatPreferFractions) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> anywhere(0.0, 500.0);

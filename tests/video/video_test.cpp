@@ -138,6 +138,33 @@ TEST(Video, GapsBetweenTimestampsAreMissingFrames) {
   EXPECT_THAT(notes_of(video.facts()), testing::ElementsAre(HasSubstr("missing between others")));
 }
 
+TEST(Video, FramesHaveTheTimesOfTheFile) {
+  Video video(fs::path(MISFIT_SOURCE_DIR) / "tests/apps/data/variable_rate.mp4");
+  EXPECT_TRUE(video.facts().variable);
+  long n = 0, timed = 0;
+  while (auto frame = video.next()) {
+    const double k = static_cast<double>(n);  // what ffprobe prints, to 11 us
+    const double truth = k / 30.0 + 0.008 * std::sin(1.3 * k) + (k > 60.0 ? (k - 60.0) / 60.0 : 0.0);
+    EXPECT_NEAR(frame->time.value_or(truth), truth, 2e-5) << n;
+    timed += frame->time ? 1 : 0;
+    EXPECT_EQ(frame->number, n++);  // none is missing where the intervals differ
+  }
+  EXPECT_EQ(n, 120);
+  EXPECT_GE(timed, 100);
+  EXPECT_EQ(video.facts().missing, 0);
+  EXPECT_NEAR(video.facts().rate, 24.2, 0.5);
+  EXPECT_THAT(notes_of(video.facts()), testing::Contains(HasSubstr("constant rate")));
+}
+
+TEST(Video, ColoursComeWhereTheyAreAskedFor) {
+  Video grey(gaps()), coloured(gaps(), Colours::bgr);
+  const auto a = grey.next(), b = coloured.next();
+  EXPECT_TRUE(a->colour.empty());
+  ASSERT_EQ(b->colour.bgr.size(), 3 * b->image.pixels.size());
+  EXPECT_EQ(a->image, b->image);
+  for (std::size_t k = 0; k < b->image.pixels.size(); k += 997) EXPECT_NEAR(b->colour.bgr[3 * k + 1], b->image.pixels[k], 2);
+}
+
 TEST(Video, StoppedEarlyEndsItsThread) {
   for (int k = 0; k < 3; ++k) {
     Video video(gaps());

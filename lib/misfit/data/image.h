@@ -24,6 +24,19 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
+/// A picture in colour: three bytes per pixel (blue, green, red), rows from the top.
+struct ColourImage {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> bgr;
+
+  ColourImage() = default;
+  ColourImage(int w, int h) : width(w), height(h), bgr(std::size_t{3} * static_cast<std::size_t>(w) * static_cast<std::size_t>(h), 0) {}
+  [[nodiscard]] bool empty() const { return bgr.empty(); }
+  [[nodiscard]] std::size_t at(int column, int row) const {
+    return std::size_t{3} * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column));
+  }
+};
+
 /// The lines of a frame that were exposed together. Row r of `image` lies at row `first_row + row_step * r` of the full frame: a
 /// progressive frame is (0, 1), the two fields of an interlaced one are (0, 2) and (1, 2). Positions are given in full-frame pixels,
 /// centres at integers.

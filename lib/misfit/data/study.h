@@ -14,9 +14,9 @@
 
 namespace misfit {
 
-/// What is followed in pictures: "ring", "bright", "dark", or a picture cut from a frame.
+/// What is followed in pictures: "auto", "moving", "ring", "bright", "dark", or a picture cut from a frame.
 struct MarkerStudy {
-  std::string kind;  ///< "ring", "bright", "dark"; "picture" if `picture` is given
+  std::string kind;  ///< one of these; "picture" if `picture` is given
   std::optional<std::filesystem::path> picture;
 };
 
@@ -34,6 +34,12 @@ struct CameraStudy {
   [[nodiscard]] bool from_sweep() const { return sweep || sweep_images; }
 };
 
+/// A length that is known between two places of a picture, in the plane in which what is followed moves.
+struct KnownLength {
+  PixelPoint from, to;  ///< [px]
+  double metres = 0.0;
+};
+
 /// [video]: how a video is read and what is followed in it.
 struct VideoStudy {
   std::string fields;        ///< "auto", "progressive", "top_first", "bottom_first"
@@ -41,6 +47,8 @@ struct VideoStudy {
   MarkerStudy marker;
   std::optional<PixelPoint> start;              ///< about where the marker is in the first frame [px]
   std::optional<std::array<double, 4>> region;  ///< left, top, right, bottom [px]: where it is looked for
+  std::optional<KnownLength> length = {};       ///< for x_m and y_m
+  std::optional<PixelPoint> origin = {};        ///< of x_m and y_m; the picture's middle without
 };
 
 struct ExperimentStudy {

@@ -15,6 +15,7 @@ using Type = config::KeyType;
 constexpr double max_runs = 100'000'000, max_block = 10'000'000, max_excluded = 1'000'000'000;
 
 const std::vector<std::string> markers{"ring", "bright", "dark"};
+const std::vector<std::string> followed{"auto", "moving", "ring", "bright", "dark"};
 
 // A key is a line of attributes and a line of meaning.
 // clang-format off
@@ -64,7 +65,8 @@ std::vector<Key> sweep_keys() {
        .meaning = "Table of the static sweep: angle of the rig and pixels of its three points."},
       {.name = "sweep_images", .type = Type::file, .otherwise = "none",
        .meaning = "Instead of sweep: table of angles and image or video files."},
-      {.name = "sweep_marker", .type = Type::file, .otherwise = "that of [video]", .choices = markers, .form = "as marker of [video]",
+      {.name = "sweep_marker", .type = Type::file, .otherwise = "that of [video], for auto and moving a ring", .choices = markers,
+       .form = R"("ring", "bright", "dark" or a file ending in .png)",
        .needs = {"sweep_images"},
        .meaning = "Marker of the three points in these pictures."},
       {.name = "sweep_points", .type = Type::numbers, .unit = "px", .otherwise = "predicted from [geometry]", .form = "list of 6 numbers",
@@ -111,13 +113,20 @@ KeyGroup video_group() {
        .meaning = "Interlacing: order of the two fields of a frame; auto finds it from the pictures."},
       {.name = "check_fields", .type = Type::flag, .fallback = "true",
        .meaning = "false: fields holds even if the pictures contradict it."},
-      {.name = "marker", .type = Type::file, .fallback = "\"ring\"", .choices = markers,
-       .form = R"("ring", "bright", "dark" or a file ending in .png)",
-       .meaning = "What is followed: a ring, a bright or dark spot, or a picture cut from a frame."},
+      {.name = "marker", .type = Type::file, .fallback = "\"auto\"", .choices = followed,
+       .form = R"("auto", "moving", "ring", "bright", "dark" or a file ending in .png)",
+       .meaning = "What is followed: the one object that moves before a ground that stands still, by its outline; a ring; a bright or dark "
+                  "spot; or a picture cut from a frame. auto: a ring where the first frames show one, else moving."},
       {.name = "start", .type = Type::numbers, .unit = "px", .otherwise = "searched", .form = "list of 2 numbers",
        .meaning = "About where the marker is in the first frame: column, row."},
       {.name = "region", .type = Type::numbers, .unit = "px", .otherwise = "whole frame", .form = "list of 4 numbers",
-       .meaning = "Where the marker is looked for: left, top, right, bottom."}}};
+       .meaning = "Where the marker is looked for: left, top, right, bottom."},
+      {.name = "length", .type = Type::number, .unit = "m", .otherwise = "none: no metres",
+       .meaning = "A length that is known in the picture, in the plane of the motion: with it a film gives x_m and y_m."},
+      {.name = "length_ends", .type = Type::numbers, .unit = "px", .otherwise = "none", .form = "list of 4 numbers",
+       .meaning = "Its two ends in the picture: column, row, column, row."},
+      {.name = "origin", .type = Type::numbers, .unit = "px", .otherwise = "the picture's middle", .form = "list of 2 numbers",
+       .meaning = "Where x_m and y_m are 0: column, row. x_m goes to the right, y_m upwards."}}};
 }
 
 KeyGroup experiment_group() {
@@ -125,9 +134,10 @@ KeyGroup experiment_group() {
      {{.name = "name", .otherwise = "name of the file", .meaning = "Part of file names and headings."},
       {.name = "data", .type = Type::file, .otherwise = "none", .meaning = "Recording of time, inputs and outputs: CSV, MAT, HDF5, NPY, NPZ, ULog (.ulg), DataFlash (.bin)."},
       {.name = "track", .type = Type::file, .otherwise = "none", .meaning = "Table (CSV) of the marker's pixels."},
-      {.name = "video", .type = Type::file, .otherwise = "none", .meaning = "Video in which the marker is followed."},
+      {.name = "video", .type = Type::file, .otherwise = "none", .meaning = "Video in which a marker, or what moves, is followed. A system with outputs x_px, y_px (column and row), or x_m, y_m, reads them; "
+                  "any other reads angles through [camera]."},
       {.name = "columns", .type = Type::table, .otherwise = "headers are called as the signals",
-       .meaning = "Signal = header of its column, { t = \"t_s\", y = \"y_V\" }, or channel of a log: { y = \"topic.field\" }. In a log, "
+       .meaning = "Signal = header of its column (of a video: x_px, y_px, x_m or y_m), { t = \"t_s\", y = \"y_V\" }, or channel of a log: { y = \"topic.field\" }. In a log, "
                   "channels of other clocks are brought to the times of the outputs', or to `t`; what was done is noted."},
       {.name = "exclude", .type = Type::integer, .fallback = "0", .least = 0, .most = max_excluded,
        .meaning = "Samples at the beginning that do not count: a transient of the rig."},

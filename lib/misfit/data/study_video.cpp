@@ -26,6 +26,21 @@ std::optional<std::vector<double>> pixels(const DescribedSection& section, std::
   return values;
 }
 
+/// A known length and its ends; the keys' table says that neither comes alone.
+void read_length(const DescribedSection& video, VideoStudy& v) {
+  if (const auto ends = pixels(video, "length_ends", 4, "[column, row, column, row]")) {
+    const auto length = video.number("length");
+    if (!length) video.fail("length_ends", "the length between them is not given: length = \"0.2 m\"");
+    if (!(length->value > 0.0)) video.fail("length", "a length above 0 m is expected");
+    const PixelPoint from{(*ends)[0], (*ends)[1]}, to{(*ends)[2], (*ends)[3]};
+    if (from.column == to.column && from.row == to.row) video.fail("length_ends", "two different places are expected");
+    v.length = KnownLength{from, to, length->value};
+  } else if (video.has("length")) {
+    video.fail("length", "its ends in the picture are not given: length_ends = [column, row, column, row]");
+  }
+  if (const auto origin = pixels(video, "origin", 2, "[column, row]")) v.origin = PixelPoint{(*origin)[0], (*origin)[1]};
+}
+
 }  // namespace
 
 void read_video(const Section& root, Study& study) {
@@ -39,6 +54,7 @@ void read_video(const Section& root, Study& study) {
     if (!((*r)[0] < (*r)[2]) || !((*r)[1] < (*r)[3])) video.fail("region", "left must be below right, and top below bottom");
     v.region = {(*r)[0], (*r)[1], (*r)[2], (*r)[3]};
   }
+  read_length(video, v);
   video.finish();
 }
 

@@ -195,6 +195,12 @@ double Survey::doubled() const {
   return count.empty() ? 0.0 : static_cast<double>(twice) / static_cast<double>(count.size());
 }
 
+double Survey::share() const {
+  std::set<long> frames;
+  for (std::size_t k : moving(best_group())) frames.insert(found_[k].frame);
+  return searched_ > 0 ? static_cast<double>(frames.size()) / static_cast<double>(searched_) : 0.0;
+}
+
 FieldEvidence Survey::evidence() const {
   std::vector<FieldPair> pairs;
   const Group group = best_group();

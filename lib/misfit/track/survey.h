@@ -33,6 +33,8 @@ class Survey {
   /// Share of the fields with the marker in which it is found at two places that both move: frames blended of two fields, or two markers.
   [[nodiscard]] double doubled() const;
   [[nodiscard]] long frames() const { return seen_; }
+  /// Share of the frames searched in which it is found.
+  [[nodiscard]] double share() const;
 
  private:
   struct Found {

@@ -26,14 +26,11 @@ double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.
 Tracker::Tracker(TrackerOptions options)
     : options_(std::move(options)), acceleration_(first_acceleration), contrast_(options_.look.marker.levels[1]) {}
 
-PixelPoint Tracker::expected() const {
-  const double fields = missed_ + 1.0;
-  return {last_.column + fields * velocity_.column, last_.row + fields * velocity_.row};
-}
+PixelPoint Tracker::expected() const { return {last_.column + since_ * velocity_.column, last_.row + since_ * velocity_.row}; }
 
 /// The way covered in n fields is uncertain by n velocity_sigma and n (n + 1)/2 accelerations, as these last.
 double Tracker::gate() const {
-  const double n = missed_ + 1.0;
+  const double n = since_;
   const double floor = std::max(min_gate, 0.5 * (options_.look.marker.reach_x() + options_.look.marker.reach_y()));
   return std::max(floor, gate_sigmas * (0.5 * n * (n + 1.0) * acceleration_ + n * velocity_sigma_));
 }
@@ -48,7 +45,7 @@ void Tracker::begin(const Location& found, const Field& field) {
 }
 
 void Tracker::correct(const Location& found) {
-  const double n = missed_ + 1.0;
+  const double n = since_;
   const PixelPoint before = expected();
   if (missed_ == 0 && velocity_sigma_ <= acceleration_) {  // the innovation is then the acceleration
     const double square = 0.5 * (std::pow(found.at.column - before.column, 2.0) + std::pow(found.at.row - before.row, 2.0));
@@ -56,7 +53,7 @@ void Tracker::correct(const Location& found) {
         std::max(min_acceleration, std::sqrt(forgetting_factor * acceleration_ * acceleration_ + (1.0 - forgetting_factor) * square));
   }
   velocity_ = {(found.at.column - last_.column) / n, (found.at.row - last_.row) / n};
-  velocity_sigma_ = 0.5 * (n - 1.0) * acceleration_;
+  velocity_sigma_ = 0.5 * std::max(n - 1.0, 0.0) * acceleration_;
   last_ = found.at;
 }
 
@@ -109,9 +106,15 @@ const TrackedSample& Tracker::lose(Loss why) {
   return samples_.back();
 }
 
-const TrackedSample& Tracker::add_missing() { return lose(Loss::no_frame); }
+const TrackedSample& Tracker::add_missing() {
+  since_ += 1.0;
+  steps_.push_back(1.0);
+  return lose(Loss::no_frame);
+}
 
-const TrackedSample& Tracker::add(const Field& field, bool copy) {
+const TrackedSample& Tracker::add(const Field& field, bool copy, double steps) {
+  since_ += steps;
+  steps_.push_back(steps);
   const bool moves = std::hypot(velocity_.column, velocity_.row) > 0.3;
   if (copy && (!held_ || moves)) return lose(Loss::copy);
   Loss why = Loss::not_found;
@@ -130,31 +133,33 @@ const TrackedSample& Tracker::add(const Field& field, bool copy) {
     correct(*found);
   }
   missed_ = 0;
+  since_ = 0.0;
   contrast_ = contrast_forgetting * contrast_ + (1.0 - contrast_forgetting) * found->levels[1];
   return samples_.back();
 }
 
 namespace {
 
-/// Distance from the middle of the neighbours on both sides; negative where one is lost.
-double bend(const std::vector<TrackedSample>& s, std::size_t i) {
+/// Distance from the straight way between the neighbours on both sides; negative where one is lost.
+double bend(const std::vector<TrackedSample>& s, const std::vector<double>& steps, std::size_t i) {
   if (i == 0 || i + 1 >= s.size() || s[i - 1].loss != Loss::none || s[i].loss != Loss::none || s[i + 1].loss != Loss::none) return -1.0;
-  return std::hypot(s[i].at.column - 0.5 * (s[i - 1].at.column + s[i + 1].at.column),
-                    s[i].at.row - 0.5 * (s[i - 1].at.row + s[i + 1].at.row));
+  const double after = steps[i] / (steps[i] + steps[i + 1]), before = 1.0 - after;
+  return std::hypot(s[i].at.column - before * s[i - 1].at.column - after * s[i + 1].at.column,
+                    s[i].at.row - before * s[i - 1].at.row - after * s[i + 1].at.row);
 }
 
-void drop_bends(std::vector<TrackedSample>& samples) {
+void drop_bends(std::vector<TrackedSample>& samples, const std::vector<double>& steps) {
   std::vector<double> bends;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double b = bend(samples, i);
+    const double b = bend(samples, steps, i);
     if (b >= 0.0) bends.push_back(b);
   }
   if (bends.size() < 20) return;
   const double limit = std::max(8.0 * median(bends), 3.0);
   std::vector<std::size_t> wild;
   for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
-    const double b = bend(samples, i);
-    if (b > limit && b >= bend(samples, i - 1) && b >= bend(samples, i + 1)) wild.push_back(i);
+    const double b = bend(samples, steps, i);
+    if (b > limit && b >= bend(samples, steps, i - 1) && b >= bend(samples, steps, i + 1)) wild.push_back(i);
   }
   for (std::size_t i : wild) samples[i] = {Loss::implausible, {}, 0.0, 0.0};
 }
@@ -183,6 +188,21 @@ void add_locking(std::vector<TrackedSample>& samples, int row_step) {
 
 }  // namespace
 
+double white_error(const std::vector<TrackedSample>& samples) {
+  std::vector<double> x, y;
+  for (std::size_t i = 4; i < samples.size(); ++i) {
+    const TrackedSample* s = &samples[i - 4];
+    if (std::any_of(s, s + 5, [](const TrackedSample& one) { return one.loss != Loss::none; })) continue;
+    x.push_back(s[0].at.column - 4.0 * s[1].at.column + 6.0 * s[2].at.column - 4.0 * s[3].at.column + s[4].at.column);
+    y.push_back(s[0].at.row - 4.0 * s[1].at.row + 6.0 * s[2].at.row - 4.0 * s[3].at.row + s[4].at.row);
+  }
+  constexpr std::size_t enough = 20;
+  if (x.size() < enough) return 0.0;
+  const double of_white_noise = 70.0;  // 1 + 16 + 36 + 16 + 1
+  const double sx = mad_sigma(x), sy = mad_sigma(y);
+  return std::sqrt(0.5 * (sx * sx + sy * sy) / of_white_noise);
+}
+
 double pixel_locking(const std::vector<double>& positions, double pitch) {
   constexpr double assumed_noise = 0.1, largest_noise = 0.3;
   const auto n = static_cast<double>(positions.size());
@@ -201,7 +221,7 @@ double pixel_locking(const std::vector<double>& positions, double pitch) {
 }
 
 std::vector<TrackedSample> Tracker::finish() {
-  drop_bends(samples_);
+  drop_bends(samples_, steps_);
   drop_short_runs(samples_);
   add_locking(samples_, row_step_);
   return std::move(samples_);

@@ -31,6 +31,11 @@ struct TrackedSample {
 /// assumption (as large as found in a rendered video).
 [[nodiscard]] double pixel_locking(const std::vector<double>& positions, double pitch);
 
+/// White part of the positions' error as they show it themselves [px of one coordinate]: robust standard deviation of their fourth
+/// differences over √70, both coordinates together. What moves smoothly has next to none; an object shaken within a few samples has more
+/// than its error. 0 with fewer than 20 runs of five.
+[[nodiscard]] double white_error(const std::vector<TrackedSample>& samples);
+
 /// Follows one marker through the fields of a video, in their order. While it is held, it is looked for where its
 /// velocity takes it, as far around as accelerations seen so far can have bent its way; lost, that neighbourhood grows until it is the
 /// whole frame. What is found must look like the marker (judge) and be where it can be.
@@ -38,8 +43,8 @@ class Tracker {
  public:
   explicit Tracker(TrackerOptions options);
 
-  /// The next field. `copy`: its frame is pixel for pixel the one before.
-  const TrackedSample& add(const Field& field, bool copy = false);
+  /// The next field. `copy`: its frame is pixel for pixel the one before. `steps`: usual intervals since the field before.
+  const TrackedSample& add(const Field& field, bool copy = false, double steps = 1.0);
   /// A field that the file does not have.
   const TrackedSample& add_missing();
   /// All samples, their sigmas with pixel locking; those that the motion before and after contradicts, and finds too short to be believed,
@@ -62,6 +67,8 @@ class Tracker {
   double velocity_sigma_ = 0.0;  ///< [px per field] of one coordinate
   int row_step_ = 1;             ///< of the fields
   int missed_ = 0;               ///< fields since the last good one
+  double since_ = 0.0;           ///< usual intervals since then
+  std::vector<double> steps_;    ///< of every sample from the one before
   double acceleration_;          ///< [px per field²] RMS of one coordinate so far
   double contrast_;              ///< running levels[1]
 };

@@ -11,9 +11,9 @@
 namespace misfit::video_module {
 
 /// Changes whenever anything in this file does: a module of another build is refused.
-inline constexpr int interface_version = 1;
+inline constexpr int interface_version = 2;
 
-/// An open video. Frames come in order, in 8-bit grey.
+/// An open video. Frames come in order, in 8-bit grey and, where asked for, in colour.
 class VideoStream {
  public:
   VideoStream() = default;
@@ -24,10 +24,11 @@ class VideoStream {
   int width = 0, height = 0;
   double rate = 0.0;       ///< frames per second, as the container declares
   long declared = 0;       ///< frames, as the container declares (some only estimate it from the duration); 0 = not known
-  double timestamp = 0.0;  ///< of the frame last read [s]
+  double timestamp = 0.0;  ///< of the frame last read [s]; the last frames that a decoder gives back have none: 0
+  std::vector<double> first_timestamps = {};  ///< of the first frames, read before the others [s]
 
-  /// Decodes into `grey` (width * height bytes); false at the end.
-  virtual bool next(std::uint8_t* grey) = 0;
+  /// Decodes into `grey` (width * height bytes) and, unless it is null, `bgr` (three bytes per pixel); false at the end.
+  virtual bool next(std::uint8_t* grey, std::uint8_t* bgr) = 0;
 };
 
 /// A video being written, in colour: three bytes per pixel (blue, green, red).

@@ -13,13 +13,14 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/video/clock.h"
 #include "misfit/video/module.h"
 
 namespace misfit {
 namespace {
 
 constexpr std::size_t queue_length = 16;  // frames decoded ahead
-constexpr double on_grid = 0.25;       // of a frame: how far a timestamp may be from the grid of the frame rate (they are rounded to 1 ms)
+constexpr double on_grid = 0.3;        // of a frame: how far a timestamp may be from the grid of the frame rate (they are rounded to 1 ms)
 constexpr long largest_gap = 100'000;  // frames: beyond, timestamps are not believed
 
 void check_file(const std::filesystem::path& path) {
@@ -43,8 +44,9 @@ struct Video::State {
   // of the decoding thread alone
   Image before = {};
   long number = -1;
-  double first_timestamp = 0.0, last_timestamp = 0.0;
+  std::vector<double> times;  ///< of the frames that have one [s]
   long missing = 0, repeated = 0;
+  bool coloured = false;
 
   State() = default;
   State(const State&) = delete;
@@ -58,26 +60,38 @@ struct Video::State {
     if (thread.joinable()) thread.join();
   }
 
-  /// Place of the frame just read on the grid of the frame rate. Without usable timestamps frames follow each other.
-  long place() {
+  /// Of the frame just read, if it is later than those before.
+  std::optional<double> time() {
     const double timestamp = stream->timestamp;
-    if (number < 0) {
-      first_timestamp = last_timestamp = timestamp;
-      return 0;
-    }
-    const double frames = (timestamp - first_timestamp) * facts.rate;
+    if (!std::isfinite(timestamp) || (!times.empty() && timestamp <= times.back())) return std::nullopt;
+    times.push_back(timestamp);
+    return timestamp - times.front();
+  }
+
+  /// Place of a frame on the grid of the frame rate. Without usable timestamps frames follow each other.
+  [[nodiscard]] long place(const std::optional<double>& time) const {
+    if (number < 0 || !time || facts.variable) return number + 1;
+    const double frames = *time * facts.rate;
+    if (!(frames < static_cast<double>(number + largest_gap))) return number + 1;
     const long grid = std::lround(frames);
-    const bool usable = std::isfinite(frames) && timestamp > last_timestamp && std::abs(frames - static_cast<double>(grid)) < on_grid &&
-                        grid > number && grid - number < largest_gap;
-    last_timestamp = timestamp;
-    return usable ? grid : number + 1;
+    return grid > number && std::abs(frames - static_cast<double>(grid)) < on_grid ? grid : number + 1;
+  }
+
+  /// What all timestamps say at the end.
+  void set_clock() {
+    const FrameClock clock = clock_of(times, facts.rate);
+    facts.variable = facts.variable || !clock.constant;
+    facts.rate = clock.rate;
+    if (facts.variable && times.size() > 1) facts.rate = static_cast<double>(times.size() - 1) / (times.back() - times.front());
   }
 
   std::optional<Frame> decode() {
     Frame frame;
     frame.image = Image(facts.width, facts.height);
-    if (!stream->next(frame.image.pixels.data())) return std::nullopt;
-    frame.number = place();
+    if (coloured) frame.colour = ColourImage(facts.width, facts.height);
+    if (!stream->next(frame.image.pixels.data(), coloured ? frame.colour.bgr.data() : nullptr)) return std::nullopt;
+    frame.time = time();
+    frame.number = place(frame.time);
     missing += frame.number - number - 1;
     number = frame.number;
     frame.repeated = frame.image == before;
@@ -123,7 +137,19 @@ struct Video::State {
   }
 };
 
-Video::Video(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
+namespace {
+
+std::vector<double> increasing(const std::vector<double>& timestamps) {
+  std::vector<double> out;
+  for (const double t : timestamps) {
+    if (std::isfinite(t) && (out.empty() || t > out.back())) out.push_back(t);
+  }
+  return out;
+}
+
+}  // namespace
+
+Video::Video(const std::filesystem::path& path, Colours colours) : state_(std::make_unique<State>()) {
   check_file(path);
   std::string why;
   state_->stream = video_backend().open(path.string(), why);
@@ -139,6 +165,10 @@ Video::Video(const std::filesystem::path& path) : state_(std::make_unique<State>
   if (!(facts.rate > 0.0) || facts.rate > 1e5)
     throw RunError(
         fmt::format("{}: the file declares {} frames per second: no time can be assigned to its frames", path.string(), facts.rate));
+  const FrameClock clock = clock_of(increasing(stream.first_timestamps), stream.rate);
+  facts.variable = !clock.constant;
+  facts.rate = clock.rate;
+  state_->coloured = colours == Colours::bgr;
   state_->start(path);
 }
 
@@ -152,6 +182,7 @@ std::optional<Frame> Video::next() {
   s.changed.wait(lock, [&s] { return !s.queue.empty() || s.ended; });
   if (s.queue.empty()) {
     if (s.failure) std::rethrow_exception(s.failure);
+    if (!s.facts.finished) s.set_clock();
     s.facts.finished = true;
     s.facts.missing = s.missing;
     s.facts.repeated = s.repeated;
@@ -172,14 +203,19 @@ std::vector<std::string> notes_of(const VideoFacts& facts) {
   const long tolerance = 1;  // a container that declares a duration rounds it
   if (facts.finished && facts.declared > 0 && reached < facts.declared - tolerance) {
     notes.push_back(
-        fmt::format("{}: the file is truncated or damaged: it declares {} frames ({:.1f} s) and only {} could be decoded, so the "
-                    "video ends after {:.1f} s",
+        fmt::format("{}: the file is truncated or damaged, or an editor hid a part of it: it declares {} frames ({:.1f} s) and only {} "
+                    "could be decoded, so the video ends after {:.1f} s",
                     facts.file, facts.declared, static_cast<double>(facts.declared) / facts.rate, facts.decoded,
                     static_cast<double>(reached) / facts.rate));
   }
   if (facts.missing > 0)
     notes.push_back(
         fmt::format("{}: {} frames are missing between others, as its timestamps show: their samples are lost", facts.file, facts.missing));
+  if (facts.variable)
+    notes.push_back(
+        fmt::format("{}: its frames do not follow each other at a constant rate: every sample has the time that the file gives "
+                    "its frame (in the mean {:.4g} frames/s)",
+                    facts.file, facts.rate));
   if (facts.repeated > 0) notes.push_back(fmt::format("{}: {} frames are exact copies of the frame before", facts.file, facts.repeated));
   return notes;
 }

@@ -23,7 +23,7 @@ class OpencvStream : public VideoStream {
     const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
     declared = std::isfinite(count) && count > 0.0 && count < 1e9 ? std::lround(count) : 0;
   }
-  bool next(std::uint8_t* grey) override {
+  bool next(std::uint8_t* grey, std::uint8_t* bgr) override {
     try {
       if (!capture_.read(frame_) || frame_.cols != width || frame_.rows != height) return false;
       cv::Mat into(height, width, CV_8UC1, grey);
@@ -32,6 +32,7 @@ class OpencvStream : public VideoStream {
       } else {
         cv::cvtColor(frame_, into, frame_.channels() == 4 ? cv::COLOR_BGRA2GRAY : cv::COLOR_BGR2GRAY);
       }
+      if (bgr != nullptr) in_colour(cv::Mat(height, width, CV_8UC3, bgr));
       timestamp = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000.0;
       return true;
     } catch (const cv::Exception& error) {
@@ -41,9 +42,31 @@ class OpencvStream : public VideoStream {
   }
 
  private:
+  void in_colour(cv::Mat into) const {
+    switch (frame_.channels()) {
+      case 1:
+        cv::cvtColor(frame_, into, cv::COLOR_GRAY2BGR);
+        break;
+      case 4:
+        cv::cvtColor(frame_, into, cv::COLOR_BGRA2BGR);
+        break;
+      default:
+        frame_.copyTo(into);
+    }
+  }
+
   cv::VideoCapture capture_;
   cv::Mat frame_;
 };
+
+/// Of the first frames, by a capture of its own: what decides how time runs must be known before the first frame is given.
+std::vector<double> first_timestamps_of(const std::string& path) {
+  constexpr std::size_t enough = 100;
+  std::vector<double> times;
+  cv::VideoCapture capture(path, cv::CAP_FFMPEG);
+  while (times.size() < enough && capture.grab()) times.push_back(capture.get(cv::CAP_PROP_POS_MSEC) / 1000.0);
+  return times;
+}
 
 class OpencvSink : public Sink {
  public:
@@ -93,7 +116,11 @@ class OpencvBackend : public Backend {
   std::unique_ptr<VideoStream> open(const std::string& path, std::string& why) override {
     try {
       cv::VideoCapture capture(path, cv::CAP_FFMPEG);
-      if (capture.isOpened()) return std::make_unique<OpencvStream>(capture);
+      if (capture.isOpened()) {
+        auto stream = std::make_unique<OpencvStream>(capture);
+        stream->first_timestamps = first_timestamps_of(path);
+        return stream;
+      }
       why = "no video that FFmpeg can decode is in it";
     } catch (const cv::Exception& error) {
       why = error.err;

@@ -10,6 +10,7 @@
 #include "misfit/model/curve_table.h"
 #include "misfit/model/experiment.h"
 #include "misfit/workflow/estimate/estimate.h"
+#include "misfit/workflow/measure/film_channels.h"
 
 namespace misfit {
 namespace {
@@ -32,6 +33,28 @@ std::vector<double> where_ok(std::vector<double> values, const std::vector<bool>
   return values;
 }
 
+/// Median of the sigmas of what was found [px]; 0: not known.
+double usual_sigma(const Track& track) {
+  std::vector<double> known;
+  for (std::size_t i = 0; i < track.sigma.size(); ++i) {
+    if (track.ok[i] && std::isfinite(track.sigma[i])) known.push_back(track.sigma[i]);
+  }
+  return known.empty() ? 0.0 : median(known);
+}
+
+/// The film as the outputs of a system that says where something is in it.
+Signals film_signals(const Session& session, std::size_t e, const Model& model) {
+  const ExperimentStudy& experiment = session.study.experiments[e];
+  const TrackFiles files = track_files(session, e);
+  const Track track = read_track(files.track);
+  const TrackFacts facts = read_track_facts(files.facts);
+  Signals signals = signals_from(film_table(track, facts, session.study.video), model, experiment);
+  const double metres = metres_per_pixel(session.study.video).value_or(0.0);
+  for (auto& channel : signals.measured) channel.sigma = usual_sigma(track) * (channel.unit == "m" ? metres : 1.0);
+  signals.notes.insert(signals.notes.begin(), facts.warnings.begin(), facts.warnings.end());
+  return signals;
+}
+
 /// The track as the channels P_y and P_z, with its sigma where it gives one.
 Signals pixels_of(const ExperimentStudy& experiment, const std::filesystem::path& file, const Model& model) {
   const Track track = read_track(file, experiment.columns);
@@ -43,11 +66,7 @@ Signals pixels_of(const ExperimentStudy& experiment, const std::filesystem::path
   ExperimentStudy plain = experiment;
   plain.columns = {};  // the map was for the track's columns
   Signals signals = signals_from(table, model, plain);
-  std::vector<double> known;
-  for (std::size_t i = 0; i < track.sigma.size(); ++i) {
-    if (track.ok[i] && std::isfinite(track.sigma[i])) known.push_back(track.sigma[i]);
-  }
-  for (auto& channel : signals.measured) channel.sigma = known.empty() ? 0.0 : median(known);
+  for (auto& channel : signals.measured) channel.sigma = usual_sigma(track);
   signals.notes.insert(signals.notes.begin(), track.notes.begin(), track.notes.end());
   return signals;
 }
@@ -69,8 +88,8 @@ std::vector<Signals> read_experiments(Session& session, const Model& model, Gaps
       out.push_back(signals_from(attitude_table(*attitudes[e]), model, plain));
     } else {
       std::vector<std::string> notes;
-      const Table table = read_recording(experiment, model, notes);
-      Signals whole = signals_from(table, model, experiment);
+      Signals whole = has_track(experiment) ? film_signals(session, e, model)
+                                            : signals_from(read_recording(experiment, model, notes), model, experiment);
       whole.notes.insert(whole.notes.begin(), notes.begin(), notes.end());
       std::vector<Signals> parts = gaps == Gaps::cut ? split_at_gaps(model, std::move(whole)) : std::vector<Signals>{std::move(whole)};
       std::move(parts.begin(), parts.end(), std::back_inserter(out));
@@ -135,6 +154,6 @@ std::optional<Prepared> prepare_regression(Session& session, std::vector<std::st
   return prepare_request(session, std::move(*request), Gaps::left);
 }
 
-bool averaged_by_attitude(const Session& session) { return has_track(session.study.experiments.front()); }
+bool averaged_by_attitude(const Session& session) { return has_attitude(session, session.study.experiments.front()); }
 
 }  // namespace misfit

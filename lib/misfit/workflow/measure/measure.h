@@ -15,6 +15,8 @@ namespace misfit {
 
 /// Is there a track of the experiment, given or made from its video?
 [[nodiscard]] bool has_track(const ExperimentStudy& experiment);
+/// Is its track read as angles, through a camera? Not where the system's outputs are places in the film (film_channels.h).
+[[nodiscard]] bool has_attitude(const Session& session, const ExperimentStudy& experiment);
 /// Where it is: the study's own file, or what the track stage writes to the run folder (then with facts and contact sheet).
 struct TrackFiles {
   std::filesystem::path track, facts, sheet;

@@ -81,7 +81,9 @@ std::vector<fs::path> files_of_attitude(const Session& session) {
   std::vector<fs::path> files;
   if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
-    if (has_track(session.study.experiments[e])) files.insert(files.end(), {track_files(session, e).track, attitude_file(session, e)});
+    const ExperimentStudy& experiment = session.study.experiments[e];
+    if (has_track(experiment)) files.push_back(track_files(session, e).track);
+    if (has_attitude(session, experiment)) files.push_back(attitude_file(session, e));
   }
   return files;
 }
@@ -93,13 +95,14 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     stop_if_interrupted();
     const ExperimentStudy& experiment = session.study.experiments[e];
-    if (!has_track(experiment)) {
+    if (!has_attitude(session, experiment)) {
       out.emplace_back();
       continue;
     }
     if (!calibration)
       throw InputError(experiment.where,
-                       "experiment '" + experiment.name + "' is a track in pixels: the study needs [camera] (sweep = \"…\", or h_c and K)");
+                       "experiment '" + experiment.name + "' is a track in pixels: the study needs [camera] (sweep = \"…\", or h_c and K)" +
+                           std::string(experiment.video ? ", or the system outputs called x_px, y_px (column and row in the film)" : ""));
     require_rig(session.study, session.model.rig, false);
     const fs::path file = attitude_file(session, e), notes = fs::path(file).replace_extension(".notes.txt");
     std::string settings = settings_of(session);

@@ -4,6 +4,7 @@
 #include "misfit/core/files.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/video/check_video.h"
+#include "misfit/workflow/measure/film_channels.h"
 #include "misfit/workflow/measure/measure.h"
 #include "misfit/workflow/measure/track_video.h"
 
@@ -36,6 +37,10 @@ TrackFiles made_files(const fs::path& dir, const std::string& end) {
 }  // namespace
 
 bool has_track(const ExperimentStudy& experiment) { return experiment.track || experiment.video; }
+
+bool has_attitude(const Session& session, const ExperimentStudy& experiment) {
+  return has_track(experiment) && !reads_film(session, experiment);
+}
 
 TrackFiles track_files(const Session& session, std::size_t e) {
   const ExperimentStudy& experiment = session.study.experiments[e];

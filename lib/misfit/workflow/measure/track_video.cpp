@@ -12,6 +12,7 @@
 #include "misfit/track/survey.h"
 #include "misfit/track/tracker.h"
 #include "misfit/video/video.h"
+#include "misfit/workflow/measure/moving_object.h"
 
 namespace misfit {
 namespace {
@@ -21,16 +22,23 @@ constexpr double max_doubled_share = 0.15;
 constexpr long regular_shots = 15;
 constexpr std::size_t lost_shots = 5, trail_length = 40;
 
-std::optional<Region> region_of(const VideoStudy& study) {
-  if (!study.region) return std::nullopt;
-  const auto& r = *study.region;
-  return Region{r[0], r[1], r[2], r[3]};
-}
+constexpr double outline_error = 0.15;     // [px] an assumption: as large as found in rendered films, where the ground has a texture
+constexpr long frames_for_a_ring = 12;     // searched before it is said that there is none
+constexpr double least_ring_share = 0.75;  // of them, in which a ring must be found
 
+/// What is followed, and how it was found.
 struct MarkerSurvey {
   Appearance look;
   FieldEvidence evidence;
   std::vector<PixelPoint> still;
+  std::optional<MovingObject> moving = {};
+  std::string chosen = {};  ///< why, where the study leaves the choice
+
+  [[nodiscard]] Colours colours() const { return moving ? Colours::bgr : Colours::grey; }
+  [[nodiscard]] double radius() const {
+    if (moving) return 0.5 * std::max(moving->silhouette.width, moving->silhouette.height);
+    return std::max(look.marker.reach_x(), look.marker.reach_y());
+  }
 };
 
 void check_frames(const std::filesystem::path& path, const VideoFacts& facts) {
@@ -40,7 +48,7 @@ void check_frames(const std::filesystem::path& path, const VideoFacts& facts) {
   throw RunError(path.string() + ": the video has one frame only: a track needs at least two");
 }
 
-MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
+MarkerSurvey learn_marker(const std::filesystem::path& path, const VideoStudy& study) {
   Video video(path);
   Survey survey({marker_of(study.marker), study.start, region_of(study)});
   while (const auto frame = video.next()) {
@@ -54,8 +62,8 @@ MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
     const std::string what = study.marker.picture ? "the marker of " + study.marker.picture->filename().string()
                                                   : "a " + study.marker.kind + " marker of 8 to 30 px";
     throw RunError(
-        fmt::format("{}: {} was found in none of the {} frames searched; is [video] marker right (ring, bright, dark, or a PNG cut from a "
-                    "frame)? start = [column, row] or region = [left, top, right, bottom] gives its place",
+        fmt::format("{}: {} was found in none of the {} frames searched; is [video] marker right (moving, ring, bright, dark, or a PNG cut "
+                    "from a frame)? start = [column, row] or region = [left, top, right, bottom] gives its place",
                     path.string(), what, survey.frames()));
   }
   if (!study.start && !study.region && survey.doubled() > max_doubled_share) {
@@ -67,6 +75,47 @@ MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
         path.string(), 100.0 * survey.doubled()));
   }
   return {*look, survey.evidence(), survey.still()};
+}
+
+bool begins_with_a_ring(const std::filesystem::path& path, const VideoStudy& study) {
+  Video video(path);
+  Survey survey({marker_of({"ring", std::nullopt}), study.start, region_of(study)});
+  for (long k = 0; k < frames_for_a_ring; ++k) {
+    const auto frame = video.next();
+    if (!frame) break;
+    survey.add(frame->image, frame->number);
+  }
+  return survey.share() >= least_ring_share;
+}
+
+MarkerSurvey survey_of(MovingObject&& object) {
+  MarkerSurvey out{object.look, object.evidence, object.still, std::nullopt, {}};
+  out.moving = std::move(object);
+  return out;
+}
+
+MarkerSurvey learn_moving(const std::filesystem::path& path, const VideoStudy& study) {
+  std::string why;
+  if (auto object = find_moving_object(path, study, why)) return survey_of(std::move(*object));
+  throw RunError(path.string() + ": no moving object can be followed: " + why +
+                 "; [video] marker names what to look for instead (ring, bright, dark, or a PNG cut from a frame)");
+}
+
+/// The study's choice, or ours: a ring where the first frames show one, else what moves before a ground that stands still, else a ring
+/// again.
+MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
+  const std::string& kind = study.marker.kind;
+  if (kind == "moving") return learn_moving(path, study);
+  if (kind != "auto") return learn_marker(path, study);
+  std::string why;
+  const bool ring = begins_with_a_ring(path, study);
+  std::optional<MovingObject> object;
+  if (!ring) object = find_moving_object(path, study, why);
+  MarkerSurvey out = object ? survey_of(std::move(*object)) : learn_marker(path, study);
+  out.chosen = ring         ? "a ring is in the first frames"
+               : out.moving ? "no ring is in the first frames, and one object moves before a ground that stands still"
+                            : "found later in the video; nothing else can be followed: " + why;
+  return out;
 }
 
 /// Collects what the contact sheet will show.
@@ -88,9 +137,13 @@ class Shots {
     if (std::ssize(shots_) > 4 * regular_shots) halve();  // the container did not declare how many there are
   }
 
-  std::vector<Shot> finish(const std::vector<TrackedSample>& track, double rate, double radius) {
+  std::vector<Shot> finish(const std::vector<TrackedSample>& track, const std::vector<double>& times, double radius) {
+    while (!samples_.empty() && samples_.back() >= times.size()) {
+      samples_.pop_back();
+      shots_.pop_back();
+    }
     for (std::size_t k = 0; k < shots_.size(); ++k) {
-      shots_[k].t = static_cast<double>(samples_[k]) / rate;
+      shots_[k].t = times[samples_[k]];
       shots_[k].radius = radius;
       complete(shots_[k], track, samples_[k]);
     }
@@ -132,47 +185,112 @@ class Shots {
 /// Feeds the fields of all frames, in the order of time.
 class Run {
  public:
-  Run(const MarkerSurvey& survey, const VideoStudy& study, FieldOrder order, long declared)
-      : tracker_({survey.look, study.start, region_of(study), survey.still}), order_(order), shots_(declared) {}
+  Run(const MarkerSurvey& survey, const VideoStudy& study, FieldOrder order, const VideoFacts& facts)
+      : survey_(survey),
+        tracker_(options(survey, study)),
+        order_(order),
+        shots_(facts.declared),
+        rate_(facts.rate),
+        variable_(facts.variable) {}
 
   void add(Frame frame) {
     const std::size_t first = frame.number * fields();
-    while (samples_ < first) {
+    while (times_.size() < first) {
       tracker_.add_missing();
-      ++samples_;
+      times_.emplace_back();
     }
+    const Image followed = survey_.moving ? survey_.moving->picture_of(frame.colour) : Image();
+    const Image& picture = survey_.moving ? followed : frame.image;
     if (fields() == 1) {
-      add(frame, {std::move(frame.image), 0, 1});
+      add(frame, {{picture, 0, 1}, {frame.image, 0, 1}, frame.time});
       return;
     }
-    const int first_row = order_ == FieldOrder::top_first ? 0 : 1;
-    add(frame, field_of(frame.image, first_row));
-    add(frame, field_of(frame.image, 1 - first_row));
+    const int row = order_ == FieldOrder::top_first ? 0 : 1;
+    auto later = frame.time;
+    if (later) *later += 0.5 / rate_;
+    add(frame, {field_of(picture, row), field_of(frame.image, row), frame.time});
+    add(frame, {field_of(picture, 1 - row), field_of(frame.image, 1 - row), later});
   }
 
   [[nodiscard]] std::size_t fields() const { return order_ == FieldOrder::progressive ? 1 : 2; }
-  std::vector<TrackedSample> finish() { return tracker_.finish(); }
+  /// All samples, in pixels of the frame.
+  std::vector<TrackedSample> finish() {
+    std::vector<TrackedSample> samples = tracker_.finish();
+    if (!survey_.moving) return samples;
+    // An outline before a textured ground is less sure than its fit says; uneven times would look like an error.
+    const double white = variable_ ? 0.0 : white_error(samples);
+    for (TrackedSample& s : samples) {
+      if (s.loss != Loss::none) continue;
+      s.at = survey_.moving->in_frame(s.at);
+      s.sigma = std::hypot(std::max(s.sigma, white) * survey_.moving->silhouette.shrink, outline_error);
+    }
+    return samples;
+  }
+  [[nodiscard]] const std::vector<std::optional<double>>& times() const { return times_; }
   Shots& shots() { return shots_; }
 
  private:
-  void add(const Frame& frame, const Field& field) {
-    const TrackedSample& sample = tracker_.add(field, frame.repeated);
-    shots_.offer(frame, field, samples_, sample);
-    ++samples_;
+  struct Lines {
+    Field followed, shown;
+    std::optional<double> time;  ///< of the file [s]
+  };
+
+  static TrackerOptions options(const MarkerSurvey& survey, const VideoStudy& study) {
+    TrackerOptions out{survey.look, study.start, region_of(study), survey.still};
+    if (!survey.moving) return out;
+    if (out.start) out.start = survey.moving->in_picture(*out.start);
+    if (!out.region) return out;
+    const PixelPoint from = survey.moving->in_picture({out.region->left, out.region->top});
+    const PixelPoint to = survey.moving->in_picture({out.region->right, out.region->bottom});
+    out.region = Region{from.column, from.row, to.column, to.row};
+    return out;
   }
 
+  /// Usual intervals since the sample before.
+  [[nodiscard]] double steps(const std::optional<double>& time) const {
+    if (!variable_ || !time || times_.empty() || !times_.back()) return 1.0;
+    return std::clamp((*time - *times_.back()) * rate_ * static_cast<double>(fields()), 0.1, 1000.0);
+  }
+
+  void add(const Frame& frame, const Lines& lines) {
+    const TrackedSample& sample = tracker_.add(lines.followed, frame.repeated, steps(lines.time));
+    shots_.offer(frame, lines.shown, times_.size(), sample);
+    times_.push_back(lines.time);
+  }
+
+  const MarkerSurvey& survey_;
   Tracker tracker_;
   FieldOrder order_;
   Shots shots_;
-  std::size_t samples_ = 0;
+  double rate_;
+  bool variable_;
+  std::vector<std::optional<double>> times_;  ///< one per sample
 };
 
-Track track_of(const std::vector<TrackedSample>& samples, const VideoFacts& facts, double rate) {
+/// Of the samples [s]: on the grid of the rate, or as the file has them. Samples between two with a time lie evenly between them; those
+/// after the last are left out.
+std::vector<double> sample_times(const std::vector<std::optional<double>>& read, const VideoFacts& facts, std::size_t fields) {
+  std::vector<double> out;
+  if (!facts.variable) {
+    for (std::size_t k = 0; k < read.size(); ++k) out.push_back(static_cast<double>(k) / (facts.rate * static_cast<double>(fields)));
+    return out;
+  }
+  for (const auto& t : read) {
+    if (!t) continue;
+    const std::size_t last = out.size(), k = static_cast<std::size_t>(&t - read.data());
+    const double from = last > 0 ? out.back() : *t;
+    for (std::size_t i = last; i <= k; ++i)
+      out.push_back(*t - (*t - from) * static_cast<double>(k - i) / static_cast<double>(k - last + 1));
+  }
+  return out;
+}
+
+Track track_of(const std::vector<TrackedSample>& samples, const VideoFacts& facts, const std::vector<double>& times) {
   Track track;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
+  for (std::size_t k = 0; k < times.size(); ++k) {
     const TrackedSample& s = samples[k];
     const bool ok = s.loss == Loss::none;
-    track.t.push_back(static_cast<double>(k) / rate);
+    track.t.push_back(times[k]);
     track.P_y.push_back(ok ? 0.5 * facts.width - s.at.column : missing);
     track.P_z.push_back(ok ? s.at.row - 0.5 * facts.height : missing);
     track.sigma.push_back(ok ? s.sigma : missing);
@@ -195,8 +313,11 @@ TrackFacts facts_of(const MarkerSurvey& survey, const VideoFacts& video, FieldOr
   f.fields_shown = words(survey.evidence.order);
   f.fields_evidence = survey.evidence.text();
   const Marker& marker = survey.look.marker;
-  f.marker = name_of(marker.kind);
+  f.marker = survey.moving ? "moving" : name_of(marker.kind);
+  f.chosen = survey.chosen;
+  f.variable = video.variable;
   if (marker.kind != MarkerKind::picture) f.outer = marker.outer;
+  if (survey.moving) f.outer = survey.radius();
   if (marker.kind == MarkerKind::ring) f.inner = marker.inner;
   f.samples = samples.size();
   for (const TrackedSample& s : samples) {
@@ -265,24 +386,27 @@ VideoTrack track_video(const std::filesystem::path& path, const VideoStudy& stud
   const MarkerSurvey survey = learn(path, study);
   std::vector<std::string> warnings;
   const FieldOrder order = choose_fields(study, survey.evidence, warnings);
-  Video video(path);
-  Run run(survey, study, order, video.facts().declared);
+  Video video(path, survey.colours());
+  Run run(survey, study, order, video.facts());
   while (auto frame = video.next()) {
     stop_if_interrupted();
     const std::size_t number = frame->number;
     run.add(std::move(*frame));
     if (progress) progress(number, std::max(video.facts().declared, 1L));
   }
-  const std::vector<TrackedSample> samples = run.finish();
-  const double rate = video.facts().rate * static_cast<double>(run.fields());
+  std::vector<TrackedSample> samples = run.finish();
+  const std::vector<double> times = sample_times(run.times(), video.facts(), run.fields());
+  if (times.size() < samples.size())
+    warnings.push_back(fmt::format("{} frames at the end have no time of their own and are left out", samples.size() - times.size()));
+  samples.resize(times.size());
   VideoTrack out;
-  out.track = track_of(samples, video.facts(), rate);
+  out.track = track_of(samples, video.facts(), times);
   out.facts = facts_of(survey, video.facts(), order, samples);
   out.facts.sigma = median(out.track.sigma);
   out.facts.warnings.insert(out.facts.warnings.begin(), warnings.begin(), warnings.end());
   if (out.facts.ok == 0)
     throw RunError(path.string() + ": the marker was seen in some frames, but could not be followed through any three of them");
-  out.shots = run.shots().finish(samples, rate, std::max(survey.look.marker.reach_x(), survey.look.marker.reach_y()));
+  out.shots = run.shots().finish(samples, times, survey.radius());
   return out;
 }
 

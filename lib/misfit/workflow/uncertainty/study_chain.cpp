@@ -66,7 +66,7 @@ void StudyChain::read_recordings(Session& session) {
   for (const Signals& part : prepared_.experiments) {
     while (!is_part_of(part, session.study.experiments.at(e).name)) ++e;
     Recording recording{part, {}, session.study.experiments[e]};
-    if (has_track(recording.study)) recording.track = read_track(track_files(session, e).track, recording.study.columns);
+    if (has_attitude(session, recording.study)) recording.track = read_track(track_files(session, e).track, recording.study.columns);
     if (recording.track) recording.study.columns = {};  // the map was for the track's columns
     recordings_.push_back(std::move(recording));
   }
