@@ -62,9 +62,8 @@ ScoreTest::ScoreTest(const FilterEstimate& estimate) {
   has_parameters_ = theta.size() > 0;
   if (!has_parameters_) return;
   Eigen::MatrixXd information = J_.transpose() * J_;
-  const GaussianPrior prior = estimate.regularised_prior(information.diagonal());
-  prior.add_precision(information);
-  gradient_ = -J_.transpose() * r_ + prior.gradient(theta);
+  estimate.regularised_prior(information.diagonal()).add_precision(information);
+  gradient_ = -J_.transpose() * r_ + estimate.prior().gradient(theta);
   information_.compute(information);
 }
 

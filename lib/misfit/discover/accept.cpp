@@ -238,7 +238,8 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
     const auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), e->refit->drop, context.options);
     if (!left) return {e};
     e->candidate.why = "lack of fit remains: with it in the model an unknown curve " + left->port + "(" + left->quantity +
-                       ") is still significant, " + p_equals(left->p_value);
+                       ") is still significant, " + p_equals(left->p_value) + ", worth " + format_value(left->result.chi2) +
+                       " beside its drop of " + format_value(e->refit->drop);
     aliases.push_back({e, *left});
     read.insert(read.end(), candidate_model.quantities.begin(), candidate_model.quantities.end());
   }

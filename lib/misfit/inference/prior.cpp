@@ -76,6 +76,28 @@ void GaussianPrior::add_precision(Eigen::MatrixXd& information) const {
   for (const Penalty& p : penalties) information.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
 }
 
+ColumnPriors regularised_priors_about(const Eigen::VectorXd& at, const Model& model, const std::vector<Penalty>& penalties,
+                                      const Eigen::MatrixXd& information) {
+  constexpr double mostly = 0.5;
+  const Eigen::VectorXd stated = parameter_priors(model).precision;
+  ColumnPriors out = regularised_priors(model, information.diagonal());
+  const Eigen::VectorXd wide = (stated.array() > 0.0).select(0.0, out.precision);
+  Eigen::MatrixXd all = information.topLeftCorner(stated.size(), stated.size());
+  GaussianPrior{out, penalties}.add_precision(all);
+  const Eigen::VectorXd scale = all.diagonal().cwiseSqrt();  // all = scale C scale; sqrt(C) scale theta has unit variances
+  const Eigen::VectorXd inverse = scale.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> correlation(inverse.asDiagonal() * all * inverse.asDiagonal());
+  if (stated.size() == 0 || !(correlation.eigenvalues().minCoeff() > 0.0)) return out;
+  const Eigen::MatrixXd root = correlation.operatorSqrt(), inverse_root = correlation.operatorInverseSqrt();
+  const Eigen::VectorXd share = wide.cwiseProduct(inverse.cwiseAbs2());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(inverse_root * share.asDiagonal() * inverse_root);
+  const Eigen::VectorXd kept = (known.eigenvalues().array() < mostly).cast<double>();
+  const Eigen::VectorXd rotated = known.eigenvectors().transpose() * (root * scale.cwiseProduct(at));
+  const Eigen::VectorXd about = (inverse_root * (known.eigenvectors() * kept.cwiseProduct(rotated))).cwiseProduct(inverse);
+  out.mean = (stated.array() > 0.0).select(out.mean, about);
+  return out;
+}
+
 double log_prior(const Model& model, const std::vector<Penalty>& penalties) {
   return GaussianPrior{parameter_priors(model), penalties}.log_density(model.theta());
 }

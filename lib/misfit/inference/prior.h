@@ -68,6 +68,12 @@ struct GaussianPrior {
   void add_precision(Eigen::MatrixXd& information) const;
 };
 
+/// regularised_priors() for a step from the point `at`: about that point, so that the steps end at the maximum of the objective; but about
+/// 0 in the directions whose precision comes for more than half from the very wide prior, beside measurements, stated priors and roughness:
+/// what nothing determines does not drift. `information`: of the measurements, which may go on behind the free parameters.
+[[nodiscard]] ColumnPriors regularised_priors_about(const Eigen::VectorXd& at, const Model& model, const std::vector<Penalty>& penalties,
+                                                    const Eigen::MatrixXd& information);
+
 /// log density of the model's free parameters at their present values.
 [[nodiscard]] double log_prior(const Model& model, const std::vector<Penalty>& penalties);
 

@@ -142,7 +142,7 @@ NormalEquations LikelihoodAscent::normal_equations() const {
     sums.count += static_cast<double>(jacobian.r.size());
   }
   sums.N = Eigen::MatrixXd(sums.N.selfadjointView<Eigen::Lower>());
-  sums.prior = regularised_priors(out.model, sums.N.diagonal());
+  sums.prior = regularised_priors_about(theta, out.model, out.penalties, sums.N);
   return sums;
 }
 

@@ -240,8 +240,8 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
   columns.leftCols(theta.size()) = columns.leftCols(theta.size()) * back;
   out.information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
   out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
-  out.gradient.head(theta.size()) =
-      back.transpose() * out.gradient.head(theta.size()).eval() + estimate.regularised_prior(out.information.diagonal()).gradient(theta);
+  const GaussianPrior prior{regularised_priors_about(theta, estimate.model, estimate.penalties, out.information), estimate.penalties};
+  out.gradient.head(theta.size()) = back.transpose() * out.gradient.head(theta.size()).eval() + prior.gradient(theta);
   const NoiseVector noise = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
   out.gradient.tail(std::ssize(noise.value)) +=
       noise.prior.gradient(Eigen::Map<const Eigen::VectorXd>(noise.value.data(), std::ssize(noise.value)));
