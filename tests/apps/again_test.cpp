@@ -177,7 +177,7 @@ TEST(Interruption, LeavesAFolderFromWhichTheNextRunGoesOn) {
   const auto first_is_recorded = [&] {
     return fs::exists(study.out("run.json")) && content(study.out("run.json")).find("fit/sliding_bin") != std::string::npos;
   };
-  for (int i = 0; i < 3000 && !first_is_recorded(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  for (int i = 0; i < 24'000 && !first_is_recorded(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   ASSERT_TRUE(first_is_recorded());
   ::kill(child, SIGINT);
   const Outcome interrupted = finish(captured.path(), child);

@@ -55,7 +55,7 @@ inline std::uintmax_t killed_at(const std::vector<std::string>& arguments, const
                                 int milliseconds = 0) {
   const TemporaryFolder captured;
   const pid_t child = start(captured.path(), arguments);
-  constexpr int longest = 60'000;
+  constexpr int longest = 600'000;
   for (int waited = 0; waited < (milliseconds > 0 ? milliseconds : longest); ++waited) {
     if (milliseconds == 0 && size_of(file) > bytes) break;
     if (milliseconds == 0 && ::waitpid(child, nullptr, WNOHANG) == child) return size_of(file);

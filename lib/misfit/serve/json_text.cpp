@@ -92,7 +92,7 @@ struct BlockWriter {
   }
   std::string operator()(const TableBlock& b) const {
     std::vector<std::string> columns, rows;
-    for (const Column& c : b.columns)
+    for (const TableColumn& c : b.columns)
       columns.push_back(fmt::format(R"({{"heading":{},"right":{}}})", json_words(c.heading), c.align == Align::right));
     for (const auto& row : b.rows) rows.push_back(words(row));
     return fmt::format(R"({{"kind":"table","columns":{},"rows":{}}})", json_list(columns), json_list(rows));
