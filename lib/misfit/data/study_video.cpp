@@ -28,14 +28,14 @@ std::optional<std::vector<double>> pixels(const DescribedSection& section, std::
 
 /// A known length and its ends; the keys' table says that neither comes alone.
 void read_length(const DescribedSection& video, VideoStudy& v) {
+  const auto length = video.number("length");
   if (const auto ends = pixels(video, "length_ends", 4, "[column, row, column, row]")) {
-    const auto length = video.number("length");
     if (!length) video.fail("length_ends", "the length between them is not given: length = \"0.2 m\"");
     if (!(length->value > 0.0)) video.fail("length", "a length above 0 m is expected");
     const PixelPoint from{(*ends)[0], (*ends)[1]}, to{(*ends)[2], (*ends)[3]};
     if (from.column == to.column && from.row == to.row) video.fail("length_ends", "two different places are expected");
     v.length = KnownLength{from, to, length->value};
-  } else if (video.has("length")) {
+  } else if (length) {
     video.fail("length", "its ends in the picture are not given: length_ends = [column, row, column, row]");
   }
   if (const auto origin = pixels(video, "origin", 2, "[column, row]")) v.origin = PixelPoint{(*origin)[0], (*origin)[1]};

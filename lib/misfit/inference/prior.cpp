@@ -81,13 +81,14 @@ ColumnPriors regularised_priors_about(const Eigen::VectorXd& at, const Model& mo
   constexpr double mostly = 0.5;
   const Eigen::VectorXd stated = parameter_priors(model).precision;
   ColumnPriors out = regularised_priors(model, information.diagonal());
+  if (stated.size() == 0) return out;
   const Eigen::VectorXd wide = (stated.array() > 0.0).select(0.0, out.precision);
   Eigen::MatrixXd all = information.topLeftCorner(stated.size(), stated.size());
   GaussianPrior{out, penalties}.add_precision(all);
   const Eigen::VectorXd scale = all.diagonal().cwiseSqrt();  // all = scale C scale; sqrt(C) scale theta has unit variances
   const Eigen::VectorXd inverse = scale.cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> correlation(inverse.asDiagonal() * all * inverse.asDiagonal());
-  if (stated.size() == 0 || !(correlation.eigenvalues().minCoeff() > 0.0)) return out;
+  if (!(correlation.eigenvalues().minCoeff() > 0.0)) return out;
   const Eigen::MatrixXd root = correlation.operatorSqrt(), inverse_root = correlation.operatorInverseSqrt();
   const Eigen::VectorXd share = wide.cwiseProduct(inverse.cwiseAbs2());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(inverse_root * share.asDiagonal() * inverse_root);
