@@ -5,6 +5,7 @@ export function editor({ get, post, look }) {
   let known = null; // as it lies on disk
   let text = null; // as it is typed; null: unchanged
   let fault = null, timer = 0, parts = null;
+  let saved = false; // by this page, and unchanged since
 
   const changed = () => text !== null && text !== known?.text;
 
@@ -28,7 +29,7 @@ export function editor({ get, post, look }) {
     parts.area.setSelectionRange(begin, end < 0 ? parts.area.value.length : end);
     parts.area.scrollTop = Math.max(0, (line - 5) * parseFloat(getComputedStyle(parts.area).lineHeight));
   }
-  const verdict = () => tell(fault ? fault.message : changed() ? 'Nothing is wrong with it; not saved yet.' : 'Nothing is wrong with it.', fault ? 'fault' : 'fine');
+  const verdict = () => tell(fault ? fault.message : changed() ? 'Nothing is wrong with it; not saved yet.' : saved ? 'Saved. Run makes the results anew.' : 'Nothing is wrong with it.', fault ? 'fault' : 'fine');
 
   async function check() {
     const asked = parts.area.value;
@@ -44,6 +45,7 @@ export function editor({ get, post, look }) {
   }
   function typed() {
     text = parts.area.value;
+    saved = false;
     number();
     parts.save.disabled = true;
     clearTimeout(timer);
@@ -55,8 +57,9 @@ export function editor({ get, post, look }) {
       known = { ...known, text: parts.area.value, hash: answer.hash };
       text = null;
       fault = null;
+      saved = true;
       number();
-      tell('Saved. Run makes the results anew.', 'fine');
+      verdict();
       await look();
     } catch (error) {
       fault = error.answer?.fault ?? fault;
@@ -76,6 +79,7 @@ export function editor({ get, post, look }) {
     const fresh = await get('study', { model });
     const kept = fresh.editable && changed();
     if (!kept) {
+      if (fresh.hash !== known?.hash) saved = false;
       known = fresh;
       text = null;
       fault = fresh.fault;
