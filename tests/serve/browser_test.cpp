@@ -13,6 +13,10 @@ class InABrowser : public testing::Test {
     }
     if (std::system("/usr/bin/python3 -c 'import selenium' 2> /dev/null") != 0)
       GTEST_SKIP() << "python3-selenium is not installed (packages.txt)";
+    const char* blank =
+        "timeout 60 /usr/bin/chromium --headless=new --no-sandbox --disable-dev-shm-usage --disable-gpu --dump-dom about:blank";
+    if (std::system((std::string(blank) + " > /dev/null 2>&1").c_str()) != 0)
+      GTEST_SKIP() << "chromium cannot show an empty page on this machine: " << blank;
   }
 
   static void expect_good(const fs::path& folder, const std::string& scenario) {
