@@ -118,6 +118,7 @@ TEST(Logs, ANameOfAFormatWithOtherContentIsNoCsv) {
   EXPECT_THAT(refusal("a.xlsx", "PK\x03\x04 cut off"s), HasSubstr("Excel workbook (.xlsx) is not read: save the sheet as CSV"));
   EXPECT_THAT(refusal("a.nc", "CDF\x01\0\0"s), HasSubstr("nccopy"));
   EXPECT_EQ(refusal("a.dat", "t,y\n0,1\n1,2\n"), "read");
+  EXPECT_EQ(refusal("a.xls", "t\ty\n0\t1\n1\t2\n"), "read") << "many instruments call their text so";
 }
 
 std::string npy(const std::string& head) { return "\x93NUMPY\x01\0"s + static_cast<char>(head.size()) + '\0' + head; }

@@ -30,6 +30,7 @@ struct Mark {
 };
 
 using namespace std::string_view_literals;
+constexpr auto classic_netcdf = "a classic NetCDF file is not read: write it as NetCDF 4 (nccopy -k nc4 FILE FILE4)"sv;
 constexpr std::array marks = {
     Mark{0, "MATLAB 7.3"sv, Format::hdf5, ""},
     Mark{0, "\x89HDF\r\n\x1a\n"sv, Format::hdf5, ""},
@@ -52,9 +53,9 @@ constexpr std::array marks = {
     Mark{0, "#ROSBAG"sv, Format::refused, "a ROS bag is not read: write its topics as CSV (rostopic echo -p)"},
     Mark{0, "\x89MCAP0"sv, Format::refused, "an MCAP file is not read: write its topics as CSV"},
     Mark{0, "SQLite format 3"sv, Format::refused, "a database (ROS 2 bag?) is not read: write its topics as CSV"},
-    Mark{0, "CDF\x01"sv, Format::refused, "a classic NetCDF file is not read: write it as NetCDF 4 (nccopy -k nc4 FILE FILE4)"},
-    Mark{0, "CDF\x02"sv, Format::refused, "a classic NetCDF file is not read: write it as NetCDF 4 (nccopy -k nc4 FILE FILE4)"},
-    Mark{0, "CDF\x05"sv, Format::refused, "a classic NetCDF file is not read: write it as NetCDF 4 (nccopy -k nc4 FILE FILE4)"},
+    Mark{0, "CDF\x01"sv, Format::refused, classic_netcdf},
+    Mark{0, "CDF\x02"sv, Format::refused, classic_netcdf},
+    Mark{0, "CDF\x05"sv, Format::refused, classic_netcdf},
     Mark{0, "TDSm"sv, Format::refused, "a TDMS file is not read: write it as CSV (Python: nptdms)"},
     Mark{0, "\x80\x04\x95"sv, Format::refused, "a pickle of Python is not read, for it is a program: save numbers as NPZ or CSV"},
     Mark{0, "RIFF"sv, Format::refused, "sound or film is not read as a log: write numbers as CSV, or give a film as video"},
@@ -72,8 +73,7 @@ struct Ending {
 constexpr std::array endings = {Ending{".mat", "MAT file"},  Ending{".h5", "HDF5 file"},     Ending{".hdf5", "HDF5 file"},
                                 Ending{".hdf", "HDF5 file"}, Ending{".nc", "NetCDF 4 file"}, Ending{".npy", "NPY file"},
                                 Ending{".npz", "NPZ file"},  Ending{".ulg", "ULog"},         Ending{".bin", "DataFlash log"}};
-constexpr std::array sheets = {Ending{".xlsx", "an Excel workbook (.xlsx)"}, Ending{".xls", "an Excel workbook (.xls)"},
-                               Ending{".ods", "a sheet of LibreOffice (.ods)"}};
+constexpr std::array sheets = {Ending{".xlsx", "an Excel workbook (.xlsx)"}, Ending{".ods", "a sheet of LibreOffice (.ods)"}};
 
 Found format_of_bytes(std::string_view front) {
   for (const Mark& m : marks) {
@@ -93,16 +93,20 @@ std::string front_of(const fs::path& path) {
   return front;
 }
 
+/// Text is CSV under any other name, as under .xls, which many instruments give it.
 Found format_of(const fs::path& path) {
   const std::string end = lower_case(path.extension().string());
-  for (const Ending& sheet : sheets) {
-    if (end == sheet.end) return {Format::refused, fmt::format("{} is not read: save the sheet as CSV", sheet.what)};
-  }
   Found found = format_of_bytes(front_of(path));
+  for (const Ending& sheet : sheets) {
+    if (end == sheet.end && found.format == Format::npz)  // a ZIP archive, cut off perhaps
+      return {Format::refused, fmt::format("{} is not read: save the sheet as CSV", sheet.what)};
+  }
   if (found.format != Format::csv) return found;
   for (const Ending& ending : endings) {
-    if (end == ending.end)
-      return {Format::refused, fmt::format("called {}, but its first bytes are those of no {}: damaged, or renamed?", end, ending.what)};
+    if (end == ending.end) {
+      return {Format::refused, fmt::format("called {}, but its first bytes are those of no {}: damaged, or a text, which is read as .csv",
+                                           end, ending.what)};
+    }
   }
   return found;
 }

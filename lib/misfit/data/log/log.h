@@ -57,7 +57,7 @@ class LogReader {
   Log log_;
 };
 
-/// Opens MAT (v5, v7.3), HDF5, NPY, NPZ, ULog and DataFlash files, told apart by their first bytes; anything else is read as CSV.
+/// Opens MAT (v5, v7.3), HDF5, NPY, NPZ, ULog and DataFlash files, recognised by their first bytes; anything else is read as CSV.
 /// InputError: no such file; a format that is known and not read, with what to do; damage, with its byte and what was expected there.
 [[nodiscard]] std::unique_ptr<LogReader> open_log(const std::filesystem::path& path);
 
