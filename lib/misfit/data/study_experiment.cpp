@@ -29,11 +29,8 @@ void read_columns(const Section& section, ExperimentStudy& experiment) {
   for (const std::string& name : columns->keys()) {
     const bool known = !experiment.track || std::count(track_signals().begin(), track_signals().end(), name) > 0;
     if (!known) columns->fail(name, "a track has no such signal" + suggest(name, track_signals()));
-  }
-  static const std::vector<std::string> of_films{"x_px", "y_px", "x_m", "y_m"};
-  for (const std::string& name : columns->keys()) {
     const std::string channel = columns->text(name).value_or("");
-    if (experiment.video && std::count(of_films.begin(), of_films.end(), channel) == 0)
+    if (experiment.video && std::count(film_channels().begin(), film_channels().end(), channel) == 0)
       columns->fail(name, "a video gives no '" + shown(channel) + "': x_px and y_px, or x_m and y_m are expected");
   }
   for (const std::string& name : columns->keys()) experiment.columns.header_of.emplace_back(name, *columns->text(name));

@@ -84,6 +84,11 @@ class TrackBuilder {
 
 }  // namespace
 
+const std::vector<std::string>& film_channels() {
+  static const std::vector<std::string> names{"x_px", "y_px", "x_m", "y_m"};
+  return names;
+}
+
 const std::vector<std::string>& track_signals() {
   static const std::vector<std::string> names{"t", "P_y", "P_z", "sigma", "ok"};
   return names;

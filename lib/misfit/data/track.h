@@ -21,6 +21,11 @@ struct Track {
 /// Names that the map of a track may have.
 [[nodiscard]] const std::vector<std::string>& track_signals();
 
+/// What a film gives the outputs of any system, by name or through the experiment's `columns`: x_px and y_px, column and row of what is
+/// followed [px], pixel centres at integers, rows counted downwards; with a known length in the picture also x_m and y_m [m], to the right
+/// and upwards from the origin.
+[[nodiscard]] const std::vector<std::string>& film_channels();
+
 /// Reads `t[s],P_y[px],P_z[px]` and, where present, `sigma[px]` and `ok`. Rows without t are dropped and said; time that does not increase
 /// is an InputError with the line; all samples lost is a RunError; samples farther than 1e5 px from the centre are lost and said.
 [[nodiscard]] Track read_track(const std::filesystem::path& path, const ColumnMap& columns = {});

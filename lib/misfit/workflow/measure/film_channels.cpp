@@ -19,11 +19,6 @@ std::string channel_of(const std::string& output, const ExperimentStudy& experim
 
 }  // namespace
 
-const std::vector<std::string>& film_channels() {
-  static const std::vector<std::string> names{"x_px", "y_px", "x_m", "y_m"};
-  return names;
-}
-
 bool reads_film(const Session& session, const ExperimentStudy& experiment) {
   if (!experiment.video) return false;
   const ModelRequest& request = session.model.request;
