@@ -52,12 +52,12 @@ install(FILES ${PROJECT_BINARY_DIR}/misfitConfig.cmake ${PROJECT_BINARY_DIR}/mis
   ${PROJECT_SOURCE_DIR}/models/misfit_add_effects.cmake DESTINATION ${misfit_cmake_dir} COMPONENT dev)
 
 # What Debian wants of every package.
-execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/packaging/changelog OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz
+execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/lib/misfit/package/changelog OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz
   COMMAND_ERROR_IS_FATAL ANY)
 foreach(package program=misfit dev=libmisfit-dev)
   string(REGEX MATCH "^[^=]+" component ${package})
   string(REGEX MATCH "[^=]+$" name ${package})
-  install(FILES ${PROJECT_SOURCE_DIR}/packaging/copyright ${PROJECT_BINARY_DIR}/changelog.gz
+  install(FILES ${PROJECT_SOURCE_DIR}/lib/misfit/package/copyright ${PROJECT_BINARY_DIR}/changelog.gz
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
 endforeach()
 

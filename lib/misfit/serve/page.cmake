@@ -1,6 +1,6 @@
 # The page of `misfit open`, and uPlot, which it draws with, compiled into misfit_serve.
 file(GLOB misfit_page CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/misfit/serve/page/*)
-set(misfit_uplot ${PROJECT_SOURCE_DIR}/third_party/uplot)
+set(misfit_uplot ${PROJECT_SOURCE_DIR}/lib/misfit/serve/uplot)
 set(misfit_embed ${PROJECT_SOURCE_DIR}/lib/misfit/serve/embed.cmake)
 add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/misfit_page.cpp
   COMMAND ${CMAKE_COMMAND} -DFOLDER=${PROJECT_SOURCE_DIR}/lib/misfit/serve/page -DUPLOT=${misfit_uplot}
