@@ -180,10 +180,9 @@ Answer Api::save(const std::string& text, const std::string& hash) {
   if (jobs_.report().state == JobState::running)
     return failure(409, "a command is at work: wait for its end, or stop it, before the study is changed");
   const std::string whole = text.ends_with('\n') ? text : text + "\n";
-  if (const auto fault = fault_of(results_.study(), whole, registry_))
-    return {422, fmt::format(R"({{"error":{},"fault":{}}})", json_string(fault->message), json_of(fault))};
   const std::lock_guard lock(mutex_);
-  save_text(results_.study(), whole, hash, registry_);
+  if (const auto fault = save_text(results_.study(), whole, hash, registry_))
+    return {422, fmt::format(R"({{"error":{},"fault":{}}})", json_string(fault->message), json_of(fault))};
   script_.record_text(results_.study().string(), whole);
   return {200, fmt::format(R"({{"hash":"{}"}})", hash_text(whole))};
 }

@@ -237,11 +237,16 @@ int HttpServer::port() const { return server_->port(); }
 std::string HttpServer::address() const { return fmt::format("http://127.0.0.1:{}/?token={}", server_->port(), server_->token()); }
 
 void HttpServer::run() {
-  std::thread listener([this] { server_->listen_after_bind(); });
-  while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  while (!server_->is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::atomic<bool> ended = false;
+  std::thread listener([&] {
+    server_->listen_after_bind();
+    ended = true;
+  });
+  while (!interrupted() && !ended) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  while (!server_->is_running() && !ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   server_->stop();
   listener.join();
+  if (!interrupted()) throw RunError("the system no longer takes connections to 127.0.0.1: the page has ended");
 }
 
 std::string random_token() {

@@ -41,8 +41,9 @@ std::optional<TextFault> fault_of(const fs::path& file, const std::string& text,
   return std::nullopt;
 }
 
-void save_text(const fs::path& file, const std::string& text, const std::string& hash_before, const Registry& registry) {
-  if (const auto fault = fault_of(file, text, registry)) throw InputError(fault->message);
+std::optional<TextFault> save_text(const fs::path& file, const std::string& text, const std::string& hash_before,
+                                   const Registry& registry) {
+  if (auto fault = fault_of(file, text, registry)) return fault;
   std::error_code none;
   if (fs::symlink_status(file, none).type() != fs::file_type::regular)
     throw InputError(file.string() + ": is a link, which misfit does not write through: edit the file itself");
@@ -51,6 +52,7 @@ void save_text(const fs::path& file, const std::string& text, const std::string&
   const fs::perms mode = fs::status(file, none).permissions();
   write_atomically(file, text);
   fs::permissions(file, mode, none);
+  return std::nullopt;
 }
 
 }  // namespace misfit::serve

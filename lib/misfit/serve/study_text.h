@@ -17,8 +17,9 @@ struct TextFault {
 /// What misfit says of the text as the content of `file`: keys, values, names and files, as before a run. nullopt: nothing.
 [[nodiscard]] std::optional<TextFault> fault_of(const std::filesystem::path& file, const std::string& text, const Registry& registry);
 
-/// Writes it whole or not at all, if nothing is wrong with it and `file` still has the text of this hash (hash_text), and is no link.
-/// InputError: it is not written, and why.
-void save_text(const std::filesystem::path& file, const std::string& text, const std::string& hash_before, const Registry& registry);
+/// Writes it whole or not at all, if nothing is wrong with it (else that is returned), `file` still has the text of this hash
+/// (hash_text), and is no link. InputError: it is not written for one of the latter.
+[[nodiscard]] std::optional<TextFault> save_text(const std::filesystem::path& file, const std::string& text, const std::string& hash_before,
+                                                 const Registry& registry);
 
 }  // namespace misfit::serve
