@@ -10,6 +10,7 @@
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/inference/curves.h"
 #include "tests/fit/planar_model.h"
+#include "tests/fit/room.h"
 
 namespace misfit {
 namespace {
@@ -52,6 +53,22 @@ TEST(RegularisedPriors, GiveWayWhereATypicalSizeIsFarTooSmall) {
   EXPECT_DOUBLE_EQ(precision(50.0), 1e-6) << "a thousand typical sizes are wide enough";
   EXPECT_NEAR(precision(2e5), 1e-6 / 4e10, 1e-22) << "they would hold what the measurements know";
   EXPECT_DOUBLE_EQ(precision(0.0), 1e-6) << "of which nothing is measured";
+}
+
+/// Worked by hand. The data know the difference of two parameters and nothing of their sum: from (3, 1) the difference of 2 is kept, the
+/// sum of 4 is not, so the prior is about (1, -1). Where they know both, it is about (3, 1) itself.
+TEST(RegularisedPriors, AreAboutThePointWhereSomethingIsKnownAndAboutZeroElsewhere) {
+  const auto registry = testing_room::registry_with(testing_room::warming("tau", "2e4"));
+  Model model = assemble(testing_room::request_of("text"), *registry);
+  ASSERT_EQ(model.free_parameters().size(), 2u);
+  for (Parameter& p : model.parameters) p.scale = 1.0;
+  const Eigen::Vector2d at(3.0, 1.0);
+  const Eigen::Matrix2d difference = (Eigen::Matrix2d() << 4.0, -4.0, -4.0, 4.0).finished();
+  const ColumnPriors half = regularised_priors_about(at, model, {}, difference);
+  EXPECT_LT((half.mean - Eigen::Vector2d(1.0, -1.0)).norm(), 1e-5);
+  EXPECT_LT((half.precision - Eigen::Vector2d::Constant(1e-6)).norm(), 1e-18);
+  const ColumnPriors whole = regularised_priors_about(at, model, {}, difference + Eigen::Matrix2d::Identity());
+  EXPECT_LT((whole.mean - at).norm(), 1e-9);
 }
 
 /// Values of the damping curve's coefficients.

@@ -216,7 +216,7 @@ Eigen::MatrixXd covariance_of(const FilterEstimate& estimate) {
     problem.N.diagonal() -= problem.prior.precision;
   } else {
     for (const auto& jacobian : estimate.jacobians) problem.N += jacobian.J.transpose() * jacobian.J;
-    problem.prior = regularised_priors(estimate.model, problem.N.diagonal());
+    problem.prior = regularised_priors_about(problem.theta, estimate.model, estimate.penalties, problem.N);
   }
   problem.g = GaussianPrior{problem.prior, estimate.penalties}.gradient(problem.theta);
   const Eigen::MatrixXd out = with_uncertain_roughness(problem, estimate.penalties, 1.0);

@@ -152,14 +152,16 @@ class Regressor {
   std::vector<int> rows_;
 };
 
-/// regularised_priors() with residuals of the size that the best values would leave, rss - g' N^-1 g over their number.
-ColumnPriors very_wide_beside(const NormalEquations& sums, const Model& model) {
+/// regularised_priors_about() the present point with residuals of the size that the best values would leave, rss - g' N^-1 g over their
+/// number.
+ColumnPriors very_wide_beside(const NormalEquations& sums, const Model& model, const std::vector<Penalty>& penalties) {
   constexpr double rounding = 1e-12;
   const Eigen::VectorXd information = sums.N.diagonal();
   Eigen::MatrixXd N = sums.N;
   N.diagonal() += rounding * information + Eigen::VectorXd::Constant(information.size(), std::numeric_limits<double>::min());
   const double left = sums.rss - sums.g.dot(N.ldlt().solve(sums.g)), variance = left / std::max(sums.count, 1.0);
-  return regularised_priors(model, variance > 0.0 && std::isfinite(variance) ? Eigen::VectorXd(information / variance) : information);
+  const bool usable = variance > 0.0 && std::isfinite(variance);
+  return regularised_priors_about(sums.theta, model, penalties, usable ? Eigen::MatrixXd(sums.N / variance) : sums.N);
 }
 
 /// The regression's answer inside the parameters' bounds; curves are held by their roughness alone.
@@ -185,7 +187,7 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
   for (int round = 0; round < rounds && !settled; ++round) {
     Regression regression = regressor.linearise(out.model);
     ++out.fit.linearisations;
-    regression.sums.prior = very_wide_beside(regression.sums, out.model);
+    regression.sums.prior = very_wide_beside(regression.sums, out.model, out.penalties);
     if (regression.sums.count < 2.0 * static_cast<double>(free.size()) || free.empty()) {
       out.fit.status = FitStatus::declined;
       out.fit.message = free.empty() ? "every parameter is fixed: there is nothing to estimate"
@@ -280,7 +282,7 @@ void add_remarks(const Regressor& regressor, const NormalEquations& sums, Fitted
 
 void describe_all(const Regressor& regressor, const PenalisedFit& smoothed, FittedModel& out) {
   Regression regression = regressor.linearise(out.model, true);
-  regression.sums.prior = very_wide_beside(regression.sums, out.model);
+  regression.sums.prior = very_wide_beside(regression.sums, out.model, out.penalties);
   const double weight = 1.0 / std::sqrt(smoothed.sigma2);
   for (ResidualRows& rows : regression.rows) {
     rows.J *= weight;
