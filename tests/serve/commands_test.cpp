@@ -104,12 +104,16 @@ TEST(CommandsOfThePage, AreNotWrittenThroughLinks) {
   EXPECT_EQ(content(study.path("real.toml")), shown["text"]);
 }
 
-TEST(CommandsOfThePage, AStoppedOneLeavesAFolderToGoOnWith) {
-  const OscillatorStudy study;
-  PageServer server({study.path("study.toml").string()});
+void run_to_the_first_fit(PageServer& server, const OscillatorStudy& study) {
   ASSERT_EQ(server.post("/api/job", {{"verb", "run"}}).status, 200);
   for (int k = 0; k < 400 && !fs::exists(study.path("out/fit/output_error/fit.json")); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
+}
+
+TEST(CommandsOfThePage, AStoppedOneLeavesAFolderToGoOnWith) {
+  const OscillatorStudy study;
+  PageServer server({study.path("study.toml").string()});
+  run_to_the_first_fit(server, study);
   EXPECT_EQ(server.post("/api/stop", json::object()).status, 200);
   const json job = server.job();
   EXPECT_EQ(job["state"], "stopped") << job;
@@ -122,9 +126,7 @@ TEST(CommandsOfThePage, AStoppedOneLeavesAFolderToGoOnWith) {
 TEST(CommandsOfThePage, EndWithTheServerThatIsKilledAndAreGoneOnWithByTheNext) {
   const OscillatorStudy study;
   PageServer server({study.path("study.toml").string()});
-  ASSERT_EQ(server.post("/api/job", {{"verb", "run"}}).status, 200);
-  for (int k = 0; k < 400 && !fs::exists(study.path("out/fit/output_error/fit.json")); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  run_to_the_first_fit(server, study);
   server.kill();
   PageServer next({study.path("study.toml").string()});
   EXPECT_EQ(next.get("/api/motion").parsed()["methods"][0], "output_error");
