@@ -85,7 +85,7 @@ std::string data_text() {
       {"ULog", "PX4's .ulg: topic.field, topic[1].field of a second instance"},
       {"DataFlash", "ArduPilot's .bin: IMU[0].GyrX; units from the log"}};
   std::string out =
-      paragraph("Recordings that misfit init and [[experiment]] data of a study read, told apart by their first bytes:") + "\n";
+      paragraph("Recordings that misfit init and [[experiment]] data of a study read, recognised by their first bytes:") + "\n";
   for (const auto& [name, meaning] : formats) {
     const std::string lines = wrap_text(meaning, columns, std::string(13, ' '));
     out += "  " + (name + lines.substr(2 + std::string(name).size()));

@@ -11,9 +11,9 @@ namespace misfit {
 namespace {
 
 /// What a run prints while it goes on: a line per stage, or its tables; nothing where JSON is asked for.
-class Told {
+class StageLines {
  public:
-  Told(const Options& options, const Study& study) : silent_(options.json), tables_(options.verbose) {
+  StageLines(const Options& options, const Study& study) : silent_(options.json), tables_(options.verbose) {
     heading_.heading(study.name);
     heading_.paragraph(study.question);
   }
@@ -47,14 +47,14 @@ std::string stage_of(const char* stage, const Study& study, std::size_t experime
 }
 
 template <class Results>
-void tell(Told& told, const char* stage, const Study& study, const Results& results) {
+void show_stage(StageLines& lines, const char* stage, const Study& study, const Results& results) {
   for (std::size_t e = 0; e < results.size(); ++e) {
-    if (results[e]) told.result(stage_of(stage, study, e), study.experiments[e].name, *results[e]);
+    if (results[e]) lines.result(stage_of(stage, study, e), study.experiments[e].name, *results[e]);
   }
 }
 
-std::vector<Fit> fits_told(Session& session, Told& told) {
-  session.options.listener.fitted = [&told](const Fit& fit) { told.result(fit.method, std::vector<Fit>{fit}); };
+std::vector<Fit> fits_shown(Session& session, StageLines& lines) {
+  session.options.listener.fitted = [&lines](const Fit& fit) { lines.result(fit.method, std::vector<Fit>{fit}); };
   std::vector<Fit> fits = fit_stage(session);
   session.options.listener.fitted = {};
   return fits;
@@ -65,23 +65,23 @@ std::vector<Fit> fits_told(Session& session, Told& told) {
 int run_verb(const Options& options, const Registry& registry) {
   ModelLadder ladder(options.session, registry);
   Session& session = ladder.root();
-  Told told(options, session.study);
-  tell(told, "track", session.study, track_stage(session));
-  if (const auto calibration = calibrate_stage(session)) told.result("calibrate", *calibration);
-  tell(told, "attitude", session.study, attitude_stage(session));
-  const std::vector<Fit> fits = fits_told(session, told);
-  told.result("compare", compare_stage(session, fits));
+  StageLines lines(options, session.study);
+  show_stage(lines, "track", session.study, track_stage(session));
+  if (const auto calibration = calibrate_stage(session)) lines.result("calibrate", *calibration);
+  show_stage(lines, "attitude", session.study, attitude_stage(session));
+  const std::vector<Fit> fits = fits_shown(session, lines);
+  lines.result("compare", compare_stage(session, fits));
   const bool filtered =
       std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name && fit.usable(); });
-  if (const auto diagnosis = filtered ? diagnose_stage(session) : std::nullopt) told.result("diagnose", *diagnosis);
+  if (const auto diagnosis = filtered ? diagnose_stage(session) : std::nullopt) lines.result("diagnose", *diagnosis);
   if (filtered && options.automatic) {
-    if (!options.json) told.head();
+    if (!options.json) lines.head();
     extend_ladder(ladder, registry, ladder_listener(ladder, options));
     diagnose_rungs(ladder);
   } else if (const auto discovery = filtered ? discover_stage(session) : std::nullopt) {
-    told.result("discover", *discovery);
+    lines.result("discover", *discovery);
   }
-  if (const auto known = known_ladder(session)) told.result("ladder", *known);
+  if (const auto known = known_ladder(session)) lines.result("ladder", *known);
   const auto page = report_stage(session, fits);
   if (options.json) {
     print_file(session.folder.file("compare.json"));

@@ -5,7 +5,7 @@ namespace {
 using namespace misfit;
 
 /// A level loses in proportion to how far it stands above its surroundings: heat through a wall, water through a crack, charge through an
-/// insulation. Where the rest of the model knows the level's own decay already the two cannot be told apart, and discovery says so.
+/// insulation. Where the rest of the model knows the level's own decay already the two cannot be distinguished, and discovery says so.
 struct Leak {
   static constexpr const char* formula = "F = -leak (content - surroundings)";
   static constexpr const char* symbols = "leak [port/content], content that the port changes [any], surroundings that it ends at [content]";

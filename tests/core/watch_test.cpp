@@ -27,7 +27,7 @@ class WatchTest : public testing::Test {
 TEST_F(WatchTest, NobodyWatchesUnlessAsked) {
   EXPECT_EQ(Watch::current(), nullptr);
   EXPECT_NO_THROW(work_for_a_while());
-  EXPECT_NO_THROW(tell_watch(1, "log-likelihood", 2.0));
+  EXPECT_NO_THROW(report_iteration(1, "log-likelihood", 2.0));
 }
 
 TEST_F(WatchTest, WorkEndsWhenItsTimeIsSpent) {
@@ -74,7 +74,7 @@ TEST_F(WatchTest, WhatWasFoundIsWrittenUpUnhurried) {
 TEST_F(WatchTest, AnInterruptStopsAtTheNextLook) {
   interrupted() = true;
   EXPECT_THROW(look_at_watch(), Interrupted);
-  EXPECT_THROW(tell_watch(1, "log-likelihood", 2.0), Interrupted);
+  EXPECT_THROW(report_iteration(1, "log-likelihood", 2.0), Interrupted);
 }
 
 TEST_F(WatchTest, AThreadThatWorksForAnotherHasItsWatch) {
@@ -95,9 +95,9 @@ TEST_F(WatchTest, AThreadThatWorksForAnotherHasItsWatch) {
 TEST_F(WatchTest, WhoHearsIsToldOfTheSearchesInside) {
   std::vector<SearchState> heard;
   const Watch discover("discover", 0.0, [&](const SearchState& state) { heard.push_back(state); });
-  tell_watch(1, "sum of squares", 8.0);
+  report_iteration(1, "sum of squares", 8.0);
   const Watch refit("the refit of overflow", 100.0);
-  tell_watch(3, "log-likelihood", -5.0);
+  report_iteration(3, "log-likelihood", -5.0);
   ASSERT_EQ(heard.size(), 2U);
   EXPECT_EQ(heard[0].work, "discover");
   EXPECT_FALSE(heard[0].left);

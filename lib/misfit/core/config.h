@@ -38,7 +38,7 @@ class Section {
   [[nodiscard]] std::filesystem::path file() const;
 
   /// A number in SI. Accepts 0.5, "24 in" (dimension checked against `unit`, converted to it) and, where `sigma_allowed`,
-  /// { value = …, sigma = … } with either form inside. A bare number is taken in `unit` itself (SI); +-inf and nan are refused.
+  /// { value = …, sigma = … } with either form inside. A bare number is in `unit` itself (SI); +-inf and nan are refused.
   [[nodiscard]] std::optional<Number> number(std::string_view key, std::string_view unit, bool sigma_allowed = false) const;
   [[nodiscard]] std::optional<bool> flag(std::string_view key) const;
   [[nodiscard]] std::optional<long> integer(std::string_view key, long least, long most) const;

@@ -11,7 +11,8 @@ namespace misfit {
 /// stands behind it. So different names have different files, on every run the same.
 [[nodiscard]] std::string file_name_for(std::string_view name);
 
-/// How files that there is one of per experiment (or other item) are told apart, by what stands behind their stem: nothing for the first,
+/// How files that there is one of per experiment (or other item) are distinguished, by what stands behind their stem: nothing for the
+/// first,
 /// "_NAME" (file_name_for()) for number 1, 2, ….
 [[nodiscard]] std::string file_suffix(std::size_t number, std::string_view name);
 

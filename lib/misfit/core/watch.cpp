@@ -73,7 +73,7 @@ void look_at_watch() {
   if (watching->spent()) throw TimeSpent(watching->words());
 }
 
-void tell_watch(int iteration, const char* what, double value) {
+void report_iteration(int iteration, const char* what, double value) {
   if (flag.load(std::memory_order_relaxed)) throw Interrupted();
   if (watching == nullptr) return;
   if (watching->spent()) throw TimeSpent(watching->words());

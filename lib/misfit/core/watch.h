@@ -47,7 +47,7 @@ struct SearchState {
 
 /// Watches over the work that is done in this thread between its construction and its destruction, and in the threads that run_jobs()
 /// starts for it: how long it may take, and who hears of its searches. Watches stand one inside the other; the limit that ends first holds.
-/// Deep loops call look_at_watch(), searches tell_watch(), so that neither needs a parameter on the way there.
+/// Deep loops call look_at_watch(), searches report_iteration(), so that neither needs a parameter on the way there.
 class Watch {
  public:
   using Hearer = std::function<void(const SearchState&)>;  ///< several threads may call it at once
@@ -70,7 +70,7 @@ class Watch {
  private:
   friend class SameWatch;
   friend class Unhurried;
-  friend void tell_watch(int iteration, const char* what, double value);
+  friend void report_iteration(int iteration, const char* what, double value);
   using Clock = std::chrono::steady_clock;
 
   std::string work_;
@@ -108,7 +108,7 @@ class Unhurried {
 
 /// In every loop over samples or steps: throws Interrupted, TimeSpent. Costs a few nanoseconds; the clock is read at every 32nd call.
 void look_at_watch();
-/// An iteration of a search has ended: whoever hears of it is told, as is look_at_watch().
-void tell_watch(int iteration, const char* what, double value);
+/// An iteration of a search has ended: reported to whoever listens; ends the search as look_at_watch() does.
+void report_iteration(int iteration, const char* what, double value);
 
 }  // namespace misfit

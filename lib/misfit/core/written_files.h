@@ -10,7 +10,7 @@ namespace misfit {
 /// What misfit may write over in a folder of results. The rule, for every file that it writes: never through a link, never over one of
 /// `inputs`, and over a file that it did not make only with `force`.
 struct WriteRules {
-  std::vector<std::filesystem::path> inputs;  ///< protected whatever their names: told by device and inode, so links count as well
+  std::vector<std::filesystem::path> inputs;  ///< protected whatever their names: recognised by device and inode, so links count as well
   bool force = false;                         ///< the user has said --force
 };
 

@@ -18,7 +18,7 @@ enum class VerdictKind {
   several_possible,  ///< one of several that the data cannot distinguish
   unknown_form,      ///< something is missing that no effect of the library explains
   effect_added,      ///< the ladder has what was missing, and nothing more is
-  calibration,       ///< the camera's calibration is to be mended first
+  calibration,       ///< the camera's calibration is to be corrected first
   not_decided,       ///< not tested to the end, or the best candidate was rejected
   no_result          ///< no method could be used
 };

@@ -8,10 +8,9 @@ namespace misfit {
 
 /// An estimate seen over the other horizon: parameters as they are, the random force off, so that the filter is a free run whose initial
 /// states alone are estimated, and white measurement noise as large as what that leaves. One step ahead a force that changes slowly (the
-/// sun on a house, a leak, drag) can hardly be told from the random force, which takes it over; the free run shows all of it. Residuals are
-/// correlated here, so that likelihoods mean nothing: only shares of what is left do.
-/// nullopt: the random force does little, the free run's residuals being usually less than 1.2 times those of one step in every output, or
-/// the model cannot be run so.
+/// sun on a house, a leak, drag) can hardly be distinguished from the random force, which takes it over; the free run shows all of it.
+/// Residuals are correlated here, so that likelihoods mean nothing: only shares of what is left do. nullopt: the random force does little,
+/// the free run's residuals being usually less than 1.2 times those of one step in every output, or the model cannot be run so.
 [[nodiscard]] std::optional<FilterEstimate> free_run(const FilterEstimate& estimate);
 
 }  // namespace misfit

@@ -57,7 +57,7 @@ class Stop final : public ceres::IterationCallback {
       best_ = present_();
     }
     unless_stopped([&] {
-      tell_watch(summary.iteration, "sum of squares", 2.0 * summary.cost);
+      report_iteration(summary.iteration, "sum of squares", 2.0 * summary.cost);
       return true;
     });
     return stopped() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;

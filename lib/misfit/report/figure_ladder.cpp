@@ -107,16 +107,24 @@ std::string colour_of(const std::string& channel, Errors& errors) {
   return palette(place == 1 ? 2 : place == 2 ? 3 : place);  // 1 is the random force
 }
 
+/// What one channel of a rung adds to the panel of `what`; `place`: of its box among those of the rung.
+struct ChannelError {
+  std::string what, channel;
+  Estimate rms;
+  std::size_t place = 0;
+};
+
 /// One box per channel, side by side; or, relative, a line of markers.
-void add_channel(const Rung& rung, const std::string& what, const std::string& channel, const Estimate& e, std::size_t place,
-                 std::vector<Panel>& panels, Errors& errors) {
-  const std::string key = as_key(channel + "_" + what);
-  const std::string colour = colour_of(channel, errors);
+void add_channel(const Rung& rung, const ChannelError& error, std::vector<Panel>& panels, Errors& errors) {
+  const Estimate& e = error.rms;
+  const std::string key = as_key(error.channel + "_" + error.what);
+  const std::string colour = colour_of(error.channel, errors);
   if (errors.relative) {
     const double first = errors.first.emplace(key, e.value).first->second;
-    Panel& panel = panel_for(panels, what, "% of first");
+    Panel& panel = panel_for(panels, error.what, "% of first");
     for (const Style style : {Style::line, Style::markers}) {
-      Series& series = series_for(panel, key + (style == Style::line ? "_line" : ""), style == Style::line ? "" : channel, style, colour);
+      const bool line = style == Style::line;
+      Series& series = series_for(panel, key + (line ? "_line" : ""), line ? "" : error.channel, style, colour);
       series.x.push_back(rung.id);
       series.y.push_back(100.0 * e.value / first);
     }
@@ -125,19 +133,19 @@ void add_channel(const Rung& rung, const std::string& what, const std::string& c
   const std::string unit = display_unit(e.unit);
   constexpr double all = 0.5;
   const double width = all / static_cast<double>(std::max<std::size_t>(rung.rms.size(), 1));
-  const double x = rung.id - 0.5 * all + (static_cast<double>(place) + 0.5) * width;
-  Series& series = series_for(panel_for(panels, what, unit), key, channel, Style::boxes, colour);
+  const double x = rung.id - 0.5 * all + (static_cast<double>(error.place) + 0.5) * width;
+  Series& series = series_for(panel_for(panels, error.what, unit), key, error.channel, Style::boxes, colour);
   add_box(series, x, e.value * convert(1.0, e.unit, unit), 0.9 * width);
 }
 
 void add_errors(const Rung& rung, std::vector<Panel>& near, std::vector<Panel>& far, Errors& errors) {
   std::size_t place = 0;
   for (const auto& [channel, e] : rung.rms) {
-    add_channel(rung, "RMS, 1 step", channel, e, place, near, errors);
+    add_channel(rung, {"RMS, 1 step", channel, e, place}, near, errors);
     const auto steps = rung.k_step.find(channel);
     if (steps != rung.k_step.end() && steps->second.size() > far_ahead) {
       const std::string what = fmt::format("RMS, {} steps", kLadderSteps[far_ahead]);
-      add_channel(rung, what, channel, {steps->second[far_ahead], 0.0, e.unit}, place, far, errors);
+      add_channel(rung, {what, channel, {steps->second[far_ahead], 0.0, e.unit}, place}, far, errors);
     }
     ++place;
   }

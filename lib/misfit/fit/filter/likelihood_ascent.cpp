@@ -210,7 +210,7 @@ bool LikelihoodAscent::move_to(const Eigen::VectorXd& there, const std::vector<d
   };
   if (set(there, logs)) {
     remember();
-    tell_watch(++iterations_, "log-likelihood", out.loglik);
+    report_iteration(++iterations_, "log-likelihood", out.loglik);
     return true;
   }
   set(theta_before, logs_before);
@@ -244,7 +244,7 @@ void LikelihoodAscent::iterate(int most, double tolerance) {
     const double edf = out.edf;
     const double not_gained = gauss_newton_step();
     try_noise(fit_noise(runs(), out.noise, {out.around, threads_, k < 3 ? 3 : kRefinements}));
-    tell_watch(++iterations_, "log-likelihood", out.loglik);
+    report_iteration(++iterations_, "log-likelihood", out.loglik);
     const bool settled = !choosing || std::abs(out.edf - edf) < 0.05;
     if (k > 0 && settled && std::abs(objective - before) < tolerance) {
       out.converged = not_gained < kDecrementOfOneSigma;

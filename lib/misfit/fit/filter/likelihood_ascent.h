@@ -78,7 +78,7 @@ class LikelihoodAscent {
   int threads_;
   std::size_t failed_experiment_ = 0;
   std::optional<Point> remembered_;
-  int iterations_ = 0;  ///< that tell_watch() was told of
+  int iterations_ = 0;  ///< reported to the watch
 };
 
 }  // namespace misfit

@@ -76,7 +76,7 @@ function showHead() {
   const alerts = at('alerts');
   alerts.replaceChildren();
   if (study.fault) alerts.append(element('p', { class: 'warning', id: 'fault' }, `The study has an error: ${study.fault.message} `,
-    element('button', { onclick: () => showTab('study') }, 'Mend it')));
+    element('button', { onclick: () => showTab('study') }, 'Correct it')));
   for (const sentence of outdated) alerts.append(element('p', { class: 'warning' }, sentence));
   if (!verdict) alerts.append(element('p', {}, 'There are no results yet: Run makes them.'));
   at('verdict').replaceChildren(blocks(verdict));

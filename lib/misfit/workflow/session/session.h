@@ -23,7 +23,7 @@ struct Listener {
   std::function<void(const std::string& line)> note;  ///< what is made again, and why; where work continues
   /// Work of this name begins; what is returned is called with (done, total) as it goes on, and destroyed when it has ended.
   std::function<ProgressFn(const std::string& name)> progress;
-  /// A fit of this name begins: what is returned is told of the searches in it, and destroyed when it has ended.
+  /// A fit of this name begins: what is returned listens to the searches in it, and is destroyed when it has ended.
   std::function<Watch::Hearer(const std::string& name)> searches;
   std::function<void(const Fit&)> fitted = {};  ///< by one of the methods of a study; the others are still to come
 
