@@ -40,6 +40,18 @@ void begin_own_states(const FilterModel& model, FilterData& data) {
   for (int f : model.force_states) data.start[f] = data.scale[f] = 0.0;
 }
 
+/// RMS departure of a state that the channels show from where they show it first, over the samples of the fit.
+double departure_from_start(const ReconstructedStates& states, const Signals& signals, Eigen::Index first, Eigen::Index state) {
+  double squares = 0.0, count = 0.0;
+  for (Eigen::Index i = first; i < states.x.rows(); ++i) {
+    if (!states.ok[i] || signals.held_out(i)) continue;
+    const double departure = states.x(i, state) - states.x(first, state);
+    squares += departure * departure;
+    count += 1.0;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
 }  // namespace
 
 FilterData filter_data(const FilterModel& model, const Signals& signals, double integration, const IntegrationPlan* plan) {
@@ -64,7 +76,11 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
   out.start = states.x.row(out.first).transpose();
   out.scale = Eigen::VectorXd::Zero(model.model.states());
   const auto& specs = model.model.system->spec().states;
-  for (std::size_t i = 0; i < specs.size(); ++i) out.scale[i] = specs[i].scale;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const auto state = static_cast<Eigen::Index>(i);
+    const double departure = states.shown[state] ? departure_from_start(states, signals, out.first, state) : 0.0;
+    out.scale[state] = departure > 0.0 ? departure : specs[i].scale;
+  }
   begin_own_states(model, out);
   Stepper stepper(model.model);
   out.inputs.plan = plan != nullptr ? *plan : plan_along({stepper, signals, out.inputs}, states.x, integration);

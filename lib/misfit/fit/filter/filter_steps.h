@@ -30,7 +30,7 @@ class NoiseSteps {
   std::size_t next_ = 0;
 };
 
-/// What is known before the first measurement: states as uncertain as they are large, forces and jitter stationary.
+/// What is known before the first measurement: states as uncertain as FilterData says, forces and jitter stationary.
 template <int M, int NY>
 void start_covariance(const FilterModel& model, const FilterData& data, const FilterNoise& noise, Kalman<M, NY>& kalman) {
   for (Eigen::Index i = 0; i < data.scale.size(); ++i) kalman.P(i, i) = data.scale[i] * data.scale[i];
