@@ -44,9 +44,10 @@ struct Cart {
     data.signals = &signals;
     data.inputs = input_table(signals, 1);
     data.use.assign(2 * samples, SampleRole::counted);
-    data.start = data.scale = Eigen::VectorXd::Zero(model.model.states());
+    data.start = Eigen::VectorXd::Zero(model.model.states());
     data.start.head(2) << 0.3, 0.0;
-    data.scale.head(2) << 0.2, 0.5;
+    data.covariance = Eigen::MatrixXd::Zero(model.model.states(), model.model.states());
+    data.covariance.topLeftCorner(2, 2) << 0.04, 0.03, 0.03, 0.25;
   }
   Cart(const Cart&) = delete;
   Cart& operator=(const Cart&) = delete;
@@ -72,7 +73,7 @@ struct Dense {
     state_mean.resize(N * n);
     states = Eigen::MatrixXd::Zero(N * n, N * n);
     Eigen::MatrixXd P = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index i = 0; i < m; ++i) P(i, i) = std::pow(cart.data.scale[i], 2);
+    P.topLeftCorner(m, m) = cart.data.covariance;
     for (int f : cart.model.force_states) P(f, f) = std::pow(cart.noise.force, 2);
     for (Eigen::Index o = 0; o < 2; ++o)
       P(m + 2 * o, m + 2 * o) = P(m + 2 * o + 1, m + 2 * o + 1) = std::pow(cart.noise.channels[static_cast<std::size_t>(o)].jitter, 2);

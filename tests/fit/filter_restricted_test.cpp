@@ -69,7 +69,7 @@ TEST(RestrictedLikelihood, IsThatOfTheWholeCovarianceOfTheReadings) {
 TEST(RestrictedLikelihood, OfACommonFactorCountsTheParameters) {
   const Offsets offsets;
   FilterEstimate estimate = offsets.estimate();
-  estimate.data[0].scale.setZero();  // the start known: the noise is all there is
+  estimate.data[0].covariance.setZero();  // the start known: the noise is all there is
   const RestrictedLikelihood found = restricted_likelihood(estimate, Eigen::VectorXd::Zero(2), 1);
   Eigen::VectorXd factor = Eigen::VectorXd::Zero(found.slope.size());
   for (const Eigen::Index i : {0, 2, 3, 6, 7}) factor[i] = 1.0;

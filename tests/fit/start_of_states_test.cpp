@@ -7,6 +7,7 @@
 #include <string>
 
 #include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/fit/filter/filter_start.h"
 #include "tests/model/declared_texts.h"
 
 namespace misfit {
@@ -109,6 +110,85 @@ TEST(StartOfStates, DoesNotDependOnTheUnitOfTheState) {
 TEST(StartOfStates, OneLagBehindAnotherFitsAsWellAsOneBefore) {
   const FilterEstimate before = fitted(effect("input_lag", {{"port", "torque"}}), {{"input_tau", start(0.2)}});
   EXPECT_NEAR(before.traces[0].loglik, behind_sensor().traces[0].loglik, 3.0);
+}
+
+/// A cell whose voltage, behind a sensor with inertia, is all that is recorded: charge and sensor begin unknown.
+struct Cell {
+  Cell()
+      : systems(registry_with(R"toml([states]
+soc = { unit = "-", initial = { kind = "free", value = 0.5 } }
+V1 = { unit = "V", scale = 0.05 }
+[inputs]
+I = { unit = "A", hold = "zero_order" }
+[parameters]
+Q = { unit = "A s", value = 7500.0 }
+E0 = { unit = "V", value = 3.3 }
+E1 = { unit = "V", value = 0.9, free = true }
+R0 = { unit = "V/A", value = 0.01, free = true }
+R1 = { unit = "V/A", value = 0.02 }
+tau1 = { unit = "s", value = 48.0 }
+[ports]
+leak = { unit = "1/s", rate = "soc" }
+[equations]
+soc = "-I/Q + leak"
+V1 = "(R1*I - V1)/tau1"
+[outputs]
+V = { unit = "V", formula = "E0 + E1*soc - R0*I - V1", noise = 0.001 }
+)toml")) {
+    signals.name = "cell";
+    signals.measured = {{"V", "V", {}, 0.0}};
+    signals.inputs = {{"I", "A", {}, 0.0}};
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    double soc = 0.9, V1 = 0.0, shown = 4.05, current = 0.0;
+    for (int k = -50; k < 400; ++k) {
+      if (k % 20 == 0) current = 3.0 * normal(random);
+      if (k >= 0) {
+        signals.t.push_back(step * k);
+        signals.measured[0].values.push_back(shown + 0.001 * normal(random));
+        signals.inputs[0].values.push_back(current);
+      }
+      for (int part = 0; part < 50; ++part) {
+        const double h = step / 50.0, before = 0.9 * soc - V1;
+        soc -= h * current / 7500.0;
+        V1 += (0.02 * current - V1) * -std::expm1(-h / 48.0);
+        shown += (3.3 + 0.5 * (before + 0.9 * soc - V1) - 0.01 * current - shown) * -std::expm1(-h / lag);
+      }
+    }
+  }
+
+  static constexpr double step = 5.0, lag = 20.0;
+  std::shared_ptr<Registry> systems;
+  Signals signals;
+};
+
+TEST(StartOfStates, OfASensorThatFollowsAHiddenStateIsAsUncertainAsThat) {
+  const Cell cell;
+  ModelRequest request = request_of("text", {effect("sensor_lag", {{"output", "V"}})});
+  request.parameters = {{"share", start(1.0, false)}, {"sensor_tau", start(10.0)}};
+  const FilterEstimate estimate = estimate_filter(assemble(request, *cell.systems), {}, {cell.signals});
+  const Eigen::MatrixXd& P = estimate.data[0].covariance;
+  EXPECT_NEAR(P(0, 0), 0.25, 1e-12) << "half the range of the charge, squared";
+  EXPECT_NEAR(P(2, 0), 0.9 * 0.25, 1e-9) << "dV/dsoc = E1";
+  EXPECT_NEAR(P(2, 1), -0.05 * 0.05, 1e-9) << "dV/dV1 = -1";
+  EXPECT_GT(P(2, 2), 0.81 * 0.25 + 0.05 * 0.05);
+  EXPECT_LT(squares_of_first(estimate, 5), 3.0) << "the charge is 0.4 from where it is declared to begin";
+  const std::map<std::string, double> truth{{"E1", 0.9}, {"R0", 0.01}, {"sensor_tau", Cell::lag}};
+  const std::vector<int> free = estimate.model.free_parameters();
+  for (Eigen::Index p = 0; p < std::ssize(free); ++p) {
+    const Parameter& parameter = estimate.model.parameters[free[p]];
+    EXPECT_NEAR(parameter.value, truth.at(parameter.name), 3.0 * std::sqrt(estimate.covariance(p, p))) << parameter.name;
+    EXPECT_LT(std::sqrt(estimate.covariance(p, p)), 0.05 * parameter.value) << parameter.name;
+  }
+}
+
+TEST(UsualNoise, OfAForceOnAHiddenStateIsAsLargeAsTheModelsOwnRates) {
+  const Cell cell;
+  const FilterModel model = with_random_force(assemble(request_of("text"), *cell.systems));
+  const std::vector<FilterData> data{filter_data(model, cell.signals)};
+  double squares = 0.0;
+  for (const double current : cell.signals.inputs[0].values) squares += std::pow(current / 7500.0, 2) / 400.0;
+  EXPECT_NEAR(usual_noise(model, data).force, 0.3 * std::sqrt(squares), 0.05 * std::sqrt(squares)) << "not one unit per second";
 }
 
 }  // namespace

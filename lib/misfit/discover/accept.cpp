@@ -11,7 +11,9 @@
 namespace misfit {
 namespace {
 
-constexpr double tied_drops = 6.0;  // refitted drops nearer than this do not distinguish two effects
+// Refitted drops nearer than this do not distinguish two effects: beyond it the evidence is "very strong" (Kass & Raftery, Bayes Factors,
+// J. Am. Stat. Assoc. 90 (1995), section 3.2).
+constexpr double tied_drops = 10.0;
 constexpr double tied_gains = 3.0;  // of the log-likelihood: half of it
 
 std::string label(const Candidate& c) { return effect_at(c.effect, c.roles); }

@@ -19,7 +19,8 @@ constexpr double constant = 1e-6;  // relative change of A along the motion
 struct Memory {
   Eigen::Index first = 0;  ///< of its own states in the model's
   Eigen::MatrixXd A;
-  RowMatrix rest;  ///< samples × states, where the sample is known
+  RowMatrix rest;                 ///< samples × states, where the sample is known
+  Eigen::MatrixXd rest_by_state;  ///< states × system states, at the first known sample
 };
 
 Eigen::Index first_known(const ReconstructedStates& states) {
@@ -52,7 +53,7 @@ class Along {
       const EffectSpec& spec = effect.effect->spec();
       const auto size = static_cast<Eigen::Index>(spec.states.size());
       if (size > 0 && !spec.quantities.empty())  // what reads nothing (a random force) remembers nothing of the motion
-        memories_.push_back({system + effect.first_state, Eigen::MatrixXd::Zero(size, size), RowMatrix::Zero(states_.x.rows(), size)});
+        memories_.push_back({system + effect.first_state, Eigen::MatrixXd::Zero(size, size), RowMatrix::Zero(states_.x.rows(), size), {}});
     }
   }
 
@@ -93,6 +94,7 @@ class Along {
     if (!((A - memory.A).norm() <= constant * memory.A.norm())) return false;
     const Eigen::FullPivLU<Eigen::MatrixXd> inverse(A);
     if (!(inverse.rcond() > singular)) return false;
+    if (sample == first_) memory.rest_by_state = -inverse.solve(Eigen::MatrixXd(rows.block(memory.first, 0, size, model_.system_states())));
     const Eigen::Map<const Eigen::VectorXd> drift(dx.data() + memory.first, size);
     memory.rest.row(sample) = (at_.segment(memory.first, size) - inverse.solve(drift)).transpose();
     return memory.rest.row(sample).allFinite();
@@ -194,13 +196,17 @@ void fill(const Memory& memory, const Recording& recording, OwnStates& out) {
   }
   out.start.segment(at, size) = out.z.row(first).segment(at, size).transpose();
   out.sigma.segment(at, size) = sigma;
+  for (Eigen::Index j = 0; j < model.system_states(); ++j) {
+    if (!states.shown[j]) out.by_hidden_states.block(at, j, size, 1) = memory.rest_by_state.col(j);
+  }
 }
 
 }  // namespace
 
 OwnStates own_states_along(const Model& model, const Signals& signals, const ReconstructedStates& states) {
   const auto own = static_cast<Eigen::Index>(model.own_states.size());
-  OwnStates out{RowMatrix::Zero(states.x.rows(), own), Eigen::VectorXd::Zero(own), Eigen::VectorXd::Zero(own)};
+  OwnStates out{RowMatrix::Zero(states.x.rows(), own), Eigen::VectorXd::Zero(own), Eigen::VectorXd::Zero(own),
+                Eigen::MatrixXd::Zero(own, model.system_states())};
   if (own == 0 || states.x.rows() == 0) return out;
   const InputTable inputs = input_table(signals, model.inputs());
   const Recording recording{model, signals, states, inputs};

@@ -10,7 +10,9 @@ namespace misfit {
 struct OwnStates {
   RowMatrix z;            ///< samples × own states
   Eigen::VectorXd start;  ///< at the first sample whose states are known
-  Eigen::VectorXd sigma;  ///< how uncertain they are there
+  Eigen::VectorXd sigma;  ///< how uncertain they are there, if the system's states are as read
+  /// own × system states: by how much `start` moves with a state that no channel shows (which is as uncertain as it is large); else 0.
+  Eigen::MatrixXd by_hidden_states;
 };
 
 /// A recording begins in the middle of a motion, and a memory then holds what was before it: neither 0 nor the level that it would reach at
@@ -20,8 +22,9 @@ struct OwnStates {
 /// begun at rest; what is remembered of that beginning is left out (three times the slowest time constant, half of the recording at most),
 /// as are held-out samples. The departure at the first sample is the least-squares prediction from states, their derivatives and inputs
 /// there, learnt from the other samples; its sigma is the RMS of all departures, since it was computed with the effect's parameters as they
-/// are now. Other own states (play inside its clearance, forces) are at rest (set_own_states_at_rest()) and taken as known. Of `states`
-/// only those of the system are read.
+/// are now. What the memory follows may depend on a state that no channel shows, whose start is not known: dr/dx = -A^-1 db/dx. Other own
+/// states (play inside its clearance, forces) are at rest (set_own_states_at_rest()) and taken as known. Of `states` only those of the
+/// system are read.
 [[nodiscard]] OwnStates own_states_along(const Model& model, const Signals& signals, const ReconstructedStates& states);
 
 }  // namespace misfit

@@ -65,8 +65,8 @@ Series felt(const Series& recorded, const World& world, const Values& hidden, in
   return u;
 }
 
-/// What a sensor makes of its output on the fine grid.
-void distort(Series& y, const Values& hidden, double h) {
+/// What a sensor makes of its output on the fine grid; `ends`: the output at the end of each step, before a held input changes.
+void distort(Series& y, const Series& ends, const Values& hidden, double h) {
   const Series clean = y;
   const double largest = *std::max_element(clean.begin(), clean.end());
   double lagged = clean.front();
@@ -74,7 +74,8 @@ void distort(Series& y, const Values& hidden, double h) {
     const double at = std::max(static_cast<double>(k) - hidden("delay") / h, 0.0);
     const std::size_t i = static_cast<std::size_t>(at), next = std::min(i + 1, y.size() - 1);
     double v = clean[i] + (clean[next] - clean[i]) * (at - static_cast<double>(i));
-    if (hidden("lag") > 0.0) v = lagged += (v - lagged) * (1.0 - std::exp(-h / hidden("lag")));
+    if (hidden("lag") > 0.0 && k > 0) lagged += (0.5 * (clean[k - 1] + ends[k - 1]) - lagged) * (1.0 - std::exp(-h / hidden("lag")));
+    if (hidden("lag") > 0.0) v = lagged;
     v *= 1.0 + hidden("fading") * static_cast<double>(k) / static_cast<double>(y.size());
     if (hidden("curve") != 0.0) v += hidden("curve") * v * v / largest;
     if (hidden("folded") > 0.0) v = std::abs(v);
@@ -91,7 +92,8 @@ struct Run {
   std::vector<Values> inputs, sensors;  ///< what is hidden in each
   std::vector<Series> disturbances;     ///< of each disturbed state, per sample [unit/s]
   int parts = 1;
-  std::vector<Series> outputs;    ///< on the fine grid
+  std::vector<Series> outputs;    ///< on the fine grid, at the beginning of each step
+  std::vector<Series> ends;       ///< and at its end, with the same inputs if they are held
   std::vector<double> rate_size;  ///< rms rate of every state
 };
 
@@ -109,6 +111,7 @@ void integrate(Run& run) {
   Series x = system.initial, k[4], trial(n), input(u.size()), y(system.outputs.size());
   for (auto& slope : k) slope.resize(n);
   run.outputs.assign(system.outputs.size(), {});
+  run.ends = run.outputs;
   run.rate_size.assign(n, 0.0);
   constexpr double reach[] = {0.0, 0.5, 0.5, 1.0};
   for (std::size_t s = 0; s < steps; ++s) {
@@ -126,12 +129,14 @@ void integrate(Run& run) {
       for (std::size_t j = 0; j < n; ++j) run.rate_size[j] += k[0][j] * k[0][j] / static_cast<double>(steps);
     }
     for (std::size_t j = 0; j < n; ++j) x[j] += h / 6.0 * (k[0][j] + 2 * k[1][j] + 2 * k[2][j] + k[3][j]);
+    system.equations(x.data(), input.data(), run.plant, trial.data(), y.data());
+    for (std::size_t o = 0; o < y.size(); ++o) run.ends[o].push_back(y[o]);
   }
   for (double& size : run.rate_size) size = std::sqrt(size);
 }
 
 Run prepared(const World& world) {
-  Run run{world, {}, world.parameters, {}, {}, {}, 1, {}, {}};
+  Run run{world, {}, world.parameters, {}, {}, {}, 1, {}, {}, {}};
   const System& system = *world.system;
   for (std::size_t i = 0; i < system.inputs.size(); ++i) {
     run.recorded.push_back(excitation(world, system.inputs[i], static_cast<int>(i)));
@@ -283,7 +288,7 @@ Record simulate(const World& world, bool with_hidden) {
     for (std::size_t j = 0; j < run.recorded.size(); ++j) record.inputs[j].push_back(run.recorded[j][static_cast<std::size_t>(i + lead)]);
   }
   for (std::size_t o = 0; o < run.outputs.size(); ++o) {
-    distort(run.outputs[o], run.sensors[o], world.step / run.parts);
+    distort(run.outputs[o], run.ends[o], run.sensors[o], world.step / run.parts);
     Dice dice(world.system->name + " noise " + world.system->outputs[o].name, world.seed);
     const double sigma = world.noise * deviation(quiet.outputs[o]), step = run.sensors[o]("step");
     for (int i = 0; i < world.samples; ++i) {

@@ -57,10 +57,10 @@ void fields(Bytes& bytes, MaybeConst<InputTable> auto& data) {
 /// All but the measurements and what is read from them.
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterData> auto& data) {
-  auto& [signals, inputs, use, first, start, scale, read] = data;
+  auto& [signals, inputs, use, first, start, covariance, read] = data;
   static_cast<void>(signals);
   static_cast<void>(read);
-  bytes(inputs, use, first, start, scale);
+  bytes(inputs, use, first, start, covariance);
 }
 
 template <class Bytes>

@@ -76,7 +76,9 @@ struct FilterEstimate {
 ///   1. `begin`: the filter is run from the start; where no noise is given, the usual one is raised until innovations are about as large as
 ///      it expects them. A start from which it cannot be run is replaced by one from which it can (runnable_starts(), noise raised again);
 ///      a note says so.
-///   2. `search_noise` (no noise given): one Gauss–Newton step of the parameters, then the noise from three frequencies of its resonance.
+///   2. `search_noise` (no noise given): one Gauss–Newton step of the parameters, then the noise from three frequencies of its resonance;
+///   or
+///      the noise so about the start, where that is clearly higher.
 ///   3. `LikelihoodAscent::iterate`: in turn, until neither gains, the parameters by Gauss–Newton on innovations with the gains held per
 ///      iteration [MI], roughness by marginal likelihood (estimate_smoothing), and the noise by Fisher scoring about the runs (fit_noise).
 ///   4. `reject_outliers` (no use given): measurements beyond the gate are set aside and 3. is repeated, until their set stays.

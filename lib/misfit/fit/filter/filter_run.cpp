@@ -36,8 +36,16 @@ void begin_own_states(const FilterModel& model, FilterData& data) {
   const Eigen::Index system = model.model.system_states(), own = model.model.states() - system;
   const OwnStates along = own_states_along(model.model, *data.signals, *data.read);
   data.start.tail(own) = along.start;
-  data.scale.tail(own) = along.sigma;
-  for (int f : model.force_states) data.start[f] = data.scale[f] = 0.0;
+  const Eigen::MatrixXd of_states = data.covariance.topLeftCorner(system, system);
+  data.covariance.bottomLeftCorner(own, system) = along.by_hidden_states * of_states;
+  data.covariance.topRightCorner(system, own) = data.covariance.bottomLeftCorner(own, system).transpose();
+  data.covariance.bottomRightCorner(own, own) = along.by_hidden_states * of_states * along.by_hidden_states.transpose();
+  data.covariance.diagonal().tail(own) += along.sigma.cwiseAbs2();
+  for (int f : model.force_states) {
+    data.start[f] = 0.0;
+    data.covariance.row(f).setZero();
+    data.covariance.col(f).setZero();
+  }
 }
 
 /// RMS departure of a state that the channels show from where they show it first, over the samples of the fit.
@@ -74,12 +82,12 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
     }
   }
   out.start = states.x.row(out.first).transpose();
-  out.scale = Eigen::VectorXd::Zero(model.model.states());
+  out.covariance = Eigen::MatrixXd::Zero(model.model.states(), model.model.states());
   const auto& specs = model.model.system->spec().states;
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const auto state = static_cast<Eigen::Index>(i);
     const double departure = states.shown[state] ? departure_from_start(states, signals, out.first, state) : 0.0;
-    out.scale[state] = departure > 0.0 ? departure : specs[i].scale;
+    out.covariance(state, state) = std::pow(departure > 0.0 ? departure : specs[i].scale, 2);
   }
   begin_own_states(model, out);
   Stepper stepper(model.model);
@@ -90,9 +98,10 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
 FilterData filter_data_like(const FilterModel& model, const FilterData& data) {
   FilterData out = data;
   const Eigen::Index system = model.model.system_states(), all = model.model.states();
-  out.start = out.scale = Eigen::VectorXd::Zero(all);
+  out.start = Eigen::VectorXd::Zero(all);
+  out.covariance = Eigen::MatrixXd::Zero(all, all);
   out.start.head(system) = data.start.head(system);
-  out.scale.head(system) = data.scale.head(system);
+  out.covariance.topLeftCorner(system, system) = data.covariance.topLeftCorner(system, system);
   begin_own_states(model, out);
   return out;
 }

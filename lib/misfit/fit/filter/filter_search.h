@@ -173,15 +173,35 @@ class FilterSearch {
     return count > 0.0 ? squares / count : 0.0;
   }
 
-  /// Estimates the noise after one Gauss–Newton step of the parameters under the assumed noise; if the filter diverges there with the
-  /// estimated noise, at the start's parameters.
+  /// Estimates the noise after one Gauss–Newton step of the parameters under the assumed noise, or at the start's parameters: where the
+  /// filter diverges after the step, or where the start is clearly better (from good parameters the usual noise, much too large, leads
+  /// astray).
   void search_noise() {
+    constexpr double clearly = 0.5;  // of the log-likelihood
     const Eigen::VectorXd start = at_.theta;
+    const NoiseAtStart at_start = noise_at_start();
     at_.gauss_newton_step();
-    if (at_.try_noise(best_noise())) return;
+    if (at_.try_noise(best_noise()) && height() > at_start.height - clearly) return;
     at_.theta = start;
     at_.linearise();
-    at_.try_noise(best_noise());
+    at_.try_noise(at_start.fit);
+  }
+
+  struct NoiseAtStart {
+    NoiseFit fit;
+    double height;  ///< with it, as height(); -infinity: the model cannot be run with it
+  };
+  /// The search stays where it is.
+  NoiseAtStart noise_at_start() {
+    const FilterNoise before = out_.noise;
+    const NoiseFit fit_before = out_.noise_fit;
+    NoiseAtStart out{best_noise(), -std::numeric_limits<double>::infinity()};
+    if (at_.try_noise(out.fit)) out.height = height();
+    out_.noise = before;
+    out_.noise_fit = fit_before;
+    out_.forced.set_force_time(before.force_time);
+    at_.linearise();
+    return out;
   }
 
   /// From three start values of the jitter's frequency: the likelihood has a local maximum at each spectral line of the measurement noise.

@@ -10,30 +10,49 @@
 namespace misfit {
 namespace {
 
-/// Size of a force of a group that gives the states' measured derivatives.
+/// RMS of the derivatives of the model's states: as measured, or else, of a state that no channel shows, as the model has them with the
+/// recorded inputs where the others are read, but at least such that it moves by its typical size in the recording.
+Eigen::VectorXd rate_sizes(const FilterModel& model, const FilterData& data, const ReconstructedStates& states) {
+  Evaluator evaluator(model.model);
+  const Eigen::Index system = model.model.system_states();
+  const std::vector<double>& t = data.signals->t;
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(system), dx = Eigen::VectorXd::Zero(evaluator.states()), x = data.start;
+  double count = 0.0;
+  for (Eigen::Index k = 0; k < states.dx.rows(); ++k) {
+    if (!states.ok[k]) continue;
+    x.head(system) = states.x.row(k).head(system).transpose();
+    evaluator.rates(x.data(), data.inputs.at(k), t[k], dx.data());
+    for (Eigen::Index i = 0; i < system; ++i) squares[i] += std::pow(states.shown[i] ? states.dx(k, i) : dx[i], 2);
+    count += 1.0;
+  }
+  Eigen::VectorXd out = (squares / std::max(count, 1.0)).cwiseSqrt();
+  for (Eigen::Index i = 0; i < system; ++i) {
+    const double slowest = model.model.state_specs[i].scale / std::max(t.back() - t[data.first], usual_step(t));
+    if (!states.shown[i]) out[i] = std::isfinite(out[i]) ? std::max(out[i], slowest) : slowest;
+  }
+  return out;
+}
+
+/// Size of a force of a group that gives the states' derivatives: of those that the channels show, if it acts on one.
 double force_size(const FilterModel& model, int group, const FilterData& data, const ReconstructedStates& states) {
   Evaluator evaluator(model.model);
   const int n = evaluator.states();
   std::vector<double> dx(n), D(n * kRowStride);
   Slots slots;
   evaluator.linearise_rates({data.start.data(), data.inputs.at(data.first), data.signals->t[data.first]}, slots, dx.data(), D.data());
-  double size = 0.0;
+  const Eigen::VectorXd rates = rate_sizes(model, data, states);
+  double shown = 0.0, hidden = 0.0;
   for (std::size_t force = 0; force < model.force_states.size(); ++force) {
     const int f = model.force_states[force];
     if (model.force_group[force] != group) continue;
     for (int i = 0; i < n; ++i) {
       const double gain = std::abs(D[i * kRowStride + f]);
       if (i == f || model.kind[i] != 1 || !(gain > 0.0)) continue;
-      double squares = 0.0, count = 0.0;
-      for (Eigen::Index k = 0; k < states.dx.rows(); ++k) {
-        if (!states.ok[k]) continue;
-        squares += states.dx(k, i) * states.dx(k, i);
-        count += 1.0;
-      }
-      if (count > 0.0) size = std::max(size, std::sqrt(squares / count) / gain);
+      double& size = states.shown[i] ? shown : hidden;
+      size = std::max(size, rates[i] / gain);
     }
   }
-  return size > 0.0 ? size : 1.0;
+  return shown > 0.0 ? shown : hidden > 0.0 ? hidden : 1.0;
 }
 
 }  // namespace

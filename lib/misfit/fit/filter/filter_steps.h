@@ -33,7 +33,7 @@ class NoiseSteps {
 /// What is known before the first measurement: states as uncertain as FilterData says, forces and jitter stationary.
 template <int M, int NY>
 void start_covariance(const FilterModel& model, const FilterData& data, const FilterNoise& noise, Kalman<M, NY>& kalman) {
-  for (Eigen::Index i = 0; i < data.scale.size(); ++i) kalman.P(i, i) = data.scale[i] * data.scale[i];
+  kalman.P = data.covariance;
   for (std::size_t i = 0; i < model.force_states.size(); ++i) {
     const int f = model.force_states[i];
     const double force = noise.force_of(model.force_group[i]);
