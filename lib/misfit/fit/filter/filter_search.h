@@ -11,6 +11,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/fit/filter/first_noise.h"
 #include "misfit/fit/filter/likelihood_ascent.h"
 #include "misfit/fit/filter/likelihood_derivatives.h"
 #include "misfit/fit/filter/noise_survey.h"
@@ -35,7 +36,7 @@ class FilterSearch {
     at_.remember();
     if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
     set_floor();
-    if (!noise_given_) search_noise();
+    if (!noise_given_) search_noise(at_, options_.threads);
     at_.iterate(rounds, tolerance());  // refine_jointly() steps over both blocks at once
     rounds_left_ -= rounds;
   }
@@ -72,9 +73,7 @@ class FilterSearch {
   FilterEstimate take() { return std::move(out_); }
 
   /// [log-likelihood] By which starts of one model are compared (marginal_loglik), parameters and noise as they are.
-  [[nodiscard]] double height() const {
-    return chooses_roughness() ? marginal_loglik(at_.normal_equations(), out_.penalties, at_.objective) : at_.objective;
-  }
+  [[nodiscard]] double height() const { return height_of(at_); }
   /// Below which it does not end; −infinity where the start is none (set_floor()).
   [[nodiscard]] double floor() const { return floor_ ? floor_->objective : -std::numeric_limits<double>::infinity(); }
 
@@ -84,10 +83,6 @@ class FilterSearch {
   static FilterOptions begun(const FilterStart& start, FilterOptions options) {
     if (start.noise) options.noise = start.noise;
     return options;
-  }
-
-  [[nodiscard]] bool chooses_roughness() const {
-    return std::any_of(out_.penalties.begin(), out_.penalties.end(), [](const Penalty& p) { return p.chosen; });
   }
 
   /// [log-likelihood] Coarse where refine_jointly() follows.
@@ -141,7 +136,7 @@ class FilterSearch {
   /// Where noise, measurements and roughness are given, the end is compared with the start: of two models each is to end at its maximum on
   /// the same, and the larger one never below the smaller one from which it began.
   void set_floor() {
-    if (!noise_given_ || !options_.use || chooses_roughness()) return;
+    if (!noise_given_ || !options_.use || chooses_roughness(at_)) return;
     floor_.emplace(Floor{at_.theta, pack(out_.noise, out_.model.system->spec(), out_.around).value, at_.objective});
   }
 
@@ -171,52 +166,6 @@ class FilterSearch {
       count += static_cast<double>(jacobian.r.size());
     }
     return count > 0.0 ? squares / count : 0.0;
-  }
-
-  /// Estimates the noise after one Gauss–Newton step of the parameters under the assumed noise, or at the start's parameters: where the
-  /// filter diverges after the step, or where the start is clearly better (from good parameters the usual noise, much too large, leads
-  /// astray).
-  void search_noise() {
-    constexpr double clearly = 0.5;  // of the log-likelihood
-    const Eigen::VectorXd start = at_.theta;
-    const NoiseAtStart at_start = noise_at_start();
-    at_.gauss_newton_step();
-    if (at_.try_noise(best_noise()) && height() > at_start.height - clearly) return;
-    at_.theta = start;
-    at_.linearise();
-    at_.try_noise(at_start.fit);
-  }
-
-  struct NoiseAtStart {
-    NoiseFit fit;
-    double height;  ///< with it, as height(); -infinity: the model cannot be run with it
-  };
-  /// The search stays where it is.
-  NoiseAtStart noise_at_start() {
-    const FilterNoise before = out_.noise;
-    const NoiseFit fit_before = out_.noise_fit;
-    NoiseAtStart out{best_noise(), -std::numeric_limits<double>::infinity()};
-    if (at_.try_noise(out.fit)) out.height = height();
-    out_.noise = before;
-    out_.noise_fit = fit_before;
-    out_.forced.set_force_time(before.force_time);
-    at_.linearise();
-    return out;
-  }
-
-  /// From three start values of the jitter's frequency: the likelihood has a local maximum at each spectral line of the measurement noise.
-  NoiseFit best_noise() const {
-    constexpr int iterations = 6;
-    NoiseFit best;
-    best.minus_log_density = std::numeric_limits<double>::infinity();
-    for (const double share : {0.4, 1.0, 2.0}) {
-      FilterNoise start = out_.noise;
-      for (std::size_t o = 0; o < start.channels.size(); ++o)
-        start.channels[o].jitter_frequency = share * out_.around.channels[o].jitter_frequency;
-      const NoiseFit fit = fit_noise(at_.runs(), start, {out_.around, options_.threads, iterations});
-      if (fit.minus_log_density < best.minus_log_density) best = fit;
-    }
-    return best;
   }
 
   /// The likelihood has a maximum per correlation time at which the random force can stand in for something else (jitter, the motion's own

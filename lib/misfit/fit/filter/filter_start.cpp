@@ -10,9 +10,14 @@
 namespace misfit {
 namespace {
 
-/// RMS of the derivatives of the model's states: as measured, or else, of a state that no channel shows, as the model has them with the
+struct RateSizes {
+  Eigen::VectorXd rms;  ///< of the derivatives of the system's states
+  std::vector<bool> shown;
+};
+
+/// As measured, or else, of a state that no channel shows, as the model has them with the
 /// recorded inputs where the others are read, but at least such that it moves by its typical size in the recording.
-Eigen::VectorXd rate_sizes(const FilterModel& model, const FilterData& data, const ReconstructedStates& states) {
+RateSizes rate_sizes(const FilterModel& model, const FilterData& data, const ReconstructedStates& states) {
   Evaluator evaluator(model.model);
   const Eigen::Index system = model.model.system_states();
   const std::vector<double>& t = data.signals->t;
@@ -25,31 +30,30 @@ Eigen::VectorXd rate_sizes(const FilterModel& model, const FilterData& data, con
     for (Eigen::Index i = 0; i < system; ++i) squares[i] += std::pow(states.shown[i] ? states.dx(k, i) : dx[i], 2);
     count += 1.0;
   }
-  Eigen::VectorXd out = (squares / std::max(count, 1.0)).cwiseSqrt();
+  RateSizes out{(squares / std::max(count, 1.0)).cwiseSqrt(), states.shown};
   for (Eigen::Index i = 0; i < system; ++i) {
     const double slowest = model.model.state_specs[i].scale / std::max(t.back() - t[data.first], usual_step(t));
-    if (!states.shown[i]) out[i] = std::isfinite(out[i]) ? std::max(out[i], slowest) : slowest;
+    if (!states.shown[i]) out.rms[i] = std::isfinite(out.rms[i]) ? std::max(out.rms[i], slowest) : slowest;
   }
   return out;
 }
 
 /// Size of a force of a group that gives the states' derivatives: of those that the channels show, if it acts on one.
-double force_size(const FilterModel& model, int group, const FilterData& data, const ReconstructedStates& states) {
+double force_size(const FilterModel& model, int group, const FilterData& data, const RateSizes& rates) {
   Evaluator evaluator(model.model);
   const int n = evaluator.states();
   std::vector<double> dx(n), D(n * kRowStride);
   Slots slots;
   evaluator.linearise_rates({data.start.data(), data.inputs.at(data.first), data.signals->t[data.first]}, slots, dx.data(), D.data());
-  const Eigen::VectorXd rates = rate_sizes(model, data, states);
   double shown = 0.0, hidden = 0.0;
   for (std::size_t force = 0; force < model.force_states.size(); ++force) {
     const int f = model.force_states[force];
     if (model.force_group[force] != group) continue;
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < model.model.system_states(); ++i) {  // memories of effects say nothing of the force
       const double gain = std::abs(D[i * kRowStride + f]);
-      if (i == f || model.kind[i] != 1 || !(gain > 0.0)) continue;
-      double& size = states.shown[i] ? shown : hidden;
-      size = std::max(size, rates[i] / gain);
+      if (model.kind[i] != 1 || !(gain > 0.0)) continue;
+      double& size = rates.shown[i] ? shown : hidden;
+      size = std::max(size, rates.rms[i] / gain);
     }
   }
   return shown > 0.0 ? shown : hidden > 0.0 ? hidden : 1.0;
@@ -78,7 +82,8 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   out.force_time = model.model.force_time ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * h;
   const ReconstructedStates states = reconstruct_states(model.model, first);
   const double of_equal_intensity = std::sqrt(samples_of_memory * h / out.force_time);
-  const auto usual_force = [&](int group) { return share_of_motion * force_size(model, group, data.front(), states) * of_equal_intensity; };
+  const RateSizes rates = rate_sizes(model, data.front(), states);
+  const auto usual_force = [&](int group) { return share_of_motion * force_size(model, group, data.front(), rates) * of_equal_intensity; };
   out.force = usual_force(0);
   for (int group = 1; group < model.force_groups(); ++group) out.further_forces.push_back(usual_force(group));
   // Well above the motion, which the model itself must explain: pack() lets the frequency down to half of this.
