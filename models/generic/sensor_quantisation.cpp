@@ -36,7 +36,8 @@ struct SensorQuantisation {
        .scale = 0.1,
        .doc = "smallest difference of two measurements",
        .fixed = true,
-       .scan = {.from = 0.05, .to = 0.2, .count = 3, .over = "|signal|"}},
+       .scan = {.from = 0.05, .to = 0.2, .count = 3, .over = "|signal|"},
+       .multiples = true},
   };
 
   template <class T, class K>

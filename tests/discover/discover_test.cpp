@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <random>
+
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/screen.h"
 #include "misfit/discover/verdict.h"
@@ -71,7 +75,6 @@ TEST(Verdict, AStrengthAtItsBoundIsNamedAndOneAtZeroIsNot) {
   EXPECT_FALSE(ends_at_bound(model, {friction, depth}).has_value());
 }
 
-/// Sigmas 8 N m of the friction and 0.2 of the wake's depth.
 TEST(Verdict, ALagLongerThanHalfOfTheRecordingIsNone) {
   Model model = assemble(parachute(true, {effect("lag")}), registry());
   set(model, "tau", 62.0);
@@ -82,6 +85,40 @@ TEST(Verdict, ALagLongerThanHalfOfTheRecordingIsNone) {
   EXPECT_FALSE(outlasts_recording(assemble(parachute(true, {effect("drift")}), registry()), 40.0).has_value()) << "drift remembers nothing";
 }
 
+Signals position_of_cart(const std::function<double(double)>& position) {
+  Signals s{.measured = {{.name = "position_reading", .unit = "-"}, {.name = "speed_reading", .unit = "m/s"}}};
+  for (int i = 0; i < 400; ++i) {
+    s.t.push_back(0.05 * i);
+    s.measured[0].values.push_back(i % 50 == 7 ? std::nan("") : position(s.t.back()));
+    s.measured[1].values.push_back(0.0);
+  }
+  return s;
+}
+
+TEST(Verdict, AStepOfAnOutputMustBeThatOfItsMeasurements) {
+  Model model = assemble(cart({effect("sensor_quantisation", {{"output", "position_reading"}})}), registry());
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  const auto moving = [](double t) { return 3.95 + 0.2 * std::sin(0.7 * t); };
+  const auto rounded = [&](double t) { return 0.02 * std::round(moving(t) / 0.02) + 0.007; };
+  const Signals plain = position_of_cart([&](double t) { return moving(t) + noise(random); });
+  const Signals steps = position_of_cart(rounded);
+  const Signals noisy_steps = position_of_cart([&](double t) { return rounded(t) + noise(random); });
+
+  set(model, "step", 0.77);
+  const auto found = off_whole_steps(model, {steps, plain});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_THAT(*found, testing::AllOf(testing::HasSubstr("its step = 0.77, but the measurements are 0.1"),
+                                     testing::HasSubstr("(RMS) from multiples of it")));
+  set(model, "step", 0.02);
+  EXPECT_FALSE(off_whole_steps(model, {plain}).has_value()) << "3 mm of noise hide whether there are steps of 20 mm";
+  EXPECT_FALSE(off_whole_steps(model, {steps, noisy_steps}).has_value());
+  set(model, "step", 0.03);
+  EXPECT_TRUE(off_whole_steps(model, {steps}).has_value());
+  EXPECT_FALSE(off_whole_steps(assemble(cart({effect("sensor_lag", {{"output", "position_reading"}})}), registry()), {plain}).has_value());
+}
+
+/// Sigmas 8 N m of the friction and 0.2 of the wake's depth.
 TEST(Verdict, StrengthsThatAreAllBelowTheirSigmaAreNotDetermined) {
   Model model = assemble(spherical({effect("strut_wake"), effect("coulomb_friction")}), registry());
   const int depth = model.find_parameter("wake_depth"), friction = model.find_parameter("friction");

@@ -142,13 +142,15 @@ std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& 
   if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
   if (!near_a_maximum(*e.refit)) return "its refit has not converged: " + e.refit->estimate.message;
   const auto memory = outlasts_recording(e.refit->estimate.model, longest_recording(context.experiments));
-  e.misnamed = memory || !e.refit->partial.empty();
+  const auto uneven = off_whole_steps(e.refit->estimate.model, context.experiments);
+  e.misnamed = memory || uneven || !e.refit->partial.empty();
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
   if (const auto unknown =
           undetermined_strengths(e.refit->estimate.model, e.refit->estimate.covariance, e.screening->candidate_model->strengths))
     return *unknown;
   if (memory) return *memory;
+  if (uneven) return *uneven;
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
   if (!(*c.held_out_gain > 0.0)) return "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
   if (*c.held_out_gain > 0.5 * estimated_parameters(e)) return "";

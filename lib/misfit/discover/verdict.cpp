@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "misfit/core/display.h"
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
+#include "misfit/inference/states.h"
 
 namespace misfit {
 namespace {
@@ -60,6 +62,29 @@ std::string physics_evidence(const Discovery& discovery, double p_accept) {
     if (physical(c) && c.p_value < p_accept && (best == nullptr || c.p_value < best->p_value)) best = &c;
   }
   return best == nullptr ? "" : effect_at(best->effect, best->roles) + " (family-wise " + p_equals(best->p_value) + ")";
+}
+
+/// Measurements of a channel that enter a fit.
+std::vector<double> values_in_fit(const Signals& s, int channel) {
+  std::vector<double> out;
+  for (std::size_t i = s.exclude; i < s.samples(); ++i) {
+    const double y = s.measured[channel].values[i];
+    if (!s.held_out(i) && std::isfinite(y)) out.push_back(y);
+  }
+  return out;
+}
+
+/// From the nearest of offset + k step, the offset being the circular mean of the values (Mardia & Jupp, Directional Statistics (2000),
+/// section 2.2). Values spread evenly over a step have step/sqrt(12).
+double rms_from_multiples(const std::vector<double>& values, double step) {
+  double cosines = 0.0, sines = 0.0, squares = 0.0;
+  for (const double y : values) {
+    cosines += std::cos(2.0 * std::numbers::pi * y / step);
+    sines += std::sin(2.0 * std::numbers::pi * y / step);
+  }
+  const double offset = step * std::atan2(sines, cosines) / (2.0 * std::numbers::pi);
+  for (const double y : values) squares += std::pow(std::remainder(y - offset, step), 2);
+  return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
 }
 
 }  // namespace
@@ -145,6 +170,26 @@ std::optional<std::string> outlasts_recording(const Model& model, double seconds
     if (p.unit != "s" || p.value < 0.5 * seconds) continue;
     return "its time " + p.name + " = " + in_display_unit(p.value, p.unit) + " is longer than half of the recording, " +
            in_display_unit(seconds, "s");
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments) {
+  const BoundEffect& effect = model.effects.back();
+  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
+  const auto multiples = std::find_if(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& c) { return c.multiples; });
+  if (multiples == coefficients.end() || effect.kind != PortKind::sensor) return std::nullopt;
+  const int parameter = effect.coefficients[multiples - coefficients.begin()].parameter;
+  if (parameter < 0) return std::nullopt;
+  const Parameter& p = model.parameters[parameter];
+  const double step = std::abs(p.value);
+  for (const Signals& s : experiments) {
+    const std::vector<double> values = values_in_fit(s, effect.ports.front());
+    constexpr double share_of_step = 0.05, noises = 2.0;
+    const double noise = measurement_noise(values), off = rms_from_multiples(values, step);
+    if (!(off > share_of_step * step + (std::isfinite(noise) ? noises * noise : 0.0))) continue;
+    return "its " + p.name + " = " + in_display_unit(p.value, p.unit) + ", but the measurements are " + in_display_unit(off, p.unit) +
+           " (RMS) from multiples of it";
   }
   return std::nullopt;
 }

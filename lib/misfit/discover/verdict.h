@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "misfit/data/signals.h"
 #include "misfit/discover/discover.h"
 
 namespace misfit {
@@ -29,6 +30,12 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// "its time constant tau = 62 s is longer than half of the recording, 40 s" where a time of the model's last effect, which remembers, is:
 /// on such a record a lag is a constant force and a stiffness. nullopt: none is.
 [[nodiscard]] std::optional<std::string> outlasts_recording(const Model& model, double seconds);
+
+/// "its step = 0.77 V, but the measurements are 0.11 V (RMS) from multiples of it" where the model's last effect reads an output in whole
+/// steps (CoefficientSpec::multiples) and the measurements that enter the fit are not in such steps, whatever the first of them is: further
+/// off than 0.05 of a step and twice their white noise (measurement_noise()), which may come after the rounding. nullopt: they are, or no
+/// effect says so.
+[[nodiscard]] std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments);
 
 /// Remarks on the camera: parameters that are significant in the sweep but not in the camera (kept in Discovery::sweep_asks). Nothing is
 /// accepted then: the drop of a sensor effect comes from its prior, the sweep's, so that the remedy is to calibrate again; and a physical
