@@ -68,7 +68,7 @@ std::vector<Recipe> own_effects() {
           {{"lateral_damping", "lateral_damping", {"pitch_rate", "lateral_rate"}, {}}, one("C_lateral", 0.7)},
           {{"aerodynamic_lag", "aerodynamic_lag", {}, {}},
            [](Dice& dice, double size) {
-             return std::map<std::string, double>{{"C_lag", 0.12 * size}, {"tau_lag", dice.uniform(0.05, 0.3)}};
+             return std::map<std::string, double>{{"share_lag", 0.35 * size}, {"tau_lag", dice.uniform(0.05, 0.3)}};
            }},
           {{"magnus", "magnus", {"pitch_rate", "lateral_rate"}, {}}, one("C_spin", 0.35)},
           {{"camera_roll", "camera_roll", {}, {}}, one("roll_error", 8.0 * degree)},

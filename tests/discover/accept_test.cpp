@@ -69,6 +69,41 @@ bool leaves_something(const RankedCandidate& e, const World& world) {
   return remaining_lack_of_fit(e.refit->estimate, *e.screening->candidate_model, e.refit->drop, world.options).has_value();
 }
 
+/// A cart whose damping grows with its position: on the mean over the motion neither position nor speed alone shows it.
+Signals record_of_uneven_damping(double slope) {
+  ModelRequest request = cart({effect("viscous_friction")});
+  request.curves["viscosity"] = {"x", {-1.0, 0.0, 1.0}, {}, {}};
+  Model truth = assemble(request, registry());
+  set_line(truth, "viscosity", 0.0, 1.5, slope);
+  Values values;
+  const Curve& curve = *truth.find_curve("viscosity");
+  for (int i = 0; i < curve.spline.size(); ++i) {
+    const Parameter& p = truth.parameters[curve.first + i];
+    values[p.name] = p.value;
+  }
+  return record(request, values, 0.05, 15.0, {2e-3, 1e-2}, 43);
+}
+
+/// The least p over the surfaces of the quantity x, corrected for their number, and which it is.
+std::pair<double, std::string> most_significant_surface(const World& world) {
+  const int x = index_of(world.estimate.model.system->spec().quantities, "x");
+  const std::vector<UnknownCurve> surfaces =
+      unknown_surfaces({world.estimate, ScoreTest(world.estimate), ForceSensitivity(world.estimate)}, {x});
+  const auto best = std::min_element(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
+  return {sidak(best->p_value, static_cast<double>(surfaces.size())), best->label()};
+}
+
+TEST(UnknownSurfaces, ShowAForceThatDependsOnTwoQuantitiesAndNothingWhereThereIsNone) {
+  const World uneven(record_of_uneven_damping(1.2)), even(record_of_uneven_damping(0.0));
+  const auto [p, label] = most_significant_surface(uneven);
+  EXPECT_LT(p, 1e-6) << label;
+  EXPECT_THAT(label, testing::StartsWith("surface force(x, v"));
+  for (const UnknownCurve& curve : unknown_curves({uneven.estimate, ScoreTest(uneven.estimate), ForceSensitivity(uneven.estimate)}))
+    EXPECT_GT(curve.p_value, p) << curve.label();
+  const auto [chance, where] = most_significant_surface(even);
+  EXPECT_GT(chance, 0.01) << where;
+}
+
 /// Hysteresis catches a little of the friction and would be accepted by itself; the order is as if it had caught the most.
 TEST(NamedCandidate, WhatTheModelAllButDescribesIsDescribedUnlessTheRestIsBeyondDoubt) {
   const World world = with_friction(3.0);

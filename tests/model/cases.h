@@ -109,28 +109,28 @@ inline std::vector<Case> cases_of_other_systems() {
 }
 
 inline std::vector<Case> spherical_cases() {
-  return {
-      {"spherical", spherical()},
-      {"wake",
-       with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}, {"wake_push", 0.15}, {"wake_phi", -1.6}, {"wake_width", 0.9}})},
-      {"wake_before_what_it_weakens", lender_last(with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}}))},
-      {"upwash", with_values(spherical({effect("flow_angularity")}), {{"flow_theta", 0.03}, {"flow_psi", -0.02}})},
-      {"wrong_camera",
-       with_values(spherical({effect("camera_roll"), effect("image_centre"), effect("scale_error"), effect("camera_height_error"),
-                              effect("pixel_aspect"), effect("lens_distortion"), effect("field_offset")}),
-                   {{"roll_error", 0.05}, {"K_error", 2.0}, {"h_c_error", 0.02}, {"aspect_error", 0.02}, {"k1_error", -0.1}})},
-      {"free_camera", free_camera(spherical({effect("strut_wake"), effect("scale_error")}))},
-      {"free_camera_that_moves_the_canopy", free_camera(spherical({effect("viscous_friction", {{"rate", "image_scale"}})}))},
-      {"random_states", with_values(spherical({effect("gust"), effect("apex_jitter")}), {{"gust_sigma", 27.0}, {"jitter", 1.0}})},
-      {"other_physics", with_values(spherical({effect("magnus"), effect("relative_dynamic_pressure"), effect("apparent_inertia"),
-                                               effect("lateral_damping"), effect("coulomb_friction"), effect("viscous_friction")}),
-                                    {{"C_spin", 0.05},
-                                     {"relative_pressure", 1.0},
-                                     {"inertia_growth", 10.0},
-                                     {"friction", 20.0},
-                                     {"width", 0.2},
-                                     {"viscosity", 5.0}})},
-      {"lagging_flow", with_values(spherical({effect("aerodynamic_lag"), effect("vortex_shedding")}), {{"C_lag", 0.3}, {"y_sine", 0.01}})}};
+  return {{"spherical", spherical()},
+          {"wake", with_values(spherical({effect("strut_wake")}),
+                               {{"wake_depth", 0.5}, {"wake_push", 0.15}, {"wake_phi", -1.6}, {"wake_width", 0.9}})},
+          {"wake_before_what_it_weakens", lender_last(with_values(spherical({effect("strut_wake")}), {{"wake_depth", 0.5}}))},
+          {"upwash", with_values(spherical({effect("flow_angularity")}), {{"flow_theta", 0.03}, {"flow_psi", -0.02}})},
+          {"wrong_camera",
+           with_values(spherical({effect("camera_roll"), effect("image_centre"), effect("scale_error"), effect("camera_height_error"),
+                                  effect("pixel_aspect"), effect("lens_distortion"), effect("field_offset")}),
+                       {{"roll_error", 0.05}, {"K_error", 2.0}, {"h_c_error", 0.02}, {"aspect_error", 0.02}, {"k1_error", -0.1}})},
+          {"free_camera", free_camera(spherical({effect("strut_wake"), effect("scale_error")}))},
+          {"free_camera_that_moves_the_canopy", free_camera(spherical({effect("viscous_friction", {{"rate", "image_scale"}})}))},
+          {"random_states", with_values(spherical({effect("gust"), effect("apex_jitter")}), {{"gust_sigma", 27.0}, {"jitter", 1.0}})},
+          {"other_physics", with_values(spherical({effect("magnus"), effect("relative_dynamic_pressure"), effect("apparent_inertia"),
+                                                   effect("lateral_damping"), effect("coulomb_friction"), effect("viscous_friction")}),
+                                        {{"C_spin", 0.05},
+                                         {"relative_pressure", 1.0},
+                                         {"inertia_growth", 10.0},
+                                         {"friction", 20.0},
+                                         {"width", 0.2},
+                                         {"viscosity", 5.0}})},
+          {"lagging_flow",
+           with_values(spherical({effect("aerodynamic_lag"), effect("vortex_shedding")}), {{"share_lag", 0.3}, {"y_sine", 0.01}})}};
 }
 
 /// All of these, each also with all constants freed.

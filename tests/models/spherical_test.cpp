@@ -123,6 +123,24 @@ TEST(SphericalParachute, LateralDampingActsAcrossThePlaneOfAxisAndRelativeWind) 
   }
 }
 
+TEST(SphericalParachute, AMomentThatLagsIsNoneWhereItsMemoryIsEmptyAndTheStaticOneWhereItHasCaughtUp) {
+  constexpr double tau = 0.06;
+  const Model free = with({}), at_once = with({effect("static_moment")});
+  const Model lagging = with({effect("static_moment"), effect("aerodynamic_lag")}, {{"share_lag", 1.0}, {"tau_lag", tau}});
+  Evaluator evaluator(lagging);
+  for (const State& x : some_states) {
+    std::array<double, 6> state{x[0], x[1], x[2], x[3], 0.0, 0.0}, rate{};
+    evaluator.rates(state.data(), nullptr, 0.0, rate.data());
+    const State nothing = rates(free, x), whole = rates(at_once, x);
+    for (std::size_t i = 2; i < 4; ++i) EXPECT_NEAR(rate[i], nothing[i], 1e-9 * (1.0 + std::abs(nothing[i])));
+    state[4] = tau * rate[4];
+    state[5] = tau * rate[5];
+    evaluator.rates(state.data(), nullptr, 0.0, rate.data());
+    for (std::size_t i = 2; i < 4; ++i) EXPECT_NEAR(rate[i], whole[i], 1e-9 * (1.0 + std::abs(whole[i])));
+    EXPECT_NEAR(rate[4], 0.0, 1e-9);
+  }
+}
+
 TEST(SphericalParachute, FrictionOpposesTheRotationWhateverThePlaneOfTheTilt) {
   const Model free = with({}), rubbing = with({effect("coulomb_friction")}, {{"friction", 20.0}, {"width", 0.01}});
   for (const State& x : some_states) {

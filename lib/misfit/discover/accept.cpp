@@ -241,9 +241,9 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
     const CandidateModel& candidate_model = *e->screening->candidate_model;
     const auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), e->refit->drop, context.options);
     if (!left) return {e};
-    e->candidate.why = "lack of fit remains: with it in the model an unknown curve " + left->port + "(" + left->quantity +
-                       ") is still significant, " + p_equals(left->p_value) + ", worth " + format_value(left->result.chi2) +
-                       " beside its drop of " + format_value(e->refit->drop);
+    e->candidate.why = "lack of fit remains: with it in the model an unknown " + left->label() + " is still significant, " +
+                       p_equals(left->p_value) + ", worth " + format_value(left->result.chi2) + " beside its drop of " +
+                       format_value(e->refit->drop);
     aliases.push_back({e, *left});
     read.insert(read.end(), candidate_model.quantities.begin(), candidate_model.quantities.end());
   }
@@ -302,7 +302,7 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
   const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
   const bool any = best != unknown.end();
   const bool front_better = any && !ranked.empty() && !ranked.front().misnamed && ranked.front().log_p < best->log_p;
-  if (left && (!any || front_better)) return Unexplained{left->port, left->quantity, left->p_value};
+  if (left && (!any || front_better)) return Unexplained{left->port, left->quantities(), left->p_value};
   if (!any || (front_better && ranked.front().refit)) return std::nullopt;  // what a known effect explains better is not unknown
   const double p = sidak(best->p_value, context.families);
   return p < context.options.p_accept ? std::optional(Unexplained{best->port, best->quantity, p}) : std::nullopt;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/math/statistics.h"
 
@@ -33,14 +34,19 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
                                                   const DiscoverOptions& options) {
   const ScoreTest score(with);
   const ForceSensitivity force(with);
-  std::vector<UnknownCurve> after = unknown_curves({with, score, force, options.threads});
+  const ScoreWork work{with, score, force, options.threads};
+  const std::vector<int>& read = candidate_model.quantities;
+  std::vector<UnknownCurve> after = unknown_curves(work);
+  const double tests = static_cast<double>(after.size());
+  std::erase_if(after, [&](const UnknownCurve& curve) { return place_of(read, curve.quantity_index) < 0; });
+  std::vector<UnknownCurve> surfaces = unknown_surfaces(work, read);
+  const double all_tests = tests + static_cast<double>(surfaces.size());
+  std::move(surfaces.begin(), surfaces.end(), std::back_inserter(after));
   std::optional<UnknownCurve> worst;
   for (auto& curve : after) {
-    curve.p_value = sidak(curve.p_value, static_cast<double>(after.size()));
-    const auto& read = candidate_model.quantities;
-    const bool reads = std::find(read.begin(), read.end(), curve.quantity_index) != read.end();
+    curve.p_value = sidak(curve.p_value, all_tests);
     constexpr double min_share = 0.2;  // of the candidate's drop
-    if (!reads || curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < min_share * drop) continue;
+    if (curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < min_share * drop) continue;
     if (!worst || curve.log_p < worst->log_p) worst = curve;
   }
   return worst;

@@ -196,24 +196,79 @@ std::vector<int> ports_of_unknown_curves(const SystemSpec& system) {
   return out;
 }
 
+std::string UnknownCurve::label() const {
+  return other.empty() ? "curve " + port + "(" + quantity + ")" : "surface " + port + "(" + quantity + ", " + other + ")";
+}
+
+std::string UnknownCurve::quantities() const { return other.empty() ? quantity : quantity + " and " + other; }
+
+namespace {
+
+/// The score of a force on a port that is these functions of the samples.
+UnknownCurve unknown_force(const ScoreWork& work, int port, const Features& f) {
+  UnknownCurve out;
+  out.port_index = port;
+  out.port = work.estimate.model.system->spec().dynamic_ports[port].name;
+  out.quantity = f.quantity;
+  out.quantity_index = f.index;
+  out.result = work.score.test(work.force.columns(port, f.f, f.ahead));
+  if (out.result.dof == 0) return out;
+  out.log_p = log_chi_square_tail(out.result.chi2, out.result.dof);
+  out.p_value = std::exp(out.log_p);
+  return out;
+}
+
+/// Products of two families of hats; those that hardly any sample touches left out.
+Features products(const Features& a, const Features& b) {
+  Features out;
+  out.quantity = a.quantity;
+  out.index = a.index;
+  constexpr double fewest_samples = 25.0;
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> kept;
+  for (Eigen::Index i = 0; i < a.f.cols(); ++i) {
+    for (Eigen::Index j = 0; j < b.f.cols(); ++j) {
+      if (a.f.col(i).dot(b.f.col(j)) >= fewest_samples) kept.emplace_back(i, j);
+    }
+  }
+  out.f = out.ahead = Eigen::MatrixXd(a.f.rows(), kept.size());
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const auto [i, j] = kept[k];
+    const Eigen::Index column = static_cast<Eigen::Index>(k);
+    out.f.col(column) = a.f.col(i).cwiseProduct(b.f.col(j));
+    out.ahead.col(column) = a.ahead.col(i).cwiseProduct(b.ahead.col(j));
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress) {
   const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
   const std::vector<int> ports = ports_of_unknown_curves(work.estimate.model.system->spec());
-  const auto& names = work.estimate.model.system->spec().dynamic_ports;
   std::vector<UnknownCurve> out(features.size() * ports.size());
-  const auto test = [&](std::size_t k) {
-    const Features& f = features[k / ports.size()];
-    UnknownCurve& curve = out[k];
-    curve.port_index = ports[k % ports.size()];
-    curve.port = names[curve.port_index].name;
-    curve.quantity = f.quantity;
-    curve.quantity_index = f.index;
-    curve.result = work.score.test(work.force.columns(curve.port_index, f.f, f.ahead));
-    if (curve.result.dof == 0) return;
-    curve.log_p = log_chi_square_tail(curve.result.chi2, curve.result.dof);
-    curve.p_value = std::exp(curve.log_p);
-  };
-  run_jobs(out.size(), work.threads, test, progress);
+  run_jobs(
+      out.size(), work.threads, [&](std::size_t k) { out[k] = unknown_force(work, ports[k % ports.size()], features[k / ports.size()]); },
+      progress);
+  return out;
+}
+
+std::vector<UnknownCurve> unknown_surfaces(const ScoreWork& work, const std::vector<int>& read) {
+  constexpr int hats = 4;
+  const std::vector<Features> features = features_of(work.estimate, work.force, hats);
+  const auto is_read = [&](const Features& f) { return place_of(read, f.index) >= 0; };
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t a = 0; a < features.size(); ++a) {
+    for (std::size_t b = a + 1; b < features.size(); ++b) {
+      if (is_read(features[a]) || is_read(features[b])) pairs.emplace_back(a, b);
+    }
+  }
+  const std::vector<int> ports = ports_of_unknown_curves(work.estimate.model.system->spec());
+  std::vector<UnknownCurve> out(pairs.size() * ports.size());
+  run_jobs(out.size(), work.threads, [&](std::size_t k) {
+    const auto [a, b] = pairs[k / ports.size()];
+    out[k] = unknown_force(work, ports[k % ports.size()], products(features[a], features[b]));
+    out[k].other = features[b].quantity;
+  });
   return out;
 }
 

@@ -54,14 +54,23 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// something else; what seems to is the sensor's).
 [[nodiscard]] std::vector<int> ports_of_unknown_curves(const SystemSpec& system);
 
-/// Unknown curves: hat functions of every quantity on every dynamic port.
+/// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another.
 struct UnknownCurve {
   std::string port, quantity;
   int port_index = 0, quantity_index = -1;
+  std::string other;  ///< second quantity of a surface; empty: a curve
   ScoreResult result;
   double log_p = 0.0, p_value = 1.0;
+
+  [[nodiscard]] std::string label() const;       ///< "curve dv/dt(v)", "surface dv/dt(v, u)"
+  [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"
 };
+
+/// Of every quantity on every dynamic port.
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
+
+/// Of every pair of quantities, time among them, of which `read` has at least one, on every dynamic port; four hats of each.
+[[nodiscard]] std::vector<UnknownCurve> unknown_surfaces(const ScoreWork& work, const std::vector<int>& read);
 
 /// log P(chi² > x), accurate where the probability underflows.
 [[nodiscard]] double log_chi_square_tail(double x, double dof);
