@@ -86,7 +86,8 @@ TEST(Verdict, ALagLongerThanHalfOfTheRecordingIsNone) {
 }
 
 Signals position_of_cart(const std::function<double(double)>& position) {
-  Signals s{.measured = {{.name = "position_reading", .unit = "-"}, {.name = "speed_reading", .unit = "m/s"}}};
+  Signals s;
+  s.measured = {{"position_reading", "-", {}}, {"speed_reading", "m/s", {}}};
   for (int i = 0; i < 400; ++i) {
     s.t.push_back(0.05 * i);
     s.measured[0].values.push_back(i % 50 == 7 ? std::nan("") : position(s.t.back()));
@@ -113,7 +114,7 @@ TEST(Verdict, AStepOfAnOutputMustBeThatOfItsMeasurements) {
   set(model, "step", 0.02);
   EXPECT_FALSE(off_whole_steps(model, {plain}).has_value()) << "3 mm of noise hide whether there are steps of 20 mm";
   EXPECT_FALSE(off_whole_steps(model, {steps, noisy_steps}).has_value());
-  set(model, "step", 0.03);
+  set(model, "step", 0.07);
   EXPECT_TRUE(off_whole_steps(model, {steps}).has_value());
   EXPECT_FALSE(off_whole_steps(assemble(cart({effect("sensor_lag", {{"output", "position_reading"}})}), registry()), {plain}).has_value());
 }
