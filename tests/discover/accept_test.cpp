@@ -97,7 +97,7 @@ TEST(UnknownSurfaces, ShowAForceThatDependsOnTwoQuantitiesAndNothingWhereThereIs
   const World uneven(record_of_uneven_damping(1.2)), even(record_of_uneven_damping(0.0));
   const auto [p, label] = most_significant_surface(uneven);
   EXPECT_LT(p, 1e-6) << label;
-  EXPECT_THAT(label, testing::StartsWith("surface force(x, v"));
+  EXPECT_THAT(label, testing::StartsWith("an unknown surface force(x, v"));
   for (const UnknownCurve& curve : unknown_curves({uneven.estimate, ScoreTest(uneven.estimate), ForceSensitivity(uneven.estimate)}))
     EXPECT_GT(curve.p_value, p) << curve.label();
   const auto [chance, where] = most_significant_surface(even);

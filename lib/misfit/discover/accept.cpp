@@ -30,23 +30,44 @@ class ConditionalScores {
 
   /// At the effect's best cell of the first search; dof 0 where the model describes it already, no value where it cannot be run with it.
   [[nodiscard]] std::optional<ScreeningResult> score(const RankedCandidate& other) const {
-    ScreeningResult out;
-    const auto candidate_model = std::find_if(list_.begin(), list_.end(), [&](const CandidateModel& s) {
-      return s.effect == other.candidate.effect && s.roles == other.candidate.roles;
-    });
-    if (candidate_model == list_.end()) return std::nullopt;
-    out.candidate_model = &*candidate_model;
-    out.cell = other.screening->cell;
-    out.cells_effective = other.screening->cells_effective;
-    CellScore cell = score_cell(in_.estimate, score_, *candidate_model, out.cell);
-    if (cell.columns.size() == 0) return std::nullopt;
-    out.result = std::move(cell.result);
-    out.columns = std::move(cell.columns);
-    out.log_p = log_score_tail(*candidate_model, out.result.chi2) + std::log(out.cells_effective);
-    return out;
+    const CandidateModel* candidate_model = in_list(other);
+    return candidate_model == nullptr ? std::nullopt : score_at(*candidate_model, other.screening->cell, other);
+  }
+
+  /// At the best of all its cells.
+  [[nodiscard]] std::optional<ScreeningResult> best_score(const RankedCandidate& other) const {
+    const CandidateModel* candidate_model = in_list(other);
+    std::optional<ScreeningResult> best;
+    if (candidate_model == nullptr) return best;
+    for (const std::vector<double>& cell : candidate_model->cells) {
+      std::optional<ScreeningResult> found = score_at(*candidate_model, cell, other);
+      if (found && (!best || found->result.chi2 > best->result.chi2)) best = std::move(found);
+    }
+    return best;
   }
 
  private:
+  [[nodiscard]] const CandidateModel* in_list(const RankedCandidate& other) const {
+    const auto found = std::find_if(list_.begin(), list_.end(), [&](const CandidateModel& s) {
+      return s.effect == other.candidate.effect && s.roles == other.candidate.roles;
+    });
+    return found == list_.end() ? nullptr : &*found;
+  }
+
+  [[nodiscard]] std::optional<ScreeningResult> score_at(const CandidateModel& candidate_model, const std::vector<double>& at,
+                                                        const RankedCandidate& other) const {
+    CellScore cell = score_cell(in_.estimate, score_, candidate_model, at);
+    if (cell.columns.size() == 0) return std::nullopt;
+    ScreeningResult out;
+    out.candidate_model = &candidate_model;
+    out.cell = at;
+    out.cells_effective = other.screening->cells_effective;
+    out.result = std::move(cell.result);
+    out.columns = std::move(cell.columns);
+    out.log_p = log_score_tail(candidate_model, out.result.chi2) + std::log(out.cells_effective);
+    return out;
+  }
+
   const Refit& in_;
   std::vector<CandidateModel> list_;
   ScoreTest score_;
@@ -94,6 +115,32 @@ CandidateModel with_quantities(CandidateModel candidate_model, const std::vector
   return candidate_model;
 }
 
+/// For a lag or a delay in the refitted model: another one of the plant that is still significant there, and worth a good part of `drop`.
+/// Then the past does count, but not in the form of either.
+std::optional<UnknownCurve> remaining_memory(const Refit& in, double drop, const std::vector<RankedCandidate>& ranked,
+                                             const SearchContext& context) {
+  std::optional<UnknownCurve> worst;
+  const ConditionalScores conditional(in, context);
+  for (const RankedCandidate& other : ranked) {
+    const CandidateModel& lag = *other.screening->candidate_model;
+    if (!lag.lags || lag.ports.empty() || !other.screening->runs || other.candidate.described) continue;
+    const std::optional<ScreeningResult> found = conditional.best_score(other);  // none of the effect that is in the model
+    if (!found || found->result.dof == 0) continue;
+    const double p = sidak(std::min(1.0, std::exp(found->log_p)), static_cast<double>(ranked.size()));
+    if (p > context.options.p_accept || found->result.chi2 - 2.0 * found->result.dof < least_share_of_drop * drop) continue;
+    if (worst && worst->log_p < found->log_p) continue;
+    UnknownCurve memory;
+    memory.port = lag.port_names.front();
+    memory.quantity = "the past of " + lag.model.system->spec().quantities[lag.quantities.front()].name;
+    memory.lag = label(other.candidate);
+    memory.result = found->result;
+    memory.log_p = found->log_p;
+    memory.p_value = p;
+    worst = std::move(memory);
+  }
+  return worst;
+}
+
 /// Step 4 of accept_best(), for one alias: another known effect that removes the lack of fit which `in` leaves.
 const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked,
                                          const SearchContext& context) {
@@ -110,6 +157,8 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   // The threshold stays a share of the drop of `in` alone, as in step 2: with the drop of both, a better second effect would allow more
   // lack of fit.
   const CandidateModel reads = with_quantities(*second.score.candidate_model, in.screening->candidate_model->quantities);
+  const bool lags = in.screening->candidate_model->lags || second.score.candidate_model->lags;
+  if (lags && remaining_memory(both, in.refit->drop, ranked, context)) return nullptr;
   return remaining_lack_of_fit(both.estimate, reads, in.refit->drop, options) ? nullptr : second.entry;
 }
 
@@ -239,11 +288,11 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
   std::vector<int> read;  // by the aliases
   for (const Place e : not_refused(ranked, context)) {
     const CandidateModel& candidate_model = *e->screening->candidate_model;
-    const auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), e->refit->drop, context.options);
+    auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), e->refit->drop, context.options);
+    if (!left && candidate_model.lags) left = remaining_memory(*e->refit, e->refit->drop, ranked, context);
     if (!left) return {e};
-    e->candidate.why = "lack of fit remains: with it in the model an unknown " + left->label() + " is still significant, " +
-                       p_equals(left->p_value) + ", worth " + format_value(left->result.chi2) + " beside its drop of " +
-                       format_value(e->refit->drop);
+    e->candidate.why = "lack of fit remains: with it in the model " + left->label() + " is still significant, " + p_equals(left->p_value) +
+                       ", worth " + format_value(left->result.chi2) + " beside its drop of " + format_value(e->refit->drop);
     aliases.push_back({e, *left});
     read.insert(read.end(), candidate_model.quantities.begin(), candidate_model.quantities.end());
   }

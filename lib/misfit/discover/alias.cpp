@@ -30,12 +30,28 @@ void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const 
   }
 }
 
+namespace {
+
+/// Quantities whose curves and surfaces tell whether an effect is what is missing: those that it reads. Lags, delays and what a sensor does
+/// follow the whole motion, and could stand for much of it: for them every quantity, and time.
+std::vector<int> quantities_that_tell(const CandidateModel& candidate_model) {
+  const bool remembers = !candidate_model.model.effects.back().effect->spec().states.empty();
+  const bool sensor = candidate_model.family == "sensor" && !candidate_model.has_priors;
+  if (!remembers && !sensor) return candidate_model.quantities;
+  std::vector<int> all = candidate_model.quantities;
+  for (int q = 0; q < int_size(candidate_model.model.system->spec().quantities); ++q) all.push_back(q);
+  all.push_back(kTime);
+  return all;
+}
+
+}  // namespace
+
 std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model, double drop,
                                                   const DiscoverOptions& options) {
   const ScoreTest score(with);
   const ForceSensitivity force(with);
   const ScoreWork work{with, score, force, options.threads};
-  const std::vector<int>& read = candidate_model.quantities;
+  const std::vector<int> read = quantities_that_tell(candidate_model);
   std::vector<UnknownCurve> after = unknown_curves(work);
   const double tests = static_cast<double>(after.size());
   std::erase_if(after, [&](const UnknownCurve& curve) { return place_of(read, curve.quantity_index) < 0; });
@@ -45,8 +61,7 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
   std::optional<UnknownCurve> worst;
   for (auto& curve : after) {
     curve.p_value = sidak(curve.p_value, all_tests);
-    constexpr double min_share = 0.2;  // of the candidate's drop
-    if (curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < min_share * drop) continue;
+    if (curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < least_share_of_drop * drop) continue;
     if (!worst || curve.log_p < worst->log_p) worst = curve;
   }
   return worst;

@@ -197,7 +197,9 @@ std::vector<int> ports_of_unknown_curves(const SystemSpec& system) {
 }
 
 std::string UnknownCurve::label() const {
-  return other.empty() ? "curve " + port + "(" + quantity + ")" : "surface " + port + "(" + quantity + ", " + other + ")";
+  if (!lag.empty()) return lag;
+  return other.empty() ? "an unknown curve " + port + "(" + quantity + ")"
+                       : "an unknown surface " + port + "(" + quantity + ", " + other + ")";
 }
 
 std::string UnknownCurve::quantities() const { return other.empty() ? quantity : quantity + " and " + other; }

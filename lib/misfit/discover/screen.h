@@ -59,10 +59,11 @@ struct UnknownCurve {
   std::string port, quantity;
   int port_index = 0, quantity_index = -1;
   std::string other;  ///< second quantity of a surface; empty: a curve
+  std::string lag;    ///< a lag or delay of the library that stands for a memory of unknown form, in place of hats; empty: there is none
   ScoreResult result;
   double log_p = 0.0, p_value = 1.0;
 
-  [[nodiscard]] std::string label() const;       ///< "curve dv/dt(v)", "surface dv/dt(v, u)"
+  [[nodiscard]] std::string label() const;       ///< "an unknown curve dv/dt(v)", "an unknown surface dv/dt(v, u)", "delay (input = u)"
   [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"
 };
 
