@@ -37,15 +37,15 @@ struct SearchContext {
 ///    The first reason that holds is noted.
 /// 2. The others come by what they gain, on the estimation's measurements and the held-out ones together (`gain_of`); those within 3 of
 ///    the best by the number of their parameters, then as in the list, but a lag, delay or limit of a sensor after the plant. Unknown
-///    curves are screened again with the candidate in the model (`remaining_lack_of_fit`). If none remains of a quantity that the
-///    candidate, or an alias before it, reads, it is chosen: the first such. Else it is an alias: an effect that may only imitate the
-///    missing one.
+///    curves and surfaces are screened again with the candidate in the model (`remaining_lack_of_fit`), and with a lag or delay the others
+///    (`remaining_memory`). If none remains of a quantity that the candidate, or an alias before it, reads (of any, if it lags or is a
+///    sensor's), it is chosen: the first such. Else it is an alias: an effect that may only imitate the missing one.
 /// 3. A choice is not made past a candidate with more than twice its drop (`not_past_a_larger_one`): if that is an alias it is accepted
 ///    first, since two effects are missing; if it is refused, none is accepted.
 /// 4. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, if each is
 ///    needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
 /// 5. The accepted one becomes the first of the list.
-/// 6. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 6, and neither has
+/// 6. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 10, and neither has
 ///    a significant score once the other is in the model.
 /// 7. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
 /// 8. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
