@@ -45,7 +45,8 @@ struct SearchContext {
 /// 4. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, if each is
 ///    needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
 /// 5. The accepted one becomes the first of the list.
-/// 6. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 10, and neither has
+/// 6. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 10, and neither
+/// has
 ///    a significant score once the other is in the model.
 /// 7. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
 /// 8. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
