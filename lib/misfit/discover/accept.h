@@ -46,8 +46,7 @@ struct SearchContext {
 ///    needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
 /// 5. The accepted one becomes the first of the list.
 /// 6. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 10, and neither
-/// has
-///    a significant score once the other is in the model.
+///    has a significant score once the other is in the model.
 /// 7. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
 /// 8. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
 ///    remains with the first alias, or with the best candidate if that is significant but was refused, provided that the best candidate has
