@@ -104,6 +104,11 @@ TEST(UnknownSurfaces, ShowAForceThatDependsOnTwoQuantitiesAndNothingWhereThereIs
   EXPECT_GT(chance, 0.01) << where;
 }
 
+TEST(CandidateModels, ThatLagAreThoseWithALinearMemory) {
+  for (const CandidateModel& c : with_friction(1.5).list)
+    EXPECT_EQ(c.lags, c.effect.ends_with("lag") || c.effect.ends_with("delay")) << c.effect;
+}
+
 /// Hysteresis catches a little of the friction and would be accepted by itself; the order is as if it had caught the most.
 TEST(NamedCandidate, WhatTheModelAllButDescribesIsDescribedUnlessTheRestIsBeyondDoubt) {
   const World world = with_friction(3.0);
