@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace misfit {
 namespace {
@@ -26,9 +27,10 @@ void add_hats(double value, const std::vector<double>& centre, Eigen::Index row,
   f(row, left + 1) += share;
 }
 
+constexpr double fewest_samples_of_hat = 25.0;
+
 /// Drops hats that hardly any sample touches.
 void drop_empty(Features& features) {
-  constexpr double fewest_samples_of_hat = 25.0;
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < features.f.cols(); ++i) {
     if (features.f.col(i).sum() >= fewest_samples_of_hat) kept.push_back(i);
@@ -95,6 +97,28 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSen
     take(hats(course, force.used(), most));
   }
   take(hats({"time", "s", -1, force.times(), force.times()}, force.used(), most));
+  return out;
+}
+
+Features products_of(const Features& a, const Features& b) {
+  Features out;
+  out.quantity = a.quantity;
+  out.index = a.index;
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> kept;
+  for (Eigen::Index i = 0; i < a.f.cols(); ++i) {
+    for (Eigen::Index j = 0; j < b.f.cols(); ++j) {
+      const double samples = a.f.col(i).dot(b.f.col(j));
+      if (samples < fewest_samples_of_hat) continue;
+      kept.emplace_back(i, j);
+      out.count.push_back(samples);
+    }
+  }
+  out.f = out.ahead = Eigen::MatrixXd(a.f.rows(), kept.size());
+  for (Eigen::Index k = 0; k < out.f.cols(); ++k) {
+    const auto [i, j] = kept[k];
+    out.f.col(k) = a.f.col(i).cwiseProduct(b.f.col(j));
+    out.ahead.col(k) = a.ahead.col(i).cwiseProduct(b.ahead.col(j));
+  }
   return out;
 }
 

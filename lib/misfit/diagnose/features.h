@@ -20,4 +20,7 @@ struct Features {
 /// % to 99.5 % of the visited values (ends extended); hats with fewer than 25 samples under them are left out.
 [[nodiscard]] std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most = 10);
 
+/// Products of two families of hats, `quantity` and `index` of the first; those with fewer than 25 samples under them are left out.
+[[nodiscard]] Features products_of(const Features& a, const Features& b);
+
 }  // namespace misfit

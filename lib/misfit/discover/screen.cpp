@@ -220,28 +220,6 @@ UnknownCurve unknown_force(const ScoreWork& work, int port, const Features& f) {
   return out;
 }
 
-/// Products of two families of hats; those that hardly any sample touches left out.
-Features products(const Features& a, const Features& b) {
-  Features out;
-  out.quantity = a.quantity;
-  out.index = a.index;
-  constexpr double fewest_samples = 25.0;
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> kept;
-  for (Eigen::Index i = 0; i < a.f.cols(); ++i) {
-    for (Eigen::Index j = 0; j < b.f.cols(); ++j) {
-      if (a.f.col(i).dot(b.f.col(j)) >= fewest_samples) kept.emplace_back(i, j);
-    }
-  }
-  out.f = out.ahead = Eigen::MatrixXd(a.f.rows(), kept.size());
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    const auto [i, j] = kept[k];
-    const Eigen::Index column = static_cast<Eigen::Index>(k);
-    out.f.col(column) = a.f.col(i).cwiseProduct(b.f.col(j));
-    out.ahead.col(column) = a.ahead.col(i).cwiseProduct(b.ahead.col(j));
-  }
-  return out;
-}
-
 }  // namespace
 
 std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress) {
@@ -268,7 +246,7 @@ std::vector<UnknownCurve> unknown_surfaces(const ScoreWork& work, const std::vec
   std::vector<UnknownCurve> out(pairs.size() * ports.size());
   run_jobs(out.size(), work.threads, [&](std::size_t k) {
     const auto [a, b] = pairs[k / ports.size()];
-    out[k] = unknown_force(work, ports[k % ports.size()], products(features[a], features[b]));
+    out[k] = unknown_force(work, ports[k % ports.size()], products_of(features[a], features[b]));
     out[k].other = features[b].quantity;
   });
   return out;
