@@ -65,12 +65,13 @@ void Progress::update(const SearchState& state) {
   if (!visible_) return;
   const std::lock_guard lock(mutex_);
   if (!due(false)) return;
-  if (as_lines())
+  if (as_lines()) {
     return print_line({{"progress", state.work},
                        {"iteration", state.iteration},
                        {"what", state.what},
                        {"value", state.value},
                        {"left", state.left ? nlohmann::ordered_json(*state.left) : nlohmann::ordered_json()}});
+  }
   const std::string left = state.left ? ", at most " + time_left(*state.left) : "";
   fmt::print(stderr, "{}{}  iteration {}, {} {:.8g}, {:.0f} s{}", clear_line, printable(state.work), state.iteration, state.what,
              state.value, std::floor(state.seconds), left);

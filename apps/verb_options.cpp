@@ -270,20 +270,20 @@ VerbManual manual_of(const VerbText& text) {
   return out;
 }
 
-bool read_options(const std::string& name, const std::vector<std::string>& words, Options& options) {
-  CLI::App verb("", name);
-  entry_of(name).add_options(verb, options);
+bool read_options(const std::string& verb, const std::vector<std::string>& words, Options& options) {
+  CLI::App parser("", verb);
+  entry_of(verb).add_options(parser, options);
   std::vector<std::string> last_first(words.rbegin(), words.rend());  // as CLI11 wants them
   try {
-    verb.parse(last_first);
+    parser.parse(last_first);
   } catch (const CLI::CallForHelp&) {
     return false;
   } catch (const CLI::ParseError& error) {
-    refuse_words(verb, words, error);
+    refuse_words(parser, words, error);
   }
   return true;
 }
 
-int call_verb(std::string_view name, const Options& options, const Registry& registry) { return entry_of(name).call(options, registry); }
+int call_verb(std::string_view verb, const Options& options, const Registry& registry) { return entry_of(verb).call(options, registry); }
 
 }  // namespace misfit

@@ -53,7 +53,7 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
   const ScoreWork work{with, score, force, options.threads};
   const std::vector<int> read = quantities_that_tell(candidate_model);
   std::vector<UnknownCurve> after = unknown_curves(work);
-  const double tests = static_cast<double>(after.size());
+  const auto tests = static_cast<double>(after.size());
   std::erase_if(after, [&](const UnknownCurve& curve) { return place_of(read, curve.quantity_index) < 0; });
   std::vector<UnknownCurve> surfaces = unknown_surfaces(work, read);
   const double all_tests = tests + static_cast<double>(surfaces.size());

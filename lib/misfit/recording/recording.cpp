@@ -240,8 +240,8 @@ class ColumnClassifier {
     }
   }
 
-  static constexpr double held_share_ = 0.5;
-  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.held > held_share_; }
+  static constexpr double held_share = 0.5;
+  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.held > held_share; }
 
   void find_inputs_and_outputs() {
     std::vector<std::size_t> open;
@@ -257,7 +257,7 @@ class ColumnClassifier {
       if (may_be_input && is_called_input(c.name)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
-      } else if (may_be_input && c.held > held_share_) {
+      } else if (may_be_input && c.held > held_share) {
         c.use = ColumnUse::input;
         c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "misfit/math/statistics.h"
 
@@ -34,7 +35,7 @@ struct LightPoint {
 
 double relative(int i, int n) { return n > 1 ? 2.0 * i / (n - 1) - 1.0 : 0.0; }
 
-double robust_scale(std::vector<double> sizes) { return std::max(1.4826 * median(sizes), 0.7); }
+double robust_scale(std::vector<double> sizes) { return std::max(1.4826 * median(std::move(sizes)), 0.7); }
 
 /// Tukey's weight, c = 4.7 robust standard deviations.
 double weight_of(double residual, double scale) {
@@ -93,13 +94,29 @@ float most_common(std::vector<std::uint8_t>& values) {
   return sum / static_cast<float>(count);
 }
 
+std::vector<float> medians(const std::vector<ColourImage>& samples) {
+  std::vector<float> out(samples.front().bgr.size());
+  std::vector<std::uint8_t> values(samples.size());
+  for (std::size_t at = 0; at < out.size(); ++at) {
+    for (std::size_t k = 0; k < samples.size(); ++k) values[k] = samples[k].bgr[at];
+    out[at] = median_byte(values);
+  }
+  return out;
+}
+
+/// A pixel's value divided by the gain of its row (along_row) at the relative column x.
+std::uint8_t in_base_light(std::uint8_t value, const std::array<float, 3>& row, float x) {
+  const float gain = row[0] + x * (row[1] + x * row[2]);
+  return static_cast<std::uint8_t>(std::clamp(static_cast<float>(value) / gain + 0.5F, 0.0F, 255.0F));
+}
+
 }  // namespace
 
 Background::Background(const std::vector<ColourImage>& samples) {
   if (samples.size() < min_samples) throw std::logic_error("a background needs five frames");
   width_ = samples.front().width;
   height_ = samples.front().height;
-  learn_base(samples, {});
+  base_ = medians(samples);
   std::vector<std::array<LightGain, 3>> gains;
   for (const ColourImage& s : samples) gains.push_back(light_of(s));
   learn_base(samples, gains);
@@ -118,7 +135,7 @@ void Background::set_contrast(double contrast) {
   }
 }
 
-/// Medians of the samples as they are; what most of them share once they are brought to one light.
+/// What most of the samples share once they are brought to one light.
 void Background::learn_base(const std::vector<ColourImage>& samples, const std::vector<std::array<LightGain, 3>>& gains) {
   std::vector<float> base(samples.front().bgr.size());
   std::vector<std::uint8_t> values(samples.size());
@@ -130,12 +147,8 @@ void Background::learn_base(const std::vector<ColourImage>& samples, const std::
       const auto x = static_cast<float>(relative(i, width_));
       for (std::size_t c = 0; c < 3; ++c) {
         const std::size_t at = samples.front().at(i, r) + c;
-        for (std::size_t k = 0; k < samples.size(); ++k) {
-          const auto& q = rows[k][c];
-          const float gain = gains.empty() ? 1.0F : q[0] + x * (q[1] + x * q[2]);
-          values[k] = static_cast<std::uint8_t>(std::clamp(samples[k].bgr[at] / gain + 0.5F, 0.0F, 255.0F));
-        }
-        base[at] = gains.empty() ? median_byte(values) : most_common(values);
+        for (std::size_t k = 0; k < samples.size(); ++k) values[k] = in_base_light(samples[k].bgr[at], rows[k][c], x);
+        base[at] = most_common(values);
       }
     }
   }

@@ -211,11 +211,12 @@ std::vector<std::string> notes_of(const VideoFacts& facts) {
   if (facts.missing > 0)
     notes.push_back(
         fmt::format("{}: {} frames are missing between others, as its timestamps show: their samples are lost", facts.file, facts.missing));
-  if (facts.variable)
+  if (facts.variable) {
     notes.push_back(
         fmt::format("{}: its frames do not follow each other at a constant rate: every sample has the time that the file gives "
                     "its frame (in the mean {:.4g} frames/s)",
                     facts.file, facts.rate));
+  }
   if (facts.repeated > 0) notes.push_back(fmt::format("{}: {} frames are exact copies of the frame before", facts.file, facts.repeated));
   return notes;
 }

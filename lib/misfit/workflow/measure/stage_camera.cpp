@@ -99,10 +99,11 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
       out.emplace_back();
       continue;
     }
-    if (!calibration)
+    if (!calibration) {
       throw InputError(experiment.where,
                        "experiment '" + experiment.name + "' is a track in pixels: the study needs [camera] (sweep = \"…\", or h_c and K)" +
                            std::string(experiment.video ? ", or the system outputs called x_px, y_px (column and row in the film)" : ""));
+    }
     require_rig(session.study, session.model.rig, false);
     const fs::path file = attitude_file(session, e), notes = fs::path(file).replace_extension(".notes.txt");
     std::string settings = settings_of(session);
