@@ -89,7 +89,7 @@ TEST(Number, RefusesWhatIsNoFiniteNumber) {
 }
 
 TEST(Message, StaysShortWhateverTheText) {
-  const std::string big(10'000'000, 'x');
+  const std::string big(8'000'000, 'x');
   const auto number = [](const Section& s) { (void)s.number("D", "m"); };
   const std::vector<std::string> messages{
       error_of("D = \"" + big + "\"\n", number),

@@ -102,5 +102,43 @@ TEST(ForceSensitivity, OfAConstantIsTheColumnOfAConstantForce) {
   EXPECT_NEAR(force.score_of_steps(0).sum(), -columns.col(0).dot(jacobian.r), 1e-6 * columns.norm() * jacobian.r.norm());
 }
 
+ParameterRequest start(double value, bool free) {
+  ParameterRequest out;
+  out.value = value;
+  out.free = free;
+  return out;
+}
+
+FilterEstimate fitted(const std::vector<Signals>& recordings, const EffectRequest& added,
+                      const std::map<std::string, ParameterRequest>& parameters) {
+  ModelRequest request = cart({added});
+  request.parameters = parameters;
+  FilterOptions options;
+  options.verify = false;
+  return estimate_filter(assemble(request, registry()), {}, recordings, options);
+}
+
+/// The only free parameter's column in the whitened derivatives.
+Eigen::VectorXd free_column(const FilterEstimate& estimate) { return estimate.jacobians.at(0).J.col(0); }
+
+TEST(ForceSensitivity, OfAConstantErrorIsTheColumnOfABias) {
+  const std::vector<Signals> recordings = {Cart(300).signals};
+  const FilterEstimate estimate = fitted(recordings, effect("bias", {{"output", "speed_reading"}}), {{"offset", start(0.0, true)}});
+  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(300, 1);
+  const Eigen::MatrixXd columns = ForceSensitivity(estimate).output_columns(1, ones, ones);
+  EXPECT_LT((columns - free_column(estimate)).norm(), 1e-8 * columns.norm());
+}
+
+/// dz/dt = (u - z)/tau, by tau: -(dz/dt)/tau.
+TEST(ForceSensitivity, OfTheRateOfALagIsTheColumnOfItsTimeConstant) {
+  const std::vector<Signals> recordings = {Cart(300).signals};
+  const FilterEstimate estimate = fitted(recordings, effect("input_lag", {{"input", "drive"}, {"port", "force"}}),
+                                         {{"lagged_gain", start(5.0, false)}, {"input_tau", start(0.3, true)}});
+  const ForceSensitivity force(estimate);
+  const double tau = estimate.model.parameters[estimate.model.find_parameter("input_tau")].value;
+  const Eigen::MatrixXd columns = force.own_rate_columns(0, -force.own_rates() / tau);
+  EXPECT_LT((columns - free_column(estimate)).norm(), 0.02 * columns.norm()) << "to second order in h/tau = 0.07";
+}
+
 }  // namespace
 }  // namespace misfit

@@ -66,7 +66,7 @@ const Candidate& of(const std::vector<RankedCandidate>& ranked, const std::strin
 }
 
 bool leaves_something(const RankedCandidate& e, const World& world) {
-  return remaining_lack_of_fit(e.refit->estimate, *e.screening->candidate_model, e.refit->drop, world.options).has_value();
+  return remaining_lack_of_fit(e.refit->estimate, *e.screening->candidate_model, {e.refit->drop}, world.options).has_value();
 }
 
 /// A cart whose damping grows with its position: on the mean over the motion neither position nor speed alone shows it.
@@ -102,6 +102,36 @@ TEST(UnknownSurfaces, ShowAForceThatDependsOnTwoQuantitiesAndNothingWhereThereIs
     EXPECT_GT(curve.p_value, p) << curve.label();
   const auto [chance, where] = most_significant_surface(even);
   EXPECT_GT(chance, 0.01) << where;
+}
+
+TEST(UnknownErrors, AreThoseOfTheOutputThatIsWrongAndOfWhatItDependsOn) {
+  Signals recorded = record_of_cart({}, {});
+  for (std::size_t k = 0; k < recorded.samples(); ++k)
+    recorded.measured[0].values[k] += 0.004 * std::pow(recorded.measured[1].values[k], 2);  // position, by the square of the speed
+  const World world(std::move(recorded));
+  const ScoreTest score(world.estimate);
+  const ForceSensitivity force(world.estimate);
+  const std::vector<UnknownCurve> errors = unknown_errors({world.estimate, score, force});
+  const auto best = std::min_element(errors.begin(), errors.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
+  EXPECT_EQ(best->label(), "an error of position_reading that depends on v");
+  EXPECT_LT(best->p_value, 1e-6);
+  for (const UnknownCurve& curve : unknown_curves({world.estimate, score, force})) EXPECT_GT(curve.p_value, best->p_value);
+  const World right = with_friction(0.0);
+  for (const UnknownCurve& error : unknown_errors({right.estimate, ScoreTest(right.estimate), ForceSensitivity(right.estimate)}))
+    EXPECT_GT(error.p_value, 1e-3) << error.label();
+}
+
+/// The drive follows what is asked for at a limited rate: not as a lag does, of which the rate is in proportion to what is left.
+TEST(Accept, ALagThatIsOfAnotherFormIsAnAlias) {
+  const auto limited = [](double last, double asked) { return last + std::clamp(asked - last, -2.0, 2.0); };  // 40 N/s
+  const World slow(record_of_cart({}, {}, 41, limited));
+  const RankedCandidate lag = slow.entry("input_lag");
+  const auto left = remaining_lack_of_fit(lag.refit->estimate, *lag.screening->candidate_model, {lag.refit->drop}, slow.options);
+  ASSERT_TRUE(left.has_value());
+  EXPECT_LT(left->p_value, 1e-6) << left->label();
+  double last = 0.0;
+  const World late(record_of_cart({}, {}, 41, [&](double, double asked) { return last += 0.2 * (asked - last); }));  // 0.22 s
+  EXPECT_FALSE(leaves_something(late.entry("input_lag"), late));
 }
 
 TEST(CandidateModels, ThatLagAreThoseWithALinearMemory) {

@@ -20,22 +20,20 @@ using testing::StartsWith;
 class UnfinishedDiscovery : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    signals_ = new std::vector<Signals>{fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}})};
-    request_ = new ModelRequest(request_for(*signals_));
-    estimate_ = new FilterEstimate(fitted(*request_, *signals_));
+    signals = new std::vector<Signals>{fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}})};
+    request = new ModelRequest(request_for(*signals));
+    estimate = new FilterEstimate(fitted(*request, *signals));
   }
   static void TearDownTestSuite() {
-    delete estimate_;
-    delete request_;
-    delete signals_;
+    delete estimate;
+    delete request;
+    delete signals;
   }
-  static Discovery discover(const DiscoverOptions& options) {
-    return misfit::discover(*estimate_, *request_, registry(), *signals_, options);
-  }
+  static Discovery discover(const DiscoverOptions& options) { return misfit::discover(*estimate, *request, registry(), *signals, options); }
 
-  inline static std::vector<Signals>* signals_ = nullptr;
-  inline static ModelRequest* request_ = nullptr;
-  inline static FilterEstimate* estimate_ = nullptr;
+  inline static std::vector<Signals>* signals = nullptr;
+  inline static ModelRequest* request = nullptr;
+  inline static FilterEstimate* estimate = nullptr;
 };
 
 TEST_F(UnfinishedDiscovery, ARefitWithoutTimeSaysNothingAgainstItsEffect) {

@@ -40,9 +40,9 @@ class HostileText : public testing::TestWithParam<Hostile> {
     static_cast<void>(read_model(study, *known));
   }
 
-  static constexpr const char* study_ =
+  static constexpr const char* study_toml =
       "[system]\nfile = \"tank.toml\"\n[[experiment]]\ndata = \"d.csv\"\ncolumns = { t = \"t\", y = \"level\" }\n[effects]\n";
-  static constexpr const char* system_ =
+  static constexpr const char* system_toml =
       "[system]\ndoc = \"a tank\"\n[states]\nx = { unit = \"V\" }\n[inputs]\nu = { unit = \"V\" }\nu_rate = { unit = \"V/s\" }\n"
       "swell_rate = { unit = \"V/s\" }\n[parameters]\nk = { unit = \"1/s\", value = 1 }\n"
       "[equations]\nx = \"-k*x + k*u + u_rate + swell_rate\"\n[outputs]\ny = { formula = \"x\", unit = \"V\" }\n";
@@ -50,9 +50,9 @@ class HostileText : public testing::TestWithParam<Hostile> {
 
 TEST_F(HostileText, KnotsHaveTheUnitOfTheirQuantity) {
   const std::string curve = "[curves]\nc = { of = \"x\", knots = [0, \"500 mV\", \"1 V\"] }\n";
-  read(study_ + curve, system_);
+  read(study_toml + curve, system_toml);
   const std::string message =
-      message_of<InputError>([&] { read(study_ + std::string("[curves]\nc = { of = \"x\", knots = [0, \"1 s\"] }\n"), system_); });
+      message_of<InputError>([&] { read(study_toml + std::string("[curves]\nc = { of = \"x\", knots = [0, \"1 s\"] }\n"), system_toml); });
   expect_parts(message, {"study.toml:8", "knots need [V], not [s]"});
 }
 
@@ -68,27 +68,27 @@ void expect_told(const std::string& message, const Hostile& hostile) {
 }
 
 TEST_P(HostileStudyOfASystem, IsRefusedAtItsPlace) {
-  const std::string text = replaced(study_, GetParam().what, GetParam().by);
-  expect_told(message_of<InputError>([&] { read(text, system_); }), GetParam());
+  const std::string text = replaced(study_toml, GetParam().what, GetParam().by);
+  expect_told(message_of<InputError>([&] { read(text, system_toml); }), GetParam());
 }
 
 TEST_P(HostileSystem, IsRefusedAtItsPlace) {
-  const std::string text = replaced(system_, GetParam().what, GetParam().by);
-  expect_told(message_of<InputError>([&] { read(study_, text); }), GetParam());
+  const std::string text = replaced(system_toml, GetParam().what, GetParam().by);
+  expect_told(message_of<InputError>([&] { read(study_toml, text); }), GetParam());
 }
 
-TEST_F(HostileText, TheTextsAreRightAsTheyStand) { EXPECT_NO_THROW(read(study_, system_)); }
+TEST_F(HostileText, TheTextsAreRightAsTheyStand) { EXPECT_NO_THROW(read(study_toml, system_toml)); }
 
 TEST_F(HostileText, EveryColumnThatMayBeReadCanBeNamed) {
   const std::string columns = "columns = { t = \"t\", y = \"l\", u = \"u\", u_rate = \"v\", swell_rate = \"w\", swell = \"s\" }";
-  EXPECT_NO_THROW(read(replaced(study_, "columns = { t = \"t\", y = \"level\" }", columns), system_));
+  EXPECT_NO_THROW(read(replaced(study_toml, "columns = { t = \"t\", y = \"level\" }", columns), system_toml));
 }
 
 /// A ladder that goes on with another system keeps the columns of its recordings.
 TEST_F(HostileText, AColumnOfAnotherSystemOfTheProgramMayBeNamed) {
-  const std::string by_kind = replaced(study_, "file = \"tank.toml\"", "kind = \"cascaded_tanks\"");
-  EXPECT_NO_THROW(read(replaced(by_kind, "y = \"level\"", "alpha_T = \"level\", eta = \"level\""), system_));
-  expect_parts(message_of<InputError>([&] { read(replaced(by_kind, "y = \"level\"", "alphaT = \"level\""), system_); }),
+  const std::string by_kind = replaced(study_toml, "file = \"tank.toml\"", "kind = \"cascaded_tanks\"");
+  EXPECT_NO_THROW(read(replaced(by_kind, "y = \"level\"", "alpha_T = \"level\", eta = \"level\""), system_toml));
+  expect_parts(message_of<InputError>([&] { read(replaced(by_kind, "y = \"level\"", "alphaT = \"level\""), system_toml); }),
                {"study.toml:5:22", "columns.alphaT", "'cascaded_tanks'"});
 }
 

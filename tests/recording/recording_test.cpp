@@ -159,7 +159,10 @@ TEST(Recording, DatesAreATimeInSeconds) {
 }
 
 TEST(Recording, AnIdSplitsAndIsNoInputAlsoWhereRowsAlternate) {
-  const auto row = [](int k) { return fmt::format("{},{},{}", 0.1 * (k / 2), k % 2 + 1, std::sin(0.1 * k)); };
+  const auto row = [](int k) {
+    const int step = k / 2;
+    return fmt::format("{},{},{}", 0.1 * step, k % 2 + 1, std::sin(0.1 * k));
+  };
   const RecordingSurvey s = survey(rows("t_s,id,y", 60, row));
   EXPECT_EQ(column(s, "id").use, ColumnUse::segment);
   ASSERT_EQ(s.parts.size(), 2U);

@@ -101,7 +101,7 @@ TEST(CommandsOfThePage, AreNotWrittenThroughLinks) {
   EXPECT_EQ(server.post("/api/job", {{"verb", "fit"}}).status, 500);
   EXPECT_EQ(server.job()["state"], "none") << "nothing is done that cannot be recorded";
   EXPECT_EQ(content(study.path("elsewhere")), "mine\n");
-  EXPECT_EQ(content(study.path("real.toml")), shown["text"]);
+  EXPECT_EQ(content(study.path("real.toml")), shown["text"].get<std::string>());
 }
 
 void run_to_the_first_fit(PageServer& server, const OscillatorStudy& study) {

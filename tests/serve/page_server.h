@@ -115,7 +115,7 @@ class PageServer {
   /// As Ctrl-C.
   Outcome end() {
     ::kill(child_, SIGINT);
-    const Outcome outcome = finish(captured_.path(), child_);
+    Outcome outcome = finish(captured_.path(), child_);
     child_ = 0;
     return outcome;
   }

@@ -77,8 +77,9 @@ inline Colour pixel(const Swing& s, int column, int row, double t) {
   constexpr int across = 4, times = 4;
   Colour sum{};
   for (int k = 0; k < across * across * times; ++k) {
-    const double x = column + (k % across + 0.5) / across - 0.5, y = row + (k / across % across + 0.5) / across - 0.5;
-    const double when = t + s.exposure * ((k / (across * across) + 0.5) / times - 0.5);
+    const int right = k % across, down = k / across % across, later = k / (across * across);
+    const double x = column + (right + 0.5) / across - 0.5, y = row + (down + 0.5) / across - 0.5;
+    const double when = t + s.exposure * ((later + 0.5) / times - 0.5);
     const Colour c = point(s, x, y, when);
     for (std::size_t i = 0; i < 3; ++i) sum[i] += c[i] / (across * across * times);
   }

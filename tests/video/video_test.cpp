@@ -143,7 +143,7 @@ TEST(Video, FramesHaveTheTimesOfTheFile) {
   EXPECT_TRUE(video.facts().variable);
   long n = 0, timed = 0;
   while (auto frame = video.next()) {
-    const double k = static_cast<double>(n);  // what ffprobe prints, to 11 us
+    const auto k = static_cast<double>(n);  // what ffprobe prints, to 11 us
     const double truth = k / 30.0 + 0.008 * std::sin(1.3 * k) + (k > 60.0 ? (k - 60.0) / 60.0 : 0.0);
     EXPECT_NEAR(frame->time.value_or(truth), truth, 2e-5) << n;
     timed += frame->time ? 1 : 0;

@@ -85,31 +85,9 @@ class Draws {
   }
 
   std::string unit() {
-    static const std::vector<std::string> units{"[V]",
-                                                "[m/s^2]",
-                                                "[deg]",
-                                                "[furlong]",
-                                                "",
-                                                "[]",
-                                                "[%]",
-                                                "[kN]",
-                                                "[V^13]",
-                                                "[m^0.5]",
-                                                "[1/s]",
-                                                "[N m]",
-                                                "[Nm]",
-                                                "(kPa)",
-                                                "[min]",
-                                                "[deg/s]",
-                                                "[mV]",
-                                                "[\xC2\xB0"
-                                                "C]",
-                                                "[10^3 V]",
-                                                "[-]",
-                                                "[km/h]",
-                                                "[V]]",
-                                                "_V",
-                                                "_deg_s"};
+    static const std::vector<std::string> units{"[V]",    "[m/s^2]", "[deg]",    "[furlong]", "",       "[]",    "[%]",   "[kN]",
+                                                "[V^13]", "[m^0.5]", "[1/s]",    "[N m]",     "[Nm]",   "(kPa)", "[min]", "[deg/s]",
+                                                "[mV]",   "[°C]",    "[10^3 V]", "[-]",       "[km/h]", "[V]]",  "_V",    "_deg_s"};
     return of(units);
   }
 
@@ -171,8 +149,7 @@ class Draws {
                                                 "$(x).csv",
                                                 "#.csv",
                                                 "a{b.csv",
-                                                "a\x01"
-                                                "b.csv",
+                                                "a\001b.csv",
                                                 "a,b.csv",
                                                 "%s.csv",
                                                 "study.csv",

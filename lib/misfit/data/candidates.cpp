@@ -20,13 +20,17 @@ template <class Archive>
 void fields(Archive& json, MaybeConst<Discovery> auto& d) {
   json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("force", d.force);
   json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
-  json("sweep_asks", d.sweep_asks), json("seconds", d.seconds);
+  json("unexplained_error", d.unexplained_error), json("sweep_asks", d.sweep_asks), json("seconds", d.seconds);
 }
 
 std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles) {
   std::string bindings;
   for (const auto& [role, target] : roles) bindings += (bindings.empty() ? "" : ", ") + role + " = " + target;
   return bindings.empty() ? effect : effect + " (" + bindings + ")";
+}
+
+std::string unexplained_place(const Discovery& discovery) {
+  return (discovery.unexplained_error ? "an error of " : "a force on ") + discovery.unexplained_port;
 }
 
 void write_discovery(const std::filesystem::path& dir, const Discovery& discovery) {

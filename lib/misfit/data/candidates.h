@@ -47,9 +47,13 @@ struct Discovery {
   std::map<std::string, Estimate> force;  ///< random force before
   std::string unexplained_port,
       unexplained_quantity;             ///< where a force of unknown form depends on what, if that is the verdict; else empty
+  bool unexplained_error = false;       ///< not a force: an error of the output unexplained_port
   std::vector<std::string> sweep_asks;  ///< camera parameters that the calibration sweep asks for and the camera of the study does not have
   double seconds = 0.0;
 };
+
+/// "a force on dw/dt", "an error of V".
+[[nodiscard]] std::string unexplained_place(const Discovery& discovery);
 
 /// candidates.json (an array) and discovery.json (verdict, sentences, tried).
 void write_discovery(const std::filesystem::path& dir, const Discovery& discovery);

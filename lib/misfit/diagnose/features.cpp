@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "misfit/core/lists.h"
+#include "misfit/core/units.h"
+
 namespace misfit {
 namespace {
 
@@ -97,6 +100,31 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSen
     take(hats(course, force.used(), most));
   }
   take(hats({"time", "s", -1, force.times(), force.times()}, force.used(), most));
+  return out;
+}
+
+std::vector<Features> features_of_own_states(const FilterEstimate& estimate, const ForceSensitivity& force, int most, int effects) {
+  std::vector<Features> out;
+  const Model& model = estimate.model;
+  const auto take = [&](const Course& course) {
+    Features features = hats(course, force.used(), most);
+    if (features.centre.size() >= 3) out.push_back(std::move(features));
+  };
+  int count = 0;
+  for (int e = std::max(int_size(model.effects) - effects, 0); e < int_size(model.effects); ++e)
+    count += int_size(model.effects[e].effect->spec().states);
+  for (int i = int_size(model.own_states) - count; i < int_size(model.own_states); ++i) {
+    Course state{model.own_state_names[i], model.own_state_units[i], i};
+    for (const FilterTrace& trace : estimate.traces) {
+      for (std::size_t k = 0; k < trace.samples; ++k) state.values.push_back(trace.filtered(k)[model.system_states() + i]);
+    }
+    state.ahead = state.values;
+    Course rate{"d(" + state.quantity + ")/dt", rate_unit(state.unit), i};
+    const Eigen::VectorXd rates = force.own_rates().col(i);
+    rate.values = rate.ahead = {rates.begin(), rates.end()};
+    take(state);
+    take(rate);
+  }
   return out;
 }
 

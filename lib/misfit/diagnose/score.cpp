@@ -155,6 +155,8 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
   std::size_t all = 0;
   for (const auto& trace : estimate.traces) all += trace.samples;
   quantities_ = ahead_ = RowMatrix::Zero(all, nq);
+  const Eigen::Index system = estimate.model.system_states(), own = estimate.model.own_states.size();
+  own_rates_ = RowMatrix::Zero(all, own);
   used_.assign(all, false);
   std::vector<double> D(N * kRowStride);
   Slots slots;
@@ -174,6 +176,7 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
       if (k + 1 == trace.samples) break;
       if (!stepper.step_linear(x.data(), interval_after({stepper, signals, data.inputs}, k), slots, D.data())) break;
       values.quantities(x.data(), data.inputs.at(k + 1), signals.t[k + 1], ahead_.row(offset + k).data());
+      own_rates_.row(offset + k) = (x - trace.filtered(k)).segment(system, own).transpose() / (signals.t[k + 1] - signals.t[k]);
       for (std::size_t i = 0; i < N; ++i) {
         for (int c = 0; c < slots.count(); ++c) G_.back()[(k * N + i) * NF + slots.column(c)] = D[i * kRowStride + N + c];
       }
@@ -182,27 +185,39 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
   }
 }
 
-Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
-  const Eigen::Index m = f.cols();
-  RowMatrix out(counted_rows(estimate_), m);
+namespace {
+
+/// A sample of an experiment, and its place among those of all.
+struct SamplePlace {
+  std::size_t experiment = 0, sample = 0;
+  Eigen::Index of_all = 0;
+};
+
+/// Response of the whitened residuals to m disturbances, the gains held: `to_output(place, output, v)` adds them to the prediction of an
+/// output, `to_states(place, s)` to the states at the end of the step that follows a sample.
+template <class ToOutput, class ToStates>
+Eigen::MatrixXd response(const FilterEstimate& estimate, Eigen::Index m, const ToOutput& to_output, const ToStates& to_states) {
+  RowMatrix out(counted_rows(estimate), m);
   Eigen::Index row = 0;
   std::size_t offset = 0;
-  for (std::size_t e = 0; e < estimate_.traces.size(); ++e) {
-    const FilterTrace& trace = estimate_.traces[e];
-    const FilterData& data = estimate_.data[e];
-    const std::size_t N = trace.n, NY = trace.ny, NF = ports_;
+  for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
+    const FilterTrace& trace = estimate.traces[e];
+    const FilterData& data = estimate.data[e];
+    const std::size_t NY = trace.ny;
     const Eigen::Index n = trace.n, ny = trace.ny;
     RowMatrix s = RowMatrix::Zero(n, m), jitter = RowMatrix::Zero(2 * ny, m), work(n, m);
-    Eigen::RowVectorXd v(m), mean(m);
+    Eigen::RowVectorXd v(m);
     double last_h = -1.0;
     NoiseStep noise;
     for (std::size_t k = data.first; k < trace.samples; ++k) {
       look_at_watch();
+      const SamplePlace place{e, k, static_cast<Eigen::Index>(offset + k)};
       for (std::size_t o = 0; o < NY; ++o) {
         const std::size_t at = trace.place(k, o);
         if (data.use[at] == SampleRole::none) continue;
         v.noalias() = trace.H_at(at).transpose() * s;
         v += jitter.row(2 * o);
+        to_output(place, static_cast<int>(o), v);
         if (data.use[at] == SampleRole::counted) out.row(row++) = v / std::sqrt(trace.S[at]);
         s.noalias() -= trace.K_at(at) * v;
         jitter.noalias() -= trace.Kj_at(at) * v;
@@ -210,16 +225,11 @@ Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, co
       if (k + 1 == trace.samples) break;
       const double h = data.signals->t[k + 1] - data.signals->t[k];
       if (std::abs(h - last_h) > 1e-9 * h) {
-        noise = discretise(estimate_.noise, h);
+        noise = discretise(estimate.noise, h);
         last_h = h;
       }
-      const Eigen::Index sample = offset + k;
-      mean = 0.5 * (f.row(sample) + ahead.row(sample));
       work.noalias() = trace.Phi_at(k) * s;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const double gain = G_[e][(k * N + i) * NF + port];
-        if (gain != 0.0) work.row(i) += gain * mean;
-      }
+      to_states(place, work);
       s.swap(work);
       for (Eigen::Index o = 0; o < ny; ++o) {
         const auto& p = noise.jitter[o].phi;
@@ -231,6 +241,49 @@ Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, co
     offset += trace.samples;
   }
   return out;
+}
+
+constexpr auto no_output = [](const SamplePlace&, int, Eigen::RowVectorXd&) {};
+constexpr auto no_state = [](const SamplePlace&, RowMatrix&) {};
+
+}  // namespace
+
+Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
+  Eigen::RowVectorXd mean(f.cols());
+  const std::size_t NF = ports_;
+  return response(estimate_, f.cols(), no_output, [&](const SamplePlace& at, RowMatrix& s) {
+    mean = 0.5 * (f.row(at.of_all) + ahead.row(at.of_all));
+    const std::size_t first = at.sample * static_cast<std::size_t>(s.rows());
+    for (Eigen::Index i = 0; i < s.rows(); ++i) {
+      const double gain = G_[at.experiment][(first + static_cast<std::size_t>(i)) * NF + port];
+      if (gain != 0.0) s.row(i) += gain * mean;
+    }
+  });
+}
+
+Eigen::MatrixXd ForceSensitivity::output_columns(int output, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
+  return response(
+      estimate_, f.cols(),
+      [&](const SamplePlace& at, int o, Eigen::RowVectorXd& v) {
+        if (o != output) return;
+        if (at.sample == estimate_.data[at.experiment].first) {
+          v += f.row(at.of_all);
+        } else {
+          v += ahead.row(at.of_all - 1);
+        }
+      },
+      no_state);
+}
+
+Eigen::MatrixXd ForceSensitivity::own_rate_columns(int own_state, const Eigen::MatrixXd& f) const {
+  const Eigen::Index state = estimate_.model.system_states() + own_state;
+  Eigen::VectorXd gain;
+  return response(estimate_, f.cols(), no_output, [&](const SamplePlace& at, RowMatrix& s) {
+    const std::vector<double>& t = estimate_.data[at.experiment].signals->t;
+    gain = estimate_.traces[at.experiment].Phi_at(at.sample).col(state);
+    gain[state] += 1.0;
+    s.noalias() += 0.5 * (t[at.sample + 1] - t[at.sample]) * gain * f.row(at.of_all);
+  });
 }
 
 Eigen::VectorXd ForceSensitivity::score_of_steps(int port) const {

@@ -38,7 +38,8 @@ class ScoreTest {
   bool has_parameters_ = false;
 };
 
-/// Columns for forces on dynamic ports that are given functions of the filtered states.
+/// Columns for what is given as functions of the filtered states: forces on dynamic ports, errors of outputs, changes of the rates of
+/// effects' own states.
 class ForceSensitivity {
  public:
   explicit ForceSensitivity(const FilterEstimate& estimate);
@@ -51,6 +52,14 @@ class ForceSensitivity {
   [[nodiscard]] const std::vector<bool>& used() const { return used_; }
   /// Columns for forces on `port` that go over each step from f at its start to `ahead` at its end (all samples × m).
   [[nodiscard]] Eigen::MatrixXd columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const;
+  /// Columns for errors of an output, measured = predicted + error: at each sample `ahead` of the sample before, for an error must not
+  /// depend on the very measurement that it is looked for in; f at the first (all samples × m).
+  [[nodiscard]] Eigen::MatrixXd output_columns(int output, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const;
+  /// Columns for changes f of the rate of an effect's own state (counted from 0), constant over each step (all samples × m): to second
+  /// order in the step, h (I + Phi)/2 of each.
+  [[nodiscard]] Eigen::MatrixXd own_rate_columns(int own_state, const Eigen::MatrixXd& f) const;
+  /// Rates of the effects' own states, the mean of the step that follows each sample, all experiments one after the other.
+  [[nodiscard]] const RowMatrix& own_rates() const { return own_rates_; }
   /// ∂ log-likelihood/∂(force on `port` over the step from each sample), gains held: scans of many functions need only this (all samples).
   [[nodiscard]] Eigen::VectorXd score_of_steps(int port) const;
 
@@ -58,7 +67,7 @@ class ForceSensitivity {
   const FilterEstimate& estimate_;
   std::vector<std::vector<double>> G_;  ///< per experiment: samples × n × ports
   int ports_ = 0;
-  RowMatrix quantities_, ahead_;
+  RowMatrix quantities_, ahead_, own_rates_;
   std::vector<double> times_;
   std::vector<bool> used_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "misfit/core/text.h"
 #include "misfit/discover/alias.h"
@@ -159,7 +160,7 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   const CandidateModel reads = with_quantities(*second.score.candidate_model, in.screening->candidate_model->quantities);
   const bool lags = in.screening->candidate_model->lags || second.score.candidate_model->lags;
   if (lags && remaining_memory(both, in.refit->drop, ranked, context)) return nullptr;
-  return remaining_lack_of_fit(both.estimate, reads, in.refit->drop, options) ? nullptr : second.entry;
+  return remaining_lack_of_fit(both.estimate, reads, {in.refit->drop, least_share_of_all, 2}, options) ? nullptr : second.entry;
 }
 
 /// Of the effect, as its refit had them.
@@ -288,7 +289,7 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
   std::vector<int> read;  // by the aliases
   for (const Place e : not_refused(ranked, context)) {
     const CandidateModel& candidate_model = *e->screening->candidate_model;
-    auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), e->refit->drop, context.options);
+    auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), {e->refit->drop}, context.options);
     if (!left && candidate_model.lags) left = remaining_memory(*e->refit, e->refit->drop, ranked, context);
     if (!left) return {e};
     e->candidate.why = "lack of fit remains: with it in the model " + left->label() + " is still significant, " + p_equals(left->p_value) +
@@ -300,9 +301,9 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
 }
 
 /// Step 3: a choice is not made past one that explains more than twice as much. Such an alias is chosen in its place: what it leaves is
-/// another effect; for one that is refused, nothing is.
+/// another effect; for one that is refused, and for an unknown form, nothing is.
 Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Alias>& aliases,
-                             const SearchContext& context) {
+                             const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
   const double least = 2.0 * choice.at->refit->drop;
   for (const Alias& alias : aliases) {
     if (alias.at->refit->drop > least) return {alias.at, nullptr, true};
@@ -310,6 +311,11 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
   for (const RankedCandidate& e : ranked) {
     if (!e.refit || e.candidate.why.empty() || !(e.refit->drop > least) || !(e.candidate.p_value < context.options.p_accept)) continue;
     choice.at->candidate.why = "explains less than half of what " + label(e.candidate) + " does, which cannot be accepted";
+    return {ranked.end()};
+  }
+  for (const UnknownCurve& curve : unknown) {
+    if (!(curve.result.chi2 - 2.0 * curve.result.dof > least)) continue;
+    choice.at->candidate.why = "explains less than half of what " + curve.label() + " does, which no known effect describes";
     return {ranked.end()};
   }
   return choice;
@@ -341,7 +347,11 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
   if (ranked.empty() || !ranked.front().refit || !(ranked.front().candidate.p_value < context.options.p_accept)) return std::nullopt;
   const RankedCandidate& best = ranked.front();
   if (best.misnamed) return std::nullopt;
-  return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, best.refit->drop, context.options);
+  return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, {best.refit->drop}, context.options);
+}
+
+Unexplained unexplained(const UnknownCurve& form, std::string quantities, double p) {
+  return {form.port, std::move(quantities), form.place == UnknownPlace::output, p};
 }
 
 /// Step 8: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if
@@ -351,10 +361,10 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
   const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
   const bool any = best != unknown.end();
   const bool front_better = any && !ranked.empty() && !ranked.front().misnamed && ranked.front().log_p < best->log_p;
-  if (left && (!any || front_better)) return Unexplained{left->port, left->quantities(), left->p_value};
+  if (left && (!any || front_better)) return unexplained(*left, left->quantities(), left->p_value);
   if (!any || (front_better && ranked.front().refit)) return std::nullopt;  // what a known effect explains better is not unknown
   const double p = sidak(best->p_value, context.families);
-  return p < context.options.p_accept ? std::optional(Unexplained{best->port, best->quantity, p}) : std::nullopt;
+  return p < context.options.p_accept ? std::optional(unexplained(*best, best->quantity, p)) : std::nullopt;
 }
 
 }  // namespace
@@ -362,9 +372,9 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
 std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                        const SearchContext& context) {
   std::vector<Alias> aliases;
-  Choice choice = first_without_lack_of_fit(ranked, aliases, context);                          // 1, 2
-  choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, aliases, context)  // 3
-                                     : first_with_a_second_effect(ranked, aliases, context);    // 4
+  Choice choice = first_without_lack_of_fit(ranked, aliases, context);                                   // 1, 2
+  choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, aliases, unknown, context)  // 3
+                                     : first_with_a_second_effect(ranked, aliases, context);             // 4
   const bool accepted = choice.at != ranked.end();
   if (accepted) move_to_front(ranked, choice);  // 5
   find_groups(ranked, context);                 // 6

@@ -41,7 +41,7 @@ struct SearchContext {
 ///    (`remaining_memory`). If none remains of a quantity that the candidate, or an alias before it, reads (of any, if it lags or is a
 ///    sensor's), it is chosen: the first such. Else it is an alias: an effect that may only imitate the missing one.
 /// 3. A choice is not made past a candidate with more than twice its drop (`not_past_a_larger_one`): if that is an alias it is accepted
-///    first, since two effects are missing; if it is refused, none is accepted.
+///    first, since two effects are missing; if it is refused, or is an unknown curve of the first screening, none is accepted.
 /// 4. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, if each is
 ///    needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
 /// 5. The accepted one becomes the first of the list.

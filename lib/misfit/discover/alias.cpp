@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "misfit/core/display.h"
 #include "misfit/core/lists.h"
@@ -44,27 +46,52 @@ std::vector<int> quantities_that_tell(const CandidateModel& candidate_model) {
   return all;
 }
 
+void append(std::vector<UnknownCurve>& list, std::vector<UnknownCurve> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(list));
+}
+
+/// The most significant, corrected for these tests, of those that are worth enough.
+std::optional<UnknownCurve> worst_left(std::vector<UnknownCurve> after, double tests, const Added& added, const DiscoverOptions& options) {
+  std::optional<UnknownCurve> worst;
+  for (auto& curve : after) {
+    curve.p_value = sidak(curve.p_value, tests);
+    const double share = curve.place == UnknownPlace::own_rate ? least_share_of_all : added.least_share;
+    if (curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < share * added.drop) continue;
+    if (!worst || curve.log_p < worst->log_p) worst = curve;
+  }
+  return worst;
+}
+
+/// In words of the system: what an own state of the effect follows, and where the effect acts.
+UnknownCurve memory_left(UnknownCurve left, const CandidateModel& candidate_model) {
+  left.lag = left.label();
+  const auto& quantities = candidate_model.model.system->spec().quantities;
+  if (!candidate_model.quantities.empty() && candidate_model.quantities.front() >= 0 &&
+      candidate_model.quantities.front() < int_size(quantities))
+    left.quantity = "the past of " + quantities[candidate_model.quantities.front()].name;
+  if (!candidate_model.port_names.empty()) left.port = candidate_model.port_names.front();
+  return left;
+}
+
 }  // namespace
 
-std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model, double drop,
+std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model, const Added& added,
                                                   const DiscoverOptions& options) {
   const ScoreTest score(with);
   const ForceSensitivity force(with);
   const ScoreWork work{with, score, force, options.threads};
   const std::vector<int> read = quantities_that_tell(candidate_model);
   std::vector<UnknownCurve> after = unknown_curves(work);
-  const auto tests = static_cast<double>(after.size());
+  if (options.calibration == nullptr) append(after, unknown_errors(work));
+  const std::size_t of_anything = after.size();
   std::erase_if(after, [&](const UnknownCurve& curve) { return place_of(read, curve.quantity_index) < 0; });
-  std::vector<UnknownCurve> surfaces = unknown_surfaces(work, read);
-  const double all_tests = tests + static_cast<double>(surfaces.size());
-  std::move(surfaces.begin(), surfaces.end(), std::back_inserter(after));
-  std::optional<UnknownCurve> worst;
-  for (auto& curve : after) {
-    curve.p_value = sidak(curve.p_value, all_tests);
-    if (curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < least_share_of_drop * drop) continue;
-    if (!worst || curve.log_p < worst->log_p) worst = curve;
-  }
-  return worst;
+  const std::size_t left_out = of_anything - after.size();
+  append(after, unknown_surfaces(work, read));
+  append(after, unknown_own_rates(work, added.effects));
+  const auto tests = static_cast<double>(after.size() + left_out);
+  const auto left = worst_left(std::move(after), tests, added, options);
+  if (!left || left->place != UnknownPlace::own_rate) return left;
+  return memory_left(*left, candidate_model);
 }
 
 }  // namespace misfit

@@ -11,12 +11,21 @@ namespace misfit {
 /// sentences.
 void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const ScoreTest& score, Discovery& out);
 
-/// Of a candidate's drop: what remains beside it counts only where it is worth more.
+/// What remains beside a candidate counts where it is worth more than this share of its drop: something else that is missing may remain.
 inline constexpr double least_share_of_drop = 0.2;
+/// The same beside two that are to explain all between them, and of another form of a candidate's own memory, which nothing else leaves.
+inline constexpr double least_share_of_all = 0.05;
 
-/// An unknown curve or surface of a quantity that the effect reads, significant after it and worth a good part of its drop: then the effect
-/// is only a alias of what is missing. `with`: the refitted model that holds it.
+/// What a refitted model holds beyond the first one: its drop, and what something that remains must be worth to count.
+struct Added {
+  double drop = 0.0, least_share = least_share_of_drop;
+  int effects = 1;
+};
+
+/// An unknown curve or surface of a quantity that the effect reads, an error of an output that depends on one (not where the outputs are
+/// those of a calibrated camera), or another form of its memory: significant after it and worth enough. Then the effect is
+/// only an alias of what is missing. `with`: the refitted model that holds it.
 [[nodiscard]] std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model,
-                                                                double drop, const DiscoverOptions& options);
+                                                                const Added& added, const DiscoverOptions& options);
 
 }  // namespace misfit

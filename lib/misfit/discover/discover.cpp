@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 
 #include "misfit/core/error.h"
@@ -74,9 +75,9 @@ class Search {
 
   /// Only the effect of the options, with the drop of one step, as a candidate among all families.
   Discovery predict() {
-    const std::size_t curves =
-        features_of(estimate_, force_, hats_of_unknown_curves).size() * ports_of_unknown_curves(estimate_.model.system->spec()).size();
-    families_ = static_cast<double>(candidate_models_.size() + curves);
+    const SystemSpec& system = estimate_.model.system->spec();
+    const std::size_t places = ports_of_unknown_curves(system).size() + (options_.calibration == nullptr ? system.outputs.size() : 0);
+    families_ = static_cast<double>(candidate_models_.size() + features_of(estimate_, force_, hats_of_unknown_curves).size() * places);
     std::erase_if(candidate_models_, [&](const CandidateModel& s) { return s.effect != options_.only; });
     screening_ = screen(scores(), candidate_models_, part(0.0, 1.0));
     rank();
@@ -110,6 +111,10 @@ class Search {
     if (ranks_started() > 1) all_ranks.emplace();
     screening_ = screen(scores(), candidate_models_, part(0.0, end_of_screen));
     unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
+    if (options_.calibration == nullptr) {
+      std::vector<UnknownCurve> errors = unknown_errors(scores());
+      std::move(errors.begin(), errors.end(), std::back_inserter(unknown_));
+    }
     families_ = static_cast<double>(screening_.size() + unknown_.size());
     rank();
   }
@@ -301,7 +306,8 @@ class Search {
     out_.force = random_force(estimate_);
     for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
     std::string curves = "unknown curves:";
-    for (const auto& curve : unknown_) curves += " " + curve.port + "(" + curve.quantity + ")";
+    for (const auto& curve : unknown_)
+      curves += (curve.place == UnknownPlace::output ? " error of " : " ") + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
     write_verdict(out_, unexplained, options_.p_accept, options_.calibration != nullptr);
     report_sensor_aliases(screening_, score_, out_);

@@ -198,6 +198,8 @@ std::vector<int> ports_of_unknown_curves(const SystemSpec& system) {
 
 std::string UnknownCurve::label() const {
   if (!lag.empty()) return lag;
+  if (place == UnknownPlace::own_rate) return "another dependence of " + port + " on " + quantity;
+  if (place == UnknownPlace::output) return "an error of " + port + " that depends on " + quantity;
   return other.empty() ? "an unknown curve " + port + "(" + quantity + ")"
                        : "an unknown surface " + port + "(" + quantity + ", " + other + ")";
 }
@@ -206,17 +208,23 @@ std::string UnknownCurve::quantities() const { return other.empty() ? quantity :
 
 namespace {
 
-/// The score of a force on a port that is these functions of the samples.
-UnknownCurve unknown_force(const ScoreWork& work, int port, const Features& f) {
+/// Of these functions of the samples, whose columns are given.
+UnknownCurve unknown_form(const ScoreWork& work, const std::string& port, const Features& f, const Eigen::MatrixXd& columns) {
   UnknownCurve out;
-  out.port_index = port;
-  out.port = work.estimate.model.system->spec().dynamic_ports[port].name;
+  out.port = port;
   out.quantity = f.quantity;
   out.quantity_index = f.index;
-  out.result = work.score.test(work.force.columns(port, f.f, f.ahead));
+  out.result = work.score.test(columns);
   if (out.result.dof == 0) return out;
   out.log_p = log_chi_square_tail(out.result.chi2, out.result.dof);
   out.p_value = std::exp(out.log_p);
+  return out;
+}
+
+UnknownCurve unknown_force(const ScoreWork& work, int port, const Features& f) {
+  UnknownCurve out =
+      unknown_form(work, work.estimate.model.system->spec().dynamic_ports[port].name, f, work.force.columns(port, f.f, f.ahead));
+  out.port_index = port;
   return out;
 }
 
@@ -229,6 +237,32 @@ std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn
   run_jobs(
       out.size(), work.threads, [&](std::size_t k) { out[k] = unknown_force(work, ports[k % ports.size()], features[k / ports.size()]); },
       progress);
+  return out;
+}
+
+std::vector<UnknownCurve> unknown_errors(const ScoreWork& work) {
+  const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
+  const auto& outputs = work.estimate.model.system->spec().outputs;
+  std::vector<UnknownCurve> out(features.size() * outputs.size());
+  run_jobs(out.size(), work.threads, [&](std::size_t k) {
+    const Features& f = features[k / outputs.size()];
+    const std::size_t o = k % outputs.size();
+    out[k] = unknown_form(work, outputs[o].name, f, work.force.output_columns(static_cast<int>(o), f.f, f.ahead));
+    out[k].place = UnknownPlace::output;
+  });
+  return out;
+}
+
+std::vector<UnknownCurve> unknown_own_rates(const ScoreWork& work, int effects) {
+  const std::vector<Features> features = features_of_own_states(work.estimate, work.force, hats_of_unknown_curves, effects);
+  const Model& model = work.estimate.model;
+  std::vector<UnknownCurve> out(features.size());
+  run_jobs(out.size(), work.threads, [&](std::size_t k) {
+    const Features& f = features[k];
+    const std::string rate = "d(" + model.own_state_names[f.index] + ")/dt";
+    out[k] = unknown_form(work, rate, f, work.force.own_rate_columns(f.index, f.f));
+    out[k].place = UnknownPlace::own_rate;
+  });
   return out;
 }
 

@@ -54,8 +54,13 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// something else; what seems to is the sensor's).
 [[nodiscard]] std::vector<int> ports_of_unknown_curves(const SystemSpec& system);
 
-/// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another.
+/// What an unknown form acts on.
+enum class UnknownPlace { force, output, own_rate };
+
+/// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another. So an
+/// error of an output (`port` its name), and a change of the rate of an effect's own state.
 struct UnknownCurve {
+  UnknownPlace place = UnknownPlace::force;
   std::string port, quantity;
   int port_index = 0, quantity_index = -1;
   std::string other;  ///< second quantity of a surface; empty: a curve
@@ -63,12 +68,20 @@ struct UnknownCurve {
   ScoreResult result;
   double log_p = 0.0, p_value = 1.0;
 
-  [[nodiscard]] std::string label() const;       ///< "an unknown curve dv/dt(v)", "an unknown surface dv/dt(v, u)", "delay (input = u)"
+  /// "an unknown curve dv/dt(v)", "an unknown surface dv/dt(v, u)", "an error of y that depends on u", "delay (input = u)"
+  [[nodiscard]] std::string label() const;
   [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"
 };
 
 /// Of every quantity on every dynamic port.
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
+
+/// Errors of every output, of every quantity.
+[[nodiscard]] std::vector<UnknownCurve> unknown_errors(const ScoreWork& work);
+
+/// Changes of the rate of every own state of the last `effects` effects, of that state and of that rate: whether their memories are of
+/// these forms.
+[[nodiscard]] std::vector<UnknownCurve> unknown_own_rates(const ScoreWork& work, int effects);
 
 /// Of every pair of quantities, time among them, of which `read` has at least one, on every dynamic port; four hats of each.
 [[nodiscard]] std::vector<UnknownCurve> unknown_surfaces(const ScoreWork& work, const std::vector<int>& read);

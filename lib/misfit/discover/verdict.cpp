@@ -55,8 +55,7 @@ std::string physics_evidence(const Discovery& discovery, double p_accept) {
   for (const Candidate& c : discovery.candidates) {
     if (c.accepted && physical(c)) return effect_at(c.effect, c.roles);
   }
-  if (!discovery.unexplained_port.empty())
-    return "a force on " + discovery.unexplained_port + " that depends on " + discovery.unexplained_quantity;
+  if (!discovery.unexplained_port.empty()) return unexplained_place(discovery) + " that depends on " + discovery.unexplained_quantity;
   const Candidate* best = nullptr;
   for (const Candidate& c : discovery.candidates) {
     if (physical(c) && c.p_value < p_accept && (best == nullptr || c.p_value < best->p_value)) best = &c;
@@ -106,7 +105,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
   if (unexplained) {
     out.unexplained_port = unexplained->port;
     out.unexplained_quantity = unexplained->quantity;
-    out.verdict = "Something is missing that depends on " + unexplained->quantity + " (a force on " + unexplained->port + ", " +
+    out.unexplained_error = unexplained->of_output;
+    out.verdict = "Something is missing that depends on " + unexplained->quantity + " (" + unexplained_place(out) + ", " +
                   p_equals(unexplained->p_value) + "), and no effect of the library explains it.";
     if (best.actual_drop)
       out.sentences.push_back("the best candidate of the library is " + effect_at(best.effect, best.roles) + " (drop " +

@@ -7,9 +7,10 @@
 
 namespace misfit {
 
-/// A dependence that no known effect describes.
+/// A dependence that no known effect describes: of a force on a port, or of the error of an output.
 struct Unexplained {
   std::string port, quantity;
+  bool of_output = false;
   double p_value = 1.0;
 };
 

@@ -108,7 +108,7 @@ std::string line_of(const Discovery& d) {
   if (accepted) return fmt::format("missing: {} (drop {}, {})", name, shown_drop(best.actual_drop), p_equals(best.p_value));
   const std::string tested = fmt::format("{} effects tested, none accepted", d.candidates.size());
   if (!d.unexplained_port.empty())
-    return fmt::format("{}: a force on {} that depends on {} is of unknown form", tested, d.unexplained_port, d.unexplained_quantity);
+    return fmt::format("{}: {} that depends on {} is of unknown form", tested, unexplained_place(d), d.unexplained_quantity);
   return fmt::format("{}; nearest: {} ({})", tested, name, p_equals(best.p_value));
 }
 

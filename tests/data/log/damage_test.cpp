@@ -55,7 +55,10 @@ TEST_P(DamagedLog, WithBitsTurnedOverIsReadOrRefused) {
   for (int run = 0; run < runs; ++run) {
     std::string damaged = content_;
     const std::uint64_t bits = 1 + next() % 8;
-    for (std::uint64_t i = 0; i < bits; ++i) damaged[next() % damaged.size()] ^= static_cast<char>(1U << (next() % 8));
+    for (std::uint64_t i = 0; i < bits; ++i) {
+      char& byte = damaged[next() % damaged.size()];
+      byte = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << (next() % 8)));
+    }
     read_or_refuse(folder_.write(GetParam(), damaged));
   }
 }
