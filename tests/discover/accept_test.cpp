@@ -167,6 +167,19 @@ TEST(Refit, FromOneStepOnEndsWhereTheEstimateWithTheEffectDoes) {
   EXPECT_LE(onwards.estimate.linearisations, plain.estimate.linearisations);
 }
 
+TEST(Refit, AfreshEndsThereToo) {
+  const World world = with_friction(3.0);
+  const RankedCandidate known = world.entry("coulomb_friction");
+  RefitWork work{world.estimate, world.signals, registry()};
+  work.afresh = true;
+  const ScreeningResult start = as_refitted(*known.screening, known.refit->estimate.model);
+  EXPECT_DOUBLE_EQ(start.result.amplitude[0], known.refit->parameters.at("friction").value);
+  const Refit afresh = refit(work, start);
+  ASSERT_TRUE(afresh.ok) << afresh.why;
+  EXPECT_NEAR(afresh.drop, known.refit->drop, 0.1);
+  EXPECT_NEAR(afresh.parameters.at("friction").value, known.refit->parameters.at("friction").value, 1e-3);
+}
+
 /// Against the density of all held-out residuals at once, N(0, 1 + J C Jᵀ), and without uncertainty that of the estimate.
 TEST(PredictiveLoglik, IsTheDensityOfTheHeldOutResidualsWithUncertainParameters) {
   const World world = with_friction(1.5);

@@ -253,7 +253,6 @@ struct Alias {
 struct Choice {
   Place at;
   const RankedCandidate* second = nullptr;
-  bool leaves_something = false;  ///< that no second effect is known to explain
 };
 
 /// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
@@ -300,23 +299,27 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
   return {ranked.end()};
 }
 
-/// Step 3: a choice is not made past one that explains more than twice as much. Such an alias is chosen in its place: what it leaves is
-/// another effect; for one that is refused, and for an unknown form, nothing is.
+/// Step 3: a choice is not made past one that explains more than twice as much. Such an alias is chosen in its place if a second effect
+/// explains what it leaves; for others, one that is refused, and an unknown form, nothing is.
 Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Alias>& aliases,
                              const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
   const double least = 2.0 * choice.at->refit->drop;
+  const auto past = [&](const std::string& larger, const char* which) -> Choice {
+    choice.at->candidate.why = "explains less than half of what " + larger + " does, which " + which;
+    return {ranked.end()};
+  };
   for (const Alias& alias : aliases) {
-    if (alias.at->refit->drop > least) return {alias.at, nullptr, true};
+    if (!(alias.at->refit->drop > least)) continue;
+    if (const RankedCandidate* second = explaining_effect(*alias.at, ranked, context)) return {alias.at, second};
+    return past(label(alias.at->candidate), "leaves a lack of fit that no second effect removes");
   }
   for (const RankedCandidate& e : ranked) {
     if (!e.refit || e.candidate.why.empty() || !(e.refit->drop > least) || !(e.candidate.p_value < context.options.p_accept)) continue;
-    choice.at->candidate.why = "explains less than half of what " + label(e.candidate) + " does, which cannot be accepted";
-    return {ranked.end()};
+    return past(label(e.candidate), "cannot be accepted");
   }
   for (const UnknownCurve& curve : unknown) {
     if (!(curve.result.chi2 - 2.0 * curve.result.dof > least)) continue;
-    choice.at->candidate.why = "explains less than half of what " + curve.label() + " does, which no known effect describes";
-    return {ranked.end()};
+    return past(curve.label(), "no known effect describes");
   }
   return choice;
 }
@@ -336,7 +339,6 @@ void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   c.why = "family-wise " + p_equals(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
   if (!choice.at->refit->estimate.converged) c.why += "; " + choice.at->refit->estimate.message;
   if (choice.second != nullptr) c.why += "; " + label(choice.second->candidate) + " explains what remains: add it next";
-  if (choice.leaves_something) c.why += "; lack of fit remains: something else is missing too";
   std::rotate(ranked.begin(), choice.at, choice.at + 1);
 }
 

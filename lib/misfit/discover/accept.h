@@ -40,8 +40,9 @@ struct SearchContext {
 ///    curves and surfaces are screened again with the candidate in the model (`remaining_lack_of_fit`), and with a lag or delay the others
 ///    (`remaining_memory`). If none remains of a quantity that the candidate, or an alias before it, reads (of any, if it lags or is a
 ///    sensor's), it is chosen: the first such. Else it is an alias: an effect that may only imitate the missing one.
-/// 3. A choice is not made past a candidate with more than twice its drop (`not_past_a_larger_one`): if that is an alias it is accepted
-///    first, since two effects are missing; if it is refused, or is an unknown curve of the first screening, none is accepted.
+/// 3. A choice is not made past a candidate with more than twice its drop (`not_past_a_larger_one`): if that is an alias whose lack of fit
+///    a second effect removes, as in step 4, it is accepted first, since two effects are missing; if it is another one, is refused, or is
+///    an unknown curve of the first screening, none is accepted.
 /// 4. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, if each is
 ///    needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
 /// 5. The accepted one becomes the first of the list.

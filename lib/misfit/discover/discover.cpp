@@ -59,6 +59,7 @@ class Search {
       const SearchContext context{estimate_, registry_, experiments_, options_, families_};
       unexplained = accept_best(ranked_, unknown_, context);
       if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context);
+      if (none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context);
     } catch (const TimeSpent& limit) {
       spent = limit.what();
     }
@@ -237,6 +238,41 @@ class Search {
     if (ranks().size() > 1) return false;  // refitted with the first
     for (RankedCandidate& e : ranked_) e.candidate.group.clear();
     return refit_wave({.begin = [this](const RankedCandidate& e) { return significant(e) ? e.screening : nullptr; }, .name = "_others"});
+  }
+
+  /// The first few again from the study's own values, the effect as it was refitted: none could be accepted as it is. False: none gains.
+  bool refit_afresh() {
+    if (ranks().size() > 1) return false;
+    constexpr std::size_t most = 3;
+    constexpr double least_gain = 10.0;  // of the drop, as beyond ties (accept.cpp)
+    std::vector<RankedCandidate*> chosen;
+    std::vector<ScreeningResult> begin;
+    for (auto& e : ranked_) {
+      if (!e.refit || !significant(e) || chosen.size() == most) continue;
+      chosen.push_back(&e);
+      begin.push_back(as_refitted(*e.screening, e.refit->estimate.model));
+    }
+    if (chosen.empty()) return false;
+    std::optional<StoredJobs> stored = options_.refits;
+    if (stored) stored->digest += "_afresh";
+    RefitWork work = refit_work();
+    work.afresh = true;
+    std::vector<const ScreeningResult*> effects;
+    for (const ScreeningResult& b : begin) effects.push_back(&b);
+    auto refits = refit_all(work, score_, effects, {stored, {}, options_.stop});
+    if (!refits) throw RunError("discover: stopped before all refits were done");
+    bool gained = false;
+    for (std::size_t k = 0; k < refits->size(); ++k) {
+      Refit& refit = (*refits)[k].refit;
+      if (!refit.ok || !(refit.drop > chosen[k]->refit->drop + least_gain)) continue;
+      chosen[k]->refit = std::move(refit);
+      store_refit(*chosen[k]);
+      gained = true;
+    }
+    if (!gained) return false;
+    for (RankedCandidate& e : ranked_) e.candidate.group.clear();
+    sort_ranked();
+    return true;
   }
 
   /// False: no candidate is in it.

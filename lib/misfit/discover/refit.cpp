@@ -207,6 +207,18 @@ Model start_model(const FilterEstimate& without, const ScreeningResult& screenin
   return model;
 }
 
+ScreeningResult as_refitted(const ScreeningResult& screening, const Model& refitted) {
+  ScreeningResult out = screening;
+  const CandidateModel& candidate_model = *screening.candidate_model;
+  for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i)
+    out.result.amplitude[static_cast<Eigen::Index>(i)] = refitted.parameters[candidate_model.strengths[i]].value;
+  for (std::size_t i = 0; i < out.cell.size(); ++i) {
+    const int shape = i < candidate_model.shapes.size() ? candidate_model.shapes[i] : candidate_model.frequency;
+    out.cell[i] = refitted.parameters[shape].value;
+  }
+  return out;
+}
+
 /// The estimate with the effect in it, off: a start below which no search ends.
 Model off_model(const RefitWork& work, const ScreeningResult& screening) {
   Model model = start_model(work.without, screening, work.registry);
@@ -216,6 +228,22 @@ Model off_model(const RefitWork& work, const ScreeningResult& screening) {
   }
   return model;
 }
+
+namespace {
+
+/// With the study's own values of what is in the estimate: the estimate's may be what makes up for the missing effect, together with a
+/// random force that hides it, and no way up may lead from there to the maximum with the effect.
+Model fresh_model(const RefitWork& work, const ScreeningResult& screening) {
+  Model model = start_model(work.without, screening, work.registry);
+  const Model as_filed = assemble(screening.candidate_model->request, work.registry);
+  for (std::size_t i = 0; i < work.without.model.parameters.size(); ++i) {
+    Parameter& p = model.parameters[i];
+    if (p.free) p.value = as_filed.parameters[i].value;
+  }
+  return model;
+}
+
+}  // namespace
 
 OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningResult& screening) {
   const FilterEstimate& without = work.without;
@@ -259,7 +287,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const FilterEstimate& without = work.without;
   Refit out;
   out.request = screening.candidate_model->request;
-  const auto climb = [&](const Model& start, const FilterNoise& noise) {
+  const auto climb = [&](const Model& start, const std::optional<FilterNoise>& noise) {
     if (watch.spent()) return;
     FilterOptions options = like(without, work.threads);
     options.noise = noise;
@@ -272,7 +300,11 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
     } catch (const TimeSpent&) {  // said below
     }
   };
-  if (from.model) climb(*from.model, from.noise);
+  if (work.afresh) {
+    climb(fresh_model(work, screening), std::nullopt);
+    if (!out.ok) return out;
+  }
+  if (!work.afresh && from.model) climb(*from.model, from.noise);
   if (!out.ok || !out.estimate.converged) climb(start_model(without, screening, work.registry), without.noise);
   const double off = without.objective + prior_of_off(*screening.candidate_model);
   if (!out.ok || !out.estimate.converged || out.estimate.objective < off) climb(off_model(work, screening), without.noise);

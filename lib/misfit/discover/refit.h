@@ -29,10 +29,15 @@ struct RefitWork {
   /// Where the effects were screened if that is not `without`: one step is made there, and the refit begins with as much less of the random
   /// force as the effect leaves of what is unexplained there.
   const FilterEstimate* screened = nullptr;
+  /// Refits begin at the study's own values of what is in the estimate, and the noise is looked for anew.
+  bool afresh = false;
 };
 
 /// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
 [[nodiscard]] Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry);
+
+/// The effect as refitted, for a start: its values as a cell and amplitudes.
+[[nodiscard]] ScreeningResult as_refitted(const ScreeningResult& screening, const Model& refitted);
 
 /// The same with its strengths at 0.
 [[nodiscard]] Model off_model(const RefitWork& work, const ScreeningResult& screening);
@@ -46,10 +51,11 @@ struct OneStep {
 };
 [[nodiscard]] OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningResult& screening);
 
-/// `from`: where to start, if it ended anywhere. Where no maximum is reached from there, and without it: from the estimate with the effect
-/// added to it, which an effect that the other parameters must make room for can throw out of the finite numbers; where that, too, reaches
-/// none, or one below the estimate: from the estimate with the effect in it but off, below which the search does not end. A strength at
-/// which the effect would be whole (whole_strength.h) is then held there if that costs the log-likelihood at most 2.
+/// Begun afresh (RefitWork), from there alone. Else `from`: where to start, if it ended anywhere. Where no maximum is reached from there,
+/// and without it: from the estimate with the effect added to it, which an effect that the other parameters must make room for can throw
+/// out of the finite numbers; where that, too, reaches none, or one below the estimate: from the estimate with the effect in it but off,
+/// below which the search does not end. A strength at which the effect would be whole (whole_strength.h) is then held there if that costs
+/// the log-likelihood at most 2.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// The refit of an effect for which no time was left: `drop` is how far it had come.

@@ -71,7 +71,7 @@ SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const S
 std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const ScoreTest& score,
                                                    const std::vector<const ScreeningResult*>& effects, const RefitJobs& jobs) {
   const int within = effects.size() > 1 || ranks_started() > 1 ? 1 : work.threads;
-  const RefitWork each{work.without, work.experiments, work.registry, within, work.time_limit, work.screened};
+  const RefitWork each{work.without, work.experiments, work.registry, within, work.time_limit, work.screened, work.afresh};
   const auto one = [&](std::size_t k) { return stepped(each, score, *effects[k]); };
   std::vector<SteppedRefit> out;
   if (!jobs.stored) {
