@@ -176,8 +176,10 @@ TEST(Refit, AfreshEndsThereToo) {
   EXPECT_DOUBLE_EQ(start.result.amplitude[0], known.refit->parameters.at("friction").value);
   const Refit afresh = refit(work, start);
   ASSERT_TRUE(afresh.ok) << afresh.why;
-  EXPECT_NEAR(afresh.drop, known.refit->drop, 0.1);
-  EXPECT_NEAR(afresh.parameters.at("friction").value, known.refit->parameters.at("friction").value, 1e-3);
+  EXPECT_GT(afresh.drop, known.refit->drop - 0.1) << "at least: the noise is looked for anew";
+  EXPECT_LT(afresh.drop, known.refit->drop + 10.0);
+  const Estimate& friction = known.refit->parameters.at("friction");
+  EXPECT_NEAR(afresh.parameters.at("friction").value, friction.value, 0.5 * friction.sigma);
 }
 
 /// Against the density of all held-out residuals at once, N(0, 1 + J C Jᵀ), and without uncertainty that of the estimate.

@@ -82,6 +82,10 @@ TEST(Verdict, ALagLongerThanHalfOfTheRecordingIsNone) {
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(*found, "its time tau = 62 s is longer than half of the recording, 40 s");
   EXPECT_FALSE(outlasts_recording(model, 200.0).has_value());
+  ModelRequest slow = cart({effect("periodic_forcing")});
+  slow.parameters["frequency"].value = 0.02;
+  EXPECT_THAT(outlasts_recording(assemble(slow, registry()), 40.0).value_or(""), testing::HasSubstr("less than one period"));
+  EXPECT_FALSE(outlasts_recording(assemble(slow, registry()), 60.0).has_value());
   EXPECT_FALSE(outlasts_recording(assemble(parachute(true, {effect("drift")}), registry()), 40.0).has_value()) << "drift remembers nothing";
 }
 

@@ -33,13 +33,14 @@ struct SearchContext {
 ///
 /// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, only a part of an effect
 ///    is found that exists as a whole (whole_strength.h), one of its strengths ends at a bound, all are smaller than two sigmas, it
-///    remembers for longer than half of the recording, or the held-out log-likelihood rises by less than 1/2 for each of its parameters.
-///    The first reason that holds is noted.
+///    remembers for longer than half of the recording or has not one period in it, or the held-out log-likelihood rises by less than 1/2
+///    for each of its parameters. The first reason that holds is noted.
 /// 2. The others come by what they gain, on the estimation's measurements and the held-out ones together (`gain_of`); those within 3 of
 ///    the best by the number of their parameters, then as in the list, but a lag, delay or limit of a sensor after the plant. Unknown
 ///    curves and surfaces are screened again with the candidate in the model (`remaining_lack_of_fit`), and with a lag or delay the others
-///    (`remaining_memory`). If none remains of a quantity that the candidate, or an alias before it, reads (of any, if it lags or is a
-///    sensor's), it is chosen: the first such. Else it is an alias: an effect that may only imitate the missing one.
+///    (`remaining_memory`). If none remains of a quantity that the candidate, or an alias before it, reads (of any, if it lags, is a
+///    sensor's, or has a scanned frequency), it is chosen: the first such. Else it is an alias: an effect that may only imitate the missing
+///    one.
 /// 3. A choice is not made past a candidate with more than twice its drop (`not_past_a_larger_one`): if that is an alias whose lack of fit
 ///    a second effect removes, as in step 4, it is accepted first, since two effects are missing; if it is another one, is refused, or is
 ///    an unknown curve of the first screening, none is accepted.

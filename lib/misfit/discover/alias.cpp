@@ -35,11 +35,13 @@ void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const 
 namespace {
 
 /// Quantities whose curves and surfaces tell whether an effect is what is missing: those that it reads. Lags, delays and what a sensor does
-/// follow the whole motion, and could stand for much of it: for them every quantity, and time.
+/// follow the whole motion, and could stand for much of it, as could a force whose frequency was looked for: for them every quantity, and
+/// time.
 std::vector<int> quantities_that_tell(const CandidateModel& candidate_model) {
   const bool remembers = !candidate_model.model.effects.back().effect->spec().states.empty();
   const bool sensor = candidate_model.family == "sensor" && !candidate_model.has_priors;
-  if (!remembers && !sensor) return candidate_model.quantities;
+  const bool periodic = candidate_model.frequency >= 0;
+  if (!remembers && !sensor && !periodic) return candidate_model.quantities;
   std::vector<int> all = candidate_model.quantities;
   for (int q = 0; q < int_size(candidate_model.model.system->spec().quantities); ++q) all.push_back(q);
   all.push_back(kTime);

@@ -163,11 +163,15 @@ std::optional<std::string> undetermined_strengths(const Model& model, const Eige
 
 std::optional<std::string> outlasts_recording(const Model& model, double seconds) {
   const BoundEffect& effect = model.effects.back();
-  if (effect.effect->spec().states.empty()) return std::nullopt;
-  for (const BoundCoefficient& c : effect.coefficients) {
-    if (c.parameter < 0) continue;
-    const Parameter& p = model.parameters[c.parameter];
-    if (p.unit != "s" || p.value < 0.5 * seconds) continue;
+  const EffectSpec& spec = effect.effect->spec();
+  for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
+    if (effect.coefficients[c].parameter < 0) continue;
+    const Parameter& p = model.parameters[effect.coefficients[c].parameter];
+    const bool frequency = spec.coefficients[c].scan.count < 0;
+    if (frequency && p.value * seconds < 1.0)
+      return "its " + p.name + " = " + in_display_unit(p.value, p.unit) + " is less than one period in the recording, " +
+             in_display_unit(seconds, "s");
+    if (spec.states.empty() || p.unit != "s" || p.value < 0.5 * seconds) continue;
     return "its time " + p.name + " = " + in_display_unit(p.value, p.unit) + " is longer than half of the recording, " +
            in_display_unit(seconds, "s");
   }

@@ -29,7 +29,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
                                                                 const std::vector<int>& strengths);
 
 /// "its time constant tau = 62 s is longer than half of the recording, 40 s" where a time of the model's last effect, which remembers, is:
-/// on such a record a lag is a constant force and a stiffness. nullopt: none is.
+/// on such a record a lag is a constant force and a stiffness. So where its frequency makes less than one period: a drift. nullopt: none
+/// is.
 [[nodiscard]] std::optional<std::string> outlasts_recording(const Model& model, double seconds);
 
 /// "its step = 0.77 V, but the measurements are 0.11 V (RMS) from multiples of it" where the model's last effect reads an output in whole
