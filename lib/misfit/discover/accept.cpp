@@ -348,7 +348,8 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
   if (!aliases.empty()) return aliases.front().remaining;
   if (ranked.empty() || !ranked.front().refit || !(ranked.front().candidate.p_value < context.options.p_accept)) return std::nullopt;
   const RankedCandidate& best = ranked.front();
-  if (best.misnamed) return std::nullopt;
+  const bool periodic = best.screening->candidate_model->frequency >= 0;  // what it leaves is rather a frequency that changes
+  if (best.misnamed || periodic) return std::nullopt;
   return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, {best.refit->drop}, context.options);
 }
 
