@@ -342,11 +342,14 @@ void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   std::rotate(ranked.begin(), choice.at, choice.at + 1);
 }
 
-/// The curve that remains with the first alias, else with the best candidate if that is significant but was refused.
+/// The curve that remains with the first alias, else with the best candidate if that is significant but was refused. An alias beside which
+/// the best explains more than twice as much says nothing.
 std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases,
                                                 const SearchContext& context) {
-  if (!aliases.empty()) return aliases.front().remaining;
-  if (ranked.empty() || !ranked.front().refit || !(ranked.front().candidate.p_value < context.options.p_accept)) return std::nullopt;
+  const bool refused = !ranked.empty() && ranked.front().refit && ranked.front().candidate.p_value < context.options.p_accept;
+  const double best_drop = refused && !ranked.front().misnamed ? ranked.front().refit->drop : 0.0;
+  if (!aliases.empty() && !(best_drop > 2.0 * aliases.front().at->refit->drop)) return aliases.front().remaining;
+  if (!refused) return std::nullopt;
   const RankedCandidate& best = ranked.front();
   const bool periodic = best.screening->candidate_model->frequency >= 0;  // what it leaves is rather a frequency that changes
   if (best.misnamed || periodic) return std::nullopt;

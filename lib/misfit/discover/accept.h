@@ -51,9 +51,9 @@ struct SearchContext {
 ///    has a significant score once the other is in the model.
 /// 7. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
 /// 8. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
-///    remains with the first alias, or with the best candidate if that is significant but was refused, provided that the best candidate has
-///    a lower p than every unknown curve and is what its name says; else the best unknown curve, if its family-wise p is below p_accept and
-///    no refitted first candidate has a lower p.
+///    remains with the first alias (unless the best explains more than twice as much), or with the best candidate if that is significant
+///    but was refused, provided that the best candidate has a lower p than every unknown curve and is what its name says; else the best
+///    unknown curve, if its family-wise p is below p_accept and no refitted first candidate has a lower p.
 [[nodiscard]] std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                                      const SearchContext& context);
 
