@@ -83,25 +83,25 @@ sideways = { unit = "m", formula = "middle + length*sin(theta)", noise = 1e-3 }
 class FilmStudy : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
-    write_swing(folder_->path() / "swing.mp4", pendulum(12.0));
+    folder = std::make_unique<TemporaryFolder>();
+    write_swing(folder->path() / "swing.mp4", pendulum(12.0));
   }
-  static void TearDownTestSuite() { folder_.reset(); }
+  static void TearDownTestSuite() { folder.reset(); }
 
   static fs::path study(const std::string& name, const std::string& system, const std::string& experiment, const std::string& video = "") {
-    folder_->write(name + "_system.toml", "[system]\ndoc = \"pendulum on film\"\nsource = \"textbook\"\n" + system);
-    return folder_->write(name + ".toml", "[study]\nname = \"film\"\nmethods = [\"output_error\"]\n[system]\nfile = \"" + name +
-                                              "_system.toml\"\n" + video + "[[experiment]]\nvideo = \"swing.mp4\"\n" + experiment);
+    folder->write(name + "_system.toml", "[system]\ndoc = \"pendulum on film\"\nsource = \"textbook\"\n" + system);
+    return folder->write(name + ".toml", "[study]\nname = \"film\"\nmethods = [\"output_error\"]\n[system]\nfile = \"" + name +
+                                             "_system.toml\"\n" + video + "[[experiment]]\nvideo = \"swing.mp4\"\n" + experiment);
   }
   [[nodiscard]] Fit fitted(const fs::path& study, const std::string& out) const {
-    return Identification({.study = study.string(), .out = (folder_->path() / out).string()}, registry_).fit("output_error");
+    return Identification({.study = study.string(), .out = (folder->path() / out).string()}, registry_).fit("output_error");
   }
   FilmStudy() { misfit_models_register(registry_); }
 
   Registry registry_;
-  static std::unique_ptr<TemporaryFolder> folder_;
+  static std::unique_ptr<TemporaryFolder> folder;
 };
-std::unique_ptr<TemporaryFolder> FilmStudy::folder_;
+std::unique_ptr<TemporaryFolder> FilmStudy::folder;
 
 /// Within three standard errors of the truth, and these are of use.
 void expect_found(const Fit& fit, const std::string& name, double truth, double largest_sigma) {

@@ -91,7 +91,7 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
   append(after, unknown_surfaces(work, read));
   append(after, unknown_own_rates(work, added.effects));
   const auto tests = static_cast<double>(after.size() + left_out);
-  const auto left = worst_left(std::move(after), tests, added, options);
+  auto left = worst_left(std::move(after), tests, added, options);
   if (!left || left->place != UnknownPlace::own_rate) return left;
   return memory_left(*left, candidate_model);
 }
