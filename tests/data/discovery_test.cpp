@@ -151,6 +151,7 @@ Discovery example_discovery() {
   d.sweep_asks = {"camera_roll"};
   d.unexplained_port = "dw/dt";
   d.unexplained_quantity = "w";
+  d.unexplained_error = true;
   d.seconds = 12.0;
   return d;
 }
@@ -181,6 +182,7 @@ TEST(DiscoveryFiles, ReadBackWhatWasWritten) {
   EXPECT_EQ(back.sweep_asks, d.sweep_asks);
   EXPECT_EQ(back.unexplained_port, "dw/dt");
   EXPECT_EQ(back.unexplained_quantity, "w");
+  EXPECT_TRUE(back.unexplained_error);
   EXPECT_EQ(back.force.at("moment").sigma, 0.8);
   ASSERT_EQ(back.candidates.size(), 2U);
   const Candidate& wake = back.candidates[0];

@@ -129,6 +129,24 @@ TEST(ForceSensitivity, OfAConstantErrorIsTheColumnOfABias) {
   EXPECT_LT((columns - free_column(estimate)).norm(), 1e-8 * columns.norm());
 }
 
+/// An error must not depend on the measurement that it is looked for in: it is that of the state predicted by the sample before.
+TEST(ForceSensitivity, OfAnErrorGoesWithThePredictionOfTheSampleBefore) {
+  const std::vector<Signals> recordings = {Cart(60).signals};
+  const FilterEstimate estimate = fitted(recordings, effect("bias", {{"output", "speed_reading"}}), {{"offset", start(0.0, true)}});
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(60, 1);
+  Eigen::MatrixXd ahead = none;
+  constexpr Eigen::Index k = 20;
+  ahead(k, 0) = 1.0;
+  const Eigen::VectorXd column = ForceSensitivity(estimate).output_columns(1, none, ahead);
+  const FilterTrace& trace = estimate.traces.front();
+  const Eigen::Index outputs = 2, uncounted = 60 * outputs - column.size(), next = (k + 1) * outputs + 1;
+  const Eigen::Index row = next - uncounted;  // the first samples make the start
+  ASSERT_EQ(uncounted, outputs);
+  EXPECT_EQ(column.head(row).norm(), 0.0);
+  EXPECT_NEAR(std::abs(column[row]), 1.0 / std::sqrt(trace.S[next]), 1e-12);
+  EXPECT_GT(column.tail(column.size() - row - 1).norm(), 0.0) << "through the gains";
+}
+
 /// dz/dt = (u - z)/tau, by tau: -(dz/dt)/tau.
 TEST(ForceSensitivity, OfTheRateOfALagIsTheColumnOfItsTimeConstant) {
   const std::vector<Signals> recordings = {Cart(300).signals};

@@ -39,6 +39,8 @@ TEST(LineOfADiscovery, NamesTheAcceptedEffectElseTheNearest) {
   d.unexplained_port = "dw/dt";
   d.unexplained_quantity = "w";
   EXPECT_THAT(line_of(d), testing::HasSubstr("a force on dw/dt that depends on w is of unknown form"));
+  d.unexplained_error = true;
+  EXPECT_THAT(line_of(d), testing::HasSubstr("an error of dw/dt that depends on w is of unknown form"));
   d.candidates.front().accepted = true;
   d.candidates.front().actual_drop = 270.7;
   d.candidates.front().p_value = 1e-60;

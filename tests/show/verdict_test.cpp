@@ -225,6 +225,15 @@ TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
               AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("still missing that depends on w")));
 }
 
+TEST(Verdict, AnErrorOfUnknownFormIsNotCalledAForce) {
+  Case c;
+  c.discovery = searched({candidate("lag", 0.5, false)}, "Something is missing that depends on w");
+  c.discovery->unexplained_port = "V";
+  c.discovery->unexplained_quantity = "w";
+  c.discovery->unexplained_error = true;
+  EXPECT_THAT(c.verdict().sentence, AllOf(HasSubstr("depends on w: an error of V that no effect"), Not(HasSubstr("force"))));
+}
+
 TEST(Verdict, WithoutAUsableFitItSaysWhy) {
   Case c;
   c.fits.front().status = FitStatus::declined;

@@ -82,14 +82,16 @@ Features hats(const Course& course, const std::vector<bool>& used, int most) {
   return out;
 }
 
+/// Where enough hats are left to draw a curve.
+void add_if_visited(Features features, std::vector<Features>& out) {
+  if (features.centre.size() >= 3) out.push_back(std::move(features));
+}
+
 }  // namespace
 
 std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most) {
   std::vector<Features> out;
   const auto& specs = estimate.model.system->spec().quantities;
-  const auto take = [&](Features features) {
-    if (features.centre.size() >= 3) out.push_back(std::move(features));
-  };
   for (std::size_t q = 0; q < specs.size(); ++q) {
     if (!specs[q].explains) continue;
     Course course{specs[q].name, specs[q].unit, static_cast<int>(q)};
@@ -97,33 +99,27 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSen
       course.values.push_back(force.quantities()(k, q));
       course.ahead.push_back(force.quantities_ahead()(k, q));
     }
-    take(hats(course, force.used(), most));
+    add_if_visited(hats(course, force.used(), most), out);
   }
-  take(hats({"time", "s", -1, force.times(), force.times()}, force.used(), most));
+  add_if_visited(hats({"time", "s", -1, force.times(), force.times()}, force.used(), most), out);
   return out;
 }
 
-std::vector<Features> features_of_own_states(const FilterEstimate& estimate, const ForceSensitivity& force, int most, int effects) {
+std::vector<Features> features_of_own_states(const FilterEstimate& estimate, const ForceSensitivity& force, const BoundEffect& effect,
+                                             int most) {
   std::vector<Features> out;
   const Model& model = estimate.model;
-  const auto take = [&](const Course& course) {
-    Features features = hats(course, force.used(), most);
-    if (features.centre.size() >= 3) out.push_back(std::move(features));
-  };
-  int count = 0;
-  for (int e = std::max(int_size(model.effects) - effects, 0); e < int_size(model.effects); ++e)
-    count += int_size(model.effects[e].effect->spec().states);
-  for (int i = int_size(model.own_states) - count; i < int_size(model.own_states); ++i) {
-    Course state{model.own_state_names[i], model.own_state_units[i], i};
+  for (int i = effect.first_state; i < effect.first_state + int_size(effect.effect->spec().states); ++i) {
+    const int state = model.system_states() + i;
+    Course course{model.own_state_names[i], model.own_state_units[i], i};
     for (const FilterTrace& trace : estimate.traces) {
-      for (std::size_t k = 0; k < trace.samples; ++k) state.values.push_back(trace.filtered(k)[model.system_states() + i]);
+      for (std::size_t k = 0; k < trace.samples; ++k) course.values.push_back(trace.predicted_at(k)[state] + trace.correction_at(k)[state]);
     }
-    state.ahead = state.values;
-    Course rate{"d(" + state.quantity + ")/dt", rate_unit(state.unit), i};
+    course.ahead = course.values;
     const Eigen::VectorXd rates = force.own_rates().col(i);
-    rate.values = rate.ahead = {rates.begin(), rates.end()};
-    take(state);
-    take(rate);
+    Course rate{"d(" + course.quantity + ")/dt", rate_unit(course.unit), i, {rates.begin(), rates.end()}, {rates.begin(), rates.end()}};
+    add_if_visited(hats(course, force.used(), most), out);
+    add_if_visited(hats(rate, force.used(), most), out);
   }
   return out;
 }

@@ -20,10 +20,10 @@ struct Features {
 /// % to 99.5 % of the visited values (ends extended); hats with fewer than 25 samples under them are left out.
 [[nodiscard]] std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most = 10);
 
-/// The same of the own states of the model's last `effects` effects: each state, and its rate (called "d(name)/dt", constant over each
-/// step). `index` is that of the state, counted over the model's own states.
-[[nodiscard]] std::vector<Features> features_of_own_states(const FilterEstimate& estimate, const ForceSensitivity& force, int most,
-                                                           int effects);
+/// The same of an effect's own states: each state, and its rate (called "d(name)/dt", constant over each step). `index` is that of the
+/// state, counted over the model's own states.
+[[nodiscard]] std::vector<Features> features_of_own_states(const FilterEstimate& estimate, const ForceSensitivity& force,
+                                                           const BoundEffect& effect, int most);
 
 /// Products of two families of hats, `quantity` and `index` of the first; those with fewer than 25 samples under them are left out.
 [[nodiscard]] Features products_of(const Features& a, const Features& b);

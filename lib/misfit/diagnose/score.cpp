@@ -160,7 +160,7 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
   used_.assign(all, false);
   std::vector<double> D(N * kRowStride);
   Slots slots;
-  Eigen::VectorXd x;
+  Eigen::VectorXd x, own_before(own);
   std::size_t offset = 0;
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
     const FilterTrace& trace = estimate.traces[e];
@@ -174,9 +174,10 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
       used_[offset + k] = true;
       values.quantities(x.data(), data.inputs.at(k), signals.t[k], quantities_.row(offset + k).data());
       if (k + 1 == trace.samples) break;
+      own_before = x.segment(system, own);
       if (!stepper.step_linear(x.data(), interval_after({stepper, signals, data.inputs}, k), slots, D.data())) break;
       values.quantities(x.data(), data.inputs.at(k + 1), signals.t[k + 1], ahead_.row(offset + k).data());
-      own_rates_.row(offset + k) = (x - trace.filtered(k)).segment(system, own).transpose() / (signals.t[k + 1] - signals.t[k]);
+      own_rates_.row(offset + k) = (x.segment(system, own) - own_before).transpose() / (signals.t[k + 1] - signals.t[k]);
       for (std::size_t i = 0; i < N; ++i) {
         for (int c = 0; c < slots.count(); ++c) G_.back()[(k * N + i) * NF + slots.column(c)] = D[i * kRowStride + N + c];
       }

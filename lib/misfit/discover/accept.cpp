@@ -12,9 +12,6 @@
 namespace misfit {
 namespace {
 
-// Refitted drops nearer than this do not distinguish two effects: beyond it the evidence is "very strong" (Kass & Raftery, Bayes Factors,
-// J. Am. Stat. Assoc. 90 (1995), section 3.2).
-constexpr double tied_drops = 10.0;
 constexpr double tied_gains = 3.0;  // of the log-likelihood: half of it
 
 std::string label(const Candidate& c) { return effect_at(c.effect, c.roles); }
@@ -133,7 +130,7 @@ std::optional<UnknownCurve> remaining_memory(const Refit& in, double drop, const
     UnknownCurve memory;
     memory.port = lag.port_names.front();
     memory.quantity = "the past of " + lag.model.system->spec().quantities[lag.quantities.front()].name;
-    memory.lag = label(other.candidate);
+    memory.memory = label(other.candidate);
     memory.result = found->result;
     memory.log_p = found->log_p;
     memory.p_value = p;
@@ -357,7 +354,7 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
 }
 
 Unexplained unexplained(const UnknownCurve& form, std::string quantities, double p) {
-  return {form.port, std::move(quantities), form.place == UnknownPlace::output, p};
+  return {form.port, std::move(quantities), form.of_output, p};
 }
 
 /// Step 8: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if

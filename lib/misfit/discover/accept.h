@@ -28,6 +28,10 @@ struct SearchContext {
   double families = 1.0;  ///< that a p-value is corrected for
 };
 
+/// Refitted drops nearer than this do not distinguish two effects: beyond it the evidence is "very strong" (Kass & Raftery, Bayes Factors,
+/// J. Am. Stat. Assoc. 90 (1995), section 3.2).
+inline constexpr double tied_drops = 10.0;
+
 /// The acceptance rule of discovery: at most one of the refitted candidates, which stand in front, best first. p_accept: 0.01 unless the
 /// options say otherwise; numbers and formulas: lib/misfit/README.md, 6.5.
 ///

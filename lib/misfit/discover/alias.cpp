@@ -57,22 +57,11 @@ std::optional<UnknownCurve> worst_left(std::vector<UnknownCurve> after, double t
   std::optional<UnknownCurve> worst;
   for (auto& curve : after) {
     curve.p_value = sidak(curve.p_value, tests);
-    const double share = curve.place == UnknownPlace::own_rate ? least_share_of_all : added.least_share;
+    const double share = curve.memory.empty() ? added.least_share : least_share_of_all;
     if (curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < share * added.drop) continue;
     if (!worst || curve.log_p < worst->log_p) worst = curve;
   }
   return worst;
-}
-
-/// In words of the system: what an own state of the effect follows, and where the effect acts.
-UnknownCurve memory_left(UnknownCurve left, const CandidateModel& candidate_model) {
-  left.lag = left.label();
-  const auto& quantities = candidate_model.model.system->spec().quantities;
-  if (!candidate_model.quantities.empty() && candidate_model.quantities.front() >= 0 &&
-      candidate_model.quantities.front() < int_size(quantities))
-    left.quantity = "the past of " + quantities[candidate_model.quantities.front()].name;
-  if (!candidate_model.port_names.empty()) left.port = candidate_model.port_names.front();
-  return left;
 }
 
 }  // namespace
@@ -81,19 +70,16 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
                                                   const DiscoverOptions& options) {
   const ScoreTest score(with);
   const ForceSensitivity force(with);
-  const ScoreWork work{with, score, force, options.threads};
+  const ScoreWork work{with, score, force, options.threads, options.calibration != nullptr};
   const std::vector<int> read = quantities_that_tell(candidate_model);
   std::vector<UnknownCurve> after = unknown_curves(work);
-  if (options.calibration == nullptr) append(after, unknown_errors(work));
   const std::size_t of_anything = after.size();
   std::erase_if(after, [&](const UnknownCurve& curve) { return place_of(read, curve.quantity_index) < 0; });
   const std::size_t left_out = of_anything - after.size();
   append(after, unknown_surfaces(work, read));
   append(after, unknown_own_rates(work, added.effects));
   const auto tests = static_cast<double>(after.size() + left_out);
-  auto left = worst_left(std::move(after), tests, added, options);
-  if (!left || left->place != UnknownPlace::own_rate) return left;
-  return memory_left(*left, candidate_model);
+  return worst_left(std::move(after), tests, added, options);
 }
 
 }  // namespace misfit

@@ -173,20 +173,6 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
   out.lags = has_linear_memory(*bound.effect);
 }
 
-std::vector<std::string> names_of_ports(const Model& model) {
-  const BoundEffect& bound = model.effects.back();
-  const SystemSpec& spec = model.system->spec();
-  std::vector<std::string> out;
-  for (int p : bound.ports) {
-    if (p < 0) continue;
-    const std::size_t i = p;
-    if (bound.kind == PortKind::dynamic) out.push_back(spec.dynamic_ports[i].name);
-    if (bound.kind == PortKind::quantity) out.push_back(spec.quantity_ports[i].name);
-    if (bound.kind == PortKind::sensor) out.push_back(i < spec.outputs.size() ? spec.outputs[i].name : "sample_time");
-  }
-  return out;
-}
-
 Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
   FilterRunner runner(forced, true);
   runner.set_parameters(forced.model.values());
@@ -247,7 +233,7 @@ std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate,
   for (auto& p : out.model.parameters) p.free = false;
   for (std::size_t i = 0; i < estimate.model.parameters.size(); ++i)  // the effect's own follow behind
     out.model.parameters[i].value = estimate.model.parameters[i].value;
-  out.port_names = names_of_ports(out.model);
+  out.port_names = names_of_ports(out.model.system->spec(), out.model.effects.back());
   return out;
 }
 
@@ -260,6 +246,18 @@ bool already_listed(const CandidateModel& candidate_model, const std::vector<Can
 }
 
 }  // namespace
+
+std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEffect& effect) {
+  std::vector<std::string> out;
+  for (int p : effect.ports) {
+    if (p < 0) continue;
+    const std::size_t i = p;
+    if (effect.kind == PortKind::dynamic) out.push_back(system.dynamic_ports[i].name);
+    if (effect.kind == PortKind::quantity) out.push_back(system.quantity_ports[i].name);
+    if (effect.kind == PortKind::sensor) out.push_back(i < system.outputs.size() ? system.outputs[i].name : "sample_time");
+  }
+  return out;
+}
 
 std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                              const Calibration* calibration) {

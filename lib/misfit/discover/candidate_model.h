@@ -37,6 +37,9 @@ inline constexpr int kTime = -1;
 [[nodiscard]] std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request,
                                                            const Registry& registry, const Calibration* calibration);
 
+/// Ports that an effect writes, by name.
+[[nodiscard]] std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEffect& effect);
+
 /// Columns of a candidate model's strengths at a cell: rows of the estimate × strengths. Empty where the model cannot be run so.
 [[nodiscard]] Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const CandidateModel& candidate_model,
                                                   const std::vector<double>& cell);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <limits>
 
 #include "misfit/core/error.h"
@@ -11,7 +10,6 @@
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/core/watch.h"
-#include "misfit/diagnose/features.h"
 #include "misfit/discover/accept.h"
 #include "misfit/discover/alias.h"
 #include "misfit/discover/candidate.h"
@@ -76,9 +74,7 @@ class Search {
 
   /// Only the effect of the options, with the drop of one step, as a candidate among all families.
   Discovery predict() {
-    const SystemSpec& system = estimate_.model.system->spec();
-    const std::size_t places = ports_of_unknown_curves(system).size() + (options_.calibration == nullptr ? system.outputs.size() : 0);
-    families_ = static_cast<double>(candidate_models_.size() + features_of(estimate_, force_, hats_of_unknown_curves).size() * places);
+    families_ = static_cast<double>(candidate_models_.size() + count_of_unknown_curves(scores()));
     std::erase_if(candidate_models_, [&](const CandidateModel& s) { return s.effect != options_.only; });
     screening_ = screen(scores(), candidate_models_, part(0.0, 1.0));
     rank();
@@ -103,7 +99,7 @@ class Search {
     };
   }
 
-  ScoreWork scores() const { return {estimate_, score_, force_, options_.threads}; }
+  ScoreWork scores() const { return {estimate_, score_, force_, options_.threads, options_.calibration != nullptr}; }
   RefitWork refit_work() const { return {estimate_, experiments_, registry_, options_.threads, options_.refit_limit}; }
 
   /// Every rank comes to the refits, which are shared: none is stopped before.
@@ -112,10 +108,6 @@ class Search {
     if (ranks_started() > 1) all_ranks.emplace();
     screening_ = screen(scores(), candidate_models_, part(0.0, end_of_screen));
     unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
-    if (options_.calibration == nullptr) {
-      std::vector<UnknownCurve> errors = unknown_errors(scores());
-      std::move(errors.begin(), errors.end(), std::back_inserter(unknown_));
-    }
     families_ = static_cast<double>(screening_.size() + unknown_.size());
     rank();
   }
@@ -244,7 +236,6 @@ class Search {
   bool refit_afresh() {
     if (ranks().size() > 1) return false;
     constexpr std::size_t most = 3;
-    constexpr double least_gain = 10.0;  // of the drop, as beyond ties (accept.cpp)
     std::vector<RankedCandidate*> chosen;
     std::vector<ScreeningResult> begin;
     for (auto& e : ranked_) {
@@ -253,18 +244,15 @@ class Search {
       begin.push_back(as_refitted(*e.screening, e.refit->estimate.model));
     }
     if (chosen.empty()) return false;
-    std::optional<StoredJobs> stored = options_.refits;
-    if (stored) stored->digest += "_afresh";
     RefitWork work = refit_work();
     work.afresh = true;
     std::vector<const ScreeningResult*> effects;
     for (const ScreeningResult& b : begin) effects.push_back(&b);
-    auto refits = refit_all(work, score_, effects, {stored, {}, options_.stop});
-    if (!refits) throw RunError("discover: stopped before all refits were done");
+    std::vector<SteppedRefit> refits = refitted(work, score_, effects, "_afresh");
     bool gained = false;
-    for (std::size_t k = 0; k < refits->size(); ++k) {
-      Refit& refit = (*refits)[k].refit;
-      if (!refit.ok || !(refit.drop > chosen[k]->refit->drop + least_gain)) continue;
+    for (std::size_t k = 0; k < refits.size(); ++k) {
+      Refit& refit = refits[k].refit;
+      if (!refit.ok || !(refit.drop > chosen[k]->refit->drop + tied_drops)) continue;
       chosen[k]->refit = std::move(refit);
       store_refit(*chosen[k]);
       gained = true;
@@ -273,6 +261,16 @@ class Search {
     for (RankedCandidate& e : ranked_) e.candidate.group.clear();
     sort_ranked();
     return true;
+  }
+
+  /// `name`: of the stored jobs. Empty on ranks other than the first.
+  std::vector<SteppedRefit> refitted(const RefitWork& work, const ScoreTest& score, const std::vector<const ScreeningResult*>& effects,
+                                     const char* name) {
+    std::optional<StoredJobs> stored = options_.refits;
+    if (stored) stored->digest += name;
+    auto refits = refit_all(work, score, effects, {stored, part(end_of_curves, end_of_refits), options_.stop});
+    if (!refits) throw RunError("discover: stopped before all refits were done");
+    return std::move(*refits);
   }
 
   /// False: no candidate is in it.
@@ -288,16 +286,12 @@ class Search {
       effects.push_back(begin);
     }
     if (chosen.empty()) return false;
-    std::optional<StoredJobs> stored = options_.refits;
-    if (stored) stored->digest += wave.name;
     RefitWork work = refit_work();
     work.screened = wave.screened;
-    auto refits =
-        refit_all(work, wave.score == nullptr ? score_ : *wave.score, effects, {stored, part(end_of_curves, end_of_refits), options_.stop});
-    if (!refits) throw RunError("discover: stopped before all refits were done");
-    for (std::size_t k = 0; k < refits->size(); ++k) {  // none on ranks other than the first
-      if (wave.screened == nullptr) chosen[k]->candidate.predicted_drop = (*refits)[k].predicted_drop;
-      chosen[k]->refit = std::move((*refits)[k].refit);
+    std::vector<SteppedRefit> refits = refitted(work, wave.score == nullptr ? score_ : *wave.score, effects, wave.name);
+    for (std::size_t k = 0; k < refits.size(); ++k) {
+      if (wave.screened == nullptr) chosen[k]->candidate.predicted_drop = refits[k].predicted_drop;
+      chosen[k]->refit = std::move(refits[k].refit);
       store_refit(*chosen[k]);
     }
     sort_ranked();
@@ -342,8 +336,7 @@ class Search {
     out_.force = random_force(estimate_);
     for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
     std::string curves = "unknown curves:";
-    for (const auto& curve : unknown_)
-      curves += (curve.place == UnknownPlace::output ? " error of " : " ") + curve.port + "(" + curve.quantity + ")";
+    for (const auto& curve : unknown_) curves += (curve.of_output ? " error of " : " ") + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
     write_verdict(out_, unexplained, options_.p_accept, options_.calibration != nullptr);
     report_sensor_aliases(screening_, score_, out_);

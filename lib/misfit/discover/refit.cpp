@@ -300,15 +300,16 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
     } catch (const TimeSpent&) {  // said below
     }
   };
+  const auto no_maximum = [&] { return !out.ok || !out.estimate.converged; };
   if (work.afresh) {
     climb(fresh_model(work, screening), std::nullopt);
-    if (!out.ok) return out;
+  } else {
+    if (from.model) climb(*from.model, from.noise);
+    if (no_maximum()) climb(start_model(without, screening, work.registry), without.noise);
+    const double off = without.objective + prior_of_off(*screening.candidate_model);
+    if (no_maximum() || out.estimate.objective < off) climb(off_model(work, screening), without.noise);
   }
-  if (!work.afresh && from.model) climb(*from.model, from.noise);
-  if (!out.ok || !out.estimate.converged) climb(start_model(without, screening, work.registry), without.noise);
-  const double off = without.objective + prior_of_off(*screening.candidate_model);
-  if (!out.ok || !out.estimate.converged || out.estimate.objective < off) climb(off_model(work, screening), without.noise);
-  const bool in_time = (out.ok && out.estimate.converged) || !watch.spent();
+  const bool in_time = !no_maximum() || !watch.spent();
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
   if (!in_time || !hold_whole(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));

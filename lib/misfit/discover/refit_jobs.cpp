@@ -34,6 +34,7 @@ OneStep step_from_elsewhere(const RefitWork& work, const ScoreTest& score, const
 
 SteppedRefit stepped(const RefitWork& work, const ScoreTest& score, const ScreeningResult& effect) {
   try {
+    if (work.afresh) return {effect.result.chi2, refit(work, effect)};
     const OneStep step = work.screened == nullptr ? one_step(work, score, effect) : step_from_elsewhere(work, score, effect);
     return {step.drop, refit(work, effect, step)};
   } catch (const TimeSpent& spent) {
@@ -71,7 +72,8 @@ SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const S
 std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const ScoreTest& score,
                                                    const std::vector<const ScreeningResult*>& effects, const RefitJobs& jobs) {
   const int within = effects.size() > 1 || ranks_started() > 1 ? 1 : work.threads;
-  const RefitWork each{work.without, work.experiments, work.registry, within, work.time_limit, work.screened, work.afresh};
+  RefitWork each = work;
+  each.threads = within;
   const auto one = [&](std::size_t k) { return stepped(each, score, *effects[k]); };
   std::vector<SteppedRefit> out;
   if (!jobs.stored) {

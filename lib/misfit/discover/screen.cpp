@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "misfit/core/lists.h"
 #include "misfit/jobs/work_queue.h"
@@ -197,9 +198,8 @@ std::vector<int> ports_of_unknown_curves(const SystemSpec& system) {
 }
 
 std::string UnknownCurve::label() const {
-  if (!lag.empty()) return lag;
-  if (place == UnknownPlace::own_rate) return "another dependence of " + port + " on " + quantity;
-  if (place == UnknownPlace::output) return "an error of " + port + " that depends on " + quantity;
+  if (!memory.empty()) return memory;
+  if (of_output) return "an error of " + port + " that depends on " + quantity;
   return other.empty() ? "an unknown curve " + port + "(" + quantity + ")"
                        : "an unknown surface " + port + "(" + quantity + ", " + other + ")";
 }
@@ -222,47 +222,71 @@ UnknownCurve unknown_form(const ScoreWork& work, const std::string& port, const 
 }
 
 UnknownCurve unknown_force(const ScoreWork& work, int port, const Features& f) {
+  return unknown_form(work, work.estimate.model.system->spec().dynamic_ports[port].name, f, work.force.columns(port, f.f, f.ahead));
+}
+
+UnknownCurve unknown_error(const ScoreWork& work, int output, const Features& f) {
   UnknownCurve out =
-      unknown_form(work, work.estimate.model.system->spec().dynamic_ports[port].name, f, work.force.columns(port, f.f, f.ahead));
-  out.port_index = port;
+      unknown_form(work, work.estimate.model.system->spec().outputs[output].name, f, work.force.output_columns(output, f.f, f.ahead));
+  out.of_output = true;
+  return out;
+}
+
+/// Whose errors of unknown form are looked for.
+std::size_t count_of_outputs(const ScoreWork& work) { return work.calibrated ? 0 : work.estimate.model.system->spec().outputs.size(); }
+
+/// What an effect reads first, in words.
+std::string first_read(const Model& model, const BoundEffect& effect) {
+  const SystemSpec& system = model.system->spec();
+  const int q = effect.quantities.empty() ? -1 : effect.quantities.front();
+  if (q < 0) return effect.name;
+  return q < int_size(system.quantities) ? system.quantities[q].name : system.outputs[q - int_size(system.quantities)].name;
+}
+
+/// Of the own state of an effect to which the features belong.
+UnknownCurve unknown_own_rate(const ScoreWork& work, const BoundEffect& effect, const Features& f) {
+  const Model& model = work.estimate.model;
+  const std::vector<std::string> ports = names_of_ports(model.system->spec(), effect);
+  UnknownCurve out = unknown_form(work, ports.empty() ? effect.name : ports.front(), f, work.force.own_rate_columns(f.index, f.f));
+  out.of_output = effect.kind == PortKind::sensor;
+  out.memory = "another dependence of d(" + model.own_state_names[f.index] + ")/dt on " + f.quantity;
+  out.quantity = "the past of " + first_read(model, effect);
   return out;
 }
 
 }  // namespace
 
+std::size_t count_of_unknown_curves(const ScoreWork& work) {
+  const std::size_t places = ports_of_unknown_curves(work.estimate.model.system->spec()).size() + count_of_outputs(work);
+  return features_of(work.estimate, work.force, hats_of_unknown_curves).size() * places;
+}
+
 std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress) {
   const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
   const std::vector<int> ports = ports_of_unknown_curves(work.estimate.model.system->spec());
-  std::vector<UnknownCurve> out(features.size() * ports.size());
+  const std::size_t places = ports.size() + count_of_outputs(work);
+  std::vector<UnknownCurve> out(features.size() * places);
   run_jobs(
-      out.size(), work.threads, [&](std::size_t k) { out[k] = unknown_force(work, ports[k % ports.size()], features[k / ports.size()]); },
+      out.size(), work.threads,
+      [&](std::size_t k) {
+        const Features& f = features[k / places];
+        const std::size_t place = k % places;
+        out[k] =
+            place < ports.size() ? unknown_force(work, ports[place], f) : unknown_error(work, static_cast<int>(place - ports.size()), f);
+      },
       progress);
   return out;
 }
 
-std::vector<UnknownCurve> unknown_errors(const ScoreWork& work) {
-  const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
-  const auto& outputs = work.estimate.model.system->spec().outputs;
-  std::vector<UnknownCurve> out(features.size() * outputs.size());
-  run_jobs(out.size(), work.threads, [&](std::size_t k) {
-    const Features& f = features[k / outputs.size()];
-    const std::size_t o = k % outputs.size();
-    out[k] = unknown_form(work, outputs[o].name, f, work.force.output_columns(static_cast<int>(o), f.f, f.ahead));
-    out[k].place = UnknownPlace::output;
-  });
-  return out;
-}
-
 std::vector<UnknownCurve> unknown_own_rates(const ScoreWork& work, int effects) {
-  const std::vector<Features> features = features_of_own_states(work.estimate, work.force, hats_of_unknown_curves, effects);
-  const Model& model = work.estimate.model;
-  std::vector<UnknownCurve> out(features.size());
-  run_jobs(out.size(), work.threads, [&](std::size_t k) {
-    const Features& f = features[k];
-    const std::string rate = "d(" + model.own_state_names[f.index] + ")/dt";
-    out[k] = unknown_form(work, rate, f, work.force.own_rate_columns(f.index, f.f));
-    out[k].place = UnknownPlace::own_rate;
-  });
+  const std::vector<BoundEffect>& all = work.estimate.model.effects;
+  std::vector<std::pair<const BoundEffect*, Features>> tests;
+  for (std::size_t e = all.size() - std::min<std::size_t>(effects, all.size()); e < all.size(); ++e) {
+    for (Features& f : features_of_own_states(work.estimate, work.force, all[e], hats_of_unknown_curves))
+      tests.emplace_back(&all[e], std::move(f));
+  }
+  std::vector<UnknownCurve> out(tests.size());
+  run_jobs(out.size(), work.threads, [&](std::size_t k) { out[k] = unknown_own_rate(work, *tests[k].first, tests[k].second); });
   return out;
 }
 

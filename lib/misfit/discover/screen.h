@@ -36,6 +36,7 @@ struct ScoreWork {
   const ScoreTest& score;
   const ForceSensitivity& force;
   int threads = 0;
+  bool calibrated = false;  ///< the outputs are those of a calibrated camera: no errors of unknown form are looked for
 };
 
 /// Score tests of all cells of all candidate models. Frequencies are scanned in steps of 1/(4T) by their line in the score of the force
@@ -54,17 +55,14 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// something else; what seems to is the sensor's).
 [[nodiscard]] std::vector<int> ports_of_unknown_curves(const SystemSpec& system);
 
-/// What an unknown form acts on.
-enum class UnknownPlace { force, output, own_rate };
-
-/// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another. So an
-/// error of an output (`port` its name), and a change of the rate of an effect's own state.
+/// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another; or so an
+/// error of an output.
 struct UnknownCurve {
-  UnknownPlace place = UnknownPlace::force;
+  bool of_output = false;  ///< `port` is an output
   std::string port, quantity;
-  int port_index = 0, quantity_index = -1;
-  std::string other;  ///< second quantity of a surface; empty: a curve
-  std::string lag;    ///< a lag or delay of the library that stands for a memory of unknown form, in place of hats; empty: there is none
+  int quantity_index = -1;
+  std::string other;   ///< second quantity of a surface; empty: a curve
+  std::string memory;  ///< what stands for a memory of unknown form in place of this, in words; empty: nothing
   ScoreResult result;
   double log_p = 0.0, p_value = 1.0;
 
@@ -73,14 +71,12 @@ struct UnknownCurve {
   [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"
 };
 
-/// Of every quantity on every dynamic port.
+/// Of every quantity on every dynamic port, and as errors of every output.
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
-
-/// Errors of every output, of every quantity.
-[[nodiscard]] std::vector<UnknownCurve> unknown_errors(const ScoreWork& work);
+[[nodiscard]] std::size_t count_of_unknown_curves(const ScoreWork& work);
 
 /// Changes of the rate of every own state of the last `effects` effects, of that state and of that rate: whether their memories are of
-/// these forms.
+/// these forms. `quantity`: the past of what the effect reads first.
 [[nodiscard]] std::vector<UnknownCurve> unknown_own_rates(const ScoreWork& work, int effects);
 
 /// Of every pair of quantities, time among them, of which `read` has at least one, on every dynamic port; four hats of each.

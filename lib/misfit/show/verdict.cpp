@@ -229,9 +229,8 @@ class Judge {
     if (d.verdict.starts_with("Not ")) {  // decided, finished
       say(VerdictKind::not_decided, d.verdict, command("discover") + " --round-limit 3600");
     } else if (!d.unexplained_port.empty()) {
-      const std::string unknown =
-          fmt::format("something is {}missing that depends on {}: a force on {} that no effect of the library explains",
-                      climbed_ ? "still " : "", d.unexplained_quantity, d.unexplained_port);
+      const std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
+                                              climbed_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const std::string next = "look at the picture, then write the effect as one line of the study: misfit help study";
       climbed_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (climbed_ && d.verdict.starts_with("No effect accepted")) {
