@@ -18,7 +18,6 @@ namespace misfit {
 namespace {
 
 using namespace testing_records;
-using RolesAt = std::map<std::string, std::string>;
 
 /// A cart whose model knows of viscous friction only, and all that the screen says of it.
 struct World {
@@ -39,14 +38,10 @@ struct World {
 
   [[nodiscard]] double families() const { return static_cast<double>(list.size()); }
 
-  /// The first place of the effect at which these roles are bound so.
-  [[nodiscard]] RankedCandidate entry(const std::string& key, bool refitted = true, const RolesAt& roles = {}) const {
+  [[nodiscard]] RankedCandidate entry(const std::string& key, bool refitted = true) const {
     RankedCandidate e;
-    const auto bound_so = [&](const RolesAt& all) {
-      return std::all_of(roles.begin(), roles.end(), [&](const auto& r) { return all.contains(r.first) && all.at(r.first) == r.second; });
-    };
     for (const auto& s : screening) {
-      if (s.candidate_model->effect == key && bound_so(s.candidate_model->roles) && e.screening == nullptr) e.screening = &s;
+      if (s.candidate_model->effect == key && e.screening == nullptr) e.screening = &s;
     }
     if (e.screening == nullptr) throw std::runtime_error(key + " is not offered");
     e.candidate = named_candidate(*e.screening, families());
@@ -187,6 +182,33 @@ TEST(Accept, ALagThatIsOfAnotherFormIsAnAlias) {
 TEST(CandidateModels, ThatLagAreThoseWithALinearMemory) {
   for (const CandidateModel& c : with_friction(1.5).list)
     EXPECT_EQ(c.lags, c.effect.ends_with("lag") || c.effect.ends_with("delay")) << c.effect;
+}
+
+/// Position in whole steps, as a display gives it: 0.013 m is one of its values.
+World with_whole_steps(double step) {
+  Signals recorded = record_of_cart({}, {});
+  for (double& x : recorded.measured[0].values) x = 0.013 + step * std::round((x - 0.013) / step);
+  return World(std::move(recorded));
+}
+
+TEST(CandidateModels, OfWholeStepsTakeThemFromTheMeasurements) {
+  const auto cells = [](const World& world) {
+    const CandidateModel& candidate_model = *world.entry("sensor_quantisation", false).screening->candidate_model;
+    EXPECT_THAT(candidate_model.port_names, testing::ElementsAre("position_reading"));
+    return candidate_model.cells;
+  };
+  const auto whole = cells(with_whole_steps(0.05));
+  ASSERT_EQ(whole.size(), 1U);
+  EXPECT_THAT(whole[0], testing::ElementsAre(testing::DoubleNear(0.05, 1e-9), testing::DoubleNear(0.013, 1e-9)));
+  EXPECT_EQ(cells(with_friction(0.0)).size(), 3U) << "in no such steps";
+}
+
+TEST(Accept, WholeStepsOfAnOutputAreFound) {
+  const World world = with_whole_steps(0.05);
+  std::vector<RankedCandidate> ranked = {world.entry("sensor_quantisation")};
+  EXPECT_FALSE(world.accept(ranked).has_value());
+  EXPECT_TRUE(ranked[0].candidate.accepted) << ranked[0].candidate.why;
+  EXPECT_NEAR(ranked[0].refit->parameters.at("rounded").value, 1.0, 0.1) << "of three harmonics of the sawtooth";
 }
 
 /// Hysteresis catches a little of the friction and would be accepted by itself; the order is as if it had caught the most.

@@ -11,6 +11,12 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
+TEST(Resolution, IsTheStepOfWhichAllDifferencesAreMultiples) {
+  EXPECT_NEAR(resolution_of({0.3, 0.55, 0.3, 1.05, -0.2}), 0.25, 1e-12);
+  EXPECT_EQ(resolution_of({0.3, 0.55, 0.3, 1.0, -0.2}), 0.0) << "1.0 is off by a fifth";
+  EXPECT_EQ(resolution_of({1.0, 2.0, 2.0}), 0.0) << "two values have no step";
+}
+
 TEST(Statistics, MedianOfOddEvenAndMissing) {
   EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
   EXPECT_EQ(median({4.0, 1.0, 2.0, 3.0}), 2.5);

@@ -220,6 +220,11 @@ OperatingRange::OperatingRange(const FilterEstimate& estimate) : estimate_(estim
       }
     }
   }
+  for (std::size_t o = count; o < values.size(); ++o) {
+    std::erase_if(values[o], [](double v) { return !std::isfinite(v); });
+    const double step = resolution_of(values[o]);
+    digits_.push_back({step, step > 0.0 ? std::remainder(values[o].front(), step) : 0.0});
+  }
   for (auto& list : values) ranges_.push_back(range_of(std::move(list)));
   if (steps.empty()) return;
   const auto middle = steps.begin() + steps.size() / 2;
@@ -246,9 +251,17 @@ double OperatingRange::lower_bound(const BoundEffect& effect, std::size_t coeffi
   return std::clamp(narrowest(quantity), c.lower, c.upper);
 }
 
+std::optional<double> OperatingRange::of_measurements(const BoundEffect& effect, OfMeasurements what) const {
+  if (what == OfMeasurements::none || effect.kind != PortKind::sensor) return std::nullopt;
+  const std::size_t output = effect.ports.front();
+  if (output >= digits_.size() || !(digits_[output].step > 0.0)) return std::nullopt;
+  return what == OfMeasurements::step ? digits_[output].step : digits_[output].level;
+}
+
 std::vector<double> OperatingRange::grid(const BoundEffect& effect, std::size_t coefficient) const {
   const EffectSpec& spec = effect.effect->spec();
   const CoefficientSpec& c = spec.coefficients[coefficient];
+  if (const auto measured = of_measurements(effect, c.measured_as)) return {std::clamp(*measured, c.lower, c.upper)};
   const std::string_view over = c.scan.over;
   const bool size = over.starts_with('|');
   double origin = 0.0, unit = 1.0;

@@ -43,12 +43,19 @@ class OperatingRange {
 
   /// Lower bound of a shape: its own, or what the filter resolves of the quantity that it smooths.
   [[nodiscard]] double lower_bound(const BoundEffect& effect, std::size_t coefficient) const;
-  /// Values of a shape to look at (ScanSpec), kept within its bounds; the default alone where `over` names what is not known.
+  /// Values of a shape to look at: that of the measurements (OfMeasurements) where they show it, else those of its ScanSpec, kept within
+  /// its bounds; the default alone where `over` names what is not known.
   [[nodiscard]] std::vector<double> grid(const BoundEffect& effect, std::size_t coefficient) const;
 
  private:
   const FilterEstimate& estimate_;
+  struct Digits {
+    double step = 0.0, level = 0.0;  ///< step 0: not digitised
+  };
+  [[nodiscard]] std::optional<double> of_measurements(const BoundEffect& effect, OfMeasurements what) const;
+
   std::vector<std::optional<Range>> ranges_;
+  std::vector<Digits> digits_;          ///< of the outputs
   mutable std::vector<double> sigmas_;  ///< of quantities; made when first asked for, by a run of the filter
   double step_ = 0.0;
 };

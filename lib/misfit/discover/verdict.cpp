@@ -181,7 +181,8 @@ std::optional<std::string> outlasts_recording(const Model& model, double seconds
 std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments) {
   const BoundEffect& effect = model.effects.back();
   const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
-  const auto multiples = std::find_if(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& c) { return c.multiples; });
+  const auto multiples = std::find_if(coefficients.begin(), coefficients.end(),
+                                      [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
   if (multiples == coefficients.end() || effect.kind != PortKind::sensor) return std::nullopt;
   const int parameter = effect.coefficients[multiples - coefficients.begin()].parameter;
   if (parameter < 0) return std::nullopt;

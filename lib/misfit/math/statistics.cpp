@@ -22,6 +22,26 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
+double resolution_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  constexpr std::size_t fewest = 3;
+  if (values.size() < fewest) return 0.0;
+  double least = values.back() - values.front();
+  const double noise = 1e-9 * std::max(std::abs(values.front()), std::abs(values.back()));
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] - values[i - 1] > noise) least = std::min(least, values[i] - values[i - 1]);
+  }
+  const double steps = (values.back() - values.front()) / least;
+  if (!(steps < 1e7)) return 0.0;
+  for (const double v : values) {
+    const double k = (v - values.front()) / least;
+    constexpr double whole = 0.02;
+    if (std::abs(k - std::round(k)) > whole) return 0.0;
+  }
+  return least;
+}
+
 double usual_step(const std::vector<double>& t) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);

@@ -7,6 +7,10 @@ namespace misfit {
 /// Median of the finite values; the mean of the middle two for an even count. NaN if there is none.
 [[nodiscard]] double median(std::vector<double> values);
 
+/// The step of digitised values: the smallest difference of two that differ, if all are whole multiples of it apart (to 2 %); 0 if there
+/// is none. All values finite.
+[[nodiscard]] double resolution_of(std::vector<double> values);
+
 /// Usual step of a time base: the median difference [s]; 1 for fewer than two samples.
 [[nodiscard]] double usual_step(const std::vector<double>& t);
 

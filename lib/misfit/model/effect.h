@@ -62,6 +62,13 @@ struct ScanSpec {
   bool smooths = false;
 };
 
+/// What a shape is of the measurements of the output that its effect reads: discovery takes it from them, where they show it.
+enum class OfMeasurements {
+  none,
+  step,   ///< they are whole multiples of it apart
+  level,  ///< the one of those values that is nearest to 0
+};
+
 /// A number the effect owns; where the study says so, a curve of any quantity.
 struct CoefficientSpec {
   const char* name = "";
@@ -77,7 +84,7 @@ struct CoefficientSpec {
   bool over_sine = false;        ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
   bool fixed = false;            ///< not fitted unless the study frees it: a smoothing width, an origin of time
   ScanSpec scan{};
-  bool multiples = false;  ///< of this shape the output's measurements are whole ones, but for an offset; discovery checks that they are
+  OfMeasurements measured_as = OfMeasurements::none;
   /// Of a strength: where the effect is whole, and less of it is nothing that exists: all of an output is late, or none. Discovery holds it
   /// there where the data allow it, and refuses an effect of which they show only a part. 0: any strength is possible.
   double whole = 0.0;

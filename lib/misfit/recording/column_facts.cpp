@@ -64,28 +64,6 @@ bool is_integer(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return v == std::round(v); });
 }
 
-/// The step of a digitised column: the smallest difference of neighbouring values, if all others are whole multiples of it and it is not
-/// the scatter of the values themselves.
-double resolution_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  constexpr std::size_t fewest = 3;
-  if (values.size() < fewest) return 0.0;
-  double least = values.back() - values.front();
-  const double noise = 1e-9 * std::max(std::abs(values.front()), std::abs(values.back()));
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] - values[i - 1] > noise) least = std::min(least, values[i] - values[i - 1]);
-  }
-  const double steps = (values.back() - values.front()) / least;
-  if (!(steps < 1e7)) return 0.0;
-  for (const double v : values) {
-    const double k = (v - values.front()) / least;
-    constexpr double whole = 0.02;
-    if (std::abs(k - std::round(k)) > whole) return 0.0;
-  }
-  return least;
-}
-
 double share_held(const std::vector<double>& values) {
   std::size_t equal = 0, pairs = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {

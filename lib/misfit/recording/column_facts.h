@@ -11,10 +11,6 @@ namespace misfit {
 [[nodiscard]] std::vector<double> finite(const std::vector<double>& values);
 [[nodiscard]] bool is_integer(const std::vector<double>& values);
 
-/// The step of a digitised column: the smallest difference of its values, if all others are whole multiples of it (to 2 %); 0 if there is
-/// none. Not finite values are not allowed.
-[[nodiscard]] double resolution_of(std::vector<double> values);
-
 /// Share of the samples that equal the one before.
 [[nodiscard]] double share_held(const std::vector<double>& values);
 

@@ -15,6 +15,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/unique_name.h"
 #include "misfit/core/units.h"
+#include "misfit/math/statistics.h"
 #include "misfit/recording/column_facts.h"
 #include "misfit/recording/log_columns.h"
 #include "misfit/recording/recording_time.h"
