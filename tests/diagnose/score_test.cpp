@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "misfit/diagnose/features.h"
 #include "misfit/math/statistics.h"
 #include "tests/fit/cart_filter.h"
 
@@ -145,6 +146,27 @@ TEST(ForceSensitivity, OfAnErrorGoesWithThePredictionOfTheSampleBefore) {
   EXPECT_EQ(column.head(row).norm(), 0.0);
   EXPECT_NEAR(std::abs(column[row]), 1.0 / std::sqrt(trace.S[next]), 1e-12);
   EXPECT_GT(column.tail(column.size() - row - 1).norm(), 0.0) << "through the gains";
+}
+
+/// Hats reproduce what lies between their outer centres: the value is the sum of their centres by weight.
+TEST(Features, OfThePastOfAnInputAreWhatIsLeftOfItsLastSteps) {
+  std::vector<Signals> recordings = {Cart(1200).signals};
+  std::vector<double>& u = recordings[0].inputs[0].values;
+  constexpr std::size_t held = 100;
+  for (std::size_t k = 0; k < u.size(); ++k) u[k] = (k / held) % 2 == 0 ? -1.0 : 1.0;
+  const FilterEstimate estimate = fitted(recordings, effect("bias", {{"output", "speed_reading"}}), {{"offset", start(0.0, true)}});
+  const std::vector<Features> pasts = features_of_pasts(estimate, ForceSensitivity(estimate), 8);
+  ASSERT_EQ(pasts.size(), 2U) << "what follows within 2 samples is over before 25 of them lie under a third hat";
+  const Features& past = pasts.back();  // tau: 32 samples
+  EXPECT_EQ(past.quantity, "the past of drive");
+  const Eigen::VectorXd centres = Eigen::Map<const Eigen::VectorXd>(past.centre.data(), std::ssize(past.centre));
+  const Eigen::VectorXd at = past.f * centres, ahead = past.ahead * centres;
+  // In steady state z swings between ±z0, and a step leaves 1 + z0 of u - z, less by exp(-1/32) at each sample.
+  const double keep = std::exp(-1.0 / 32.0), whole = std::exp(-100.0 / 32.0), z0 = (1.0 - whole) / (1.0 + whole);
+  for (const std::size_t since : {5U, 20U, 60U}) {
+    EXPECT_NEAR(at[900 + since], (1.0 + z0) * std::pow(keep, since) * (900 / held % 2 == 0 ? -1.0 : 1.0), 0.01) << since;
+    EXPECT_NEAR(ahead[900 + since], at[901 + since], 1e-9) << "the input is known before";
+  }
 }
 
 /// dz/dt = (u - z)/tau, by tau: -(dz/dt)/tau.

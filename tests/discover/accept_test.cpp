@@ -179,6 +179,20 @@ TEST(Accept, ALagThatIsOfAnotherFormIsAnAlias) {
   EXPECT_FALSE(leaves_something(late.entry("input_lag"), late));
 }
 
+TEST(UnknownCurves, SeeThatThePastOfAnInputCounts) {
+  const auto limited = [](double last, double asked) { return last + std::clamp(asked - last, -2.0, 2.0); };
+  const auto of_the_past = [](const World& world) {
+    const auto curves = unknown_curves({world.estimate, ScoreTest(world.estimate), ForceSensitivity(world.estimate)});
+    const auto found =
+        std::find_if(curves.begin(), curves.end(), [](const auto& c) { return c.label() == "an unknown curve force(the past of drive)"; });
+    EXPECT_NE(found, curves.end());
+    for (const UnknownCurve& other : curves) EXPECT_TRUE(other.log_p >= found->log_p || found->p_value > 1e-3) << other.label();
+    return found->p_value;
+  };
+  EXPECT_LT(of_the_past(World(record_of_cart({}, {}, 41, limited))), 1e-6);
+  EXPECT_GT(of_the_past(with_friction(0.0)), 0.01);
+}
+
 TEST(CandidateModels, ThatLagAreThoseWithALinearMemory) {
   for (const CandidateModel& c : with_friction(1.5).list)
     EXPECT_EQ(c.lags, c.effect.ends_with("lag") || c.effect.ends_with("delay")) << c.effect;

@@ -6,6 +6,7 @@
 
 #include "misfit/core/lists.h"
 #include "misfit/core/units.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
@@ -82,6 +83,25 @@ Features hats(const Course& course, const std::vector<bool>& used, int most) {
   return out;
 }
 
+/// One experiment's samples in the lists of all.
+struct Samples {
+  std::size_t first = 0, end = 0;
+};
+
+/// u − z of the quantity `course.index`: at each sample, and before the next one. z begins at u.
+void add_past(const ForceSensitivity& force, const Samples& samples, double intervals, Course& course) {
+  const auto u = [&](std::size_t k) { return force.quantities()(k, course.index); };
+  const auto begin = force.times().begin();
+  const double tau = intervals * usual_step({begin + samples.first, begin + samples.end});
+  std::size_t k = samples.first;
+  for (; k < samples.end && !force.used()[k]; ++k) course.values.push_back(0.0), course.ahead.push_back(0.0);
+  for (double z = k < samples.end ? u(k) : 0.0; k < samples.end; ++k) {
+    course.values.push_back(u(k) - z);
+    if (k + 1 < samples.end) z += (1.0 - std::exp((force.times()[k] - force.times()[k + 1]) / tau)) * (u(k) - z);
+    course.ahead.push_back(u(std::min(k + 1, samples.end - 1)) - z);
+  }
+}
+
 /// Where enough hats are left to draw a curve.
 void add_if_visited(Features features, std::vector<Features>& out) {
   if (features.centre.size() >= 3) out.push_back(std::move(features));
@@ -102,6 +122,23 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSen
     add_if_visited(hats(course, force.used(), most), out);
   }
   add_if_visited(hats({"time", "s", -1, force.times(), force.times()}, force.used(), most), out);
+  return out;
+}
+
+std::vector<Features> features_of_pasts(const FilterEstimate& estimate, const ForceSensitivity& force, int most) {
+  std::vector<Features> out;
+  const SystemSpec& system = estimate.model.system->spec();
+  for (std::size_t q = 0; q < system.quantities.size(); ++q) {
+    const auto& spec = system.quantities[q];
+    const bool input = std::any_of(system.inputs.begin(), system.inputs.end(), [&](const auto& i) { return i.name == spec.name; });
+    if (!input || !spec.explains) continue;
+    for (const double intervals : {2.0, 8.0, 32.0}) {
+      Course course{"the past of " + spec.name, spec.unit, static_cast<int>(q)};
+      for (std::size_t first = 0, e = 0; e < estimate.traces.size(); first += estimate.traces[e++].samples)
+        add_past(force, {first, first + estimate.traces[e].samples}, intervals, course);
+      add_if_visited(hats(course, force.used(), most), out);
+    }
+  }
   return out;
 }
 

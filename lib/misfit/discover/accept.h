@@ -48,8 +48,8 @@ inline constexpr double tied_drops = 10.0;
 /// 3. A choice is not made past a candidate with more than twice its drop (`not_past_a_larger_one`): if that is an alias whose lack of fit
 ///    a second effect removes, as in step 4, it is accepted first, since two effects are missing; if it is another one, is refused, or is
 ///    an unknown curve of the first screening, none is accepted.
-/// 4. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, if each is
-///    needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
+/// 4. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, of any quantity,
+///    if each is needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
 /// 5. The accepted one becomes the first of the list.
 /// 6. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 10, and neither
 ///    has a significant score once the other is in the model.

@@ -36,12 +36,12 @@ namespace {
 
 /// Quantities whose curves and surfaces tell whether an effect is what is missing: those that it reads. Lags, delays and what a sensor does
 /// follow the whole motion, and could stand for much of it, as could a force whose frequency was looked for: for them every quantity, and
-/// time.
-std::vector<int> quantities_that_tell(const CandidateModel& candidate_model) {
+/// time; so for several effects that are to explain all between them.
+std::vector<int> quantities_that_tell(const CandidateModel& candidate_model, int effects) {
   const bool remembers = !candidate_model.model.effects.back().effect->spec().states.empty();
   const bool sensor = candidate_model.family == "sensor" && !candidate_model.has_priors;
   const bool periodic = candidate_model.frequency >= 0;
-  if (!remembers && !sensor && !periodic) return candidate_model.quantities;
+  if (!remembers && !sensor && !periodic && effects == 1) return candidate_model.quantities;
   std::vector<int> all = candidate_model.quantities;
   for (int q = 0; q < int_size(candidate_model.model.system->spec().quantities); ++q) all.push_back(q);
   all.push_back(kTime);
@@ -71,7 +71,7 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
   const ScoreTest score(with);
   const ForceSensitivity force(with);
   const ScoreWork work{with, score, force, options.threads, options.calibration != nullptr};
-  const std::vector<int> read = quantities_that_tell(candidate_model);
+  const std::vector<int> read = quantities_that_tell(candidate_model, added.effects);
   std::vector<UnknownCurve> after = unknown_curves(work);
   const std::size_t of_anything = after.size();
   std::erase_if(after, [&](const UnknownCurve& curve) { return place_of(read, curve.quantity_index) < 0; });

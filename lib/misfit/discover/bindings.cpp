@@ -199,6 +199,14 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   return out;
 }
 
+OperatingRange::Digits OperatingRange::digits_of(const std::vector<double>& measured) {
+  const double step = resolution_of(measured);
+  if (!(step > 0.0)) return {};
+  constexpr double printed = 1e-3;  // of a step: what is lost of a level where values are printed with few digits
+  const double level = std::remainder(measured.front(), step);
+  return {step, std::abs(level) < printed * step ? 0.0 : level};
+}
+
 OperatingRange::OperatingRange(const FilterEstimate& estimate) : estimate_(estimate) {
   const SystemSpec& system = estimate.model.system->spec();
   Evaluator evaluator(estimate.forced.model);
@@ -222,8 +230,7 @@ OperatingRange::OperatingRange(const FilterEstimate& estimate) : estimate_(estim
   }
   for (std::size_t o = count; o < values.size(); ++o) {
     std::erase_if(values[o], [](double v) { return !std::isfinite(v); });
-    const double step = resolution_of(values[o]);
-    digits_.push_back({step, step > 0.0 ? std::remainder(values[o].front(), step) : 0.0});
+    digits_.push_back(digits_of(values[o]));
   }
   for (auto& list : values) ranges_.push_back(range_of(std::move(list)));
   if (steps.empty()) return;

@@ -52,6 +52,7 @@ class OperatingRange {
   struct Digits {
     double step = 0.0, level = 0.0;  ///< step 0: not digitised
   };
+  [[nodiscard]] static Digits digits_of(const std::vector<double>& measured);
   [[nodiscard]] std::optional<double> of_measurements(const BoundEffect& effect, OfMeasurements what) const;
 
   std::vector<std::optional<Range>> ranges_;

@@ -124,12 +124,11 @@ std::string part_of_effect(const FilterEstimate& estimate, const std::vector<Who
 }
 
 /// A shape that a study keeps fixed but discovery looked for: the strength's interval holds for that value alone, so it is fitted too.
-bool several_values_scanned(const Model& model, int shape) {
-  const BoundEffect& bound = model.effects.back();
-  for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
-    if (bound.coefficients[c].parameter == shape) return bound.effect->spec().coefficients[c].scan.count > 1;
-  }
-  return false;
+/// `i`: of the candidate model's shapes.
+bool several_values_scanned(const CandidateModel& candidate_model, std::size_t i) {
+  const auto& cells = candidate_model.cells;
+  return i < candidate_model.shapes.size() &&
+         std::any_of(cells.begin(), cells.end(), [&](const auto& cell) { return cell[i] != cells.front()[i]; });
 }
 
 /// With its strengths at which the effect is whole held there, if the data allow it. False: there was no time to try, so that a part that
@@ -202,7 +201,7 @@ Model start_model(const FilterEstimate& without, const ScreeningResult& screenin
     Parameter& p = model.parameters[shape];
     p.value = screening.cell[i];
     p.lower = candidate_model.model.parameters[shape].lower;
-    p.free |= several_values_scanned(model, shape);
+    p.free |= several_values_scanned(candidate_model, i);
   }
   return model;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "misfit/core/lists.h"
@@ -254,28 +255,58 @@ UnknownCurve unknown_own_rate(const ScoreWork& work, const BoundEffect& effect, 
   return out;
 }
 
+std::vector<Features> features_of_unknown_curves(const ScoreWork& work) {
+  std::vector<Features> out = features_of(work.estimate, work.force, hats_of_unknown_curves);
+  for (Features& past : features_of_pasts(work.estimate, work.force, hats_of_unknown_curves)) out.push_back(std::move(past));
+  return out;
+}
+
+/// The best of those of one quantity (features of its past) at one place, corrected for their number. In the order of the list.
+std::vector<UnknownCurve> best_of_each(const std::vector<UnknownCurve>& all) {
+  std::vector<UnknownCurve> out;
+  std::vector<double> count;
+  for (const UnknownCurve& curve : all) {
+    const auto same = std::find_if(out.begin(), out.end(), [&](const UnknownCurve& c) {
+      return c.of_output == curve.of_output && c.port == curve.port && c.quantity == curve.quantity;
+    });
+    if (same == out.end()) {
+      out.push_back(curve);
+      count.push_back(1.0);
+    } else {
+      if (curve.log_p < same->log_p) *same = curve;
+      ++count[same - out.begin()];
+    }
+  }
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].p_value = sidak(out[k].p_value, count[k]);
+    out[k].log_p += std::log(count[k]);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::size_t count_of_unknown_curves(const ScoreWork& work) {
-  const std::size_t places = ports_of_unknown_curves(work.estimate.model.system->spec()).size() + count_of_outputs(work);
-  return features_of(work.estimate, work.force, hats_of_unknown_curves).size() * places;
+  std::set<std::string> quantities;
+  for (const Features& f : features_of_unknown_curves(work)) quantities.insert(f.quantity);
+  return quantities.size() * (ports_of_unknown_curves(work.estimate.model.system->spec()).size() + count_of_outputs(work));
 }
 
 std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress) {
-  const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
+  const std::vector<Features> features = features_of_unknown_curves(work);
   const std::vector<int> ports = ports_of_unknown_curves(work.estimate.model.system->spec());
   const std::size_t places = ports.size() + count_of_outputs(work);
-  std::vector<UnknownCurve> out(features.size() * places);
+  std::vector<UnknownCurve> all(features.size() * places);
   run_jobs(
-      out.size(), work.threads,
+      all.size(), work.threads,
       [&](std::size_t k) {
         const Features& f = features[k / places];
         const std::size_t place = k % places;
-        out[k] =
+        all[k] =
             place < ports.size() ? unknown_force(work, ports[place], f) : unknown_error(work, static_cast<int>(place - ports.size()), f);
       },
       progress);
-  return out;
+  return best_of_each(all);
 }
 
 std::vector<UnknownCurve> unknown_own_rates(const ScoreWork& work, int effects) {

@@ -71,7 +71,7 @@ struct UnknownCurve {
   [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"
 };
 
-/// Of every quantity on every dynamic port, and as errors of every output.
+/// Of every quantity, and of the past of every input, on every dynamic port, and as errors of every output.
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
 [[nodiscard]] std::size_t count_of_unknown_curves(const ScoreWork& work);
 
