@@ -8,7 +8,7 @@ namespace misfit {
 
 int add_verb(const Options& options, const Registry& registry) {
   ModelLadder ladder(options.session, registry);
-  const std::optional<Candidate> prediction = prediction_for(ladder, options.effect);
+  const std::optional<Candidate> prediction = prediction_for(ladder, options.effect, asked_place(options.at));
   const Rung& rung = ladder.add(options.effect, prediction);
   report_ladder(ladder);
   if (options.json) {

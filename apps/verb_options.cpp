@@ -129,8 +129,19 @@ void discover_options(CLI::App& verb, Options& options) {
 void add_verb_options(CLI::App& verb, Options& options) {
   add_study(verb, options);
   verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
+  verb.add_option("--at", options.at,
+                  "where it acts, as discover lists it: a role and what it is bound to, once for each role; or default (default: the place "
+                  "that explains most)")
+      ->type_name("ROLE=NAME")
+      ->allow_extra_args(false);
   add_work(verb, options);
   add_time_limit(verb, options);
+}
+
+void remove_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  verb.add_option("rung", options.rung, "number or effect of the rung; those above it go with it")->type_name("RUNG")->required();
+  add_work(verb, options);
 }
 
 void uncertainty_options(CLI::App& verb, Options& options) {
@@ -222,6 +233,7 @@ constexpr VerbEntry verbs[] = {{"run", run_verb, run_options},
                                {"diagnose", diagnose_verb, fit_options},
                                {"discover", discover_verb, discover_options},
                                {"add", add_verb, add_verb_options},
+                               {"remove", remove_verb, remove_options},
                                {"compare", compare_verb, fit_options},
                                {"uncertainty", uncertainty_verb, uncertainty_options},
                                {"report", report_verb, fit_options},

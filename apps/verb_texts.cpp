@@ -23,6 +23,8 @@ constexpr VerbText texts[] = {
      "candidates.json, discovery.json, report.html; with --auto also rungs/ and ladder.json", "misfit discover motor --auto"},
     {"add", "add an effect (or system:KIND) to the last rung: writes and fits a new study, prints the error before and after",
      "the study and its ladder", "rungs/NN_EFFECT/ with the new study and its results, ladder.json", "misfit add motor coulomb_friction"},
+    {"remove", "take a rung and those above it off the ladder; what they computed is kept in rungs/removed_NN_EFFECT",
+     "the study and its ladder", "ladder.json, report.html", "misfit remove motor coulomb_friction"},
     {"compare", "compare methods with each other and with reference curves, simulated with measured motion",
      "the study, its fits, curves of [reference]", "compare.json", "misfit compare configs/null"},
     {"uncertainty", "propagate geometry, camera and mass uncertainty to the results (Monte Carlo, on threads or under mpirun)",

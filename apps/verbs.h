@@ -16,6 +16,8 @@ struct Options {
   bool verbose = false;              ///< tables of every stage instead of a line
   std::vector<std::string> studies;  ///< batch: lists, folders, studies
   std::string effect;                ///< add
+  std::vector<std::string> at;       ///< add: its place
+  std::string rung;                  ///< remove
   bool automatic = false;            ///< discover --auto, run --auto
   std::string check_video;           ///< track: write the video with the track drawn to this file
   ExportRequest export_request;      ///< export
@@ -36,6 +38,7 @@ int discover_verb(const Options& options, const Registry& registry);
 int uncertainty_verb(const Options& options, const Registry& registry);
 int batch_verb(const Options& options, const Registry& registry);
 int add_verb(const Options& options, const Registry& registry);
+int remove_verb(const Options& options, const Registry& registry);
 int run_verb(const Options& options, const Registry& registry);
 int export_verb(const Options& options, const Registry& registry);
 int init_verb(const Options& options, const Registry& registry);

@@ -39,8 +39,8 @@ TEST(Help, NamesTheNearestTopic) {
 TEST(Help, OfAVerbSaysWhatItReadsAndWritesWithAnExample) {
   const std::string all = run({"help"}).out;
   int verbs = 0;
-  for (const char* verb : {"run", "track", "calibrate", "attitude", "fit", "diagnose", "discover", "add", "compare", "uncertainty",
-                           "report", "open", "simulate", "batch", "export", "init", "effects"}) {
+  for (const char* verb : {"run", "track", "calibrate", "attitude", "fit", "diagnose", "discover", "add", "remove", "compare",
+                           "uncertainty", "report", "open", "simulate", "batch", "export", "init", "effects"}) {
     const Outcome outcome = run({verb, "--help"});
     EXPECT_EQ(outcome.status, 0) << verb;
     EXPECT_TRUE(outcome.out.starts_with(std::string("misfit ") + verb + ":")) << outcome.out;
@@ -49,7 +49,7 @@ TEST(Help, OfAVerbSaysWhatItReadsAndWritesWithAnExample) {
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 102U) << verb << ": " << line;  // … is three bytes
     verbs += all.find(std::string("\n  ") + verb) != std::string::npos ? 1 : 0;
   }
-  EXPECT_EQ(verbs, 17);
+  EXPECT_EQ(verbs, 18);
 }
 
 TEST(Help, ManualAndCompletionNameEveryOptionOfTheHelp) {
@@ -71,7 +71,7 @@ TEST(Help, ManualAndCompletionNameEveryOptionOfTheHelp) {
       EXPECT_NE(completion.find(option[1].str()), std::string::npos) << verb << option[1];
     }
   }
-  EXPECT_EQ(pages, 18);
+  EXPECT_EQ(pages, 19);
 }
 
 /// As readline asks for it.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/apps/oscillator_study.h"
 #include "tests/apps/short_flight.h"
 
 namespace {
@@ -155,6 +156,64 @@ TEST(WrongAdditionAsAWhole, WithoutAnEffect) {
   const Outcome outcome = program::run({"add", "study.toml"});
   EXPECT_EQ(outcome.status, 2);
   expect_parts(outcome.err, {"effect"});
+}
+
+std::vector<std::string> added(const OscillatorStudy& study) {
+  std::vector<std::string> out;
+  for (const auto& rung : json::parse(content(study.path("out/ladder.json")))) out.push_back(rung.at("added"));
+  return out;
+}
+
+TEST(ARemovedRung, IsOffTheLadderWithThoseAboveItAndWhatItComputedIsKept) {
+  const OscillatorStudy study;
+  const std::string file = study.path("study.toml").string();
+  ASSERT_EQ(run({"add", file, "coulomb_friction"}).status, 0);
+  ASSERT_EQ(run({"add", file, "cubic_stiffness"}).status, 0);
+  const Outcome two = run({"remove", file, "coulomb_friction"});
+  ASSERT_EQ(two.status, 0) << two.err;
+  expect_parts(two.err, {"kept: ", "removed_01_coulomb_friction", "removed_02_cubic_stiffness"});
+  EXPECT_EQ(added(study), std::vector<std::string>{""});
+  EXPECT_TRUE(fs::exists(study.path("out/rungs/removed_01_coulomb_friction/out/fit/filter_error/fit.json")));
+  EXPECT_EQ(content(study.path("out/report.html")).find("<h2>Model ladder</h2>"), std::string::npos) << "one model is no ladder";
+  ASSERT_EQ(run({"add", file, "coulomb_friction"}).status, 0);
+  EXPECT_EQ(added(study), (std::vector<std::string>{"", "coulomb_friction"}));
+  ASSERT_EQ(run({"remove", file, "1"}).status, 0);
+  EXPECT_TRUE(fs::exists(study.path("out/rungs/removed_01_coulomb_friction_2/study.toml"))) << "the first one is still there";
+}
+
+TEST(ARemovedRung, MustBeOneThatWasAdded) {
+  const OscillatorStudy study;
+  const std::string file = study.path("study.toml").string();
+  const auto refused = [&](const std::string& rung) {
+    const Outcome outcome = run({"remove", file, rung});
+    EXPECT_EQ(outcome.status, 2) << rung;
+    return outcome.err;
+  };
+  expect_parts(refused("1"), {"nothing has been added to this study"});
+  EXPECT_FALSE(fs::exists(study.path("out/ladder.json")));
+  ASSERT_EQ(run({"add", file, "coulomb_friction"}).status, 0);
+  expect_parts(refused("0"), {"rung 0 is the study's own model"});
+  expect_parts(refused("coulomb_fricton"), {"rung coulomb_fricton: ", "did you mean 'coulomb_friction'"});
+  EXPECT_EQ(added(study), (std::vector<std::string>{"", "coulomb_friction"}));
+}
+
+TEST(APlaceOfAnEffect, IsTheOneThatIsAskedFor) {
+  const OscillatorStudy study;
+  study.measure_twice();
+  const std::string file = study.path("study.toml").string();
+  ASSERT_EQ(run({"discover", file}).status, 0);
+  const Outcome wrong = run({"add", file, "bias", "--at", "output=y3"});
+  EXPECT_EQ(wrong.status, 2);
+  expect_parts(wrong.err, {"does not list bias there, but at --at ", "--at output=y2"});
+  EXPECT_EQ(run({"add", file, "bias", "--at", "y2"}).status, 2);
+  EXPECT_EQ(run({"add", file, "system:cascaded_tanks", "--at", "output=y2"}).status, 2);
+  EXPECT_FALSE(fs::exists(study.path("out/rungs")));
+  for (const char* output : {"y", "y2"}) {  // whichever explains more
+    const Outcome right = run({"add", file, "bias", "--at", output == std::string("y2") ? "output=y2" : "default"});
+    ASSERT_EQ(right.status, 0) << right.err;
+  }
+  expect_parts(content(study.path("out/rungs/02_bias/study.toml")), {"output = \"y2\""});
+  EXPECT_EQ(content(study.path("out/rungs/01_bias/study.toml")).find("output = \"y2\""), std::string::npos);
 }
 
 TEST(LadderOfAStudyThatChanged, IsBegunAnew) {

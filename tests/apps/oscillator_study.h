@@ -58,6 +58,22 @@ starts = 5
   [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
 
+  /// Its position is measured by two sensors: an effect of a sensor has two places.
+  void measure_twice() const {
+    std::istringstream lines(content(path("d.csv")));
+    std::mt19937 random(4);
+    std::normal_distribution<double> noise(0.0, 0.005);
+    std::string text, line;
+    std::getline(lines, line);
+    text = line + ",y2[m]\n";
+    while (std::getline(lines, line))
+      text += line + "," + std::to_string(std::stod(line.substr(line.rfind(',') + 1)) + noise(random)) + "\n";
+    write("d.csv", text);
+    const std::string model = content(path("m.toml"));
+    write("m.toml", std::regex_replace(model, std::regex("noise = 0.005 \\}"),
+                                       "noise = 0.005 }\ny2 = { unit = \"m\", formula = \"y\", noise = 0.007 }"));
+  }
+
   /// The words of a command that does all that VERB can do, with its results in `out`.
   [[nodiscard]] std::vector<std::string> command(const std::string& verb, const fs::path& out) const {
     const std::string study = path(verb == "batch" ? "batch" : "study.toml").string();

@@ -104,6 +104,34 @@ TEST(CommandsOfThePage, AreNotWrittenThroughLinks) {
   EXPECT_EQ(content(study.path("real.toml")), shown["text"].get<std::string>());
 }
 
+TEST(CommandsOfThePage, AddWhereTheListSaysAndRemoveWhatWasAdded) {
+  const OscillatorStudy study;
+  study.measure_twice();
+  const std::string file = study.path("study.toml").string();
+  const PageServer server({file});
+  ASSERT_EQ(server.post("/api/job", {{"verb", "run"}}).status, 200);
+  ASSERT_EQ(server.job()["state"], "done");
+  const json rows = server.get("/api/candidates").parsed()["rows"];
+  const auto several =
+      std::find_if(rows.begin(), rows.end(), [](const json& row) { return !row["at"].empty() && row["at"][0] != "default"; });
+  ASSERT_NE(several, rows.end());
+  const std::string effect = (*several)["effect"];
+  EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}, {"at", {"rate=; rm -r /"}}}).status, 400);
+  EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}, {"at", "default"}}).status, 400) << "no list";
+  std::string command = "misfit add " + file + " " + effect;
+  for (const std::string word : (*several)["at"]) command += " '--at=" + word + "'";
+  EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}, {"at", (*several)["at"]}}).parsed()["command"], command);
+  ASSERT_EQ(server.job()["state"], "done");
+  ASSERT_EQ(server.state()["models"].size(), 2U);
+
+  for (const char* rung : {"0", "2", "1; ls", ""})
+    EXPECT_EQ(server.post("/api/job", {{"verb", "remove"}, {"rung", rung}}).status, 400) << rung;
+  EXPECT_EQ(server.post("/api/job", {{"verb", "remove"}, {"rung", "1"}}).parsed()["command"], "misfit remove " + file + " 1");
+  ASSERT_EQ(server.job()["state"], "done");
+  EXPECT_EQ(server.state()["models"].size(), 1U);
+  EXPECT_THAT(content(study.path("out/session.sh")), HasSubstr("misfit remove " + file + " 1\n"));
+}
+
 void run_to_the_first_fit(PageServer& server, const OscillatorStudy& study) {
   ASSERT_EQ(server.post("/api/job", {{"verb", "run"}}).status, 200);
   for (int k = 0; k < 400 && !fs::exists(study.path("out/fit/output_error/fit.json")); ++k)

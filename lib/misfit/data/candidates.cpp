@@ -29,6 +29,15 @@ std::string effect_at(const std::string& effect, const std::map<std::string, std
   return bindings.empty() ? effect : effect + " (" + bindings + ")";
 }
 
+std::vector<std::string> words_of_place(const Candidate& candidate) {
+  std::vector<std::string> out;
+  for (const auto& [role, name] : candidate.roles) {
+    out.push_back(role);
+    out.back() += "=" + name;
+  }
+  return out.empty() ? std::vector<std::string>{"default"} : out;
+}
+
 std::string unexplained_place(const Discovery& discovery) {
   return (discovery.unexplained_error ? "an error of " : "a force on ") + discovery.unexplained_port;
 }

@@ -37,6 +37,8 @@ struct Candidate {
 
 /// "overflow (level = x1, port = dx1/dt)"; the key alone where all roles are the defaults.
 [[nodiscard]] std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles);
+/// The same as words of a command: {"level=x1", "port=dx1/dt"}; {"default"} where all roles are the defaults.
+[[nodiscard]] std::vector<std::string> words_of_place(const Candidate& candidate);
 
 /// What could be missing, best first.
 struct Discovery {

@@ -70,6 +70,14 @@ std::string text_in(const json& body, const char* name) {
   return found->get<std::string>();
 }
 
+std::vector<std::string> texts_in(const json& body, const char* name) {
+  const auto found = body.find(name);
+  if (found == body.end()) return {};
+  const bool texts = found->is_array() && std::all_of(found->begin(), found->end(), [](const json& item) { return item.is_string(); });
+  if (!texts) throw InputError(std::string(name) + ": a list of texts is expected");
+  return found->get<std::vector<std::string>>();
+}
+
 }  // namespace
 
 Api::Api(SessionOptions options, const Registry& registry, std::string program)
@@ -125,7 +133,7 @@ Answer Api::post(const Ask& ask) {
   if (ask.path == "/api/check")
     return {200, fmt::format(R"({{"fault":{}}})", json_of(fault_of(results_.study(), text_in(body, "text"), registry_)))};
   if (ask.path == "/api/save") return save(text_in(body, "text"), text_in(body, "hash"));
-  if (ask.path == "/api/job") return start(text_in(body, "verb"), text_in(body, "effect"));
+  if (ask.path == "/api/job") return start({text_in(body, "verb"), text_in(body, "effect"), text_in(body, "rung"), texts_in(body, "at")});
   return failure(404, "there is no such page");
 }
 
@@ -187,17 +195,37 @@ Answer Api::save(const std::string& text, const std::string& hash) {
   return {200, fmt::format(R"({{"hash":"{}"}})", hash_text(whole))};
 }
 
-Answer Api::start(const std::string& verb, const std::string& effect) {
-  constexpr std::array verbs = {"run", "fit", "discover", "add"};
-  const auto known_verb = std::find(verbs.begin(), verbs.end(), verb);
-  if (known_verb == verbs.end()) throw InputError("verb: run, fit, discover or add is expected");
-  std::vector<std::string> words{*known_verb, options_.study};
-  if (verb == "add") {
-    const std::vector<std::string> effects = registry_.effect_keys();
-    const auto known_effect = std::find(effects.begin(), effects.end(), effect);
-    if (known_effect == effects.end()) throw InputError("effect: a key of `misfit effects` is expected");
-    words.push_back(*known_effect);
+std::vector<std::string> Api::words_of_add(const JobRequest& request) const {
+  const std::vector<std::string> effects = registry_.effect_keys();
+  const auto effect = std::find(effects.begin(), effects.end(), request.effect);
+  if (effect == effects.end()) throw InputError("effect: a key of `misfit effects` is expected");
+  std::vector<std::string> words{*effect};
+  if (request.at.empty()) return words;
+  const std::optional<Discovery> discovery = discovery_of(results_.places().back());
+  for (const Candidate& candidate : discovery ? discovery->candidates : std::vector<Candidate>{}) {
+    if (candidate.effect != *effect || words_of_place(candidate) != request.at) continue;
+    for (const std::string& word : words_of_place(candidate)) words.push_back("--at=" + word);
+    return words;
   }
+  throw InputError("at: a place of the effect in the list of candidates is expected");
+}
+
+std::vector<std::string> Api::words_of_remove(const JobRequest& request) const {
+  const Ladder ladder = results_.ladder().value_or(Ladder{});
+  for (const Rung& rung : ladder.rungs) {
+    if (rung.parent >= 0 && request.rung == std::to_string(rung.id)) return {std::to_string(rung.id)};
+  }
+  throw InputError("rung: the number of a rung that was added is expected");
+}
+
+Answer Api::start(const JobRequest& request) {
+  constexpr std::array verbs = {"run", "fit", "discover", "add", "remove"};
+  const auto verb = std::find(verbs.begin(), verbs.end(), request.verb);
+  if (verb == verbs.end()) throw InputError("verb: run, fit, discover, add or remove is expected");
+  std::vector<std::string> words{*verb, options_.study}, more;
+  if (request.verb == "add") more = words_of_add(request);
+  if (request.verb == "remove") more = words_of_remove(request);
+  words.insert(words.end(), more.begin(), more.end());
   if (!options_.out.empty()) words.insert(words.end(), {"--out", options_.out});
   const std::string command = command_of(words);
   const std::lock_guard lock(mutex_);

@@ -16,7 +16,8 @@ namespace misfit::serve {
 ///
 /// GET  /api/state; /api/motion?model&method; /api/where?model; /api/samples?model&experiment&quantity; /api/candidates?model;
 ///      /api/curves?model; /api/calibration; /api/ladder; /api/study?model; /api/session
-/// POST /api/job {"verb": "run"|"fit"|"discover"|"add", "effect"}; /api/stop; /api/check {"text"}; /api/save {"text", "hash"}
+/// POST /api/job {"verb": "run"|"fit"|"discover"|"add"|"remove", "effect", "at", "rung"}; /api/stop; /api/check {"text"}; /api/save
+/// {"text", "hash"}
 class Api {
  public:
   Api(SessionOptions options, const Registry& registry, std::string program);
@@ -39,7 +40,14 @@ class Api {
   [[nodiscard]] std::shared_ptr<const Known> known();
   void open_study(Known& known) const;
   [[nodiscard]] Answer study(const Place& place) const;
-  [[nodiscard]] Answer start(const std::string& verb, const std::string& effect);
+  struct JobRequest {
+    std::string verb, effect, rung;
+    std::vector<std::string> at;  ///< words of the effect's place; empty: the one that explains most
+  };
+  [[nodiscard]] Answer start(const JobRequest& request);
+  /// Behind the study, out of what is known here: nothing of a request becomes a word of a command. InputError: it is not.
+  [[nodiscard]] std::vector<std::string> words_of_add(const JobRequest& request) const;
+  [[nodiscard]] std::vector<std::string> words_of_remove(const JobRequest& request) const;
   [[nodiscard]] Answer save(const std::string& text, const std::string& hash);
   [[nodiscard]] Place place(const Ask& ask) const;
   [[nodiscard]] std::string where(const Ask& ask) const;

@@ -51,11 +51,13 @@ std::string pair_of(const PairMap& map) {
                      json_words(map.quantity_y), json_number(map.p_corrected), json_of(report::pair_figure(map)));
 }
 
-/// What the table of blocks_of(Discovery) has no column for. In its order.
-std::string row_of(const Candidate& c, const std::vector<std::string>& known) {
+/// What the table of blocks_of(Discovery) has no column for. In its order. `at`: the words of its place, where the effect has several.
+std::string row_of(const Candidate& c, const std::vector<Candidate>& all, const std::vector<std::string>& known) {
   const bool addable = std::find(known.begin(), known.end(), c.effect) != known.end();
-  return fmt::format(R"({{"effect":{},"name":{},"why":{},"accepted":{},"addable":{}}})", json_string(c.effect),
-                     json_string(effect_at(c.effect, c.roles)), json_words(c.why), c.accepted, addable);
+  const auto places = std::count_if(all.begin(), all.end(), [&](const Candidate& other) { return other.effect == c.effect; });
+  const std::vector<std::string> at = addable && places > 1 ? words_of_place(c) : std::vector<std::string>{};
+  return fmt::format(R"({{"effect":{},"name":{},"why":{},"accepted":{},"addable":{},"at":{}}})", json_string(c.effect),
+                     json_string(effect_at(c.effect, c.roles)), json_words(c.why), c.accepted, addable, list_of(at, json_string));
 }
 
 }  // namespace
@@ -100,7 +102,7 @@ std::string candidates_view(const Place& place, const Registry& registry) {
   const std::vector<std::string> known = registry.effect_keys();
   const std::string figure = d->candidates.empty() ? "null" : json_of(report::candidates_figure(d->candidates));
   return fmt::format(R"({{"blocks":{},"rows":{},"figure":{}}})", json_of(blocks_of(*d)),
-                     list_of(d->candidates, [&](const Candidate& c) { return row_of(c, known); }), figure);
+                     list_of(d->candidates, [&](const Candidate& c) { return row_of(c, d->candidates, known); }), figure);
 }
 
 std::string curves_view(const Place& place, const std::vector<Reference>& references) {

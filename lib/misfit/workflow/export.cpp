@@ -42,16 +42,6 @@ struct Chosen {
   std::string rung;
 };
 
-const Rung& find_rung(const Ladder& ladder, const std::string& asked) {
-  std::vector<std::string> names;
-  for (const Rung& rung : ladder.rungs) {
-    if (asked == std::to_string(rung.id) || (!rung.added.empty() && asked == rung.added)) return rung;
-    names.push_back(std::to_string(rung.id));
-    if (!rung.added.empty()) names.push_back(rung.added);
-  }
-  throw InputError("--rung " + shown(asked) + ": the ladder has no such rung" + suggest(asked, names));
-}
-
 Chosen open(const SessionOptions& options, const Registry& registry, const std::string& asked) {
   const Session root(options, registry, RunFolder::Access::read);
   const Ladder ladder = known_ladder(root).value_or(Ladder{});
@@ -60,7 +50,7 @@ Chosen open(const SessionOptions& options, const Registry& registry, const std::
     if (!asked.empty() && asked != "0") throw InputError("--rung " + shown(asked) + ": the study has no ladder yet; misfit add makes one");
     return own();
   }
-  const Rung& rung = asked.empty() ? ladder.rungs.back() : find_rung(ladder, asked);
+  const Rung& rung = asked.empty() ? ladder.rungs.back() : find_rung(ladder, asked, "--rung ");
   if (rung.parent < 0) return own();
   const fs::path study = root.folder.file(rung.study);
   if (!fs::exists(study)) throw RunError(fmt::format("rung {} of the ladder is missing: {}", rung.id, study.string()));

@@ -9,6 +9,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
+#include "misfit/core/shown.h"
 #include "misfit/data/contained_fit.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/data/estimators.h"
@@ -227,6 +228,10 @@ std::string ModelLadder::relative_study(const Session& session) const {
 
 void ModelLadder::append(Rung rung) {
   ladder_.rungs.push_back(std::move(rung));
+  store();
+}
+
+void ModelLadder::store() {
   root_.redo_stage("ladder", inputs_of_ladder(root_), {ladder_name},
                    [&](const fs::path& dir) { write_ladder(dir / ladder_name, ladder_); });
   ladder_ = read_ladder(root_.folder.file(ladder_name));
@@ -285,6 +290,27 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   return ladder_.rungs.back();
 }
 
+std::vector<fs::path> ModelLadder::remove(const std::string& asked) {
+  if (ladder_.rungs.size() < 2) throw InputError("rung " + shown(asked) + ": nothing has been added to this study");
+  const std::size_t first = &find_rung(ladder_, asked, "rung ") - ladder_.rungs.data();
+  if (first == 0) throw InputError("rung " + shown(asked) + " is the study's own model: it stays");
+  const std::vector<Rung> removed(ladder_.rungs.begin() + static_cast<std::ptrdiff_t>(first), ladder_.rungs.end());
+  ladder_.rungs.resize(first);
+  store();
+  last_.reset();
+  std::vector<fs::path> kept;
+  for (const Rung& rung : removed) {
+    const fs::path folder = root_.folder.file(rung.study).parent_path().lexically_normal();
+    if (!rung.study.starts_with("rungs/") || !fs::exists(folder)) continue;
+    fs::path to = folder.parent_path() / ("removed_" + folder.filename().string());
+    for (int again = 2; fs::exists(to); ++again)
+      to = folder.parent_path() / fmt::format("removed_{}_{}", folder.filename().string(), again);
+    fs::rename(folder, to);
+    kept.push_back(to);
+  }
+  return kept;
+}
+
 void diagnose_rungs(ModelLadder& ladder) {
   std::ignore = diagnose_stage(ladder.root());
   if (ladder.ladder().rungs.size() > 1) std::ignore = diagnose_stage(ladder.last());
@@ -304,10 +330,28 @@ void report_ladder(ModelLadder& ladder) {
   }
 }
 
-std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect) {
-  if (effect.starts_with(system_prefix)) return std::nullopt;
+const Rung& find_rung(const Ladder& ladder, const std::string& number_or_effect, const std::string& asked_by) {
+  std::vector<std::string> names;
+  for (const Rung& rung : ladder.rungs) {
+    if (number_or_effect == std::to_string(rung.id) || (!rung.added.empty() && number_or_effect == rung.added)) return rung;
+    names.push_back(std::to_string(rung.id));
+    if (!rung.added.empty()) names.push_back(rung.added);
+  }
+  throw InputError(asked_by + shown(number_or_effect) + ": the ladder has no such rung" + suggest(number_or_effect, names));
+}
+
+std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect, const AskedPlace& place) {
+  if (effect.starts_with(system_prefix)) {
+    if (!place.any()) throw InputError("--at: a change of system has no place");
+    return std::nullopt;
+  }
   Session& session = ladder.last();
   std::ignore = session.registry.effect(effect);  // InputError with the nearest name
+  if (!place.any()) {
+    auto there = predict_effect(session, effect, place);
+    if (!there && !place.roles.empty()) throw InputError("--at: " + effect + ": discovery lists no place of it that is free");
+    return there;
+  }
   try {
     std::ignore = study_with_effect(session, effect, std::nullopt, session.folder.path());  // refuses what cannot be added
   } catch (const InputError&) {

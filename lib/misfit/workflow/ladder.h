@@ -30,6 +30,10 @@ class ModelLadder {
   /// there, does not suit the system; RunError: the new model cannot be fitted.
   const Rung& add(const std::string& effect, const std::optional<Candidate>& from);
 
+  /// Takes a rung (its number or its effect) and all that were added after it off the ladder. What they have computed is kept: their
+  /// folders are renamed to rungs/removed_NN_EFFECT. Returns these. InputError: there is no such rung, or it is the study's own model.
+  std::vector<std::filesystem::path> remove(const std::string& rung);
+
   /// From now on a rung's fit has a time limit where nobody gives one (usual_limit()): nobody waits for it.
   void limit_fits() { limits_fits_ = true; }
 
@@ -49,6 +53,7 @@ class ModelLadder {
   /// Written to its folder with the parent's estimate beside it, to begin with where it has the parent's system.
   [[nodiscard]] std::unique_ptr<Session> open(const NewStudy& study, const Session& parent, const FilterWork& parent_work);
   void append(Rung rung);
+  void store();
 
   SessionOptions options_;
   const Registry& registry_;
@@ -59,8 +64,12 @@ class ModelLadder {
 };
 
 /// What discovery says of the effect for the last rung: roles, where to start, the drop it predicts. Asked before the effect is added, so
-/// that the prediction is one. nullopt for a change of system, which no discovery ranks. InputError as ModelLadder::add.
-[[nodiscard]] std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect);
+/// that the prediction is one. nullopt for a change of system, which no discovery ranks. InputError as ModelLadder::add and
+/// predict_effect().
+[[nodiscard]] std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect, const AskedPlace& place = {});
+
+/// The rung with this number or effect. InputError with the nearest name; `asked_by` begins it.
+[[nodiscard]] const Rung& find_rung(const Ladder& ladder, const std::string& number_or_effect, const std::string& asked_by);
 
 /// The best accepted candidate that is an effect of the library, so that one line adds it to a study.
 [[nodiscard]] std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Registry& registry);

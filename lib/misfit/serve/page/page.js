@@ -140,10 +140,11 @@ function sparkline(values) {
   return out;
 }
 
-async function start(verb, effect) {
+// `more`: what the verb needs: { effect, at } to add, { rung } to remove.
+async function start(verb, more = {}) {
   try {
     if (verb === 'stop') await post('stop');
-    else await post('job', effect ? { verb, effect } : { verb });
+    else await post('job', { verb, ...more });
     await look();
   } catch (error) {
     say(error);
@@ -361,8 +362,8 @@ function candidateTable(table, rows, last) {
   const body = element('tbody');
   rows.forEach((row, k) => {
     const button = row.addable && last
-      ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, title: `misfit add … ${row.effect}`, disabled: !here.idle,
-          onclick: () => start('add', row.effect) }, 'Add') : '';
+      ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, title: `misfit add … ${[row.effect, ...row.at].join(' --at=')}`, disabled: !here.idle,
+          onclick: () => start('add', { effect: row.effect, at: row.at }) }, 'Add') : '';
     const more = k >= most ? ' more' : '';
     const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
       ...columns.map((n) => element('td', { class: side(n) }, words(table.rows[k][n]))));
@@ -395,8 +396,12 @@ async function showLadder(view) {
   }));
   view.append(element('p', { class: 'soft' }, 'A click shows the results of that model everywhere on this page.'), choice);
   draw(view, ladder.figure, { height: 0.75 });
-  const current = ladder.rungs.find((rung) => rung.id === here.state.models[here.model].id);
+  const current = ladder.rungs.find((rung) => rung.id === here.state.models[here.model].id), last = ladder.rungs[ladder.rungs.length - 1];
   if (current) view.append(element('h3', {}, `Rung ${current.id}`), blocks(current.blocks));
+  if (current && current.added !== '') {
+    view.append(element('button', { class: 'removes', title: `misfit remove … ${current.id}`, disabled: !here.idle,
+      onclick: () => start('remove', { rung: `${current.id}` }) }, last === current ? 'Remove this rung' : 'Remove this rung and those above it'));
+  }
   view.append(element('details', {}, element('summary', {}, 'All rungs in numbers'), blocks(ladder.blocks.filter((b) => b.kind !== 'figures'))));
 }
 
@@ -476,7 +481,7 @@ function begin() {
     event.preventDefault();
   });
   for (const verb of ['run', 'fit', 'discover', 'stop']) at(verb).addEventListener('click', () => start(verb));
-  at('add').addEventListener('click', () => start('add', at('effect').value));
+  at('add').addEventListener('click', () => start('add', { effect: at('effect').value }));
   at('effect').addEventListener('change', () => { at('add').disabled = !here.idle || at('effect').value === ''; });
   at('model').addEventListener('change', (event) => choose(Number(event.target.value)));
   at('method').addEventListener('change', (event) => { here.method = Number(event.target.value); showMotion().catch(say); });

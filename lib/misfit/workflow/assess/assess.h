@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +24,19 @@ namespace misfit {
 [[nodiscard]] std::optional<Discovery> discover_stage(Session& session);
 /// The same; RunError in the fit's words if filter_error declined.
 [[nodiscard]] Discovery discovered(Session& session);
-/// What discovery says of one effect: from the whole search where that is on disk, else it alone is screened. nullopt if it cannot be
-/// screened (it has no strength, or is driven by noise, or stands for another).
-[[nodiscard]] std::optional<Candidate> predict_effect(Session& session, const std::string& effect);
+/// Where an effect acts, as somebody asks for it: roles and what they are bound to, at least those that tell its places apart.
+struct AskedPlace {
+  std::map<std::string, std::string> roles;
+  bool by_default = false;  ///< where it goes without roles
+
+  [[nodiscard]] bool any() const { return roles.empty() && !by_default; }
+};
+/// "ROLE=NAME" each, or "default" alone. InputError: neither.
+[[nodiscard]] AskedPlace asked_place(const std::vector<std::string>& words);
+/// What discovery says of one effect, at the best place that is as asked for: from the whole search where that is on disk, else it alone is
+/// screened. nullopt if it cannot be screened (it has no strength, or is driven by noise, or stands for another). InputError: it can, but
+/// at other places only.
+[[nodiscard]] std::optional<Candidate> predict_effect(Session& session, const std::string& effect, const AskedPlace& place = {});
 /// What these stages left on disk, where it still belongs to the fit that is there.
 [[nodiscard]] std::optional<Diagnosis> known_diagnosis(const Session& session);
 [[nodiscard]] std::optional<Discovery> known_discovery(const Session& session);

@@ -1,4 +1,10 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 #include "misfit/discover/discover.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/job_queue.h"
@@ -33,17 +39,44 @@ Discovery search(Session& session, const std::string& only) {
   }
 }
 
+bool is_at(const Candidate& candidate, const AskedPlace& place) {
+  if (place.by_default) return candidate.roles.empty();
+  return std::all_of(place.roles.begin(), place.roles.end(), [&](const auto& role) {
+    const auto found = candidate.roles.find(role.first);
+    return found != candidate.roles.end() && found->second == role.second;
+  });
+}
+
 }  // namespace
 
-std::optional<Candidate> predict_effect(Session& session, const std::string& effect) {
+AskedPlace asked_place(const std::vector<std::string>& words) {
+  AskedPlace out;
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    if (word == "default" && words.size() == 1) {
+      out.by_default = true;
+    } else if (equals == std::string::npos || equals == 0 || equals + 1 == word.size()) {
+      throw InputError("--at " + shown(word) + ": ROLE=NAME is expected, such as rate=w, or default alone");
+    } else {
+      out.roles[word.substr(0, equals)] = word.substr(equals + 1);
+    }
+  }
+  return out;
+}
+
+std::optional<Candidate> predict_effect(Session& session, const std::string& effect, const AskedPlace& place) {
   if (filter_declined(session)) refuse_declined(session);
   stop_if_interrupted();
   const auto known = known_discovery(session);
   const Discovery discovery = known ? *known : search(session, effect);
+  std::string others;
   for (const auto& candidate : discovery.candidates) {
-    if (candidate.effect == effect) return candidate;
+    if (candidate.effect != effect) continue;
+    if (is_at(candidate, place)) return candidate;
+    others += (others.empty() ? " --at " : " | --at ") + fmt::format("{}", fmt::join(words_of_place(candidate), " --at "));
   }
-  return std::nullopt;
+  if (others.empty()) return std::nullopt;
+  throw InputError("--at: discovery does not list " + effect + " there, but at" + others);
 }
 
 std::optional<Discovery> discover_stage(Session& session) {
