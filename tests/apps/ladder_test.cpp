@@ -197,6 +197,22 @@ TEST(ARemovedRung, MustBeOneThatWasAdded) {
   EXPECT_EQ(added(study), (std::vector<std::string>{"", "coulomb_friction"}));
 }
 
+TEST(AnEffectThatIsAdded, IsWhatDiscoveryFindsWhetherItHasBeenAskedOrNot) {
+  const OscillatorStudy study;
+  const std::string file = study.path("study.toml").string();
+  const auto rung = [&](const std::string& out) { return json::parse(content(study.path(out + "/ladder.json"))).at(1); };
+  ASSERT_EQ(run({"add", file, "coulomb_friction", "--out", study.path("by_hand").string()}).status, 0);
+  ASSERT_EQ(run({"discover", file, "--auto", "--out", study.path("found").string()}).status, 0);
+  const json by_hand = rung("by_hand"), found = rung("found");
+  ASSERT_EQ(found.at("added"), "coulomb_friction");
+  EXPECT_NEAR(by_hand.at("actual_drop").get<double>(), found.at("actual_drop").get<double>(), 0.1);
+  ASSERT_EQ(by_hand.at("parameters").size(), found.at("parameters").size()) << "its width is estimated, too";
+  for (const auto& [name, estimate] : found.at("parameters").items()) {
+    const double value = estimate.at("value"), sigma = estimate.at("sigma");
+    EXPECT_NEAR(by_hand.at("parameters").at(name).at("value").get<double>(), value, 0.1 * sigma) << name;
+  }
+}
+
 TEST(APlaceOfAnEffect, IsTheOneThatIsAskedFor) {
   const OscillatorStudy study;
   study.measure_twice();

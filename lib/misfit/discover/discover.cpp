@@ -80,8 +80,12 @@ class Search {
     rank();
     for (auto& e : ranked_) {
       if (e.screening->runs && !e.candidate.described) e.candidate.predicted_drop = one_step(refit_work(), score_, *e.screening).drop;
-      out_.candidates.push_back(e.candidate);
     }
+    const auto asked = [this](const RankedCandidate& e) {
+      return may_be_significant(e) && options_.refit_at == e.candidate.roles ? e.screening : nullptr;
+    };
+    if (options_.refit_at) refit_wave({.begin = asked});
+    for (auto& e : ranked_) out_.candidates.push_back(e.candidate);
     return std::move(out_);
   }
 

@@ -34,8 +34,8 @@ struct AskedPlace {
 /// "ROLE=NAME" each, or "default" alone. InputError: neither.
 [[nodiscard]] AskedPlace asked_place(const std::vector<std::string>& words);
 /// What discovery says of one effect, at the best place that is as asked for: from the whole search where that is on disk, else it alone is
-/// screened. nullopt if it cannot be screened (it has no strength, or is driven by noise, or stands for another). InputError: it can, but
-/// at other places only.
+/// screened, and refitted if it may be significant. nullopt if it cannot be screened (it has no strength, or is driven by noise, or stands
+/// for another). InputError: it can, but at other places only.
 [[nodiscard]] std::optional<Candidate> predict_effect(Session& session, const std::string& effect, const AskedPlace& place = {});
 /// What these stages left on disk, where it still belongs to the fit that is there.
 [[nodiscard]] std::optional<Diagnosis> known_diagnosis(const Session& session);

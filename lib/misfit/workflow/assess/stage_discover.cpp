@@ -16,14 +16,17 @@ namespace {
 
 constexpr const char* refits = "discover_refits";
 
-/// The search itself; `only`: of one effect, without refits.
-Discovery search(Session& session, const std::string& only) {
+using Roles = std::map<std::string, std::string>;
+
+/// The search itself; `only`: of one effect, refitted at one place if that is given.
+Discovery search(Session& session, const std::string& only, const std::optional<Roles>& refit_at = std::nullopt) {
   const std::optional<Calibration> calibration = calibrate_stage(session);
   const auto work = filter_work(session);
   DiscoverOptions options;
   options.threads = session.options.threads;
   options.calibration = calibration ? &*calibration : nullptr;
   options.only = only;
+  options.refit_at = refit_at;
   options.progress = session.progress("discover");
   if (only.empty()) options.refits = {session.folder.file(refits), digest_of(inputs_of_discovery(session)), 0, session.options.threads};
   options.stop = &interrupted();
@@ -47,6 +50,18 @@ bool is_at(const Candidate& candidate, const AskedPlace& place) {
   });
 }
 
+/// nullptr: the effect is not listed. InputError: it is, but at other places only.
+const Candidate* candidate_at(const Discovery& discovery, const std::string& effect, const AskedPlace& place) {
+  std::string others;
+  for (const auto& candidate : discovery.candidates) {
+    if (candidate.effect != effect) continue;
+    if (is_at(candidate, place)) return &candidate;
+    others += (others.empty() ? " --at " : " | --at ") + fmt::format("{}", fmt::join(words_of_place(candidate), " --at "));
+  }
+  if (others.empty()) return nullptr;
+  throw InputError("--at: discovery does not list " + effect + " there, but at" + others);
+}
+
 }  // namespace
 
 AskedPlace asked_place(const std::vector<std::string>& words) {
@@ -68,15 +83,12 @@ std::optional<Candidate> predict_effect(Session& session, const std::string& eff
   if (filter_declined(session)) refuse_declined(session);
   stop_if_interrupted();
   const auto known = known_discovery(session);
-  const Discovery discovery = known ? *known : search(session, effect);
-  std::string others;
-  for (const auto& candidate : discovery.candidates) {
-    if (candidate.effect != effect) continue;
-    if (is_at(candidate, place)) return candidate;
-    others += (others.empty() ? " --at " : " | --at ") + fmt::format("{}", fmt::join(words_of_place(candidate), " --at "));
-  }
-  if (others.empty()) return std::nullopt;
-  throw InputError("--at: discovery does not list " + effect + " there, but at" + others);
+  const Discovery screened = known ? *known : search(session, effect);
+  const Candidate* found = candidate_at(screened, effect, place);
+  if (found == nullptr) return std::nullopt;
+  if (known) return *found;
+  const Discovery refitted = search(session, effect, found->roles);
+  return *candidate_at(refitted, effect, {found->roles, found->roles.empty()});
 }
 
 std::optional<Discovery> discover_stage(Session& session) {
