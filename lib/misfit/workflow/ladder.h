@@ -30,9 +30,10 @@ class ModelLadder {
   /// there, does not suit the system; RunError: the new model cannot be fitted.
   const Rung& add(const std::string& effect, const std::optional<Candidate>& from);
 
-  /// Takes a rung (its number or its effect) and all that were added after it off the ladder. What they have computed is kept: their
-  /// folders are renamed to rungs/removed_NN_EFFECT. Returns these. InputError: there is no such rung, or it is the study's own model.
-  std::vector<std::filesystem::path> remove(const std::string& rung);
+  /// Takes the rung that is asked for (its number or its effect) and all that were added after it off the ladder. What they have computed
+  /// is kept: their folders are renamed to rungs/removed_NN_EFFECT. Returns these. InputError: there is no such rung, or it is the study's
+  /// own model.
+  std::vector<std::filesystem::path> remove(const std::string& asked);
 
   /// From now on a rung's fit has a time limit where nobody gives one (usual_limit()): nobody waits for it.
   void limit_fits() { limits_fits_ = true; }
