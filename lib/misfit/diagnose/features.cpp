@@ -88,17 +88,19 @@ struct Samples {
   std::size_t first = 0, end = 0;
 };
 
-/// u − z of the quantity `course.index`: at each sample, and before the next one. z begins at u.
+/// u − z of the quantity `course.index`: at each sample, and before the next one. z begins at the first u that is known and stands still
+/// where u is not.
 void add_past(const ForceSensitivity& force, const Samples& samples, double intervals, Course& course) {
-  const auto u = [&](std::size_t k) { return force.quantities()(k, course.index); };
-  const auto begin = force.times().begin();
-  const double tau = intervals * usual_step({begin + samples.first, begin + samples.end});
-  std::size_t k = samples.first;
-  for (; k < samples.end && !force.used()[k]; ++k) course.values.push_back(0.0), course.ahead.push_back(0.0);
-  for (double z = k < samples.end ? u(k) : 0.0; k < samples.end; ++k) {
+  const std::vector<double>& t = force.times();
+  const double tau = intervals * usual_step({t.begin() + samples.first, t.begin() + samples.end});
+  const auto u = [&](std::size_t k) { return force.used()[k] ? force.quantities()(k, course.index) : std::nan(""); };
+  double z = std::nan("");
+  for (std::size_t k = samples.first; k < samples.end; ++k) {
+    if (!std::isfinite(z)) z = u(k);
+    const std::size_t next = std::min(k + 1, samples.end - 1);
     course.values.push_back(u(k) - z);
-    if (k + 1 < samples.end) z += (1.0 - std::exp((force.times()[k] - force.times()[k + 1]) / tau)) * (u(k) - z);
-    course.ahead.push_back(u(std::min(k + 1, samples.end - 1)) - z);
+    if (std::isfinite(u(k))) z += (1.0 - std::exp((t[k] - t[next]) / tau)) * (u(k) - z);
+    course.ahead.push_back(u(next) - z);
   }
 }
 
@@ -134,8 +136,11 @@ std::vector<Features> features_of_pasts(const FilterEstimate& estimate, const Fo
     if (!input || !spec.explains) continue;
     for (const double intervals : {2.0, 8.0, 32.0}) {
       Course course{"the past of " + spec.name, spec.unit, static_cast<int>(q)};
-      for (std::size_t first = 0, e = 0; e < estimate.traces.size(); first += estimate.traces[e++].samples)
-        add_past(force, {first, first + estimate.traces[e].samples}, intervals, course);
+      std::size_t first = 0;
+      for (const FilterTrace& trace : estimate.traces) {
+        add_past(force, {first, first + trace.samples}, intervals, course);
+        first += trace.samples;
+      }
       add_if_visited(hats(course, force.used(), most), out);
     }
   }
