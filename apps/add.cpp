@@ -7,8 +7,9 @@
 namespace misfit {
 
 int add_verb(const Options& options, const Registry& registry) {
+  const AskedPlace place = asked_place(options.at);  // first: wrong words change nothing
   ModelLadder ladder(options.session, registry);
-  const std::optional<Candidate> prediction = prediction_for(ladder, options.effect, asked_place(options.at));
+  const std::optional<Candidate> prediction = prediction_for(ladder, options.effect, place);
   const Rung& rung = ladder.add(options.effect, prediction);
   report_ladder(ladder);
   if (options.json) {

@@ -59,7 +59,7 @@ TEST(Discover, OnlyOneEffectIsPredictedAsInTheWholeSearch) {
   EXPECT_DOUBLE_EQ(one.candidates[0].predicted_drop, same->predicted_drop);
   EXPECT_FALSE(one.candidates[0].actual_drop.has_value());
   EXPECT_LT(one.candidates[0].p_value, 0.01);
-  options.refit_at = one.candidates[0].roles;
+  options.refit_best_of = [](const Candidate&) { return true; };
   const Discovery refitted = misfit::discover(flight.estimate, flight.request, registry(), flight.signals, options);
   EXPECT_NEAR(refitted.candidates.at(0).actual_drop.value_or(0.0), same->actual_drop.value_or(1e9), 1e-6 * *same->actual_drop);
   options.only = "coning";  // in the spherical system already

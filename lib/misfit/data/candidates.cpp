@@ -31,10 +31,7 @@ std::string effect_at(const std::string& effect, const std::map<std::string, std
 
 std::vector<std::string> words_of_place(const Candidate& candidate) {
   std::vector<std::string> out;
-  for (const auto& [role, name] : candidate.roles) {
-    out.push_back(role);
-    out.back() += "=" + name;
-  }
+  for (const auto& [role, name] : candidate.roles) out.push_back(role + "=" + name);
   return out.empty() ? std::vector<std::string>{"default"} : out;
 }
 

@@ -111,6 +111,8 @@ void add_if_visited(Features features, std::vector<Features>& out) {
 
 }  // namespace
 
+std::string past_of(const std::string& quantity) { return "the past of " + quantity; }
+
 std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most) {
   std::vector<Features> out;
   const auto& specs = estimate.model.system->spec().quantities;
@@ -132,10 +134,9 @@ std::vector<Features> features_of_pasts(const FilterEstimate& estimate, const Fo
   const SystemSpec& system = estimate.model.system->spec();
   for (std::size_t q = 0; q < system.quantities.size(); ++q) {
     const auto& spec = system.quantities[q];
-    const bool input = std::any_of(system.inputs.begin(), system.inputs.end(), [&](const auto& i) { return i.name == spec.name; });
-    if (!input || !spec.explains) continue;
+    if (index_of(system.inputs, spec.name) < 0 || !spec.explains) continue;
     for (const double intervals : {2.0, 8.0, 32.0}) {
-      Course course{"the past of " + spec.name, spec.unit, static_cast<int>(q)};
+      Course course{past_of(spec.name), spec.unit, static_cast<int>(q)};
       std::size_t first = 0;
       for (const FilterTrace& trace : estimate.traces) {
         add_past(force, {first, first + trace.samples}, intervals, course);

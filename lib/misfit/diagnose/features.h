@@ -20,8 +20,11 @@ struct Features {
 /// % to 99.5 % of the visited values (ends extended); hats with fewer than 25 samples under them are left out.
 [[nodiscard]] std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most = 10);
 
+/// How a memory of a quantity is called: "the past of u".
+[[nodiscard]] std::string past_of(const std::string& quantity);
+
 /// Of each input that a quantity gives, what has not yet become of its last changes: u − z with dz/dt = (u − z)/tau, tau 2, 8 and 32 usual
-/// sampling intervals. What comes late, in whatever form, depends on one of them. Each is called "the past of u"; `index` is that of u.
+/// sampling intervals. What comes late, in whatever form, depends on one of them. Each is called past_of(u); `index` is that of u.
 [[nodiscard]] std::vector<Features> features_of_pasts(const FilterEstimate& estimate, const ForceSensitivity& force, int most);
 
 /// The same of an effect's own states: each state, and its rate (called "d(name)/dt", constant over each step). `index` is that of the

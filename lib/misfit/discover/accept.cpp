@@ -129,7 +129,7 @@ std::optional<UnknownCurve> remaining_memory(const Refit& in, double drop, const
     if (worst && worst->log_p < found->log_p) continue;
     UnknownCurve memory;
     memory.port = lag.port_names.front();
-    memory.quantity = "the past of " + lag.model.system->spec().quantities[lag.quantities.front()].name;
+    memory.quantity = past_read_by(lag.model.system->spec(), lag.model.effects.back());
     memory.memory = label(other.candidate);
     memory.result = found->result;
     memory.log_p = found->log_p;
@@ -154,10 +154,11 @@ const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::v
   if (!needed_given(in, both, *second.entry, context)) return nullptr;
   // The threshold stays a share of the drop of `in` alone, as in step 2: with the drop of both, a better second effect would allow more
   // lack of fit.
-  const CandidateModel reads = with_quantities(*second.score.candidate_model, in.screening->candidate_model->quantities);
   const bool lags = in.screening->candidate_model->lags || second.score.candidate_model->lags;
   if (lags && remaining_memory(both, in.refit->drop, ranked, context)) return nullptr;
-  return remaining_lack_of_fit(both.estimate, reads, {in.refit->drop, least_share_of_all, 2}, options) ? nullptr : second.entry;
+  return remaining_lack_of_fit(both.estimate, *second.score.candidate_model, {in.refit->drop, least_share_of_all, 2}, options)
+             ? nullptr
+             : second.entry;
 }
 
 /// Of the effect, as its refit had them.

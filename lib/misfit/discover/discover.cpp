@@ -78,20 +78,27 @@ class Search {
     std::erase_if(candidate_models_, [&](const CandidateModel& s) { return s.effect != options_.only; });
     screening_ = screen(scores(), candidate_models_, part(0.0, 1.0));
     rank();
+    refit_the_best_asked_for();
     for (auto& e : ranked_) {
-      if (e.screening->runs && !e.candidate.described) e.candidate.predicted_drop = one_step(refit_work(), score_, *e.screening).drop;
+      if (!e.refit_begun && e.screening->runs && !e.candidate.described)
+        e.candidate.predicted_drop = one_step(refit_work(), score_, *e.screening).drop;
+      out_.candidates.push_back(e.candidate);
     }
-    const auto asked = [this](const RankedCandidate& e) {
-      return may_be_significant(e) && options_.refit_at == e.candidate.roles ? e.screening : nullptr;
-    };
-    if (options_.refit_at) refit_wave({.begin = asked});
-    for (auto& e : ranked_) out_.candidates.push_back(e.candidate);
     return std::move(out_);
   }
 
  private:
   /// Approximate shares of a search's time, measured on 79 s of flight.
   static constexpr double end_of_screen = 0.45, end_of_curves = 0.5, end_of_refits = 0.9;
+
+  void refit_the_best_asked_for() {
+    const auto wanted = [&](const RankedCandidate& e) { return options_.refit_best_of && options_.refit_best_of(e.candidate); };
+    const auto best = std::find_if(ranked_.begin(), ranked_.end(), wanted);
+    if (best == ranked_.end() || !may_be_significant(*best)) return;
+    const ScreeningResult* asked = best->screening;
+    refit_wave({.begin = [&](const RankedCandidate& e) { return e.screening == asked ? asked : nullptr; }});
+    std::stable_partition(ranked_.begin(), ranked_.end(), [](const RankedCandidate& e) { return e.refit_begun; });
+  }
 
   /// Progress of a part of the search that goes from one share of the whole to another.
   ProgressFn part(double from, double to) const {

@@ -3,7 +3,7 @@
 // References
 //   [D]  R. B. Davies, Biometrika 74 (1987): tests when a nuisance parameter is present only under the alternative.
 
-#include <map>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -21,8 +21,8 @@ struct DiscoverOptions {
   double p_accept = 0.01;                    ///< family-wise
   int max_refits = 6;                        ///< at once; as many again where none of the first is accepted
   std::string only;                          ///< key of an effect: it alone is screened, and the drop of one Gauss–Newton step predicted
-  /// With `only`: the place at which it is refitted, too, if it may be significant there; nullopt: nothing is.
-  std::optional<std::map<std::string, std::string>> refit_at = std::nullopt;
+  /// With `only`: the best of these candidates is refitted, too, if it may be significant, and stands first; empty: none is.
+  std::function<bool(const Candidate&)> refit_best_of = {};
   ProgressFn progress = {};  ///< called with (done, total) as the search goes on
   /// Where refits are kept as they end, to be shared by ranks and found again by a search that was stopped; nullopt: in memory.
   std::optional<StoredJobs> refits = std::nullopt;

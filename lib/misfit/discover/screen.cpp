@@ -236,14 +236,6 @@ UnknownCurve unknown_error(const ScoreWork& work, int output, const Features& f)
 /// Whose errors of unknown form are looked for.
 std::size_t count_of_outputs(const ScoreWork& work) { return work.calibrated ? 0 : work.estimate.model.system->spec().outputs.size(); }
 
-/// What an effect reads first, in words.
-std::string first_read(const Model& model, const BoundEffect& effect) {
-  const SystemSpec& system = model.system->spec();
-  const int q = effect.quantities.empty() ? -1 : effect.quantities.front();
-  if (q < 0) return effect.name;
-  return q < int_size(system.quantities) ? system.quantities[q].name : system.outputs[q - int_size(system.quantities)].name;
-}
-
 /// Of the own state of an effect to which the features belong.
 UnknownCurve unknown_own_rate(const ScoreWork& work, const BoundEffect& effect, const Features& f) {
   const Model& model = work.estimate.model;
@@ -251,7 +243,7 @@ UnknownCurve unknown_own_rate(const ScoreWork& work, const BoundEffect& effect, 
   UnknownCurve out = unknown_form(work, ports.empty() ? effect.name : ports.front(), f, work.force.own_rate_columns(f.index, f.f));
   out.of_output = effect.kind == PortKind::sensor;
   out.memory = "another dependence of d(" + model.own_state_names[f.index] + ")/dt on " + f.quantity;
-  out.quantity = "the past of " + first_read(model, effect);
+  out.quantity = past_read_by(model.system->spec(), effect);
   return out;
 }
 
@@ -285,6 +277,12 @@ std::vector<UnknownCurve> best_of_each(const std::vector<UnknownCurve>& all) {
 }
 
 }  // namespace
+
+std::string past_read_by(const SystemSpec& system, const BoundEffect& effect) {
+  const int q = effect.quantities.empty() ? -1 : effect.quantities.front();
+  if (q < 0) return past_of(effect.name);
+  return past_of(q < int_size(system.quantities) ? system.quantities[q].name : system.outputs[q - int_size(system.quantities)].name);
+}
 
 std::size_t count_of_unknown_curves(const ScoreWork& work) {
   std::set<std::string> quantities;

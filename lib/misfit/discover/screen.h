@@ -75,8 +75,11 @@ struct UnknownCurve {
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
 [[nodiscard]] std::size_t count_of_unknown_curves(const ScoreWork& work);
 
+/// past_of() what an effect with a memory reads first.
+[[nodiscard]] std::string past_read_by(const SystemSpec& system, const BoundEffect& effect);
+
 /// Changes of the rate of every own state of the last `effects` effects, of that state and of that rate: whether their memories are of
-/// these forms. `quantity`: the past of what the effect reads first.
+/// these forms. `quantity`: past_read_by() the effect.
 [[nodiscard]] std::vector<UnknownCurve> unknown_own_rates(const ScoreWork& work, int effects);
 
 /// Of every pair of quantities, time among them, of which `read` has at least one, on every dynamic port; four hats of each.

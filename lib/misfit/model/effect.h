@@ -84,7 +84,7 @@ struct CoefficientSpec {
   bool over_sine = false;        ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
   bool fixed = false;            ///< not fitted unless the study frees it: a smoothing width, an origin of time
   ScanSpec scan{};
-  OfMeasurements measured_as = OfMeasurements::none;
+  OfMeasurements measured_as = OfMeasurements::none;  ///< of a shape; discovery checks a step against the measurements
   /// Of a strength: where the effect is whole, and less of it is nothing that exists: all of an output is late, or none. Discovery holds it
   /// there where the data allow it, and refuses an effect of which they show only a part. 0: any strength is possible.
   double whole = 0.0;

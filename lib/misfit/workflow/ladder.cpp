@@ -305,7 +305,9 @@ std::vector<fs::path> ModelLadder::remove(const std::string& asked) {
     fs::path to = folder.parent_path() / ("removed_" + folder.filename().string());
     for (int again = 2; fs::exists(to); ++again)
       to = folder.parent_path() / fmt::format("removed_{}_{}", folder.filename().string(), again);
-    fs::rename(folder, to);
+    std::error_code error;
+    fs::rename(folder, to, error);
+    if (error) throw WriteError(folder.string() + ": cannot be renamed to " + to.filename().string() + ": " + error.message());
     kept.push_back(to);
   }
   return kept;

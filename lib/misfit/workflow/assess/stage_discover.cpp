@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
@@ -16,17 +18,15 @@ namespace {
 
 constexpr const char* refits = "discover_refits";
 
-using Roles = std::map<std::string, std::string>;
-
-/// The search itself; `only`: of one effect, refitted at one place if that is given.
-Discovery search(Session& session, const std::string& only, const std::optional<Roles>& refit_at = std::nullopt) {
+/// The search itself; `only`: of one effect (DiscoverOptions).
+Discovery search(Session& session, const std::string& only, std::function<bool(const Candidate&)> refit_best_of = {}) {
   const std::optional<Calibration> calibration = calibrate_stage(session);
   const auto work = filter_work(session);
   DiscoverOptions options;
   options.threads = session.options.threads;
   options.calibration = calibration ? &*calibration : nullptr;
   options.only = only;
-  options.refit_at = refit_at;
+  options.refit_best_of = std::move(refit_best_of);
   options.progress = session.progress("discover");
   if (only.empty()) options.refits = {session.folder.file(refits), digest_of(inputs_of_discovery(session)), 0, session.options.threads};
   options.stop = &interrupted();
@@ -83,12 +83,9 @@ std::optional<Candidate> predict_effect(Session& session, const std::string& eff
   if (filter_declined(session)) refuse_declined(session);
   stop_if_interrupted();
   const auto known = known_discovery(session);
-  const Discovery screened = known ? *known : search(session, effect);
-  const Candidate* found = candidate_at(screened, effect, place);
-  if (found == nullptr) return std::nullopt;
-  if (known) return *found;
-  const Discovery refitted = search(session, effect, found->roles);
-  return *candidate_at(refitted, effect, {found->roles, found->roles.empty()});
+  const Discovery discovery = known ? *known : search(session, effect, [&](const Candidate& c) { return is_at(c, place); });
+  const Candidate* found = candidate_at(discovery, effect, place);
+  return found == nullptr ? std::nullopt : std::optional(*found);
 }
 
 std::optional<Discovery> discover_stage(Session& session) {

@@ -134,7 +134,7 @@ void take_gains(const GuessedModel& model, const std::vector<Candidate>& others,
   }
 }
 
-/// `data`: time and inputs; `others`: the outputs that may drive this one.
+/// `data`: time, inputs and the outputs that may drive this one.
 GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, const Candidate& of, GuessData data) {
   GuessedOutput output;
   const ColumnSurvey& c = *of.column;
@@ -153,16 +153,17 @@ GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, co
   return output;
 }
 
-GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, const std::vector<Candidate>& all, std::size_t which,
-                           const GuessedModel& model, GuessData data) {
-  std::vector<Candidate> others;
-  for (std::size_t i = 0; may_couple(all.size(), model.inputs.size()) && i < all.size(); ++i) {
-    if (i != which) others.push_back(all[i]);
-  }
-  for (const Candidate& other : others) data.drivers.push_back({other.values, true, true});
-  GuessedOutput output = guess_output(survey, table, all[which], std::move(data));
-  take_gains(model, others, output);
-  return output;
+/// The other outputs, where they may drive this one.
+std::vector<Candidate> drivers_of(std::size_t which, const std::vector<Candidate>& all, std::size_t inputs) {
+  if (!may_couple(all.size(), inputs)) return {};
+  std::vector<Candidate> out = all;
+  out.erase(out.begin() + static_cast<std::ptrdiff_t>(which));
+  return out;
+}
+
+GuessData with_drivers(GuessData data, const std::vector<Candidate>& drivers) {
+  for (const Candidate& d : drivers) data.drivers.push_back({d.values, true, true});
+  return data;
 }
 
 }  // namespace
@@ -192,7 +193,9 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
   for (const ColumnSurvey* c : survey.of_use(ColumnUse::output)) outputs.push_back({c, longest->values(c->name, si_unit(c->unit))});
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const bool none_fits = room.states == 0 || room.outputs == 0;
-    GuessedOutput output = none_fits ? GuessedOutput{} : guess_output(survey, *longest, outputs, i, model, data);
+    const std::vector<Candidate> drivers = drivers_of(i, outputs, model.inputs.size());
+    GuessedOutput output = none_fits ? GuessedOutput{} : guess_output(survey, *longest, outputs[i], with_drivers(data, drivers));
+    take_gains(model, drivers, output);
     if (none_fits || !room.take(output)) {
       left_out.push_back(outputs[i].column->name);
       continue;
