@@ -144,6 +144,14 @@ void remove_options(CLI::App& verb, Options& options) {
   add_work(verb, options);
 }
 
+void set_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  verb.add_option("settings", options.settings,
+                  "keys of the study and their values; an experiment goes by its name: experiment.NAME.validation")
+      ->type_name("KEY=VALUE…")
+      ->required();
+}
+
 void uncertainty_options(CLI::App& verb, Options& options) {
   add_study(verb, options);
   verb.add_option("--runs", options.session.runs, "overrides the study's number of runs")
@@ -234,6 +242,7 @@ constexpr VerbEntry verbs[] = {{"run", run_verb, run_options},
                                {"discover", discover_verb, discover_options},
                                {"add", add_verb, add_verb_options},
                                {"remove", remove_verb, remove_options},
+                               {"set", set_verb, set_options},
                                {"compare", compare_verb, fit_options},
                                {"uncertainty", uncertainty_verb, uncertainty_options},
                                {"report", report_verb, fit_options},

@@ -25,6 +25,8 @@ constexpr VerbText texts[] = {
      "the study and its ladder", "rungs/NN_EFFECT/ with the new study and its results, ladder.json", "misfit add motor coulomb_friction"},
     {"remove", "take a rung and those above it off the ladder; what they computed is kept in rungs/removed_NN_EFFECT",
      "the study and its ladder", "ladder.json, report.html", "misfit remove motor coulomb_friction"},
+    {"set", "change values in the text of the study, which keeps its layout and comments: free or hold a parameter, hold out another part",
+     "the study", "the study, if nothing is wrong with it then", "misfit set motor parameters.k.free=false"},
     {"compare", "compare methods with each other and with reference curves, simulated with measured motion",
      "the study, its fits, curves of [reference]", "compare.json", "misfit compare configs/null"},
     {"uncertainty", "propagate geometry, camera and mass uncertainty to the results (Monte Carlo, on threads or under mpirun)",

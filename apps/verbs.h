@@ -13,16 +13,17 @@ namespace misfit {
 struct Options {
   SessionOptions session;
   bool quiet = false, json = false;
-  bool verbose = false;              ///< tables of every stage instead of a line
-  std::vector<std::string> studies;  ///< batch: lists, folders, studies
-  std::string effect;                ///< add
-  std::vector<std::string> at;       ///< add: its place
-  std::string rung;                  ///< remove
-  bool automatic = false;            ///< discover --auto, run --auto
-  std::string check_video;           ///< track: write the video with the track drawn to this file
-  ExportRequest export_request;      ///< export
-  RecordingChoice recording;         ///< init
-  int port = 0;                      ///< open; 0: a free one
+  bool verbose = false;               ///< tables of every stage instead of a line
+  std::vector<std::string> studies;   ///< batch: lists, folders, studies
+  std::string effect;                 ///< add
+  std::vector<std::string> at;        ///< add: its place
+  std::string rung;                   ///< remove
+  std::vector<std::string> settings;  ///< set: KEY=VALUE
+  bool automatic = false;             ///< discover --auto, run --auto
+  std::string check_video;            ///< track: write the video with the track drawn to this file
+  ExportRequest export_request;       ///< export
+  RecordingChoice recording;          ///< init
+  int port = 0;                       ///< open; 0: a free one
 };
 
 // One function per verb: open the study, call the stages, print. Each in apps/NAME.cpp. Return the exit status.
@@ -39,6 +40,7 @@ int uncertainty_verb(const Options& options, const Registry& registry);
 int batch_verb(const Options& options, const Registry& registry);
 int add_verb(const Options& options, const Registry& registry);
 int remove_verb(const Options& options, const Registry& registry);
+int set_verb(const Options& options, const Registry& registry);
 int run_verb(const Options& options, const Registry& registry);
 int export_verb(const Options& options, const Registry& registry);
 int init_verb(const Options& options, const Registry& registry);

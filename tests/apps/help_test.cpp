@@ -39,7 +39,7 @@ TEST(Help, NamesTheNearestTopic) {
 TEST(Help, OfAVerbSaysWhatItReadsAndWritesWithAnExample) {
   const std::string all = run({"help"}).out;
   int verbs = 0;
-  for (const char* verb : {"run", "track", "calibrate", "attitude", "fit", "diagnose", "discover", "add", "remove", "compare",
+  for (const char* verb : {"run", "track", "calibrate", "attitude", "fit", "diagnose", "discover", "add", "remove", "set", "compare",
                            "uncertainty", "report", "open", "simulate", "batch", "export", "init", "effects"}) {
     const Outcome outcome = run({verb, "--help"});
     EXPECT_EQ(outcome.status, 0) << verb;

@@ -77,6 +77,36 @@ TEST(StudyEdit, TheSystemChangesInItsLine) {
   EXPECT_THROW(static_cast<void>(with_system("[system]\nfile = \"a.toml\"\n", "b")), InputError);
 }
 
+TEST(StudyEdit, AValueChangesWhereItStands) {
+  EXPECT_EQ(with_value("[a]\nb = 1  # one\nc = 2\n", {"a", "b"}, "3"), "[a]\nb = 3  # one\nc = 2\n");
+  EXPECT_EQ(with_value("[a]\nb = { free = true, x = [1,\n 2] }\n", {"a", "b", "x"}, "\"auto\""),
+            "[a]\nb = { free = true, x = \"auto\" }\n");
+  EXPECT_EQ(with_value("[[e]]\nv = 1\n[[e]]\nv = 2\n", {"e", "1", "v"}, "[3, 4]"), "[[e]]\nv = 1\n[[e]]\nv = [3, 4]\n");
+  EXPECT_EQ(with_value("a.b.c = 1\n", {"a", "b", "c"}, "2"), "a.b.c = 2\n");
+}
+
+TEST(StudyEdit, AValueThatWasNotThereGoesIntoTheInnermostTableThatIs) {
+  EXPECT_EQ(with_value("[s]\nn = 1\n", {"p", "k", "free"}, "false"), "[s]\nn = 1\n\n[p]\nk.free = false\n");
+  EXPECT_EQ(with_value("[p]  # all\n\n[s]\nn = 1\n", {"p", "k", "free"}, "false"), "[p]  # all\nk.free = false\n\n[s]\nn = 1\n");
+  EXPECT_EQ(with_value("[p]\nk = { value = 2 }\n", {"p", "k", "free"}, "false"), "[p]\nk = { value = 2, free = false }\n");
+  EXPECT_EQ(with_value("[p]\nk.value = 2\nm.value = 3\n", {"p", "k", "free"}, "false"), "[p]\nk.value = 2\nk.free = false\nm.value = 3\n");
+  EXPECT_EQ(with_value("[p.k]\nvalue = 2\n\n[s]\nn = 1\n", {"p", "k", "free"}, "false"), "[p.k]\nvalue = 2\nfree = false\n\n[s]\nn = 1\n");
+  EXPECT_EQ(with_value("[p.k]\nvalue = 2\n", {"p", "m", "free"}, "false"), "[p.k]\nvalue = 2\n\n[p]\nm.free = false\n");
+  EXPECT_EQ(with_value("p.k.value = 2\n[s]\nn = 1\n", {"p", "k", "free"}, "false"), "p.k.value = 2\np.k.free = false\n[s]\nn = 1\n");
+  EXPECT_EQ(with_value("[[e]]\nv = 1\n[[e]]\nv = 2\n", {"e", "0", "w"}, "3"), "[[e]]\nv = 1\nw = 3\n[[e]]\nv = 2\n");
+  EXPECT_EQ(with_value("[p]\n\"lag.k\" = {}\n", {"p", "lag.k", "free"}, "true"), "[p]\n\"lag.k\" = { free = true }\n");
+  EXPECT_EQ(with_value("[p]\r\na = 1\r\n", {"p", "b"}, "2"), "[p]\r\na = 1\r\nb = 2\r\n");
+}
+
+TEST(StudyEdit, WhatIsNoValueOrHasNoPlaceIsRefused) {
+  for (const char* value : {"", "a b", "1\nseed = 2", "1 # one", "{", "1, b = 2"})
+    EXPECT_THROW(static_cast<void>(with_value("[a]\nb = 1\n", {"a", "b"}, value)), InputError) << value;
+  EXPECT_THROW(static_cast<void>(with_value("[a]\nb = 1\n", {"a"}, "1")), InputError);
+  EXPECT_THROW(static_cast<void>(with_value("[a]\nb = 1\n", {"a", "b", "c"}, "1")), InputError) << "b is no table";
+  EXPECT_THROW(static_cast<void>(with_value("[a.b]\nc = 1\n", {"a", "b"}, "1")), InputError) << "a section";
+  EXPECT_THROW(static_cast<void>(with_value("[[e]]\nv = 1\n", {"e", "7", "v"}, "1")), InputError) << "there is one";
+}
+
 TEST(StudyEdit, FilesKeepTheirPlaceWhenTheStudyMoves) {
   const TemporaryFolder folder;
   folder.write("track.csv", "x");

@@ -1,5 +1,6 @@
 #include "misfit/report/report.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -11,6 +12,8 @@
 
 namespace misfit::report {
 namespace {
+
+using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
@@ -64,6 +67,16 @@ TEST(Report, ThePageNeedsNothingFromElsewhere) {
     const bool within = page[at + 6] == '#', figure = page.compare(at + 6, 8, "figures/") == 0;
     EXPECT_TRUE(within || figure) << page.substr(at, 40);
   }
+}
+
+TEST(Report, ScriptsStandBehindTheDocumentAndMayAskNobody) {
+  const TemporaryFolder folder;
+  ReportInput input = example();
+  input.explorer = [](std::size_t room) { return room > 7'000'000 ? "<script>go()</script>\n" : ""; };
+  const std::string page = read_file(write_report(folder.path(), input));
+  EXPECT_THAT(page, HasSubstr("</main>\n<script>go()</script>\n</body>"));
+  EXPECT_THAT(page, HasSubstr("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';"));
+  EXPECT_EQ(html_faults(page), std::vector<std::string>{});
 }
 
 TEST(Report, LinksToFiguresLeadToFilesThatAreThere) {

@@ -1,6 +1,8 @@
 // What others on this machine, other pages in the same browser, and names in a study may try: misfit open refuses all of it.
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "tests/apps/oscillator_study.h"
 #include "tests/serve/page_server.h"
 
@@ -113,11 +115,23 @@ TEST_F(Attacked, APathIsNoFile) {
     EXPECT_EQ(server->raw(std::string(method) + " /api/state HTTP/1.1\r\n" + own() + token() + "\r\n\r\n").status, 405) << method;
 }
 
-TEST_F(Attacked, OnlyFourVerbsAndEffectsOfTheLibraryAreRun) {
+TEST_F(Attacked, OnlyVerbsEffectsAndNamesThatAreKnownAreRun) {
   for (const char* verb : {"", "batch", "init", "open", "export", "run; id", "--version", "../misfit", "run\n"})
     EXPECT_EQ(server->post("/api/job", {{"verb", verb}}).status, 400) << verb;
   for (const char* effect : {"", "--out", "--out=/tmp/x", "$(touch x)", "../coulomb_friction", "coulomb_friction;id", "system:/etc/passwd"})
     EXPECT_EQ(server->post("/api/job", {{"verb", "add"}, {"effect", effect}}).status, 400) << effect;
+  for (const auto& [what, name, value] : std::vector<std::array<std::string, 3>>{{"free", "k", "yes"},
+                                                                                 {"free", "k=1 --out", "true"},
+                                                                                 {"free", "../k", "true"},
+                                                                                 {"free", "", "true"},
+                                                                                 {"value", "k", "3"},
+                                                                                 {"roughness", "k", "auto"},
+                                                                                 {"validation", "steps", "1"},
+                                                                                 {"validation", "steps", "1 2]\nseed = 3"},
+                                                                                 {"validation", "steps", "nan 2"},
+                                                                                 {"validation", "$(id)", "1 2"}})
+    EXPECT_EQ(server->post("/api/job", {{"verb", "set"}, {"what", what}, {"name", name}, {"value", value}}).status, 400)
+        << what << name << value;
   for (const char* body : {"[]", "{", "\"run\"", "{\"verb\": 1}", "{\"verb\": [\"run\"]}"})
     EXPECT_EQ(server->post("/api/job", body, own() + token()).status, 400) << body;
   EXPECT_EQ(server->state()["job"]["state"], "none");

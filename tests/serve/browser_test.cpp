@@ -38,6 +38,11 @@ TEST_F(InABrowser, AStudyWithAnErrorIsMended) {
   expect_good(study.path(""), "mend");
 }
 
+TEST_F(InABrowser, AParameterIsHeldAndAMarkedTimeHeldOut) {
+  const OscillatorStudy study;
+  expect_good(study.path(""), "settings");
+}
+
 TEST_F(InABrowser, ACommandIsStoppedAndAKilledServerOpenedAgain) {
   const OscillatorStudy study;
   expect_good(study.path(""), "stop_and_kill");

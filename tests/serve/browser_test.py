@@ -168,6 +168,8 @@ def find_and_add():
     assert after < before, (before, after)
     page.view("ladder")
     page.wait(lambda: page.one("#view [aria-pressed=true]").text == f"1: + {first}", "the rung")
+    page.view("curves")
+    page.wait(lambda: "model 0, " in page.text("#view"), "the curves as they were before")
     page.view("commands")
     page.wait(lambda: f"misfit add {STUDY} {first}" in page.text("#view pre"), "session.sh")
     verdict = page.text("#verdict")
@@ -182,6 +184,63 @@ def find_and_add():
         page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
         time.sleep(0.4)
         assert page.js("return document.documentElement.scrollWidth") <= width, "nothing is wider than the screen"
+    server.end()
+    report_without_server(page, verdict)
+    page.end()
+
+
+def report_without_server(page, verdict):
+    """report.html in the run folder is the same page: everything but doing; what is printed is the document."""
+    page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    page.open("file://" + os.path.join(FOLDER, "out", "report.html"))
+    assert page.text("#verdict") == verdict
+    assert not page.one("#work").is_displayed()
+    assert not page.one("body > main").is_displayed(), "the document is not seen while the page is"
+    assert not page.driver.find_elements(By.CSS_SELECTOR, "button.adds, [data-view=commands]")
+    page.js("document.querySelector('#model').value = 0; document.querySelector('#model').dispatchEvent(new Event('change'))")
+    page.view("where")
+    point_at_the_worst_place(page)
+    for view in ("candidates", "curves", "calibration", "ladder", "study"):
+        page.view(view)
+        time.sleep(0.3)
+        assert not page.driver.find_elements(By.CSS_SELECTOR, "#view > div > p.warning"), page.text("#view")
+    assert page.js("return performance.getEntriesByType('resource').length") == 0, "nothing was asked of anybody"
+    page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    assert not page.one("#page").is_displayed() and page.one("body > main").is_displayed(), "on paper it is the document"
+    page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+    page.click("button.read")
+    assert page.one("body > main").is_displayed() and not page.one("#page").is_displayed()
+    page.click("button.explore")
+    assert page.one("#page").is_displayed() and not page.one("body > main").is_displayed()
+
+
+def settings():
+    """A parameter is held and another part held out; both are lines of the study and commands of session.sh."""
+    server = Server()
+    page = Page(server.address)
+    page.click("#run")
+    page.job("done", 1)
+    page.view("curves")
+    page.click("#settings summary")
+    page.click("[data-parameter=k]")
+    page.job("done", 2)
+    assert "k.free = false" in read(STUDY)
+    page.wait(lambda: "Run makes them again" in page.text("#alerts"), "the results are outdated")
+    page.wait(lambda: page.one("[data-parameter=k]"), "the parameter")
+    page.click("#settings summary")
+    page.wait(lambda: page.text("[data-parameter=k]") == "Estimate", "it is held")
+    assert not page.one("#holdout").is_displayed()
+    over = page.one("#motion .u-over")
+    page.js("arguments[0].scrollIntoView({block: 'center'})", over)
+    ActionChains(page.driver).move_to_element(over).key_down(Keys.SHIFT).click_and_hold().move_by_offset(60, 0).release().key_up(Keys.SHIFT).perform()
+    page.wait(lambda: page.one("#holdout").is_displayed(), "a marked time can be held out")
+    page.click("#holdout")
+    page.job("done", 3)
+    assert re.search(r"validation = \[[\d.]+, [\d.]+\]", read(STUDY)), read(STUDY)
+    page.click("#run")
+    page.job("done", 4)
+    page.view("commands")
+    page.wait(lambda: f"misfit set {STUDY} 'parameters.k.free=false'" in page.text("#view pre"), "session.sh")
     page.end()
     server.end()
 
@@ -254,8 +313,11 @@ def hostile():
         time.sleep(0.3)
     assert page.js("return document.title") == f"{script} · misfit"
     assert page.js("return document.querySelectorAll('body script:not([src]), body img').length") == 0
-    page.end()
     server.end()
+    page.open("file://" + os.path.join(FOLDER, "out", "report.html"))
+    assert page.text("h1") == script
+    assert page.js("return document.title") == f"{script} · misfit"
+    page.end()
 
 
-{"find_and_add": find_and_add, "mend": mend, "stop_and_kill": stop_and_kill, "hostile": hostile}[sys.argv[3]]()
+{"find_and_add": find_and_add, "mend": mend, "settings": settings, "stop_and_kill": stop_and_kill, "hostile": hostile}[sys.argv[3]]()

@@ -101,6 +101,35 @@ std::string without_inline_entry(const StudyText& study, const TomlNode& node, c
   return text.substr(0, line) + comment + text.substr(line, from - line) + text.substr(to);
 }
 
+/// "a.b.c" of the last parts of a path.
+std::string dotted(const TomlPath& path, std::size_t first) {
+  std::vector<std::string> keys;
+  for (std::size_t k = first; k < path.size(); ++k) keys.push_back(toml_key(path[k]));
+  return fmt::format("{}", fmt::join(keys, "."));
+}
+
+/// The innermost table on the way to `path` for which `holds`; nullptr: none.
+template <class Holds>
+const TomlNode* innermost(const StudyText& study, TomlPath path, const Holds& holds) {
+  for (path.pop_back(); !path.empty(); path.pop_back()) {
+    const TomlNode* node = study.find(path);
+    if (node != nullptr && holds(*node)) return node;
+  }
+  return nullptr;
+}
+
+std::string with_new_value(const StudyText& study, const TomlPath& path, const std::string& value) {
+  const TomlNode* above = innermost(study, path, [](const TomlNode&) { return true; });
+  if (above != nullptr && above->kind != TomlNode::Kind::table) throw InputError(dotted(above->path, 0) + " has no keys");
+  if (above != nullptr && above->inline_table) return with_inline_entry(study, *above, dotted(path, above->path.size()) + " = " + value);
+  const TomlNode* header = innermost(study, path, [&](const TomlNode& node) { return study.has_own_header(node); });
+  const bool of_keys = above != nullptr && !study.has_header(*above);  // a.b = … makes the table a
+  if (header == nullptr && !of_keys) return with_new_section(study, toml_key(path.front()), dotted(path, 1) + " = " + value);
+  const std::string entry = dotted(path, header != nullptr ? header->path.size() : 0) + " = " + value;
+  const std::size_t end = study.line_end(study.end_of(of_keys ? *above : *header));
+  return inserted(study.text(), end, study.newline() + entry);
+}
+
 }  // namespace
 
 std::string effect_line(const std::string& name, const std::string& kind, const std::map<std::string, std::string>& roles,
@@ -161,6 +190,22 @@ std::string with_renamed_entry(const std::string& text, const std::string& secti
   if (entry == nullptr || key == name) return text;
   std::string out = text.substr(0, entry->key_begin) + toml_key(name) + text.substr(entry->key_end);
   refuse_unless_same(study, out, {section, key}, {section, name});
+  return out;
+}
+
+std::string with_value(const std::string& text, const std::vector<std::string>& path, const std::string& value) {
+  if (path.size() < 2) throw InputError("a key of a section is expected, as parameters.k.free");
+  const std::string line = "x = " + value;
+  const std::vector<TomlNode> alone = toml_outline(line);
+  if (alone.front().end != line.size() || line.find('\n') != std::string::npos)
+    throw InputError("'" + shown(value) + "': one value is expected");
+  const StudyText study(text);
+  const TomlNode* old = study.find(path);
+  if (old != nullptr && old->kind == TomlNode::Kind::table && !old->inline_table)
+    throw InputError(dotted(path, 0) + " is a section: one of its keys is expected");
+  std::string out = old != nullptr ? text.substr(0, old->begin) + value + text.substr(old->end) : with_new_value(study, path, value);
+  refuse_unless_same(study, out, path);
+  if (StudyText(out).find(path) == nullptr) throw InputError(dotted(path, 0) + " cannot be set as the study is written");
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "misfit/data/study.h"
 
@@ -37,6 +38,11 @@ struct EffectStart {
 /// The entry KEY of [section] under another name; text unchanged if there is no such entry.
 [[nodiscard]] std::string with_renamed_entry(const std::string& text, const std::string& section, const std::string& key,
                                              const std::string& name);
+
+/// The value at a path of tables, {"parameters", "k", "free"} = "false" (as TOML writes it, on one line): in place of the one that is
+/// there, else as an entry of the innermost table that is there; a section is made where there is none. An element of [[experiment]] goes
+/// by its number, from "0". InputError if `value` is no value, or the path leads through one or to a table.
+[[nodiscard]] std::string with_value(const std::string& text, const std::vector<std::string>& path, const std::string& value);
 
 /// [system] kind = "KIND" instead of what is there. InputError if the study has no such line.
 [[nodiscard]] std::string with_system(const std::string& text, const std::string& kind);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -63,6 +64,8 @@ struct ReportInput {
   std::optional<Uncertainty> uncertainty;
   std::optional<Resampling> resampling;
   std::vector<Reference> references;
+  /// Markup behind the document, of at most so many bytes: the same results as a page of scripts. Empty: none.
+  std::function<std::string(std::size_t room)> explorer = {};
   std::vector<std::string> notes;  ///< further findings or limits, in sentences
   RunFacts run;
 };

@@ -95,6 +95,11 @@ std::string margins_of_paper(const std::string& title, const std::string& date) 
       css_text(title), css_text(date));
 }
 
+/// For a page with scripts: its own, and nothing from elsewhere or to elsewhere.
+constexpr const char* content_policy =
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
+    "img-src data:\">\n";
+
 }  // namespace
 
 void Page::show(const Blocks& blocks, const std::function<void(const std::string& place)>& figures, const std::string& note) {
@@ -200,15 +205,15 @@ std::string Page::text() const {
     contents += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", anchor(k), html_text(sections_[k]));
   contents += "</ul></nav>\n";
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, "
-         "initial-scale=1\">\n<title>" +
-         escape_html(title_) + "</title>\n<style>\n" + page_style + margins_of_paper(title_, date_) +
-         "</style>\n</head>\n<body>\n<header><p class=\"brand\">misfit</p><h1>" + html_text(title_) + "</h1>" +
-         (question_.empty() ? "" : "<p class=\"question\">" + html_text(question_) + "</p>") + "</header>\n" + contents + "<main>\n" +
-         body_ +
+         "initial-scale=1\">\n" +
+         std::string(explorer_.empty() ? "" : content_policy) + "<title>" + escape_html(title_) + "</title>\n<style>\n" + page_style +
+         margins_of_paper(title_, date_) + "</style>\n</head>\n<body>\n<header><p class=\"brand\">misfit</p><h1>" + html_text(title_) +
+         "</h1>" + (question_.empty() ? "" : "<p class=\"question\">" + html_text(question_) + "</p>") + "</header>\n" + contents +
+         "<main>\n" + body_ +
          (sections_.empty() ? ""
           : folded_         ? "</div></details>\n</section>\n"
                             : "</section>\n") +
-         "</main>\n</body>\n</html>\n";
+         "</main>\n" + explorer_ + "</body>\n</html>\n";
 }
 
 std::string inline_svg(const std::string& svg, const std::string& prefix, const std::string& label) {

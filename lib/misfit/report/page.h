@@ -17,6 +17,8 @@ class Page {
   explicit Page(std::string title, std::string date = "") : title_(std::move(title)), date_(std::move(date)) {}
 
   void question(const std::string& text) { question_ = text; }  ///< below the title
+  /// Markup with scripts, behind all else. A page with it allows them, and lets nothing be sent or fetched.
+  void explorer(const std::string& markup) { explorer_ = markup; }
   /// Sections that begin from now on are folded: their heading opens them. In print they are open.
   void fold_sections() { folds_ = true; }
   /// What follows up to unfold() is folded, under `summary`.
@@ -44,7 +46,7 @@ class Page {
 
   void end_section();
 
-  std::string title_, date_, question_, body_;
+  std::string title_, date_, question_, body_, explorer_;
   bool folds_ = false, folded_ = false;
   std::vector<std::string> sections_;
   std::set<std::string> figure_names_;

@@ -28,6 +28,9 @@ std::filesystem::path write_report(const std::filesystem::path& dir, const Repor
   notes_section(input, page);
   words_section(page);
   provenance_section(input, page);
+  constexpr std::size_t most = 8'000'000;  // bytes: what mail takes
+  const std::size_t document = page.text().size();
+  if (input.explorer && document < most) page.explorer(input.explorer(most - document));
   std::filesystem::path path = dir / "report.html";
   write_atomically(path, page.text());
   return path;

@@ -10,14 +10,18 @@
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/data/study_reader.h"
-#include "misfit/serve/json_text.h"
-#include "misfit/serve/study_text.h"
-#include "misfit/serve/views.h"
+#include "misfit/page/json_text.h"
+#include "misfit/page/views.h"
+#include "misfit/workflow/session/study_change.h"
 
 namespace misfit::serve {
 namespace {
 
 using nlohmann::json;
+using page::json_list;
+using page::json_number;
+using page::json_string;
+using page::Place;
 
 Answer failure(int status, const std::string& why) { return {status, fmt::format(R"({{"error":{}}})", json_string(why))}; }
 
@@ -78,6 +82,11 @@ std::vector<std::string> texts_in(const json& body, const char* name) {
   return found->get<std::vector<std::string>>();
 }
 
+JobRequest request_in(const json& body) {
+  return {text_in(body, "verb"), text_in(body, "effect"), text_in(body, "rung"), text_in(body, "what"),
+          text_in(body, "name"), text_in(body, "value"),  texts_in(body, "at")};
+}
+
 }  // namespace
 
 Api::Api(SessionOptions options, const Registry& registry, std::string program)
@@ -105,19 +114,25 @@ Place Api::place(const Ask& ask) const {
 std::string Api::where(const Ask& ask) const {
   const std::vector<Place> places = results_.places();
   const std::size_t model = number(ask, "model", places.size());
-  return where_view(places[model], model > 0 ? &places[model - 1] : nullptr);
+  return page::where_view(places[model], model > 0 ? &places[model - 1] : nullptr);
+}
+
+std::string Api::curves(const Ask& ask) {
+  const std::vector<Place> places = results_.places();
+  return page::curves_view(places, number(ask, "model", places.size()), known()->references);
 }
 
 Answer Api::get(const Ask& ask) {
   constexpr std::size_t many = 10'000;
   if (ask.path == "/api/state") return {200, state()};
-  if (ask.path == "/api/motion") return {200, motion_view(place(ask), number(ask, "method", many))};
+  if (ask.path == "/api/motion") return {200, page::motion_view(place(ask), number(ask, "method", many))};
   if (ask.path == "/api/where") return {200, where(ask)};
-  if (ask.path == "/api/samples") return {200, samples_view(place(ask), number(ask, "experiment", many), number(ask, "quantity", many))};
-  if (ask.path == "/api/candidates") return {200, candidates_view(place(ask), registry_)};
-  if (ask.path == "/api/curves") return {200, curves_view(place(ask), known()->references)};
-  if (ask.path == "/api/calibration") return {200, calibration_view(results_.places().front())};
-  if (ask.path == "/api/ladder") return {200, ladder_view(results_)};
+  if (ask.path == "/api/samples")
+    return {200, page::samples_view(place(ask), number(ask, "experiment", many), number(ask, "quantity", many))};
+  if (ask.path == "/api/candidates") return {200, page::candidates_view(place(ask), registry_.effect_keys())};
+  if (ask.path == "/api/curves") return {200, curves(ask)};
+  if (ask.path == "/api/calibration") return {200, page::calibration_view(results_.places().front())};
+  if (ask.path == "/api/ladder") return {200, page::ladder_view(results_.folder())};
   if (ask.path == "/api/study") return study(place(ask));
   if (ask.path == "/api/session") return {200, fmt::format(R"({{"text":{}}})", json_string(script_.text()))};
   return failure(404, "there is no such page");
@@ -133,7 +148,7 @@ Answer Api::post(const Ask& ask) {
   if (ask.path == "/api/check")
     return {200, fmt::format(R"({{"fault":{}}})", json_of(fault_of(results_.study(), text_in(body, "text"), registry_)))};
   if (ask.path == "/api/save") return save(text_in(body, "text"), text_in(body, "hash"));
-  if (ask.path == "/api/job") return start({text_in(body, "verb"), text_in(body, "effect"), text_in(body, "rung"), texts_in(body, "at")});
+  if (ask.path == "/api/job") return start(request_in(body));
   return failure(404, "there is no such page");
 }
 
@@ -148,12 +163,14 @@ void Api::open_study(Known& known) const {
       question = session.study.question;
       known.outdated = outdated(session);
       known.references = references(session);
+      known.settable = settable_of(session);
     } catch (const std::exception& error) {
       fault = TextFault{error.what(), 0};
     }
   }
-  known.study = fmt::format(R"({{"name":{},"question":{},"file":{},"folder":{},"fault":{}}})", json_string(name), json_words(question),
-                            json_string(results_.study().string()), json_string(results_.folder().string()), json_of(fault));
+  known.study =
+      fmt::format(R"({{"name":{},"question":{},"file":{},"folder":{},"fault":{}}})", json_string(name), page::json_words(question),
+                  json_string(results_.study().string()), json_string(results_.folder().string()), json_of(fault));
 }
 
 std::shared_ptr<const Api::Known> Api::known() {
@@ -163,19 +180,17 @@ std::shared_ptr<const Api::Known> Api::known() {
   auto fresh = std::make_shared<Known>();
   fresh->version = version;
   open_study(*fresh);
-  fresh->verdict = verdict_view(results_, options_);
-  std::vector<std::string> models;
-  for (const Place& one : results_.places()) models.push_back(fmt::format(R"({{"id":{},"added":{}}})", one.id, json_string(one.added)));
-  fresh->models = json_list(models);
+  fresh->verdict = page::verdict_view(results_.places(), options_.study, options_.out);
+  fresh->models = page::models_view(results_.places());
   known_ = fresh;
   return fresh;
 }
 
 std::string Api::state() {
   const auto all = known();
-  return fmt::format(R"({{"version":"{}","study":{},"models":{},"outdated":{},"verdict":{},"effects":{},"job":{}}})", all->version,
-                     all->study, all->models, strings(all->outdated), all->verdict, strings(registry_.effect_keys()),
-                     json_of(jobs_.report()));
+  return fmt::format(R"({{"version":"{}","study":{},"models":{},"outdated":{},"verdict":{},"effects":{},"settable":{},"job":{}}})",
+                     all->version, all->study, all->models, strings(all->outdated), all->verdict, strings(registry_.effect_keys()),
+                     json_of(all->settable), json_of(jobs_.report()));
 }
 
 Answer Api::study(const Place& place) const {
@@ -201,7 +216,7 @@ std::vector<std::string> Api::words_of_add(const JobRequest& request) const {
   if (effect == effects.end()) throw InputError("effect: a key of `misfit effects` is expected");
   std::vector<std::string> words{*effect};
   if (request.at.empty()) return words;
-  const std::optional<Discovery> discovery = discovery_of(results_.places().back());
+  const std::optional<Discovery> discovery = page::discovery_of(results_.places().back());
   for (const Candidate& candidate : discovery ? discovery->candidates : std::vector<Candidate>{}) {
     if (candidate.effect != *effect || words_of_place(candidate) != request.at) continue;
     for (const std::string& word : words_of_place(candidate)) words.push_back("--at=" + word);
@@ -211,22 +226,28 @@ std::vector<std::string> Api::words_of_add(const JobRequest& request) const {
 }
 
 std::vector<std::string> Api::words_of_remove(const JobRequest& request) const {
-  const Ladder ladder = results_.ladder().value_or(Ladder{});
+  const Ladder ladder = page::ladder_in(results_.folder()).value_or(Ladder{});
   for (const Rung& rung : ladder.rungs) {
     if (rung.parent >= 0 && request.rung == std::to_string(rung.id)) return {std::to_string(rung.id)};
   }
   throw InputError("rung: the number of a rung that was added is expected");
 }
 
+std::vector<std::string> Api::words_of(const JobRequest& request) {
+  if (request.verb == "add") return words_of_add(request);
+  if (request.verb == "remove") return words_of_remove(request);
+  if (request.verb == "set") return {setting_of(known()->settable, request.what, request.name, request.value)};
+  return {};
+}
+
 Answer Api::start(const JobRequest& request) {
-  constexpr std::array verbs = {"run", "fit", "discover", "add", "remove"};
+  constexpr std::array verbs = {"run", "fit", "discover", "add", "remove", "set"};
   const auto verb = std::find(verbs.begin(), verbs.end(), request.verb);
-  if (verb == verbs.end()) throw InputError("verb: run, fit, discover, add or remove is expected");
-  std::vector<std::string> words{*verb, options_.study}, more;
-  if (request.verb == "add") more = words_of_add(request);
-  if (request.verb == "remove") more = words_of_remove(request);
+  if (verb == verbs.end()) throw InputError("verb: run, fit, discover, add, remove or set is expected");
+  std::vector<std::string> words{*verb, options_.study};
+  const std::vector<std::string> more = words_of(request);
   words.insert(words.end(), more.begin(), more.end());
-  if (!options_.out.empty()) words.insert(words.end(), {"--out", options_.out});
+  if (!options_.out.empty() && request.verb != "set") words.insert(words.end(), {"--out", options_.out});
   const std::string command = command_of(words);
   const std::lock_guard lock(mutex_);
   if (jobs_.report().state == JobState::running) return failure(409, "a command is at work already: wait for its end, or stop it");

@@ -8,15 +8,24 @@
 #include "misfit/serve/job.h"
 #include "misfit/serve/results.h"
 #include "misfit/serve/session_script.h"
+#include "misfit/serve/settable.h"
 
 namespace misfit::serve {
+
+/// What is asked of POST /api/job.
+struct JobRequest {
+  std::string verb, effect, rung;
+  std::string what, name, value;  ///< setting_of()
+  std::vector<std::string> at;    ///< words of the effect's place; empty: the one that explains most
+};
 
 /// What the page may ask for. Of a request only numbers of a list, keys of effects, and the text of the study itself are used; none becomes
 /// a path or part of a command line.
 ///
 /// GET  /api/state; /api/motion?model&method; /api/where?model; /api/samples?model&experiment&quantity; /api/candidates?model;
 ///      /api/curves?model; /api/calibration; /api/ladder; /api/study?model; /api/session
-/// POST /api/job {"verb": "run"|"fit"|"discover"|"add"|"remove", "effect", "at", "rung"}; /api/stop; /api/check {"text"}; /api/save
+/// POST /api/job {"verb": "run"|"fit"|"discover"|"add"|"remove"|"set", "effect", "at", "rung", "what", "name", "value"}; /api/stop;
+/// /api/check {"text"}; /api/save
 /// {"text", "hash"}
 class Api {
  public:
@@ -32,6 +41,7 @@ class Api {
     std::string verdict, models;
     std::vector<std::string> outdated;  ///< sentences
     std::vector<Reference> references;
+    Settable settable;
   };
 
   [[nodiscard]] Answer get(const Ask& ask);
@@ -39,18 +49,16 @@ class Api {
   [[nodiscard]] std::string state();
   [[nodiscard]] std::shared_ptr<const Known> known();
   void open_study(Known& known) const;
-  [[nodiscard]] Answer study(const Place& place) const;
-  struct JobRequest {
-    std::string verb, effect, rung;
-    std::vector<std::string> at;  ///< words of the effect's place; empty: the one that explains most
-  };
+  [[nodiscard]] Answer study(const page::Place& place) const;
   [[nodiscard]] Answer start(const JobRequest& request);
   /// Behind the study, out of what is known here: nothing of a request becomes a word of a command. InputError: it is not.
+  [[nodiscard]] std::vector<std::string> words_of(const JobRequest& request);
   [[nodiscard]] std::vector<std::string> words_of_add(const JobRequest& request) const;
   [[nodiscard]] std::vector<std::string> words_of_remove(const JobRequest& request) const;
   [[nodiscard]] Answer save(const std::string& text, const std::string& hash);
-  [[nodiscard]] Place place(const Ask& ask) const;
+  [[nodiscard]] page::Place place(const Ask& ask) const;
   [[nodiscard]] std::string where(const Ask& ask) const;
+  [[nodiscard]] std::string curves(const Ask& ask);
 
   SessionOptions options_;
   const Registry& registry_;

@@ -16,7 +16,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/watch.h"
-#include "misfit/serve/assets.h"
+#include "misfit/page/assets.h"
 
 namespace misfit::serve {
 namespace {
@@ -209,14 +209,15 @@ class HttpServer::Server : public httplib::Server {
     return ask.get_header_value_count("Origin") == 1 && origin.starts_with(scheme) && is_own(origin.substr(scheme.size()));
   }
 
-  static const Asset* asset(const std::string& path) {
-    for (const Asset& one : assets()) {
+  static const page::Asset* asset(const std::string& path) {
+    for (const page::Asset& one : page::assets()) {
       if (one.path == path) return &one;
     }
     return nullptr;
   }
   [[nodiscard]] Answer answer(const httplib::Request& ask) const {
-    if (const Asset* one = ask.method == "GET" ? asset(ask.path) : nullptr) return {200, std::string(one->content), std::string(one->type)};
+    if (const page::Asset* one = ask.method == "GET" ? asset(ask.path) : nullptr)
+      return {200, std::string(one->content), std::string(one->type)};
     Ask plain{ask.method, ask.path, {}, ask.body};
     for (const auto& [name, value] : ask.params) plain.parameters.emplace(name, value);
     return handler_(plain);

@@ -6,6 +6,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/version.h"
 #include "misfit/jobs/interrupt.h"
+#include "misfit/page/embedded_page.h"
 #include "misfit/report/report.h"
 #include "misfit/workflow/stages.h"
 
@@ -73,6 +74,19 @@ void add_findings(const Session& session, report::ReportInput& input, std::vecto
   input.rung = report::RungInput{above->rung, above->added, std::move(above->findings.diagnosis), std::move(above->findings.discovery)};
 }
 
+/// The study's own model and its rungs; what the document omits of them is omitted here, too.
+std::vector<page::Place> shown_places(const Session& session, const report::ReportInput& input) {
+  std::vector<page::Place> places = page::places_of(session.study.file, session.folder.path());
+  places.front().diagnosed = input.diagnosis.has_value();
+  places.front().asked = input.discovery.has_value();
+  for (page::Place& place : places) {
+    if (place.id == 0 || !input.rung || place.id != input.rung->id) continue;
+    place.diagnosed = input.rung->diagnosis.has_value();
+    place.asked = input.rung->discovery.has_value();
+  }
+  return places;
+}
+
 }  // namespace
 
 fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
@@ -91,6 +105,11 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
     if (input.resampling && fs::exists(session.folder.file(file))) files.push_back(session.folder.file(file));
   }
   input.verdict = verdict_of(session, fits);
+  const std::vector<page::Place> places = shown_places(session, input);
+  for (const page::Place& place : places) {
+    const std::vector<fs::path> shown = page::files_of(place);
+    files.insert(files.end(), shown.begin(), shown.end());
+  }
   const auto inputs = session.inputs(session.study.text + fmt::format("{}", fmt::join(input.notes, "\n")), files);
   session.do_stage("report", inputs, {"report.html", "verdict.json"}, [&](const fs::path& dir) {
     input.study = session.study.name;
@@ -98,6 +117,8 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
     input.fits = fits;
     input.references = references(session);
     input.run = facts_of(session);
+    const page::EmbeddedPage embedded{input.study, input.question, &*input.verdict, places, input.references, input.notes};
+    input.explorer = [&](std::size_t room) { return page::embedded_page(embedded, room); };
     report::write_report(dir, input);
     write_verdict(dir / "verdict.json", *input.verdict);
   });

@@ -9,6 +9,7 @@
 #include "misfit/math/statistics.h"
 #include "misfit/model/curve_table.h"
 #include "misfit/model/experiment.h"
+#include "misfit/model/provisional.h"
 #include "misfit/workflow/estimate/estimate.h"
 #include "misfit/workflow/measure/film_channels.h"
 
@@ -16,15 +17,6 @@ namespace misfit {
 namespace {
 
 constexpr int default_intervals = 16;  // per curve: enough for any bend the data can show; roughness does the rest
-
-/// A model in which any knots stand for those still to be chosen: to read signals, which need the system and not the curves.
-Model provisional(ModelRequest request, const Registry& registry) {
-  for (const auto& [name, of] : curves_without_knots(request, registry)) {
-    request.curves[name].of = of;
-    request.curves[name].knots = {1.0, 2.0};
-  }
-  return assemble(request, registry);
-}
 
 std::vector<double> where_ok(std::vector<double> values, const std::vector<bool>& ok) {
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -112,7 +104,7 @@ Prepared prepare_request(Session& session, ModelRequest request, Gaps gaps) {
     throw InputError({session.study.file.string(), 0, 0}, "the study has no [[experiment]]: there is nothing to fit");
   add_camera(session, request);
   Prepared out;
-  out.experiments = read_experiments(session, provisional(request, session.registry), gaps);
+  out.experiments = read_experiments(session, provisional_model(request, session.registry), gaps);
   choose_all_knots(request, session.registry, out.experiments, default_intervals);
   out.model = assemble(request, session.registry);
   out.request = std::move(request);

@@ -1,19 +1,21 @@
-#include "misfit/serve/views.h"
+#include "misfit/page/views.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/units.h"
+#include "misfit/page/json_text.h"
 #include "misfit/report/figures.h"
 #include "misfit/report/figures_discovery.h"
-#include "misfit/serve/json_text.h"
 #include "misfit/show/results.h"
 #include "misfit/show/verdict.h"
 
-namespace misfit::serve {
+namespace misfit::page {
 namespace {
 
 template <class Items, class Make>
@@ -60,6 +62,33 @@ std::string row_of(const Candidate& c, const std::vector<Candidate>& all, const 
                      json_string(effect_at(c.effect, c.roles)), json_words(c.why), c.accepted, addable, list_of(at, json_string));
 }
 
+/// The curve as a model without the effects of the last rungs has it.
+void add_curve_below(const Place& place, const std::string& curve, const std::string& of, report::Panel& panel) {
+  const CurveEstimate* found = nullptr;
+  const std::vector<Fit> fits = fits_of(place);
+  std::string method;
+  for (const Fit& fit : fits) {
+    for (const CurveEstimate& c : fit.curves) {
+      if (c.name == curve && c.of == of && fit.usable() && c.informative) found = &c, method = fit.method;
+    }
+  }
+  if (found == nullptr) return;
+  report::Series series{fmt::format("model_{}", place.id),
+                        fmt::format("model {}, {}", place.id, method),
+                        report::Style::dotted,
+                        report::grey,
+                        display_values(found->x, found->of_unit),
+                        display_values(found->value, found->unit),
+                        {},
+                        {}};
+  for (std::size_t i = 0; i < series.y.size(); ++i) {
+    if (!(found->count[i] > 0.0)) series.y[i] = std::numeric_limits<double>::quiet_NaN();
+    if (panel.y_range && std::isfinite(series.y[i]))
+      panel.y_range = {std::min((*panel.y_range)[0], series.y[i]), std::max((*panel.y_range)[1], series.y[i])};
+  }
+  panel.series.push_back(std::move(series));
+}
+
 }  // namespace
 
 std::string motion_view(const Place& place, std::size_t method) {
@@ -96,20 +125,22 @@ std::string samples_view(const Place& place, std::size_t experiment, std::size_t
                      json_of(report::missing_force_by_figure(missing, missing.quantities[quantity])));
 }
 
-std::string candidates_view(const Place& place, const Registry& registry) {
+std::string candidates_view(const Place& place, const std::vector<std::string>& effects) {
   const std::optional<Discovery> d = discovery_of(place);
   if (!d) return "null";
-  const std::vector<std::string> known = registry.effect_keys();
   const std::string figure = d->candidates.empty() ? "null" : json_of(report::candidates_figure(d->candidates));
   return fmt::format(R"({{"blocks":{},"rows":{},"figure":{}}})", json_of(blocks_of(*d)),
-                     list_of(d->candidates, [&](const Candidate& c) { return row_of(c, d->candidates, known); }), figure);
+                     list_of(d->candidates, [&](const Candidate& c) { return row_of(c, d->candidates, effects); }), figure);
 }
 
-std::string curves_view(const Place& place, const std::vector<Reference>& references) {
-  const std::vector<Fit> fits = fits_of(place);
+std::string curves_view(const std::vector<Place>& places, std::size_t model, const std::vector<Reference>& references) {
+  const std::vector<Fit> fits = fits_of(places[model]);
   std::vector<std::string> figures;
-  for (const auto& [curve, of] : report::curve_names(fits, references))
-    figures.push_back(json_of(report::curve_figure(curve, of, fits, references)));
+  for (const auto& [curve, of] : report::curve_names(fits, references)) {
+    report::Figure figure = report::curve_figure(curve, of, fits, references);
+    for (std::size_t below = 0; below < model; ++below) add_curve_below(places[below], curve, of, figure.panels.front());
+    figures.push_back(json_of(figure));
+  }
   return fmt::format(R"({{"figures":{},"blocks":{}}})", json_list(figures), json_of(blocks_of(fits)));
 }
 
@@ -120,8 +151,8 @@ std::string calibration_view(const Place& place) {
                      json_of(report::calibration_residual_figure(*c)));
 }
 
-std::string ladder_view(const Results& results) {
-  const std::optional<Ladder> ladder = results.ladder();
+std::string ladder_view(const std::filesystem::path& folder) {
+  const std::optional<Ladder> ladder = ladder_in(folder);
   if (!ladder || ladder->rungs.empty()) return "null";
   const auto rung = [&](const Rung& r) {
     return fmt::format(R"({{"id":{},"added":{},"system":{},"blocks":{}}})", r.id, json_string(r.added), json_string(r.system),
@@ -131,19 +162,22 @@ std::string ladder_view(const Results& results) {
                      list_of(ladder->rungs, rung));
 }
 
-std::string verdict_view(const Results& results, const SessionOptions& as_typed) {
-  const std::vector<Place> places = results.places();
+std::string models_view(const std::vector<Place>& places) {
+  return list_of(places, [](const Place& p) { return fmt::format(R"({{"id":{},"added":{}}})", p.id, json_string(p.added)); });
+}
+
+std::string verdict_view(const std::vector<Place>& places, const std::string& study, const std::string& out) {
   const std::vector<Fit> fits = fits_of(places.front());
   if (fits.empty()) return "null";
-  const std::optional<Ladder> ladder = results.ladder();
+  const std::optional<Ladder> ladder = ladder_in(places.front().folder);
   const bool climbed = places.size() > 1;
   const std::optional<Calibration> calibration = calibration_of(places.front());
   const std::optional<Comparison> comparison = comparison_of(places.front());
   const std::optional<Diagnosis> diagnosis = diagnosis_of(places.front()), above = climbed ? diagnosis_of(places.back()) : std::nullopt;
   const std::optional<Discovery> discovery = discovery_of(places.back());
   const auto pointer = [](const auto& result) { return result ? &*result : nullptr; };
-  return json_of(blocks_of(verdict_of(VerdictInput{as_typed.study, as_typed.out, &fits, pointer(calibration), pointer(comparison),
-                                                   pointer(diagnosis), pointer(above), pointer(discovery), pointer(ladder)})));
+  return json_of(blocks_of(verdict_of(VerdictInput{study, out, &fits, pointer(calibration), pointer(comparison), pointer(diagnosis),
+                                                   pointer(above), pointer(discovery), pointer(ladder)})));
 }
 
-}  // namespace misfit::serve
+}  // namespace misfit::page

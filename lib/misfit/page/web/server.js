@@ -1,6 +1,9 @@
 // Talking to misfit. Every request carries the token of the address.
 const token = new URLSearchParams(location.search).get('token') ?? '';
 
+/** A program answers, which works on the study. */
+export const live = true;
+
 /** The answer was an error; `status` of HTTP, `answer` as it came. */
 export class Refused extends Error {
   constructor(status, answer) {

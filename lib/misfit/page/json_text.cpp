@@ -1,4 +1,4 @@
-#include "misfit/serve/json_text.h"
+#include "misfit/page/json_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,7 +12,7 @@
 
 #include "misfit/report/symbols.h"
 
-namespace misfit::serve {
+namespace misfit::page {
 namespace {
 
 using report::Figure;
@@ -165,4 +165,4 @@ std::string json_of(const Blocks& blocks) {
   return json_list(out);
 }
 
-}  // namespace misfit::serve
+}  // namespace misfit::page

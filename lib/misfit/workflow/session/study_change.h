@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "misfit/data/study.h"
 #include "misfit/model/registry.h"
 
-namespace misfit::serve {
+namespace misfit {
 
 /// What is wrong with a study's text, and where.
 struct TextFault {
@@ -22,4 +24,16 @@ struct TextFault {
 [[nodiscard]] std::optional<TextFault> save_text(const std::filesystem::path& file, const std::string& text, const std::string& hash_before,
                                                  const Registry& registry);
 
-}  // namespace misfit::serve
+/// A key and its value, as `misfit set` takes them: "parameters.k.free=false".
+struct Setting {
+  std::string key, value;  ///< as written; value: TOML, or any text
+};
+/// InputError: there is no '=', or nothing on one of its sides.
+[[nodiscard]] Setting read_setting(const std::string& words);
+
+/// The text of a study with other values; a key begins with the name of a section. [[experiment]] elements go by the experiment's name:
+/// experiment.NAME.validation. A value that is no TOML is a text. InputError naming the key: it is not written as a key, there is no such
+/// experiment, or with_value() refuses it.
+[[nodiscard]] std::string with_settings(const Study& study, const std::vector<Setting>& settings);
+
+}  // namespace misfit

@@ -6,7 +6,7 @@
 #include "misfit/report/figure.h"
 #include "misfit/show/blocks.h"
 
-namespace misfit::serve {
+namespace misfit::page {
 
 // JSON as text: results go to the page by these functions alone. null stands for what is not finite.
 
@@ -24,4 +24,4 @@ namespace misfit::serve {
 [[nodiscard]] std::string json_of(const report::Figure& figure);
 [[nodiscard]] std::string json_of(const Blocks& blocks);
 
-}  // namespace misfit::serve
+}  // namespace misfit::page

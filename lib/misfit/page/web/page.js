@@ -1,13 +1,13 @@
 // The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
 import { blocks, element, plain, shown, words } from '/dom.js';
 import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
-import { get, post, Refused } from '/server.js';
+import { get, live, post, Refused } from '/server.js';
 import { editor } from '/editor.js';
 
 const at = (id) => document.getElementById(id);
 const time = new TimeGroup();
 const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves'], ['calibration', 'Calibration'],
-  ['ladder', 'Ladder'], ['study', 'Study'], ['commands', 'Commands']];
+  ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
 /** What is shown. The address keeps model and tab, so that a reload finds them again. */
 const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], marked: '', fixed: [] };
@@ -49,6 +49,11 @@ async function look() {
 }
 
 async function watch() {
+  if (!live) {
+    await look().catch(say);
+    document.body.dataset.ready = 'yes';
+    return;
+  }
   for (;;) {
     let running = false;
     try {
@@ -92,7 +97,7 @@ function showJob(job) {
   const idle = (here.idle = !running && here.state.study.fault === null);
   for (const id of ['run', 'fit', 'discover']) at(id).disabled = !idle;
   at('add').disabled = !idle || at('effect').value === '';
-  for (const button of document.querySelectorAll('button.adds')) button.disabled = !idle;
+  for (const button of document.querySelectorAll('button.adds, button.removes, button.sets')) button.disabled = !idle;
   at('stop').hidden = !running;
   at('stop').textContent = job.stopping ? 'Stop at once' : 'Stop';
   at('command').hidden = box.hidden = job.state === 'none';
@@ -126,17 +131,12 @@ function costs(traces) {
   return out;
 }
 
-/** A line without axes, as SVG; its numbers stand below it. */
+/** A line without axes; its numbers stand below it. */
 function sparkline(values) {
-  const svg = (name, properties) => {
-    const node = document.createElementNS('http://www.w3.org/2000/svg', name);
-    for (const [key, value] of Object.entries(properties)) node.setAttribute(key, value);
-    return node;
-  };
   const low = Math.min(...values), high = Math.max(...values), span = high - low || 1;
   const place = values.map((v, k) => `${((k / (values.length - 1)) * 270).toFixed(1)},${(56 - ((v - low) / span) * 52).toFixed(1)}`);
-  const out = svg('svg', { viewBox: '0 0 272 60', width: '100%', role: 'img', 'aria-label': 'value by iteration' });
-  out.append(svg('polyline', { points: place.join(' '), fill: 'none', stroke: 'currentColor', 'stroke-width': 1.6 }));
+  const out = at('sparkline').content.cloneNode(true);
+  out.querySelector('polyline').setAttribute('points', place.join(' '));
   return out;
 }
 
@@ -194,6 +194,7 @@ function mark(intervals, text, fixed) {
   time.setMarks(shownNow);
   at('marked').textContent = intervals.length > 0 ? text : here.marked;
   at('unmark').hidden = here.fixed.length === 0;
+  at('holdout').hidden = !live || here.fixed.length !== 1 || here.model !== 0 || !here.state.settable.experiments.includes(here.name);
   at('time').dataset.marks = shownNow.length;
   markPoints();
 }
@@ -310,7 +311,8 @@ async function showMap(body, map, current) {
   const figure = draw(body, map.change ?? map.figure, { height: 0.8,
     onpoint: (plot, x) => choose(plot.view, x, false), onpick: (plot, x) => choose(plot.view, x, true), onkeypoint: (plot, x) => choose(plot.view, x, true),
     onleave: (plot) => { hot = null; plot.view.cells = plot.view.fixedCells ?? []; plot.view.redraw(); mark([], '', false); } });
-  figure.node.append(element('p', { class: 'soft' }, 'Point at a place: its samples are marked in the motion. A click keeps them marked.'));
+  figure.node.append(element('p', { class: 'soft' }, samples || map.quantity === 'time'
+    ? 'Point at a place: its samples are marked in the motion. A click keeps them marked.' : 'Its samples are not at hand here; `misfit open` marks them in the motion.'));
   if (samples) {
     here.samples = { t: samples.t, figure: draw(body, samples.figure, { height: 0.7 }) };
     markPoints();
@@ -361,7 +363,7 @@ function candidateTable(table, rows, last) {
   const head = element('tr', {}, element('td'), ...columns.map((n) => element('th', { scope: 'col', class: side(n) }, words(table.columns[n].heading))));
   const body = element('tbody');
   rows.forEach((row, k) => {
-    const button = row.addable && last
+    const button = live && row.addable && last
       ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, title: `misfit add … ${[row.effect, ...row.at].join(' --at=')}`, disabled: !here.idle,
           onclick: () => start('add', { effect: row.effect, at: row.at }) }, 'Add') : '';
     const more = k >= most ? ' more' : '';
@@ -379,6 +381,23 @@ async function showCurves(view) {
   if (curves.figures.length === 0) nothing(view, 'This model has no curves; its parameters:');
   for (const figure of curves.figures) draw(view, figure, { height: 0.8 });
   view.append(blocks(curves.blocks));
+  if (live && here.model === 0 && here.state.study.fault === null) view.append(settings());
+}
+
+/** What of the study's own model is estimated and how; each change is `misfit set`, the results are made anew by Run. */
+function settings() {
+  const set = (what, name, value) => start('set', { what, name, value });
+  const rows = here.state.settable.parameters.map(({ name, label, unit, free }) => element('tr', {}, element('td', {}, words(label), ' [', words(unit), ']'),
+    element('td', {}, free ? 'estimated' : 'held'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, disabled: !here.idle,
+      onclick: () => set('free', name, `${!free}`) }, free ? 'Hold' : 'Estimate'))));
+  for (const { name, label, roughness } of here.state.settable.curves) {
+    const box = element('input', { value: roughness, size: 12, 'aria-label': `roughness of ${name}` });
+    rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label)), element('td', {}, box), element('td', {},
+      element('button', { class: 'sets', 'data-roughness': name, title: 'auto, or a number of at least 0', disabled: !here.idle,
+        onclick: () => set('roughness', name, box.value.trim()) }, 'Set'))));
+  }
+  return element('details', { id: 'settings' }, element('summary', {}, 'Hold or estimate a parameter, change a roughness'), element('table', {}, element('tbody', {}, ...rows)),
+    element('p', { class: 'soft' }, 'A change is written into the study; Run makes the results anew.'));
 }
 
 async function showCalibration(view) {
@@ -398,7 +417,7 @@ async function showLadder(view) {
   draw(view, ladder.figure, { height: 0.75 });
   const current = ladder.rungs.find((rung) => rung.id === here.state.models[here.model].id), last = ladder.rungs[ladder.rungs.length - 1];
   if (current) view.append(element('h3', {}, `Rung ${current.id}`), blocks(current.blocks));
-  if (current && current.added !== '') {
+  if (live && current && current.added !== '') {
     view.append(element('button', { class: 'removes', title: `misfit remove … ${current.id}`, disabled: !here.idle,
       onclick: () => start('remove', { rung: `${current.id}` }) }, last === current ? 'Remove this rung' : 'Remove this rung and those above it'));
   }
@@ -472,6 +491,7 @@ function showTab(name, focus = false) {
 
 function begin() {
   readAddress();
+  at('work').hidden = !live;
   at('tabs').replaceChildren(...tabs.map(([name, text]) => element('button', { role: 'tab', 'data-view': name, 'aria-controls': 'view', onclick: () => showTab(name) }, text)));
   at('tabs').addEventListener('keydown', (event) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
@@ -488,6 +508,7 @@ function begin() {
   at('experiment').addEventListener('change', (event) => { here.experiment = Number(event.target.value); showMotion().then(showView).catch(say); });
   at('whole').addEventListener('click', () => time.zoom(null));
   at('unmark').addEventListener('click', unmark);
+  at('holdout').addEventListener('click', () => start('set', { what: 'validation', name: here.name, value: here.fixed[0].join(' ') }));
   addEventListener('keydown', (event) => { if (event.key === 'Escape') unmark(); });
   addEventListener('beforeunload', (event) => { if (study.changed()) event.preventDefault(); });
   onScreenChange(() => { drawTime(); showView().catch(say); });

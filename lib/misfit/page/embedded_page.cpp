@@ -1,0 +1,137 @@
+#include "misfit/page/embedded_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <unordered_map>
+
+#include "misfit/core/files.h"
+#include "misfit/page/assets.h"
+#include "misfit/page/json_text.h"
+#include "misfit/page/packed.h"
+#include "misfit/page/views.h"
+#include "misfit/show/verdict.h"
+
+namespace misfit::page {
+namespace {
+
+/// Answers by what is asked, as web/embedded.js asks. Long lists of numbers, which many answers share, stand once, in a list of lists: in
+/// their places {"$":k} names one.
+class Answers {
+ public:
+  explicit Answers(std::size_t most) : most_(most) {}
+
+  /// False: there was no room.
+  bool add(const std::string& what, const std::string& parameters, const std::string& answer) {
+    const std::size_t lists_before = lists_.size();
+    const std::string entry = fmt::format("{}:{}", json_string(what + "?" + parameters), with_shared_lists(answer));
+    std::size_t more = entry.size() + 2;
+    for (std::size_t k = lists_before; k < lists_.size(); ++k) more += lists_[k].size() + 2;
+    if (size_ + more > most_) {
+      for (; lists_.size() > lists_before; lists_.pop_back()) known_.erase(lists_.back());
+      return false;
+    }
+    size_ += more;
+    entries_.push_back(entry);
+    return true;
+  }
+  [[nodiscard]] std::string text() const {
+    return fmt::format("{{\"lists\":[{}],\n\"answers\":{{{}}}}}", fmt::join(lists_, ",\n"), fmt::join(entries_, ",\n"));
+  }
+
+ private:
+  std::string with_shared_lists(const std::string& json) {
+    constexpr std::size_t long_enough = 100;
+    std::string out;
+    bool quoted = false;
+    for (std::size_t at = 0; at < json.size(); ++at) {
+      if (json[at] == '"') quoted = !quoted;
+      if (json[at] == '\\') out += json[at++];
+      const std::size_t end = quoted || json[at] != '[' ? at : json.find_first_of("[]{\"", at + 1);
+      if (end != at && json[end] == ']' && end - at > long_enough) {
+        const auto [known, fresh] = known_.emplace(json.substr(at, end + 1 - at), lists_.size());
+        if (fresh) lists_.push_back(known->first);
+        out += fmt::format("{{\"$\":{}}}", known->second);
+        at = end;
+      } else {
+        out += json[at];
+      }
+    }
+    return out;
+  }
+
+  std::size_t most_, size_ = 0;
+  std::vector<std::string> entries_, lists_;
+  std::unordered_map<std::string, std::size_t> known_;  ///< place in lists_
+};
+
+std::string state_of(const EmbeddedPage& page) {
+  std::vector<std::string> warnings;
+  for (const std::string& warning : page.warnings) warnings.push_back(json_string(warning));
+  return fmt::format(
+      R"({{"version":"","study":{{"name":{},"question":{},"fault":null}},"models":{},"outdated":{},"verdict":{},"effects":[],"settable":null,)"
+      R"("job":{{"state":"none","number":0}}}})",
+      json_string(page.study), json_words(page.question), models_view(page.places), json_list(warnings),
+      page.verdict != nullptr ? json_of(blocks_of(*page.verdict)) : "null");
+}
+
+std::string study_of(const Place& place) {
+  return fmt::format(R"({{"text":{},"hash":"","file":{},"editable":false,"fault":null}})", json_string(read_file(place.study)),
+                     json_string(place.study.filename().string()));
+}
+
+/// Motion by every method and the missing force. False: no room for it.
+bool add_first_views(const EmbeddedPage& page, std::size_t model, Answers& answers) {
+  const std::string number = fmt::format("model={}", model);
+  bool all = answers.add("where", number, where_view(page.places[model], model > 0 ? &page.places[model - 1] : nullptr));
+  for (std::size_t method = 0; method == 0 || method < fits_of(page.places[model]).size(); ++method)
+    all = answers.add("motion", fmt::format("{}&method={}", number, method), motion_view(page.places[model], method)) && all;
+  return all;
+}
+
+void add_other_views(const EmbeddedPage& page, std::size_t model, Answers& answers) {
+  const Place& place = page.places[model];
+  const std::string number = fmt::format("model={}", model);
+  answers.add("candidates", number, candidates_view(place, {}));
+  answers.add("curves", number, curves_view(page.places, model, page.references));
+  answers.add("study", number, study_of(place));
+}
+
+void add_samples(const Place& place, std::size_t model, Answers& answers) {
+  const std::optional<Diagnosis> diagnosis = diagnosis_of(place);
+  for (std::size_t e = 0; diagnosis && e < diagnosis->missing.size(); ++e) {
+    for (std::size_t q = 0; q < diagnosis->missing[e].quantities.size(); ++q)
+      answers.add("samples", fmt::format("model={}&experiment={}&quantity={}", model, e, q), samples_view(place, e, q));
+  }
+}
+
+}  // namespace
+
+std::string embedded_answers(const EmbeddedPage& page, std::size_t most) {
+  Answers answers(most);
+  if (!answers.add("state", "", state_of(page)) || !add_first_views(page, 0, answers)) return "";
+  for (std::size_t model = 1; model < page.places.size(); ++model) add_first_views(page, model, answers);
+  for (std::size_t model = 0; model < page.places.size(); ++model) add_other_views(page, model, answers);
+  answers.add("ladder", "", ladder_view(page.places.front().folder));
+  answers.add("calibration", "", calibration_view(page.places.front()));
+  for (std::size_t model = page.places.size(); model-- > 0;) add_samples(page.places[model], model, answers);
+  return answers.text();
+}
+
+std::string embedded_page(const EmbeddedPage& page, std::size_t most) {
+  const EmbeddedAssets& assets = embedded_assets();
+  const std::size_t fixed = assets.body.size() + assets.style.size() + assets.script.size() + 1000;
+  for (double room = 1.6 * (static_cast<double>(most) - static_cast<double>(fixed)); room > 0.0; room *= 0.8) {
+    const std::string answers = embedded_answers(page, static_cast<std::size_t>(room));
+    if (answers.empty()) break;
+    const std::string text = packed(answers);
+    if (text.size() + fixed > most) continue;
+    return fmt::format(
+        "<template id=\"explore\">{}</template>\n<style id=\"explore-style\" media=\"not all\">\n{}</style>\n"
+        "<script type=\"text/plain\" id=\"answers\">{}</script>\n<script type=\"module\">\n{}</script>\n",
+        assets.body, assets.style, text, assets.script);
+  }
+  return "";
+}
+
+}  // namespace misfit::page

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/data/reference.h"
+#include "misfit/data/verdict.h"
+#include "misfit/page/places.h"
+
+namespace misfit::page {
+
+/// A study whose page is put into its report.
+struct EmbeddedPage {
+  std::string study, question;
+  const Verdict* verdict = nullptr;  ///< nullptr: there is none
+  std::vector<Place> places;         ///< its own, then the rungs
+  std::vector<Reference> references;
+  std::vector<std::string> warnings;  ///< above all: what of the results is left out, and why
+};
+
+/// The answers that the server would give, as JSON: {"lists": [[…], …], "answers": {"where?model=0": …}}. Long lists of numbers, which many
+/// answers share, stand once: in an answer {"$": k} stands for the list k. They are put in while all stay below `most` bytes, those of the
+/// first view of a model before its others. Empty if not even the motion and the missing force of the first model find room.
+[[nodiscard]] std::string embedded_answers(const EmbeddedPage& page, std::size_t most);
+
+/// The page of `misfit open` without a server, as markup of at most so many bytes for the end of the body of report.html: template, style
+/// sheet, embedded_answers(), packed, and script. Without scripts, and in print, none of it is seen. The page says of a view that found no
+/// room that `misfit open` shows it. Empty where embedded_answers() is.
+[[nodiscard]] std::string embedded_page(const EmbeddedPage& page, std::size_t most);
+
+}  // namespace misfit::page

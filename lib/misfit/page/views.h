@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "misfit/data/reference.h"
+#include "misfit/page/places.h"
+
+namespace misfit::page {
+
+// What the page shows of a model, as JSON (json_text.h), from the same figures and blocks as the report.
+
+/// Measured, predicted and residual of every channel by one method (place in fits_of()).
+[[nodiscard]] std::string motion_view(const Place& place, std::size_t method);
+/// Missing force over time; maps over quantities and pairs of them; the names of the quantities.
+/// `before`: the model below it on the ladder, whose maps are drawn beside; nullptr: none.
+[[nodiscard]] std::string where_view(const Place& place, const Place* before);
+/// Every sample of the missing force against a quantity, in the order of its times: {"t", "values", "figure"}. InputError: no such
+/// experiment or quantity.
+[[nodiscard]] std::string samples_view(const Place& place, std::size_t experiment, std::size_t quantity);
+/// `effects`: keys of those that the program can add.
+[[nodiscard]] std::string candidates_view(const Place& place, const std::vector<std::string>& effects);
+/// Of places[model] by every method; dotted: of the models below it by the last method that has the curve.
+[[nodiscard]] std::string curves_view(const std::vector<Place>& places, std::size_t model, const std::vector<Reference>& references);
+[[nodiscard]] std::string calibration_view(const Place& place);
+[[nodiscard]] std::string ladder_view(const std::filesystem::path& folder);
+/// {"id", "added"} of every model.
+[[nodiscard]] std::string models_view(const std::vector<Place>& places);
+/// What the study has come to, as the report begins. `study`, `out`: as commands name them (VerdictInput).
+[[nodiscard]] std::string verdict_view(const std::vector<Place>& places, const std::string& study, const std::string& out);
+
+}  // namespace misfit::page

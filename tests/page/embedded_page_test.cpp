@@ -1,0 +1,99 @@
+// report.html as the page of `misfit open` without a server: what is put into it, and what is not.
+#include "misfit/page/embedded_page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "misfit/page/assets.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit::page {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A study that was never run.
+class Embedded : public testing::Test {
+ protected:
+  static constexpr const char* hostile = "</script><script>alert('x')</script>&amp;\"";
+
+  Embedded() {
+    folder.write("study.toml", std::string("[study]\nname = '") + "</script>" + "'\n");
+    page.study = page.question = hostile;
+    page.places = places_of(folder.path() / "study.toml", folder.path() / "out");
+  }
+  [[nodiscard]] json all(std::size_t most = room) const { return json::parse(embedded_answers(page, most)); }
+
+  static constexpr std::size_t room = 1'000'000;
+  TemporaryFolder folder;
+  EmbeddedPage page;
+};
+
+TEST_F(Embedded, AnswersWhatThePageAsks) {
+  const json answers = all()["answers"];
+  for (const char* asked : {"state?", "where?model=0", "motion?model=0&method=0", "candidates?model=0", "curves?model=0", "study?model=0",
+                            "ladder?", "calibration?"})
+    EXPECT_TRUE(answers.contains(asked)) << asked;
+  EXPECT_EQ(answers["state?"]["models"].size(), 1U);
+  EXPECT_EQ(answers["state?"]["job"]["state"], "none");
+  EXPECT_EQ(answers["study?model=0"]["editable"], false);
+}
+
+TEST_F(Embedded, HasLongListsOnce) {
+  MissingForce missing;
+  missing.experiment = "e";
+  for (int i = 0; i < 500; ++i) missing.t.push_back(0.125 * i);
+  missing.quantities = {"a", "[\\\"b"};
+  missing.quantity_units = {"m", "m"};
+  missing.values = {missing.t, missing.t};
+  missing.ports = {"F"};
+  missing.port_units = {"N"};
+  missing.force = missing.sigma = {missing.t};
+  Diagnosis diagnosis;
+  diagnosis.missing = {missing};
+  std::filesystem::create_directories(folder.path() / "out");
+  write_diagnosis(folder.path() / "out", diagnosis);
+  const json all = this->all();
+  for (const char* asked : {"samples?model=0&experiment=0&quantity=0", "samples?model=0&experiment=0&quantity=1"}) {
+    ASSERT_TRUE(all["answers"].contains(asked));
+    const json& values = all["answers"][asked]["values"];
+    ASSERT_TRUE(values.contains("$")) << values;
+    EXPECT_EQ(all["lists"][values["$"].get<std::size_t>()].size(), 500U);
+  }
+  EXPECT_EQ(all["answers"]["samples?model=0&experiment=0&quantity=0"]["values"],
+            all["answers"]["samples?model=0&experiment=0&quantity=1"]["values"]);
+  EXPECT_EQ(all["answers"]["where?model=0"]["force"][0]["quantities"][1]["name"], "[\\\"b") << "a bracket in a name begins no list";
+}
+
+TEST_F(Embedded, ShowsNoPathOfTheMachine) { EXPECT_THAT(embedded_answers(page, room), Not(HasSubstr(folder.path().string()))); }
+
+TEST_F(Embedded, TakesNamesAsText) {
+  const json answers = all()["answers"];
+  EXPECT_EQ(answers["state?"]["study"]["name"], hostile);
+  EXPECT_THAT(answers["study?model=0"]["text"].get<std::string>(), HasSubstr("</script>"));
+  EXPECT_THAT(embedded_page(page, room), Not(HasSubstr("alert('x')")));
+}
+
+TEST_F(Embedded, IsLeftOutWhereItFindsNoRoomAndItsLastViewsFirst) {
+  EXPECT_EQ(embedded_page(page, 100), "");
+  EXPECT_LT(embedded_page(page, room).size(), room);
+  json answers = all()["answers"];
+  for (std::size_t most = 2000; answers.contains("calibration?"); most -= 10) answers = all(most)["answers"];
+  EXPECT_TRUE(answers.contains("motion?model=0&method=0"));
+  EXPECT_TRUE(answers.contains("curves?model=0"));
+}
+
+TEST_F(Embedded, HasOneScriptThatImportsNothingAndFetchesNothing) {
+  const std::string script(embedded_assets().script);
+  for (const char* word : {"\nimport ", "\nexport ", "fetch(", "XMLHttpRequest", "</script", "https:", "http:"})
+    EXPECT_THAT(script, Not(HasSubstr(word)));
+  for (const char* name : {"module_uPlot", "module_dom", "module_figure", "module_server", "module_editor", "module_page"})
+    EXPECT_THAT(script, HasSubstr(std::string("const ") + name + " = "));
+}
+
+}  // namespace
+}  // namespace misfit::page
