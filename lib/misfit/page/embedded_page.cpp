@@ -15,16 +15,23 @@
 namespace misfit::page {
 namespace {
 
-/// Answers by what is asked, as web/embedded.js asks. Long lists of numbers, which many answers share, stand once, in a list of lists: in
-/// their places {"$":k} names one.
-class Answers {
+/// What the page may ask, in the words of web/embedded.js, and the answer.
+struct Answer {
+  std::string question, json;
+  bool needed = false;  ///< without it there is no page
+};
+using AllAnswers = std::vector<Answer>;  ///< the most wanted first
+
+/// Those that find room. Long lists of numbers, which many answers share, stand once, in a list of lists: in their places {"$":k} names
+/// one.
+class ChosenAnswers {
  public:
-  explicit Answers(std::size_t most) : most_(most) {}
+  explicit ChosenAnswers(std::size_t most) : most_(most) {}
 
   /// False: there was no room.
-  bool add(const std::string& what, const std::string& parameters, const std::string& answer) {
+  bool add(const Answer& answer) {
     const std::size_t lists_before = lists_.size();
-    const std::string entry = fmt::format("{}:{}", json_string(what + "?" + parameters), with_shared_lists(answer));
+    const std::string entry = fmt::format("{}:{}", json_string(answer.question), with_shared_lists(answer.json));
     std::size_t more = entry.size() + 2;
     for (std::size_t k = lists_before; k < lists_.size(); ++k) more += lists_[k].size() + 2;
     if (size_ + more > most_) {
@@ -80,49 +87,61 @@ std::string study_of(const Place& place) {
                      json_string(place.study.filename().string()));
 }
 
-/// Motion by every method and the missing force. False: no room for it.
-bool add_first_views(const EmbeddedPage& page, std::size_t model, Answers& answers) {
+/// Motion by every method and the missing force.
+void add_first_views(const EmbeddedPage& page, std::size_t model, AllAnswers& out) {
   const std::string number = fmt::format("model={}", model);
-  bool all = answers.add("where", number, where_view(page.places[model], model > 0 ? &page.places[model - 1] : nullptr));
+  const bool needed = model == 0;
+  out.push_back({"where?" + number, where_view(page.places[model], model > 0 ? &page.places[model - 1] : nullptr), needed});
   for (std::size_t method = 0; method == 0 || method < fits_of(page.places[model]).size(); ++method)
-    all = answers.add("motion", fmt::format("{}&method={}", number, method), motion_view(page.places[model], method)) && all;
-  return all;
+    out.push_back({fmt::format("motion?{}&method={}", number, method), motion_view(page.places[model], method), needed});
 }
 
-void add_other_views(const EmbeddedPage& page, std::size_t model, Answers& answers) {
+void add_other_views(const EmbeddedPage& page, std::size_t model, AllAnswers& out) {
   const Place& place = page.places[model];
-  const std::string number = fmt::format("model={}", model);
-  answers.add("candidates", number, candidates_view(place, {}));
-  answers.add("curves", number, curves_view(page.places, model, page.references));
-  answers.add("study", number, study_of(place));
+  const std::string number = fmt::format("?model={}", model);
+  out.push_back({"candidates" + number, candidates_view(place, {})});
+  out.push_back({"curves" + number, curves_view(page.places, model, page.references)});
+  out.push_back({"study" + number, study_of(place)});
 }
 
-void add_samples(const Place& place, std::size_t model, Answers& answers) {
+void add_samples(const Place& place, std::size_t model, AllAnswers& out) {
   const std::optional<Diagnosis> diagnosis = diagnosis_of(place);
   for (std::size_t e = 0; diagnosis && e < diagnosis->missing.size(); ++e) {
     for (std::size_t q = 0; q < diagnosis->missing[e].quantities.size(); ++q)
-      answers.add("samples", fmt::format("model={}&experiment={}&quantity={}", model, e, q), samples_view(place, e, q));
+      out.push_back({fmt::format("samples?model={}&experiment={}&quantity={}", model, e, q), samples_view(*diagnosis, e, q)});
   }
+}
+
+AllAnswers all_answers(const EmbeddedPage& page) {
+  AllAnswers out;
+  out.push_back({"state?", state_of(page), true});
+  for (std::size_t model = 0; model < page.places.size(); ++model) add_first_views(page, model, out);
+  for (std::size_t model = 0; model < page.places.size(); ++model) add_other_views(page, model, out);
+  out.push_back({"ladder?", ladder_view(page.places.front().folder)});
+  out.push_back({"calibration?", calibration_view(page.places.front())});
+  for (std::size_t model = page.places.size(); model-- > 0;) add_samples(page.places[model], model, out);
+  return out;
+}
+
+/// Empty: one that is needed finds no room.
+std::string chosen(const AllAnswers& all, std::size_t most) {
+  ChosenAnswers out(most);
+  for (const Answer& answer : all) {
+    if (!out.add(answer) && answer.needed) return "";
+  }
+  return out.text();
 }
 
 }  // namespace
 
-std::string embedded_answers(const EmbeddedPage& page, std::size_t most) {
-  Answers answers(most);
-  if (!answers.add("state", "", state_of(page)) || !add_first_views(page, 0, answers)) return "";
-  for (std::size_t model = 1; model < page.places.size(); ++model) add_first_views(page, model, answers);
-  for (std::size_t model = 0; model < page.places.size(); ++model) add_other_views(page, model, answers);
-  answers.add("ladder", "", ladder_view(page.places.front().folder));
-  answers.add("calibration", "", calibration_view(page.places.front()));
-  for (std::size_t model = page.places.size(); model-- > 0;) add_samples(page.places[model], model, answers);
-  return answers.text();
-}
+std::string embedded_answers(const EmbeddedPage& page, std::size_t most) { return chosen(all_answers(page), most); }
 
 std::string embedded_page(const EmbeddedPage& page, std::size_t most) {
   const EmbeddedAssets& assets = embedded_assets();
   const std::size_t fixed = assets.body.size() + assets.style.size() + assets.script.size() + 1000;
+  const AllAnswers all = all_answers(page);
   for (double room = 1.6 * (static_cast<double>(most) - static_cast<double>(fixed)); room > 0.0; room *= 0.8) {
-    const std::string answers = embedded_answers(page, static_cast<std::size_t>(room));
+    const std::string answers = chosen(all, static_cast<std::size_t>(room));
     if (answers.empty()) break;
     const std::string text = packed(answers);
     if (text.size() + fixed > most) continue;

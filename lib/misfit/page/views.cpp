@@ -115,10 +115,9 @@ std::string where_view(const Place& place, const Place* before) {
                      json_of(report::innovation_figure(d->whiteness)), json_of(report::periodogram_figure(d->whiteness)));
 }
 
-std::string samples_view(const Place& place, std::size_t experiment, std::size_t quantity) {
-  const std::optional<Diagnosis> d = diagnosis_of(place);
-  if (!d || experiment >= d->missing.size()) throw InputError("there is no such experiment");
-  const MissingForce& missing = d->missing[experiment];
+std::string samples_view(const Diagnosis& diagnosis, std::size_t experiment, std::size_t quantity) {
+  if (experiment >= diagnosis.missing.size()) throw InputError("there is no such experiment");
+  const MissingForce& missing = diagnosis.missing[experiment];
   if (quantity >= missing.quantities.size()) throw InputError("there is no such quantity");
   return fmt::format(R"({{"t":{},"values":{},"figure":{}}})", json_numbers(missing.t, 9),
                      json_numbers(display_values(missing.values[quantity], missing.quantity_units[quantity])),

@@ -18,7 +18,7 @@ namespace misfit::page {
 [[nodiscard]] std::string where_view(const Place& place, const Place* before);
 /// Every sample of the missing force against a quantity, in the order of its times: {"t", "values", "figure"}. InputError: no such
 /// experiment or quantity.
-[[nodiscard]] std::string samples_view(const Place& place, std::size_t experiment, std::size_t quantity);
+[[nodiscard]] std::string samples_view(const Diagnosis& diagnosis, std::size_t experiment, std::size_t quantity);
 /// `effects`: keys of those that the program can add.
 [[nodiscard]] std::string candidates_view(const Place& place, const std::vector<std::string>& effects);
 /// Of places[model] by every method; dotted: of the models below it by the last method that has the curve.

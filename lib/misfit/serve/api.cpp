@@ -117,6 +117,12 @@ std::string Api::where(const Ask& ask) const {
   return page::where_view(places[model], model > 0 ? &places[model - 1] : nullptr);
 }
 
+std::string Api::samples(const Ask& ask) {
+  constexpr std::size_t many = 10'000;
+  const std::optional<Diagnosis> diagnosis = page::diagnosis_of(place(ask));
+  return page::samples_view(diagnosis.value_or(Diagnosis{}), number(ask, "experiment", many), number(ask, "quantity", many));
+}
+
 std::string Api::curves(const Ask& ask) {
   const std::vector<Place> places = results_.places();
   return page::curves_view(places, number(ask, "model", places.size()), known()->references);
@@ -127,8 +133,7 @@ Answer Api::get(const Ask& ask) {
   if (ask.path == "/api/state") return {200, state()};
   if (ask.path == "/api/motion") return {200, page::motion_view(place(ask), number(ask, "method", many))};
   if (ask.path == "/api/where") return {200, where(ask)};
-  if (ask.path == "/api/samples")
-    return {200, page::samples_view(place(ask), number(ask, "experiment", many), number(ask, "quantity", many))};
+  if (ask.path == "/api/samples") return {200, samples(ask)};
   if (ask.path == "/api/candidates") return {200, page::candidates_view(place(ask), registry_.effect_keys())};
   if (ask.path == "/api/curves") return {200, curves(ask)};
   if (ask.path == "/api/calibration") return {200, page::calibration_view(results_.places().front())};

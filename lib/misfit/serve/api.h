@@ -58,6 +58,7 @@ class Api {
   [[nodiscard]] Answer save(const std::string& text, const std::string& hash);
   [[nodiscard]] page::Place place(const Ask& ask) const;
   [[nodiscard]] std::string where(const Ask& ask) const;
+  [[nodiscard]] std::string samples(const Ask& ask);
   [[nodiscard]] std::string curves(const Ask& ask);
 
   SessionOptions options_;

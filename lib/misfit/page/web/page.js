@@ -14,7 +14,7 @@ const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0,
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
-  here.model = Number(parts.get('model') ?? 0) || 0;
+  here.model = parts.has('model') ? Number(parts.get('model')) || 0 : -1; // -1: the last, with what was added
   here.tab = tabs.some(([name]) => name === parts.get('view')) ? parts.get('view') : 'where';
 }
 function writeAddress() {
@@ -40,7 +40,7 @@ async function look() {
     const grown = here.models !== undefined && state.models.length > here.models;
     version = state.version;
     here.models = state.models.length;
-    if (grown || here.model >= state.models.length) here.model = state.models.length - 1;
+    if (grown || here.model < 0 || here.model >= state.models.length) here.model = state.models.length - 1;
     showHead();
     await showAll();
   }
