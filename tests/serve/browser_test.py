@@ -97,8 +97,8 @@ class Page:
 
     def job(self, state, number=None):
         def ended():
-            box = self.one("#job")
-            return box.get_attribute("data-state") == state and (number is None or box.get_attribute("data-number") == str(number))
+            seen = self.js("return {...document.querySelector('#job').dataset}")  # both at one moment
+            return seen.get("state") == state and (number is None or seen.get("number") == str(number))
         self.wait(ended, f"the command is {state}")
 
     def no_faults(self):
