@@ -79,6 +79,23 @@ TEST(Report, ScriptsStandBehindTheDocumentAndMayAskNobody) {
   EXPECT_EQ(html_faults(page), std::vector<std::string>{});
 }
 
+TEST(InlineSvg, HasDotsOfOneKindInOnePath) {
+  const auto dot = [](const std::string& place, const std::string& colour) {
+    return "\t<use xlink:href='#gpPt6' transform='translate(" + place + ") scale(1.36)' color='rgb(" + colour + ")'/>\n";
+  };
+  const std::string defined =
+      "<circle id='gpPt5' stroke-width='0.184' cx='0' cy='0' r='1'/><use xlink:href='#gpPt5' id='gpPt6' "
+      "fill='currentColor' stroke='none'/>";
+  const std::string black = "  0,   0,   0", red = "213,  94,   0";
+  const std::string dots = dot("1.00,2.50", black) + dot("3.00,4.00", black) + dot("5.00,6.00", red) + "<g/>" + dot("7.00,8.00", red);
+  const std::string with = inline_svg("<svg viewBox=\"0 0 9 9\">" + defined + dots + "</svg>", "f", "dots");
+  EXPECT_THAT(with, HasSubstr("stroke=\"rgb(0,0,0)\" stroke-width=\"2.72\" stroke-linecap=\"round\" d=\"M1.00,2.50h0M3.00,4.00h0\"/>"));
+  EXPECT_THAT(with, HasSubstr("stroke=\"rgb(213,94,0)\" stroke-width=\"2.72\" stroke-linecap=\"round\" d=\"M5.00,6.00h0\"/>\n<g/>"));
+  EXPECT_THAT(with, HasSubstr("d=\"M7.00,8.00h0\"/>"));
+  EXPECT_THAT(inline_svg("<svg viewBox=\"0 0 9 9\">" + dots + "</svg>", "f", "dots"), HasSubstr("translate(1.00,2.50)"))
+      << "of another gnuplot";
+}
+
 TEST(Report, LinksToFiguresLeadToFilesThatAreThere) {
   const TemporaryFolder folder;
   const std::string page = read_file(write_report(folder.path(), example()));

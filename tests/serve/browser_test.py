@@ -101,8 +101,9 @@ class Page:
             return seen.get("state") == state and (number is None or seen.get("number") == str(number))
         self.wait(ended, f"the command is {state}")
 
-    def no_faults(self):
-        faults = [e["message"] for e in self.driver.get_log("browser") if e["level"] == "SEVERE" and "ERR_CONNECTION_REFUSED" not in e["message"]]
+    def no_faults(self, but="ERR_CONNECTION_REFUSED"):
+        """Since the last time it was asked."""
+        faults = [e["message"] for e in self.driver.get_log("browser") if e["level"] == "SEVERE" and but not in e["message"]]
         assert not faults, faults
 
     def end(self):
@@ -282,6 +283,7 @@ def stop_and_kill():
     time.sleep(0.5)
     server.end(signal.SIGKILL)
     page.wait(lambda: "does not answer any more" in page.text("#alerts"), "the page says that nobody answers")
+    page.no_faults(but="net::ERR_")  # refused, reset or empty, as the kill met the question
     server = Server()
     page.open(server.address)
 

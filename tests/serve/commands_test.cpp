@@ -200,6 +200,16 @@ TEST(OpeningAPage, SaysWhatIsWrong) {
   EXPECT_EQ(run({"open", study.path("study.toml").string(), "--port", "70000"}).status, 2);
 }
 
+TEST(OpeningAPage, NamesWhatCanBeSetWithItsUnit) {
+  const StudyCopy swivel("swivel_friction");
+  const PageServer server({swivel.path("study.toml").string()});
+  const json state = server.state();
+  EXPECT_EQ(state["study"]["fault"], nullptr);
+  ASSERT_EQ(state["settable"]["curves"].size(), 2U);
+  EXPECT_EQ(state["settable"]["curves"][0]["unit"], json::parse(R"([["rad",0],["3",1]])")) << "of C_m, which has no unit, over alpha_T";
+  EXPECT_EQ(state["settable"]["curves"][0]["roughness"], "auto");
+}
+
 TEST(OpeningAPage, DoesNoWork) {
   const OscillatorStudy study;
   PageServer server({study.path("study.toml").string()});

@@ -429,4 +429,14 @@ std::string toml_string(std::string_view text) {
   return out.str();
 }
 
+bool is_toml_value(const std::string& text) {
+  if (text.find('\n') != std::string::npos) return false;
+  try {
+    const std::string line = "x = " + text;
+    return toml_outline(line).front().end == line.size();
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 }  // namespace misfit

@@ -21,4 +21,7 @@ struct TomlNode {
 /// All values of a valid TOML text, parents before what they hold. InputError naming line and column of `text` if it is none.
 [[nodiscard]] std::vector<TomlNode> toml_outline(const std::string& text);
 
+/// One value as TOML writes it, on one line.
+[[nodiscard]] bool is_toml_value(const std::string& text);
+
 }  // namespace misfit

@@ -195,10 +195,7 @@ std::string with_renamed_entry(const std::string& text, const std::string& secti
 
 std::string with_value(const std::string& text, const std::vector<std::string>& path, const std::string& value) {
   if (path.size() < 2) throw InputError("a key of a section is expected, as parameters.k.free");
-  const std::string line = "x = " + value;
-  const std::vector<TomlNode> alone = toml_outline(line);
-  if (alone.front().end != line.size() || line.find('\n') != std::string::npos)
-    throw InputError("'" + shown(value) + "': one value is expected");
+  if (!is_toml_value(value)) throw InputError("'" + shown(value) + "': one value is expected");
   const StudyText study(text);
   const TomlNode* old = study.find(path);
   if (old != nullptr && old->kind == TomlNode::Kind::table && !old->inline_table)

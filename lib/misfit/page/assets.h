@@ -14,9 +14,10 @@ struct Asset {
 /// What a server sends.
 [[nodiscard]] std::span<const Asset> assets();
 
-/// The same page as parts of a document that no server sends: body, style sheet, and one script without imports, which answers itself.
+/// The same page as parts of a document that no server sends: body, its style sheet, one that shows either the page or the document, and
+/// one script without imports, which answers itself.
 struct EmbeddedAssets {
-  std::string_view body, style, script;
+  std::string_view body, style, frame, script;
 };
 [[nodiscard]] const EmbeddedAssets& embedded_assets();
 

@@ -32,7 +32,7 @@ set(out "// Made by lib/misfit/page/embed.cmake.\n#include \"misfit/page/assets.
 file(GLOB files ${FOLDER}/*)
 foreach(file IN LISTS files ITEMS ${UPLOT}/uPlot.esm.js ${UPLOT}/uPlot.min.css)
   get_filename_component(name ${file} NAME)
-  if(name STREQUAL embedded.js)
+  if(name MATCHES "^embedded\\.")
     continue()
   endif()
   string(REGEX MATCH "[a-z]+$" ending ${name})
@@ -61,8 +61,9 @@ file(READ ${FOLDER}/index.html body)
 string(REGEX REPLACE ".*<body>" "" body "${body}")
 string(REGEX REPLACE "<noscript>[^\n]*</noscript>|<script[^\n]*</script>|</body>.*" "" body "${body}")
 file(READ ${FOLDER}/page.css style)
+file(READ ${FOLDER}/embedded.css frame)
 file(READ ${UPLOT}/uPlot.min.css uplot_style)
 
-string(APPEND out "};\n\nconstexpr EmbeddedAssets parts{R\"misfit_page(${body})misfit_page\", R\"misfit_page(${uplot_style}\n${style})misfit_page\",\n    R\"misfit_page(${script})misfit_page\"};\n\n}  // namespace\n\n"
+string(APPEND out "};\n\nconstexpr EmbeddedAssets parts{R\"misfit_page(${body})misfit_page\", R\"misfit_page(${uplot_style}\n${style})misfit_page\", R\"misfit_page(${frame})misfit_page\",\n    R\"misfit_page(${script})misfit_page\"};\n\n}  // namespace\n\n"
   "std::span<const Asset> assets() { return files; }\nconst EmbeddedAssets& embedded_assets() { return parts; }\n\n}  // namespace misfit::page\n")
 file(WRITE ${OUT} "${out}")

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "misfit/core/files.h"
@@ -92,8 +93,9 @@ void add_first_views(const EmbeddedPage& page, std::size_t model, AllAnswers& ou
   const std::string number = fmt::format("model={}", model);
   const bool needed = model == 0;
   out.push_back({"where?" + number, where_view(page.places[model], model > 0 ? &page.places[model - 1] : nullptr), needed});
-  for (std::size_t method = 0; method == 0 || method < fits_of(page.places[model]).size(); ++method)
-    out.push_back({fmt::format("motion?{}&method={}", number, method), motion_view(page.places[model], method), needed});
+  const std::vector<Fit> fits = fits_of(page.places[model]);
+  for (std::size_t method = 0; method < std::max<std::size_t>(fits.size(), 1); ++method)
+    out.push_back({fmt::format("motion?{}&method={}", number, method), motion_view(fits, method), needed});
 }
 
 void add_other_views(const EmbeddedPage& page, std::size_t model, AllAnswers& out) {
@@ -138,7 +140,7 @@ std::string embedded_answers(const EmbeddedPage& page, std::size_t most) { retur
 
 std::string embedded_page(const EmbeddedPage& page, std::size_t most) {
   const EmbeddedAssets& assets = embedded_assets();
-  const std::size_t fixed = assets.body.size() + assets.style.size() + assets.script.size() + 1000;
+  const std::size_t fixed = assets.body.size() + assets.style.size() + assets.frame.size() + assets.script.size() + 1000;
   const AllAnswers all = all_answers(page);
   for (double room = 1.6 * (static_cast<double>(most) - static_cast<double>(fixed)); room > 0.0; room *= 0.8) {
     const std::string answers = chosen(all, static_cast<std::size_t>(room));
@@ -147,8 +149,8 @@ std::string embedded_page(const EmbeddedPage& page, std::size_t most) {
     if (text.size() + fixed > most) continue;
     return fmt::format(
         "<template id=\"explore\">{}</template>\n<style id=\"explore-style\" media=\"not all\">\n{}</style>\n"
-        "<script type=\"text/plain\" id=\"answers\">{}</script>\n<script type=\"module\">\n{}</script>\n",
-        assets.body, assets.style, text, assets.script);
+        "<style>\n{}</style>\n<script type=\"text/plain\" id=\"answers\">{}</script>\n<script type=\"module\">\n{}</script>\n",
+        assets.body, assets.style, assets.frame, text, assets.script);
   }
   return "";
 }

@@ -35,7 +35,7 @@ std::vector<Place> places_of(const fs::path& study, const fs::path& folder) {
 
 std::vector<Fit> fits_of(const Place& place) {
   std::vector<Fit> out;
-  for (const std::string& method : estimator_names()) {
+  for (const std::string& method : place.methods.empty() ? estimator_names() : place.methods) {
     const fs::path folder = place.folder / "fit" / method;
     if (auto fit = read_if(folder / "fit.json", [&] { return read_fit(folder); })) out.push_back(std::move(*fit));
   }

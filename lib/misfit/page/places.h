@@ -18,8 +18,9 @@ namespace misfit::page {
 struct Place {
   std::filesystem::path study, folder;  ///< study.toml, run folder
   int id = 0;
-  std::string added;                    ///< "" for the study's own
-  bool diagnosed = true, asked = true;  ///< false: what diagnose, or discover, left there is of another fit and not shown
+  std::string added;                      ///< "" for the study's own
+  std::vector<std::string> methods = {};  ///< whose fits are shown; empty: all that are there
+  bool diagnosed = true, asked = true;    ///< false: what diagnose, or discover, left there is of another fit and not shown
 };
 
 // What lies in a run folder, looked at and never changed. Files that are not there or cannot be read are left out: another process may be

@@ -63,18 +63,17 @@ std::string row_of(const Candidate& c, const std::vector<Candidate>& all, const 
 }
 
 /// The curve as a model without the effects of the last rungs has it.
-void add_curve_below(const Place& place, const std::string& curve, const std::string& of, report::Panel& panel) {
+void add_curve_below(int model, const std::vector<Fit>& fits, const std::pair<std::string, std::string>& curve, report::Panel& panel) {
   const CurveEstimate* found = nullptr;
-  const std::vector<Fit> fits = fits_of(place);
   std::string method;
   for (const Fit& fit : fits) {
     for (const CurveEstimate& c : fit.curves) {
-      if (c.name == curve && c.of == of && fit.usable() && c.informative) found = &c, method = fit.method;
+      if (std::pair(c.name, c.of) == curve && fit.usable() && c.informative) found = &c, method = fit.method;
     }
   }
   if (found == nullptr) return;
-  report::Series series{fmt::format("model_{}", place.id),
-                        fmt::format("model {}, {}", place.id, method),
+  report::Series series{fmt::format("model_{}", model),
+                        fmt::format("model {}, {}", model, method),
                         report::Style::dotted,
                         report::grey,
                         display_values(found->x, found->of_unit),
@@ -91,8 +90,7 @@ void add_curve_below(const Place& place, const std::string& curve, const std::st
 
 }  // namespace
 
-std::string motion_view(const Place& place, std::size_t method) {
-  const std::vector<Fit> fits = fits_of(place);
+std::string motion_view(const std::vector<Fit>& fits, std::size_t method) {
   std::vector<std::string> channels;
   if (method < fits.size()) {
     for (const ChannelPrediction& c : fits[method].predictions) {
@@ -134,10 +132,12 @@ std::string candidates_view(const Place& place, const std::vector<std::string>& 
 
 std::string curves_view(const std::vector<Place>& places, std::size_t model, const std::vector<Reference>& references) {
   const std::vector<Fit> fits = fits_of(places[model]);
+  std::vector<std::vector<Fit>> below;
+  for (std::size_t k = 0; k < model; ++k) below.push_back(fits_of(places[k]));
   std::vector<std::string> figures;
-  for (const auto& [curve, of] : report::curve_names(fits, references)) {
-    report::Figure figure = report::curve_figure(curve, of, fits, references);
-    for (std::size_t below = 0; below < model; ++below) add_curve_below(places[below], curve, of, figure.panels.front());
+  for (const auto& curve : report::curve_names(fits, references)) {
+    report::Figure figure = report::curve_figure(curve.first, curve.second, fits, references);
+    for (std::size_t k = 0; k < model; ++k) add_curve_below(places[k].id, below[k], curve, figure.panels.front());
     figures.push_back(json_of(figure));
   }
   return fmt::format(R"({{"figures":{},"blocks":{}}})", json_list(figures), json_of(blocks_of(fits)));

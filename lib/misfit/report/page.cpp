@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <regex>
 
 #include "misfit/report/style.h"
 #include "misfit/report/symbols.h"
@@ -40,6 +41,34 @@ void remove_between(std::string& text, const std::string& begin, const std::stri
     if (stop == std::string::npos) return;
     text.erase(at, stop + end.size() - at);
   }
+}
+
+/// Filled circles of one size and colour that follow each other, in one path: a sixth of the bytes, one element for thousands of samples.
+/// gnuplot defines them as gpPt5 (outline, radius 1) and gpPt6 (filled); where it does otherwise, nothing changes.
+void join_dots(std::string& svg) {
+  static const std::regex outline(R"(<circle id='gpPt5' [^>]*cx='0' cy='0' r='1'/>)");
+  static const std::regex size_and_colour(R"(\) scale\(([\d.]+)\)' color='rgb\( *(\d+), *(\d+), *(\d+)\)')");
+  if (!std::regex_search(svg, outline) ||
+      svg.find("<use xlink:href='#gpPt5' id='gpPt6' fill='currentColor' stroke='none'/>") == std::string::npos)
+    return;
+  const std::string begin = "<use xlink:href='#gpPt6' transform='translate(";
+  std::string out, like;  // like: what the dots of the open path have in common
+  std::size_t done = 0;
+  for (std::size_t at = svg.find(begin); at != std::string::npos; at = svg.find(begin, at)) {
+    const std::size_t from = at + begin.size(), middle = svg.find(") scale(", from), end = svg.find("/>", from);
+    const std::string place = svg.substr(from, middle - from), rest = svg.substr(middle, end - middle);
+    if (rest != like || svg.find_first_not_of(" \t\n", done) != at) {
+      std::smatch match;
+      if (!std::regex_match(rest, match, size_and_colour)) return;
+      out += (like.empty() ? "" : "\"/>") + svg.substr(done, at - done);
+      out += fmt::format(R"svg(<path stroke="rgb({},{},{})" stroke-width="{:.3g}" stroke-linecap="round" d=")svg", match[2].str(),
+                         match[3].str(), match[4].str(), 2.0 * std::stod(match[1].str()));
+      like = rest;
+    }
+    out += "M" + place + "h0";
+    done = at = end + 2;
+  }
+  if (!like.empty()) svg = out + "\"/>" + svg.substr(done);
 }
 
 /// "12.0 ± 0.1", "−3", "< 1e-300", "(1.2 ± 0.1)e7": text that begins as a number does.
@@ -228,6 +257,7 @@ std::string inline_svg(const std::string& svg, const std::string& prefix, const 
   std::string body = svg.substr(head_end + 1);
   remove_between(body, "<title>", "</title>");  // tooltips with the drawing program's own markup
   remove_between(body, "<desc>", "</desc>");
+  join_dots(body);
   replace_all(body, "id='", "id='" + prefix + "-");
   replace_all(body, "id=\"", "id=\"" + prefix + "-");
   replace_all(body, "href='#", "href='#" + prefix + "-");

@@ -55,8 +55,8 @@ class Page {
 /// What a figure shows, in a sentence for those who do not see it: title, axes with the ranges that are drawn, curves by their names.
 [[nodiscard]] std::string alt_text(const Figure& figure);
 
-/// An SVG file as an element of a page: without prolog and namespaces, scaling with the page, every id and reference to it led by `prefix`
-/// (ids are shared by all drawings of a page), named `label` for screen readers.
+/// An SVG file as an element of a page: dots that follow each other in one path, without prolog and namespaces, scaling with the page,
+/// every id and reference to it led by `prefix` (ids are shared by all drawings of a page), named `label` for screen readers.
 [[nodiscard]] std::string inline_svg(const std::string& svg, const std::string& prefix, const std::string& label);
 
 }  // namespace misfit::report

@@ -23,6 +23,8 @@ using page::json_number;
 using page::json_string;
 using page::Place;
 
+constexpr std::size_t many = 10'000;  // methods, experiments or quantities: more than any study has
+
 Answer failure(int status, const std::string& why) { return {status, fmt::format(R"({{"error":{}}})", json_string(why))}; }
 
 /// A number of a list of `size`; 0 where the request has none. InputError: anything else.
@@ -118,7 +120,6 @@ std::string Api::where(const Ask& ask) const {
 }
 
 std::string Api::samples(const Ask& ask) {
-  constexpr std::size_t many = 10'000;
   const std::optional<Diagnosis> diagnosis = page::diagnosis_of(place(ask));
   return page::samples_view(diagnosis.value_or(Diagnosis{}), number(ask, "experiment", many), number(ask, "quantity", many));
 }
@@ -129,9 +130,8 @@ std::string Api::curves(const Ask& ask) {
 }
 
 Answer Api::get(const Ask& ask) {
-  constexpr std::size_t many = 10'000;
   if (ask.path == "/api/state") return {200, state()};
-  if (ask.path == "/api/motion") return {200, page::motion_view(place(ask), number(ask, "method", many))};
+  if (ask.path == "/api/motion") return {200, page::motion_view(page::fits_of(place(ask)), number(ask, "method", many))};
   if (ask.path == "/api/where") return {200, where(ask)};
   if (ask.path == "/api/samples") return {200, samples(ask)};
   if (ask.path == "/api/candidates") return {200, page::candidates_view(place(ask), registry_.effect_keys())};

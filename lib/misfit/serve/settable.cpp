@@ -9,6 +9,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/model/provisional.h"
+#include "misfit/model/role_units.h"
 #include "misfit/page/json_text.h"
 
 namespace misfit::serve {
@@ -60,7 +61,8 @@ Settable settable_of(const Session& session) {
   }
   for (const misfit::Curve& c : model.curves) {
     out.parameters.push_back({c.name, c.unit, model.parameters[static_cast<std::size_t>(c.first)].free});
-    out.curves.push_back({c.name, c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
+    out.curves.push_back({c.name, bind_unit("{of} {of} {of}/{c}/{c}", {{"of", c.of_unit}, {"c", c.unit}}),
+                          c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
   }
   for (const ExperimentStudy& experiment : session.study.experiments) out.experiments.push_back(experiment.name);
   return out;
@@ -72,8 +74,8 @@ std::string json_of(const Settable& settable) {
     parameters.push_back(fmt::format(R"({{"name":{},"label":{},"unit":{},"free":{}}})", json_string(p.name), page::json_words(p.name),
                                      page::json_words(p.unit), p.free));
   for (const auto& c : settable.curves)
-    curves.push_back(
-        fmt::format(R"({{"name":{},"label":{},"roughness":{}}})", json_string(c.name), page::json_words(c.name), json_string(c.roughness)));
+    curves.push_back(fmt::format(R"({{"name":{},"label":{},"unit":{},"roughness":{}}})", json_string(c.name), page::json_words(c.name),
+                                 page::json_words(c.unit), json_string(c.roughness)));
   for (const std::string& name : settable.experiments) experiments.push_back(json_string(name));
   return fmt::format(R"({{"parameters":{},"curves":{},"experiments":{}}})", json_list(parameters), json_list(curves),
                      json_list(experiments));

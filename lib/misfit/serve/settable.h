@@ -14,8 +14,8 @@ struct Settable {
     bool free = false;
   };
   struct Curve {
-    std::string name;
-    std::string roughness;  ///< "auto", or a number [of quantity^3/curve^2]
+    std::string name, unit;  ///< of its roughness: quantity^3/curve^2
+    std::string roughness;   ///< "auto", or a number
   };
   std::vector<Parameter> parameters;  ///< a curve as a whole is one, too
   std::vector<Curve> curves;

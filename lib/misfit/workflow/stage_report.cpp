@@ -1,6 +1,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
 
 #include "misfit/core/files.h"
@@ -75,8 +76,9 @@ void add_findings(const Session& session, report::ReportInput& input, std::vecto
 }
 
 /// The study's own model and its rungs; what the document omits of them is omitted here, too.
-std::vector<page::Place> shown_places(const Session& session, const report::ReportInput& input) {
+std::vector<page::Place> shown_places(const Session& session, const std::vector<Fit>& fits, const report::ReportInput& input) {
   std::vector<page::Place> places = page::places_of(session.study.file, session.folder.path());
+  for (const Fit& fit : fits) places.front().methods.push_back(fit.method);
   places.front().diagnosed = input.diagnosis.has_value();
   places.front().asked = input.discovery.has_value();
   for (page::Place& place : places) {
@@ -105,11 +107,13 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
     if (input.resampling && fs::exists(session.folder.file(file))) files.push_back(session.folder.file(file));
   }
   input.verdict = verdict_of(session, fits);
-  const std::vector<page::Place> places = shown_places(session, input);
+  const std::vector<page::Place> places = shown_places(session, fits, input);
   for (const page::Place& place : places) {
     const std::vector<fs::path> shown = page::files_of(place);
     files.insert(files.end(), shown.begin(), shown.end());
   }
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());  // each is hashed
   const auto inputs = session.inputs(session.study.text + fmt::format("{}", fmt::join(input.notes, "\n")), files);
   session.do_stage("report", inputs, {"report.html", "verdict.json"}, [&](const fs::path& dir) {
     input.study = session.study.name;

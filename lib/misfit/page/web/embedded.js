@@ -47,9 +47,4 @@ const button = (text, on) => {
 document.body.prepend(page);
 page.querySelector('.top').append(button('Read as a document', false));
 document.querySelector('body > header').append(button('Explore: point, zoom, compare', true));
-const look = document.createElement('style');
-look.textContent = '@media print { #page { display: none } } @media screen { body[data-exploring=true] > :not(#page) { display: none } ' +
-  'body[data-exploring=false] > #page { display: none } } header > .explore { font: inherit; padding: .25rem .8rem; cursor: pointer; } ' +
-  '@media print { header > .explore { display: none } }';
-document.body.append(look);
 explore(true);

@@ -14,7 +14,7 @@ const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0,
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
-  here.model = parts.has('model') ? Number(parts.get('model')) || 0 : -1; // -1: the last, with what was added
+  here.model = Number(parts.get('model') ?? 0) || 0;
   here.tab = tabs.some(([name]) => name === parts.get('view')) ? parts.get('view') : 'where';
 }
 function writeAddress() {
@@ -40,7 +40,7 @@ async function look() {
     const grown = here.models !== undefined && state.models.length > here.models;
     version = state.version;
     here.models = state.models.length;
-    if (grown || here.model < 0 || here.model >= state.models.length) here.model = state.models.length - 1;
+    if (grown || here.model >= state.models.length) here.model = state.models.length - 1;
     showHead();
     await showAll();
   }
@@ -390,9 +390,9 @@ function settings() {
   const rows = here.state.settable.parameters.map(({ name, label, unit, free }) => element('tr', {}, element('td', {}, words(label), ' [', words(unit), ']'),
     element('td', {}, free ? 'estimated' : 'held'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, disabled: !here.idle,
       onclick: () => set('free', name, `${!free}`) }, free ? 'Hold' : 'Estimate'))));
-  for (const { name, label, roughness } of here.state.settable.curves) {
+  for (const { name, label, unit, roughness } of here.state.settable.curves) {
     const box = element('input', { value: roughness, size: 12, 'aria-label': `roughness of ${name}` });
-    rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label)), element('td', {}, box), element('td', {},
+    rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), ']'), element('td', {}, box), element('td', {},
       element('button', { class: 'sets', 'data-roughness': name, title: 'auto, or a number of at least 0', disabled: !here.idle,
         onclick: () => set('roughness', name, box.value.trim()) }, 'Set'))));
   }

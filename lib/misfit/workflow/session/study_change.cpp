@@ -1,7 +1,5 @@
 #include "misfit/workflow/session/study_change.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 
@@ -30,17 +28,6 @@ TextFault fault_in(const fs::path& file, const std::string& message) {
   const auto [after, error] = std::from_chars(message.data() + place.size(), end, fault.line);
   if (error != std::errc()) return {message, 0};
   return fault;
-}
-
-/// A text that is one value of TOML; else that text in quotation marks.
-std::string as_toml(const std::string& value) {
-  try {
-    const std::string line = "x = " + value;
-    if (toml_outline(line).front().end == line.size()) return value;
-  } catch (const InputError&) {
-    // it is a text
-  }
-  return toml_string(value);
 }
 
 TomlPath path_of(const std::string& key) {
@@ -115,7 +102,7 @@ std::string with_settings(const Study& study, const std::vector<Setting>& settin
   for (const Setting& setting : settings) {
     const TomlPath path = with_number_of_experiment(study, path_of(setting.key));
     try {
-      text = with_value(text, path, as_toml(setting.value));
+      text = with_value(text, path, is_toml_value(setting.value) ? setting.value : toml_string(setting.value));
     } catch (const InputError& error) {
       throw InputError(setting.key + ": " + error.what());
     }
