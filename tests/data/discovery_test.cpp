@@ -143,6 +143,9 @@ Discovery example_discovery() {
   other.effect = "unknown:pitching_moment(phi)";
   other.described = true;
   other.predicted_drop = nan;
+  wake.added = {{"flight", {0.0, 0.5}, {"pitching_moment", "lateral_moment"}, {"N m", "N m"}, {{1.0, -2.0}, {0.0, 3.5}}},
+                {"second", {4.0}, {"lateral_moment"}, {"N m"}, {{7.0}}}};
+  other.added = {{"flight", {0.0, 0.5}, {"dw/dt"}, {"rad/s^2"}, {{1.0, 2.0}}}};
   d.candidates = {wake, other};
   d.verdict = "add strut_wake";
   d.sentences = {"a remark"};
@@ -169,6 +172,38 @@ TEST(DiscoveryFiles, CandidatesAreAnArrayWithTheKeysOfTheContract) {
   EXPECT_TRUE(array[1]["predicted_drop"].is_null());
   EXPECT_EQ(array[0]["parameters"]["clock"]["unit"], "rad");
   EXPECT_EQ(parsed(folder.path() / "discovery.json")["verdict"], "add strut_wake");
+}
+
+TEST(DiscoveryFiles, AddedForcesAreTablesByRankAndPort) {
+  const TemporaryFolder folder;
+  const Discovery d = example_discovery();
+  write_discovery(folder.path(), d);
+  const std::string text = read_file(folder.path() / "added_force.csv");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "t[s],1 pitching_moment[N m],1 lateral_moment[N m],2 dw/dt[deg/s^2]");
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "added_force_second.csv"));
+  const Discovery back = read_discovery(folder.path());
+  for (std::size_t c = 0; c < d.candidates.size(); ++c) {
+    ASSERT_EQ(back.candidates[c].added.size(), d.candidates[c].added.size());
+    for (std::size_t e = 0; e < d.candidates[c].added.size(); ++e) {
+      const AddedForce &read = back.candidates[c].added[e], &written = d.candidates[c].added[e];
+      EXPECT_EQ(read.experiment, written.experiment);
+      EXPECT_EQ(read.t, written.t);
+      EXPECT_EQ(read.ports, written.ports);
+      EXPECT_EQ(read.port_units, written.port_units);
+      for (std::size_t p = 0; p < written.force.size(); ++p) {
+        for (std::size_t k = 0; k < written.t.size(); ++k) EXPECT_NEAR(read.force[p][k], written.force[p][k], 1e-7);
+      }
+    }
+  }
+}
+
+TEST(DiscoveryFiles, WithoutAddedForcesThereIsNoTable) {
+  const TemporaryFolder folder;
+  Discovery d = example_discovery();
+  for (Candidate& c : d.candidates) c.added.clear();
+  write_discovery(folder.path(), d);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "added_force.csv"));
+  EXPECT_EQ(read_discovery(folder.path()).candidates.size(), d.candidates.size());
 }
 
 TEST(DiscoveryFiles, ReadBackWhatWasWritten) {

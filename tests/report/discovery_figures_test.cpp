@@ -224,6 +224,39 @@ TEST(CandidatesFigure, ProbabilitiesStandBesideTheDropsWithTheThreshold) {
   EXPECT_EQ(figure.notes.size(), 1U) << "says that the longest bar is cut";
 }
 
+/// Of strut_wake, on the second port alone, from the second sample on.
+std::vector<AddedForce> added() {
+  AddedForce out{"flight", missing().t, {"moment_z"}, {"N m"}, {missing().force[1]}};
+  out.t.erase(out.t.begin());
+  out.force[0].erase(out.force[0].begin());
+  return {out};
+}
+
+TEST(MissingForceFigure, HasWhatACandidateAddsOnItsPort) {
+  Candidate wake = candidates()[0];
+  wake.added = added();
+  const Figure figure = added_force_figure(missing(), wake, std::nullopt);
+  EXPECT_EQ(figure.name, "added_missing_force_flight");
+  ASSERT_EQ(figure.panels.size(), 2U);
+  EXPECT_EQ(figure.panels[0].series.size(), 2U);
+  ASSERT_EQ(figure.panels[1].series.size(), 3U);
+  const Series& line = figure.panels[1].series[2];
+  EXPECT_EQ(line.legend, "strut_wake");
+  EXPECT_EQ(line.x, wake.added[0].t);
+  EXPECT_EQ(line.y, wake.added[0].force[0]);
+  const Figure part = added_force_figure(missing(), wake, Interval{5.0, 6.0});
+  const Series& cut = part.panels[1].series[2];
+  EXPECT_GE(cut.x.front(), 5.0);
+  EXPECT_LE(cut.x.back(), 6.0);
+  EXPECT_EQ(cut.x.size(), cut.y.size());
+  EXPECT_EQ(part.panels[1].series[1].x, cut.x);
+}
+
+TEST(MissingForceFigure, OfACandidateThatAddsNoneIsItself) {
+  const Figure figure = added_force_figure(missing(), candidates()[2], std::nullopt);
+  for (const Panel& panel : figure.panels) EXPECT_EQ(panel.series.size(), 2U);
+}
+
 ReportInput example() {
   ReportInput input;
   input.study = "study";
@@ -239,6 +272,7 @@ ReportInput example() {
   input.diagnosis = d;
   Discovery found;
   found.candidates = candidates();
+  found.candidates[0].added = added();
   found.verdict = "add strut_wake";
   found.tried = {"14 effects"};
   input.discovery = found;
@@ -251,7 +285,7 @@ TEST(DiscoveryReport, TheLadderIsTheFirstPictureAndEveryFigureIsDrawn) {
   EXPECT_EQ(page.find("id=\"ladder-gnuplot_canvas\""), page.find("-gnuplot_canvas\"") - std::string("id=\"ladder").size());
   for (const char* name : {"ladder", "map_pitching_moment_by_phi", "map_lateral_moment_by_alpha_T_and_phi", "innovations_autocorrelation",
                            "innovations_periodogram", "nis_flight", "missing_force_flight", "missing_force_flight_zoom",
-                           "missing_force_flight_by_phi", "candidates"}) {
+                           "missing_force_flight_by_phi", "candidates", "added_missing_force_flight_zoom"}) {
     for (const char* suffix : {".svg", ".csv", ".gp"})
       EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures" / (std::string(name) + suffix))) << name << suffix;
   }

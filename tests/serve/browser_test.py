@@ -139,6 +139,23 @@ def point_at_the_worst_place(page):
     return fixed
 
 
+def force_of_the_accepted(page, name):
+    """Pointing shows the force that it adds, its button keeps it, another view removes it."""
+    words = f"what {name} adds"
+    assert words not in page.text("#force")
+    ActionChains(page.driver).move_to_element(page.one("#candidates tr.accepted td.number")).perform()
+    page.wait(lambda: words in page.text("#force"), "its force while it is pointed at")
+    ActionChains(page.driver).move_to_element(page.one("h1")).perform()
+    page.wait(lambda: words not in page.text("#force"), "gone with the mouse")
+    page.click("#candidates tr.accepted button.shows")
+    ActionChains(page.driver).move_to_element(page.one("h1")).perform()
+    page.wait(lambda: words in page.text("#force") and name in page.text("#force .legend"), "kept")
+    page.view("ladder")
+    page.wait(lambda: words not in page.text("#force"), "gone with the view")
+    page.view("candidates")
+    page.wait(lambda: page.one("#candidates tr.accepted button.adds"), "the candidates")
+
+
 def find_and_add():
     """Run, find where it fails, add the first candidate, see the error fall, reload."""
     server = Server()
@@ -161,8 +178,9 @@ def find_and_add():
     plot.send_keys(Keys.ESCAPE)
     assert page.text("#marked") == ""
     page.view("candidates")
-    first = page.wait(lambda: page.one("#candidates tr.accepted button"), "an accepted candidate").get_attribute("data-effect")
-    page.click("#candidates tr.accepted button")
+    first = page.wait(lambda: page.one("#candidates tr.accepted button.adds"), "an accepted candidate").get_attribute("data-effect")
+    force_of_the_accepted(page, first)
+    page.click("#candidates tr.accepted button.adds")
     page.job("done", 2)
     page.wait(lambda: page.one("#model").get_attribute("value") == "1", "the new rung is shown")
     before, after = random_force(page)
@@ -201,6 +219,9 @@ def report_without_server(page, verdict):
     page.js("document.querySelector('#model').value = 0; document.querySelector('#model').dispatchEvent(new Event('change'))")
     page.view("where")
     point_at_the_worst_place(page)
+    page.view("candidates")
+    page.click("#candidates tr.accepted button.shows")
+    page.wait(lambda: "adds" in page.text("#force h3"), "the force of a candidate")
     for view in ("candidates", "curves", "calibration", "ladder", "study"):
         page.view(view)
         time.sleep(0.3)

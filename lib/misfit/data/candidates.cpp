@@ -1,8 +1,39 @@
 #include "misfit/data/candidates.h"
 
+#include <algorithm>
+
+#include "misfit/core/display.h"
+#include "misfit/core/file_name.h"
+#include "misfit/core/table.h"
+#include "misfit/core/units.h"
 #include "misfit/data/json_fields.h"
 
 namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A column of added_force.csv.
+struct ForceColumn {
+  int rank = 0;
+  std::string port, unit;
+
+  [[nodiscard]] std::string name() const { return std::to_string(rank) + " " + port; }
+};
+
+/// What discovery.json says of the forces of one experiment, whose numbers are in a table.
+struct AddedForceTable {
+  std::string experiment, file;
+  std::vector<ForceColumn> columns;
+};
+
+/// discovery.json.
+struct StoredDiscovery {
+  Discovery discovery;
+  std::vector<AddedForceTable> added;
+};
+
+}  // namespace
 
 /// The keys that other programs rely on first, then what this program knows beside them.
 template <class Archive>
@@ -17,10 +48,22 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
 }
 
 template <class Archive>
-void fields(Archive& json, MaybeConst<Discovery> auto& d) {
+void fields(Archive& json, MaybeConst<ForceColumn> auto& column) {
+  json("rank", column.rank), json("port", column.port), json("unit", column.unit);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<AddedForceTable> auto& table) {
+  json("experiment", table.experiment), json("file", table.file), json("columns", table.columns);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<StoredDiscovery> auto& stored) {
+  auto& d = stored.discovery;
   json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("force", d.force);
   json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
-  json("unexplained_error", d.unexplained_error), json("sweep_asks", d.sweep_asks), json("seconds", d.seconds);
+  json("unexplained_error", d.unexplained_error), json("sweep_asks", d.sweep_asks), json("added_force", stored.added);
+  json("seconds", d.seconds);
 }
 
 std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles) {
@@ -39,16 +82,69 @@ std::string unexplained_place(const Discovery& discovery) {
   return (discovery.unexplained_error ? "an error of " : "a force on ") + discovery.unexplained_port;
 }
 
-void write_discovery(const std::filesystem::path& dir, const Discovery& discovery) {
-  make_writable_folder(dir);
-  write_json(dir / "candidates.json", discovery.candidates);
-  write_json(dir / "discovery.json", discovery);
+namespace {
+
+std::vector<std::string> experiments_of(const Discovery& discovery) {
+  std::vector<std::string> out;
+  for (const Candidate& c : discovery.candidates) {
+    for (const AddedForce& added : c.added) {
+      if (std::find(out.begin(), out.end(), added.experiment) == out.end()) out.push_back(added.experiment);
+    }
+  }
+  return out;
 }
 
-Discovery read_discovery(const std::filesystem::path& dir) {
-  auto discovery = read_json<Discovery>(dir / "discovery.json");
-  discovery.candidates = read_json<std::vector<Candidate>>(dir / "candidates.json");
-  return discovery;
+/// Refits are of the same measurements, so that all have the same times.
+AddedForceTable write_added(const fs::path& dir, const Discovery& discovery, const std::string& experiment, const std::string& file) {
+  AddedForceTable out{experiment, file, {}};
+  Table table;
+  for (const Candidate& c : discovery.candidates) {
+    for (const AddedForce& added : c.added) {
+      if (added.experiment != experiment) continue;
+      if (table.columns.empty()) table.add("t", "s", added.t);
+      if (added.t.size() != table.rows()) continue;
+      for (std::size_t p = 0; p < added.ports.size(); ++p) {
+        out.columns.push_back({c.rank, added.ports[p], added.port_units[p]});
+        table.add(out.columns.back().name(), display_unit(added.port_units[p]), display_values(added.force[p], added.port_units[p]));
+      }
+    }
+  }
+  constexpr int digits = 8;  // of a drawing over a long time
+  write_csv(dir / file, table, digits);
+  return out;
+}
+
+void read_added(const fs::path& dir, const AddedForceTable& stored, Discovery& discovery) {
+  const Table table = read_csv(dir / stored.file);
+  for (Candidate& c : discovery.candidates) {
+    AddedForce added{stored.experiment, table.values("t", "s"), {}, {}, {}};
+    for (const ForceColumn& column : stored.columns) {
+      if (column.rank != c.rank) continue;
+      added.ports.push_back(column.port);
+      added.port_units.push_back(column.unit);
+      added.force.push_back(table.values(column.name(), column.unit));
+    }
+    if (!added.ports.empty()) c.added.push_back(std::move(added));
+  }
+}
+
+}  // namespace
+
+void write_discovery(const fs::path& dir, const Discovery& discovery) {
+  make_writable_folder(dir);
+  StoredDiscovery stored{discovery, {}};
+  const std::vector<std::string> experiments = experiments_of(discovery);
+  for (std::size_t k = 0; k < experiments.size(); ++k)
+    stored.added.push_back(write_added(dir, discovery, experiments[k], "added_force" + file_suffix(k, experiments[k]) + ".csv"));
+  write_json(dir / "candidates.json", discovery.candidates);
+  write_json(dir / "discovery.json", stored);
+}
+
+Discovery read_discovery(const fs::path& dir) {
+  auto stored = read_json<StoredDiscovery>(dir / "discovery.json");
+  stored.discovery.candidates = read_json<std::vector<Candidate>>(dir / "candidates.json");
+  for (const AddedForceTable& table : stored.added) read_added(dir, table, stored.discovery);
+  return std::move(stored.discovery);
 }
 
 }  // namespace misfit

@@ -10,6 +10,14 @@
 
 namespace misfit {
 
+/// What an effect adds to the forces of one experiment; where it acts on no port, the force that does the same.
+struct AddedForce {
+  std::string experiment;
+  std::vector<double> t;
+  std::vector<std::string> ports, port_units;  ///< those on which it is not always 0
+  std::vector<std::vector<double>> force;      ///< per port
+};
+
 /// One thing that the model could lack.
 struct Candidate {
   int rank = 0;        ///< 1 = first
@@ -33,6 +41,7 @@ struct Candidate {
   /// Where the refit ended, for whoever begins there: all parameters of the model with the effect in their order [SI], and logarithms of
   /// the noise (NoiseVector). Empty: not refitted.
   std::vector<double> refit_values, refit_log_noise;
+  std::vector<AddedForce> added;  ///< at the refit, by experiment; empty: not refitted, or it adds none
 };
 
 /// "overflow (level = x1, port = dx1/dt)"; the key alone where all roles are the defaults.
@@ -57,7 +66,8 @@ struct Discovery {
 /// "a force on dw/dt", "an error of V".
 [[nodiscard]] std::string unexplained_place(const Discovery& discovery);
 
-/// candidates.json (an array) and discovery.json (verdict, sentences, tried).
+/// candidates.json (an array), discovery.json (verdict, sentences, tried) and added_force.csv (added_force_NAME.csv for further
+/// experiments; none where no candidate adds a force): columns t and "RANK PORT".
 void write_discovery(const std::filesystem::path& dir, const Discovery& discovery);
 [[nodiscard]] Discovery read_discovery(const std::filesystem::path& dir);
 

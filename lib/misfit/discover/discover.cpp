@@ -11,6 +11,7 @@
 #include "misfit/core/units.h"
 #include "misfit/core/watch.h"
 #include "misfit/discover/accept.h"
+#include "misfit/discover/added_force.h"
 #include "misfit/discover/alias.h"
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/free_run.h"
@@ -337,6 +338,7 @@ class Search {
                                                                   : "not significant: " + p;
       }
       out_.candidates.push_back(e.candidate);
+      if (e.refit) out_.candidates.back().added = added_force_of(e.refit->estimate, e.screening->candidate_model->strengths);
     }
     std::stable_sort(unknown_.begin(), unknown_.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.log_p < b.log_p; });
     for (const auto& curve : unknown_) out_.candidates.push_back(unknown_candidate(curve, families_, options_.p_accept));

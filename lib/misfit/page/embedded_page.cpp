@@ -114,6 +114,18 @@ void add_samples(const Place& place, std::size_t model, AllAnswers& out) {
   }
 }
 
+void add_added_forces(const Place& place, std::size_t model, AllAnswers& out) {
+  const std::optional<Diagnosis> diagnosis = diagnosis_of(place);
+  const std::optional<Discovery> discovery = discovery_of(place);
+  if (!diagnosis || !discovery) return;
+  for (std::size_t e = 0; e < diagnosis->missing.size(); ++e) {
+    for (std::size_t c = 0; c < discovery->candidates.size(); ++c) {
+      if (discovery->candidates[c].added.empty()) continue;
+      out.push_back({fmt::format("added?model={}&experiment={}&candidate={}", model, e, c), added_view(*diagnosis, *discovery, e, c)});
+    }
+  }
+}
+
 AllAnswers all_answers(const EmbeddedPage& page) {
   AllAnswers out;
   out.push_back({"state?", state_of(page), true});
@@ -121,6 +133,7 @@ AllAnswers all_answers(const EmbeddedPage& page) {
   for (std::size_t model = 0; model < page.places.size(); ++model) add_other_views(page, model, out);
   out.push_back({"ladder?", ladder_view(page.places.front().folder)});
   out.push_back({"calibration?", calibration_view(page.places.front())});
+  for (std::size_t model = page.places.size(); model-- > 0;) add_added_forces(page.places[model], model, out);
   for (std::size_t model = page.places.size(); model-- > 0;) add_samples(page.places[model], model, out);
   return out;
 }

@@ -58,8 +58,9 @@ std::string row_of(const Candidate& c, const std::vector<Candidate>& all, const 
   const bool addable = std::find(known.begin(), known.end(), c.effect) != known.end();
   const auto places = std::count_if(all.begin(), all.end(), [&](const Candidate& other) { return other.effect == c.effect; });
   const std::vector<std::string> at = addable && places > 1 ? words_of_place(c) : std::vector<std::string>{};
-  return fmt::format(R"({{"effect":{},"name":{},"why":{},"accepted":{},"addable":{},"at":{}}})", json_string(c.effect),
-                     json_string(effect_at(c.effect, c.roles)), json_words(c.why), c.accepted, addable, list_of(at, json_string));
+  return fmt::format(R"({{"effect":{},"name":{},"why":{},"accepted":{},"addable":{},"at":{},"force":{}}})", json_string(c.effect),
+                     json_string(effect_at(c.effect, c.roles)), json_words(c.why), c.accepted, addable, list_of(at, json_string),
+                     !c.added.empty());
 }
 
 /// The curve as a model without the effects of the last rungs has it.
@@ -128,6 +129,12 @@ std::string candidates_view(const Place& place, const std::vector<std::string>& 
   const std::string figure = d->candidates.empty() ? "null" : json_of(report::candidates_figure(d->candidates));
   return fmt::format(R"({{"blocks":{},"rows":{},"figure":{}}})", json_of(blocks_of(*d)),
                      list_of(d->candidates, [&](const Candidate& c) { return row_of(c, d->candidates, effects); }), figure);
+}
+
+std::string added_view(const Diagnosis& diagnosis, const Discovery& discovery, std::size_t experiment, std::size_t candidate) {
+  if (experiment >= diagnosis.missing.size()) throw InputError("there is no such experiment");
+  if (candidate >= discovery.candidates.size()) throw InputError("there is no such candidate");
+  return json_of(report::added_force_figure(diagnosis.missing[experiment], discovery.candidates[candidate], std::nullopt));
 }
 
 std::string curves_view(const std::vector<Place>& places, std::size_t model, const std::vector<Reference>& references) {

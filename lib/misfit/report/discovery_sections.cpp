@@ -14,6 +14,8 @@ namespace {
 
 using Put = std::function<void(Figure)>;
 
+constexpr double part_of_force = 10.0;  // [s], of a recording over twice as long
+
 /// The model that a section is about.
 struct Subject {
   std::string note;    ///< for headings: " (rung 2, strut_wake added)"
@@ -51,11 +53,10 @@ void draw_innovations(const Diagnosis& d, const Put& draw) {
 }
 
 void draw_force(const Diagnosis& d, const Put& draw) {
-  constexpr double part = 10.0;  // [s]
   for (const MissingForce& missing : d.missing) {
     draw(missing_force_figure(missing, std::nullopt));
-    if (!missing.t.empty() && missing.t.back() - missing.t.front() > 2.0 * part && !missing.force.empty())
-      draw(missing_force_figure(missing, typical_interval(missing.t, missing.force.front(), part)));
+    if (!missing.t.empty() && missing.t.back() - missing.t.front() > 2.0 * part_of_force && !missing.force.empty())
+      draw(missing_force_figure(missing, typical_interval(missing.t, missing.force.front(), part_of_force)));
     const std::string quantity = d.maps.empty() ? "" : d.maps.front().quantity;
     if (std::find(missing.quantities.begin(), missing.quantities.end(), quantity) != missing.quantities.end())
       draw(missing_force_by_figure(missing, quantity));
@@ -75,12 +76,29 @@ void show(const Diagnosis& d, const Subject& subject, Page& page, const Draw& dr
   page.show(blocks_of(d), figures, subject.note);
 }
 
-void show(const Discovery& d, const Subject& subject, Page& page, const Draw& draw) {
-  const auto figures = [&](const std::string&) {
-    if (d.candidates.empty()) return;
-    Figure figure = candidates_figure(d.candidates);
+/// What the accepted candidate adds, beside what is missing.
+void draw_added_force(const Discovery& d, const Diagnosis& diagnosis, const Put& draw) {
+  const auto accepted = std::find_if(d.candidates.begin(), d.candidates.end(), [](const Candidate& c) { return c.accepted; });
+  if (accepted == d.candidates.end()) return;
+  for (const AddedForce& added : accepted->added) {
+    for (const MissingForce& missing : diagnosis.missing) {
+      if (missing.experiment != added.experiment) continue;
+      const bool is_long = missing.t.size() > 1 && missing.t.back() - missing.t.front() > 2.0 * part_of_force;
+      draw(added_force_figure(missing, *accepted,
+                              is_long ? std::optional(typical_interval(added.t, added.force.front(), part_of_force)) : std::nullopt));
+    }
+  }
+}
+
+void show(const Discovery& d, const std::optional<Diagnosis>& diagnosis, const Subject& subject, Page& page, const Draw& draw) {
+  const Put put = [&](Figure figure) {
     figure.name = subject.prefix + figure.name;
     draw(figure);
+  };
+  const auto figures = [&](const std::string&) {
+    if (d.candidates.empty()) return;
+    put(candidates_figure(d.candidates));
+    if (diagnosis) draw_added_force(d, *diagnosis, put);
   };
   page.show(blocks_of(d), figures, subject.note);
 }
@@ -114,8 +132,8 @@ void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw) {
 }
 
 void discovery_section(const ReportInput& input, Page& page, const Draw& draw) {
-  if (input.discovery) show(*input.discovery, of_study(input), page, draw);
-  if (input.rung && input.rung->discovery) show(*input.rung->discovery, of_rung(*input.rung), page, draw);
+  if (input.discovery) show(*input.discovery, input.diagnosis, of_study(input), page, draw);
+  if (input.rung && input.rung->discovery) show(*input.rung->discovery, input.rung->diagnosis, of_rung(*input.rung), page, draw);
 }
 
 }  // namespace misfit::report

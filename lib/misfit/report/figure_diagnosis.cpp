@@ -97,6 +97,12 @@ std::size_t quantity_index(const MissingForce& missing, const std::string& quant
   return found - missing.quantities.begin();
 }
 
+/// First and past the last; all where there is no zoom.
+std::pair<std::ptrdiff_t, std::ptrdiff_t> samples_within(const std::vector<double>& t, const std::optional<Interval>& zoom) {
+  if (!zoom) return {0, std::ssize(t)};
+  return {std::lower_bound(t.begin(), t.end(), zoom->from) - t.begin(), std::upper_bound(t.begin(), t.end(), zoom->to) - t.begin()};
+}
+
 }  // namespace
 
 Figure map_figure(const ForceMap& map) {
@@ -248,12 +254,8 @@ Figure missing_force_figure(const MissingForce& missing, const std::optional<Int
       "causes the motion.";
   figure.x_label = "time";
   figure.x_unit = std::string("s");
-  std::ptrdiff_t from = 0, to = std::ssize(missing.t);
-  if (zoom) {
-    from = std::lower_bound(missing.t.begin(), missing.t.end(), zoom->from) - missing.t.begin();
-    to = std::upper_bound(missing.t.begin(), missing.t.end(), zoom->to) - missing.t.begin();
-  }
-  const auto cut = [&](const std::vector<double>& v) { return std::vector<double>(v.begin() + from, v.begin() + to); };
+  const auto [from, to] = samples_within(missing.t, zoom);
+  const auto cut = [from = from, to = to](const std::vector<double>& v) { return std::vector<double>(v.begin() + from, v.begin() + to); };
   const std::vector<double> t = cut(missing.t);
   for (std::size_t p = 0; p < missing.ports.size(); ++p) {
     const std::string key = as_key(missing.ports[p]);
@@ -267,6 +269,38 @@ Figure missing_force_figure(const MissingForce& missing, const std::optional<Int
     }
     panel.series = {band, {key, missing.ports[p] + ", ± 1 sigma", Style::line, palette(p), t, y, {}, {}, 1.2}};
     figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+Figure added_force_figure(const MissingForce& missing, const Candidate& candidate, const std::optional<Interval>& zoom) {
+  Figure figure = missing_force_figure(missing, zoom);
+  const std::string effect = effect_at(candidate.effect, candidate.roles);
+  figure.name = "added_" + figure.name;
+  figure.title = fmt::format("Force that {} adds, beside the missing one, {}{}", effect, missing.experiment, zoom ? " (part)" : "");
+  figure.caption = fmt::format(
+      "Black: what {} adds to the model where it is fitted with it, at the smoothed motion. Coloured: the smoothed random force of the "
+      "model without it, ± 1 sigma. The two are alike where nothing else is missing and no other parameter has made up for it; what "
+      "drives the motion at random, such as turbulence, is in the coloured one, too.",
+      effect);
+  for (const AddedForce& added : candidate.added) {
+    if (added.experiment != missing.experiment) continue;
+    const auto [from, to] = samples_within(added.t, zoom);
+    const auto cut = [from = from, to = to](const std::vector<double>& v) { return std::vector<double>(v.begin() + from, v.begin() + to); };
+    for (std::size_t p = 0; p < added.ports.size(); ++p) {
+      const auto port = std::find(missing.ports.begin(), missing.ports.end(), added.ports[p]);
+      if (port == missing.ports.end()) continue;
+      figure.panels[static_cast<std::size_t>(port - missing.ports.begin())].series.push_back(
+          {as_key(added.ports[p]) + "_added",
+           effect,
+           Style::line,
+           black,
+           cut(added.t),
+           display_values(cut(added.force[p]), added.port_units[p]),
+           {},
+           {},
+           1.2});
+    }
   }
   return figure;
 }

@@ -28,7 +28,9 @@ namespace misfit::report {
 [[nodiscard]] Figure nis_figure(const NisSeries& series);
 /// The smoothed random force over time, one panel per port, with ± 1 sigma. `zoom`: that part only.
 [[nodiscard]] Figure missing_force_figure(const MissingForce& missing, const std::optional<Interval>& zoom);
-/// The same against one quantity.
+/// The same with the force that a refitted candidate adds; candidate.added may have no force of that experiment.
+[[nodiscard]] Figure added_force_figure(const MissingForce& missing, const Candidate& candidate, const std::optional<Interval>& zoom);
+/// The missing force against one quantity.
 [[nodiscard]] Figure missing_force_by_figure(const MissingForce& missing, const std::string& quantity);
 
 /// Predicted and actual drop of the best `most` candidates, the accepted ones in another colour; beside them −log10 of their family-wise

@@ -124,6 +124,14 @@ std::string Api::samples(const Ask& ask) {
   return page::samples_view(diagnosis.value_or(Diagnosis{}), number(ask, "experiment", many), number(ask, "quantity", many));
 }
 
+std::string Api::added(const Ask& ask) {
+  const Place shown = place(ask);
+  const std::optional<Diagnosis> diagnosis = page::diagnosis_of(shown);
+  const std::optional<Discovery> discovery = page::discovery_of(shown);
+  return page::added_view(diagnosis.value_or(Diagnosis{}), discovery.value_or(Discovery{}), number(ask, "experiment", many),
+                          number(ask, "candidate", many));
+}
+
 std::string Api::curves(const Ask& ask) {
   const std::vector<Place> places = results_.places();
   return page::curves_view(places, number(ask, "model", places.size()), known()->references);
@@ -134,6 +142,7 @@ Answer Api::get(const Ask& ask) {
   if (ask.path == "/api/motion") return {200, page::motion_view(page::fits_of(place(ask)), number(ask, "method", many))};
   if (ask.path == "/api/where") return {200, where(ask)};
   if (ask.path == "/api/samples") return {200, samples(ask)};
+  if (ask.path == "/api/added") return {200, added(ask)};
   if (ask.path == "/api/candidates") return {200, page::candidates_view(place(ask), registry_.effect_keys())};
   if (ask.path == "/api/curves") return {200, curves(ask)};
   if (ask.path == "/api/calibration") return {200, page::calibration_view(results_.places().front())};

@@ -23,7 +23,7 @@ struct JobRequest {
 /// a path or part of a command line.
 ///
 /// GET  /api/state; /api/motion?model&method; /api/where?model; /api/samples?model&experiment&quantity; /api/candidates?model;
-///      /api/curves?model; /api/calibration; /api/ladder; /api/study?model; /api/session
+///      /api/added?model&experiment&candidate; /api/curves?model; /api/calibration; /api/ladder; /api/study?model; /api/session
 /// POST /api/job {"verb": "run"|"fit"|"discover"|"add"|"remove"|"set", "effect", "at", "rung", "what", "name", "value"}; /api/stop;
 /// /api/check {"text"}; /api/save
 /// {"text", "hash"}
@@ -59,6 +59,7 @@ class Api {
   [[nodiscard]] page::Place place(const Ask& ask) const;
   [[nodiscard]] std::string where(const Ask& ask) const;
   [[nodiscard]] std::string samples(const Ask& ask);
+  [[nodiscard]] std::string added(const Ask& ask);
   [[nodiscard]] std::string curves(const Ask& ask);
 
   SessionOptions options_;

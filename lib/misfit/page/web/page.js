@@ -10,7 +10,7 @@ const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
 /** What is shown. The address keeps model and tab, so that a reload finds them again. */
-const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], marked: '', fixed: [] };
+const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [] };
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
@@ -174,18 +174,34 @@ async function showMotion() {
 
 function drawTime() {
   for (const figure of here.timeFigures.splice(0)) figure.destroy();
+  here.force = null;
   at('motion').replaceChildren();
-  at('force').replaceChildren();
   const options = { group: time, title: false, caption: false };
   const channels = here.motion.channels.filter((c) => c.experiment === here.name);
-  const force = here.where?.force.find((f) => f.experiment === here.name);
+  const force = missing();
   const height = channels.length > 1 ? 0.45 : 0.7;
   channels.forEach((c, k) => here.timeFigures.push(new Figure(at('motion'), c.figure, { ...options, height, xLabel: !force && k === channels.length - 1 })));
   if (channels.length === 0) at('motion').append(element('p', { class: 'soft' },
     here.motion.methods.length === 0 ? 'Nothing is fitted yet.' : 'This method does not predict the motion.'), blocks(here.motion.blocks));
-  if (!force) return;
-  at('force').append(element('h3', {}, 'Force that is missing, ± 1 sigma'));
-  here.timeFigures.push(new Figure(at('force'), force.figure, { ...options, height: 0.5 }));
+  drawForce(null);
+}
+
+/** The missing force of the experiment that is shown, and its place among those of all. */
+const missing = () => here.where?.force.find((f) => f.experiment === here.name);
+const placeOfMissing = () => here.where.force.indexOf(missing());
+
+/** `added`: { name, figure } of a candidate, whose force stands in it, too. What is there goes when the new one stands: nothing jumps. */
+function drawForce(added) {
+  const before = [...at('force').children], old = here.force;
+  here.added = added;
+  here.force = null;
+  if (missing()) {
+    at('force').append(element('h3', {}, added ? `Force that is missing, ± 1 sigma, and (black) what ${added.name} adds` : 'Force that is missing, ± 1 sigma'));
+    here.force = new Figure(at('force'), added?.figure ?? missing().figure, { group: time, title: false, caption: false, height: 0.5 });
+    here.timeFigures.push(here.force);
+  }
+  if (old) here.timeFigures.splice(here.timeFigures.indexOf(old), 1)[0].destroy();
+  for (const node of before) node.remove();
 }
 
 function mark(intervals, text, fixed) {
@@ -356,12 +372,36 @@ async function showCandidates(view) {
   view.append(element('details', {}, element('summary', {}, 'Remarks, reasons and what was tried'), blocks(rest)));
 }
 
+/** Pointing at a candidate shows the force that it adds beside the missing one; its button keeps it there. */
+class AddedForces {
+  kept = null;
+  turn = 0;
+  offer(line, cell, row, candidate) {
+    const button = element('button', { class: 'shows', 'aria-pressed': 'false', title: 'Show over time the force that it adds' }, ...cell.childNodes);
+    cell.replaceChildren(button);
+    const own = { button, name: row.name, candidate };
+    line.addEventListener('mouseenter', () => this.show(own));
+    line.addEventListener('mouseleave', () => this.show(this.kept));
+    button.addEventListener('click', () => {
+      this.kept?.button.setAttribute('aria-pressed', 'false');
+      this.kept = this.kept === own ? null : own;
+      button.setAttribute('aria-pressed', this.kept === own);
+      this.show(this.kept);
+    });
+  }
+  async show(own) {
+    const mine = ++this.turn;
+    const figure = own && missing() ? await get('added', { model: here.model, experiment: placeOfMissing(), candidate: own.candidate }).catch(() => null) : null;
+    if (mine === this.turn && here.tab === 'candidates') drawForce(figure ? { name: own.name, figure } : null);
+  }
+}
+
 function candidateTable(table, rows, last) {
   const most = 12; // rows to begin with
   const columns = table.columns.map((_, n) => n).filter((n) => !['rank', 'accepted'].includes(plain(table.columns[n].heading)));
   const side = (n) => (table.columns[n].right ? 'number' : null);
   const head = element('tr', {}, element('td'), ...columns.map((n) => element('th', { scope: 'col', class: side(n) }, words(table.columns[n].heading))));
-  const body = element('tbody');
+  const body = element('tbody'), pointing = new AddedForces();
   rows.forEach((row, k) => {
     const button = live && row.addable && last
       ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, title: `misfit add … ${[row.effect, ...row.at].join(' --at=')}`, disabled: !here.idle,
@@ -369,6 +409,7 @@ function candidateTable(table, rows, last) {
     const more = k >= most ? ' more' : '';
     const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
       ...columns.map((n) => element('td', { class: side(n) }, words(table.rows[k][n]))));
+    if (row.force) pointing.offer(line, line.children[1], row, k);
     body.append(line, element('tr', { class: 'why' + more }, element('td'), element('td', { colspan: columns.length }, words(row.why))));
   });
   const all = element('table', { id: 'candidates' }, element('thead', {}, head), body);
@@ -448,6 +489,7 @@ async function showView() {
   const old = here.figures;
   here.figures = [];
   here.samples = null;
+  if (here.added) drawForce(null);
   const scroll = scrollY;
   for (const figure of old) figure.destroy();
   at('view').replaceChildren(view);
