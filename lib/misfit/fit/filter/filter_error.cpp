@@ -14,6 +14,7 @@
 #include "misfit/data/estimators.h"
 #include "misfit/data/ladder.h"
 #include "misfit/fit/filter/noise_interval.h"
+#include "misfit/fit/filter/settled.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/record_residuals.h"
@@ -86,7 +87,7 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
   }
 }
 
-/// Sum of squares of one-step prediction errors, and how many.
+/// Sum of squares of one-step prediction errors, settled ones (settled.h), and how many.
 struct Squares {
   double sum = 0.0, count = 0.0;
   void add(double error) {
@@ -114,11 +115,13 @@ OfChannel predict_channel(const FilterEstimate& estimate, std::size_t experiment
   const Signals& signals = *data.signals;
   OfChannel out{{signals.name, output.name, output.unit, signals.t, signals.measured[o].values, {}, {}, {}}, {}};
   ChannelPrediction& p = out.prediction;
+  const SettledPredictions predictions(trace, data);
   for (std::size_t k = 0; k < signals.samples(); ++k) {
     const std::size_t at = trace.place(k, o);
     p.predicted.push_back(trace.y[at]);
     p.sigma.push_back(std::sqrt(trace.y_variance[at]));
     p.held_out.push_back(signals.held_out(k));
+    if (!predictions.settled(k, o)) continue;
     if (data.use[at] == SampleRole::counted) errors.fitted.add(p.measured[k] - trace.y[at]);
     if (data.use[at] == SampleRole::validation) errors.held_out.add(p.measured[k] - trace.y[at]);
     if (data.use[at] == SampleRole::counted || data.use[at] == SampleRole::validation)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "misfit/data/ladder.h"
+#include "misfit/fit/filter/settled.h"
 
 namespace misfit {
 namespace {
@@ -20,16 +21,19 @@ struct Errors {
   Errors(std::size_t channels, SampleRole role) : squares(channels, std::vector<double>(lengths, 0.0)), counts(squares), counted(role) {}
 };
 
-/// Free runs of one experiment: from the filtered state of every third sample (neighbours say the same) as far as the longest length.
+/// Free runs of one experiment: from the filtered state of every third sample (neighbours say the same) as far as the longest length,
+/// where that state is settled (settled.h).
 class FreeRuns {
  public:
   FreeRuns(Stepper& stepper, const FilterData& data, const FilterTrace& trace, Errors& errors)
-      : stepper_(stepper), data_(data), trace_(trace), signals_(*data.signals), errors_(errors) {}
+      : stepper_(stepper), data_(data), trace_(trace), predictions_(trace, data), signals_(*data.signals), errors_(errors) {}
 
   void run() {
     constexpr std::size_t stride = 3;
     prepare_at({stepper_, signals_, data_.inputs}, data_.first, data_.start.data());
-    for (std::size_t k = data_.first; k + 1 < signals_.samples(); k += stride) run_from(k);
+    for (std::size_t k = data_.first; k + 1 < signals_.samples(); k += stride) {
+      if (predictions_.all_settled(k + 1)) run_from(k);
+    }
   }
 
  private:
@@ -61,6 +65,7 @@ class FreeRuns {
   Stepper& stepper_;
   const FilterData& data_;
   const FilterTrace& trace_;
+  SettledPredictions predictions_;
   const Signals& signals_;
   Errors& errors_;
 };

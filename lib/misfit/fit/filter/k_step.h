@@ -15,7 +15,8 @@ struct KStepErrors {
   std::string words;                               ///< on the runs that diverge; empty: none does
 };
 
-/// RMS of predictions 1, 2, 4, … steps ahead per channel over the counted samples: the filtered state run on without further measurements.
+/// RMS of predictions 1, 2, 4, … steps ahead per channel over the counted samples: the filtered state run on without further measurements,
+/// from where it is settled (settled.h).
 /// A run that diverges has no error to count. Where more than 3 % do, what is left says how good the good ones are: no RMS is given.
 [[nodiscard]] KStepErrors k_step_errors(const FilterEstimate& estimate, bool validation = false);
 
