@@ -60,9 +60,7 @@ TEST_F(OnACart, OfAGainIsItsShareOfTheInput) {
   expect_force(added, [this](double, double u) { return strength_ * u; });
 }
 
-TEST_F(OnACart, AnErrorOfASensorAddsNone) {
-  EXPECT_TRUE(added_by("bias", "offset", {{"offset", 0.1}}).empty());
-}
+TEST_F(OnACart, AnErrorOfASensorAddsNone) { EXPECT_TRUE(added_by("bias", "offset", {{"offset", 0.1}}).empty()); }
 
 }  // namespace
 }  // namespace misfit

@@ -94,9 +94,10 @@ TEST_F(Attacked, APathInAParameterIsNoPath) {
                                            "$(id)",
                                            "1;id"};
   for (const std::string& value : values) {
-    for (const char* question : {"/api/motion?method=", "/api/motion?model=", "/api/where?model=", "/api/samples?experiment=",
-                                 "/api/samples?quantity=", "/api/samples?model=", "/api/added?model=", "/api/added?experiment=",
-                                 "/api/added?candidate=", "/api/candidates?model=", "/api/curves?model=", "/api/study?model="}) {
+    for (const char* question :
+         {"/api/motion?method=", "/api/motion?model=", "/api/where?model=", "/api/samples?experiment=", "/api/samples?quantity=",
+          "/api/samples?model=", "/api/added?model=", "/api/added?experiment=", "/api/added?candidate=", "/api/frame?film=",
+          "/api/frame?t=", "/api/candidates?model=", "/api/curves?model=", "/api/study?model="}) {
       const Reply reply = server->get(std::string(question) + value);
       EXPECT_EQ(reply.status, 400) << question << value;
       EXPECT_THAT(reply.body, Not(HasSubstr("root:"))) << question << value;

@@ -33,6 +33,11 @@ TEST_F(InABrowser, WhereItFailsIsFoundAndTheEffectAddedOnTheSwivelThatRubs) {
   expect_good(study.path(""), "find_and_add");
 }
 
+TEST_F(InABrowser, TheFrameAtTheCursorHasTheMarkerWhereItIs) {
+  const StudyCopy study("film_pendulum");
+  expect_good(study.path(""), "film");
+}
+
 TEST_F(InABrowser, AStudyWithAnErrorIsMended) {
   const OscillatorStudy study;
   expect_good(study.path(""), "mend");

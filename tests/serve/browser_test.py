@@ -267,6 +267,33 @@ def settings():
     server.end()
 
 
+def film():
+    """The frame at the cursor, with the bob where it was measured and where it was predicted."""
+    server = Server()
+    page = Page(server.address)
+    page.wait(lambda: "Frame at 0 s" in page.text("#frame-words"), "the first frame, before anything is fitted")
+    page.click("#fit")
+    page.job("done", 1)
+    over = page.wait(lambda: page.one("#motion .u-over"), "the motion")
+    page.js("arguments[0].scrollIntoView({block: 'center'})", over)
+    ActionChains(page.driver).move_to_element(over).perform()
+    page.wait(lambda: "predicted by" in page.text("#frame-words") and "measured" in page.text("#frame-words"), "both markers")
+    page.wait(lambda: 8.0 < float(re.search(r"Frame at ([\d.]+) s", page.text("#frame-words"))[1]) < 12.0, "the frame of the cursor")
+    width, height = page.js("const image = document.querySelector('#frame'); return [image.naturalWidth, image.naturalHeight]")
+    assert width > 100 and height > 100, (width, height)
+    x, y = (float(page.one("#marks circle").get_attribute(key)) for key in ("cx", "cy"))
+    cross = [float(v) for v in re.match(r"M([-\d.]+) [-\d.]+h[-\d.]+M[-\d.]+ ([-\d.]+)v", page.one("#marks path").get_attribute("d")).groups()]
+    assert abs(0.5 * (cross[0] + 0.02 * width + x) - x) < 3 and 0 < x < width and 0 < y < height, (x, y, cross)
+    blue = page.js("""const [x, y] = arguments, image = document.querySelector('#frame'), canvas = document.createElement('canvas');
+        [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+        canvas.getContext('2d').drawImage(image, 0, 0);
+        const [r, g, b] = canvas.getContext('2d').getImageData(x, y, 1, 1).data;
+        return b - g""", int(x), int(y))
+    assert blue > 40, f"the bob is blue and violet, the wall brown: {blue}"
+    page.end()
+    server.end()
+
+
 def mend():
     """A study with an error is mended in the page."""
     good = read(STUDY)
@@ -343,4 +370,4 @@ def hostile():
     page.end()
 
 
-{"find_and_add": find_and_add, "mend": mend, "settings": settings, "stop_and_kill": stop_and_kill, "hostile": hostile}[sys.argv[3]]()
+{"find_and_add": find_and_add, "mend": mend, "film": film, "settings": settings, "stop_and_kill": stop_and_kill, "hostile": hostile}[sys.argv[3]]()

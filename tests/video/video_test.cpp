@@ -6,11 +6,14 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 #include <new>
 
 #include "misfit/core/error.h"
 #include "misfit/video/canvas.h"
+#include "misfit/video/frame_at.h"
 #include "misfit/video/module.h"
 #include "tests/core/temporary_folder.h"
 
@@ -163,6 +166,56 @@ TEST(Video, ColoursComeWhereTheyAreAskedFor) {
   ASSERT_EQ(b->colour.bgr.size(), 3 * b->image.pixels.size());
   EXPECT_EQ(a->image, b->image);
   for (std::size_t k = 0; k < b->image.pixels.size(); k += 997) EXPECT_NEAR(b->colour.bgr[3 * k + 1], b->image.pixels[k], 2);
+}
+
+/// What FrameReader is to give for some frames of a film, by their numbers; the number of all.
+std::pair<std::map<std::size_t, FramePicture>, std::size_t> pictures_of(const fs::path& file, const std::vector<std::size_t>& numbers) {
+  std::map<std::size_t, FramePicture> out;
+  Video video(file, Colours::bgr);
+  std::size_t k = 0;
+  for (; const auto frame = video.next(); ++k) {
+    if (std::find(numbers.begin(), numbers.end(), k) == numbers.end()) continue;
+    const int width = frame->image.width, height = frame->image.height;
+    std::string why;
+    const auto bytes = video_backend().encoded(frame->colour.bgr.data(), width, height, video_module::PictureFormat::jpeg, why);
+    out[k] = {width, height, frame->time.value_or(-1.0), std::string(bytes.begin(), bytes.end())};
+  }
+  return {out, k};
+}
+
+TEST(FrameReader, GivesTheFrameOfATimeInAnyOrder) {
+  const std::vector<std::size_t> numbers = {0, 1, 2, 40, 400, 399, 17, 300, 301, 0, 501};
+  for (const fs::path& film : {fs::path(MISFIT_SOURCE_DIR) / "configs/film_pendulum/swing.mp4", flight()}) {
+    const auto [frames, count] = pictures_of(film, numbers);
+    ASSERT_GT(count, 501U);
+    FrameReader reader(film);
+    for (const std::size_t k : numbers) {
+      const FramePicture& frame = frames.at(k);
+      const auto found = reader.at(frame.t);
+      ASSERT_TRUE(found) << film << k;
+      EXPECT_NEAR(found->t, frame.t, 1e-6) << film << k;
+      EXPECT_TRUE(found->jpeg == frame.jpeg) << film << " frame " << k;
+      EXPECT_EQ(found->width, frame.width);
+      EXPECT_EQ(found->height, frame.height);
+    }
+  }
+}
+
+TEST(FrameReader, BetweenFramesTheEarlierIsShownAndBehindTheEndTheLast) {
+  const fs::path film = fs::path(MISFIT_SOURCE_DIR) / "configs/film_pendulum/swing.mp4";
+  const auto [frames, count] = pictures_of(film, {100, 101});
+  FrameReader reader(film);
+  EXPECT_NEAR(reader.at(0.5 * (frames.at(100).t + frames.at(101).t))->t, frames.at(100).t, 1e-6);
+  EXPECT_NEAR(reader.at(-3.0)->t, 0.0, 1e-6);
+  const double step = frames.at(101).t - frames.at(100).t;
+  EXPECT_NEAR(reader.at(1e6)->t, step * static_cast<double>(count - 1), 1.5 * step);
+}
+
+TEST(FrameReader, SaysWhatItCannotRead) {
+  const TemporaryFolder folder;
+  folder.write("text.mp4", "no video at all");
+  EXPECT_THROW(FrameReader(folder.path() / "text.mp4"), RunError);
+  EXPECT_THROW(FrameReader(folder.path() / "none.mp4"), InputError);
 }
 
 TEST(Video, StoppedEarlyEndsItsThread) {

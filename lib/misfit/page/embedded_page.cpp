@@ -77,7 +77,7 @@ std::string state_of(const EmbeddedPage& page) {
   std::vector<std::string> warnings;
   for (const std::string& warning : page.warnings) warnings.push_back(json_string(warning));
   return fmt::format(
-      R"({{"version":"","study":{{"name":{},"question":{},"fault":null}},"models":{},"outdated":{},"verdict":{},"effects":[],"settable":null,)"
+      R"({{"version":"","study":{{"name":{},"question":{},"fault":null}},"models":{},"outdated":{},"verdict":{},"effects":[],"settable":null,"films":[],)"
       R"("job":{{"state":"none","number":0}}}})",
       json_string(page.study), json_words(page.question), models_view(page.places), json_list(warnings),
       page.verdict != nullptr ? json_of(blocks_of(*page.verdict)) : "null");

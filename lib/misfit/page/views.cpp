@@ -95,7 +95,8 @@ std::string motion_view(const std::vector<Fit>& fits, std::size_t method) {
   std::vector<std::string> channels;
   if (method < fits.size()) {
     for (const ChannelPrediction& c : fits[method].predictions) {
-      channels.push_back(fmt::format(R"({{"experiment":{},"channel":{},"figure":{}}})", json_string(c.experiment), json_words(c.channel),
+      channels.push_back(fmt::format(R"({{"experiment":{},"name":{},"channel":{},"figure":{}}})", json_string(c.experiment),
+                                     json_string(c.channel), json_words(c.channel),
                                      json_of(report::motion_figure(fits[method].method, c, std::nullopt))));
     }
   }

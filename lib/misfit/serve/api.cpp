@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "misfit/core/base64.h"
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/data/study_reader.h"
@@ -39,6 +41,16 @@ std::size_t number(const Ask& ask, const std::string& name, std::size_t size) {
   return value;
 }
 
+/// [s]. InputError: no number.
+double time_of(const Ask& ask) {
+  const auto found = ask.parameters.find("t");
+  double t = 0.0;
+  const std::string text = found == ask.parameters.end() ? "" : found->second;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), t);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(t)) throw InputError("t: a time [s] is expected");
+  return t;
+}
+
 std::string strings(const std::vector<std::string>& texts) {
   std::vector<std::string> out;
   for (const std::string& text : texts) out.push_back(json_string(text));
@@ -67,6 +79,12 @@ std::string json_of(const JobReport& job) {
       job.number, json_string(job.command), states.at(static_cast<std::size_t>(job.state)), job.stopping, job.status,
       json_number(job.seconds), json_string(job.work), optional(job.part), optional(job.left), json_list(costs), strings(job.notes),
       json_string(job.output));
+}
+
+std::string films_of(const std::vector<std::pair<std::string, std::filesystem::path>>& films) {
+  std::vector<std::string> experiments;
+  for (const auto& [experiment, file] : films) experiments.push_back(experiment);
+  return strings(experiments);
 }
 
 std::string text_in(const json& body, const char* name) {
@@ -137,6 +155,19 @@ std::string Api::curves(const Ask& ask) {
   return page::curves_view(places, number(ask, "model", places.size()), known()->references);
 }
 
+std::string Api::frame(const Ask& ask) {
+  const auto films = known()->films;
+  if (films.empty()) throw InputError("film: the study has none");
+  const std::filesystem::path film = films[number(ask, "film", films.size())].second;
+  const double t = time_of(ask);
+  const std::lock_guard lock(frames_mutex_);
+  const auto reader = frames_.try_emplace(film, film).first;
+  const std::optional<FramePicture> picture = reader->second.at(t);
+  if (!picture) throw RunError(film.string() + ": its frames cannot be decoded any more");
+  return fmt::format(R"({{"t":{},"width":{},"height":{},"jpeg":"{}"}})", json_number(picture->t), picture->width, picture->height,
+                     base64(picture->jpeg));
+}
+
 Answer Api::get(const Ask& ask) {
   if (ask.path == "/api/state") return {200, state()};
   if (ask.path == "/api/motion") return {200, page::motion_view(page::fits_of(place(ask)), number(ask, "method", many))};
@@ -144,6 +175,7 @@ Answer Api::get(const Ask& ask) {
   if (ask.path == "/api/samples") return {200, samples(ask)};
   if (ask.path == "/api/added") return {200, added(ask)};
   if (ask.path == "/api/candidates") return {200, page::candidates_view(place(ask), registry_.effect_keys())};
+  if (ask.path == "/api/frame") return {200, frame(ask)};
   if (ask.path == "/api/curves") return {200, curves(ask)};
   if (ask.path == "/api/calibration") return {200, page::calibration_view(results_.places().front())};
   if (ask.path == "/api/ladder") return {200, page::ladder_view(results_.folder())};
@@ -178,6 +210,9 @@ void Api::open_study(Known& known) const {
       known.outdated = outdated(session);
       known.references = references(session);
       known.settable = settable_of(session);
+      for (const ExperimentStudy& experiment : session.study.experiments) {
+        if (experiment.video) known.films.emplace_back(experiment.name, *experiment.video);
+      }
     } catch (const std::exception& error) {
       fault = TextFault{error.what(), 0};
     }
@@ -202,9 +237,10 @@ std::shared_ptr<const Api::Known> Api::known() {
 
 std::string Api::state() {
   const auto all = known();
-  return fmt::format(R"({{"version":"{}","study":{},"models":{},"outdated":{},"verdict":{},"effects":{},"settable":{},"job":{}}})",
-                     all->version, all->study, all->models, strings(all->outdated), all->verdict, strings(registry_.effect_keys()),
-                     json_of(all->settable), json_of(jobs_.report()));
+  return fmt::format(
+      R"({{"version":"{}","study":{},"models":{},"outdated":{},"verdict":{},"effects":{},"settable":{},"films":{},"job":{}}})",
+      all->version, all->study, all->models, strings(all->outdated), all->verdict, strings(registry_.effect_keys()), json_of(all->settable),
+      films_of(all->films), json_of(jobs_.report()));
 }
 
 Answer Api::study(const Place& place) const {

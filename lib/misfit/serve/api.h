@@ -9,6 +9,7 @@
 #include "misfit/serve/results.h"
 #include "misfit/serve/session_script.h"
 #include "misfit/serve/settable.h"
+#include "misfit/video/frame_at.h"
 
 namespace misfit::serve {
 
@@ -23,7 +24,8 @@ struct JobRequest {
 /// a path or part of a command line.
 ///
 /// GET  /api/state; /api/motion?model&method; /api/where?model; /api/samples?model&experiment&quantity; /api/candidates?model;
-///      /api/added?model&experiment&candidate; /api/curves?model; /api/calibration; /api/ladder; /api/study?model; /api/session
+///      /api/added?model&experiment&candidate; /api/curves?model; /api/calibration; /api/ladder; /api/study?model; /api/session;
+///      /api/frame?film&t (film: number in "films" of /api/state)
 /// POST /api/job {"verb": "run"|"fit"|"discover"|"add"|"remove"|"set", "effect", "at", "rung", "what", "name", "value"}; /api/stop;
 /// /api/check {"text"}; /api/save
 /// {"text", "hash"}
@@ -42,6 +44,7 @@ class Api {
     std::vector<std::string> outdated;  ///< sentences
     std::vector<Reference> references;
     Settable settable;
+    std::vector<std::pair<std::string, std::filesystem::path>> films;  ///< experiment, its video
   };
 
   [[nodiscard]] Answer get(const Ask& ask);
@@ -61,6 +64,7 @@ class Api {
   [[nodiscard]] std::string samples(const Ask& ask);
   [[nodiscard]] std::string added(const Ask& ask);
   [[nodiscard]] std::string curves(const Ask& ask);
+  [[nodiscard]] std::string frame(const Ask& ask);
 
   SessionOptions options_;
   const Registry& registry_;
@@ -69,6 +73,8 @@ class Api {
   std::mutex mutex_;  ///< of known_, and of what is written
   std::shared_ptr<const Known> known_;
   Jobs jobs_;
+  std::mutex frames_mutex_;  ///< of frames_
+  std::map<std::filesystem::path, FrameReader> frames_;
 };
 
 }  // namespace misfit::serve

@@ -11,7 +11,7 @@
 namespace misfit::video_module {
 
 /// Changes whenever anything in this file does: a module of another build is refused.
-inline constexpr int interface_version = 2;
+inline constexpr int interface_version = 3;
 
 /// An open video. Frames come in order, in 8-bit grey and, where asked for, in colour.
 class VideoStream {
@@ -29,7 +29,11 @@ class VideoStream {
 
   /// Decodes into `grey` (width * height bytes) and, unless it is null, `bgr` (three bytes per pixel); false at the end.
   virtual bool next(std::uint8_t* grey, std::uint8_t* bgr) = 0;
+  /// Goes to about this timestamp [s], earlier or later as the decoder can: that of the next frame says where. False: it cannot.
+  virtual bool seek(double timestamp) = 0;
 };
+
+enum class PictureFormat { png, jpeg };
 
 /// A video being written, in colour: three bytes per pixel (blue, green, red).
 class Sink {
@@ -61,8 +65,8 @@ class Backend {
   virtual std::unique_ptr<Sink> create(const std::string& path, int width, int height, double rate, std::string& why) = 0;
   /// An image file in grey; empty with `why`.
   virtual std::vector<std::uint8_t> read_image(const std::string& path, int& width, int& height, std::string& why) = 0;
-  /// A PNG of a picture in colour; empty with `why`.
-  virtual std::vector<std::uint8_t> png(const std::uint8_t* bgr, int width, int height, std::string& why) = 0;
+  /// The file of a picture in colour; empty with `why`.
+  virtual std::vector<std::uint8_t> encoded(const std::uint8_t* bgr, int width, int height, PictureFormat format, std::string& why) = 0;
   virtual void draw(std::uint8_t* bgr, int width, int height, const std::vector<Mark>& marks) = 0;
 };
 

@@ -61,7 +61,7 @@ void Canvas::draw(const std::vector<Mark>& marks) { video_backend().draw(bgr_.da
 
 void Canvas::write_png(const std::filesystem::path& path) const {
   std::string why;
-  const std::vector<std::uint8_t> png = video_backend().png(bgr_.data(), width_, height_, why);
+  const std::vector<std::uint8_t> png = video_backend().encoded(bgr_.data(), width_, height_, video_module::PictureFormat::png, why);
   if (png.empty()) throw RunError(path.string() + ": " + why);
   write_atomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }

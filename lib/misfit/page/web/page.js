@@ -163,7 +163,7 @@ async function showMotion() {
   at('methods').hidden = motion.methods.length === 0;
   at('method').replaceChildren(...motion.methods.map((name, k) => element('option', { value: k }, name)));
   at('method').value = here.method;
-  const names = [...new Set([...motion.channels.map((c) => c.experiment), ...(here.where?.force ?? []).map((f) => f.experiment)])];
+  const names = [...new Set([...motion.channels.map((c) => c.experiment), ...(here.where?.force ?? []).map((f) => f.experiment), ...here.state.films])];
   if (here.experiment >= names.length) here.experiment = 0;
   here.name = names[here.experiment];
   at('experiments').hidden = names.length < 2;
@@ -180,7 +180,9 @@ function drawTime() {
   const channels = here.motion.channels.filter((c) => c.experiment === here.name);
   const force = missing();
   const height = channels.length > 1 ? 0.45 : 0.7;
-  channels.forEach((c, k) => here.timeFigures.push(new Figure(at('motion'), c.figure, { ...options, height, xLabel: !force && k === channels.length - 1 })));
+  film.show(channels);
+  channels.forEach((c, k) => here.timeFigures.push(new Figure(at('motion'), c.figure, { ...options, height, xLabel: !force && k === channels.length - 1,
+    oncursor: k === 0 ? (t) => film.point(t) : null })));
   if (channels.length === 0) at('motion').append(element('p', { class: 'soft' },
     here.motion.methods.length === 0 ? 'Nothing is fitted yet.' : 'This method does not predict the motion.'), blocks(here.motion.blocks));
   drawForce(null);
@@ -202,6 +204,76 @@ function drawForce(added) {
   }
   if (old) here.timeFigures.splice(here.timeFigures.indexOf(old), 1)[0].destroy();
   for (const node of before) node.remove();
+}
+
+/** The frame at the time cursor, with the marker as measured and as predicted. */
+class Film {
+  place = -1; // among the films of the study; −1: this experiment has none
+  t = null;
+  busy = false;
+  constructor() {
+    at('film').addEventListener('toggle', () => this.ask());
+  }
+  /** Where the marker is: P_y, P_z from the middle of the picture, to the left and downwards, or column and row. */
+  show(channels) {
+    const named = (name) => channels.find((c) => c.name === name)?.figure;
+    const fromMiddle = named('P_y') && named('P_z');
+    this.across = fromMiddle ? named('P_y') : named('x_px');
+    this.down = fromMiddle ? named('P_z') : named('y_px');
+    this.pixel = (x, y, { width, height }) => (fromMiddle ? [width / 2 - x + 0.5, height / 2 + y + 0.5] : [x + 0.5, y + 0.5]);
+    this.place = here.state.films.indexOf(here.name);
+    at('film').hidden = this.place < 0;
+    this.asked = null;
+    if (this.t === null) this.t = channels[0]?.figure.xs[0][0] ?? 0;
+    this.ask();
+  }
+  point(t) {
+    this.t = t;
+    this.ask();
+  }
+  /** One question at a time; the last place that was pointed at is asked for in the end. */
+  async ask() {
+    if (this.busy || this.place < 0 || !at('film').open) return;
+    this.busy = true;
+    try {
+      while (this.asked !== `${this.place} ${this.t}`) {
+        const t = this.t;
+        this.asked = `${this.place} ${t}`;
+        this.draw(t, await get('frame', { film: this.place, t }));
+      }
+    } catch (error) {
+      at('frame-words').textContent = error.message;
+    }
+    this.busy = false;
+  }
+  draw(t, frame) {
+    at('frame').src = `data:image/jpeg;base64,${frame.jpeg}`;
+    at('marks').setAttribute('viewBox', `0 0 ${frame.width} ${frame.height}`);
+    const [measured, predicted] = ['measured', 'predicted'].map((kind) => this.marker(kind, t, frame)), size = 0.02 * frame.width;
+    const [circle, cross] = at('marks').children;
+    for (const [node, place] of [[circle, measured], [cross, predicted]]) node.style.display = place ? '' : 'none';
+    if (measured) for (const [key, value] of [['cx', measured[0]], ['cy', measured[1]], ['r', size]]) circle.setAttribute(key, value);
+    if (predicted) cross.setAttribute('d', `M${predicted[0] - size} ${predicted[1]}h${2 * size}M${predicted[0]} ${predicted[1] - size}v${2 * size}`);
+    const said = [`Frame at ${shown(frame.t, 5)} s`];
+    if (measured) said.push('yellow: measured');
+    if (predicted) said.push(`blue: predicted by ${here.motion.methods[here.method]}`);
+    at('frame-words').textContent = said.join(' · ');
+  }
+  /** [px] null: there is none at this time. */
+  marker(kind, t, frame) {
+    const [x, y] = [this.across, this.down].map((figure) => figure && valueAt(figure, kind, t));
+    return x === undefined || y === undefined ? null : this.pixel(x, y, frame);
+  }
+}
+const film = new Film();
+
+/** Of the series of that kind in the first panel, held out or not; undefined: it has none there. */
+function valueAt(figure, kind, t) {
+  for (const s of figure.panels[0].series) {
+    const x = figure.xs[s.x], k = nearest(x, t);
+    if (s.key.startsWith(kind) && s.y[k] !== null && s.y[k] !== undefined) return s.y[k];
+  }
+  return undefined;
 }
 
 function mark(intervals, text, fixed) {

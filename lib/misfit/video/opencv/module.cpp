@@ -40,6 +40,13 @@ class OpencvStream : public VideoStream {
       return false;
     }
   }
+  bool seek(double seconds) override {
+    try {
+      return capture_.set(cv::CAP_PROP_POS_MSEC, 1000.0 * seconds);
+    } catch (const cv::Exception&) {
+      return false;
+    }
+  }
 
  private:
   void in_colour(cv::Mat into) const {
@@ -159,11 +166,11 @@ class OpencvBackend : public Backend {
       return {};
     }
   }
-  std::vector<std::uint8_t> png(const std::uint8_t* bgr, int width, int height, std::string& why) override {
+  std::vector<std::uint8_t> encoded(const std::uint8_t* bgr, int width, int height, PictureFormat format, std::string& why) override {
     std::vector<std::uint8_t> bytes;
     try {
       const cv::Mat picture(height, width, CV_8UC3, const_cast<std::uint8_t*>(bgr));  // NOLINT: only read
-      if (!cv::imencode(".png", picture, bytes)) why = "the PNG could not be encoded";
+      if (!cv::imencode(format == PictureFormat::png ? ".png" : ".jpg", picture, bytes)) why = "the picture could not be encoded";
     } catch (const cv::Exception& error) {
       why = error.err;
     }

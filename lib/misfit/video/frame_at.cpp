@@ -1,0 +1,75 @@
+#include "misfit/video/frame_at.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/video/module.h"
+
+namespace misfit {
+namespace {
+
+constexpr double rounding = 0.3;     // of an interval: how much later a timestamp may be than the time it stands for
+constexpr double near_ahead = 2.0;   // [s] decoded on, rather than sought
+constexpr double before_seek = 0.5;  // [s] by which a seek aims earlier, since decoders begin at what they can decode alone
+
+}  // namespace
+
+FrameReader::FrameReader(const std::filesystem::path& path) : path_(path) { begin(); }
+
+void FrameReader::begin() {
+  if (!std::filesystem::is_regular_file(path_)) static_cast<void>(read_file(path_));  // says what is missing
+  std::string why;
+  stream_ = video_backend().open(path_.string(), why);
+  if (!stream_) throw RunError(path_.string() + ": not a video: " + why);
+  if (stream_->width <= 0 || stream_->height <= 0 || !(stream_->rate > 0.0))
+    throw RunError(path_.string() + ": not a video: its pictures have no size or no rate");
+  origin_ = stream_->first_timestamps.empty() ? 0.0 : stream_->first_timestamps.front();
+  interval_ = 1.0 / stream_->rate;
+  shown_ = decode();
+  if (shown_) shown_->t = 0.0;
+  ahead_ = decode();
+}
+
+std::optional<FrameReader::Decoded> FrameReader::decode() {
+  Decoded out;
+  const auto pixels = static_cast<std::size_t>(stream_->width) * static_cast<std::size_t>(stream_->height);
+  std::vector<std::uint8_t> grey(pixels);
+  out.bgr.resize(3 * pixels);
+  if (!stream_->next(grey.data(), out.bgr.data())) return std::nullopt;
+  out.t = stream_->timestamp - origin_;
+  if (shown_ && !(out.t > shown_->t)) out.t = shown_->t + interval_;  // it has none
+  return out;
+}
+
+/// False: it ended behind `t`, or nowhere.
+bool FrameReader::seek(double t) {
+  if (!stream_->seek(std::max(0.0, origin_ + t - before_seek))) return false;
+  shown_.reset();
+  shown_ = decode();
+  ahead_ = shown_ ? decode() : std::nullopt;
+  return shown_ && shown_->t <= t;
+}
+
+void FrameReader::read_until(double t) {
+  while (ahead_ && ahead_->t <= t) {
+    shown_ = std::move(ahead_);
+    ahead_ = decode();
+  }
+}
+
+std::optional<FramePicture> FrameReader::at(double t) {
+  const double latest = std::max(t, 0.0) + rounding * interval_;
+  const bool passed = !shown_ || shown_->t > latest, far = ahead_ && ahead_->t < latest - near_ahead;
+  if ((passed || far) && !seek(latest)) begin();
+  read_until(latest);
+  if (!shown_) return std::nullopt;
+  std::string why;
+  const std::vector<std::uint8_t> bytes =
+      video_backend().encoded(shown_->bgr.data(), stream_->width, stream_->height, video_module::PictureFormat::jpeg, why);
+  if (bytes.empty()) return std::nullopt;
+  return FramePicture{stream_->width, stream_->height, shown_->t, std::string(bytes.begin(), bytes.end())};
+}
+
+}  // namespace misfit
