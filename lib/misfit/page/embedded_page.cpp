@@ -94,7 +94,8 @@ void add_first_views(const EmbeddedPage& page, std::size_t model, AllAnswers& ou
   const bool needed = model == 0;
   out.push_back({"where?" + number, where_view(page.places[model], model > 0 ? &page.places[model - 1] : nullptr), needed});
   const std::vector<Fit> fits = fits_of(page.places[model]);
-  for (std::size_t method = 0; method < std::max<std::size_t>(fits.size(), 1); ++method)
+  out.push_back({"motion?" + number, motion_view(fits, std::nullopt), needed});
+  for (std::size_t method = 0; method < fits.size(); ++method)
     out.push_back({fmt::format("motion?{}&method={}", number, method), motion_view(fits, method), needed});
 }
 

@@ -91,19 +91,19 @@ void add_curve_below(int model, const std::vector<Fit>& fits, const std::pair<st
 
 }  // namespace
 
-std::string motion_view(const std::vector<Fit>& fits, std::size_t method) {
+std::string motion_view(const std::vector<Fit>& fits, std::optional<std::size_t> method) {
+  const std::string methods = list_of(fits, [](const Fit& f) { return json_string(f.method); });
+  if (fits.empty()) return R"({"methods":[],"method":0,"channels":[],"blocks":[]})";
+  const std::size_t chosen = std::min(method.value_or(fits.size()), fits.size() - 1);
+  const Fit& fit = fits[chosen];
   std::vector<std::string> channels;
-  if (method < fits.size()) {
-    for (const ChannelPrediction& c : fits[method].predictions) {
-      channels.push_back(fmt::format(R"({{"experiment":{},"name":{},"channel":{},"figure":{}}})", json_string(c.experiment),
-                                     json_string(c.channel), json_words(c.channel),
-                                     json_of(report::motion_figure(fits[method].method, c, std::nullopt))));
-    }
+  for (const ChannelPrediction& c : fit.predictions) {
+    channels.push_back(fmt::format(R"({{"experiment":{},"name":{},"channel":{},"figure":{}}})", json_string(c.experiment),
+                                   json_string(c.channel), json_words(c.channel),
+                                   json_of(report::motion_figure(fit.method, c, std::nullopt))));
   }
-  Blocks words;
-  if (method < fits.size()) words.append(status_blocks({fits[method]}));
-  return fmt::format(R"({{"methods":{},"channels":{},"blocks":{}}})", list_of(fits, [](const Fit& f) { return json_string(f.method); }),
-                     json_list(channels), json_of(words));
+  return fmt::format(R"({{"methods":{},"method":{},"channels":{},"blocks":{}}})", methods, chosen, json_list(channels),
+                     json_of(status_blocks({fit})));
 }
 
 std::string where_view(const Place& place, const Place* before) {

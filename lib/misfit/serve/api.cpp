@@ -170,7 +170,10 @@ std::string Api::frame(const Ask& ask) {
 
 Answer Api::get(const Ask& ask) {
   if (ask.path == "/api/state") return {200, state()};
-  if (ask.path == "/api/motion") return {200, page::motion_view(page::fits_of(place(ask)), number(ask, "method", many))};
+  if (ask.path == "/api/motion") {
+    const auto method = ask.parameters.contains("method") ? std::optional(number(ask, "method", many)) : std::nullopt;
+    return {200, page::motion_view(page::fits_of(place(ask)), method)};
+  }
   if (ask.path == "/api/where") return {200, where(ask)};
   if (ask.path == "/api/samples") return {200, samples(ask)};
   if (ask.path == "/api/added") return {200, added(ask)};

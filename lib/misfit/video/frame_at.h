@@ -18,9 +18,9 @@ struct FramePicture {
   std::string jpeg;  ///< bytes of the file
 };
 
-/// Frames of a video by their times, in any order: near ahead by decoding on, elsewhere by seeking. What a seek has reached is read from the
-/// timestamps, so that a decoder that seeks badly costs time and no frame is taken for another one. Where frames have no timestamps they are
-/// counted from the first.
+/// Frames of a video by their times, in any order: near ahead by decoding on, elsewhere by seeking. What a seek has reached is read from
+/// the timestamps, so that a decoder that seeks badly costs time and no frame is taken for another one. Where frames have no timestamps
+/// they are counted from the first.
 class FrameReader {
  public:
   /// InputError: no such file. RunError: not a video.

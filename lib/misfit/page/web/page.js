@@ -153,13 +153,12 @@ async function start(verb, more = {}) {
 
 // ---- over time
 
-async function showMotion() {
-  const motion = (here.motion = await get('motion', { model: here.model, method: here.method ?? 0 }));
-  if (here.method === null || here.method >= motion.methods.length) {
-    const last = Math.max(motion.methods.length - 1, 0); // filter_error, whose residuals the other views are about
-    here.method = last;
-    if (last > 0) return showMotion();
-  }
+/** Of the last method until another one is chosen. */
+const askForMotion = () => get('motion', { model: here.model, ...(here.method === null ? {} : { method: here.method }) });
+
+async function showMotion(motion = null) {
+  motion = here.motion = motion ?? await askForMotion();
+  here.method = motion.method;
   at('methods').hidden = motion.methods.length === 0;
   at('method').replaceChildren(...motion.methods.map((name, k) => element('option', { value: k }, name)));
   at('method').value = here.method;
@@ -581,8 +580,9 @@ async function showAll() {
   try {
     while (again) {
       again = false;
-      here.where = await get('where', { model: here.model });
-      await showMotion();
+      const [where, motion] = await Promise.all([get('where', { model: here.model }), askForMotion()]);
+      here.where = where;
+      await showMotion(motion);
       mark([], '', true);
       if (here.tab !== 'study' || !study.changed()) await showView(); // not under the hands of somebody who types
     }
