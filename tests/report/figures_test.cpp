@@ -125,6 +125,23 @@ TEST(Figures, ReferencePointsHaveErrorBars) {
   EXPECT_NE(find(figure, "trim_static"), nullptr);
 }
 
+TEST(Figures, APredictionFromAnUnknownStateDoesNotSetTheAxisOfTheResiduals) {
+  ChannelPrediction c = channel(200);
+  for (std::size_t k = 0; k < c.t.size(); ++k) {
+    c.measured[k] = c.predicted[k] + (k % 2 == 0 ? 0.5 : -0.5) * degree;
+    c.sigma[k] = 0.4 * degree;
+  }
+  EXPECT_FALSE(motion_figure("filter_error", c, std::nullopt).panels[1].y_range);
+  c.measured[1] = c.predicted[1] + 100.0 * degree;
+  c.sigma[1] = 90.0 * degree;
+  const Figure figure = motion_figure("filter_error", c, std::nullopt);
+  ASSERT_TRUE(figure.panels[1].y_range);
+  EXPECT_NEAR((*figure.panels[1].y_range)[1], 0.5 * 1.05, 1e-9);
+  EXPECT_NEAR((*figure.panels[1].y_range)[0], -0.5 * 1.05, 1e-9);
+  EXPECT_NE(figure.caption.find(" 1 of them, less certain"), std::string::npos) << figure.caption;
+  EXPECT_NEAR(find(figure, "residual")->y[1], 100.0, 1e-6) << "it stays in the numbers";
+}
+
 TEST(Figures, ResidualIsMeasuredMinusPredictedInDegrees) {
   ChannelPrediction c = channel(3);
   c.measured = {0.2 + degree, nan, 0.2};

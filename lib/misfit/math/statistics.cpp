@@ -7,6 +7,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace misfit {
 namespace {
@@ -54,6 +55,12 @@ double mad_sigma(const std::vector<double>& values) {
   deviations.reserve(values.size());
   for (const double v : values) deviations.push_back(std::abs(v - centre));
   return 1.482602218505602 * median(std::move(deviations));
+}
+
+double largest_usual_sigma(std::vector<double> sigma) {
+  constexpr double ratio = 10.0;
+  const double usual = median(std::move(sigma));
+  return std::isnan(usual) ? std::numeric_limits<double>::infinity() : ratio * usual;
 }
 
 double chi_square_tail(double x, double dof) {

@@ -18,6 +18,10 @@ namespace misfit {
 /// the values being wild. Values that are not finite are passed over; NaN if there is none.
 [[nodiscard]] double mad_sigma(const std::vector<double>& values);
 
+/// Ten times the median of the finite ones; infinity if there is none. A prediction with a larger sigma says next to nothing: its state is
+/// not known yet, at the beginning or behind a gap.
+[[nodiscard]] double largest_usual_sigma(std::vector<double> sigma);
+
 /// P(chi² with `dof` > 0 degrees of freedom > x); 1 for x ≤ 0, NaN for NaN. Accurate in the far tail (to about 1e-300).
 [[nodiscard]] double chi_square_tail(double x, double dof);
 

@@ -7,6 +7,7 @@
 
 #include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
+#include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
@@ -92,9 +93,30 @@ Panel motion_panel(const ChannelPrediction& c, const std::string& unit) {
   return panel;
 }
 
+/// Predictions that are nearly no prediction: before the states are known, behind gaps (fit/filter/settled.h).
+std::size_t unsettled(const ChannelPrediction& c) {
+  const double largest = largest_usual_sigma(c.sigma);
+  return static_cast<std::size_t>(std::count_if(c.sigma.begin(), c.sigma.end(), [&](double v) { return v > largest; }));
+}
+
+/// Of residuals and bands but for those; nullopt: there is none.
+std::optional<std::array<double, 2>> range_of_settled(const std::vector<double>& residual, const std::vector<double>& sigma) {
+  const double largest = largest_usual_sigma(sigma);
+  double extent = 0.0;
+  bool all = true;
+  for (std::size_t k = 0; k < sigma.size(); ++k) {
+    if (sigma[k] > largest) all = false;
+    if (!(sigma[k] <= largest)) continue;
+    extent = std::max({extent, sigma[k], std::isfinite(residual[k]) ? std::abs(residual[k]) : 0.0});
+  }
+  constexpr double margin = 1.05;
+  if (all || !(extent > 0.0)) return std::nullopt;
+  return std::array{-margin * extent, margin * extent};
+}
+
 Panel residual_panel(const ChannelPrediction& c, const std::string& unit) {
-  Panel panel{"residual", unit, {}, std::nullopt, 0.0, 130.0, true};
   const std::vector<double> sigma = display_values(c.sigma, c.unit);
+  Panel panel{"residual", unit, {}, range_of_settled(display_values(residuals(c), c.unit), sigma), 0.0, 130.0, true};
   panel.series.push_back({"sigma", "± 1 sigma of the prediction", Style::band, palette(0), c.t, {}, scaled(sigma, -1.0), sigma});
   panel.series.push_back({"residual", "measured − predicted", Style::points, black, c.t, display_values(residuals(c), c.unit), {}, {}});
   return panel;
@@ -157,6 +179,8 @@ Figure motion_figure(const std::string& method, const ChannelPrediction& channel
   figure.title =
       fmt::format("{} of {}: measured and predicted by {}{}", channel.channel, channel.experiment, method, zoom ? " (part)" : "");
   figure.caption = fmt::format("{} against time: measured, and predicted by {}. Below: the residuals.", channel.channel, method);
+  if (const std::size_t count = unsettled(c); count > 0)
+    figure.caption += fmt::format(" {} of them, less certain than ten times the usual sigma, may lie beyond the axis.", count);
   figure.x_label = "time";
   figure.x_unit = std::string("s");  // g++ 12 warns wrongly about a one-letter literal assigned
   figure.panels = {motion_panel(c, unit), residual_panel(c, unit)};

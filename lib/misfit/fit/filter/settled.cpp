@@ -1,21 +1,20 @@
 #include "misfit/fit/filter/settled.h"
 
-#include <algorithm>
-#include <limits>
+#include <cmath>
+#include <utility>
+
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 
 SettledPredictions::SettledPredictions(const FilterTrace& trace, const FilterData& data) : trace_(&trace) {
-  constexpr double largest_ratio = 10.0;
   for (std::size_t o = 0; o < static_cast<std::size_t>(trace.ny); ++o) {
-    std::vector<double> variances;
+    std::vector<double> sigma;
     for (std::size_t k = 0; k < trace.samples; ++k) {
       const std::size_t at = trace.place(k, o);
-      if (data.use[at] != SampleRole::none) variances.push_back(trace.y_variance[at]);
+      if (data.use[at] != SampleRole::none) sigma.push_back(std::sqrt(trace.y_variance[at]));
     }
-    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-    std::nth_element(variances.begin(), middle, variances.end());
-    largest_.push_back(variances.empty() ? std::numeric_limits<double>::infinity() : largest_ratio * largest_ratio * *middle);
+    largest_.push_back(std::pow(largest_usual_sigma(std::move(sigma)), 2));
   }
 }
 

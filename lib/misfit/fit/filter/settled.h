@@ -6,9 +6,9 @@
 
 namespace misfit {
 
-/// Which one-step predictions say something of the model: those whose sigma is at most ten times the usual one of their channel (the median
-/// of the measurements in use). At the beginning, where the rates are not known yet, and behind long gaps a prediction is as wide as what
-/// can be at all; the likelihood weighs it so, but one such error would make up the whole of an RMS.
+/// Which one-step predictions say something of the model: those whose sigma is at most largest_usual_sigma() of the channel's
+/// measurements in use. At the beginning, where the rates are not known yet, and behind long gaps a prediction is as wide as what can be at
+/// all; the likelihood weighs it so, but one such error would make up the whole of an RMS.
 class SettledPredictions {
  public:
   /// Keeps a pointer to the trace.
