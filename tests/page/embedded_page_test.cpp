@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "misfit/page/assets.h"
 #include "tests/core/temporary_folder.h"
@@ -85,6 +88,54 @@ TEST_F(Embedded, IsLeftOutWhereItFindsNoRoomAndItsLastViewsFirst) {
   for (std::size_t most = 2000; answers.contains("calibration?"); most -= 10) answers = all(most)["answers"];
   EXPECT_TRUE(answers.contains("motion?model=0"));
   EXPECT_TRUE(answers.contains("curves?model=0"));
+}
+
+/// 100 000 samples of one channel, measured at random, with one wild residual.
+Fit long_fit() {
+  Fit fit;
+  fit.method = "filter_error";
+  fit.status = FitStatus::converged;
+  ChannelPrediction c;
+  c.experiment = "e";
+  c.channel = "y";
+  c.unit = "m";
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 100'000; ++k) {
+    c.t.push_back(0.001 * k);
+    c.predicted.push_back(std::sin(0.01 * k) + 0.01 * normal(random));
+    c.measured.push_back(k > 50'000 && k < 60'000 ? std::nan("") : c.predicted.back() + 0.1 * normal(random));
+    c.sigma.push_back(0.1);
+    c.held_out.push_back(k > 75'000);
+  }
+  c.measured[12'345] = c.predicted[12'345] + 7.0;
+  fit.predictions = {c, c};
+  fit.predictions[1].channel = "z";
+  return fit;
+}
+
+TEST_F(Embedded, ThinsLongRecordingsAndKeepsTheirLeastAndLargest) {
+  write_fit(folder.path() / "out/fit/filter_error", long_fit());
+  constexpr std::size_t small = 4'000'000;
+  const std::string text = embedded_page(page, small);
+  EXPECT_FALSE(text.empty());
+  EXPECT_LT(text.size(), small);
+  const json whole = all(small), answers = whole["answers"];
+  ASSERT_TRUE(answers.contains("motion?model=0"));
+  EXPECT_THAT(answers["state?"]["outdated"].dump(), HasSubstr("samples are shown in this file"));
+  const json panels = answers["motion?model=0"]["channels"][1]["figure"]["panels"];
+  const json y = panels[1]["series"][1]["y"], residual = y.contains("$") ? whole["lists"][y["$"].get<std::size_t>()] : y;
+  EXPECT_GT(residual.size(), 5'000U);
+  EXPECT_LT(residual.size(), 24'100U);
+  double largest = 0.0;
+  std::size_t gap = 0;
+  for (const json& v : residual) {
+    if (v.is_number()) largest = std::max(largest, v.get<double>());
+    gap += v.is_null() ? 1U : 0U;
+  }
+  EXPECT_NEAR(largest, 7.0, 1e-6);
+  EXPECT_GT(gap, 100U) << "where nothing was measured nothing is shown";
+  EXPECT_THAT(all(100'000'000)["answers"]["state?"]["outdated"].dump(), Not(HasSubstr("samples are shown"))) << "where all find room";
 }
 
 TEST_F(Embedded, HasOneScriptThatImportsNothingAndFetchesNothing) {

@@ -139,34 +139,70 @@ AllAnswers all_answers(const EmbeddedPage& page) {
   return out;
 }
 
-/// Empty: one that is needed finds no room.
-std::string chosen(const AllAnswers& all, std::size_t most) {
+/// Answers that find room.
+struct Chosen {
+  std::string text;  ///< empty: one that is needed finds none
+  bool all = true;   ///< none was left out
+};
+
+Chosen chosen(const AllAnswers& all, std::size_t most) {
   ChosenAnswers out(most);
+  bool complete = true;
   for (const Answer& answer : all) {
-    if (!out.add(answer) && answer.needed) return "";
+    if (out.add(answer)) continue;
+    if (answer.needed) return {"", false};
+    complete = false;
   }
-  return out.text();
+  return {out.text(), complete};
+}
+
+EmbeddedPage thinned(EmbeddedPage page, std::size_t most_samples) {
+  for (Place& place : page.places) place.most_samples = most_samples;
+  page.warnings.push_back(
+      fmt::format("Recordings of more than {} samples are shown in this file with their least and largest values only: `misfit open` shows "
+                  "every sample.",
+                  most_samples));
+  return page;
+}
+
+/// `choose`: what of all answers finds room. Of recordings as they are; where something is left out of thinner ones, and where nothing can
+/// be shown at all of still thinner ones.
+template <class Choose>
+std::string of_thinnest_needed(const EmbeddedPage& page, const Choose& choose) {
+  Chosen best = choose(all_answers(page));
+  for (const std::size_t most_samples : {24'000U, 8'000U, 3'000U, 1'000U}) {
+    constexpr std::size_t enough = 8'000;  // for any screen
+    if (most_samples >= enough ? best.all : !best.text.empty()) break;
+    Chosen next = choose(all_answers(thinned(page, most_samples)));
+    if (!next.text.empty()) best = std::move(next);
+  }
+  return best.text;
 }
 
 }  // namespace
 
-std::string embedded_answers(const EmbeddedPage& page, std::size_t most) { return chosen(all_answers(page), most); }
+std::string embedded_answers(const EmbeddedPage& page, std::size_t most) {
+  return of_thinnest_needed(page, [&](const AllAnswers& all) { return chosen(all, most); });
+}
 
 std::string embedded_page(const EmbeddedPage& page, std::size_t most) {
   const EmbeddedAssets& assets = embedded_assets();
   const std::size_t fixed = assets.body.size() + assets.style.size() + assets.frame.size() + assets.script.size() + 1000;
-  const AllAnswers all = all_answers(page);
-  for (double room = 1.6 * (static_cast<double>(most) - static_cast<double>(fixed)); room > 0.0; room *= 0.8) {
-    const std::string answers = chosen(all, static_cast<std::size_t>(room));
-    if (answers.empty()) break;
-    const std::string text = packed(answers);
-    if (text.size() + fixed > most) continue;
-    return fmt::format(
-        "<template id=\"explore\">{}</template>\n<style id=\"explore-style\" media=\"not all\">\n{}</style>\n"
-        "<style>\n{}</style>\n<script type=\"text/plain\" id=\"answers\">{}</script>\n<script type=\"module\">\n{}</script>\n",
-        assets.body, assets.style, assets.frame, text, assets.script);
-  }
-  return "";
+  const auto in_room = [&](const AllAnswers& all) {
+    for (double room = 2.6 * (static_cast<double>(most) - static_cast<double>(fixed)); room > 0.0; room *= 0.8) {
+      Chosen answers = chosen(all, static_cast<std::size_t>(room));
+      if (answers.text.empty()) break;
+      answers.text = packed(answers.text);
+      if (answers.text.size() + fixed <= most) return answers;
+    }
+    return Chosen{"", false};
+  };
+  const std::string answers = of_thinnest_needed(page, in_room);
+  if (answers.empty()) return "";
+  return fmt::format(
+      "<template id=\"explore\">{}</template>\n<style id=\"explore-style\" media=\"not all\">\n{}</style>\n"
+      "<style>\n{}</style>\n<script type=\"text/plain\" id=\"answers\">{}</script>\n<script type=\"module\">\n{}</script>\n",
+      assets.body, assets.style, assets.frame, answers, assets.script);
 }
 
 }  // namespace misfit::page

@@ -4,6 +4,7 @@
 
 #include "misfit/data/estimators.h"
 #include "misfit/page/read_if.h"
+#include "misfit/page/thinned.h"
 
 namespace misfit::page {
 namespace {
@@ -13,6 +14,12 @@ namespace fs = std::filesystem;
 /// A rung's study lies in the run folder, whatever ladder.json says.
 bool is_inside(const fs::path& relative) {
   return relative.is_relative() && std::none_of(relative.begin(), relative.end(), [](const fs::path& part) { return part == ".."; });
+}
+
+template <class Result>
+std::optional<Result> as_shown(const Place& place, std::optional<Result> result) {
+  if (result && place.most_samples > 0) thin(*result, place.most_samples);
+  return result;
 }
 
 }  // namespace
@@ -37,19 +44,19 @@ std::vector<Fit> fits_of(const Place& place) {
   std::vector<Fit> out;
   for (const std::string& method : place.methods.empty() ? estimator_names() : place.methods) {
     const fs::path folder = place.folder / "fit" / method;
-    if (auto fit = read_if(folder / "fit.json", [&] { return read_fit(folder); })) out.push_back(std::move(*fit));
+    if (auto fit = as_shown(place, read_if(folder / "fit.json", [&] { return read_fit(folder); }))) out.push_back(std::move(*fit));
   }
   return out;
 }
 
 std::optional<Diagnosis> diagnosis_of(const Place& place) {
   if (!place.diagnosed) return std::nullopt;
-  return read_if(place.folder / "diagnosis.json", [&] { return read_diagnosis(place.folder); });
+  return as_shown(place, read_if(place.folder / "diagnosis.json", [&] { return read_diagnosis(place.folder); }));
 }
 
 std::optional<Discovery> discovery_of(const Place& place) {
   if (!place.asked) return std::nullopt;
-  return read_if(place.folder / "discovery.json", [&] { return read_discovery(place.folder); });
+  return as_shown(place, read_if(place.folder / "discovery.json", [&] { return read_discovery(place.folder); }));
 }
 
 std::optional<Comparison> comparison_of(const Place& place) {

@@ -21,6 +21,7 @@ struct Place {
   std::string added;                      ///< "" for the study's own
   std::vector<std::string> methods = {};  ///< whose fits are shown; empty: all that are there
   bool diagnosed = true, asked = true;    ///< false: what diagnose, or discover, left there is of another fit and not shown
+  std::size_t most_samples = 0;           ///< of a recording: longer ones are thinned (thinned.h); 0: shown whole
 };
 
 // What lies in a run folder, looked at and never changed. Files that are not there or cannot be read are left out: another process may be
