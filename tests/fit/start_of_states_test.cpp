@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -189,6 +190,42 @@ TEST(UsualNoise, OfAForceOnAHiddenStateIsAsLargeAsTheModelsOwnRates) {
   double squares = 0.0;
   for (const double current : cell.signals.inputs[0].values) squares += std::pow(current / 7500.0, 2) / 400.0;
   EXPECT_NEAR(usual_noise(model, data).force, 0.3 * std::sqrt(squares), 0.05 * std::sqrt(squares)) << "not one unit per second";
+}
+
+/// The cart that swings once in two seconds, measured for 40 s.
+Signals swinging_cart(double every) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  Signals s;
+  s.name = "cart";
+  s.inputs = {{"drive", "N", {}}};
+  s.measured = {{"position_reading", "-", {}}, {"speed_reading", "m/s", {}}};
+  for (int k = 0; every * k < 40.0; ++k) {
+    const double t = every * k;
+    s.t.push_back(t);
+    s.inputs[0].values.push_back(0.0);
+    s.measured[0].values.push_back(0.3 * std::cos(3.0 * t) + 0.0005 * normal(random));
+    s.measured[1].values.push_back(-0.9 * std::sin(3.0 * t) + 0.02 * normal(random));
+  }
+  return s;
+}
+
+/// Read from neighbours, the acceleration at 5 kHz would be that of the noise, thousands of m/s^2.
+TEST(UsualNoise, OfARecordingSampledMuchFasterThanItMovesIsThatOfTheMotion) {
+  const FilterModel model = with_random_force(assemble(cart({}), registry()));
+  const double force = 0.3 * 2.0 * 2.7 / std::numbers::sqrt2;  // 0.3 mass acceleration, RMS
+  for (const double every : {0.05, 0.02, 0.002, 0.0002}) {
+    const Signals signals = swinging_cart(every);
+    const FilterNoise usual = usual_noise(model, {filter_data(model, signals)});
+    EXPECT_GT(usual.force, 0.8 * force) << every;
+    EXPECT_LT(usual.force, 2.5 * force) << every;
+    EXPECT_GT(usual.force_time, 6.0 * every - 1e-12);
+    EXPECT_LT(usual.force_time, 0.4) << "well below the period";
+    if (every > 0.01) {
+      EXPECT_NEAR(usual.force_time, 6.0 * every, 1e-9) << "nothing is averaged where the motion is seen as it is";
+    }
+    EXPECT_NEAR(usual.channels[1].white, 0.02, 0.004);
+  }
 }
 
 }  // namespace

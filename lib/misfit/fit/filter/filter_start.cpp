@@ -6,6 +6,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/units.h"
+#include "misfit/math/whiteness.h"
 
 namespace misfit {
 namespace {
@@ -59,6 +60,86 @@ double force_size(const FilterModel& model, int group, const FilterData& data, c
   return shown > 0.0 ? shown : hidden > 0.0 ? hidden : 1.0;
 }
 
+/// Means of so many neighbours: missing where one of them is, the inputs' never.
+Signals averaged(const Signals& signals, std::size_t count) {
+  if (count == 1) return signals;
+  Signals out;
+  out.name = signals.name;
+  for (std::size_t at = 0; at + count <= signals.samples(); at += count) {
+    double t = 0.0;
+    for (std::size_t k = at; k < at + count; ++k) t += signals.t[k] / static_cast<double>(count);
+    out.t.push_back(t);
+  }
+  const auto average = [&](const std::vector<Signal>& from, std::vector<Signal>& to) {
+    for (const Signal& signal : from) {
+      to.push_back({signal.name, signal.unit, {}, signal.sigma / std::sqrt(static_cast<double>(count))});
+      for (std::size_t at = 0; at + count <= signals.samples(); at += count) {
+        double sum = 0.0;
+        for (std::size_t k = at; k < at + count; ++k) sum += signal.values[k];
+        to.back().values.push_back(sum / static_cast<double>(count));
+      }
+    }
+  };
+  average(signals.measured, out.measured);
+  average(signals.inputs, out.inputs);
+  return out;
+}
+
+/// A recording, averaged, with its states and the sizes of their rates.
+struct SizedRecording {
+  double step = 0.0;  ///< [s] usual one between its samples
+  ReconstructedStates states;
+  RateSizes rates;
+};
+
+SizedRecording sized(const FilterModel& model, const FilterData& data, std::size_t count) {
+  const Signals signals = averaged(*data.signals, count);
+  FilterData coarse;
+  coarse.signals = &signals;
+  coarse.inputs = input_table(signals, model.model.inputs());
+  coarse.first = std::min(data.first / count, signals.samples() - 1);
+  coarse.start = data.start;
+  SizedRecording out{usual_step(signals.t), reconstruct_states(model.model, signals), {}};
+  out.rates = rate_sizes(model, coarse, out.states);
+  return out;
+}
+
+/// Are the shown rates of rates mostly differentiated noise? Then they have no memory beyond the five samples that they are read from, and
+/// fall to less than half where neighbours are averaged.
+bool mostly_noise(const FilterModel& model, const SizedRecording& recording, const SizedRecording& coarser) {
+  constexpr double of_motion = 0.5, largest_memory = 0.25;
+  constexpr int first_apart = 6, last = 9;  // samples whose five neighbours are others
+  for (int i = 0; i < model.model.system_states(); ++i) {
+    if (model.kind[static_cast<std::size_t>(i)] != 1 || !recording.rates.shown[static_cast<std::size_t>(i)]) continue;
+    if (coarser.rates.rms[i] > of_motion * recording.rates.rms[i]) continue;
+    std::vector<double> rates;
+    for (Eigen::Index k = 0; k < recording.states.dx.rows(); ++k)
+      rates.push_back(recording.states.ok[static_cast<std::size_t>(k)] ? recording.states.dx(k, i) : std::nan(""));
+    const std::vector<double> rho = autocorrelation(rates, last);
+    bool memory = false;
+    for (int lag = first_apart; lag <= last; ++lag) memory = memory || !(std::abs(rho[static_cast<std::size_t>(lag)]) < largest_memory);
+    if (!memory) return true;
+  }
+  return false;
+}
+
+/// How many neighbours must be averaged until accelerations are those of the motion: 1 unless a noisy recording is sampled much faster than
+/// it moves. There a size read from neighbours would be that of the noise, which grows with the square of the rate of sampling, and the
+/// least random force that is looked for (a thousandth of the usual one) could be larger than any there is.
+std::size_t samples_of_motion(const FilterModel& model, const FilterData& data) {
+  constexpr std::size_t fewest = 100;  // means
+  std::size_t count = 1;
+  if (data.signals->samples() < 2 * fewest) return count;
+  SizedRecording recording = sized(model, data, 1);
+  while (data.signals->samples() / (2 * count) >= fewest) {
+    SizedRecording coarser = sized(model, data, 2 * count);
+    if (!mostly_noise(model, recording, coarser)) break;
+    recording = std::move(coarser);
+    count *= 2;
+  }
+  return count;
+}
+
 }  // namespace
 
 void mark_known(const FilterModel& model, FilterNoise& usual) {
@@ -77,12 +158,13 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   constexpr double share_of_motion = 0.3, samples_of_memory = 6.0, share_of_rate = 0.15;
   FilterNoise out;
   const Signals& first = *data.front().signals;
-  const double h = usual_step(first.t);
+  const SizedRecording recording = sized(model, data.front(), samples_of_motion(model, data.front()));
+  const ReconstructedStates& states = recording.states;
+  const double h = usual_step(first.t), step = recording.step;
   constexpr double memory_of_white = 0.3;  // samples: correlated by 4 % at the next
-  out.force_time = model.model.force_time ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * h;
-  const ReconstructedStates states = reconstruct_states(model.model, first);
-  const double of_equal_intensity = std::sqrt(samples_of_memory * h / out.force_time);
-  const RateSizes rates = rate_sizes(model, data.front(), states);
+  out.force_time = model.model.force_time ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * step;
+  const double of_equal_intensity = std::sqrt(samples_of_memory * step / out.force_time);
+  const RateSizes& rates = recording.rates;
   const auto usual_force = [&](int group) { return share_of_motion * force_size(model, group, data.front(), rates) * of_equal_intensity; };
   out.force = usual_force(0);
   for (int group = 1; group < model.force_groups(); ++group) out.further_forces.push_back(usual_force(group));
