@@ -90,8 +90,8 @@ TEST_F(Embedded, IsLeftOutWhereItFindsNoRoomAndItsLastViewsFirst) {
   EXPECT_TRUE(answers.contains("curves?model=0"));
 }
 
-/// 100 000 samples of one channel, measured at random, with one wild residual.
-Fit long_fit() {
+/// Of two channels alike, measured at random, with one wild residual.
+Fit random_fit(int samples) {
   Fit fit;
   fit.method = "filter_error";
   fit.status = FitStatus::converged;
@@ -101,21 +101,21 @@ Fit long_fit() {
   c.unit = "m";
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  for (int k = 0; k < 100'000; ++k) {
+  for (int k = 0; k < samples; ++k) {
     c.t.push_back(0.001 * k);
     c.predicted.push_back(std::sin(0.01 * k) + 0.01 * normal(random));
     c.measured.push_back(k > 50'000 && k < 60'000 ? std::nan("") : c.predicted.back() + 0.1 * normal(random));
     c.sigma.push_back(0.1);
     c.held_out.push_back(k > 75'000);
   }
-  c.measured[12'345] = c.predicted[12'345] + 7.0;
+  c.measured[123] = c.predicted[123] + 7.0;
   fit.predictions = {c, c};
   fit.predictions[1].channel = "z";
   return fit;
 }
 
 TEST_F(Embedded, ThinsLongRecordingsAndKeepsTheirLeastAndLargest) {
-  write_fit(folder.path() / "out/fit/filter_error", long_fit());
+  write_fit(folder.path() / "out/fit/filter_error", random_fit(100'000));
   constexpr std::size_t small = 4'000'000;
   const std::string text = embedded_page(page, small);
   EXPECT_FALSE(text.empty());
@@ -136,6 +136,18 @@ TEST_F(Embedded, ThinsLongRecordingsAndKeepsTheirLeastAndLargest) {
   EXPECT_NEAR(largest, 7.0, 1e-6);
   EXPECT_GT(gap, 100U) << "where nothing was measured nothing is shown";
   EXPECT_THAT(all(100'000'000)["answers"]["state?"]["outdated"].dump(), Not(HasSubstr("samples are shown"))) << "where all find room";
+}
+
+TEST_F(Embedded, OfShortRecordingsLeavesViewsOutAndThinsNothing) {
+  constexpr int samples = 5'000;
+  write_fit(folder.path() / "out/fit/filter_error", random_fit(samples));
+  const std::size_t whole = embedded_answers(page, 100'000'000).size();
+  const json answers = all(whole - 100)["answers"];
+  ASSERT_TRUE(answers.contains("motion?model=0"));
+  EXPECT_LT(answers.size(), all(100'000'000)["answers"].size()) << "something is left out";
+  EXPECT_THAT(answers["state?"]["outdated"].dump(), Not(HasSubstr("samples are shown")));
+  EXPECT_THAT(all(whole / 2)["answers"]["state?"]["outdated"].dump(), HasSubstr("more than 3000 samples are shown"))
+      << "else there is no page";
 }
 
 TEST_F(Embedded, HasOneScriptThatImportsNothingAndFetchesNothing) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <unordered_map>
 
 #include "misfit/core/files.h"
@@ -107,24 +108,32 @@ void add_other_views(const EmbeddedPage& page, std::size_t model, AllAnswers& ou
   out.push_back({"study" + number, study_of(place)});
 }
 
-void add_samples(const Place& place, std::size_t model, AllAnswers& out) {
-  const std::optional<Diagnosis> diagnosis = diagnosis_of(place);
-  for (std::size_t e = 0; diagnosis && e < diagnosis->missing.size(); ++e) {
-    for (std::size_t q = 0; q < diagnosis->missing[e].quantities.size(); ++q)
-      out.push_back({fmt::format("samples?model={}&experiment={}&quantity={}", model, e, q), samples_view(*diagnosis, e, q)});
+void add_samples(const Diagnosis& diagnosis, std::size_t model, AllAnswers& out) {
+  for (std::size_t e = 0; e < diagnosis.missing.size(); ++e) {
+    for (std::size_t q = 0; q < diagnosis.missing[e].quantities.size(); ++q)
+      out.push_back({fmt::format("samples?model={}&experiment={}&quantity={}", model, e, q), samples_view(diagnosis, e, q)});
   }
 }
 
-void add_added_forces(const Place& place, std::size_t model, AllAnswers& out) {
-  const std::optional<Diagnosis> diagnosis = diagnosis_of(place);
-  const std::optional<Discovery> discovery = discovery_of(place);
-  if (!diagnosis || !discovery) return;
-  for (std::size_t e = 0; e < diagnosis->missing.size(); ++e) {
-    for (std::size_t c = 0; c < discovery->candidates.size(); ++c) {
-      if (discovery->candidates[c].added.empty()) continue;
-      out.push_back({fmt::format("added?model={}&experiment={}&candidate={}", model, e, c), added_view(*diagnosis, *discovery, e, c)});
+void add_added_forces(const Diagnosis& diagnosis, const Discovery& discovery, std::size_t model, AllAnswers& out) {
+  for (std::size_t e = 0; e < diagnosis.missing.size(); ++e) {
+    for (std::size_t c = 0; c < discovery.candidates.size(); ++c) {
+      if (discovery.candidates[c].added.empty()) continue;
+      out.push_back({fmt::format("added?model={}&experiment={}&candidate={}", model, e, c), added_view(diagnosis, discovery, e, c)});
     }
   }
+}
+
+/// What is seen where a candidate, or a cell, is pointed at: the forces of all models before the samples.
+void add_pointed_at(const EmbeddedPage& page, AllAnswers& out) {
+  AllAnswers samples;
+  for (std::size_t model = page.places.size(); model-- > 0;) {
+    const std::optional<Diagnosis> diagnosis = diagnosis_of(page.places[model]);
+    if (!diagnosis) continue;
+    if (const auto discovery = discovery_of(page.places[model])) add_added_forces(*diagnosis, *discovery, model, out);
+    add_samples(*diagnosis, model, samples);
+  }
+  std::move(samples.begin(), samples.end(), std::back_inserter(out));
 }
 
 AllAnswers all_answers(const EmbeddedPage& page) {
@@ -134,8 +143,7 @@ AllAnswers all_answers(const EmbeddedPage& page) {
   for (std::size_t model = 0; model < page.places.size(); ++model) add_other_views(page, model, out);
   out.push_back({"ladder?", ladder_view(page.places.front().folder)});
   out.push_back({"calibration?", calibration_view(page.places.front())});
-  for (std::size_t model = page.places.size(); model-- > 0;) add_added_forces(page.places[model], model, out);
-  for (std::size_t model = page.places.size(); model-- > 0;) add_samples(page.places[model], model, out);
+  add_pointed_at(page, out);
   return out;
 }
 
@@ -156,6 +164,19 @@ Chosen chosen(const AllAnswers& all, std::size_t most) {
   return {out.text(), complete};
 }
 
+/// Samples of the longest recording that the page shows.
+std::size_t longest_recording(const EmbeddedPage& page) {
+  std::size_t out = 0;
+  for (const Place& place : page.places) {
+    for (const Fit& fit : fits_of(place)) {
+      for (const ChannelPrediction& c : fit.predictions) out = std::max(out, c.t.size());
+    }
+    const std::optional<Diagnosis> diagnosis = diagnosis_of(place);
+    for (const MissingForce& m : diagnosis ? diagnosis->missing : std::vector<MissingForce>{}) out = std::max(out, m.t.size());
+  }
+  return out;
+}
+
 EmbeddedPage thinned(EmbeddedPage page, std::size_t most_samples) {
   for (Place& place : page.places) place.most_samples = most_samples;
   page.warnings.push_back(
@@ -170,8 +191,10 @@ EmbeddedPage thinned(EmbeddedPage page, std::size_t most_samples) {
 template <class Choose>
 std::string of_thinnest_needed(const EmbeddedPage& page, const Choose& choose) {
   Chosen best = choose(all_answers(page));
+  const std::size_t longest = best.all ? 0 : longest_recording(page);
   for (const std::size_t most_samples : {24'000U, 8'000U, 3'000U, 1'000U}) {
     constexpr std::size_t enough = 8'000;  // for any screen
+    if (most_samples >= longest) continue;
     if (most_samples >= enough ? best.all : !best.text.empty()) break;
     Chosen next = choose(all_answers(thinned(page, most_samples)));
     if (!next.text.empty()) best = std::move(next);

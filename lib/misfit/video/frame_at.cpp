@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "misfit/core/error.h"
-#include "misfit/core/files.h"
 #include "misfit/video/module.h"
+#include "misfit/video/stream.h"
 
 namespace misfit {
 namespace {
@@ -19,37 +18,35 @@ constexpr double before_seek = 0.5;  // [s] by which a seek aims earlier, since 
 FrameReader::FrameReader(const std::filesystem::path& path) : path_(path) { begin(); }
 
 void FrameReader::begin() {
-  if (!std::filesystem::is_regular_file(path_)) static_cast<void>(read_file(path_));  // says what is missing
-  std::string why;
-  stream_ = video_backend().open(path_.string(), why);
-  if (!stream_) throw RunError(path_.string() + ": not a video: " + why);
-  if (stream_->width <= 0 || stream_->height <= 0 || !(stream_->rate > 0.0))
-    throw RunError(path_.string() + ": not a video: its pictures have no size or no rate");
-  origin_ = stream_->first_timestamps.empty() ? 0.0 : stream_->first_timestamps.front();
+  stream_ = opened_stream(path_);
+  const std::vector<double>& first = stream_->first_timestamps;
+  origin_ = first.empty() ? 0.0 : first.front();
+  has_timestamps_ = first.size() > 1 && first[1] > first[0];
   interval_ = 1.0 / stream_->rate;
+  grey_.resize(static_cast<std::size_t>(stream_->width) * static_cast<std::size_t>(stream_->height));
+  shown_.reset();
   shown_ = decode();
   if (shown_) shown_->t = 0.0;
   ahead_ = decode();
 }
 
+/// The frame behind `ahead_`, or `shown_`, or none: a frame without a timestamp follows it by the usual interval.
 std::optional<FrameReader::Decoded> FrameReader::decode() {
   Decoded out;
-  const auto pixels = static_cast<std::size_t>(stream_->width) * static_cast<std::size_t>(stream_->height);
-  std::vector<std::uint8_t> grey(pixels);
-  out.bgr.resize(3 * pixels);
-  if (!stream_->next(grey.data(), out.bgr.data())) return std::nullopt;
+  out.bgr.resize(3 * grey_.size());
+  if (!stream_->next(grey_.data(), out.bgr.data())) return std::nullopt;
   out.t = stream_->timestamp - origin_;
-  if (shown_ && !(out.t > shown_->t)) out.t = shown_->t + interval_;  // it has none
+  if (shown_ && !(out.t > shown_->t)) out.t = shown_->t + interval_;
   return out;
 }
 
-/// False: it ended behind `t`, or nowhere.
+/// False: it ended behind `t`, or where no timestamp tells where it is (0: none, or the very beginning).
 bool FrameReader::seek(double t) {
-  if (!stream_->seek(std::max(0.0, origin_ + t - before_seek))) return false;
+  if (!has_timestamps_ || !stream_->seek(std::max(0.0, origin_ + t - before_seek))) return false;
   shown_.reset();
   shown_ = decode();
   ahead_ = shown_ ? decode() : std::nullopt;
-  return shown_ && shown_->t <= t;
+  return shown_ && shown_->t > 0.0 && shown_->t <= t;
 }
 
 void FrameReader::read_until(double t) {

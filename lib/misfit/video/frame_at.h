@@ -23,7 +23,7 @@ struct FramePicture {
 /// they are counted from the first.
 class FrameReader {
  public:
-  /// InputError: no such file. RunError: not a video.
+  /// Throws as opened_stream().
   explicit FrameReader(const std::filesystem::path& path);
 
   /// The last frame that begins not later than `t` [s since the first frame], the last of all behind the end. nullopt: none can be decoded.
@@ -43,6 +43,8 @@ class FrameReader {
   std::filesystem::path path_;
   std::unique_ptr<video_module::VideoStream> stream_;
   double origin_ = 0.0, interval_ = 0.0;  ///< [s] timestamp of the first frame; between frames
+  bool has_timestamps_ = false;
+  std::vector<std::uint8_t> grey_;        ///< what is decoded besides, and not looked at
   std::optional<Decoded> shown_, ahead_;  ///< frames that follow each other
 };
 

@@ -12,9 +12,9 @@
 #include <thread>
 
 #include "misfit/core/error.h"
-#include "misfit/core/files.h"
 #include "misfit/video/clock.h"
 #include "misfit/video/module.h"
+#include "misfit/video/stream.h"
 
 namespace misfit {
 namespace {
@@ -22,13 +22,6 @@ namespace {
 constexpr std::size_t queue_length = 16;  // frames decoded ahead
 constexpr double on_grid = 0.3;        // of a frame: how far a timestamp may be from the grid of the frame rate (they are rounded to 1 ms)
 constexpr long largest_gap = 100'000;  // frames: beyond, timestamps are not believed
-
-void check_file(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) static_cast<void>(read_file(path));  // says what is missing, with the nearest name
-  if (!std::filesystem::is_regular_file(path, error)) throw InputError(path.string() + ": not a file");
-  if (std::filesystem::file_size(path, error) == 0) throw RunError(path.string() + ": not a video: the file is empty");
-}
 
 }  // namespace
 
@@ -150,10 +143,7 @@ std::vector<double> increasing(const std::vector<double>& timestamps) {
 }  // namespace
 
 Video::Video(const std::filesystem::path& path, Colours colours) : state_(std::make_unique<State>()) {
-  check_file(path);
-  std::string why;
-  state_->stream = video_backend().open(path.string(), why);
-  if (!state_->stream) throw RunError(path.string() + ": not a video: " + why);
+  state_->stream = opened_stream(path);
   const video_module::VideoStream& stream = *state_->stream;
   VideoFacts& facts = state_->facts;
   facts.file = path.filename().string();
@@ -161,10 +151,6 @@ Video::Video(const std::filesystem::path& path, Colours colours) : state_(std::m
   facts.height = stream.height;
   facts.rate = stream.rate;
   facts.declared = stream.declared;
-  if (facts.width <= 0 || facts.height <= 0) throw RunError(path.string() + ": not a video: its pictures have no size");
-  if (!(facts.rate > 0.0) || facts.rate > 1e5)
-    throw RunError(
-        fmt::format("{}: the file declares {} frames per second: no time can be assigned to its frames", path.string(), facts.rate));
   const FrameClock clock = clock_of(increasing(stream.first_timestamps), stream.rate);
   facts.variable = !clock.constant;
   facts.rate = clock.rate;
@@ -222,7 +208,7 @@ std::vector<std::string> notes_of(const VideoFacts& facts) {
 }
 
 Image read_image(const std::filesystem::path& path) {
-  check_file(path);
+  check_media_file(path);
   Image image;
   std::string why;
   image.pixels = video_backend().read_image(path.string(), image.width, image.height, why);

@@ -107,21 +107,26 @@ struct OfChannel {
   RecordResiduals residuals;
 };
 
+/// Of one experiment.
+struct OneStepPredictions {
+  const FilterData& data;
+  const FilterTrace& trace;
+  SettledPredictions known;
+};
+
 /// Adds its errors.
-OfChannel predict_channel(const FilterEstimate& estimate, std::size_t experiment, std::size_t o, ChannelErrors& errors) {
-  const FilterData& data = estimate.data[experiment];
-  const FilterTrace& trace = estimate.traces[experiment];
-  const OutputSpec& output = estimate.model.system->spec().outputs[o];
+OfChannel predict_channel(const OneStepPredictions& predictions, std::size_t o, const OutputSpec& output, ChannelErrors& errors) {
+  const FilterData& data = predictions.data;
+  const FilterTrace& trace = predictions.trace;
   const Signals& signals = *data.signals;
   OfChannel out{{signals.name, output.name, output.unit, signals.t, signals.measured[o].values, {}, {}, {}}, {}};
   ChannelPrediction& p = out.prediction;
-  const SettledPredictions predictions(trace, data);
   for (std::size_t k = 0; k < signals.samples(); ++k) {
     const std::size_t at = trace.place(k, o);
     p.predicted.push_back(trace.y[at]);
     p.sigma.push_back(std::sqrt(trace.y_variance[at]));
     p.held_out.push_back(signals.held_out(k));
-    if (!predictions.settled(k, o)) continue;
+    if (!predictions.known.settled(k, o)) continue;
     if (data.use[at] == SampleRole::counted) errors.fitted.add(p.measured[k] - trace.y[at]);
     if (data.use[at] == SampleRole::validation) errors.held_out.add(p.measured[k] - trace.y[at]);
     if (data.use[at] == SampleRole::counted || data.use[at] == SampleRole::validation)
@@ -132,10 +137,13 @@ OfChannel predict_channel(const FilterEstimate& estimate, std::size_t experiment
 
 void add_predictions(const FilterEstimate& estimate, Fit& fit) {
   const auto& outputs = estimate.model.system->spec().outputs;
+  std::vector<OneStepPredictions> predictions;
+  for (std::size_t e = 0; e < estimate.data.size(); ++e)
+    predictions.push_back({estimate.data[e], estimate.traces[e], {estimate.traces[e], estimate.data[e]}});
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     ChannelErrors errors;
-    for (std::size_t e = 0; e < estimate.data.size(); ++e) {
-      OfChannel channel = predict_channel(estimate, e, o, errors);
+    for (const OneStepPredictions& of_experiment : predictions) {
+      OfChannel channel = predict_channel(of_experiment, o, outputs[o], errors);
       channel.residuals.describe(channel.prediction, fit);
       fit.predictions.push_back(std::move(channel.prediction));
     }

@@ -62,7 +62,6 @@ double force_size(const FilterModel& model, int group, const FilterData& data, c
 
 /// Means of so many neighbours: missing where one of them is, the inputs' never.
 Signals averaged(const Signals& signals, std::size_t count) {
-  if (count == 1) return signals;
   Signals out;
   out.name = signals.name;
   for (std::size_t at = 0; at + count <= signals.samples(); at += count) {
@@ -85,23 +84,28 @@ Signals averaged(const Signals& signals, std::size_t count) {
   return out;
 }
 
-/// A recording, averaged, with its states and the sizes of their rates.
+/// A recording with its states and the sizes of their rates.
 struct SizedRecording {
   double step = 0.0;  ///< [s] usual one between its samples
   ReconstructedStates states;
   RateSizes rates;
 };
 
-SizedRecording sized(const FilterModel& model, const FilterData& data, std::size_t count) {
-  const Signals signals = averaged(*data.signals, count);
-  FilterData coarse;
-  coarse.signals = &signals;
-  coarse.inputs = input_table(signals, model.model.inputs());
-  coarse.first = std::min(data.first / count, signals.samples() - 1);
-  coarse.start = data.start;
-  SizedRecording out{usual_step(signals.t), reconstruct_states(model.model, signals), {}};
-  out.rates = rate_sizes(model, coarse, out.states);
+SizedRecording sized(const FilterModel& model, const FilterData& data) {
+  SizedRecording out{usual_step(data.signals->t), reconstruct_states(model.model, *data.signals), {}};
+  out.rates = rate_sizes(model, data, out.states);
   return out;
+}
+
+/// Of means of `count` neighbours.
+SizedRecording sized_means(const FilterModel& model, const FilterData& data, std::size_t count) {
+  const Signals signals = averaged(*data.signals, count);
+  FilterData means;
+  means.signals = &signals;
+  means.inputs = input_table(signals, model.model.inputs());
+  means.first = std::min(data.first / count, signals.samples() - 1);
+  means.start = data.start;
+  return sized(model, means);
 }
 
 /// Are the shown rates of rates mostly differentiated noise? Then they have no memory beyond the five samples that they are read from, and
@@ -123,21 +127,18 @@ bool mostly_noise(const FilterModel& model, const SizedRecording& recording, con
   return false;
 }
 
-/// How many neighbours must be averaged until accelerations are those of the motion: 1 unless a noisy recording is sampled much faster than
-/// it moves. There a size read from neighbours would be that of the noise, which grows with the square of the rate of sampling, and the
-/// least random force that is looked for (a thousandth of the usual one) could be larger than any there is.
-std::size_t samples_of_motion(const FilterModel& model, const FilterData& data) {
+/// With neighbours averaged until accelerations are those of the motion: as it is, unless a noisy recording is sampled much faster than it
+/// moves. There a size read from neighbours would be that of the noise, which grows with the square of the rate of sampling, and the least
+/// random force that is looked for (a thousandth of the usual one) could be larger than any there is.
+SizedRecording sized_by_motion(const FilterModel& model, const FilterData& data) {
   constexpr std::size_t fewest = 100;  // means
-  std::size_t count = 1;
-  if (data.signals->samples() < 2 * fewest) return count;
-  SizedRecording recording = sized(model, data, 1);
-  while (data.signals->samples() / (2 * count) >= fewest) {
-    SizedRecording coarser = sized(model, data, 2 * count);
-    if (!mostly_noise(model, recording, coarser)) break;
-    recording = std::move(coarser);
-    count *= 2;
+  SizedRecording out = sized(model, data);
+  for (std::size_t count = 2; data.signals->samples() / count >= fewest; count *= 2) {
+    SizedRecording coarser = sized_means(model, data, count);
+    if (!mostly_noise(model, out, coarser)) break;
+    out = std::move(coarser);
   }
-  return count;
+  return out;
 }
 
 }  // namespace
@@ -158,7 +159,7 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   constexpr double share_of_motion = 0.3, samples_of_memory = 6.0, share_of_rate = 0.15;
   FilterNoise out;
   const Signals& first = *data.front().signals;
-  const SizedRecording recording = sized(model, data.front(), samples_of_motion(model, data.front()));
+  const SizedRecording recording = sized_by_motion(model, data.front());
   const ReconstructedStates& states = recording.states;
   const double h = usual_step(first.t), step = recording.step;
   constexpr double memory_of_white = 0.3;  // samples: correlated by 4 % at the next

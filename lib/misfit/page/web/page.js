@@ -238,17 +238,17 @@ class Film {
       while (this.asked !== `${this.place} ${this.t}`) {
         const t = this.t;
         this.asked = `${this.place} ${t}`;
-        this.draw(t, await get('frame', { film: this.place, t }));
+        this.draw(await get('frame', { film: this.place, t }));
       }
     } catch (error) {
       at('frame-words').textContent = error.message;
     }
     this.busy = false;
   }
-  draw(t, frame) {
+  draw(frame) {
     at('frame').src = `data:image/jpeg;base64,${frame.jpeg}`;
     at('marks').setAttribute('viewBox', `0 0 ${frame.width} ${frame.height}`);
-    const [measured, predicted] = ['measured', 'predicted'].map((kind) => this.marker(kind, t, frame)), size = 0.02 * frame.width;
+    const [measured, predicted] = ['measured', 'predicted'].map((kind) => this.marker(kind, frame)), size = 0.02 * frame.width;
     const [circle, cross] = at('marks').children;
     for (const [node, place] of [[circle, measured], [cross, predicted]]) node.style.display = place ? '' : 'none';
     if (measured) for (const [key, value] of [['cx', measured[0]], ['cy', measured[1]], ['r', size]]) circle.setAttribute(key, value);
@@ -258,9 +258,9 @@ class Film {
     if (predicted) said.push(`blue: predicted by ${here.motion.methods[here.method]}`);
     at('frame-words').textContent = said.join(' · ');
   }
-  /** [px] null: there is none at this time. */
-  marker(kind, t, frame) {
-    const [x, y] = [this.across, this.down].map((figure) => figure && valueAt(figure, kind, t));
+  /** [px] null: there is none at the frame's time. */
+  marker(kind, frame) {
+    const [x, y] = [this.across, this.down].map((figure) => figure && valueAt(figure, kind, frame.t));
     return x === undefined || y === undefined ? null : this.pixel(x, y, frame);
   }
 }
