@@ -41,6 +41,8 @@ Fit example() {
   fit.curves[0].trimmed = true;
   fit.curves[1].why = "the sum telescopes";
   fit.predictions = {{"flight", "alpha_T", "rad", {0.0, 0.5}, {0.2, nan}, {0.21, 0.22}, {0.01, 0.01}, {false, true}}};
+  fit.roughness = {
+      {"C_m", "rad^3", 1e-4, true, {1e-5, 1e-4}, {-2.0, 0.0}, {{"C_m", "alpha_T", "rad", "-", {0.0, 0.1}, {{1.0, 2.0}, {1.5, 1.75}}}}}};
   fit.facts = {{"telescoped_sum", "0.01 ± 0.02"}};
   fit.driven = true;
   fit.seconds = 2.5;
@@ -144,6 +146,28 @@ TEST(Fit, ReadsBackWhatWasWritten) {
   EXPECT_NEAR(back.predictions[0].measured[0], 0.2, 1e-12);
   EXPECT_TRUE(std::isnan(back.predictions[0].measured[1]));
   EXPECT_EQ(back.predictions[0].held_out, fit.predictions[0].held_out);
+}
+
+TEST(Fit, WhatAnotherRoughnessMakesOfItIsReadBackAndGoesWithTheCurves) {
+  const TemporaryFolder folder;
+  Fit fit = example();
+  write_fit(folder.path(), fit);
+  const std::vector<RoughnessPath> back = read_fit(folder.path()).roughness;
+  ASSERT_EQ(back.size(), 1U);
+  EXPECT_EQ(back[0].curve, "C_m");
+  EXPECT_EQ(back[0].unit, "rad^3");
+  EXPECT_EQ(back[0].used, 1e-4);
+  EXPECT_TRUE(back[0].chosen);
+  EXPECT_EQ(back[0].roughness, fit.roughness[0].roughness);
+  EXPECT_EQ(back[0].log_likelihood, fit.roughness[0].log_likelihood);
+  ASSERT_EQ(back[0].curves.size(), 1U);
+  EXPECT_EQ(back[0].curves[0].of, "alpha_T");
+  EXPECT_EQ(back[0].curves[0].x, fit.roughness[0].curves[0].x);
+  EXPECT_EQ(back[0].curves[0].values, fit.roughness[0].curves[0].values);
+  fit.roughness.clear();
+  write_fit(folder.path(), fit);
+  EXPECT_TRUE(read_fit(folder.path()).roughness.empty());
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "roughness.json"));
 }
 
 TEST(Fit, TheSecondExperimentGetsItsOwnPredictions) {

@@ -164,6 +164,41 @@ TEST(OutputErrorOnValidation, ConvergesFromFiftyRandomStarts) {
   EXPECT_EQ(converged, 50) << failed;
 }
 
+/// With a tenth of the roughness, and ten times: the curve that the first fit foretells, and the one that a refit gives.
+TEST(OutputErrorOnValidation, ForetellsTheCurveOfAnotherRoughness) {
+  const std::vector<Signals> experiments{with_noise(1, 0.1)};
+  const FittedModel first = fitted(experiments);
+  const auto path = std::find_if(first.fit.roughness.begin(), first.fit.roughness.end(), [](const auto& p) { return p.curve == "C_m"; });
+  ASSERT_NE(path, first.fit.roughness.end());
+  EXPECT_EQ(path->unit, "rad^3");
+  const auto used =
+      static_cast<std::size_t>(std::find(path->roughness.begin(), path->roughness.end(), path->used) - path->roughness.begin());
+  for (const std::size_t other : {used - 3, used + 3}) {
+    Model model = first.model;
+    for (Curve& curve : model.curves) {
+      const auto own =
+          std::find_if(first.fit.roughness.begin(), first.fit.roughness.end(), [&](const auto& p) { return p.curve == curve.name; });
+      ASSERT_NE(own, first.fit.roughness.end());
+      curve.roughness = curve.name == "C_m" ? path->roughness[other] : own->used;
+    }
+    const FittedModel refitted = output_error(equation_error(model, experiments), experiments);
+    const CurveEstimate &before = first.fit.curves.front(), &after = refitted.fit.curves.front();
+    ASSERT_EQ(after.name, "C_m");
+    const CurvesByRoughness& foretold = path->curves.front();
+    double error = 0.0, change = 0.0;
+    for (std::size_t i = 0; i < foretold.x.size(); ++i) {
+      if (foretold.x[i] < first_angle * degree || foretold.x[i] > 15.5 * degree) continue;
+      const double truth = value_at(after, foretold.x[i] + 1e-9);
+      error += std::pow(foretold.values[other][i] - truth, 2);
+      change += std::pow(value_at(before, foretold.x[i] + 1e-9) - truth, 2);
+    }
+    std::printf("C_m with %.3g times the roughness: changes by %.3g, foretold to %.3g\n", path->roughness[other] / path->used,
+                std::sqrt(change), std::sqrt(error));
+    EXPECT_GT(change, 0.0);
+    EXPECT_LT(std::sqrt(error), 0.2 * std::sqrt(change));
+  }
+}
+
 TEST(OutputError, EveryParameterFixedIsAnAnswerInWords) {
   const std::vector<Signals> experiments{testing_planar::validation_signals()};
   Model model = model_for(experiments, 6);

@@ -120,6 +120,54 @@ TEST(UncertainRoughness, AStraightLineKeepsTheBandOfTheBendsItMayHave) {
   EXPECT_LT(middle.dot(covariance * middle), 9.0 * middle.dot(smoothed.covariance * middle));
 }
 
+constexpr double wide = 1e-8;  // precision of each coefficient beside the roughness
+
+/// Log density of the measurements, curve integrated out, but for what does not depend on λ: y ~ N(0, I + A P⁻¹ Aᵀ), P = λ Ω + `wide`.
+double log_density(const CurveMeasurements& r, const Eigen::VectorXd& y, const Penalty& penalty) {
+  Eigen::MatrixXd prior = penalty.lambda * penalty.omega;
+  prior.diagonal().array() += wide;
+  const Eigen::MatrixXd V = Eigen::MatrixXd::Identity(y.size(), y.size()) + r.A * prior.ldlt().solve(r.A.transpose());
+  const Eigen::LDLT<Eigen::MatrixXd> factors(V);
+  return -0.5 * factors.vectorD().array().log().sum() - 0.5 * y.dot(factors.solve(y));
+}
+
+TEST(RoughnessPaths, AreTheFitsThatAnotherRoughnessGives) {
+  const CurveMeasurements r = measurements();
+  Eigen::VectorXd y(r.A.rows());
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = 4.0 * std::sin(0.05 * static_cast<double>(i)) + (i % 2 == 0 ? 1.0 : -1.0);
+  NormalEquations problem = problem_of(r, y);
+  problem.prior.precision.setConstant(wide);
+  std::vector<Penalty> penalties{penalty_of(r, 1.0, true)};
+  penalties[0].curve = 3;
+  static_cast<void>(estimate_smoothing(problem, penalties, 1.0));
+  penalties[0].chosen = false;
+  const PenalisedFit smoothed = estimate_smoothing(problem, penalties, 1.0);
+  penalties[0].chosen = true;
+  const auto paths = roughness_paths(at_maximum(problem, smoothed), penalties, 1.0);
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(paths[0].curve, 3);
+  EXPECT_EQ(paths[0].used, penalties[0].lambda);
+  EXPECT_TRUE(paths[0].chosen);
+  ASSERT_EQ(paths[0].lambda.size(), 25U);
+  const double here = log_density(r, y, penalties[0]);
+  for (std::size_t i = 0; i < paths[0].lambda.size(); ++i) {
+    std::vector<Penalty> other{penalty_of(r, paths[0].lambda[i], false)};
+    const PenalisedFit refitted = estimate_smoothing(problem, other, 1.0);
+    EXPECT_LT((paths[0].theta[i] - refitted.theta).norm(), 1e-6 * refitted.theta.norm()) << i;
+    EXPECT_NEAR(paths[0].log_likelihood[i], log_density(r, y, other[0]) - here, 1e-2) << i;
+    EXPECT_LE(paths[0].log_likelihood[i], 1e-3) << "the chosen one is the most likely";
+  }
+  EXPECT_EQ(paths[0].theta[12], smoothed.theta);
+  EXPECT_GT((paths[0].theta.front() - smoothed.theta).norm(), 0.05 * smoothed.theta.norm()) << "the test sees a difference";
+}
+
+TEST(RoughnessPaths, AreNoneWhereTheRoughnessIsZero) {
+  const CurveMeasurements r = measurements();
+  const NormalEquations problem = problem_of(r, Eigen::VectorXd::Ones(r.A.rows()));
+  EXPECT_TRUE(roughness_paths(problem, {penalty_of(r, 0.0, false)}, 1.0).empty());
+  EXPECT_TRUE(roughness_paths(problem, {}, 1.0).empty());
+}
+
 /// A curve so stiff that it is a line, beside a parameter that is known a million times less well than the line and almost stands in for
 /// it: all that is known of both is what a line in its place would give, written down with two columns.
 struct StiffBesideWeak {

@@ -156,6 +156,24 @@ def force_of_the_accepted(page, name):
     page.wait(lambda: page.one("#candidates tr.accepted button.adds"), "the candidates")
 
 
+def move_the_roughness(page):
+    """The curve follows the slider, and goes back."""
+    def drawn():
+        return page.js("return document.querySelector('#view canvas').toDataURL()")
+
+    page.view("curves")
+    slider = page.wait(lambda: page.one(".slider input"), "the slider of a roughness")
+    page.wait(lambda: page.one("#view canvas"), "the curve")
+    time.sleep(0.5)
+    before = drawn()
+    assert "as fitted" in page.text(".slider output")
+    page.js("arguments[0].value = arguments[0].max; arguments[0].dispatchEvent(new Event('input'))", slider)
+    assert "times as fitted; log marginal likelihood" in page.text(".slider output")
+    page.wait(lambda: drawn() != before, "another curve")
+    page.js("[...document.querySelectorAll('.slider button')].find((b) => b.textContent === 'As fitted').click()")
+    page.wait(lambda: drawn() == before, "the curve as fitted")
+
+
 def find_and_add():
     """Run, find where it fails, add the first candidate, see the error fall, reload."""
     server = Server()
@@ -177,6 +195,7 @@ def find_and_add():
     assert values >= 3, values
     plot.send_keys(Keys.ESCAPE)
     assert page.text("#marked") == ""
+    move_the_roughness(page)
     page.view("candidates")
     first = page.wait(lambda: page.one("#candidates tr.accepted button.adds"), "an accepted candidate").get_attribute("data-effect")
     force_of_the_accepted(page, first)
@@ -219,6 +238,7 @@ def report_without_server(page, verdict):
     page.js("document.querySelector('#model').value = 0; document.querySelector('#model').dispatchEvent(new Event('change'))")
     page.view("where")
     point_at_the_worst_place(page)
+    move_the_roughness(page)
     page.view("candidates")
     page.click("#candidates tr.accepted button.shows")
     page.wait(lambda: "adds" in page.text("#force h3"), "the force of a candidate")

@@ -43,6 +43,12 @@ void interval_in_degrees(Archive& json, MaybeConst<Estimate> auto& trim) {
   }
 }
 
+constexpr const char* roughness_file = "roughness.json";  // apart, since nobody reads its numbers
+
+struct RoughnessPaths {
+  std::vector<RoughnessPath> all;
+};
+
 /// The curves in the order of their files, with the names of these.
 Json curves_to_json(const std::vector<CurveEstimate>& curves) {
   Json array = Json::array();
@@ -62,6 +68,18 @@ template <class Archive>
 void fields(Archive& json, MaybeConst<CurveEstimate> auto& curve) {
   json("name", curve.name), json("of", curve.of), json("of_unit", curve.of_unit), json("unit", curve.unit);
   json("informative", curve.informative), json("trimmed", curve.trimmed), json("why", curve.why);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<CurvesByRoughness> auto& curve) {
+  json("name", curve.name), json("of", curve.of), json("of_unit", curve.of_unit), json("unit", curve.unit);
+  json("x", curve.x), json("values", curve.values);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<RoughnessPath> auto& path) {
+  json("curve", path.curve), json("unit", path.unit), json("used", path.used), json("chosen", path.chosen);
+  json("roughness", path.roughness), json("log_likelihood", path.log_likelihood), json("curves", path.curves);
 }
 
 template <class Archive>
@@ -102,12 +120,22 @@ void fields(Archive& json, MaybeConst<Fit> auto& fit) {
   }
 }
 
+template <class Archive>
+void fields(Archive& json, MaybeConst<RoughnessPaths> auto& paths) {
+  json("roughness", paths.all);
+}
+
 std::string to_string(FitStatus status) { return fit_status_names.at(static_cast<std::size_t>(status)); }
 
 void write_fit(const std::filesystem::path& dir, const Fit& fit) {
   make_writable_folder(dir);
   for (const CurveFile& file : curve_files(fit.curves)) write_curves(dir / file.name, fit.curves, file);
   for (const PredictionFile& file : prediction_files(fit.predictions)) write_predictions(dir / file.name, fit.predictions, file);
+  if (fit.roughness.empty()) {
+    std::filesystem::remove(dir / roughness_file);  // of an earlier fit
+  } else {
+    write_json(dir / roughness_file, RoughnessPaths{fit.roughness});
+  }
   write_json(dir / "fit.json", fit);
 }
 
@@ -115,6 +143,7 @@ Fit read_fit(const std::filesystem::path& dir) {
   Fit fit = read_json<Fit>(dir / "fit.json");
   for (const CurveFile& file : curve_files(fit.curves)) read_curves(dir / file.name, fit.curves, file);
   for (const PredictionFile& file : prediction_files(fit.predictions)) read_predictions(dir / file.name, fit.predictions, file);
+  if (std::filesystem::exists(dir / roughness_file)) fit.roughness = read_json<RoughnessPaths>(dir / roughness_file).all;
   return fit;
 }
 

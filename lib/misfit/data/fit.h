@@ -34,6 +34,25 @@ struct CurveEstimate {
   bool trimmed = false;  ///< the system's static curve: its stable zero is the fit's trim
 };
 
+/// A curve at each of several values of a roughness, that of another curve perhaps.
+struct CurvesByRoughness {
+  std::string name, of, of_unit, unit;      ///< as of CurveEstimate
+  std::vector<double> x;                    ///< [of_unit]
+  std::vector<std::vector<double>> values;  ///< roughness → x → [unit]
+};
+
+/// What another roughness of a curve would make of it and of the curves derived from it, all other unknowns following, by the fit's
+/// linearisation (inference/roughness.h roughness_paths()).
+struct RoughnessPath {
+  std::string curve;                   ///< whose roughness it is
+  std::string unit;                    ///< of the roughness
+  double used = 0.0;                   ///< with which the fit was made
+  bool chosen = false;                 ///< from the data; false: the study gives it
+  std::vector<double> roughness;       ///< rising, in steps of equal ratio
+  std::vector<double> log_likelihood;  ///< marginal one, less that with `used`
+  std::vector<CurvesByRoughness> curves;
+};
+
 enum class FitStatus { converged, not_converged, declined, failed };
 inline constexpr std::array<const char*, 4> fit_status_names = {"converged", "not_converged", "declined", "failed"};
 [[nodiscard]] std::string to_string(FitStatus status);
@@ -60,6 +79,7 @@ struct Fit {
   std::optional<Estimate> trim;                         ///< [rad]
   std::map<std::string, Estimate> rms, validation_rms;  ///< per channel
   std::vector<CurveEstimate> curves;
+  std::vector<RoughnessPath> roughness;
   std::vector<ChannelPrediction> predictions;
   std::map<std::string, std::string> facts;  ///< further findings in words, for fit.json ("telescoped_sum": "…")
   bool driven = false;                       ///< the motion is driven by something the model does not have
@@ -70,7 +90,8 @@ struct Fit {
   [[nodiscard]] bool usable() const { return status == FitStatus::converged || status == FitStatus::not_converged; }
 };
 
-/// Writes fit.json, curves.csv and one prediction.csv into `dir`; several experiments: prediction_NAME.csv beside.
+/// Writes fit.json, curves.csv and one prediction.csv into `dir`; several experiments: prediction_NAME.csv beside; curves with a
+/// roughness: roughness.json.
 void write_fit(const std::filesystem::path& dir, const Fit& fit);
 [[nodiscard]] Fit read_fit(const std::filesystem::path& dir);
 

@@ -45,7 +45,51 @@ std::vector<double> counts_at(const std::vector<double>& x, const RowMatrix& vis
 struct Combination {
   std::string name, of, unit;
   std::vector<DerivedCurve::Term> terms;
+
+  [[nodiscard]] bool contains(const std::string& curve) const {
+    return std::any_of(terms.begin(), terms.end(), [&](const auto& term) { return term.curve == curve; });
+  }
 };
+
+/// The model's curves, then those that its system derives from them.
+std::vector<Combination> combinations_of(const Model& model) {
+  std::vector<Combination> out;
+  for (const auto& curve : model.curves) out.push_back({curve.name, curve.of, curve.unit, {{curve.name, 0, [](double) { return 1.0; }}}});
+  const std::vector<double> values = model.values();
+  for (const auto& derived : model.system->derived_curves(values.data())) {
+    const bool possible =
+        std::all_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return model.find_curve(term.curve) != nullptr; });
+    if (possible) out.push_back({derived.name, derived.of, derived.unit, derived.terms});
+  }
+  return out;
+}
+
+/// Calls add(parameter, weight): at x the term is the sum of weight times value over these parameters.
+template <class Add>
+void weigh(const Model& model, const DerivedCurve::Term& term, double x, const Add& add) {
+  const Curve& curve = *model.find_curve(term.curve);
+  const CurvePoint point = curve.spline.at(x);
+  for (int j = 0; j < 4; ++j) add(curve.first + point.first + j, term.factor(x) * (term.derivative == 0 ? point.w : point.d)[j]);
+}
+
+std::vector<double> values_at(const Model& model, const Combination& c, const std::vector<double>& x) {
+  std::vector<double> out(x.size(), 0.0);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (const auto& term : c.terms)
+      weigh(model, term, x[i], [&](int parameter, double w) { out[i] += w * model.parameters[parameter].value; });
+  }
+  return out;
+}
+
+/// About 40 of those of the curve's grid.
+std::vector<double> few_places(const Curve& curve) {
+  constexpr std::size_t count = 40;
+  const std::vector<double> all = grid_over(curve.spline.lowest(), curve.spline.highest(), curve.of_unit);
+  const std::size_t step = std::max<std::size_t>(all.size() / count, 1);
+  std::vector<double> out;
+  for (std::size_t i = 0; i < all.size(); i += step) out.push_back(all[i]);
+  return out;
+}
 
 /// Curves of a model with bands from the joint covariance of its free parameters.
 class CurveBands {
@@ -67,7 +111,12 @@ class CurveBands {
     out.count = counts_at(out.x, visited_, *lead);
     for (double x : out.x) {
       Weights w{Eigen::VectorXd::Zero(covariance_.rows()), 0.0};
-      for (const auto& term : c.terms) add(term, x, w);
+      for (const auto& term : c.terms) {
+        weigh(model_, term, x, [&](int parameter, double weight) {
+          w.value += weight * model_.parameters[parameter].value;
+          if (column_of_[parameter] >= 0) w.on_columns[column_of_[parameter]] += weight;
+        });
+      }
       out.value.push_back(w.value);
       out.sigma.push_back(std::sqrt(std::max(w.on_columns.dot(covariance_ * w.on_columns), 0.0)));
     }
@@ -75,17 +124,6 @@ class CurveBands {
   }
 
  private:
-  void add(const DerivedCurve::Term& term, double x, Weights& out) const {
-    const Curve& curve = *model_.find_curve(term.curve);
-    const CurvePoint point = curve.spline.at(x);
-    for (int j = 0; j < 4; ++j) {
-      const int parameter = curve.first + point.first + j;
-      const double w = term.factor(x) * (term.derivative == 0 ? point.w : point.d)[j];
-      out.value += w * model_.parameters[parameter].value;
-      if (column_of_[parameter] >= 0) out.on_columns[column_of_[parameter]] += w;
-    }
-  }
-
   const Model& model_;
   const Eigen::MatrixXd& covariance_;
   const RowMatrix& visited_;
@@ -172,18 +210,41 @@ void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMa
   }
   const CurveBands bands(model, covariance, visited);
   fit.curves.clear();
-  for (const auto& curve : model.curves)
-    fit.curves.push_back(bands.evaluate({curve.name, curve.of, curve.unit, {{curve.name, 0, [](double) { return 1.0; }}}}));
-  const std::vector<double> values = model.values();
-  for (const auto& derived : model.system->derived_curves(values.data())) {
-    const bool possible =
-        std::all_of(derived.terms.begin(), derived.terms.end(), [&](const auto& term) { return model.find_curve(term.curve) != nullptr; });
-    if (possible) fit.curves.push_back(bands.evaluate({derived.name, derived.of, derived.unit, derived.terms}));
-  }
+  for (const Combination& combination : combinations_of(model)) fit.curves.push_back(bands.evaluate(combination));
   for (auto& curve : fit.curves) {
     curve.trimmed = curve.name == model.system->spec().static_curve;
     if (curve.trimmed) fit.trim = stable_zero(curve);
   }
+}
+
+namespace {
+
+RoughnessPath path_of(const Model& model, const RoughnessPoints& points) {
+  const Curve& own = model.curves[static_cast<std::size_t>(points.curve)];
+  RoughnessPath out{own.name, roughness_unit(own), points.used, points.chosen, points.lambda, points.log_likelihood, {}};
+  for (const Combination& c : combinations_of(model)) {
+    const Curve& lead = *model.find_curve(c.terms.front().curve);
+    if (c.contains(own.name)) out.curves.push_back({c.name, c.of, lead.of_unit, c.unit, few_places(lead), {}});
+  }
+  Model there = model;
+  const Eigen::Index free = model.theta().size();
+  for (const Eigen::VectorXd& theta : points.theta) {
+    there.set_theta(theta.head(free));
+    auto next = out.curves.begin();
+    for (const Combination& c : combinations_of(there)) {
+      if (!c.contains(own.name)) continue;
+      next->values.push_back(values_at(there, c, next->x));
+      ++next;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void describe_roughness(const Model& model, const std::vector<RoughnessPoints>& paths, Fit& fit) {
+  fit.roughness.clear();
+  for (const RoughnessPoints& points : paths) fit.roughness.push_back(path_of(model, points));
 }
 
 void keep_plain_sigmas(Fit& fit) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "misfit/data/fit.h"
+#include "misfit/inference/roughness.h"
 #include "misfit/inference/states.h"
 #include "misfit/model/model.h"
 
@@ -28,6 +29,9 @@ void choose_all_knots(ModelRequest& request, const Registry& registry, const std
 /// of 0.1 deg (angles) or 1/200 of the range, visit counts, and the trim (stable zero of the system's static curve) with sigma. `visited`
 /// gives the counts.
 void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited, Fit& fit);
+
+/// Fit::roughness: each of the paths as the curves that hang on it, at about 40 of the places of describe().
+void describe_roughness(const Model& model, const std::vector<RoughnessPoints>& paths, Fit& fit);
 
 /// Keeps the sigmas of parameters and trim that describe() gave for white residuals, before it is called with the covariance that allows
 /// for autocorrelated ones.

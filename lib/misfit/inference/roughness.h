@@ -70,4 +70,19 @@ struct PenaltyBasis {
 [[nodiscard]] Eigen::MatrixXd with_uncertain_roughness(const NormalEquations& problem, const std::vector<Penalty>& penalties, double sigma2,
                                                        const Eigen::MatrixXd& excess = {});
 
+/// The maximum of the linearised problem along the λ of one penalty, the others held.
+struct RoughnessPoints {
+  int curve = -1;                      ///< index into Model::curves
+  double used = 0.0;                   ///< the penalty's own λ
+  bool chosen = false;                 ///< Penalty::chosen
+  std::vector<double> lambda;          ///< rising
+  std::vector<Eigen::VectorXd> theta;  ///< problem.theta at `used`
+  std::vector<double> log_likelihood;  ///< marginal one of the linearised problem, less that at `used`
+};
+
+/// For each λ > 0: four decades down and up in steps of a third of a decade. With P = N/σ² + Σ λ Ω + priors at the λ that were used, θ
+/// their maximum: (P + (λ' − λ) Ω) θ' = P θ. Where P is not positive definite at some λ', it is left out.
+[[nodiscard]] std::vector<RoughnessPoints> roughness_paths(const NormalEquations& problem, const std::vector<Penalty>& penalties,
+                                                           double sigma2);
+
 }  // namespace misfit

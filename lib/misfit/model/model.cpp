@@ -3,8 +3,13 @@
 #include <set>
 
 #include "misfit/core/lists.h"
+#include "misfit/model/role_units.h"
 
 namespace misfit {
+
+std::string roughness_unit(const Curve& curve) {
+  return bind_unit("{of} {of} {of}/{curve}/{curve}", {{"of", curve.of_unit}, {"curve", curve.unit}});
+}
 
 bool Model::noise_held() const {
   return std::all_of(known_noise.begin(), known_noise.end(), [](const KnownNoise& noise) { return noise.fixed; });

@@ -89,6 +89,9 @@ struct Curve {
   double scale = 1.0;
 };
 
+/// of^3/curve^2, in SI units: of λ in λ ∫ (d²C/dq²)² dq.
+[[nodiscard]] std::string roughness_unit(const Curve& curve);
+
 /// Where a bound coefficient takes its number: from a parameter or from a curve (the other is −1).
 struct BoundCoefficient {
   int parameter = -1;

@@ -53,6 +53,19 @@ std::string pair_of(const PairMap& map) {
                      json_words(map.quantity_y), json_number(map.p_corrected), json_of(report::pair_figure(map)));
 }
 
+/// Of a method: what another roughness would make of its curves. `drawn`: the curves of the figures.
+std::string roughness_of(const Fit& fit, const RoughnessPath& path, const std::vector<std::pair<std::string, std::string>>& drawn) {
+  const auto curve = [&](const CurvesByRoughness& c) {
+    const auto figure = std::find(drawn.begin(), drawn.end(), std::pair(c.name, c.of));
+    return fmt::format(R"({{"figure":{},"x":{},"values":{}}})", figure - drawn.begin(), json_numbers(display_values(c.x, c.of_unit)),
+                       list_of(c.values, [&](const std::vector<double>& values) { return json_numbers(display_values(values, c.unit)); }));
+  };
+  return fmt::format(R"({{"curve":{},"label":{},"method":{},"unit":{},"used":{},"chosen":{},"roughness":{},"support":{},"curves":{}}})",
+                     json_string(path.curve), json_words(path.curve), json_string(fit.method), json_words(path.unit),
+                     json_number(path.used), path.chosen, json_numbers(path.roughness), json_numbers(path.log_likelihood, 4),
+                     list_of(path.curves, curve));
+}
+
 /// What the table of blocks_of(Discovery) has no column for. In its order. `at`: the words of its place, where the effect has several.
 std::string row_of(const Candidate& c, const std::vector<Candidate>& all, const std::vector<std::string>& known) {
   const bool addable = std::find(known.begin(), known.end(), c.effect) != known.end();
@@ -142,13 +155,17 @@ std::string curves_view(const std::vector<Place>& places, std::size_t model, con
   const std::vector<Fit> fits = fits_of(places[model]);
   std::vector<std::vector<Fit>> below;
   for (std::size_t k = 0; k < model; ++k) below.push_back(fits_of(places[k]));
-  std::vector<std::string> figures;
-  for (const auto& curve : report::curve_names(fits, references)) {
+  std::vector<std::string> figures, roughness;
+  const auto names = report::curve_names(fits, references);
+  for (const auto& curve : names) {
     report::Figure figure = report::curve_figure(curve.first, curve.second, fits, references);
     for (std::size_t k = 0; k < model; ++k) add_curve_below(places[k].id, below[k], curve, figure.panels.front());
     figures.push_back(json_of(figure));
   }
-  return fmt::format(R"({{"figures":{},"blocks":{}}})", json_list(figures), json_of(blocks_of(fits)));
+  for (const Fit& fit : fits) {
+    for (const RoughnessPath& path : fit.roughness) roughness.push_back(roughness_of(fit, path, names));
+  }
+  return fmt::format(R"({{"figures":{},"roughness":{},"blocks":{}}})", json_list(figures), json_list(roughness), json_of(blocks_of(fits)));
 }
 
 std::string calibration_view(const Place& place) {

@@ -9,7 +9,6 @@
 #include "misfit/core/error.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/model/provisional.h"
-#include "misfit/model/role_units.h"
 #include "misfit/page/json_text.h"
 
 namespace misfit::serve {
@@ -61,8 +60,7 @@ Settable settable_of(const Session& session) {
   }
   for (const misfit::Curve& c : model.curves) {
     out.parameters.push_back({c.name, c.unit, model.parameters[static_cast<std::size_t>(c.first)].free});
-    out.curves.push_back({c.name, bind_unit("{of} {of} {of}/{c}/{c}", {{"of", c.of_unit}, {"c", c.unit}}),
-                          c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
+    out.curves.push_back({c.name, roughness_unit(c), c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
   }
   for (const ExperimentStudy& experiment : session.study.experiments) out.experiments.push_back(experiment.name);
   return out;

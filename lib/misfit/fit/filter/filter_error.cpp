@@ -212,9 +212,9 @@ void report_gaps(const FilterEstimate& estimate, Fit& fit) {
   }
 }
 
-/// Covariance of the free parameters with what is not known of the roughness. The estimate is a maximum: there the data's slope is minus
+/// In the free parameters and, where they are estimated together, the noise. The estimate is a maximum: there the data's slope is minus
 /// that of priors and roughness.
-Eigen::MatrixXd covariance_of(const FilterEstimate& estimate) {
+NormalEquations linearised(const FilterEstimate& estimate) {
   const bool joint = estimate.joint_covariance.size() > 0;
   const Eigen::Index columns = estimate.covariance.rows(), all = joint ? estimate.joint_covariance.rows() : columns;
   NormalEquations problem;
@@ -230,6 +230,12 @@ Eigen::MatrixXd covariance_of(const FilterEstimate& estimate) {
     problem.prior = regularised_priors_about(problem.theta, estimate.model, estimate.penalties, problem.N);
   }
   problem.g = GaussianPrior{problem.prior, estimate.penalties}.gradient(problem.theta);
+  return problem;
+}
+
+/// Of the free parameters with what is not known of the roughness.
+Eigen::MatrixXd covariance_of(const FilterEstimate& estimate, const NormalEquations& problem) {
+  const Eigen::Index columns = estimate.covariance.rows();
   const Eigen::MatrixXd out = with_uncertain_roughness(problem, estimate.penalties, 1.0);
   return out.size() > 0 ? Eigen::MatrixXd(out.topLeftCorner(columns, columns)) : estimate.covariance;
 }
@@ -284,6 +290,12 @@ double short_record_factor(const FilterEstimate& estimate) {
   return degrees.measurements / (degrees.measurements - unknowns_beside_parameters(estimate));
 }
 
+void describe_estimates(const FilterEstimate& estimate, Fit& fit) {
+  const NormalEquations problem = linearised(estimate);
+  describe(estimate.model, short_record_factor(estimate) * covariance_of(estimate, problem), visited_by_filter(estimate), fit);
+  describe_roughness(estimate.model, roughness_paths(problem, estimate.penalties, 1.0), fit);
+}
+
 /// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a jitter that is not
 /// there) has taken no degree of freedom from its variance.
 void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
@@ -312,8 +324,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   std::size_t validated = 0;
   for (const auto& trace : estimate.traces) validated += trace.validated;
   if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
-  if (estimate.covariance.size() > 0)
-    describe(estimate.model, short_record_factor(estimate) * covariance_of(estimate), visited_by_filter(estimate), fit);
+  if (estimate.covariance.size() > 0) describe_estimates(estimate, fit);
   add_noise(estimate, threads, fit);
   add_predictions(estimate, fit);
   report_gaps(estimate, fit);

@@ -258,6 +258,7 @@ double describe_estimates(const Regressor& regressor, const Regression& regressi
   describe(out.model, out.plain_covariance, visited, out.fit);
   keep_plain_sigmas(out.fit);
   describe(out.model, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess), visited, out.fit);
+  describe_roughness(out.model, roughness_paths(regression.sums, out.penalties, smoothed.sigma2), out.fit);
   if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
   return degrees;

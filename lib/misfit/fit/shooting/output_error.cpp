@@ -413,6 +413,7 @@ class Estimator {
     describe(out.model, out.plain_covariance, visited, out.fit);
     keep_plain_sigmas(out.fit);
     describe(out.model, covariance.topLeftCorner(columns, columns), visited, out.fit);
+    describe_roughness(out.model, roughness_paths(end.linearised, penalties_, 1.0), out.fit);
     if (degrees < kShortRecord && !out.model.noise_held()) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
     out.fit.facts["covariance"] = in_words(coloured);
     const auto& outputs = out.model.system->spec().outputs;

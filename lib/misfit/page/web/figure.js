@@ -328,7 +328,7 @@ class Plot {
       ctx.lineTo(left + width, pen.Y(0));
       ctx.stroke();
     }
-    for (const s of this.series) {
+    for (const s of [...this.series, ...(this.view.overlay ?? [])]) {
       ctx.strokeStyle = ctx.fillStyle = colour(s.colour);
       ctx.lineWidth = Math.max(s.width * 0.8, 1) * pen.ratio;
       ctx.setLineDash(s.style === 'dashed' ? [7 * pen.ratio, 4 * pen.ratio] : s.style === 'dotted' ? [2 * pen.ratio, 3 * pen.ratio] : []);
@@ -560,7 +560,7 @@ const painters = {
 };
 
 /** A figure in the document. options: group (TimeGroup), height (of panels, in those of the report), title and caption (false: none), onpoint,
-    onleave, onpick, onkeypoint, oncursor. `cells`, `boxes`, `marked`: what is emphasised; redraw() after a change. */
+    onleave, onpick, onkeypoint, oncursor. `cells`, `boxes`, `marked`: what is emphasised; `overlay`: series that are drawn over the others; redraw() after a change. */
 export class Figure {
   constructor(parent, figure, options = {}) {
     this.figure = figure;

@@ -491,9 +491,58 @@ function candidateTable(table, rows, last) {
 async function showCurves(view) {
   const curves = await get('curves', { model: here.model });
   if (curves.figures.length === 0) nothing(view, 'This model has no curves; its parameters:');
-  for (const figure of curves.figures) draw(view, figure, { height: 0.8 });
+  const figures = curves.figures.map((figure) => draw(view, figure, { height: 0.8 }));
+  if (curves.roughness.length > 0) view.append(roughness(curves.roughness, figures));
   view.append(blocks(curves.blocks));
   if (live && here.model === 0 && here.state.study.fault === null) view.append(settings());
+}
+
+/** A slider for the roughness of each curve: the curves follow at once, by the linearised fit; a refit is made by Set and Run. */
+function roughness(paths, figures) {
+  const names = [...new Set(paths.map((p) => p.curve))];
+  return element('section', { class: 'roughness' }, element('h3', {}, 'Rougher or smoother'), element('p', { class: 'soft' },
+    'Black: the curve with another roughness, all other unknowns following, by the linearised fit.'),
+    ...names.map((name) => roughnessOf(paths.filter((p) => p.curve === name), figures)));
+}
+
+function roughnessOf(paths, figures) {
+  let path = paths[paths.length - 1];
+  const slider = element('input', { type: 'range', min: 0, step: 'any', 'aria-label': `roughness of ${path.curve}`, 'data-curve': path.curve, oninput: () => move() });
+  const said = element('output', {}), back = element('button', { onclick: () => begin() }, 'As fitted');
+  const setting = live && here.model === 0 && here.state.study.fault === null && here.state.settable.curves.some((c) => c.name === path.curve);
+  const set = setting ? element('button', { class: 'sets', disabled: !here.idle, title: 'writes it into the study; Run refits',
+    onclick: () => start('set', { what: 'roughness', name: path.curve, value: value().toPrecision(3) }) }, 'Set') : null;
+  const methods = element('select', { 'aria-label': 'method', hidden: paths.length < 2, onchange: () => { path = paths[methods.value]; begin(); } },
+    ...paths.map((p, k) => element('option', { value: k, selected: p === path }, p.method)));
+  const used = () => nearest(path.roughness, path.used);
+  /** Of lists by roughness, between two of them. */
+  const between = (lists, mix) => {
+    const k = Math.min(Math.floor(slider.valueAsNumber), lists.length - 2), share = slider.valueAsNumber - k;
+    return mix(lists[k], lists[k + 1], share);
+  };
+  const mixed = (a, b, share) => a + share * (b - a);
+  const value = () => Math.exp(between(path.roughness.map(Math.log), mixed));
+  function move() {
+    const asFitted = slider.valueAsNumber === used();
+    for (const figure of figures) figure.overlay = [];
+    for (const c of asFitted ? [] : path.curves) {
+      const y = between(c.values, (a, b, share) => a.map((v, i) => mixed(v, b[i], share)));
+      figures[c.figure]?.overlay.push({ x: c.x, y, sorted: true, style: 'line', width: 2.5, colour: '#000000' });
+    }
+    for (const figure of figures) figure.redraw();
+    const support = between(path.support, mixed);
+    said.replaceChildren(`${shown(value(), 3)} `, words(path.unit), asFitted ? ` as fitted${path.chosen ? ', chosen from the data' : ', given by the study'}`
+      : `, ${shown(value() / path.used, 2)} times as fitted; log marginal likelihood ${support < 0 ? '−' : '+'}${shown(Math.abs(support), 2)}`);
+    back.disabled = asFitted;
+  }
+  function begin() {
+    slider.max = path.roughness.length - 1;
+    slider.value = used();
+    move();
+  }
+  begin();
+  return element('div', { class: 'slider' }, element('span', {}, 'roughness of ', words(path.label)), methods, element('span', { class: 'soft' }, 'rough'), slider,
+    element('span', { class: 'soft' }, 'smooth'), back, set, said);
 }
 
 /** What of the study's own model is estimated and how; each change is `misfit set`, the results are made anew by Run. */
