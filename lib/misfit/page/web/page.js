@@ -492,20 +492,15 @@ async function showCurves(view) {
   const curves = await get('curves', { model: here.model });
   if (curves.figures.length === 0) nothing(view, 'This model has no curves; its parameters:');
   const figures = curves.figures.map((figure) => draw(view, figure, { height: 0.8 }));
-  if (curves.roughness.length > 0) view.append(roughness(curves.roughness, figures));
+  figures.forEach((figure, k) => roughnessOf(curves.roughness.filter((path) => path.curves[0].figure === k), figures, figure.node));
   view.append(blocks(curves.blocks));
   if (live && here.model === 0 && here.state.study.fault === null) view.append(settings());
 }
 
-/** A slider for the roughness of each curve: the curves follow at once, by the linearised fit; a refit is made by Set and Run. */
-function roughness(paths, figures) {
-  const names = [...new Set(paths.map((p) => p.curve))];
-  return element('section', { class: 'roughness' }, element('h3', {}, 'Rougher or smoother'), element('p', { class: 'soft' },
-    'Black: the curve with another roughness, all other unknowns following, by the linearised fit.'),
-    ...names.map((name) => roughnessOf(paths.filter((p) => p.curve === name), figures)));
-}
-
-function roughnessOf(paths, figures) {
+/** A slider for the roughness of a curve, by each of the methods that have one: the curve, and those derived from it, follow at once, by the
+    linearised fit. A refit is made by Set and Run. */
+function roughnessOf(paths, figures, parent) {
+  if (paths.length === 0) return;
   let path = paths[paths.length - 1];
   const slider = element('input', { type: 'range', min: 0, step: 'any', 'aria-label': `roughness of ${path.curve}`, 'data-curve': path.curve, oninput: () => move() });
   const said = element('output', {}), back = element('button', { onclick: () => begin() }, 'As fitted');
@@ -531,8 +526,10 @@ function roughnessOf(paths, figures) {
     }
     for (const figure of figures) figure.redraw();
     const support = between(path.support, mixed);
-    said.replaceChildren(`${shown(value(), 3)} `, words(path.unit), asFitted ? ` as fitted${path.chosen ? ', chosen from the data' : ', given by the study'}`
-      : `, ${shown(value() / path.used, 2)} times as fitted; log marginal likelihood ${support < 0 ? '−' : '+'}${shown(Math.abs(support), 2)}`);
+    said.replaceChildren(asFitted ? '' : 'Black: ', `${shown(value(), 3)} `, words(path.unit), asFitted
+      ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}`
+      : `, ${shown(value() / path.used, 2)} times as fitted, all other unknowns following (linearised); ${support < 0 ? 'less' : 'more'} likely by ${
+        shown(Math.abs(support), 2)} (log marginal likelihood)`);
     back.disabled = asFitted;
   }
   function begin() {
@@ -541,8 +538,8 @@ function roughnessOf(paths, figures) {
     move();
   }
   begin();
-  return element('div', { class: 'slider' }, element('span', {}, 'roughness of ', words(path.label)), methods, element('span', { class: 'soft' }, 'rough'), slider,
-    element('span', { class: 'soft' }, 'smooth'), back, set, said);
+  parent.append(element('div', { class: 'slider' }, element('span', {}, 'roughness of ', words(path.label)), methods, element('span', { class: 'soft' }, 'rough'), slider,
+    element('span', { class: 'soft' }, 'smooth'), back, set, said));
 }
 
 /** What of the study's own model is estimated and how; each change is `misfit set`, the results are made anew by Run. */
