@@ -1,5 +1,7 @@
 // add and the ladder, on a short flight.
 
+#include <gmock/gmock.h>
+
 #include <cmath>
 
 #include "tests/apps/oscillator_study.h"
@@ -194,6 +196,8 @@ TEST(ARemovedRung, MustBeOneThatWasAdded) {
   ASSERT_EQ(run({"add", file, "coulomb_friction"}).status, 0);
   expect_parts(refused("0"), {"rung 0 is the study's own model"});
   expect_parts(refused("coulomb_fricton"), {"rung coulomb_fricton: ", "did you mean 'coulomb_friction'"});
+  EXPECT_THAT(refused("7"),
+              testing::AllOf(testing::HasSubstr("rung 7: the ladder has no such rung"), testing::Not(testing::HasSubstr("0"))));
   EXPECT_EQ(added(study), (std::vector<std::string>{"", "coulomb_friction"}));
 }
 

@@ -50,7 +50,7 @@ Chosen open(const SessionOptions& options, const Registry& registry, const std::
     if (!asked.empty() && asked != "0") throw InputError("--rung " + shown(asked) + ": the study has no ladder yet; misfit add makes one");
     return own();
   }
-  const Rung& rung = asked.empty() ? ladder.rungs.back() : find_rung(ladder, asked, "--rung ");
+  const Rung& rung = asked.empty() ? ladder.rungs.back() : find_rung(ladder.rungs, asked, "--rung ");
   if (rung.parent < 0) return own();
   const fs::path study = root.folder.file(rung.study);
   if (!fs::exists(study)) throw RunError(fmt::format("rung {} of the ladder is missing: {}", rung.id, study.string()));

@@ -292,8 +292,9 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
 
 std::vector<fs::path> ModelLadder::remove(const std::string& asked) {
   if (ladder_.rungs.size() < 2) throw InputError("rung " + shown(asked) + ": nothing has been added to this study");
-  const std::size_t first = &find_rung(ladder_, asked, "rung ") - ladder_.rungs.data();
-  if (first == 0) throw InputError("rung " + shown(asked) + " is the study's own model: it stays");
+  if (asked == std::to_string(ladder_.rungs.front().id)) throw InputError("rung " + shown(asked) + " is the study's own model: it stays");
+  const std::span<const Rung> added = std::span<const Rung>(ladder_.rungs).subspan(1);
+  const std::size_t first = 1 + (&find_rung(added, asked, "rung ") - added.data());
   const std::vector<Rung> removed(ladder_.rungs.begin() + static_cast<std::ptrdiff_t>(first), ladder_.rungs.end());
   ladder_.rungs.resize(first);
   store();
@@ -332,9 +333,9 @@ void report_ladder(ModelLadder& ladder) {
   }
 }
 
-const Rung& find_rung(const Ladder& ladder, const std::string& number_or_effect, const std::string& asked_by) {
+const Rung& find_rung(std::span<const Rung> rungs, const std::string& number_or_effect, const std::string& asked_by) {
   std::vector<std::string> names;
-  for (const Rung& rung : ladder.rungs) {
+  for (const Rung& rung : rungs) {
     if (number_or_effect == std::to_string(rung.id) || (!rung.added.empty() && number_or_effect == rung.added)) return rung;
     names.push_back(std::to_string(rung.id));
     if (!rung.added.empty()) names.push_back(rung.added);

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "misfit/workflow/stages.h"
@@ -69,8 +70,8 @@ class ModelLadder {
 /// predict_effect().
 [[nodiscard]] std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& effect, const AskedPlace& place = {});
 
-/// The rung with this number or effect. InputError with the nearest name; `asked_by` begins it.
-[[nodiscard]] const Rung& find_rung(const Ladder& ladder, const std::string& number_or_effect, const std::string& asked_by);
+/// Of these the rung with this number or effect. InputError with the nearest name; `asked_by` begins it.
+[[nodiscard]] const Rung& find_rung(std::span<const Rung> rungs, const std::string& number_or_effect, const std::string& asked_by);
 
 /// The best accepted candidate that is an effect of the library, so that one line adds it to a study.
 [[nodiscard]] std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Registry& registry);
