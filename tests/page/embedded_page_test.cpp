@@ -120,7 +120,8 @@ TEST_F(Embedded, ThinsLongRecordingsAndKeepsTheirLeastAndLargest) {
   const std::string text = embedded_page(page, small);
   EXPECT_FALSE(text.empty());
   EXPECT_LT(text.size(), small);
-  const json whole = all(small), answers = whole["answers"];
+  const json whole = all(small);
+  const json& answers = whole["answers"];
   ASSERT_TRUE(answers.contains("motion?model=0"));
   EXPECT_THAT(answers["state?"]["outdated"].dump(), HasSubstr("samples are shown in this file"));
   const json panels = answers["motion?model=0"]["channels"][1]["figure"]["panels"];

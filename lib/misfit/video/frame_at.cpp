@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "misfit/video/module.h"
 #include "misfit/video/stream.h"
@@ -15,7 +16,7 @@ constexpr double before_seek = 0.5;  // [s] by which a seek aims earlier, since 
 
 }  // namespace
 
-FrameReader::FrameReader(const std::filesystem::path& path) : path_(path) { begin(); }
+FrameReader::FrameReader(std::filesystem::path path) : path_(std::move(path)) { begin(); }
 
 void FrameReader::begin() {
   stream_ = opened_stream(path_);

@@ -24,7 +24,7 @@ struct FramePicture {
 class FrameReader {
  public:
   /// Throws as opened_stream().
-  explicit FrameReader(const std::filesystem::path& path);
+  explicit FrameReader(std::filesystem::path path);
 
   /// The last frame that begins not later than `t` [s since the first frame], the last of all behind the end. nullopt: none can be decoded.
   [[nodiscard]] std::optional<FramePicture> at(double t);
