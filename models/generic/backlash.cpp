@@ -24,7 +24,7 @@ struct Backlash {
   static constexpr const char* excludes = "impact, a free side that drifts inside the clearance, wear";
 
   enum Quantity { displacement };
-  static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
+  static constexpr Role quantities[] = {{.name = "displacement", .unit = "*", .input_too = true}};
   enum Port { port };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { play_stiffness, play, backlash_tau };

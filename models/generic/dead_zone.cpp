@@ -20,7 +20,7 @@ struct DeadZone {
   static constexpr const char* excludes = "loss in the contact, unequal sides, play with memory (backlash)";
 
   enum Quantity { displacement };
-  static constexpr Role quantities[] = {{.name = "displacement", .unit = "*"}};
+  static constexpr Role quantities[] = {{.name = "displacement", .unit = "*", .input_too = true}};
   enum Port { port };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { stop_stiffness, half_width };

@@ -63,6 +63,17 @@ TEST(Compare, ParametersThatCannotBothBeRightAreSaidToBe) {
   EXPECT_EQ(again.methods[0].parameters.at("k").value, 0.9265);
 }
 
+TEST(Compare, WhereAModelWithARandomForceAndOneWithoutDifferBothCanBeWrong) {
+  Fit one = fit("output_error", 12.0, 0.001), other = fit("filter_error", 12.0, 0.001);
+  one.parameters = {{"friction", {0.9, 0.03, "N"}}};
+  other.parameters = {{"friction", {0.3, 0.02, "N"}}};
+  const Comparison c = compare({one, other}, {});
+  ASSERT_EQ(c.parameters.size(), 1U);
+  expect_parts(c.parameters[0].sentence,
+               {"they cannot both be right", "the random force of filter_error has taken over part of a slow effect",
+                "a force that the model lacks biases output_error"});
+}
+
 TEST(Compare, SlopeOfALineAtTheTrimIsThatOfTheLine) {
   const Comparison c = compare({fit("output_error", 12.0, 0.001)}, {});
   ASSERT_EQ(c.methods.size(), 1U);

@@ -447,5 +447,48 @@ TEST(Accept, ARefitThatCouldGainLittleMoreIs) {
   EXPECT_NE(ranked[0].candidate.why.find(refit.estimate.message), std::string::npos);
 }
 
+/// A cart with dry friction and, where asked for, a constant force.
+World with_offset_and_friction(double offset) {
+  return World(record_of_cart({effect("coulomb_friction"), effect("input_offset")}, {{"friction", 1.5}, {"input_offset", offset}}));
+}
+
+/// The list as after a refit of dry friction that predicts worse what is held out, as beside an offset that nobody has modelled.
+std::vector<RankedCandidate> friction_that_gains_nothing(const World& world) {
+  std::vector<RankedCandidate> ranked = {world.entry("coulomb_friction"), world.entry("input_offset", false)};
+  ranked[0].candidate.held_out_gain = -1.0;
+  return ranked;
+}
+
+TEST(Pairs, TwoThatHideEachOtherAreAcceptedTogether) {
+  const World world = with_offset_and_friction(1.0);
+  std::vector<RankedCandidate> ranked = friction_that_gains_nothing(world);
+  world.accept(ranked);
+  const Candidate& friction = of(ranked, "coulomb_friction");
+  EXPECT_TRUE(friction.accepted) << friction.why;
+  EXPECT_THAT(friction.why, testing::HasSubstr("it takes two: together with input_offset"));
+}
+
+TEST(Pairs, WhatGainsNothingByItselfIsNotAcceptedWithoutASecond) {
+  const World world = with_offset_and_friction(0.0);
+  std::vector<RankedCandidate> ranked = friction_that_gains_nothing(world);
+  world.accept(ranked);
+  const Candidate& friction = of(ranked, "coulomb_friction");
+  EXPECT_FALSE(friction.accepted) << friction.why;
+  EXPECT_THAT(friction.why, testing::HasSubstr("the held-out likelihood does not rise"));
+}
+
+TEST(Refit, ThatEndsFarBelowItsScoreHasFailedAndSaysNothingAgainstItsEffect) {
+  const World world = with_friction(1.5);
+  std::vector<RankedCandidate> ranked = {world.entry("coulomb_friction")};
+  ASSERT_GT(ranked[0].screening->result.chi2, 100.0);
+  ranked[0].refit->drop = 2.0;
+  ranked[0].candidate.p_value = 0.9;
+  world.accept(ranked);
+  EXPECT_FALSE(ranked[0].candidate.accepted);
+  EXPECT_THAT(ranked[0].candidate.why,
+              testing::AllOf(testing::StartsWith("its refit failed: it ends at a drop of 2 where its score promises"),
+                             testing::HasSubstr("says nothing against it")));
+}
+
 }  // namespace
 }  // namespace misfit

@@ -78,6 +78,27 @@ TEST(Bindings, SensorsAndInputsAreTriedWhereTheSystemHasADefaultForThem) {
   EXPECT_THAT(bindings("quadratic_drag", "parachute_spherical"), ElementsAre(Roles{})) << "its own default stays the only one";
 }
 
+TEST(Bindings, AChannelMayShowPartOfEachOtherOfItsUnitAndEachPairMayBeTurned) {
+  EXPECT_THAT(bindings("cross_talk", "test_tanks"),
+              ElementsAre(Roles{}, Roles{{"other_signal", "y2"}, {"output", "y1"}}, Roles{{"other_signal", "y1"}, {"output", "y2"}}));
+  EXPECT_THAT(bindings("output_rotation", "test_tanks"),
+              ElementsAre(Roles{}, Roles{{"other_output", "y2"}, {"other_signal", "y2"}, {"output", "y1"}}));
+  SystemSpec of_two_kinds = registry().system("test_tanks").make({})->spec();
+  of_two_kinds.outputs[0].unit = "K";
+  EXPECT_THAT(enumerate_bindings(registry().effect("cross_talk").spec(), of_two_kinds), ElementsAre(Roles{}));
+}
+
+TEST(Bindings, PlayMayLieBehindAnInputOfTheUnitOfWhatItMoves) {
+  SystemSpec servo = registry().system("test_oscillator").make({})->spec();
+  servo.inputs.push_back({.name = "demand", .unit = servo.states[0].unit, .doc = "where it is to go"});
+  servo.inputs.push_back({.name = "torque", .unit = "N m", .doc = "on its shaft"});
+  EXPECT_THAT(enumerate_bindings(registry().effect("backlash").spec(), servo),
+              ElementsAre(Roles{}, Roles{{"displacement", "x"}, {"port", "force"}}, Roles{{"displacement", "demand"}, {"port", "force"}}));
+  EXPECT_THAT(enumerate_bindings(registry().effect("cubic_stiffness").spec(), servo),
+              ElementsAre(Roles{}, Roles{{"displacement", "x"}, {"port", "force"}}))
+      << "a spring is of what moves";
+}
+
 TEST(Bindings, ASystemsOwnEffectHasItsOwnPlaceAlone) { EXPECT_THAT(bindings("strut_wake", "parachute_spherical"), ElementsAre(Roles{})); }
 
 }  // namespace

@@ -98,5 +98,37 @@ TEST(DiscoverGeneric, NamesAHiddenPeriodicForcingWithItsFrequency) {
                0.01);
 }
 
+/// In 125 s the phase departs by 0.2 periods from that of any constant frequency.
+TEST(DiscoverGeneric, LetsAFrequencyDriftThatDrifts) {
+  const Discovery found = in_cart("periodic_forcing", {{"cosine", 1.0}, {"sine", 0.5}, {"frequency", 1.3}, {"frequency_drift", 2e-4}});
+  expect_first(found, "periodic_forcing", "frequency_drift", 2e-4, 0.1);
+  const Candidate& first = found.candidates.front();
+  EXPECT_NEAR(first.parameters.at("frequency").value, 1.3, 1e-3) << "at t = 0";
+  EXPECT_THAT(first.free, testing::Contains("frequency_drift"));
+  EXPECT_THAT(first.why, testing::HasSubstr("its frequency drifts by"));
+}
+
+TEST(DiscoverGeneric, AFrequencyThatDoesNotDriftIsHeld) {
+  const Discovery found = in_cart("periodic_forcing", {{"cosine", 1.0}, {"sine", 0.5}, {"frequency", 1.3}});
+  ASSERT_FALSE(found.candidates.empty());
+  const Candidate& first = found.candidates.front();
+  EXPECT_EQ(first.effect, "periodic_forcing");
+  EXPECT_FALSE(first.parameters.contains("frequency_drift")) << "held at 0 it is no result";
+  EXPECT_THAT(first.free, testing::Not(testing::Contains("frequency_drift")));
+}
+
+/// Noise before the rounding smooths its sawtooth: to exp(-2 pi^2 0.16^2) = 0.60 of the whole, with the record's own noise; what the
+/// prediction does not know smooths it further.
+TEST(DiscoverGeneric, NamesARoundingAfterNoise) {
+  Signals recorded = record_of_cart({}, {});
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  constexpr double step = 0.04, noise_of_step = 0.15;
+  for (double& x : recorded.measured[0].values) x = step * std::round((x + noise_of_step * step * normal(random)) / step);
+  const Discovery found = discovered(cart({effect("viscous_friction")}), {"stiffness"}, recorded);
+  expect_first(found, "sensor_quantisation", "step", step, 1e-6);
+  EXPECT_NEAR(found.candidates.front().parameters.at("rounded").value, 0.5, 0.15) << found.verdict;
+}
+
 }  // namespace
 }  // namespace misfit

@@ -108,8 +108,15 @@ bool differentiates(const std::string& method) {
   return info != nullptr && !info->has_likelihood;
 }
 
+/// What a trajectory without a random force and one with it can each get wrong where they differ.
+bool differ_in_the_random_force(const std::string& a, const std::string& b) {
+  const EstimatorInfo *one = find_estimator(a), *other = find_estimator(b);
+  return one != nullptr && other != nullptr && one->has_likelihood && other->has_likelihood && one->deterministic != other->deterministic;
+}
+
 /// A regression takes the noise of its differentiated measurements, and what a local polynomial smooths away, into its parameters: its
-/// sigmas know nothing of that.
+/// sigmas know nothing of that. Nor does that of a model with a random force know what the force has taken over, or that of a model without
+/// one what an unmodelled force has done to it.
 void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
   for (const auto& [name, one] : a.parameters) {
     const auto other = b.parameters.find(name);
@@ -123,6 +130,11 @@ void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
       for (const Fit* fit : {&a, &b}) {
         if (differentiates(fit->method))
           d.sentence += "; " + fit->method + " is biased by numerical differentiation, which its sigma does not cover";
+      }
+      if (differ_in_the_random_force(a.method, b.method)) {
+        d.sentence +=
+            fmt::format("; either the random force of {} has taken over part of a slow effect, or a force that the model lacks biases {}",
+                        random_force_estimator().name, trajectory_estimator().name);
       }
     }
     c.parameters.push_back(std::move(d));

@@ -6,6 +6,7 @@
 
 #include "misfit/core/text.h"
 #include "misfit/discover/alias.h"
+#include "misfit/discover/drift.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/math/statistics.h"
 
@@ -139,35 +140,54 @@ std::optional<UnknownCurve> remaining_memory(const Refit& in, double drop, const
   return worst;
 }
 
-/// Step 4 of accept_best(), for one alias: another known effect that removes the lack of fit which `in` leaves.
-const RankedCandidate* explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked,
-                                         const SearchContext& context) {
+/// Of the effect that was added last, as its refit had them.
+int estimated_parameters(const Refit& refit) {
+  const Model& model = refit.estimate.model;
+  const BoundEffect& added = model.effects.back();
+  int out = 0;
+  for (std::size_t c = 0; c < added.coefficients.size(); ++c) {
+    const int parameter = added.coefficients[c].parameter;
+    const bool own = parameter >= 0 && !added.effect->spec().coefficients[c].shared;
+    out += own && model.parameters[parameter].free ? 1 : 0;
+  }
+  return out;
+}
+
+/// A held-out gain below this is what chance gives.
+double least_gain(int parameters) { return 0.5 * parameters; }
+
+/// Two effects that are missing together.
+struct Pair {
+  const RankedCandidate* second = nullptr;
+  double held_out_gain = 0.0;  ///< of both
+};
+
+/// Step 4 of accept_best(), for one candidate: another known effect beside which `in` holds. Of an alias: it removes the lack of fit that
+/// `in` leaves; of one that gains nothing by itself on what is held out: both together do, too.
+std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked, HeldOut& held_out,
+                                      const SearchContext& context) {
   const DiscoverOptions& options = context.options;
   const ConditionalScores conditional(*in.refit, context);
   const SecondEffect second = second_effect_given(in, conditional, ranked, options.p_accept);
-  if (second.entry == nullptr) return nullptr;
+  if (second.entry == nullptr) return std::nullopt;
   const Refit both = refit(work_from(in.refit->estimate, context), second.score);
-  if (!both.ok || !both.estimate.converged || !(both.drop > 0.0)) return nullptr;
+  if (!both.ok || !both.estimate.converged || !(both.drop > 0.0)) return std::nullopt;
   const Model& model = both.estimate.model;
   const std::vector<int>&strengths = in.screening->candidate_model->strengths, &others = second.score.candidate_model->strengths;
-  if (ends_at_bound(model, strengths) || ends_at_bound(model, others)) return nullptr;
-  if (!needed_given(in, both, *second.entry, context)) return nullptr;
+  if (ends_at_bound(model, strengths) || ends_at_bound(model, others)) return std::nullopt;
+  if (!needed_given(in, both, *second.entry, context)) return std::nullopt;
+  Pair out{second.entry};
+  if (in.alone_gains_nothing) {
+    out.held_out_gain = held_out.gain(both.estimate);
+    if (!(out.held_out_gain > least_gain(estimated_parameters(*in.refit) + estimated_parameters(both)))) return std::nullopt;
+  }
   // The threshold stays a share of the drop of `in` alone, as in step 2: with the drop of both, a better second effect would allow more
   // lack of fit.
   const bool lags = in.screening->candidate_model->lags || second.score.candidate_model->lags;
-  if (lags && remaining_memory(both, in.refit->drop, ranked, context)) return nullptr;
-  return remaining_lack_of_fit(both.estimate, *second.score.candidate_model, {in.refit->drop, least_share_of_all, 2}, options)
-             ? nullptr
-             : second.entry;
-}
-
-/// Of the effect, as its refit had them.
-int estimated_parameters(const RankedCandidate& e) {
-  const Model& model = e.refit->estimate.model;
-  const auto& coefficients = model.effects.back().coefficients;
-  return static_cast<int>(std::count_if(coefficients.begin(), coefficients.end(), [&](const BoundCoefficient& c) {
-    return c.parameter >= int_size(model.parameters) - int_size(e.refit->parameters) && model.parameters[c.parameter].free;
-  }));
+  if (lags && remaining_memory(both, in.refit->drop, ranked, context)) return std::nullopt;
+  if (remaining_lack_of_fit(both.estimate, *second.score.candidate_model, {in.refit->drop, least_share_of_all, 2}, options))
+    return std::nullopt;
+  return out;
 }
 
 /// [s]
@@ -184,14 +204,26 @@ bool near_a_maximum(const Refit& refit) {
   return refit.estimate.converged || (left && 2.0 * *left < little * refit.drop);
 }
 
+/// Not significant as refitted: as it is, or because its refit has not found what its score promises.
+std::string not_significant(const RankedCandidate& e, const SearchContext& context) {
+  constexpr double far_below = 0.5;
+  const double promised = e.screening->result.chi2;
+  const bool in_screening = sidak(std::min(1.0, std::exp(e.screening->log_p)), context.families) < context.options.p_accept;
+  if (!in_screening || !(e.refit->drop < far_below * promised)) return "not significant: family-wise " + p_equals(e.candidate.p_value);
+  return "its refit failed: it ends at a drop of " + format_value(e.refit->drop) + " where its score promises " + format_value(promised) +
+         ", which says nothing against it";
+}
+
 /// Step 1: the reason why it cannot be accepted; empty if there is none.
 std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
   Candidate& c = e.candidate;
-  if (!(c.p_value < context.options.p_accept)) return "not significant: family-wise " + p_equals(c.p_value);
+  e.alone_gains_nothing = false;
+  if (!(c.p_value < context.options.p_accept)) return not_significant(e, context);
   if (!near_a_maximum(*e.refit)) return "its refit has not converged: " + e.refit->estimate.message;
   const auto memory = outlasts_recording(e.refit->estimate.model, longest_recording(context.experiments));
   const auto uneven = off_whole_steps(e.refit->estimate.model, context.experiments);
-  e.misnamed = memory || uneven || !e.refit->partial.empty();
+  const auto no_edge = edge_not_visited(e.refit->estimate);
+  e.misnamed = memory || uneven || no_edge || !e.refit->partial.empty();
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
   if (const auto unknown =
@@ -199,9 +231,11 @@ std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& 
     return *unknown;
   if (memory) return *memory;
   if (uneven) return *uneven;
+  if (no_edge) return *no_edge;
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
+  e.alone_gains_nothing = !(*c.held_out_gain > least_gain(estimated_parameters(*e.refit)));
+  if (!e.alone_gains_nothing) return "";
   if (!(*c.held_out_gain > 0.0)) return "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
-  if (*c.held_out_gain > 0.5 * estimated_parameters(e)) return "";
   return "the held-out likelihood rises by " + format_value(*c.held_out_gain) + ", less than by half for each of its estimated parameters";
 }
 
@@ -247,10 +281,10 @@ struct Alias {
   UnknownCurve remaining;
 };
 
-/// The accepted candidate, or the end of the list; and the second effect that explains what it leaves, if it leaves something.
+/// The accepted candidate, or the end of the list; and the second effect beside which it holds, if it does not by itself.
 struct Choice {
   Place at;
-  const RankedCandidate* second = nullptr;
+  std::optional<Pair> pair = std::nullopt;
 };
 
 /// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
@@ -264,9 +298,8 @@ bool shapes_a_sensor(const RankedCandidate& e) {
 }
 
 /// Step 1, and the order of step 2.
-std::vector<Place> not_refused(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
+std::vector<Place> not_refused(std::vector<RankedCandidate>& ranked, HeldOut& held_out, const SearchContext& context) {
   std::vector<Place> out;
-  HeldOut held_out(context.estimate, context.experiments, context.options.threads);
   for (auto e = ranked.begin(); e != ranked.end() && e->refit; ++e) {
     e->candidate.why = refusal(*e, held_out, context);
     if (e->candidate.why.empty()) out.push_back(e);
@@ -276,15 +309,16 @@ std::vector<Place> not_refused(std::vector<RankedCandidate>& ranked, const Searc
   const double best = gain_of(*out.front());
   const auto tied = std::find_if(out.begin(), out.end(), [&](Place e) { return gain_of(*e) < best - tied_gains; });
   std::sort(out.begin(), tied);  // as in the list
-  std::stable_sort(out.begin(), tied, [](Place a, Place b) { return estimated_parameters(*a) < estimated_parameters(*b); });
+  std::stable_sort(out.begin(), tied, [](Place a, Place b) { return estimated_parameters(*a->refit) < estimated_parameters(*b->refit); });
   std::stable_partition(out.begin(), tied, [](Place e) { return !shapes_a_sensor(*e); });
   return out;
 }
 
 /// Step 2: the first without lack of fit. Those before it are aliases.
-Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vector<Alias>& aliases, const SearchContext& context) {
+Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vector<Alias>& aliases, HeldOut& held_out,
+                                 const SearchContext& context) {
   std::vector<int> read;  // by the aliases
-  for (const Place e : not_refused(ranked, context)) {
+  for (const Place e : not_refused(ranked, held_out, context)) {
     const CandidateModel& candidate_model = *e->screening->candidate_model;
     auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), {e->refit->drop}, context.options);
     if (!left && candidate_model.lags) left = remaining_memory(*e->refit, e->refit->drop, ranked, context);
@@ -300,7 +334,7 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
 /// Step 3: a choice is not made past one that explains more than twice as much. Such an alias is chosen in its place if a second effect
 /// explains what it leaves; for others, one that is refused, and an unknown form, nothing is.
 Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Alias>& aliases,
-                             const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
+                             const std::vector<UnknownCurve>& unknown, HeldOut& held_out, const SearchContext& context) {
   const double least = 2.0 * choice.at->refit->drop;
   const auto past = [&](const std::string& larger, const char* which) -> Choice {
     choice.at->candidate.why = "explains less than half of what " + larger + " does, which " + which;
@@ -308,12 +342,15 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
   };
   for (const Alias& alias : aliases) {
     if (!(alias.at->refit->drop > least)) continue;
-    if (const RankedCandidate* second = explaining_effect(*alias.at, ranked, context)) return {alias.at, second};
+    if (const auto pair = explaining_effect(*alias.at, ranked, held_out, context)) return {alias.at, pair};
     return past(label(alias.at->candidate), "leaves a lack of fit that no second effect removes");
   }
-  for (const RankedCandidate& e : ranked) {
-    if (!e.refit || e.candidate.why.empty() || !(e.refit->drop > least) || !(e.candidate.p_value < context.options.p_accept)) continue;
-    return past(label(e.candidate), "cannot be accepted");
+  for (auto e = ranked.begin(); e != ranked.end(); ++e) {
+    if (!e->refit || e->candidate.why.empty() || !(e->refit->drop > least) || !(e->candidate.p_value < context.options.p_accept)) continue;
+    if (e->alone_gains_nothing) {
+      if (const auto pair = explaining_effect(*e, ranked, held_out, context)) return {e, pair};
+    }
+    return past(label(e->candidate), "cannot be accepted");
   }
   for (const UnknownCurve& curve : unknown) {
     if (!(curve.result.chi2 - 2.0 * curve.result.dof > least)) continue;
@@ -322,12 +359,28 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
   return choice;
 }
 
-/// Step 4: the first alias whose lack of fit a second effect removes.
-Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases, const SearchContext& context) {
+/// Step 4: the first alias whose lack of fit a second effect removes; else the first that gains nothing by itself on what is held out, but
+/// does together with another.
+Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases, HeldOut& held_out,
+                                  const SearchContext& context) {
+  constexpr int most = 3;
   for (const Alias& alias : aliases) {
-    if (const RankedCandidate* second = explaining_effect(*alias.at, ranked, context)) return {alias.at, second};
+    if (const auto pair = explaining_effect(*alias.at, ranked, held_out, context)) return {alias.at, pair};
+  }
+  int tried = 0;
+  for (auto e = ranked.begin(); e != ranked.end() && e->refit && tried < most; ++e) {
+    if (!e->alone_gains_nothing) continue;
+    ++tried;
+    if (const auto pair = explaining_effect(*e, ranked, held_out, context)) return {e, pair};
   }
   return {ranked.end()};
+}
+
+std::string in_words(const Pair& pair, bool alone_gains_nothing) {
+  const std::string second = label(pair.second->candidate);
+  if (!alone_gains_nothing) return second + " explains what remains: add it next";
+  return "it takes two: together with " + second + " the held-out likelihood rises by " + format_value(pair.held_out_gain) +
+         ": add that next";
 }
 
 /// Step 5.
@@ -335,8 +388,10 @@ void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   Candidate& c = choice.at->candidate;
   c.accepted = true;
   c.why = "family-wise " + p_equals(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
-  if (!choice.at->refit->estimate.converged) c.why += "; " + choice.at->refit->estimate.message;
-  if (choice.second != nullptr) c.why += "; " + label(choice.second->candidate) + " explains what remains: add it next";
+  const FilterEstimate& there = choice.at->refit->estimate;
+  if (!there.converged) c.why += "; " + there.message;
+  if (const std::string drifts = drifts_in_words(there.model, there.covariance); !drifts.empty()) c.why += "; " + drifts;
+  if (choice.pair) c.why += "; " + in_words(*choice.pair, choice.at->alone_gains_nothing);
   std::rotate(ranked.begin(), choice.at, choice.at + 1);
 }
 
@@ -376,9 +431,10 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
 std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                        const SearchContext& context) {
   std::vector<Alias> aliases;
-  Choice choice = first_without_lack_of_fit(ranked, aliases, context);                                   // 1, 2
-  choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, aliases, unknown, context)  // 3
-                                     : first_with_a_second_effect(ranked, aliases, context);             // 4
+  HeldOut held_out(context.estimate, context.experiments, context.options.threads);
+  Choice choice = first_without_lack_of_fit(ranked, aliases, held_out, context);                                   // 1, 2
+  choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, aliases, unknown, held_out, context)  // 3
+                                     : first_with_a_second_effect(ranked, aliases, held_out, context);             // 4
   const bool accepted = choice.at != ranked.end();
   if (accepted) move_to_front(ranked, choice);  // 5
   find_groups(ranked, context);                 // 6

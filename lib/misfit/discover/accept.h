@@ -15,8 +15,10 @@ struct RankedCandidate {
   std::optional<Refit> refit;
   bool refit_begun = false;
   double log_p = 0.0;  ///< of the refit where there is one
-  /// Its refit is not what its name says: a part of a whole, or a memory longer than the recording. Its drop explains nothing then.
+  /// Its refit is not what its name says: a part of a whole, a memory longer than the recording, an edge where nothing was. Its drop
+  /// explains nothing then.
   bool misnamed = false;
+  bool alone_gains_nothing = false;  ///< refused for its held-out gain, and for nothing else
 };
 
 /// What a search works on, for testing again in another model.
@@ -49,7 +51,9 @@ inline constexpr double tied_drops = 10.0;
 ///    a second effect removes, as in step 4, it is accepted first, since two effects are missing; if it is another one, is refused, or is
 ///    an unknown curve of the first screening, none is accepted.
 /// 4. If every one that is not refused is an alias: accepted is the first whose lack of fit a second known effect removes, of any quantity,
-///    if each is needed beside the other and no strength of the two ends at a bound (`explaining_effect`).
+///    if each is needed beside the other and no strength of the two ends at a bound (`explaining_effect`). Else, of the first three that
+///    were refused for their held-out gain alone, the first that gains together with a second effect what both must, and leaves as little:
+///    two effects that hide each other (an offset and dry friction). So in step 3, of a larger one that was refused for that.
 /// 5. The accepted one becomes the first of the list.
 /// 6. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 10, and neither
 ///    has a significant score once the other is in the model.

@@ -100,6 +100,26 @@ std::vector<Roles> times(const std::vector<Roles>& places, const std::string& ro
   return out;
 }
 
+/// The places, and each of them with every input of the displacement's unit in its place.
+std::vector<Roles> with_inputs_that_displace(std::vector<Roles> places, const SystemSpec& system) {
+  const std::size_t count = places.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto displacement = places[i].find("displacement");
+    const StateSpec* moved = displacement == places[i].end() ? nullptr : state_called(system, displacement->second);
+    if (moved == nullptr) continue;
+    for (const InputSpec& input : system.inputs) {
+      if (!parse_unit(input.unit).same_dimension(parse_unit(moved->unit))) continue;
+      places.push_back(places[i]);
+      places.back()["displacement"] = input.name;
+    }
+  }
+  return places;
+}
+
+bool input_may_displace(const EffectSpec& effect) {
+  return std::any_of(effect.quantities.begin(), effect.quantities.end(), [](const Role& r) { return r.input_too; });
+}
+
 /// Each place once per other state of the unit that its level has.
 std::vector<Roles> times_other_states(const std::vector<Roles>& places, const SystemSpec& system) {
   std::vector<Roles> out;
@@ -110,6 +130,23 @@ std::vector<Roles> times_other_states(const std::vector<Roles>& places, const Sy
       if (state.name == level->name || !parse_unit(state.unit).same_dimension(parse_unit(level->unit))) continue;
       out.push_back(place);
       out.back()["other"] = state.name;
+    }
+  }
+  return out;
+}
+
+/// Each place with its output once per other output of the same unit; where the effect writes both, each pair of outputs once.
+std::vector<Roles> times_other_outputs(const std::vector<Roles>& places, const SystemSpec& system, bool writes_both) {
+  std::vector<Roles> out;
+  for (const Roles& place : places) {
+    const auto own = std::find_if(system.outputs.begin(), system.outputs.end(),
+                                  [&](const OutputSpec& o) { return place.contains("output") && o.name == place.at("output"); });
+    if (own == system.outputs.end()) continue;
+    for (auto other = writes_both ? own + 1 : system.outputs.begin(); other != system.outputs.end(); ++other) {
+      if (other == own || !parse_unit(other->unit).same_dimension(parse_unit(own->unit))) continue;
+      out.push_back(place);
+      out.back()["other_signal"] = other->name;
+      if (writes_both) out.back()["other_output"] = other->name;
     }
   }
   return out;
@@ -182,6 +219,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   if (!is_generic(effect)) return out;
   std::vector<Roles> places = {{}};
   if (has_role(effect.ports, "port") || has_role(effect.ports, "to_port")) places = natural_ports(system);
+  if (input_may_displace(effect)) places = with_inputs_that_displace(std::move(places), system);
   if (has_role(effect.ports, "to_port")) {
     std::vector<std::string> ports;
     for (const Roles& place : places) ports.push_back(place.at("port"));
@@ -192,6 +230,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
     places = times(places, "input", system.roles.contains("input") ? names_of(system.inputs) : std::vector<std::string>{});
   if (has_role(effect.ports, "output"))
     places = times(places, "output", suggests_places(system) ? names_of(system.outputs) : std::vector<std::string>{});
+  if (has_role(effect.quantities, "other_signal")) places = times_other_outputs(places, system, has_role(effect.ports, "other_output"));
   for (const Roles& place : places) {
     const auto roles = roles_at(effect, place);
     if (roles && !roles->empty()) out.push_back(*roles);
@@ -248,6 +287,13 @@ double OperatingRange::narrowest(int quantity) const {
   if (sigmas_.empty()) sigmas_ = sigmas_of_quantities(estimate_);
   const std::size_t i = quantity;
   return quantity < 0 || i >= sigmas_.size() || !std::isfinite(sigmas_[i]) ? 0.0 : std::sqrt(0.5 * std::numbers::pi) * sigmas_[i];
+}
+
+std::optional<OperatingRange::Range> OperatingRange::range_of_edge(const BoundEffect& effect, std::size_t coefficient) const {
+  const ScanSpec& scan = effect.effect->spec().coefficients[coefficient].scan;
+  const std::string_view over = scan.over;
+  if (over.empty() || over == "step" || over.front() == '|') return std::nullopt;
+  return range(scanned_quantity(effect, scan));
 }
 
 double OperatingRange::lower_bound(const BoundEffect& effect, std::size_t coefficient) const {

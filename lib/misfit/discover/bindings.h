@@ -19,10 +19,11 @@ using Roles = std::map<std::string, std::string>;
 /// suggests. `port` is each port of the random force, and each port that a system with a default for `signal` declares. A conjugate that is
 /// a state is its `rate`, and what it is the rate of `displacement` and `level`; one that is the rate of nothing is its `level`, and its
 /// `rate` too if its unit is one per time (the speed of a motor whose angle nobody models), else its `content`. A conjugate that is no
-/// state is its `rate` if its unit is, or if the equations make it the rate of another quantity, its `displacement` and `level`. `to_port`
-/// is each other such port, `other` each other state of the level's unit. `input` is each input and `output` each output (`signal` follows
-/// it), if the system has a default for `input`, or for `signal`: its way of saying that generic effects make sense there. Units are not
-/// looked at otherwise: assemble() refuses what does not suit.
+/// state is its `rate` if its unit is, or if the equations make it the rate of another quantity, its `displacement` and `level`.
+/// `displacement` is also each input of its unit, where the effect allows that (Role::input_too). `to_port` is each other such port,
+/// `other` each other state of the level's unit. `other_signal` is each other output of the output's unit (with `other_output`: each pair
+/// once). `input` is each input and `output` each output (`signal` follows it), if the system has a default for `input`, or for `signal`:
+/// its way of saying that generic effects make sense there. Units are not looked at otherwise: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
 /// What a recording visits: sizes for the shapes of effects that take any unit. Keeps a pointer to the estimate; for one thread.
@@ -40,6 +41,9 @@ class OperatingRange {
   /// Narrowest smoothing about a value of a quantity that the filter can follow: sqrt(pi/2) times the usual sigma of its predictions, by
   /// which a step looks smoothed to it (the mean of sign(x) over a normal x of that sigma has the slope sqrt(2/pi)/sigma). 0: of outputs.
   [[nodiscard]] double narrowest(int quantity) const;
+
+  /// range() of the quantity on whose values a shape is an edge (ScanSpec::over names it plainly); nullopt: it is none, or not known.
+  [[nodiscard]] std::optional<Range> range_of_edge(const BoundEffect& effect, std::size_t coefficient) const;
 
   /// Lower bound of a shape: its own, or what the filter resolves of the quantity that it smooths.
   [[nodiscard]] double lower_bound(const BoundEffect& effect, std::size_t coefficient) const;

@@ -54,6 +54,7 @@ class Search {
       refit_the_best();
       refit_the_significant_with_shapes();
       refit_what_the_free_run_shows();
+      refit_what_fell_short();
       if (options_.refits && !ranks().first()) return {};
       const SearchContext context{estimate_, registry_, experiments_, options_, families_};
       unexplained = accept_best(ranked_, unknown_, context);
@@ -244,28 +245,57 @@ class Search {
     return refit_wave({.begin = [this](const RankedCandidate& e) { return significant(e) ? e.screening : nullptr; }, .name = "_others"});
   }
 
-  /// The first few again from the study's own values, the effect as it was refitted: none could be accepted as it is. False: none gains.
+  /// Some refits once more, from the study's own values of all else.
+  struct Again {
+    std::function<bool(const RankedCandidate&)> wanted;
+    bool as_refitted = false;  ///< the effect begins as it was refitted; else as it was screened
+    const char* name = "";     ///< of the stored jobs
+  };
+
+  /// A refit that ends far below what the score promised, or nowhere, has failed: that is no evidence against its effect. What else is
+  /// free in the estimate may be where it is to make up for the missing effect.
+  void refit_what_fell_short() {
+    constexpr double far_below = 0.5;  // of the score's chi²
+    const auto fell_short = [&](const RankedCandidate& e) {
+      if (!e.refit_begun || e.candidate.described || !significant_in_screening(e)) return false;
+      return e.refit ? e.refit->drop < far_below * e.screening->result.chi2 : !was_cut_off(e);
+    };
+    refit_again({.wanted = fell_short, .name = "_short"});
+  }
+  bool was_cut_off(const RankedCandidate& e) const {
+    return std::find(unfinished_.begin(), unfinished_.end(), effect_at(e.candidate.effect, e.candidate.roles)) != unfinished_.end();
+  }
+
+  /// The first few significant ones: none could be accepted as it is. False: none gains.
   bool refit_afresh() {
+    return refit_again(
+        {.wanted = [this](const RankedCandidate& e) { return e.refit && significant(e); }, .as_refitted = true, .name = "_afresh"});
+  }
+
+  /// Of the first few that are wanted. False: none gains.
+  bool refit_again(const Again& again) {
     if (ranks().size() > 1) return false;
     constexpr std::size_t most = 3;
     std::vector<RankedCandidate*> chosen;
     std::vector<ScreeningResult> begin;
     for (auto& e : ranked_) {
-      if (!e.refit || !significant(e) || chosen.size() == most) continue;
+      if (chosen.size() == most || !again.wanted(e)) continue;
       chosen.push_back(&e);
-      begin.push_back(as_refitted(*e.screening, e.refit->estimate.model));
+      begin.push_back(again.as_refitted ? as_refitted(*e.screening, e.refit->estimate.model) : *e.screening);
     }
     if (chosen.empty()) return false;
     RefitWork work = refit_work();
     work.afresh = true;
     std::vector<const ScreeningResult*> effects;
     for (const ScreeningResult& b : begin) effects.push_back(&b);
-    std::vector<SteppedRefit> refits = refitted(work, score_, effects, "_afresh");
+    std::vector<SteppedRefit> refits = refitted(work, score_, effects, again.name);
     bool gained = false;
     for (std::size_t k = 0; k < refits.size(); ++k) {
       Refit& refit = refits[k].refit;
-      if (!refit.ok || !(refit.drop > chosen[k]->refit->drop + tied_drops)) continue;
+      const double before = chosen[k]->refit ? chosen[k]->refit->drop : 0.0;
+      if (!refit.ok || !(refit.drop > before + tied_drops)) continue;
       chosen[k]->refit = std::move(refit);
+      chosen[k]->candidate.why.clear();
       store_refit(*chosen[k]);
       gained = true;
     }

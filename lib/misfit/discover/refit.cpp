@@ -8,6 +8,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
+#include "misfit/discover/drift.h"
 #include "misfit/discover/whole_strength.h"
 
 namespace misfit {
@@ -43,18 +44,6 @@ bool better(const FilterEstimate& a, const FilterEstimate& b) {
   return a.converged != b.converged ? a.converged : a.objective > b.objective;
 }
 
-FilterOptions like(const FilterEstimate& estimate, int threads) {
-  FilterOptions options;
-  options.threads = threads;
-  options.noise = estimate.noise;
-  options.around = estimate.around;
-  options.use = uses_of(estimate);
-  options.plans = plans_of(estimate);
-  options.choose_roughness = false;
-  options.integration = estimate.data.front().inputs.plan.tolerance;
-  return options;
-}
-
 /// Held out: the last quarter of each experiment.
 std::vector<std::vector<SampleRole>> without_last_quarter(const FilterEstimate& estimate) {
   std::vector<std::vector<SampleRole>> out = uses_of(estimate);
@@ -78,9 +67,10 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
   std::map<std::string, Estimate> out;
   const CandidateModel& candidate_model = *screening.candidate_model;
   const BoundEffect& bound = estimate.model.effects.back();
+  const std::vector<int> idle = held_drifts(estimate.model);
   for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
     const int at = bound.coefficients[c].parameter;
-    if (at < 0 || bound.effect->spec().coefficients[c].shared) continue;
+    if (at < 0 || bound.effect->spec().coefficients[c].shared || place_of(idle, at) >= 0) continue;
     const int strength = place_of(candidate_model.strengths, at);
     const Parameter& p = estimate.model.parameters[at];
     double sigma = sigma_of(estimate, at);
@@ -109,9 +99,19 @@ Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole)
   return start;
 }
 
+/// What the effect leaves in steps may have had noise before: of a sawtooth of the prediction that leaves the mean over that noise, a part
+/// (its first harmonic is exp(-2 pi^2 sigma^2/step^2) as large). The steps themselves are looked for in the measurements
+/// (off_whole_steps()).
+bool rounds(const BoundEffect& effect) {
+  const auto& coefficients = effect.effect->spec().coefficients;
+  return std::any_of(coefficients.begin(), coefficients.end(),
+                     [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
+}
+
 /// "late_share = 0.12 ± 0.01, where the whole effect would have 1.00"; empty where the strengths are about whole.
 std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
-  constexpr double less = 0.3, more = 0.2;  // of the whole: formulas idealise, which takes away rather than adds
+  constexpr double more = 0.2;  // of the whole: formulas idealise, which takes away rather than adds
+  const double less = rounds(estimate.model.effects.back()) ? 0.9 : 0.3;
   for (const WholeStrength& w : whole) {
     const Parameter& p = estimate.model.parameters[w.parameter];
     const double sigma = sigma_of(estimate, w.parameter);
@@ -138,7 +138,7 @@ bool hold_whole(const RefitWork& work, Refit& out) {
   const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
   if (whole.empty()) return true;
   const Model start = start_of_whole(out.estimate.model, whole);
-  FilterOptions options = like(work.without, work.threads);
+  FilterOptions options = options_like(work.without, work.threads);
   options.noise = out.estimate.noise;
   try {
     FilterEstimate held = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
@@ -152,6 +152,27 @@ bool hold_whole(const RefitWork& work, Refit& out) {
   } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
   }
   out.partial = part_of_effect(out.estimate, whole);
+  return true;
+}
+
+/// With the drifts of its shapes freed, if that gains what chance would once in a thousand times. False: there was no time to try.
+bool let_drift(const RefitWork& work, Refit& out) {
+  constexpr double least = 5.4;  // of the log-likelihood: 10.8 in chi², 1 degree of freedom
+  Model start = out.estimate.model;
+  const std::vector<int> drifts = held_drifts(start);
+  if (drifts.empty()) return true;
+  for (const int drift : drifts) start.parameters[drift].free = true;
+  FilterOptions options = options_like(work.without, work.threads);
+  options.noise = out.estimate.noise;
+  try {
+    FilterEstimate drifting = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
+    if (drifting.out_of_time) return false;
+    const double needed = least * static_cast<double>(drifts.size());
+    if (drifting.converged && drifting.objective > out.estimate.objective + needed) out.estimate = std::move(drifting);
+  } catch (const TimeSpent&) {
+    return false;
+  } catch (const RunError&) {  // it cannot be run with a drift: it stays without
+  }
   return true;
 }
 
@@ -178,6 +199,18 @@ double drop_of(const FilterEstimate& with, const FilterEstimate& without, const 
 }
 
 }  // namespace
+
+FilterOptions options_like(const FilterEstimate& estimate, int threads) {
+  FilterOptions options;
+  options.threads = threads;
+  options.noise = estimate.noise;
+  options.around = estimate.around;
+  options.use = uses_of(estimate);
+  options.plans = plans_of(estimate);
+  options.choose_roughness = false;
+  options.integration = estimate.data.front().inputs.plan.tolerance;
+  return options;
+}
 
 Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry) {
   const CandidateModel& candidate_model = *screening.candidate_model;
@@ -288,7 +321,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   out.request = screening.candidate_model->request;
   const auto climb = [&](const Model& start, const std::optional<FilterNoise>& noise) {
     if (watch.spent()) return;
-    FilterOptions options = like(without, work.threads);
+    FilterOptions options = options_like(without, work.threads);
     options.noise = noise;
     try {
       FilterEstimate there = estimate_filter(start, same_roughness(start, without), work.experiments, options);
@@ -311,7 +344,8 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const bool in_time = !no_maximum() || !watch.spent();
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
-  if (!in_time || !hold_whole(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
+  if (!in_time || !hold_whole(work, out) || !let_drift(work, out))
+    return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
   note_changes(screening, work.registry, out);
   out.drop = drop_of(out.estimate, without, screening);
   out.parameters = parameters_of_effect(out.estimate, screening);
@@ -349,7 +383,7 @@ double predictive_loglik(const FilterEstimate& estimate) {
 double HeldOut::loglik(const FilterEstimate& estimate) const {
   const bool held_out = std::any_of(without_.traces.begin(), without_.traces.end(), [](const FilterTrace& t) { return t.validated > 0; });
   if (held_out) return predictive_loglik(estimate);
-  FilterOptions options = like(estimate, threads_);
+  FilterOptions options = options_like(estimate, threads_);
   options.use = without_last_quarter(without_);
   options.verify = false;
   const FilterEstimate shorter = estimate_filter(estimate.model, estimate.penalties, experiments_, options);

@@ -33,6 +33,10 @@ struct RefitWork {
   bool afresh = false;
 };
 
+/// For another model beside an estimate: its measurements and their uses, its noise to begin with, its steps of integration; roughness as
+/// handed over.
+[[nodiscard]] FilterOptions options_like(const FilterEstimate& estimate, int threads);
+
 /// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
 [[nodiscard]] Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry);
 
@@ -55,7 +59,7 @@ struct OneStep {
 /// and without it: from the estimate with the effect added to it, which an effect that the other parameters must make room for can throw
 /// out of the finite numbers; where that, too, reaches none, or one below the estimate: from the estimate with the effect in it but off,
 /// below which the search does not end. A strength at which the effect would be whole (whole_strength.h) is then held there if that costs
-/// the log-likelihood at most 2.
+/// the log-likelihood at most 2. Last, a shape that may drift (CoefficientSpec::drift_of) does if the data ask for it.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// The refit of an effect for which no time was left: `drop` is how far it had come.

@@ -7,6 +7,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
+#include "misfit/discover/bindings.h"
 #include "misfit/inference/states.h"
 
 namespace misfit {
@@ -174,6 +175,23 @@ std::optional<std::string> outlasts_recording(const Model& model, double seconds
     if (spec.states.empty() || p.unit != "s" || p.value < 0.5 * seconds) continue;
     return "its time " + p.name + " = " + in_display_unit(p.value, p.unit) + " is longer than half of the recording, " +
            in_display_unit(seconds, "s");
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> edge_not_visited(const FilterEstimate& estimate) {
+  constexpr double margin = 0.1;  // of the visited range
+  const OperatingRange visited(estimate);
+  const BoundEffect& effect = estimate.model.effects.back();
+  for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
+    if (effect.coefficients[c].parameter < 0) continue;
+    const auto range = visited.range_of_edge(effect, c);
+    if (!range) continue;
+    const Parameter& p = estimate.model.parameters[effect.coefficients[c].parameter];
+    const double beyond = margin * (range->high - range->low);
+    if (p.value >= range->low - beyond && p.value <= range->high + beyond) continue;
+    return "its " + p.name + " = " + in_display_unit(p.value, p.unit) + " is outside of what was visited, " +
+           in_display_unit(range->low, p.unit) + " to " + in_display_unit(range->high, p.unit) + ": there it is no edge";
   }
   return std::nullopt;
 }

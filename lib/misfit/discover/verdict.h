@@ -39,6 +39,10 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// effect says so.
 [[nodiscard]] std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments);
 
+/// "its threshold = -1.9 K is not among the values of Tc, 3.1 to 22 K" where an edge of the model's last effect lies further than a tenth
+/// of the visited range outside of it: there the effect is on, or off, all the time. nullopt: all lie inside, or it has none.
+[[nodiscard]] std::optional<std::string> edge_not_visited(const FilterEstimate& estimate);
+
 /// Remarks on the camera: parameters that are significant in the sweep but not in the camera (kept in Discovery::sweep_asks). Nothing is
 /// accepted then: the drop of a sensor effect comes from its prior, the sweep's, so that the remedy is to calibrate again; and a physical
 /// effect may describe the error of the camera. Where the flight gives evidence of physics too, be it refused, of unknown form or not yet

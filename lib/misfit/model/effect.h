@@ -47,6 +47,8 @@ struct Role {
   bool positive = false;  ///< the formula divides by it or takes its root: never 0 in use. At all others it must be regular at 0
   /// An optional role that completes this one (the lateral part of a rate): where a study binds that one alone, this one is left out.
   const char* completes = "";
+  /// Of `displacement`: what drives may also be an input of the same unit, as for play between an actuator and what it moves.
+  bool input_too = false;
 };
 
 /// Where discovery looks for a shape before the refit refines it.
@@ -84,6 +86,9 @@ struct CoefficientSpec {
   bool over_sine = false;        ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
   bool fixed = false;            ///< not fitted unless the study frees it: a smoothing width, an origin of time
   ScanSpec scan{};
+  /// Of a fixed shape that is 0: the effect's coefficient whose change with time it is [unit/s]. Discovery frees it where that explains
+  /// clearly more.
+  const char* drift_of = "";
   OfMeasurements measured_as = OfMeasurements::none;  ///< of a shape; discovery checks a step against the measurements
   /// Of a strength: where the effect is whole, and less of it is nothing that exists: all of an output is late, or none. Discovery holds it
   /// there where the data allow it, and refuses an effect of which they show only a part. 0: any strength is possible.

@@ -366,26 +366,4 @@ std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& 
   return predict_effect(session, effect);
 }
 
-std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Registry& registry) {
-  const std::vector<std::string> known = registry.effect_keys();
-  for (const auto& candidate : discovery.candidates) {
-    if (candidate.accepted && std::find(known.begin(), known.end(), candidate.effect) != known.end()) return candidate;
-  }
-  return std::nullopt;
-}
-
-void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderListener& listener) {
-  constexpr int most_rungs = 12;
-  ladder.limit_fits();
-  for (int k = 0; k < most_rungs; ++k) {
-    const Discovery discovery = discovered(ladder.last());
-    if (listener.discovered) listener.discovered(discovery);
-    const std::optional<Candidate> next = accepted_candidate(discovery, registry);
-    if (!next) break;
-    const Rung& rung = ladder.add(next->effect, next);
-    if (listener.added) listener.added(rung);
-  }
-  ladder.last_rung();
-}
-
 }  // namespace misfit

@@ -101,6 +101,22 @@ void print_null(const Rows& rows) {
               100.0 * static_cast<double>(alarms) / static_cast<double>(n), 100.0 * upper);
 }
 
+/// Of what was accepted in any world, by its held-out gain: is it right to believe it more where it gains more?
+void print_reliability(const Rows& rows) {
+  constexpr double edges[] = {0.0, 3.0, 10.0, 30.0, 100.0, 300.0, std::numeric_limits<double>::infinity()};
+  std::printf("\naccepted, by held-out gain of the log-likelihood\n%34s %6s %11s\n", "", "worlds", "right");
+  for (std::size_t i = 0; i + 1 < std::size(edges); ++i) {
+    const Rows accepted = some(rows, [&](const json& r) {
+      return named(r) && r.contains("gain") && r["gain"].is_number() && r["gain"] >= edges[i] && r["gain"] < edges[i + 1];
+    });
+    char title[64];
+    std::snprintf(title, sizeof title, "%g to %g", edges[i], edges[i + 1]);
+    std::printf("%34s %6zu", title, accepted.size());
+    print_share(accepted, grouped);
+    std::printf("\n");
+  }
+}
+
 }  // namespace
 
 void print_table(const Rows& rows) {
@@ -128,6 +144,7 @@ void print_table(const Rows& rows) {
   std::printf("\nby effect\n");
   print_head();
   print_by(large(effect), [](const json& r) { return r["system"].get<std::string>() + " " + hidden(r); });
+  print_reliability(rows);
   print_times(rows);
 }
 

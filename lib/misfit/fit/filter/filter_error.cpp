@@ -15,6 +15,7 @@
 #include "misfit/data/ladder.h"
 #include "misfit/fit/filter/noise_interval.h"
 #include "misfit/fit/filter/settled.h"
+#include "misfit/fit/filter/slow_force.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/record_residuals.h"
@@ -326,6 +327,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
   if (estimate.covariance.size() > 0) describe_estimates(estimate, fit);
   add_noise(estimate, threads, fit);
+  if (const std::string slow = fit.driven ? warning_of_slow_force(estimate) : ""; !slow.empty()) fit.warnings.push_back(slow);
   add_predictions(estimate, fit);
   report_gaps(estimate, fit);
   test_innovations(estimate, fit);

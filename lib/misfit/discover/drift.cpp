@@ -1,0 +1,53 @@
+#include "misfit/discover/drift.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/display.h"
+#include "misfit/core/lists.h"
+
+namespace misfit {
+namespace {
+
+/// Parameters of the last effect's own coefficients that are drifts, with the names of what drifts.
+struct Drift {
+  int parameter;
+  const char* of;
+};
+
+std::vector<Drift> drifts_of(const Model& model) {
+  std::vector<Drift> out;
+  const BoundEffect& bound = model.effects.back();
+  const auto& coefficients = bound.effect->spec().coefficients;
+  for (std::size_t c = 0; c < coefficients.size(); ++c) {
+    const int parameter = bound.coefficients[c].parameter;
+    if (coefficients[c].drift_of[0] != '\0' && parameter >= 0) out.push_back({parameter, coefficients[c].drift_of});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<int> held_drifts(const Model& model) {
+  std::vector<int> out;
+  for (const Drift& drift : drifts_of(model)) {
+    const Parameter& p = model.parameters[drift.parameter];
+    if (!p.free && p.value == 0.0) out.push_back(drift.parameter);
+  }
+  return out;
+}
+
+std::string drifts_in_words(const Model& model, const Eigen::MatrixXd& covariance) {
+  std::string out;
+  const std::vector<int> free = model.free_parameters();
+  for (const Drift& drift : drifts_of(model)) {
+    const Parameter& p = model.parameters[drift.parameter];
+    if (!p.free) continue;
+    const int column = place_of(free, drift.parameter);
+    const double sigma = column >= 0 && column < covariance.rows() ? std::sqrt(std::max(covariance(column, column), 0.0)) : 0.0;
+    out += (out.empty() ? "its " : ", its ") + std::string(drift.of) + " drifts by " + in_display_unit(p.value, p.unit, sigma);
+  }
+  return out;
+}
+
+}  // namespace misfit

@@ -1,0 +1,127 @@
+#include "misfit/discover/leaving.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/error.h"
+#include "misfit/core/lists.h"
+#include "misfit/core/watch.h"
+#include "misfit/discover/refit.h"
+#include "misfit/math/statistics.h"
+#include "misfit/model/model.h"
+
+namespace misfit {
+namespace {
+
+const BoundEffect* effect_called(const Model& model, const std::string& name) {
+  const auto found = std::find_if(model.effects.begin(), model.effects.end(), [&](const BoundEffect& e) { return e.name == name; });
+  return found == model.effects.end() ? nullptr : &*found;
+}
+
+/// Parameters of a coefficient: one, or those of its curve.
+std::vector<int> parameters_of(const Model& model, const BoundCoefficient& coefficient) {
+  if (coefficient.curve < 0) return coefficient.parameter < 0 ? std::vector<int>{} : std::vector<int>{coefficient.parameter};
+  std::vector<int> out;
+  const Curve& curve = model.curves[coefficient.curve];
+  for (int i = 0; i < curve.spline.size(); ++i) out.push_back(curve.first + i);
+  return out;
+}
+
+/// Of an effect's own coefficients.
+std::vector<int> own_parameters(const Model& model, const BoundEffect& effect) {
+  std::vector<int> out;
+  for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
+    if (effect.effect->spec().coefficients[c].shared) continue;
+    const std::vector<int> these = parameters_of(model, effect.coefficients[c]);
+    out.insert(out.end(), these.begin(), these.end());
+  }
+  return out;
+}
+
+ModelRequest request_without(const ModelRequest& request, const Model& model, const BoundEffect& effect) {
+  ModelRequest out = request;
+  std::erase_if(out.effects, [&](const EffectRequest& e) { return e.name == effect.name; });
+  for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
+    const BoundCoefficient& coefficient = effect.coefficients[c];
+    if (effect.effect->spec().coefficients[c].shared) continue;
+    if (coefficient.curve >= 0) out.curves.erase(model.curves[coefficient.curve].name);
+    if (coefficient.parameter >= 0) out.parameters.erase(model.parameters[coefficient.parameter].name);
+  }
+  return out;
+}
+
+/// Roughness weights as of the estimate; its curves may stand at other places.
+std::vector<Penalty> penalties_like(const FilterEstimate& estimate, const Model& model) {
+  std::vector<Penalty> out = curve_penalties(model);
+  for (Penalty& own : out) {
+    for (const Penalty& known : estimate.penalties) {
+      if (estimate.model.curves[known.curve].name == model.curves[own.curve].name) own.lambda = known.lambda;
+    }
+  }
+  return out;
+}
+
+void copy_parameter(const Parameter& from, Parameter& to) {
+  to.value = from.value;
+  to.free = from.free;
+  to.lower = from.lower;
+  to.upper = from.upper;
+}
+
+/// Values of what both models have. A coefficient's name may have changed: another effect of the same kind is gone.
+void copy_values(const Model& from, Model& to) {
+  for (Parameter& p : to.parameters) {
+    const int same = from.find_parameter(p.name);
+    if (same >= 0) copy_parameter(from.parameters[same], p);
+  }
+  for (const BoundEffect& effect : to.effects) {
+    const BoundEffect* before = effect_called(from, effect.name);
+    if (before == nullptr) continue;
+    const std::vector<int> there = own_parameters(from, *before), here = own_parameters(to, effect);
+    for (std::size_t i = 0; i < std::min(there.size(), here.size()); ++i) copy_parameter(from.parameters[there[i]], to.parameters[here[i]]);
+  }
+}
+
+}  // namespace
+
+bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas) {
+  const BoundEffect* effect = effect_called(estimate.model, name);
+  if (effect == nullptr) return false;
+  const std::vector<int> free = estimate.model.free_parameters();
+  bool any = false;
+  for (const int index : own_parameters(estimate.model, *effect)) {
+    const Parameter& p = estimate.model.parameters[index];
+    if (p.kind != CoefficientKind::strength || !p.free) continue;
+    const int column = place_of(free, index);
+    if (column < 0 || column >= estimate.covariance.rows()) return false;
+    any = true;
+    if (std::abs(p.value) > sigmas * std::sqrt(std::max(estimate.covariance(column, column), 0.0))) return false;
+  }
+  return any;
+}
+
+std::optional<Without> without_effect(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                      const std::vector<Signals>& experiments, const std::string& name, int threads) {
+  const BoundEffect* effect = effect_called(estimate.model, name);
+  if (effect == nullptr) return std::nullopt;
+  try {
+    Without out;
+    out.request = request_without(request, estimate.model, *effect);
+    Model start = assemble(out.request, registry);
+    copy_values(estimate.model, start);
+    out.estimate = estimate_filter(start, penalties_like(estimate, start), experiments, options_like(estimate, threads));
+    if (!out.estimate.converged || out.estimate.out_of_time) return std::nullopt;
+    out.drop = 2.0 * (estimate.objective - out.estimate.objective);
+    for (const int index : own_parameters(estimate.model, *effect)) out.parameters += estimate.model.parameters[index].free ? 1 : 0;
+    out.p_value = chi_square_tail(std::max(out.drop, 0.0), std::max(out.parameters, 1));
+    return out;
+  } catch (const InputError&) {
+    return std::nullopt;  // another effect needs it
+  } catch (const RunError&) {
+    return std::nullopt;
+  } catch (const TimeSpent&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace misfit

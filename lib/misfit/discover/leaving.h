@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/model/registry.h"
+
+namespace misfit {
+
+/// An estimate without one of its model's effects.
+struct Without {
+  FilterEstimate estimate;
+  ModelRequest request;  ///< what its model was assembled from
+  double drop = 0.0;     ///< 2 [objective(with) − objective(without)], each at its maximum on the same measurements, roughness as there
+  int parameters = 0;    ///< free ones that have gone with it
+  double p_value = 1.0;  ///< of that drop by chance: chi² tail
+};
+
+/// `request` is what the estimate's model was assembled from, `name` an effect of it as the model calls it (BoundEffect::name). The model
+/// without it is estimated anew from the estimate's values. nullopt: it cannot go (another effect shares its coefficients, or the model
+/// cannot be run without it), the search did not converge, or a limit of time was spent.
+[[nodiscard]] std::optional<Without> without_effect(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                                    const std::vector<Signals>& experiments, const std::string& name, int threads);
+
+/// A Wald test that is quick: are all free strengths of the effect within `sigmas` of 0? Else it is needed, whatever a fit without it says.
+[[nodiscard]] bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas = 3.0);
+
+}  // namespace misfit

@@ -1,0 +1,215 @@
+// discover --auto: rungs are added while something is accepted, and effects that later ones have made needless leave.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "misfit/core/text.h"
+#include "misfit/core/watch.h"
+#include "misfit/data/candidates.h"
+#include "misfit/discover/discover.h"
+#include "misfit/discover/leaving.h"
+#include "misfit/jobs/interrupt.h"
+#include "misfit/math/statistics.h"
+#include "misfit/workflow/ladder.h"
+
+namespace misfit {
+namespace {
+
+constexpr double p_needless = 0.01;  // above: what an effect explains beside the others may be chance
+
+/// An effect on the ladder, as the last model calls it, and those that explained nearly as much when it was chosen.
+struct OnLadder {
+  int rung = 0;
+  std::string name;
+  Candidate from;
+  std::vector<Candidate> alternatives;
+};
+
+/// Those of the round that were refitted and explain more than half of what the accepted one does.
+std::vector<Candidate> alternatives_to(const Candidate& accepted, const Discovery& discovery) {
+  std::vector<Candidate> out;
+  constexpr std::size_t most = 3;
+  for (const Candidate& c : discovery.candidates) {
+    const bool same = c.effect == accepted.effect && c.roles == accepted.roles;
+    if (same || !c.actual_drop || !accepted.actual_drop || !(*c.actual_drop > 0.5 * *accepted.actual_drop) || out.size() == most) continue;
+    out.push_back(c);
+  }
+  return out;
+}
+
+/// Where its refit ended, other effects were in the model.
+Candidate without_refit(Candidate candidate) {
+  candidate.refit_values.clear();
+  candidate.refit_log_noise.clear();
+  return candidate;
+}
+
+/// The last model without an effect of it.
+std::optional<Without> last_without(Session& last, const std::string& name, const Registry& registry) {
+  stop_if_interrupted();
+  const auto work = filter_work(last);
+  if (!work->estimate) return std::nullopt;
+  const Watch watch("the model without " + name, last.fit_limit(), last.options.listener.hearer("discover"));
+  return without_effect(*work->estimate, work->prepared.request, registry, work->prepared.experiments, name, last.options.threads);
+}
+
+/// The same if its strengths are small, and what it explains may be chance.
+std::optional<Without> needless(Session& last, const std::string& name, const Registry& registry) {
+  const auto work = filter_work(last);
+  if (!work->estimate || !may_leave(*work->estimate, name)) return std::nullopt;
+  auto out = last_without(last, name, registry);
+  return out && out->p_value > p_needless ? std::move(out) : std::nullopt;
+}
+
+/// What an effect explains in the place of the one that has gone; nullopt: it has not been refitted there.
+std::optional<Candidate> in_its_place(Session& last, const Without& without, const Candidate& other, const Registry& registry) {
+  stop_if_interrupted();
+  const auto calibration = calibrate_stage(last);
+  const auto work = filter_work(last);
+  const auto same = [&](const Candidate& c) { return c.effect == other.effect && c.roles == other.roles; };
+  DiscoverOptions options;
+  options.threads = last.options.threads;
+  options.calibration = calibration ? &*calibration : nullptr;
+  options.only = other.effect;
+  options.refit_best_of = same;
+  options.refit_limit = last.asked_limit().value_or(usual_limit(last.options, work->fit.seconds));
+  const Discovery found = discover(without.estimate, without.request, registry, work->prepared.experiments, options);
+  const auto candidate = std::find_if(found.candidates.begin(), found.candidates.end(), same);
+  if (candidate == found.candidates.end() || !candidate->actual_drop) return std::nullopt;
+  return *candidate;
+}
+
+std::string in_words(const std::string& name, const Without& without) {
+  return fmt::format("{} explains nothing any more beside what was added after it (drop {}, {})", name, format_value(without.drop),
+                     p_equals(without.p_value));
+}
+
+class Extension {
+ public:
+  Extension(ModelLadder& ladder, const Registry& registry, const LadderListener& listener)
+      : ladder_(ladder), registry_(registry), listener_(listener) {}
+
+  void run() {
+    constexpr int most_rungs = 12;
+    ladder_.limit_fits();
+    for (int k = 0; k < most_rungs; ++k) {
+      const Discovery discovery = discovered(ladder_.last());
+      if (listener_.discovered) listener_.discovered(discovery);
+      const std::optional<Candidate> next = accepted_candidate(discovery, registry_);
+      if (!next || has_left(*next)) break;
+      if (!add(*next, alternatives_to(*next, discovery))) break;
+      while (one_leaves() || one_is_exchanged()) {
+      }
+    }
+    ladder_.last_rung();
+    say_needless();
+  }
+
+ private:
+  [[nodiscard]] bool has_left(const Candidate& candidate) const {
+    return std::any_of(left_.begin(), left_.end(),
+                       [&](const Candidate& c) { return c.effect == candidate.effect && c.roles == candidate.roles; });
+  }
+
+  /// False: the rung gains nothing and is off again.
+  bool add(const Candidate& candidate, std::vector<Candidate> alternatives) {
+    const Rung& rung = ladder_.add(candidate.effect, candidate);
+    if (listener_.added) listener_.added(rung);
+    const double parameters = std::max<double>(static_cast<double>(rung.parameters.size()), 1.0);
+    if (rung.actual_drop && chi_square_tail(std::max(*rung.actual_drop, 0.0), parameters) > p_needless) {
+      ladder_.root().note(
+          fmt::format("{} gains nothing once fitted (drop {}): its rung is taken off", candidate.effect, format_value(*rung.actual_drop)));
+      ladder_.remove(std::to_string(rung.id));
+      return false;
+    }
+    added_.push_back({rung.id, ladder_.last().model.request.effects.back().name, candidate, std::move(alternatives)});
+    return true;
+  }
+
+  /// The first that the later ones have made needless goes, and those above it are added again without it. False: there is none.
+  bool one_leaves() {
+    for (std::size_t k = 0; k + 1 < added_.size(); ++k) {
+      const auto without = needless(ladder_.last(), added_[k].name, registry_);
+      if (!without) continue;
+      ladder_.root().note(in_words(added_[k].name, *without) + ": it leaves the ladder");
+      return rebuild_without(k, std::nullopt);
+    }
+    return false;
+  }
+
+  /// The first in whose place one of its alternatives explains more, now that the later ones are there, makes room for it. False: there is
+  /// none.
+  bool one_is_exchanged() {
+    constexpr double clearly = 10.0;  // as far apart as effects that data can distinguish, and for each parameter more
+    for (std::size_t k = 0; k + 1 < added_.size(); ++k) {
+      std::vector<Candidate> others = std::move(added_[k].alternatives);
+      added_[k].alternatives.clear();  // asked once
+      std::erase_if(others, [this](const Candidate& c) { return has_left(c); });
+      const auto without = others.empty() ? std::nullopt : last_without(ladder_.last(), added_[k].name, registry_);
+      if (!without) continue;
+      for (const Candidate& other : others) {
+        const auto there = in_its_place(ladder_.last(), *without, other, registry_);
+        if (!there) continue;
+        const auto more =
+            static_cast<double>(std::max<std::ptrdiff_t>(std::ssize(there->parameters) - std::ssize(added_[k].from.parameters), 0));
+        if (!(*there->actual_drop > without->drop + clearly * (1.0 + more))) continue;
+        ladder_.root().note(fmt::format("beside what was added after it, {} explains more (drop {}) than {} (drop {}): it takes its place",
+                                        effect_at(other.effect, other.roles), format_value(*there->actual_drop), added_[k].name,
+                                        format_value(without->drop)));
+        return rebuild_without(k, there);
+      }
+    }
+    return false;
+  }
+
+  /// The ladder from the rung of added_[k] on once more: `instead` in its place, or nothing, then those above it. False: one of them gains
+  /// nothing now.
+  bool rebuild_without(std::size_t k, const std::optional<Candidate>& instead) {
+    left_.push_back(added_[k].from);
+    const std::vector<OnLadder> above(added_.begin() + static_cast<std::ptrdiff_t>(k) + 1, added_.end());
+    ladder_.remove(std::to_string(added_[k].rung));
+    added_.resize(k);
+    if (instead && !add(without_refit(*instead), {})) return false;
+    for (const OnLadder& again : above) {
+      if (!add(without_refit(again.from), again.alternatives)) return false;
+    }
+    return true;
+  }
+
+  /// Effects that somebody added by hand are not taken off, but it is said.
+  void say_needless() {
+    for (const Rung& rung : ladder_.ladder().rungs) {
+      if (rung.id == ladder_.ladder().rungs.back().id) break;  // nothing was added after it
+      const bool own = std::any_of(added_.begin(), added_.end(), [&](const OnLadder& a) { return a.rung == rung.id; });
+      const auto& effects = ladder_.last().model.request.effects;
+      const auto bound = std::find_if(effects.begin(), effects.end(), [&](const EffectRequest& e) { return e.kind == rung.added; });
+      if (rung.parent < 0 || own || bound == effects.end()) continue;
+      if (const auto without = needless(ladder_.last(), bound->name, registry_))
+        ladder_.root().note(in_words(bound->name, *without) +
+                            fmt::format(": `misfit remove` of rung {} takes it and those above it off", rung.id));
+    }
+  }
+
+  ModelLadder& ladder_;
+  const Registry& registry_;
+  const LadderListener& listener_;
+  std::vector<OnLadder> added_;
+  std::vector<Candidate> left_;
+};
+
+}  // namespace
+
+std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Registry& registry) {
+  const std::vector<std::string> known = registry.effect_keys();
+  for (const auto& candidate : discovery.candidates) {
+    if (candidate.accepted && std::find(known.begin(), known.end(), candidate.effect) != known.end()) return candidate;
+  }
+  return std::nullopt;
+}
+
+void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderListener& listener) {
+  Extension(ladder, registry, listener).run();
+}
+
+}  // namespace misfit

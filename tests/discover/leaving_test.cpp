@@ -1,0 +1,60 @@
+#include "misfit/discover/leaving.h"
+
+#include <gtest/gtest.h>
+
+#include "misfit/math/statistics.h"
+#include "tests/discover/record.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_records;
+
+/// Viscous friction acts on the cart, dry friction does not: both are in the model.
+struct WithNeedlessFriction {
+  ModelRequest request = cart({effect("viscous_friction"), effect("coulomb_friction")});
+  std::vector<Signals> signals = {record_of_cart({}, {})};
+  FilterEstimate estimate;
+
+  WithNeedlessFriction() {
+    request.parameters["stiffness"].free = true;
+    estimate = estimate_filter(assemble(request, registry()), {}, signals);
+  }
+  [[nodiscard]] std::optional<Without> without(const std::string& name) const {
+    return without_effect(estimate, request, registry(), signals, name, 1);
+  }
+};
+
+const WithNeedlessFriction& fitted() {
+  static const WithNeedlessFriction out;
+  return out;
+}
+
+TEST(WithoutAnEffect, WhatIsNotThereMayGo) {
+  ASSERT_TRUE(fitted().estimate.converged);
+  EXPECT_TRUE(may_leave(fitted().estimate, "coulomb_friction"));
+  const auto without = fitted().without("coulomb_friction");
+  ASSERT_TRUE(without);
+  EXPECT_GT(without->drop, -0.1) << "a larger model is not worse, but for what a search leaves";
+  EXPECT_LT(without->drop, 15.0) << "a friction that is not there";
+  EXPECT_GE(without->parameters, 1);
+  EXPECT_EQ(without->estimate.model.find_parameter("friction"), -1);
+  EXPECT_EQ(without->request.effects.size(), 1U);
+  EXPECT_NEAR(without->p_value, chi_square_tail(std::max(without->drop, 0.0), without->parameters), 1e-12);
+}
+
+TEST(WithoutAnEffect, WhatIsNeededStays) {
+  EXPECT_FALSE(may_leave(fitted().estimate, "viscous_friction"));
+  const auto without = fitted().without("viscous_friction");
+  ASSERT_TRUE(without);
+  EXPECT_GT(without->drop, 100.0);
+  EXPECT_LT(without->p_value, 1e-12);
+}
+
+TEST(WithoutAnEffect, AnEffectThatIsNotInTheModelCannotGo) {
+  EXPECT_FALSE(fitted().without("quadratic_drag"));
+  EXPECT_FALSE(may_leave(fitted().estimate, "quadratic_drag"));
+}
+
+}  // namespace
+}  // namespace misfit
