@@ -51,6 +51,13 @@ TEST(WithoutAnEffect, WhatIsNeededStays) {
   EXPECT_LT(without->p_value, 1e-12);
 }
 
+TEST(WithoutAnEffect, ADropMayBeChanceUpToThePercentileOfChiSquare) {
+  EXPECT_TRUE(may_be_chance(6.6, 1)) << "99 %: 6.635";
+  EXPECT_FALSE(may_be_chance(6.7, 1));
+  EXPECT_TRUE(may_be_chance(6.7, 2)) << "99 %: 9.210";
+  EXPECT_TRUE(may_be_chance(-1.0, 1));
+}
+
 TEST(WithoutAnEffect, AnEffectThatIsNotInTheModelCannotGo) {
   EXPECT_FALSE(fitted().without("quadratic_drag"));
   EXPECT_FALSE(may_leave(fitted().estimate, "quadratic_drag"));

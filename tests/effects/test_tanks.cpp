@@ -57,7 +57,8 @@ struct TestTanks {
                    {.name = "drain_2", .unit = "1/s", .doc = "outflow of the lower tank", .lower = 0.0, .upper = 1e6},
                    {.name = "pump", .unit = "m/s/V", .doc = "inflow per volt", .lower = -1e6, .upper = 1e6}};
     s.outputs = {{.name = "y1", .unit = "m", .observes = x1, .noise = 1e-3}, {.name = "y2", .unit = "m", .observes = x2, .noise = 1e-3}};
-    s.roles = {{"level", "x2"}, {"port", "dx2/dt"}, {"to_port", "dx1/dt"}, {"input", "u"}, {"output", "y2"}, {"signal", "y2"}};
+    s.roles = {{"level", "x2"},  {"port", "dx2/dt"}, {"to_port", "dx1/dt"},  {"input", "u"},
+               {"output", "y2"}, {"signal", "y2"},   {"other_output", "y1"}, {"other_signal", "y1"}};
     s.fastest_rate = 1.0;
     return s;
   }

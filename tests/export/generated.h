@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -95,14 +97,29 @@ inline std::vector<Row> run_python(const std::string& source, const Questions& a
   return rows_of(folder, "python3 -W error main.py");
 }
 
-/// Equal to 1e-12 of each value; both not a number, or both the same infinity.
+/// Per number, the largest finite size at any of the points.
+inline Row largest_of(const std::vector<Row>& rows) {
+  Row out;
+  for (const Row& row : rows) {
+    out.resize(std::max(out.size(), row.size()), 0.0);
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      if (std::isfinite(row[j])) out[j] = std::max(out[j], std::abs(row[j]));
+    }
+  }
+  return out;
+}
+
+/// Equal to 1e-12 of each value, or to a unit of rounding of the largest that this number takes: one that happens to be near 0 is a
+/// difference of larger ones. Both not a number, or both the same infinity.
 inline void expect_same(const std::vector<Row>& found, const std::vector<Row>& wanted, const std::string& what) {
   ASSERT_EQ(found.size(), wanted.size()) << what;
+  const Row largest = largest_of(wanted);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     ASSERT_EQ(found[i].size(), wanted[i].size()) << what;
     for (std::size_t j = 0; j < wanted[i].size(); ++j) {
       const double a = found[i][j], b = wanted[i][j];
-      const bool same = a == b || (std::isnan(a) && std::isnan(b)) || std::abs(a - b) <= 1e-12 * std::abs(b);
+      const bool same = a == b || (std::isnan(a) && std::isnan(b)) ||
+                        std::abs(a - b) <= std::max(1e-12 * std::abs(b), std::numeric_limits<double>::epsilon() * largest[j]);
       EXPECT_TRUE(same) << what << ": point " << i << ", number " << j << ": " << a << " is not " << b;
     }
   }

@@ -84,6 +84,11 @@ void copy_values(const Model& from, Model& to) {
 
 }  // namespace
 
+bool may_be_chance(double drop, int parameters) {
+  constexpr double by_chance = 0.01;
+  return chi_square_tail(std::max(drop, 0.0), std::max(parameters, 1)) > by_chance;
+}
+
 bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas) {
   const BoundEffect* effect = effect_called(estimate.model, name);
   if (effect == nullptr) return false;

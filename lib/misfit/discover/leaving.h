@@ -24,6 +24,9 @@ struct Without {
 [[nodiscard]] std::optional<Without> without_effect(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                                     const std::vector<Signals>& experiments, const std::string& name, int threads);
 
+/// May a drop of 2 log L for so many parameters be chance? p above 0.01.
+[[nodiscard]] bool may_be_chance(double drop, int parameters);
+
 /// A Wald test that is quick: are all free strengths of the effect within `sigmas` of 0? Else it is needed, whatever a fit without it says.
 [[nodiscard]] bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas = 3.0);
 

@@ -28,6 +28,7 @@ class Roles {
                                                               : s.states.front().name;
     set_motion(by_default, quantities);
     s.roles["output"] = s.roles["signal"] = role("output", outputs.front(), outputs);
+    set_other_output();
     if (!s.inputs.empty()) s.roles["input"] = role("input", s.inputs.front().name, quantities);
     if (s.inputs.empty() && d_.roles->text("input")) throw InputError(d_.roles->where("input"), "[roles] input: the system has no inputs");
     for (auto& p : s.dynamic_ports) {
@@ -63,6 +64,16 @@ class Roles {
       s.roles["other"] = state.name;
       return;
     }
+  }
+
+  /// The first output of the unit of `output` beside it.
+  void set_other_output() {
+    SystemSpec& s = d_.spec;
+    const auto own = std::find_if(s.outputs.begin(), s.outputs.end(), [&](const OutputSpec& o) { return o.name == s.roles["output"]; });
+    const auto other = std::find_if(s.outputs.begin(), s.outputs.end(), [&](const OutputSpec& o) {
+      return o.name != own->name && parse_unit(o.unit).same_dimension(parse_unit(own->unit));
+    });
+    if (other != s.outputs.end()) s.roles["other_signal"] = s.roles["other_output"] = other->name;
   }
 
   std::string role(const char* name, const std::string& fallback, const std::vector<std::string>& valid) {

@@ -4,19 +4,14 @@
 
 #include <algorithm>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
-#include "misfit/core/watch.h"
 #include "misfit/data/candidates.h"
-#include "misfit/discover/discover.h"
-#include "misfit/discover/leaving.h"
-#include "misfit/jobs/interrupt.h"
-#include "misfit/math/statistics.h"
+#include "misfit/workflow/assess/without.h"
 #include "misfit/workflow/ladder.h"
 
 namespace misfit {
 namespace {
-
-constexpr double p_needless = 0.01;  // above: what an effect explains beside the others may be chance
 
 /// An effect on the ladder, as the last model calls it, and those that explained nearly as much when it was chosen.
 struct OnLadder {
@@ -43,41 +38,6 @@ Candidate without_refit(Candidate candidate) {
   candidate.refit_values.clear();
   candidate.refit_log_noise.clear();
   return candidate;
-}
-
-/// The last model without an effect of it.
-std::optional<Without> last_without(Session& last, const std::string& name, const Registry& registry) {
-  stop_if_interrupted();
-  const auto work = filter_work(last);
-  if (!work->estimate) return std::nullopt;
-  const Watch watch("the model without " + name, last.fit_limit(), last.options.listener.hearer("discover"));
-  return without_effect(*work->estimate, work->prepared.request, registry, work->prepared.experiments, name, last.options.threads);
-}
-
-/// The same if its strengths are small, and what it explains may be chance.
-std::optional<Without> needless(Session& last, const std::string& name, const Registry& registry) {
-  const auto work = filter_work(last);
-  if (!work->estimate || !may_leave(*work->estimate, name)) return std::nullopt;
-  auto out = last_without(last, name, registry);
-  return out && out->p_value > p_needless ? std::move(out) : std::nullopt;
-}
-
-/// What an effect explains in the place of the one that has gone; nullopt: it has not been refitted there.
-std::optional<Candidate> in_its_place(Session& last, const Without& without, const Candidate& other, const Registry& registry) {
-  stop_if_interrupted();
-  const auto calibration = calibrate_stage(last);
-  const auto work = filter_work(last);
-  const auto same = [&](const Candidate& c) { return c.effect == other.effect && c.roles == other.roles; };
-  DiscoverOptions options;
-  options.threads = last.options.threads;
-  options.calibration = calibration ? &*calibration : nullptr;
-  options.only = other.effect;
-  options.refit_best_of = same;
-  options.refit_limit = last.asked_limit().value_or(usual_limit(last.options, work->fit.seconds));
-  const Discovery found = discover(without.estimate, without.request, registry, work->prepared.experiments, options);
-  const auto candidate = std::find_if(found.candidates.begin(), found.candidates.end(), same);
-  if (candidate == found.candidates.end() || !candidate->actual_drop) return std::nullopt;
-  return *candidate;
 }
 
 std::string in_words(const std::string& name, const Without& without) {
@@ -116,8 +76,7 @@ class Extension {
   bool add(const Candidate& candidate, std::vector<Candidate> alternatives) {
     const Rung& rung = ladder_.add(candidate.effect, candidate);
     if (listener_.added) listener_.added(rung);
-    const double parameters = std::max<double>(static_cast<double>(rung.parameters.size()), 1.0);
-    if (rung.actual_drop && chi_square_tail(std::max(*rung.actual_drop, 0.0), parameters) > p_needless) {
+    if (rung.actual_drop && may_be_chance(*rung.actual_drop, int_size(rung.parameters))) {
       ladder_.root().note(
           fmt::format("{} gains nothing once fitted (drop {}): its rung is taken off", candidate.effect, format_value(*rung.actual_drop)));
       ladder_.remove(std::to_string(rung.id));
@@ -130,7 +89,7 @@ class Extension {
   /// The first that the later ones have made needless goes, and those above it are added again without it. False: there is none.
   bool one_leaves() {
     for (std::size_t k = 0; k + 1 < added_.size(); ++k) {
-      const auto without = needless(ladder_.last(), added_[k].name, registry_);
+      const auto without = needless(ladder_.last(), added_[k].name);
       if (!without) continue;
       ladder_.root().note(in_words(added_[k].name, *without) + ": it leaves the ladder");
       return rebuild_without(k, std::nullopt);
@@ -146,10 +105,10 @@ class Extension {
       std::vector<Candidate> others = std::move(added_[k].alternatives);
       added_[k].alternatives.clear();  // asked once
       std::erase_if(others, [this](const Candidate& c) { return has_left(c); });
-      const auto without = others.empty() ? std::nullopt : last_without(ladder_.last(), added_[k].name, registry_);
+      const auto without = others.empty() ? std::nullopt : model_without(ladder_.last(), added_[k].name);
       if (!without) continue;
       for (const Candidate& other : others) {
-        const auto there = in_its_place(ladder_.last(), *without, other, registry_);
+        const auto there = in_its_place(ladder_.last(), *without, other);
         if (!there) continue;
         const auto more =
             static_cast<double>(std::max<std::ptrdiff_t>(std::ssize(there->parameters) - std::ssize(added_[k].from.parameters), 0));
@@ -185,7 +144,7 @@ class Extension {
       const auto& effects = ladder_.last().model.request.effects;
       const auto bound = std::find_if(effects.begin(), effects.end(), [&](const EffectRequest& e) { return e.kind == rung.added; });
       if (rung.parent < 0 || own || bound == effects.end()) continue;
-      if (const auto without = needless(ladder_.last(), bound->name, registry_))
+      if (const auto without = needless(ladder_.last(), bound->name))
         ladder_.root().note(in_words(bound->name, *without) +
                             fmt::format(": `misfit remove` of rung {} takes it and those above it off", rung.id));
     }

@@ -1,0 +1,45 @@
+#include "misfit/workflow/assess/without.h"
+
+#include <algorithm>
+
+#include "misfit/core/watch.h"
+#include "misfit/discover/discover.h"
+#include "misfit/jobs/interrupt.h"
+#include "misfit/workflow/estimate/estimate.h"
+
+namespace misfit {
+
+std::optional<Without> model_without(Session& session, const std::string& effect) {
+  stop_if_interrupted();
+  const auto work = filter_work(session);
+  if (!work->estimate) return std::nullopt;
+  const Watch watch("the model without " + effect, session.fit_limit(), session.options.listener.hearer("discover"));
+  return without_effect(*work->estimate, work->prepared.request, session.registry, work->prepared.experiments, effect,
+                        session.options.threads);
+}
+
+std::optional<Without> needless(Session& session, const std::string& effect) {
+  const auto work = filter_work(session);
+  if (!work->estimate || !may_leave(*work->estimate, effect)) return std::nullopt;
+  auto out = model_without(session, effect);
+  return out && may_be_chance(out->drop, out->parameters) ? std::move(out) : std::nullopt;
+}
+
+std::optional<Candidate> in_its_place(Session& session, const Without& without, const Candidate& other) {
+  stop_if_interrupted();
+  const std::optional<Calibration> calibration = calibrate_stage(session);
+  const auto work = filter_work(session);
+  const auto same = [&](const Candidate& c) { return c.effect == other.effect && c.roles == other.roles; };
+  DiscoverOptions options;
+  options.threads = session.options.threads;
+  options.calibration = calibration ? &*calibration : nullptr;
+  options.only = other.effect;
+  options.refit_best_of = same;
+  options.refit_limit = session.asked_limit().value_or(usual_limit(session.options, work->fit.seconds));
+  const Watch watch(other.effect + " in the place of another", 0.0, session.options.listener.hearer("discover"));
+  const Discovery found = discover(without.estimate, without.request, session.registry, work->prepared.experiments, options);
+  const auto candidate = std::find_if(found.candidates.begin(), found.candidates.end(), same);
+  return candidate == found.candidates.end() || !candidate->actual_drop ? std::nullopt : std::optional(*candidate);
+}
+
+}  // namespace misfit

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "misfit/data/candidates.h"
+#include "misfit/discover/leaving.h"
+#include "misfit/workflow/session/session.h"
+
+namespace misfit {
+
+// What effects of a study's model are worth beside the others of it, now that these are there.
+
+/// The model as fitted, without an effect of it, refitted; nullopt as without_effect().
+[[nodiscard]] std::optional<Without> model_without(Session& session, const std::string& effect);
+
+/// The same if the effect's strengths are small (may_leave()) and what it explains may be chance.
+[[nodiscard]] std::optional<Without> needless(Session& session, const std::string& effect);
+
+/// What another effect explains in the place of the one that has gone, screened and refitted there; nullopt: it could not be.
+[[nodiscard]] std::optional<Candidate> in_its_place(Session& session, const Without& without, const Candidate& other);
+
+}  // namespace misfit
