@@ -201,6 +201,16 @@ TEST(ARemovedRung, MustBeOneThatWasAdded) {
   EXPECT_EQ(added(study), (std::vector<std::string>{"", "coulomb_friction"}));
 }
 
+TEST(AnEffectAddedByHand, StaysThoughALaterOneMakesItNeedlessAndThatIsSaid) {
+  const OscillatorStudy study;  // dry friction is missing; a spring that hardens imitates a little of it
+  const std::string file = study.path("study.toml").string();
+  ASSERT_EQ(run({"add", file, "cubic_stiffness"}).status, 0);
+  const Outcome outcome = run({"discover", file, "--auto"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(added(study), (std::vector<std::string>{"", "cubic_stiffness", "coulomb_friction"}));
+  expect_parts(outcome.err, {"cubic_stiffness explains nothing any more beside what was added after it", "rung 1"});
+}
+
 TEST(AnEffectThatIsAdded, IsWhatDiscoveryFindsWhetherItHasBeenAskedOrNot) {
   const OscillatorStudy study;
   const std::string file = study.path("study.toml").string();

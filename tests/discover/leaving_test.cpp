@@ -52,10 +52,12 @@ TEST(WithoutAnEffect, WhatIsNeededStays) {
 }
 
 TEST(WithoutAnEffect, ADropMayBeChanceUpToThePercentileOfChiSquare) {
-  EXPECT_TRUE(may_be_chance(6.6, 1)) << "99 %: 6.635";
-  EXPECT_FALSE(may_be_chance(6.7, 1));
-  EXPECT_TRUE(may_be_chance(6.7, 2)) << "99 %: 9.210";
-  EXPECT_TRUE(may_be_chance(-1.0, 1));
+  EXPECT_TRUE(may_be_chance(6.6, 1, 1.0)) << "99 %: 6.635";
+  EXPECT_FALSE(may_be_chance(6.7, 1, 1.0));
+  EXPECT_TRUE(may_be_chance(6.7, 2, 1.0)) << "99 %: 9.210";
+  EXPECT_TRUE(may_be_chance(-1.0, 1, 1.0));
+  EXPECT_TRUE(may_be_chance(13.0, 1, 40.0)) << "1 - 0.99^(1/40) = 2.51e-4: 13.4";
+  EXPECT_FALSE(may_be_chance(13.5, 1, 40.0));
 }
 
 TEST(WithoutAnEffect, AnEffectThatIsNotInTheModelCannotGo) {

@@ -6,7 +6,9 @@
 
 #include "misfit/core/text.h"
 #include "misfit/discover/alias.h"
+#include "misfit/discover/conditional.h"
 #include "misfit/discover/drift.h"
+#include "misfit/discover/pairs.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/math/statistics.h"
 
@@ -15,179 +17,9 @@ namespace {
 
 constexpr double tied_gains = 3.0;  // of the log-likelihood: half of it
 
-std::string label(const Candidate& c) { return effect_at(c.effect, c.roles); }
-
-RefitWork work_from(const FilterEstimate& estimate, const SearchContext& context) {
-  return {estimate, context.experiments, context.registry, context.options.threads, context.options.refit_limit};
-}
-
-/// Score tests of other effects in the model to which a refitted one has been added.
-class ConditionalScores {
- public:
-  ConditionalScores(const Refit& in, const SearchContext& context)
-      : in_(in), list_(candidate_models(in.estimate, in.request, context.registry, context.options.calibration)), score_(in.estimate) {}
-
-  /// At the effect's best cell of the first search; dof 0 where the model describes it already, no value where it cannot be run with it.
-  [[nodiscard]] std::optional<ScreeningResult> score(const RankedCandidate& other) const {
-    const CandidateModel* candidate_model = in_list(other);
-    return candidate_model == nullptr ? std::nullopt : score_at(*candidate_model, other.screening->cell, other);
-  }
-
-  /// At the best of all its cells.
-  [[nodiscard]] std::optional<ScreeningResult> best_score(const RankedCandidate& other) const {
-    const CandidateModel* candidate_model = in_list(other);
-    std::optional<ScreeningResult> best;
-    if (candidate_model == nullptr) return best;
-    for (const std::vector<double>& cell : candidate_model->cells) {
-      std::optional<ScreeningResult> found = score_at(*candidate_model, cell, other);
-      if (found && (!best || found->result.chi2 > best->result.chi2)) best = std::move(found);
-    }
-    return best;
-  }
-
- private:
-  [[nodiscard]] const CandidateModel* in_list(const RankedCandidate& other) const {
-    const auto found = std::find_if(list_.begin(), list_.end(), [&](const CandidateModel& s) {
-      return s.effect == other.candidate.effect && s.roles == other.candidate.roles;
-    });
-    return found == list_.end() ? nullptr : &*found;
-  }
-
-  [[nodiscard]] std::optional<ScreeningResult> score_at(const CandidateModel& candidate_model, const std::vector<double>& at,
-                                                        const RankedCandidate& other) const {
-    CellScore cell = score_cell(in_.estimate, score_, candidate_model, at);
-    if (cell.columns.size() == 0) return std::nullopt;
-    ScreeningResult out;
-    out.candidate_model = &candidate_model;
-    out.cell = at;
-    out.cells_effective = other.screening->cells_effective;
-    out.result = std::move(cell.result);
-    out.columns = std::move(cell.columns);
-    out.log_p = log_score_tail(candidate_model, out.result.chi2) + std::log(out.cells_effective);
-    return out;
-  }
-
-  const Refit& in_;
-  std::vector<CandidateModel> list_;
-  ScoreTest score_;
-};
-
-/// Has `other` no significant score in the model with the refitted effect? False where the two cannot be in one model: nothing is tested.
-bool adds_nothing(const ConditionalScores& in, const RankedCandidate& other, double p_accept) {
-  const auto found = in.score(other);
-  return found && (found->result.dof == 0 || !(chi_square_tail(found->result.chi2, found->result.dof) < p_accept));
-}
-
-/// The other known effect with the lowest p in the model that holds `in`, whether or not it was significant without `in`; none if it is
-/// not significant there.
-struct SecondEffect {
-  const RankedCandidate* entry = nullptr;
-  ScreeningResult score;
-};
-SecondEffect second_effect_given(const RankedCandidate& in, const ConditionalScores& conditional,
-                                 const std::vector<RankedCandidate>& ranked, double p_accept) {
-  SecondEffect best;
-  for (const RankedCandidate& other : ranked) {
-    if (&other == &in || !other.screening->runs || other.candidate.described || other.candidate.family == "sensor") continue;
-    auto found = conditional.score(other);
-    if (!found || found->result.dof == 0 || (best.entry != nullptr && found->log_p >= best.score.log_p)) continue;
-    best = {&other, std::move(*found)};
-  }
-  if (best.entry != nullptr && sidak(std::min(1.0, std::exp(best.score.log_p)), static_cast<double>(ranked.size())) > p_accept)
-    best.entry = nullptr;
-  return best;
-}
-
-/// Is `in` significant beside the other? Drop 2 [log L(both) − log L(other alone)] with its family-wise p, as for any refitted drop.
-bool needed_given(const RankedCandidate& in, const Refit& both, const RankedCandidate& other, const SearchContext& context) {
-  std::optional<Refit> fitted;
-  if (!other.refit) fitted = refit(work_from(context.estimate, context), *other.screening);
-  const Refit& alone = other.refit ? *other.refit : *fitted;
-  if (!alone.ok || !alone.estimate.converged) return false;
-  const double drop = in.refit->drop + both.drop - alone.drop;
-  const double log_p = log_score_tail(*in.screening->candidate_model, drop) + std::log(in.screening->cells_effective);
-  return sidak(std::min(1.0, std::exp(log_p)), context.families) < context.options.p_accept;
-}
-
 CandidateModel with_quantities(CandidateModel candidate_model, const std::vector<int>& quantities) {
   candidate_model.quantities.insert(candidate_model.quantities.end(), quantities.begin(), quantities.end());
   return candidate_model;
-}
-
-/// For a lag or a delay in the refitted model: another one of the plant that is still significant there, and worth a good part of `drop`.
-/// Then the past does count, but not in the form of either.
-std::optional<UnknownCurve> remaining_memory(const Refit& in, double drop, const std::vector<RankedCandidate>& ranked,
-                                             const SearchContext& context) {
-  std::optional<UnknownCurve> worst;
-  const ConditionalScores conditional(in, context);
-  for (const RankedCandidate& other : ranked) {
-    const CandidateModel& lag = *other.screening->candidate_model;
-    if (!lag.lags || lag.ports.empty() || !other.screening->runs || other.candidate.described) continue;
-    const std::optional<ScreeningResult> found = conditional.best_score(other);  // none of the effect that is in the model
-    if (!found || found->result.dof == 0) continue;
-    const double p = sidak(std::min(1.0, std::exp(found->log_p)), static_cast<double>(ranked.size()));
-    if (p > context.options.p_accept || found->result.chi2 - 2.0 * found->result.dof < least_share_of_drop * drop) continue;
-    if (worst && worst->log_p < found->log_p) continue;
-    UnknownCurve memory;
-    memory.port = lag.port_names.front();
-    memory.quantity = past_read_by(lag.model.system->spec(), lag.model.effects.back());
-    memory.memory = label(other.candidate);
-    memory.result = found->result;
-    memory.log_p = found->log_p;
-    memory.p_value = p;
-    worst = std::move(memory);
-  }
-  return worst;
-}
-
-/// Of the effect that was added last, as its refit had them.
-int estimated_parameters(const Refit& refit) {
-  const Model& model = refit.estimate.model;
-  const BoundEffect& added = model.effects.back();
-  int out = 0;
-  for (std::size_t c = 0; c < added.coefficients.size(); ++c) {
-    const int parameter = added.coefficients[c].parameter;
-    const bool own = parameter >= 0 && !added.effect->spec().coefficients[c].shared;
-    out += own && model.parameters[parameter].free ? 1 : 0;
-  }
-  return out;
-}
-
-/// A held-out gain below this is what chance gives.
-double least_gain(int parameters) { return 0.5 * parameters; }
-
-/// Two effects that are missing together.
-struct Pair {
-  const RankedCandidate* second = nullptr;
-  double held_out_gain = 0.0;  ///< of both
-};
-
-/// Step 4 of accept_best(), for one candidate: another known effect beside which `in` holds. Of an alias: it removes the lack of fit that
-/// `in` leaves; of one that gains nothing by itself on what is held out: both together do, too.
-std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked, HeldOut& held_out,
-                                      const SearchContext& context) {
-  const DiscoverOptions& options = context.options;
-  const ConditionalScores conditional(*in.refit, context);
-  const SecondEffect second = second_effect_given(in, conditional, ranked, options.p_accept);
-  if (second.entry == nullptr) return std::nullopt;
-  const Refit both = refit(work_from(in.refit->estimate, context), second.score);
-  if (!both.ok || !both.estimate.converged || !(both.drop > 0.0)) return std::nullopt;
-  const Model& model = both.estimate.model;
-  const std::vector<int>&strengths = in.screening->candidate_model->strengths, &others = second.score.candidate_model->strengths;
-  if (ends_at_bound(model, strengths) || ends_at_bound(model, others)) return std::nullopt;
-  if (!needed_given(in, both, *second.entry, context)) return std::nullopt;
-  Pair out{second.entry};
-  if (in.alone_gains_nothing) {
-    out.held_out_gain = held_out.gain(both.estimate);
-    if (!(out.held_out_gain > least_gain(estimated_parameters(*in.refit) + estimated_parameters(both)))) return std::nullopt;
-  }
-  // The threshold stays a share of the drop of `in` alone, as in step 2: with the drop of both, a better second effect would allow more
-  // lack of fit.
-  const bool lags = in.screening->candidate_model->lags || second.score.candidate_model->lags;
-  if (lags && remaining_memory(both, in.refit->drop, ranked, context)) return std::nullopt;
-  if (remaining_lack_of_fit(both.estimate, *second.score.candidate_model, {in.refit->drop, least_share_of_all, 2}, options))
-    return std::nullopt;
-  return out;
 }
 
 /// [s]
@@ -233,13 +65,13 @@ std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& 
   if (uneven) return *uneven;
   if (no_edge) return *no_edge;
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
-  e.alone_gains_nothing = !(*c.held_out_gain > least_gain(estimated_parameters(*e.refit)));
+  e.alone_gains_nothing = !(*c.held_out_gain > least_held_out_gain(estimated_parameters(*e.refit)));
   if (!e.alone_gains_nothing) return "";
   if (!(*c.held_out_gain > 0.0)) return "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
   return "the held-out likelihood rises by " + format_value(*c.held_out_gain) + ", less than by half for each of its estimated parameters";
 }
 
-/// Step 6: groups the best candidate with those that these data cannot distinguish from it.
+/// Step 7: groups the best candidate with those that these data cannot distinguish from it.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   if (ranked.empty() || !ranked.front().refit) return;
   RankedCandidate& best = ranked.front();
@@ -258,7 +90,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   for (RankedCandidate* e : members) e->candidate.group = group;
 }
 
-/// Step 7: reasons for those that were refitted and are not accepted, the accepted one in front.
+/// Step 8: reasons for those that were refitted and are not accepted, the accepted one in front.
 void explain_others(std::vector<RankedCandidate>& ranked) {
   const Candidate& best = ranked.front().candidate;
   for (std::size_t k = 1; k < ranked.size(); ++k) {
@@ -359,6 +191,13 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
   return choice;
 }
 
+/// Step 5.
+Choice or_a_better_pair(std::vector<RankedCandidate>& ranked, const Choice& choice, HeldOut& held_out, const SearchContext& context) {
+  if (choice.pair) return choice;
+  const auto instead = better_pair(ranked, *choice.at, held_out, context);
+  return instead ? Choice{ranked.begin() + (instead->first - ranked.data()), instead->pair} : choice;
+}
+
 /// Step 4: the first alias whose lack of fit a second effect removes; else the first that gains nothing by itself on what is held out, but
 /// does together with another.
 Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases, HeldOut& held_out,
@@ -376,14 +215,7 @@ Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const st
   return {ranked.end()};
 }
 
-std::string in_words(const Pair& pair, bool alone_gains_nothing) {
-  const std::string second = label(pair.second->candidate);
-  if (!alone_gains_nothing) return second + " explains what remains: add it next";
-  return "it takes two: together with " + second + " the held-out likelihood rises by " + format_value(pair.held_out_gain) +
-         ": add that next";
-}
-
-/// Step 5.
+/// Step 6.
 void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   Candidate& c = choice.at->candidate;
   c.accepted = true;
@@ -413,7 +245,7 @@ Unexplained unexplained(const UnknownCurve& form, std::string quantities, double
   return {form.port, std::move(quantities), form.of_output, p};
 }
 
-/// Step 8: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if
+/// Step 9: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if
 /// that candidate is more significant than any unknown curve, else the most significant unknown curve.
 std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>& ranked, const std::optional<UnknownCurve>& left,
                                              const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
@@ -435,12 +267,13 @@ std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, con
   Choice choice = first_without_lack_of_fit(ranked, aliases, held_out, context);                                   // 1, 2
   choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, aliases, unknown, held_out, context)  // 3
                                      : first_with_a_second_effect(ranked, aliases, held_out, context);             // 4
+  if (choice.at != ranked.end()) choice = or_a_better_pair(ranked, choice, held_out, context);                     // 5
   const bool accepted = choice.at != ranked.end();
-  if (accepted) move_to_front(ranked, choice);  // 5
-  find_groups(ranked, context);                 // 6
-  if (accepted) explain_others(ranked);         // 7
+  if (accepted) move_to_front(ranked, choice);  // 6
+  find_groups(ranked, context);                 // 7
+  if (accepted) explain_others(ranked);         // 8
   if (accepted) return std::nullopt;
-  return unexplained_force(ranked, remaining_with_best(ranked, aliases, context), unknown, context);  // 8
+  return unexplained_force(ranked, remaining_with_best(ranked, aliases, context), unknown, context);  // 9
 }
 
 }  // namespace misfit

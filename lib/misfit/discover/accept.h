@@ -39,8 +39,8 @@ inline constexpr double tied_drops = 10.0;
 ///
 /// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, only a part of an effect
 ///    is found that exists as a whole (whole_strength.h), one of its strengths ends at a bound, all are smaller than two sigmas, it
-///    remembers for longer than half of the recording or has not one period in it, or the held-out log-likelihood rises by less than 1/2
-///    for each of its parameters. The first reason that holds is noted.
+///    remembers for longer than half of the recording or has not one period in it, it has an edge where nothing was, or the held-out
+///    log-likelihood rises by less than 1/2 for each of its parameters. The first reason that holds is noted.
 /// 2. The others come by what they gain, on the estimation's measurements and the held-out ones together (`gain_of`); those within 3 of
 ///    the best by the number of their parameters, then as in the list, but a lag, delay or limit of a sensor after the plant. Unknown
 ///    curves and surfaces are screened again with the candidate in the model (`remaining_lack_of_fit`), and with a lag or delay the others
@@ -54,11 +54,15 @@ inline constexpr double tied_drops = 10.0;
 ///    if each is needed beside the other and no strength of the two ends at a bound (`explaining_effect`). Else, of the first three that
 ///    were refused for their held-out gain alone, the first that gains together with a second effect what both must, and leaves as little:
 ///    two effects that hide each other (an offset and dry friction). So in step 3, of a larger one that was refused for that.
-/// 5. The accepted one becomes the first of the list.
-/// 6. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 10, and neither
+/// 5. If two others of the port and quantity of the accepted one, a force without memory, explain 10 more between them, refitted, than it
+/// does
+///    with the best of these, each needed beside the other, with a larger held-out gain, the first of them takes its place (`better_pair`):
+///    the sum of two forms often looks like a third.
+/// 6. The accepted one becomes the first of the list.
+/// 7. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 10, and neither
 ///    has a significant score once the other is in the model.
-/// 7. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
-/// 8. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
+/// 8. If one is accepted, every other that was refitted gets the reason why it is not (`explain_others`), and nothing is unexplained.
+/// 9. Else what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`). Returned is the curve that
 ///    remains with the first alias (unless the best explains more than twice as much), or with the best candidate if that is significant
 ///    but was refused, provided that the best candidate has a lower p than every unknown curve and is what its name says; else the best
 ///    unknown curve, if its family-wise p is below p_accept and no refitted first candidate has a lower p.

@@ -84,9 +84,9 @@ void copy_values(const Model& from, Model& to) {
 
 }  // namespace
 
-bool may_be_chance(double drop, int parameters) {
+bool may_be_chance(double drop, int parameters, double families) {
   constexpr double by_chance = 0.01;
-  return chi_square_tail(std::max(drop, 0.0), std::max(parameters, 1)) > by_chance;
+  return sidak(chi_square_tail(std::max(drop, 0.0), std::max(parameters, 1)), std::max(families, 1.0)) > by_chance;
 }
 
 bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas) {

@@ -24,10 +24,12 @@ struct Without {
 [[nodiscard]] std::optional<Without> without_effect(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                                     const std::vector<Signals>& experiments, const std::string& name, int threads);
 
-/// May a drop of 2 log L for so many parameters be chance? p above 0.01.
-[[nodiscard]] bool may_be_chance(double drop, int parameters);
+/// May the drop of 2 log L of an effect with so many parameters be chance, if it is one of so many that were tried? Family-wise p (Sidak)
+/// above 0.01, as for acceptance.
+[[nodiscard]] bool may_be_chance(double drop, int parameters, double families);
 
-/// A Wald test that is quick: are all free strengths of the effect within `sigmas` of 0? Else it is needed, whatever a fit without it says.
-[[nodiscard]] bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas = 3.0);
+/// A Wald test that is quick: are all free strengths of the effect within `sigmas` of 0 (4.5: p = 7e-6)? Else it is needed, whatever a fit
+/// without it says.
+[[nodiscard]] bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas = 4.5);
 
 }  // namespace misfit

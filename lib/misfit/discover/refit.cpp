@@ -352,6 +352,20 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   return out;
 }
 
+int estimated_parameters(const Refit& refit) {
+  const Model& model = refit.estimate.model;
+  const BoundEffect& added = model.effects.back();
+  int out = 0;
+  for (std::size_t c = 0; c < added.coefficients.size(); ++c) {
+    const int parameter = added.coefficients[c].parameter;
+    const bool own = parameter >= 0 && !added.effect->spec().coefficients[c].shared;
+    out += own && model.parameters[parameter].free ? 1 : 0;
+  }
+  return out;
+}
+
+double least_held_out_gain(int parameters) { return 0.5 * parameters; }
+
 double predictive_loglik(const FilterEstimate& estimate) {
   const Eigen::Index n = estimate.covariance.rows();
   FilterRunner runner(estimate.forced, true);

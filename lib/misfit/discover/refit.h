@@ -65,6 +65,12 @@ struct OneStep {
 /// The refit of an effect for which no time was left: `drop` is how far it had come.
 [[nodiscard]] Refit unfinished(const ScreeningResult& screening, const std::string& spent, std::optional<double> drop = std::nullopt);
 
+/// Free coefficients of its own that the refitted effect has.
+[[nodiscard]] int estimated_parameters(const Refit& refit);
+
+/// Held-out gains up to this, half for each parameter, are chance.
+[[nodiscard]] double least_held_out_gain(int parameters);
+
 /// Log predictive density of the held-out measurements, the parameters being uncertain by their covariance C: to first order, with the
 /// whitened residuals r and their derivatives J there,
 ///   log L_held-out(estimate) + bᵀ (C⁻¹ + JᵀJ)⁻¹ b/2 − log det(1 + C JᵀJ)/2,   b = Jᵀ r.

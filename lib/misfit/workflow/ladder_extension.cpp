@@ -40,9 +40,10 @@ Candidate without_refit(Candidate candidate) {
   return candidate;
 }
 
-std::string in_words(const std::string& name, const Without& without) {
-  return fmt::format("{} explains nothing any more beside what was added after it (drop {}, {})", name, format_value(without.drop),
-                     p_equals(without.p_value));
+std::string in_words(const std::string& name, const Without& without, double families) {
+  return fmt::format(
+      "{} explains nothing any more beside what was added after it (a drop of {}, which may be chance among the {:g} that were tried)",
+      name, format_value(without.drop), families);
 }
 
 class Extension {
@@ -56,6 +57,7 @@ class Extension {
     for (int k = 0; k < most_rungs; ++k) {
       const Discovery discovery = discovered(ladder_.last());
       if (listener_.discovered) listener_.discovered(discovery);
+      families_ = static_cast<double>(discovery.candidates.size());
       const std::optional<Candidate> next = accepted_candidate(discovery, registry_);
       if (!next || has_left(*next)) break;
       if (!add(*next, alternatives_to(*next, discovery))) break;
@@ -76,7 +78,7 @@ class Extension {
   bool add(const Candidate& candidate, std::vector<Candidate> alternatives) {
     const Rung& rung = ladder_.add(candidate.effect, candidate);
     if (listener_.added) listener_.added(rung);
-    if (rung.actual_drop && may_be_chance(*rung.actual_drop, int_size(rung.parameters))) {
+    if (rung.actual_drop && may_be_chance(*rung.actual_drop, int_size(rung.parameters), families_)) {
       ladder_.root().note(
           fmt::format("{} gains nothing once fitted (drop {}): its rung is taken off", candidate.effect, format_value(*rung.actual_drop)));
       ladder_.remove(std::to_string(rung.id));
@@ -89,9 +91,9 @@ class Extension {
   /// The first that the later ones have made needless goes, and those above it are added again without it. False: there is none.
   bool one_leaves() {
     for (std::size_t k = 0; k + 1 < added_.size(); ++k) {
-      const auto without = needless(ladder_.last(), added_[k].name);
+      const auto without = needless(ladder_.last(), added_[k].name, families_);
       if (!without) continue;
-      ladder_.root().note(in_words(added_[k].name, *without) + ": it leaves the ladder");
+      ladder_.root().note(in_words(added_[k].name, *without, families_) + ": it leaves the ladder");
       return rebuild_without(k, std::nullopt);
     }
     return false;
@@ -144,8 +146,8 @@ class Extension {
       const auto& effects = ladder_.last().model.request.effects;
       const auto bound = std::find_if(effects.begin(), effects.end(), [&](const EffectRequest& e) { return e.kind == rung.added; });
       if (rung.parent < 0 || own || bound == effects.end()) continue;
-      if (const auto without = needless(ladder_.last(), bound->name))
-        ladder_.root().note(in_words(bound->name, *without) +
+      if (const auto without = needless(ladder_.last(), bound->name, families_))
+        ladder_.root().note(in_words(bound->name, *without, families_) +
                             fmt::format(": `misfit remove` of rung {} takes it and those above it off", rung.id));
     }
   }
@@ -155,6 +157,7 @@ class Extension {
   const LadderListener& listener_;
   std::vector<OnLadder> added_;
   std::vector<Candidate> left_;
+  double families_ = 1.0;  ///< that the last round tried
 };
 
 }  // namespace

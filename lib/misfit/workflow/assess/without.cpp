@@ -18,11 +18,11 @@ std::optional<Without> model_without(Session& session, const std::string& effect
                         session.options.threads);
 }
 
-std::optional<Without> needless(Session& session, const std::string& effect) {
+std::optional<Without> needless(Session& session, const std::string& effect, double families) {
   const auto work = filter_work(session);
   if (!work->estimate || !may_leave(*work->estimate, effect)) return std::nullopt;
   auto out = model_without(session, effect);
-  return out && may_be_chance(out->drop, out->parameters) ? std::move(out) : std::nullopt;
+  return out && may_be_chance(out->drop, out->parameters, families) ? std::move(out) : std::nullopt;
 }
 
 std::optional<Candidate> in_its_place(Session& session, const Without& without, const Candidate& other) {

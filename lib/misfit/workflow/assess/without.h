@@ -14,8 +14,8 @@ namespace misfit {
 /// The model as fitted, without an effect of it, refitted; nullopt as without_effect().
 [[nodiscard]] std::optional<Without> model_without(Session& session, const std::string& effect);
 
-/// The same if the effect's strengths are small (may_leave()) and what it explains may be chance.
-[[nodiscard]] std::optional<Without> needless(Session& session, const std::string& effect);
+/// The same if the effect's strengths are small (may_leave()) and what it explains may be chance (may_be_chance()).
+[[nodiscard]] std::optional<Without> needless(Session& session, const std::string& effect, double families);
 
 /// What another effect explains in the place of the one that has gone, screened and refitted there; nullopt: it could not be.
 [[nodiscard]] std::optional<Candidate> in_its_place(Session& session, const Without& without, const Candidate& other);

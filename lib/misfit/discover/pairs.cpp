@@ -1,0 +1,168 @@
+#include "misfit/discover/pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "misfit/core/text.h"
+#include "misfit/discover/alias.h"
+#include "misfit/discover/conditional.h"
+#include "misfit/discover/verdict.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+namespace {
+
+/// The other known effect with the lowest p in the model that holds `in`, whether or not it was significant without `in`; none if it is
+/// not significant there.
+struct SecondEffect {
+  const RankedCandidate* entry = nullptr;
+  ScreeningResult score;
+};
+SecondEffect second_effect_given(const RankedCandidate& in, const ConditionalScores& conditional,
+                                 const std::vector<RankedCandidate>& ranked, double p_accept) {
+  SecondEffect best;
+  for (const RankedCandidate& other : ranked) {
+    if (&other == &in || !other.screening->runs || other.candidate.described || other.candidate.family == "sensor") continue;
+    auto found = conditional.score(other);
+    if (!found || found->result.dof == 0 || (best.entry != nullptr && found->log_p >= best.score.log_p)) continue;
+    best = {&other, std::move(*found)};
+  }
+  if (best.entry != nullptr && sidak(std::min(1.0, std::exp(best.score.log_p)), static_cast<double>(ranked.size())) > p_accept)
+    best.entry = nullptr;
+  return best;
+}
+
+/// Is `in` significant beside the other? Drop 2 [log L(both) − log L(other alone)] with its family-wise p, as for any refitted drop.
+bool needed_given(const RankedCandidate& in, const Refit& both, const RankedCandidate& other, const SearchContext& context) {
+  std::optional<Refit> fitted;
+  if (!other.refit) fitted = refit(work_from(context.estimate, context), *other.screening);
+  const Refit& alone = other.refit ? *other.refit : *fitted;
+  if (!alone.ok || !alone.estimate.converged) return false;
+  const double drop = in.refit->drop + both.drop - alone.drop;
+  const double log_p = log_score_tail(*in.screening->candidate_model, drop) + std::log(in.screening->cells_effective);
+  return sidak(std::min(1.0, std::exp(log_p)), context.families) < context.options.p_accept;
+}
+
+/// Do both act on a port of the other, and depend on a quantity that the other reads?
+bool compete(const CandidateModel& a, const CandidateModel& b) {
+  const auto shared = [](const auto& one, const auto& other) {
+    return std::any_of(one.begin(), one.end(), [&](const auto& x) { return std::find(other.begin(), other.end(), x) != other.end(); });
+  };
+  return shared(a.port_names, b.port_names) && shared(a.quantities, b.quantities);
+}
+
+/// chi² of two candidates together, each at its best cell.
+double joint_chi2(const ScoreTest& score, const RankedCandidate& a, const RankedCandidate& b) {
+  RowMatrix columns(a.screening->columns.rows(), a.screening->columns.cols() + b.screening->columns.cols());
+  columns << a.screening->columns, b.screening->columns;
+  return score.test(columns).chi2;
+}
+
+/// `b` added to the refitted `a`, both at their maximum; not ok where one of them is not needed beside the other or ends at a bound.
+Refit refit_of_both(const RankedCandidate& a, const RankedCandidate& b, const SearchContext& context) {
+  Refit out;
+  const ConditionalScores conditional(*a.refit, context);  // whose candidate models the score points to
+  const auto score = conditional.score(b);
+  if (!score || score->result.dof == 0) return out;
+  out = refit(work_from(a.refit->estimate, context), *score);
+  const bool at_bound = out.ok && (ends_at_bound(out.estimate.model, a.screening->candidate_model->strengths) ||
+                                   ends_at_bound(out.estimate.model, score->candidate_model->strengths));
+  out.ok = out.ok && out.estimate.converged && out.drop > 0.0 && !at_bound && needed_given(a, out, b, context);
+  return out;
+}
+
+/// Others of the single effect's port and quantity, forces without memory.
+std::vector<RankedCandidate*> rivals_of(const RankedCandidate& single, std::vector<RankedCandidate>& ranked) {
+  std::vector<RankedCandidate*> out;
+  for (RankedCandidate& e : ranked) {
+    const CandidateModel& other = *e.screening->candidate_model;
+    if (&e == &single || !e.screening->runs || e.screening->columns.cols() == 0 || e.candidate.described) continue;
+    if (other.family != "sensor" && !other.lags && compete(*single.screening->candidate_model, other)) out.push_back(&e);
+  }
+  return out;
+}
+
+/// By joint chi²: the best pair of rivals of which one was refitted, and the best companion of the single effect.
+struct BestPairs {
+  RankedCandidate *first = nullptr, *second = nullptr, *beside_single = nullptr;
+};
+
+/// Nothing where no pair of rivals is above the single effect with its best companion.
+BestPairs best_pairs(const RankedCandidate& single, const std::vector<RankedCandidate*>& rivals, const FilterEstimate& estimate) {
+  const ScoreTest score(estimate);
+  BestPairs out;
+  double with_single = 0.0, without = 0.0;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    if (const double chi2 = joint_chi2(score, single, *rivals[i]); chi2 > with_single) with_single = chi2, out.beside_single = rivals[i];
+    for (std::size_t j = i + 1; j < rivals.size(); ++j) {
+      if (!rivals[i]->refit && !rivals[j]->refit) continue;
+      if (const double chi2 = joint_chi2(score, *rivals[i], *rivals[j]); chi2 > without)
+        without = chi2, out.first = rivals[i], out.second = rivals[j];
+    }
+  }
+  if (!(without > with_single)) return {};
+  if (!out.first->refit || (out.second->refit && out.second->refit->drop > out.first->refit->drop)) std::swap(out.first, out.second);
+  return out;
+}
+
+}  // namespace
+
+std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked, HeldOut& held_out,
+                                      const SearchContext& context) {
+  const DiscoverOptions& options = context.options;
+  const ConditionalScores conditional(*in.refit, context);
+  const SecondEffect second = second_effect_given(in, conditional, ranked, options.p_accept);
+  if (second.entry == nullptr) return std::nullopt;
+  const Refit both = refit(work_from(in.refit->estimate, context), second.score);
+  if (!both.ok || !both.estimate.converged || !(both.drop > 0.0)) return std::nullopt;
+  const Model& model = both.estimate.model;
+  const std::vector<int>&strengths = in.screening->candidate_model->strengths, &others = second.score.candidate_model->strengths;
+  if (ends_at_bound(model, strengths) || ends_at_bound(model, others)) return std::nullopt;
+  if (!needed_given(in, both, *second.entry, context)) return std::nullopt;
+  Pair out;
+  out.second = second.entry;
+  if (in.alone_gains_nothing) {
+    out.held_out_gain = held_out.gain(both.estimate);
+    if (!(out.held_out_gain > least_held_out_gain(estimated_parameters(*in.refit) + estimated_parameters(both)))) return std::nullopt;
+  }
+  // The threshold stays a share of the drop of `in` alone, as in step 2: with the drop of both, a better second effect would allow more
+  // lack of fit.
+  const bool lags = in.screening->candidate_model->lags || second.score.candidate_model->lags;
+  if (lags && remaining_memory(both, in.refit->drop, ranked, context)) return std::nullopt;
+  if (remaining_lack_of_fit(both.estimate, *second.score.candidate_model, {in.refit->drop, least_share_of_all, 2}, options))
+    return std::nullopt;
+  return out;
+}
+
+std::optional<PairInstead> better_pair(std::vector<RankedCandidate>& ranked, RankedCandidate& single, HeldOut& held_out,
+                                       const SearchContext& context) {
+  constexpr double clearly = 10.0;  // of the drop
+  if (single.screening->candidate_model->family == "sensor" || single.screening->candidate_model->lags) return std::nullopt;
+  const BestPairs best = best_pairs(single, rivals_of(single, ranked), context.estimate);
+  if (best.first == nullptr) return std::nullopt;
+  const Refit both = refit_of_both(*best.first, *best.second, context);
+  if (!both.ok) return std::nullopt;
+  const double drop = best.first->refit->drop + both.drop;
+  const Refit beside = refit_of_both(single, *best.beside_single, context);
+  if (!(drop > single.refit->drop + (beside.ok ? beside.drop : 0.0) + clearly)) return std::nullopt;
+  Candidate& first = best.first->candidate;
+  const double gain = held_out.gain(both.estimate);
+  if (!(gain > single.candidate.held_out_gain.value_or(0.0))) return std::nullopt;
+  if (!first.held_out_gain) first.held_out_gain = held_out.gain(best.first->refit->estimate);
+  single.candidate.why =
+      label(first) + " and " + label(best.second->candidate) + " explain more between them (drop " + format_value(drop) + ")";
+  return PairInstead{best.first, {.second = best.second, .held_out_gain = gain, .in_place_of = label(single.candidate), .drop = drop}};
+}
+
+std::string in_words(const Pair& pair, bool alone_gains_nothing) {
+  const std::string second = label(pair.second->candidate);
+  if (!pair.in_place_of.empty())
+    return "together with " + second + " it explains more (drop " + format_value(pair.drop) + ") than " + pair.in_place_of +
+           ", which imitates both: add " + second + " next";
+  if (!alone_gains_nothing) return second + " explains what remains: add it next";
+  return "it takes two: together with " + second + " the held-out likelihood rises by " + format_value(pair.held_out_gain) +
+         ": add that next";
+}
+
+}  // namespace misfit
