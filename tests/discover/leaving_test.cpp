@@ -65,5 +65,34 @@ TEST(WithoutAnEffect, AnEffectThatIsNotInTheModelCannotGo) {
   EXPECT_FALSE(may_leave(fitted().estimate, "quadratic_drag"));
 }
 
+/// Dry friction over a width of 0.1 m/s acts, and is in the model over `held`.
+std::optional<FreedWidth> width_found(double held) {
+  ModelRequest request = cart({effect("viscous_friction"), effect("coulomb_friction")});
+  request.parameters["stiffness"].free = true;
+  request.parameters["width"].value = held;
+  const std::vector<Signals> signals = {record_of_cart({effect("coulomb_friction")}, {{"friction", 1.5}, {"width", 0.1}})};
+  const FilterEstimate estimate = estimate_filter(assemble(request, registry()), {}, signals);
+  return freed_width(estimate, signals, "coulomb_friction", 1);
+}
+
+TEST(AHeldWidth, ThatIsNotTheRightOneIsFound) {
+  const auto wide = width_found(0.4);
+  ASSERT_TRUE(wide);
+  EXPECT_EQ(wide->coefficient, "width");
+  EXPECT_NEAR(wide->value, 0.1, 0.04);
+  EXPECT_FALSE(may_be_chance(wide->drop, 1, 40.0)) << wide->drop;
+}
+
+TEST(AHeldWidth, ThatIsRightGainsNothing) {
+  const auto right = width_found(0.1);
+  if (right) {
+    EXPECT_TRUE(may_be_chance(right->drop, 1, 40.0)) << right->drop;
+  }
+}
+
+TEST(AHeldWidth, IsOneOfTheEffectThatIsAskedFor) {
+  EXPECT_FALSE(freed_width(fitted().estimate, fitted().signals, "viscous_friction", 1)) << "it has none";
+}
+
 }  // namespace
 }  // namespace misfit

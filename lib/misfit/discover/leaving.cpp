@@ -6,6 +6,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/lists.h"
 #include "misfit/core/watch.h"
+#include "misfit/discover/bindings.h"
 #include "misfit/discover/refit.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/model.h"
@@ -127,6 +128,35 @@ std::optional<Without> without_effect(const FilterEstimate& estimate, const Mode
   } catch (const TimeSpent&) {
     return std::nullopt;
   }
+}
+
+std::optional<FreedWidth> freed_width(const FilterEstimate& estimate, const std::vector<Signals>& experiments, const std::string& name,
+                                      int threads) {
+  const BoundEffect* effect = effect_called(estimate.model, name);
+  if (effect == nullptr) return std::nullopt;
+  const OperatingRange visited(estimate);
+  const auto& coefficients = effect->effect->spec().coefficients;
+  for (std::size_t c = 0; c < coefficients.size(); ++c) {
+    const int at = effect->coefficients[c].parameter;
+    if (!coefficients[c].scan.smooths || at < 0 || estimate.model.parameters[at].free) continue;
+    Model start = estimate.model;
+    Parameter& width = start.parameters[at];
+    width.free = true;
+    width.lower = visited.lower_bound(*effect, c);
+    width.value = std::clamp(width.value, 1.01 * width.lower, width.upper);
+    try {
+      const FilterEstimate there = estimate_filter(start, penalties_like(estimate, start), experiments, options_like(estimate, threads));
+      const double value = there.model.parameters[at].value;
+      constexpr double at_bound = 1.05;
+      if (!there.converged || there.out_of_time || value < at_bound * width.lower) continue;
+      return FreedWidth{coefficients[c].name, value, 2.0 * (there.objective - estimate.objective)};
+    } catch (const RunError&) {
+      continue;
+    } catch (const TimeSpent&) {
+      return std::nullopt;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace misfit

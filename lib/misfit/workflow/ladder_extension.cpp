@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "misfit/core/display.h"
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/data/candidates.h"
@@ -19,6 +20,7 @@ struct OnLadder {
   std::string name;
   Candidate from;
   std::vector<Candidate> alternatives;
+  bool width_freed = false;
 };
 
 /// Those of the round that were refitted and explain more than half of what the accepted one does.
@@ -61,7 +63,7 @@ class Extension {
       const std::optional<Candidate> next = accepted_candidate(discovery, registry_);
       if (!next || has_left(*next)) break;
       if (!add(*next, alternatives_to(*next, discovery))) break;
-      while (one_leaves() || one_is_exchanged()) {
+      while (one_leaves() || one_is_exchanged() || one_is_sharper()) {
       }
     }
     ladder_.last_rung();
@@ -124,14 +126,36 @@ class Extension {
     return false;
   }
 
+  /// The first whose width was held at what the filter could resolve before the later ones were there, and which has another one now, gets
+  /// that: held at the wrong one, an effect makes room for others that are not there. False: there is none.
+  bool one_is_sharper() {
+    for (std::size_t k = 0; k + 1 < added_.size(); ++k) {
+      if (added_[k].width_freed) continue;
+      const auto width = width_of(ladder_.last(), added_[k].name);
+      if (!width || may_be_chance(width->drop, 1, families_)) continue;
+      const auto known = added_[k].from.parameters.find(width->coefficient);
+      if (known == added_[k].from.parameters.end()) continue;
+      ladder_.root().note(fmt::format("beside what was added after it, {} of {} is {} (drop {}): estimated from here on",
+                                      width->coefficient, added_[k].name, in_display_unit(width->value, known->second.unit),
+                                      format_value(width->drop)));
+      Candidate again = added_[k].from;
+      again.parameters[width->coefficient].value = width->value;
+      std::erase(again.fixed, width->coefficient);
+      again.free.push_back(width->coefficient);
+      return rebuild_without(k, again, true);
+    }
+    return false;
+  }
+
   /// The ladder from the rung of added_[k] on once more: `instead` in its place, or nothing, then those above it. False: one of them gains
   /// nothing now.
-  bool rebuild_without(std::size_t k, const std::optional<Candidate>& instead) {
-    left_.push_back(added_[k].from);
+  bool rebuild_without(std::size_t k, const std::optional<Candidate>& instead, bool same_effect = false) {
+    if (!same_effect) left_.push_back(added_[k].from);
     const std::vector<OnLadder> above(added_.begin() + static_cast<std::ptrdiff_t>(k) + 1, added_.end());
     ladder_.remove(std::to_string(added_[k].rung));
     added_.resize(k);
     if (instead && !add(without_refit(*instead), {})) return false;
+    if (same_effect) added_.back().width_freed = true;
     for (const OnLadder& again : above) {
       if (!add(without_refit(again.from), again.alternatives)) return false;
     }

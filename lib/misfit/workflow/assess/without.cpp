@@ -25,6 +25,14 @@ std::optional<Without> needless(Session& session, const std::string& effect, dou
   return out && may_be_chance(out->drop, out->parameters, families) ? std::move(out) : std::nullopt;
 }
 
+std::optional<FreedWidth> width_of(Session& session, const std::string& effect) {
+  stop_if_interrupted();
+  const auto work = filter_work(session);
+  if (!work->estimate) return std::nullopt;
+  const Watch watch("the width of " + effect, session.fit_limit(), session.options.listener.hearer("discover"));
+  return freed_width(*work->estimate, work->prepared.experiments, effect, session.options.threads);
+}
+
 std::optional<Candidate> in_its_place(Session& session, const Without& without, const Candidate& other) {
   stop_if_interrupted();
   const std::optional<Calibration> calibration = calibrate_stage(session);

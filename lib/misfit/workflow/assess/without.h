@@ -17,6 +17,9 @@ namespace misfit {
 /// The same if the effect's strengths are small (may_leave()) and what it explains may be chance (may_be_chance()).
 [[nodiscard]] std::optional<Without> needless(Session& session, const std::string& effect, double families);
 
+/// freed_width() of an effect of the model as fitted.
+[[nodiscard]] std::optional<FreedWidth> width_of(Session& session, const std::string& effect);
+
 /// What another effect explains in the place of the one that has gone, screened and refitted there; nullopt: it could not be.
 [[nodiscard]] std::optional<Candidate> in_its_place(Session& session, const Without& without, const Candidate& other);
 
