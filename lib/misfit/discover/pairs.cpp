@@ -59,17 +59,20 @@ double joint_chi2(const ScoreTest& score, const RankedCandidate& a, const Ranked
   return score.test(columns).chi2;
 }
 
-/// `b` added to the refitted `a`, both at their maximum; not ok where one of them is not needed beside the other or ends at a bound.
+/// `b` added to the refitted `a` from its score there, both at their maximum; not ok where one is not needed beside the other or a strength
+/// of either ends at a bound.
+Refit refit_beside(const RankedCandidate& a, const RankedCandidate& b, const ScreeningResult& score, const SearchContext& context) {
+  Refit out = refit(work_from(a.refit->estimate, context), score);
+  if (!out.ok || !out.estimate.converged || !(out.drop > 0.0)) return {};
+  const Model& model = out.estimate.model;
+  if (ends_at_bound(model, a.screening->candidate_model->strengths) || ends_at_bound(model, score.candidate_model->strengths)) return {};
+  return needed_given(a, out, b, context) ? std::move(out) : Refit{};
+}
+
 Refit refit_of_both(const RankedCandidate& a, const RankedCandidate& b, const SearchContext& context) {
-  Refit out;
   const ConditionalScores conditional(*a.refit, context);  // whose candidate models the score points to
   const auto score = conditional.score(b);
-  if (!score || score->result.dof == 0) return out;
-  out = refit(work_from(a.refit->estimate, context), *score);
-  const bool at_bound = out.ok && (ends_at_bound(out.estimate.model, a.screening->candidate_model->strengths) ||
-                                   ends_at_bound(out.estimate.model, score->candidate_model->strengths));
-  out.ok = out.ok && out.estimate.converged && out.drop > 0.0 && !at_bound && needed_given(a, out, b, context);
-  return out;
+  return score && score->result.dof > 0 ? refit_beside(a, b, *score, context) : Refit{};
 }
 
 /// Others of the single effect's port and quantity, forces without memory.
@@ -114,12 +117,8 @@ std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vect
   const ConditionalScores conditional(*in.refit, context);
   const SecondEffect second = second_effect_given(in, conditional, ranked, options.p_accept);
   if (second.entry == nullptr) return std::nullopt;
-  const Refit both = refit(work_from(in.refit->estimate, context), second.score);
-  if (!both.ok || !both.estimate.converged || !(both.drop > 0.0)) return std::nullopt;
-  const Model& model = both.estimate.model;
-  const std::vector<int>&strengths = in.screening->candidate_model->strengths, &others = second.score.candidate_model->strengths;
-  if (ends_at_bound(model, strengths) || ends_at_bound(model, others)) return std::nullopt;
-  if (!needed_given(in, both, *second.entry, context)) return std::nullopt;
+  const Refit both = refit_beside(in, *second.entry, second.score, context);
+  if (!both.ok) return std::nullopt;
   Pair out;
   out.second = second.entry;
   if (in.alone_gains_nothing) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "misfit/core/display.h"
+#include "misfit/core/error.h"
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/data/candidates.h"
@@ -148,16 +149,21 @@ class Extension {
   }
 
   /// The ladder from the rung of added_[k] on once more: `instead` in its place, or nothing, then those above it. False: one of them gains
-  /// nothing now.
+  /// nothing now, or cannot be fitted; the ladder then ends below it, and the search goes on from there.
   bool rebuild_without(std::size_t k, const std::optional<Candidate>& instead, bool same_effect = false) {
     if (!same_effect) left_.push_back(added_[k].from);
     const std::vector<OnLadder> above(added_.begin() + static_cast<std::ptrdiff_t>(k) + 1, added_.end());
     ladder_.remove(std::to_string(added_[k].rung));
     added_.resize(k);
-    if (instead && !add(without_refit(*instead), {})) return false;
-    if (same_effect) added_.back().width_freed = true;
-    for (const OnLadder& again : above) {
-      if (!add(without_refit(again.from), again.alternatives)) return false;
+    try {
+      if (instead && !add(without_refit(*instead), {})) return false;
+      if (same_effect) added_.back().width_freed = true;
+      for (const OnLadder& again : above) {
+        if (!add(without_refit(again.from), again.alternatives)) return false;
+      }
+    } catch (const RunError& error) {
+      ladder_.root().note(std::string("a rung could not be fitted again: ") + error.what());
+      return false;
     }
     return true;
   }
