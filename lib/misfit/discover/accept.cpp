@@ -38,10 +38,9 @@ bool near_a_maximum(const Refit& refit) {
 
 /// Not significant as refitted: as it is, or because its refit has not found what its score promises.
 std::string not_significant(const RankedCandidate& e, const SearchContext& context) {
-  constexpr double far_below = 0.5;
   const double promised = e.screening->result.chi2;
   const bool in_screening = sidak(std::min(1.0, std::exp(e.screening->log_p)), context.families) < context.options.p_accept;
-  if (!in_screening || !(e.refit->drop < far_below * promised)) return "not significant: family-wise " + p_equals(e.candidate.p_value);
+  if (!in_screening || !(e.refit->drop < least_of_score * promised)) return "not significant: family-wise " + p_equals(e.candidate.p_value);
   return "its refit failed: it ends at a drop of " + format_value(e.refit->drop) + " where its score promises " + format_value(promised) +
          ", which says nothing against it";
 }

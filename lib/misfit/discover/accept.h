@@ -34,6 +34,9 @@ struct SearchContext {
 /// J. Am. Stat. Assoc. 90 (1995), section 3.2).
 inline constexpr double tied_drops = 10.0;
 
+/// A refit has failed if its drop is below this share of the chi² that its score promised.
+inline constexpr double least_of_score = 0.5;
+
 /// The acceptance rule of discovery: at most one of the refitted candidates, which stand in front, best first. p_accept: 0.01 unless the
 /// options say otherwise; numbers and formulas: lib/misfit/README.md, 6.5.
 ///

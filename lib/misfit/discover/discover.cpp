@@ -255,10 +255,9 @@ class Search {
   /// A refit that ends far below what the score promised, or nowhere, has failed: that is no evidence against its effect. What else is
   /// free in the estimate may be where it is to make up for the missing effect.
   void refit_what_fell_short() {
-    constexpr double far_below = 0.5;  // of the score's chi²
     const auto fell_short = [&](const RankedCandidate& e) {
       if (!e.refit_begun || e.candidate.described || !significant_in_screening(e)) return false;
-      return e.refit ? e.refit->drop < far_below * e.screening->result.chi2 : !was_cut_off(e);
+      return e.refit ? e.refit->drop < least_of_score * e.screening->result.chi2 : !was_cut_off(e);
     };
     refit_again({.wanted = fell_short, .name = "_short"});
   }

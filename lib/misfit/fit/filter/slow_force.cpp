@@ -75,10 +75,9 @@ std::string warning_of_slow_force(const FilterEstimate& estimate) {
     strengths += fmt::format("{}{} on {}", i == 0 ? "" : ", ", roughly(strength, port.unit), port.name);
   }
   return fmt::format(
-      "the random force is slow: its correlation time is {}, the motion's shortest period {}. What changes as slowly and is no larger than "
-      "it "
-      "({}) may be attributed to it: an offset, dry friction or drag may be estimated too small. Compare with output_error, or hold "
-      "[force] correlation_time (0: white)",
+      "the random force is slow: its correlation time is {}, the motion's shortest period {}. What changes as slowly and is no larger ({}) "
+      "may be attributed to it: an offset, dry friction or drag may be estimated too small. Compare with output_error, or hold [force] "
+      "correlation_time (0: white)",
       roughly(time, "s"), roughly(period, "s"), strengths);
 }
 
