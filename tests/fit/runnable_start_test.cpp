@@ -28,9 +28,23 @@ TEST(RunnableStarts, HaveDampingThenNoEffectsThenBoth) {
   std::vector<std::string> words;
   for (const RunnableStart& start : runnable_starts(model)) words.push_back(start.words);
   const std::string damped = "damping at its typical size", off = "C_lateral = 0";
-  EXPECT_THAT(words, ElementsAre(damped, off, off + ", " + damped, off + ", " + damped));
+  EXPECT_THAT(words, ElementsAre(damped, off, off + ", " + damped, off + ", " + damped)) << "its curves are 0";
   EXPECT_EQ(value_of(with_strengths_off(model).model, "C_lateral"), 0.0);
   EXPECT_EQ(value_of(model, "C_lateral"), 3.0);
+}
+
+TEST(RunnableStarts, LastHaveNoCurveThatPushes) {
+  Model model = with_lateral_damping({fly(5.0, 71)});
+  for (Parameter& p : model.parameters) {
+    if (p.name.starts_with("C_m[")) p.value = 0.04;
+  }
+  const std::vector<RunnableStart> starts = runnable_starts(model);
+  const std::string flat = "curves at 0", damped = flat + ", damping at its typical size";
+  ASSERT_GE(starts.size(), 2U);
+  EXPECT_EQ(starts[starts.size() - 2].words, flat);
+  EXPECT_EQ(starts.back().words, damped);
+  EXPECT_EQ(value_of(starts.back().model, "C_m[3]"), 0.0);
+  EXPECT_LT(value_of(starts.back().model, "C_mq[3]"), 0.0);
 }
 
 TEST(RunnableStarts, AHeldStrengthStaysAsItIs) {
@@ -52,6 +66,21 @@ TEST(EstimateFilter, AStartThatCannotBeRunIsReplacedAndThatIsSaid) {
   EXPECT_THAT(found.notes.back(), HasSubstr("cannot be run from its start"));
   EXPECT_NEAR(found.objective, known.objective, 1.0);
   EXPECT_NEAR(value_of(found.model, "C_lateral"), value_of(known.model, "C_lateral"), 0.1);
+}
+
+TEST(EstimateFilter, AStartWhoseCurvesHoldTheMotionNowhereEndsAtTheSameMaximum) {
+  const std::vector<Signals> flights = {fly(12.0, 72)};
+  Model start = with_lateral_damping(flights);
+  const FilterEstimate known = estimate_filter(start, curve_penalties(start), flights);
+  for (Parameter& p : start.parameters) {
+    if (p.name.starts_with("C_m[")) p.value = 0.04;
+    if (p.name.starts_with("C_mq[")) p.value = 0.6;
+  }
+  set(start, "C_lateral", -1.2);
+  const FilterEstimate found = estimate_filter(start, curve_penalties(start), flights);
+  ASSERT_FALSE(found.notes.empty());
+  EXPECT_THAT(found.notes.back(), HasSubstr("curves at 0"));
+  EXPECT_NEAR(found.objective, known.objective, 1.0);
 }
 
 TEST(EstimateFilter, OfSeveralStartsTheHigherEndIsKept) {

@@ -177,7 +177,28 @@ double LikelihoodAscent::gauss_newton_step() {
   Eigen::MatrixXd precision;
   if (!invert_scaled(smoothed.covariance, precision)) return unknown;
   const Eigen::VectorXd newton = smoothed.theta - theta;
-  return 0.5 * newton.dot(precision * newton) - best.below;
+  const double not_gained = 0.5 * newton.dot(precision * newton) - best.below;
+  if (not_gained >= kDecrementOfOneSigma) damped_step(precision, newton);
+  return not_gained;
+}
+
+void LikelihoodAscent::damped_step(const Eigen::MatrixXd& precision, const Eigen::VectorXd& newton) {
+  constexpr double weakest = 1.0, strongest = 1e4, stronger = 10.0, least_gain = 0.02;
+  const auto [lower, upper] = bounds_of(out.model);
+  const Eigen::VectorXd gradient = precision * newton;
+  for (double damping = weakest; damping <= strongest; damping *= stronger) {
+    Eigen::MatrixXd damped = precision;
+    damped.diagonal() *= 1.0 + damping;
+    const Eigen::VectorXd before = theta, there = (theta + damped.ldlt().solve(gradient)).cwiseMax(lower).cwiseMin(upper);
+    if (!(objective_at(there, out.noise) > objective + least_gain)) continue;
+    theta = there;
+    if (linearise()) {
+      remember();
+      return;
+    }
+    theta = before;
+    linearise();
+  }
 }
 
 bool LikelihoodAscent::try_noise(const NoiseFit& fit) {

@@ -62,6 +62,9 @@ class LikelihoodAscent {
  private:
   /// Takes the longest share of the step by which the exact objective rises. False: there is none.
   bool rises_along(const Eigen::VectorXd& step);
+  /// Where no share of the Newton step rises: Levenberg and Marquardt's, (N + mu diag N) step = gradient with mu = 1, 10, …, the first that
+  /// raises the exact objective; far from a maximum the unknowns that the data hardly determine make the Newton step too long for the rest.
+  void damped_step(const Eigen::MatrixXd& precision, const Eigen::VectorXd& newton);
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
   /// Of the objective and what is linear in the log noise, over the present point.
   [[nodiscard]] double gain_at(const Eigen::VectorXd& at, const Eigen::VectorXd& slope) const;

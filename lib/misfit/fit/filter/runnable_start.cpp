@@ -39,6 +39,15 @@ bool damp(double sign, Model& model) {
   return any;
 }
 
+/// Every free coefficient of a curve at 0, or at the bound next to it: a model whose curves hold the motion nowhere is lost within a second
+/// whatever its damping; without them the damping and the random force follow it.
+Model with_curves_at_zero(Model model) {
+  for (Parameter& p : model.parameters) {
+    if (p.free && p.curve >= 0) set(p, 0.0);
+  }
+  return model;
+}
+
 void append_words(std::string& words, const std::string& more) { words += (words.empty() || more.empty() ? "" : ", ") + more; }
 
 }  // namespace
@@ -81,6 +90,10 @@ std::vector<RunnableStart> runnable_starts(const Model& model) {
   add(off);
   add_damped(off, -1.0);
   add_damped(off, 1.0);
+  RunnableStart flat{with_curves_at_zero(off.model), off.words};
+  append_words(flat.words, "curves at 0");
+  add(flat);
+  add_damped(flat, -1.0);
   return out;
 }
 
