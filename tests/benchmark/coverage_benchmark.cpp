@@ -86,6 +86,9 @@ std::vector<CoverageRow> look(const Job& job, double seconds, const Registry& re
   choose_all_knots(request, registry, experiments, intervals);
   const Answer answer = estimated(job.method, assemble(request, registry), experiments);
   const Fit& fit = answer.fit;
+  if (fit.status != FitStatus::converged)
+    std::fprintf(stderr, "%s, %s, flight %d: %s: %s\n", job.method.c_str(), job.kind.c_str(), job.number, to_string(fit.status).c_str(),
+                 fit.message.c_str());
   std::vector<CoverageRow> rows;
   const auto add = [&](const std::string& quantity, double truth, double value, double sigma, double plain) {
     rows.push_back(

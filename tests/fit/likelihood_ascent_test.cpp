@@ -1,9 +1,10 @@
-// Steps where derivatives do not lead: the objective has a kink.
+// Steps where derivatives do not lead, as at a kink of the objective; a noise that is none.
 #include "misfit/fit/filter/likelihood_ascent.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "misfit/fit/trajectory_start.h"
 #include "tests/fit/decay.h"
@@ -32,6 +33,22 @@ TEST(AxisStep, RisesTowardsAMaximumAndNotFromIt) {
   EXPECT_NEAR(ascent.objective - before, *gained, 1e-9);
   EXPECT_NEAR(*gained, 1.5, 0.2);  // from two sigmas to one: (4 - 1)/2 of a parabola
   EXPECT_LT(ascent.objective, highest);
+}
+
+TEST(TryNoise, ANoiseWithoutADensityIsNotTaken) {
+  const auto known = testing_decay::registry_with(testing_decay::decay_text);
+  const Model model = assemble(testing_decay::request_of("text"), *known);
+  const std::vector<Signals> experiments{testing_decay::decay(200, 5)};
+  LikelihoodAscent ascent(trajectory_start(model, experiments).from.model, {}, experiments, {});
+  ASSERT_TRUE(ascent.linearise());
+  const double before = ascent.objective, white = ascent.out.noise.channels.front().white;
+  NoiseFit failed;
+  failed.minus_log_density = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(ascent.try_noise(failed));
+  ASSERT_EQ(ascent.out.noise.channels.size(), 1U);
+  EXPECT_EQ(ascent.out.noise.channels.front().white, white);
+  EXPECT_EQ(ascent.objective, before);
+  EXPECT_EQ(ascent.joint().size(), static_cast<Eigen::Index>(1 + ascent.out.noise_fit.logs.size())) << "steps over both blocks may follow";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_run.h"
+#include "misfit/fit/filter/filter_sizes.h"
 #include "misfit/fit/filter/filter_steps.h"
 
 namespace misfit {
@@ -48,7 +49,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
     }
     correction = kalman.x - trace.correction_at(k);
     kalman.predict(phi, steps.at(h), model);
-    kalman.x.noalias() = phi * correction + shifted;
+    kalman.x = phi.lazyProduct(correction) + shifted;
   }
   return out;
 }
@@ -56,9 +57,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
 }  // namespace
 
 Innovations run_linear(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise) {
-  if (trace.n == 6 && trace.ny == 2) return run_linear_as<6, 2>(model, data, trace, noise);
-  if (trace.n == 3 && trace.ny == 1) return run_linear_as<3, 1>(model, data, trace, noise);
-  return run_linear_as<Eigen::Dynamic, Eigen::Dynamic>(model, data, trace, noise);
+  return with_filter_size(trace.n, trace.ny, [&]<int M, int NY>() { return run_linear_as<M, NY>(model, data, trace, noise); });
 }
 
 double minus_loglik(const FilterData& data, const Innovations& innovations) {

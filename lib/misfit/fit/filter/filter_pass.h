@@ -163,7 +163,7 @@ class FilterPass {
   }
 
   void differentiate_update(std::size_t at, int o, SampleRole use) {
-    s_row_.noalias() = a_.transpose() * s_model_;
+    s_row_ = a_.transpose().lazyProduct(s_model_);
     s_row_ += s_jitter_.row(twice(o));
     const double* row = output_row(o) + n_;
     for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += row[c];
@@ -179,8 +179,8 @@ class FilterPass {
       jacobian.r[r] = -whiten * trace_.e[at];
       jacobian.index.push_back(at);
     }
-    s_model_.noalias() -= kalman_.gain * s_row_;
-    s_jitter_.noalias() -= kalman_.gain_jitter * s_row_;
+    s_model_ -= kalman_.gain.lazyProduct(s_row_);
+    s_jitter_ -= kalman_.gain_jitter.lazyProduct(s_row_);
   }
 
   void correct_state(std::size_t k) {
@@ -199,7 +199,7 @@ class FilterPass {
     const NoiseStep& noise_step = steps_.at(interval.t1 - interval.t0);
     kalman_.predict(phi, noise_step, model_);
     if (options_.jacobian == nullptr) return true;
-    s_work_.noalias() = phi * s_model_;
+    s_work_ = phi.lazyProduct(s_model_);
     for (int i = 0; i < n_; ++i) {
       const double* row = D_.data() + static_cast<std::ptrdiff_t>(i) * kRowStride + n_;
       for (int c = 0; c < slots_.count(); ++c) s_work_(i, slots_.column(c)) += row[c];

@@ -5,6 +5,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/fit/filter/filter_pass.h"
+#include "misfit/fit/filter/filter_sizes.h"
 #include "misfit/inference/own_states.h"
 
 namespace misfit {
@@ -116,10 +117,7 @@ bool FilterRunner::run(const FilterData& data, const FilterNoise& noise, FilterT
   resize(trace, n, ny, data.signals->samples());
   if (options.keep_P) trace.P.assign(trace.samples * n * (n + 2 * ny), 0.0);
   const FilterPassInput input{*model_, data, noise, options};
-  const auto pass = [&]<int M, int NY>() { return FilterPass<M, NY>(input, stepper_, trace).run(); };
-  if (n == 6 && ny == 2) return pass.template operator()<6, 2>();
-  if (n == 3 && ny == 1) return pass.template operator()<3, 1>();
-  return pass.template operator()<Eigen::Dynamic, Eigen::Dynamic>();
+  return with_filter_size(n, ny, [&]<int M, int NY>() { return FilterPass<M, NY>(input, stepper_, trace).run(); });
 }
 
 bool FilterRunner::run_gated(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, std::vector<std::size_t>& rejected) {

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+/// Of three searches from the present noise; with an infinite density where none has one.
 NoiseFit best_noise(const LikelihoodAscent& at, int threads) {
   constexpr int iterations = 6;
   NoiseFit best;

@@ -13,7 +13,8 @@ namespace misfit {
 
 /// Covariance of a linear filter whose state is [model states | two jitter states per channel], with deviations `x` from a reference of the
 /// caller. Channels are taken one after the other [AM]: an innovation is that of its channel given the earlier ones of the same sample. M,
-/// NY: numbers of model states and channels, or Eigen::Dynamic.
+/// NY: numbers of model states and channels, or Eigen::Dynamic. Products are lazy: the matrices are too small for Eigen's blocked ones, whose
+/// packing would cost more than they do (it takes these from eight rows on).
 template <int M, int NY>
 class Kalman {
  public:
@@ -47,20 +48,22 @@ class Kalman {
 
   /// Variance of the innovation of channel o with the row `a` of ∂h/∂x; prepares the gain.
   double variance(const StateVector& a, int o, double white) {
-    gain.noalias() = P * a;
+    gain = P.lazyProduct(a);
     gain += C.col(2 * o);
-    gain_jitter.noalias() = C.transpose() * a;
+    gain_jitter = C.transpose().lazyProduct(a);
     gain_jitter += G.col(2 * o);
     const double S = a.dot(gain) + gain_jitter[2 * o] + white * white;
     return S;
   }
   /// Takes the innovation in; after variance().
   void update(double innovation, double S) {
-    P.noalias() -= gain * (gain.transpose() / S);
-    C.noalias() -= gain * (gain_jitter.transpose() / S);
-    G.noalias() -= gain_jitter * (gain_jitter.transpose() / S);
-    gain /= S;
-    gain_jitter /= S;
+    const StateVector by_variance = gain / S;
+    const JitterVector jitter_by_variance = gain_jitter / S;
+    P -= gain.lazyProduct(by_variance.transpose());
+    C -= gain.lazyProduct(jitter_by_variance.transpose());
+    G -= gain_jitter.lazyProduct(jitter_by_variance.transpose());
+    gain = by_variance;
+    gain_jitter = jitter_by_variance;
     x += gain * innovation;
     j += gain_jitter * innovation;
   }
@@ -68,8 +71,8 @@ class Kalman {
   template <class Phi>
   void predict(const Phi& phi, const NoiseStep& noise, const FilterModel& model) {
     const std::vector<int>& kind = model.kind;
-    const StateMatrix turned = phi * P;
-    P.noalias() = turned * phi.transpose();
+    const StateMatrix turned = phi.lazyProduct(P);
+    P = turned.lazyProduct(phi.transpose());
     for (std::size_t i = 0; i < model.force_states.size(); ++i) {
       const int f = model.force_states[i];
       const double ratio = noise.variance_ratio[model.force_group[i]];
@@ -83,7 +86,7 @@ class Kalman {
         }
       }
     }
-    const CrossMatrix crossed = phi * C;
+    const CrossMatrix crossed = phi.lazyProduct(C);
     for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
       const auto& p = noise.jitter[o].phi;
       const Eigen::Index at = 2 * o;

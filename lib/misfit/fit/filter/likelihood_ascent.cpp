@@ -205,6 +205,10 @@ bool LikelihoodAscent::try_noise(const NoiseFit& fit) {
   const FilterNoise before = out.noise;
   const std::vector<double> logs = pack(before, out.model.system->spec(), out.around).value;
   const double then = objective;
+  if (!std::isfinite(fit.minus_log_density)) {
+    out.noise_fit.logs = logs;
+    return false;
+  }
   out.noise = fit.noise;
   out.noise_fit = fit;
   out.forced.set_force_time(out.noise.force_time);

@@ -28,7 +28,7 @@ class LikelihoodAscent {
   bool plan(double tolerance);
   /// How far the free parameters would move if every part of the plan were halved [sigma], the largest; 0 where it cannot be run so.
   [[nodiscard]] double integration_shift() const;
-  /// False if the model cannot be run with it: all is as before.
+  /// False if the model cannot be run with it, or has no density with it (a fit of the noise that failed): all is as before.
   bool try_noise(const NoiseFit& fit);
   /// A step of a Newton kind over parameters and log noise together, inside their bounds: `gradient` of the exact objective and of a
   /// further term linear in the log noise, with `slope` (what restricted_likelihood() adds), `inverse` of their curvature. Shortened until
