@@ -69,19 +69,23 @@ class StartedSearches {
     return from_first();
   }
 
-  /// A few rounds from each start; the highest first. Those from which the model cannot be run are left out.
+  /// A few rounds from each start; the highest first. Those from which the model cannot be run are left out; others are tried in their place
+  /// unless the model runs from a contained fit, which is nearer to the maximum than what they begin with.
   std::vector<std::pair<double, FilterSearch*>> begin_all() {
     constexpr int first_rounds = 6;
     std::vector<std::pair<double, FilterSearch*>> out;
+    bool contained_runs = false;
     for (const FilterStart& start : starts_) {
       FilterSearch& search = begin(start);
       try {
-        search.approach(first_rounds);
+        search.approach(first_rounds, contained_runs ? FilterSearch::Unrunnable::refused : FilterSearch::Unrunnable::replaced);
       } catch (const RunError&) {
         continue;
       }
       const double height = search.height();
-      if (std::isfinite(height)) out.emplace_back(height, &search);
+      if (!std::isfinite(height)) continue;
+      out.emplace_back(height, &search);
+      contained_runs = contained_runs || start.noise.has_value();
     }
     std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     return out;

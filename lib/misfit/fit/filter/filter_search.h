@@ -30,9 +30,12 @@ class FilterSearch {
         noise_given_(start.noise || options.noise),
         at_(start.model, start.penalties, experiments, begun(start, options)) {}
 
-  /// As far as the first rounds of the blocks in turn. RunError: the model can be run from no start.
-  void approach(int rounds) {
-    begin();
+  /// What becomes of a start from which the model cannot be run.
+  enum class Unrunnable { replaced, refused };
+
+  /// As far as the first rounds of the blocks in turn. RunError: the model cannot be run from its start, or from none in its place.
+  void approach(int rounds, Unrunnable unrunnable = Unrunnable::replaced) {
+    begin(unrunnable);
     at_.remember();
     if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
     set_floor();
@@ -88,10 +91,11 @@ class FilterSearch {
   /// [log-likelihood] Coarse where refine_jointly() follows.
   [[nodiscard]] double tolerance() const { return options_.verify ? 0.2 : 0.02; }
 
-  void begin() {
+  void begin(Unrunnable unrunnable) {
     const FilterNoise first_noise = out_.noise;
     if (runs_with_raised_noise() || runs_finely(first_noise)) return;
     const std::string why = at_.failure();
+    if (unrunnable == Unrunnable::refused) throw RunError(why);
     for (const RunnableStart& start : runnable_starts(out_.model)) {
       at_.theta = start.model.theta();
       out_.noise = out_.around;
