@@ -282,6 +282,15 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
   return out;
 }
 
+std::optional<CandidateModel> candidate_model_of(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                                 const EffectRequest& effect, const Calibration* calibration) {
+  const Effect& asked = registry.effect(effect.kind);
+  if (!has_strength(asked.spec()) || driven_by_noise(asked)) return std::nullopt;
+  std::optional<CandidateModel> out = candidate_model_at(estimate, request, registry, asked, effect.roles);
+  if (out) fill(asked, calibration, OperatingRange(estimate), *out);
+  return out;
+}
+
 Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const CandidateModel& candidate_model,
                                     const std::vector<double>& cell) {
   FilterModel forced = with_random_force(candidate_model.model);

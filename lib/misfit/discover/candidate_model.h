@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,11 @@ inline constexpr int kTime = -1;
 /// suggests (bindings.h). Left out: effects driven by noise (the filter has them), and generic ones that a system's own effect specialises.
 [[nodiscard]] std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request,
                                                            const Registry& registry, const Calibration* calibration);
+
+/// One effect as a study asks for it; nullopt where it has no strength, is driven by noise, or does not suit the system.
+[[nodiscard]] std::optional<CandidateModel> candidate_model_of(const FilterEstimate& estimate, const ModelRequest& request,
+                                                               const Registry& registry, const EffectRequest& effect,
+                                                               const Calibration* calibration);
 
 /// Ports that an effect writes, by name.
 [[nodiscard]] std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEffect& effect);

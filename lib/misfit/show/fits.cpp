@@ -37,6 +37,9 @@ Blocks blocks_of(const Fit& fit) {
   out.paragraph(fit.message);
   if (const auto integration = fit.facts.find("integration"); integration != fit.facts.end())
     out.paragraph("Integration: " + integration->second + ".");
+  for (const auto& [name, words] : fit.facts) {
+    if (name.rfind("start of ", 0) == 0) out.paragraph("S" + name.substr(1) + ": " + words + ".");
+  }
   std::vector<Row> rows;
   if (fit.trim) rows.emplace_back("trim", *fit.trim);
   add_rows(rows, "RMS of ", fit.rms);

@@ -61,9 +61,16 @@ MethodRun Methods::run_in_time(const std::string& method) {
   auto work = std::make_shared<FilterWork>();
   work->prepared = prepared();
   const auto regression = [this]() -> const FittedModel& { return this->regression(); };
+  std::optional<ContainedFit> contained = contained_fit_of(session_);
+  const std::optional<ScannedStudy>& scanned = this->scanned();
+  if (scanned) {
+    work->prepared.model = scanned->model;
+    contained = scanned->contained;
+  }
   Estimation result = method_of_study.run(
-      {work->prepared.model, work->prepared.experiments, regression, {}, session_.options.threads, contained_fit_of(session_)});
+      {work->prepared.model, work->prepared.experiments, regression, {}, session_.options.threads, std::move(contained)});
   Fit& fit = result.at.fitted.fit;
+  if (scanned) fit.facts.insert(scanned->facts.begin(), scanned->facts.end());
   add_notes(work->prepared, fit);
   if (method_of_study.info.deterministic) return {std::move(result.at), nullptr};
   if (work->prepared.model.free_parameters().empty())
@@ -80,6 +87,11 @@ const Prepared& Methods::prepared() {
     for (const std::string& note : experiment.notes) session_.note(experiment.name + ": " + note);
   }
   return *prepared_;
+}
+
+const std::optional<ScannedStudy>& Methods::scanned() {
+  if (!scanned_) scanned_ = contained_fit_of(session_) ? std::nullopt : scanned_study(session_, prepared());
+  return *scanned_;
 }
 
 const FittedModel& Methods::regression() {

@@ -9,6 +9,7 @@
 #include "misfit/fit/regression/sliding_bin.h"
 #include "misfit/fit/trajectory_start.h"
 #include "misfit/workflow/estimate/estimate.h"
+#include "misfit/workflow/estimate/scanned_starts.h"
 
 namespace misfit {
 
@@ -30,11 +31,14 @@ class Methods {
 
  private:
   [[nodiscard]] MethodRun run_in_time(const std::string& method);
+  /// Not of a rung, which begins where discovery ended.
+  [[nodiscard]] const std::optional<ScannedStudy>& scanned();
   [[nodiscard]] const FittedModel& regression();
   [[nodiscard]] FittedMethod run_in_regression_form(const Estimator& method);
 
   Session& session_;
   std::optional<Prepared> prepared_;
+  std::optional<std::optional<ScannedStudy>> scanned_;
   std::optional<FittedModel> regression_;
 };
 

@@ -1,0 +1,65 @@
+#include "misfit/discover/scanned_start.h"
+
+#include <algorithm>
+
+#include "misfit/discover/refit.h"
+
+namespace misfit {
+namespace {
+
+/// Name of the coefficient whose parameter this is; empty: of another effect.
+std::string coefficient_of(const BoundEffect& effect, int parameter) {
+  const auto& coefficients = effect.effect->spec().coefficients;
+  for (std::size_t c = 0; c < coefficients.size(); ++c) {
+    if (!coefficients[c].shared && effect.coefficients[c].parameter == parameter) return coefficients[c].name;
+  }
+  return {};
+}
+
+/// Shapes that are held have one value in all cells.
+void hold(const std::map<std::string, double>& held, CandidateModel& out) {
+  const BoundEffect& effect = out.model.effects.back();
+  const auto held_value = [&](int parameter) {
+    const auto found = held.find(coefficient_of(effect, parameter));
+    return found == held.end() ? std::optional<double>() : found->second;
+  };
+  for (auto& cell : out.cells) {
+    for (std::size_t i = 0; i < out.shapes.size(); ++i) cell[i] = held_value(out.shapes[i]).value_or(cell[i]);
+  }
+  std::sort(out.cells.begin(), out.cells.end());
+  out.cells.erase(std::unique(out.cells.begin(), out.cells.end()), out.cells.end());
+  if (out.frequency >= 0 && held_value(out.frequency)) out.frequency = -1;
+  for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
+    const int parameter = effect.coefficients[c].parameter;
+    if (parameter < 0) continue;
+    if (const auto value = held_value(parameter)) out.model.parameters[parameter].value = *value;
+  }
+}
+
+}  // namespace
+
+std::optional<ScannedStart> scanned_start(const ScanTask& task, const EffectRequest& effect, const std::map<std::string, double>& held) {
+  constexpr double least_chi2 = 10.0;
+  std::optional<CandidateModel> model = candidate_model_of(task.without, task.request, task.registry, effect, task.calibration);
+  if (!model) return std::nullopt;
+  hold(held, *model);
+  const ScoreTest score(task.without);
+  const ForceSensitivity force(task.without);
+  const std::vector<CandidateModel> alone = {std::move(*model)};
+  const std::vector<ScreeningResult> screened = screen({task.without, score, force, task.threads, task.calibration != nullptr}, alone);
+  if (screened.empty() || !screened.front().runs || !(screened.front().result.chi2 >= least_chi2)) return std::nullopt;
+  const RefitWork work{task.without, task.experiments, task.registry, task.threads};
+  const Refit found = refit(work, screened.front(), one_step(work, score, screened.front()));
+  if (!found.ok) return std::nullopt;
+  ScannedStart out;
+  const BoundEffect& bound = found.estimate.model.effects.back();
+  for (const auto& coefficient : bound.coefficients) {
+    const bool own = coefficient.parameter >= 0;
+    out.values.push_back(own ? std::optional(found.estimate.model.parameters[coefficient.parameter].value) : std::nullopt);
+  }
+  out.refit_values = found.estimate.model.values();
+  out.refit_log_noise = pack(found.estimate.noise, found.estimate.model.system->spec(), found.estimate.around).value;
+  return out;
+}
+
+}  // namespace misfit
