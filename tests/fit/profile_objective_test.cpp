@@ -104,7 +104,7 @@ TEST(MaximumFrom, ElsewhereOutputErrorComesBackToTheFit) {
   const Maximisation near = maximise_near(f.method, f.experiments);
   ASSERT_TRUE(near.objective) << near.why;
   for (const double by : {-0.5, 0.5}) {
-    const Maximisation there = maximise_from(f.method, moved(f.method.fitted.model, by), f.experiments);
+    const Maximisation there = maximise_from(f.method, {moved(f.method.fitted.model, by)}, f.experiments);
     ASSERT_TRUE(there.objective) << there.why;
     EXPECT_NEAR(*there.objective, *near.objective, 0.05) << by;
   }
@@ -119,7 +119,7 @@ TEST(MaximumFrom, ElsewhereFilterErrorComesBackToTheFit) {
   ASSERT_TRUE(near.objective) << near.why;
   EXPECT_NEAR(*near.objective, estimate.objective, 0.05);
   for (const double by : {-0.5, 1.0}) {
-    const Maximisation there = maximise_from(method, moved(method.fitted.model, by), {cart.signals});
+    const Maximisation there = maximise_from(method, {moved(method.fitted.model, by)}, {cart.signals});
     ASSERT_TRUE(there.objective) << there.why;
     EXPECT_NEAR(*there.objective, *near.objective, 0.05) << by;
   }
@@ -127,7 +127,7 @@ TEST(MaximumFrom, ElsewhereFilterErrorComesBackToTheFit) {
 
 TEST(MaximumFrom, WhatCannotBeRunSaysWhy) {
   const Fitted f = fitted(false);
-  const Maximisation there = maximise_from(f.method, std::vector<double>(f.method.fitted.model.parameters.size(), 0.0), f.experiments);
+  const Maximisation there = maximise_from(f.method, {std::vector<double>(f.method.fitted.model.parameters.size(), 0.0)}, f.experiments);
   EXPECT_FALSE(there.objective);
   EXPECT_FALSE(there.why.empty());
 }

@@ -36,7 +36,8 @@ struct Fitted {
 
 /// Two maxima: one at cosine = 0, another at cosine = 3, `higher` above it in log L; with cosine below −1.5 it cannot be run.
 SearchFrom two_maxima(const Fitted& f, double higher) {
-  return [&f, higher](const std::vector<double>& from) {
+  return [&f, higher](const RandomStart& start) {
+    const std::vector<double>& from = start.values;
     const auto cosine = static_cast<std::size_t>(f.at("cosine"));
     Maximum out{100.0, "", from};
     if (from[cosine] < -1.5) return Maximum{std::nullopt, "a state is no longer a number at t = 3.2 s", {}};
@@ -96,7 +97,7 @@ TEST(MultiStarts, DependOnSeedAndNumberAlone) {
 
 TEST(MultiStarts, ThatAllFailOrCannotDifferAreRefused) {
   Fitted f;
-  const SearchFrom nowhere = [](const std::vector<double>&) { return Maximum{std::nullopt, "it cannot be run", {}}; };
+  const SearchFrom nowhere = [](const RandomStart&) { return Maximum{std::nullopt, "it cannot be run", {}}; };
   const MultiStarts starts(f.fit, f.model, 0.0, nowhere, {2, 1});
   EXPECT_THROW(static_cast<void>(starts.summary({starts.run(0), starts.run(1)})), RunError);
   EXPECT_THROW(MultiStarts(f.fit, f.model, 0.0, nowhere, {0, 1}), InputError);
@@ -115,7 +116,7 @@ TEST(RandomStart, ScattersByTypicalSizesAndPriorsInsideTheBounds) {
   double lowest = 0.0, sum = 0.0, squares = 0.0;
   constexpr int draws = 2000;
   for (int k = 0; k < draws; ++k) {
-    const std::vector<double> values = random_start(f.model, random);
+    const std::vector<double> values = random_start(f.model, random).values;
     lowest = std::min(lowest, values[static_cast<std::size_t>(f.at("cosine"))]);
     const double v = values[static_cast<std::size_t>(f.at("sine"))];
     sum += v;
@@ -130,10 +131,28 @@ TEST(RandomStart, ScattersByTypicalSizesAndPriorsInsideTheBounds) {
   EXPECT_NEAR(std::sqrt(squares / draws), 0.1, 0.01);
 }
 
+TEST(RandomStart, MovesTheNoiseOfEveryOutputAndOfTheForce) {
+  const Fitted f;
+  std::mt19937_64 random(6);
+  double sum = 0.0, squares = 0.0;
+  constexpr int draws = 2000;
+  for (int k = 0; k < draws; ++k) {
+    const std::vector<double> factors = random_start(f.model, random).noise_factors;
+    ASSERT_EQ(factors.size(), static_cast<std::size_t>(f.model.outputs() + 1));
+    for (const double factor : factors) {
+      sum += std::log(factor);
+      squares += std::log(factor) * std::log(factor);
+    }
+  }
+  const double count = draws * (f.model.outputs() + 1.0);
+  EXPECT_NEAR(sum / count, 0.0, 0.1);
+  EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.05);
+}
+
 TEST(RandomStart, MovesCurvesByStraightLines) {
   const Fitted f;
   std::mt19937_64 random(4);
-  const std::vector<double> values = random_start(f.model, random);
+  const std::vector<double> values = random_start(f.model, random).values;
   ASSERT_EQ(f.model.curves.size(), 2U);
   for (const Curve& curve : f.model.curves) {
     Eigen::VectorXd moved(curve.spline.size());

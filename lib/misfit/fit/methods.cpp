@@ -139,7 +139,10 @@ Fit refit_filter_error(const FittedMethod& from, const Experiments& experiments)
 /// Verified: the noise at its restricted likelihood, as in the fit. Without that the two blocks drift to another maximum in turn.
 Maximisation maximise_filter_error(const FittedMethod& from, const Experiments& experiments, SearchStart begin) {
   FilterOptions options = warm_filter(from);
-  if (begin == SearchStart::values) options.noise.reset();
+  if (begin == SearchStart::values) {
+    options.noise.reset();
+    options.noise_factors = from.noise_factors;
+  }
   options.use = from.use;
   options.verify = true;
   const FilterEstimate end = estimate_filter(from.fitted.model, from.fitted.penalties, experiments, options);
@@ -204,11 +207,18 @@ Maximisation maximise_near(const FittedMethod& from, const Experiments& experime
   return maximise(from, experiments, SearchStart::fitted);
 }
 
-Maximisation maximise_from(const FittedMethod& from, const std::vector<double>& values, const Experiments& experiments) {
-  FittedMethod start = from;
-  start.fitted = with_own_roughness(std::move(start.fitted));
-  for (std::size_t i = 0; i < values.size(); ++i) start.fitted.model.parameters[i].value = values[i];
-  return maximise(start, experiments, SearchStart::values);
+Maximisation maximise_from(const FittedMethod& from, const AnotherStart& start, const Experiments& experiments) {
+  FittedMethod there = from;
+  there.fitted = with_own_roughness(std::move(there.fitted));
+  Model& model = there.fitted.model;
+  for (std::size_t i = 0; i < start.values.size(); ++i) model.parameters[i].value = start.values[i];
+  const auto& outputs = model.system->spec().outputs;
+  for (std::size_t o = 0; o < outputs.size() && o < start.noise_factors.size(); ++o) {
+    const auto noise = there.fitted.fit.noise.find(outputs[o].name);
+    if (noise != there.fitted.fit.noise.end() && !model.known_noise[o].fixed) noise->second.value *= start.noise_factors[o];
+  }
+  there.noise_factors = start.noise_factors;
+  return maximise(there, experiments, SearchStart::values);
 }
 
 }  // namespace misfit

@@ -30,7 +30,8 @@ struct FittedMethod {
   std::optional<FilterNoise> noise, around;                 ///< of a method with a random force
   std::optional<std::vector<std::vector<SampleRole>>> use;  ///< of the same: which measurements count
   SlidingBinOptions bins = {};
-  double time_limit = 0.0;  ///< of every fit from here [s]; 0: none
+  double time_limit = 0.0;                 ///< of every fit from here [s]; 0: none
+  std::vector<double> noise_factors = {};  ///< AnotherStart::noise_factors
 };
 
 struct Estimation {
@@ -74,8 +75,13 @@ struct Estimator {
 /// Where the method ends when it begins near a maximum: from where `from` stands, its noise and initial states too.
 [[nodiscard]] Maximisation maximise_near(const FittedMethod& from, const std::vector<Signals>& experiments);
 
-/// Where it ends when it begins at other values of all parameters, as a new fit does: initial states and noise are looked for.
-[[nodiscard]] Maximisation maximise_from(const FittedMethod& from, const std::vector<double>& values,
-                                         const std::vector<Signals>& experiments);
+/// Another place to begin at.
+struct AnotherStart {
+  std::vector<double> values;              ///< of all parameters
+  std::vector<double> noise_factors = {};  ///< of the noise of every output, then of the random force; empty: 1
+};
+
+/// Where it ends when it begins there, as a new fit does: initial states and noise are looked for.
+[[nodiscard]] Maximisation maximise_from(const FittedMethod& from, const AnotherStart& start, const std::vector<Signals>& experiments);
 
 }  // namespace misfit

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace misfit {
 namespace {
@@ -115,6 +116,21 @@ PenalisedFit estimate_smoothing(const NormalEquations& problem, std::vector<Pena
     }
     if (change < negligible_change) break;
   }
+  return out;
+}
+
+double marginal_loglik(const NormalEquations& here, const std::vector<Penalty>& penalties, double objective) {
+  if (here.theta.size() == 0) return objective;
+  const PenaltyBasis basis = penalty_eigenbasis(here.N.rows(), penalties);
+  Eigen::MatrixXd information = here.N;
+  information.diagonal() += here.prior.precision;
+  information = basis.Q.transpose() * information * basis.Q;
+  for (const Penalty& p : basis.penalties) information.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
+  Eigen::MatrixXd inverse;
+  double log_determinant = 0.0;
+  if (!invert_scaled(information, inverse, &log_determinant)) return -std::numeric_limits<double>::infinity();
+  double out = objective - 0.5 * log_determinant;
+  for (const Penalty& p : penalties) out += p.log_normalisation();
   return out;
 }
 

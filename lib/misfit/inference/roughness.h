@@ -56,6 +56,11 @@ struct PenaltyBasis {
 /// `sigma2_given` > 0 the variance is kept.
 [[nodiscard]] PenalisedFit estimate_smoothing(const NormalEquations& problem, std::vector<Penalty>& penalties, double sigma2_given = 0.0);
 
+/// [log-likelihood] By which fits of one model with different roughness are compared: the density of the measurements with the parameters
+/// integrated out, by Laplace's method, log-likelihood + log prior + Σ ½ rank_k log λ_k − ½ log det N; constants left out. −infinity where
+/// N is not positive definite. `here`: the parameters' information at the maximum; `objective`: log-likelihood + log prior there.
+[[nodiscard]] double marginal_loglik(const NormalEquations& here, const std::vector<Penalty>& penalties, double objective);
+
 /// The step from problem.theta to the maximum of the penalised Gaussian, residuals in units of their sigma, `covariance` as of
 /// PenalisedFit. PenalisedFit::theta less problem.theta, but with all digits of a small step.
 [[nodiscard]] Eigen::VectorXd newton_step(const NormalEquations& problem, const std::vector<Penalty>& penalties,

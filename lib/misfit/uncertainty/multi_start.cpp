@@ -36,7 +36,7 @@ std::vector<std::string> words_of(const MultiStart& s) {
 
 }  // namespace
 
-std::vector<double> random_start(const Model& model, std::mt19937_64& random) {
+RandomStart random_start(const Model& model, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::vector<double> values = model.values();
   for (const Curve& curve : model.curves) {
@@ -53,7 +53,9 @@ std::vector<double> random_start(const Model& model, std::mt19937_64& random) {
     if (!p.free || p.curve >= 0) continue;
     values[i] = inside(p, p.prior_sigma ? p.prior_mean + *p.prior_sigma * normal(random) : p.value + p.scale * normal(random));
   }
-  return values;
+  std::vector<double> noise_factors;
+  for (int i = 0; i <= model.outputs(); ++i) noise_factors.push_back(std::exp(normal(random)));
+  return {std::move(values), std::move(noise_factors)};
 }
 
 MultiStarts::MultiStarts(const Fit& fit, const Model& best, double objective, SearchFrom search, const MultiStartOptions& options)

@@ -18,8 +18,13 @@ struct Maximum {
   std::string why;                  ///< … for this reason
   std::vector<double> values;       ///< of all parameters there
 };
-/// The search from values of all parameters, roughness as in the fit; called from several threads at once.
-using SearchFrom = std::function<Maximum(const std::vector<double>& values)>;
+/// Where a search begins.
+struct RandomStart {
+  std::vector<double> values;         ///< of all parameters
+  std::vector<double> noise_factors;  ///< standard deviation of the noise of every output, then of the random force, over its usual one
+};
+/// The search from there, roughness as in the fit; called from several threads at once.
+using SearchFrom = std::function<Maximum(const RandomStart& start)>;
 
 struct MultiStartOptions {
   std::size_t runs = 20;
@@ -27,8 +32,9 @@ struct MultiStartOptions {
 };
 
 /// Values about the model's: a parameter with a prior is drawn from it, any other free one is moved by its typical size times a normal
-/// number; a curve by a straight line over its knots whose level and slope are drawn so. Bounds are kept.
-[[nodiscard]] std::vector<double> random_start(const Model& model, std::mt19937_64& random);
+/// number; a curve by a straight line over its knots whose level and slope are drawn so. Bounds are kept. Of the noise the logarithms are moved
+/// by a normal number: which output a model follows that cannot follow all hangs on it.
+[[nodiscard]] RandomStart random_start(const Model& model, std::mt19937_64& random);
 
 /// The fit again from random starts: is there a higher maximum than the one that was found, and how many searches find it? Start k depends
 /// on the seed and its own number alone.

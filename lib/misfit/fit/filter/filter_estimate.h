@@ -11,9 +11,10 @@
 namespace misfit {
 
 struct FilterOptions {
-  int threads = 0;                                          ///< 0: one per core; does not change the answer
-  std::optional<FilterNoise> noise;                         ///< where to start; nullopt: looked for
-  std::optional<FilterNoise> around;                        ///< what sets the bounds of the noise; nullopt: the data
+  int threads = 0;                         ///< 0: one per core; does not change the answer
+  std::optional<FilterNoise> noise;        ///< where to start; nullopt: looked for
+  std::vector<double> noise_factors = {};  ///< where it is looked for: what to multiply the first one with, outputs, then force
+  std::optional<FilterNoise> around;       ///< what sets the bounds of the noise; nullopt: the data
   std::optional<std::vector<std::vector<SampleRole>>> use;  ///< per experiment, so that two models are compared on the same measurements
   std::optional<std::vector<IntegrationPlan>> plans;        ///< per experiment, for the same reason, and kept; nullopt: along the first run
   bool choose_roughness = true;                             ///< false: penalties as handed over

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
@@ -48,6 +49,7 @@ class FilterSearch {
   void finish() {
     if (!out_.converged && rounds_left_ > 0) at_.iterate(rounds_left_, tolerance());
     if (!options_.noise && !out_.around.time_held) survey_noise();
+    if (!options_.noise && options_.verify) weigh_outputs_otherwise();
     if (!options_.use) reject_outliers();
     if (options_.verify) refine_jointly();
     return_to_floor();
@@ -186,6 +188,76 @@ class FilterSearch {
       out_.notes.push_back("the likelihood has another maximum at a correlation time of the random force of about " +
                            format_value(other.noise.force_time) + " s, lower by " + format_value(2.0 * below) + " in 2 log L");
     }
+  }
+
+  /// Outputs that the model cannot all follow at once: the likelihood has a maximum for each that it could follow best, and which of them
+  /// a search ends at hangs on the noise it began with. Looked for with the sigma of each output in turn a fiftieth and, of three or
+  /// more, fifty times what it is; the highest is kept, others within 10 in 2 log L of it are named.
+  void weigh_outputs_otherwise() {
+    constexpr double ratio = 0.02;
+    std::vector<std::size_t> outputs;
+    for (std::size_t o = 0; o < out_.noise.channels.size(); ++o) {
+      if (!out_.model.known_noise[o].fixed) outputs.push_back(o);
+    }
+    if (outputs.size() < 2 || at_.theta.size() == 0) return;
+    const std::vector<double> factors = outputs.size() == 2 ? std::vector{ratio} : std::vector{ratio, 1.0 / ratio};
+    for (const std::size_t o : outputs) {
+      for (const double factor : factors) look_beyond(o, factor);
+    }
+  }
+
+  /// Stays where it is unless the search from another noise of this output ends higher.
+  void look_beyond(std::size_t output, double factor) {
+    constexpr double clearly_higher = 0.5, nearly = 5.0;  // [log-likelihood]
+    const LikelihoodAscent::Point before = at_.here();
+    const double then = height();
+    FilterNoise noise = before.noise;
+    noise.channels[output].white *= factor;
+    noise.channels[output].jitter *= factor;
+    try {
+      if (!at_.begin_with(noise) || !leads_away(before)) {
+        at_.return_to(before);
+        return;
+      }
+      at_.iterate(all_rounds, tolerance());
+    } catch (const TimeSpent&) {
+      const Unhurried back;
+      at_.return_to(before);
+      throw;
+    }
+    const double now = height();
+    const LikelihoodAscent::Point there = at_.here();
+    const bool higher = now > then + clearly_higher;
+    if (!higher) at_.return_to(before);
+    if (moved(before.theta, there.theta) && std::abs(now - then) < nearly) name_other(higher ? before : there, std::abs(now - then));
+  }
+
+  /// A step of the parameters with the noise as it is: do they move, and is the noise about them another one?
+  bool leads_away(const LikelihoodAscent::Point& from) {
+    constexpr double another = 0.2;  // relative change of a noise
+    at_.gauss_newton_step();
+    if (!moved(from.theta, at_.theta)) return false;
+    const NoiseFit now = fit_noise(at_.runs(), from.noise, {out_.around, options_.threads, kRefinements});
+    if (!std::isfinite(now.minus_log_density)) return false;
+    const auto level = [](const ChannelNoise& noise) { return std::hypot(noise.white, noise.jitter); };
+    return !std::equal(now.noise.channels.begin(), now.noise.channels.end(), from.noise.channels.begin(),
+                       [&](const ChannelNoise& a, const ChannelNoise& b) { return std::abs(level(a) / level(b) - 1.0) < another; });
+  }
+
+  /// By more than five sigmas of the present covariance.
+  [[nodiscard]] bool moved(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
+    constexpr double far = 5.0;
+    if (out_.covariance.rows() != from.size()) return false;
+    return ((to - from).cwiseAbs().array() > far * out_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt().array()).any();
+  }
+
+  void name_other(const LikelihoodAscent::Point& other, double below) {
+    const auto& outputs = out_.model.system->spec().outputs;
+    std::string noise;
+    for (std::size_t o = 0; o < outputs.size(); ++o)
+      noise += (o == 0 ? "" : ", ") + outputs[o].name + ": " + in_display_unit(other.noise.channels[o].white, outputs[o].unit);
+    out_.notes.push_back("the likelihood has another maximum, lower by " + format_value(2.0 * below) +
+                         " in 2 log L, that follows the outputs in another proportion (noise of " + noise + ")");
   }
 
   /// Gates the measurements and estimates again until the rejected set no longer changes: outliers in the data bias the first estimates, by

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "misfit/fit/filter/restricted_likelihood.h"
+#include "misfit/inference/roughness.h"
 
 namespace misfit {
 namespace {

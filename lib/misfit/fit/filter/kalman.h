@@ -13,8 +13,8 @@ namespace misfit {
 
 /// Covariance of a linear filter whose state is [model states | two jitter states per channel], with deviations `x` from a reference of the
 /// caller. Channels are taken one after the other [AM]: an innovation is that of its channel given the earlier ones of the same sample. M,
-/// NY: numbers of model states and channels, or Eigen::Dynamic. Products are lazy: the matrices are too small for Eigen's blocked ones, whose
-/// packing would cost more than they do (it takes these from eight rows on).
+/// NY: numbers of model states and channels, or Eigen::Dynamic. Products are lazy: the matrices are too small for Eigen's blocked ones,
+/// whose packing would cost more than they do (it takes these from eight rows on).
 template <int M, int NY>
 class Kalman {
  public:

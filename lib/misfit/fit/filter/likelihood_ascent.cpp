@@ -34,6 +34,17 @@ Eigen::VectorXd joined(const Eigen::VectorXd& a, const std::vector<double>& b) {
   return both;
 }
 
+/// Noise with the standard deviations of outputs, but for those held, and of the random force multiplied.
+FilterNoise multiplied(FilterNoise noise, const std::vector<double>& factors, const Model& model) {
+  if (factors.empty()) return noise;
+  for (std::size_t o = 0; o < noise.channels.size(); ++o) {
+    if (!model.known_noise[o].fixed) noise.channels[o].white *= factors[o];
+  }
+  noise.force *= factors.back();
+  for (double& force : noise.further_forces) force *= factors.back();
+  return noise;
+}
+
 }  // namespace
 
 LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
@@ -52,7 +63,7 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
   }
   theta = start.theta();
   out.around = options.around ? *options.around : usual_noise(out.forced, out.data);
-  out.noise = options.noise ? *options.noise : out.around;
+  out.noise = options.noise ? *options.noise : multiplied(out.around, options.noise_factors, start);
   out.forced.set_force_time(out.noise.force_time);
 }
 
@@ -242,21 +253,34 @@ bool LikelihoodAscent::move_to(const Eigen::VectorXd& there, const std::vector<d
   return false;
 }
 
-void LikelihoodAscent::remember() { remembered_.emplace(Point{theta, objective, out.noise, out.noise_fit, out.penalties}); }
+void LikelihoodAscent::remember() { remembered_.emplace(here()); }
 
-bool LikelihoodAscent::return_to_remembered() {
-  if (!remembered_) return false;
-  theta = remembered_->theta;
-  out.noise = remembered_->noise;
-  out.noise_fit = remembered_->noise_fit;
-  out.penalties = remembered_->penalties;
+bool LikelihoodAscent::return_to_remembered() { return remembered_ && return_to(Point(*remembered_)); }
+
+bool LikelihoodAscent::return_to(const Point& point) {
+  theta = point.theta;
+  out.noise = point.noise;
+  out.noise_fit = point.noise_fit;
+  out.penalties = point.penalties;
   out.forced.set_force_time(out.noise.force_time);
+  remembered_.emplace(point);
   if (!linearise()) return false;
   if (out.noise_fit.at_bound.empty()) {
     out.noise_fit = fit_noise(runs(), out.noise, {out.around, threads_, 0});
     out.noise_fit.information = noise_information(runs(), out.noise_fit.logs, out.around, threads_);
   }
   return true;
+}
+
+bool LikelihoodAscent::begin_with(const FilterNoise& noise) {
+  const FilterNoise before = out.noise;
+  out.noise = noise;
+  out.forced.set_force_time(noise.force_time);
+  if (linearise()) return true;
+  out.noise = before;
+  out.forced.set_force_time(before.force_time);
+  linearise();
+  return false;
 }
 
 double LikelihoodAscent::reached() const { return remembered_ ? remembered_->objective : -std::numeric_limits<double>::infinity(); }

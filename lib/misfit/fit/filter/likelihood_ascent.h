@@ -41,10 +41,22 @@ class LikelihoodAscent {
   std::optional<double> axis_step(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& slope);
   /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
   bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
+  /// Where a search stands.
+  struct Point {
+    Eigen::VectorXd theta;
+    double objective;
+    FilterNoise noise;
+    NoiseFit noise_fit;
+    std::vector<Penalty> penalties;
+  };
+  [[nodiscard]] Point here() const { return {theta, objective, out.noise, out.noise_fit, out.penalties}; }
+  /// With runs and information of the noise there, whatever was going on; it is then the point to return to. False: it cannot be run.
+  bool return_to(const Point& point);
+  /// False if the model cannot be run with it: all is as before.
+  bool begin_with(const FilterNoise& noise);
   /// The present point is the one to return to; every step that has risen does this by itself.
   void remember();
-  /// To the point that was remembered last, with runs and information of the noise there, whatever was going on. False: there is none, or
-  /// it cannot be run.
+  /// To the point that was remembered last. False: there is none, or it cannot be run.
   bool return_to_remembered();
   /// Objective at that point; −infinity: there is none.
   [[nodiscard]] double reached() const;
@@ -69,14 +81,6 @@ class LikelihoodAscent {
   /// Of the objective and what is linear in the log noise, over the present point.
   [[nodiscard]] double gain_at(const Eigen::VectorXd& at, const Eigen::VectorXd& slope) const;
   [[nodiscard]] double log_prior() const;  ///< of parameters, roughness and noise, at `theta` and `out.noise`
-
-  struct Point {
-    Eigen::VectorXd theta;
-    double objective;
-    FilterNoise noise;
-    NoiseFit noise_fit;
-    std::vector<Penalty> penalties;
-  };
 
   int threads_;
   std::size_t failed_experiment_ = 0;

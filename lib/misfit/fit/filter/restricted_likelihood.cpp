@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "misfit/jobs/work_queue.h"
@@ -60,21 +59,6 @@ RestrictedLikelihood restricted_likelihood(const FilterEstimate& estimate, const
       out.information_loss(j, i) = loss;
     }
   }
-  return out;
-}
-
-double marginal_loglik(const NormalEquations& here, const std::vector<Penalty>& penalties, double objective) {
-  if (here.theta.size() == 0) return objective;
-  const PenaltyBasis basis = penalty_eigenbasis(here.N.rows(), penalties);
-  Eigen::MatrixXd information = here.N;
-  information.diagonal() += here.prior.precision;
-  information = basis.Q.transpose() * information * basis.Q;
-  for (const Penalty& p : basis.penalties) information.block(p.first, p.first, p.omega.rows(), p.omega.cols()) += p.lambda * p.omega;
-  Eigen::MatrixXd inverse;
-  double log_determinant = 0.0;
-  if (!invert_scaled(information, inverse, &log_determinant)) return -std::numeric_limits<double>::infinity();
-  double out = objective - 0.5 * log_determinant;
-  for (const Penalty& p : penalties) out += p.log_normalisation();
   return out;
 }
 

@@ -24,9 +24,4 @@ struct RestrictedLikelihood {
 /// model cannot be run with the changed noise or N cannot be inverted. The answer does not depend on `threads`.
 [[nodiscard]] RestrictedLikelihood restricted_likelihood(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads);
 
-/// [log-likelihood] By which fits of one model with different roughness are compared: the density of the measurements with the parameters
-/// integrated out, by Laplace's method, log-likelihood + log prior + Σ ½ rank_k log λ_k − ½ log det N; constants left out. −infinity where
-/// N is not positive definite. `here`: the parameters' information at the maximum; `objective`: log-likelihood + log prior there.
-[[nodiscard]] double marginal_loglik(const NormalEquations& here, const std::vector<Penalty>& penalties, double objective);
-
 }  // namespace misfit

@@ -21,8 +21,8 @@ struct RunnableStart {
 [[nodiscard]] RunnableStart with_strengths_off(const Model& model);
 
 /// Starts to try in this order: the damping at its typical size (the system's damping curve at minus its scale, strengths of dissipative
-/// effects at their scale); strengths off; both; both with the damping curve at plus its scale; strengths off and all curves at 0; these with
-/// damping. Those that differ neither from `model` nor from one before are left out.
+/// effects at their scale); strengths off; both; both with the damping curve at plus its scale; strengths off and all curves at 0; these
+/// with damping. Those that differ neither from `model` nor from one before are left out.
 [[nodiscard]] std::vector<RunnableStart> runnable_starts(const Model& model);
 
 }  // namespace misfit

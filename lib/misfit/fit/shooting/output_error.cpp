@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "misfit/core/display.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
@@ -201,6 +202,7 @@ class Estimator {
       integration_.plan();
     }
     bool found = search(lengthened);
+    if (found && options_.coloured) weigh_outputs_otherwise();
     while (found && settled_ && !integration_.negligible_at(end_.runs, end_.smoothed.covariance)) found = approach() || search({});
     if (!found) return failed(why_);
     if (settled_ && options_.coloured && !newton_steps() && reach_minimum()) static_cast<void>(newton_steps());
@@ -230,6 +232,105 @@ class Estimator {
     }
     end_is_present_ = false;
     return true;
+  }
+
+  /// An end of search() to which it is possible to return.
+  struct Ended {
+    Shooting::State at;
+    std::vector<Penalty> penalties;
+    std::vector<double> sigma;
+    LeastSquares::Summary last;
+    bool settled;
+    double height;  ///< log-likelihood with priors; where roughness is chosen, with the parameters integrated out
+  };
+
+  [[nodiscard]] Ended ended() const {
+    double height = log_prior(shooting_.model(), penalties_) - 0.5 * end_.linearised.rss;
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      for (std::size_t i = 0; i < experiments_[e].samples(); ++i) {
+        for (std::size_t o = 0; o < shooting_.sigma().size(); ++o)
+          if (shooting_.counts(e, i, o)) height -= std::log(shooting_.sigma()[o]);
+      }
+    }
+    if (any_chosen(penalties_)) height = marginal_loglik(end_.linearised, penalties_, height);
+    return {shooting_.state(), penalties_, shooting_.sigma(), last_, settled_, height};
+  }
+
+  void return_to(const Ended& end) {
+    shooting_.restore(end.at);
+    shooting_.set_sigma(end.sigma);
+    shooting_.forget_failure();
+    penalties_ = end.penalties;
+    last_ = end.last;
+    settled_ = end.settled;
+    end_is_present_ = false;
+  }
+
+  /// Outputs that the model cannot all follow at once: the likelihood has a maximum for each that it could follow best, and which of them
+  /// a search ends at hangs on the noise it began with. Looked for with the sigma of each output in turn a fiftieth and, of three or
+  /// more, fifty times what it is; the highest is kept, others within 10 in 2 log L of it are named.
+  void weigh_outputs_otherwise() {
+    constexpr double ratio = 0.02, clearly = 0.5;
+    std::vector<std::size_t> outputs;
+    for (std::size_t o = 0; o < setting_.sigma.size(); ++o) {
+      if (!shooting_.model().known_noise[o].fixed) outputs.push_back(o);
+    }
+    if (outputs.size() < 2 || !look_at_the_end() || !end_.smoothed.ok) return;
+    const std::vector<double> factors = outputs.size() == 2 ? std::vector{ratio} : std::vector{ratio, 1.0 / ratio};
+    Ended best = ended();
+    std::vector<Ended> others;
+    try {
+      for (const std::size_t o : outputs) {
+        for (const double factor : factors) {
+          if (ends_elsewhere(o, factor, best)) {
+            Ended end = ended();
+            if (end.height > best.height + clearly) std::swap(end, best);
+            if (end.settled) others.push_back(std::move(end));
+          }
+          return_to(best);
+        }
+      }
+    } catch (const TimeSpent&) {  // what there is stands
+      return_to(best);
+    }
+    name_others(best, std::move(others));
+  }
+
+  /// A search that begins with another noise of one output. False: it leads nowhere, or back.
+  bool ends_elsewhere(std::size_t output, double factor, const Ended& from) {
+    constexpr double another = 0.1;  // relative change of a noise
+    constexpr int few_iterations = 30;
+    std::vector<double> sigma = from.sigma;
+    sigma[output] *= factor;
+    shooting_.set_sigma(sigma);
+    const double edf = end_.smoothed.edf;
+    if (!solve({0, 10.0, std::min(1e8, largest_radius_), few_iterations, 1e-5})) return false;
+    const auto led_away = [&] {
+      const std::vector<Segment> runs = shooting_.run(false);
+      const std::vector<double> now = channel_sigmas({shooting_, runs, experiments_}, edf);
+      shooting_.set_sigma(from.sigma);
+      const bool away = !same_noise(now, another);
+      shooting_.set_sigma(now);
+      return away;
+    };
+    return led_away() && search({}) && settled_ && look_at_the_end() && end_.smoothed.ok && led_away();
+  }
+
+  /// The same place may have been found more than once.
+  void name_others(const Ended& best, std::vector<Ended> others) {
+    constexpr double nearly = 5.0, same = 0.1;  // log-likelihood
+    const auto& outputs = shooting_.model().system->spec().outputs;
+    std::sort(others.begin(), others.end(), [](const Ended& a, const Ended& b) { return a.height > b.height; });
+    const double* before = nullptr;
+    for (const Ended& other : others) {
+      if (other.height < best.height - nearly || (before != nullptr && *before - other.height < same)) continue;
+      before = &other.height;
+      std::string noise;
+      for (std::size_t o = 0; o < outputs.size(); ++o)
+        noise += (o == 0 ? "" : ", ") + outputs[o].name + ": " + in_display_unit(other.sigma[o], outputs[o].unit);
+      other_maxima_.push_back("the likelihood has another maximum, lower by " + format_value(2.0 * (best.height - other.height)) +
+                              " in 2 log L, that follows the outputs in another proportion (noise of " + noise + ")");
+    }
   }
 
   bool stopped(const std::string& why) {
@@ -377,6 +478,7 @@ class Estimator {
     warn_of_collinearity(out.model, covariance.topLeftCorner(columns, columns), fit);
     warn_of_other_trims(fit);
     warn_of_other_noise(out.model, fit);
+    fit.warnings.insert(fit.warnings.end(), other_maxima_.begin(), other_maxima_.end());
     const double unknowns = end.smoothed.edf / static_cast<double>(out.model.outputs());
     classify_motion(out.model, {setting_, unknowns, regression_says_driven_}, fit);
     reject_prior_conflicts(out.model, covariance.topLeftCorner(columns, columns), fit);
@@ -435,6 +537,7 @@ class Estimator {
   LeastSquares::Summary last_;
   double largest_radius_ = std::numeric_limits<double>::infinity();  ///< of trust regions
   std::optional<double> stuck_, first_misfit_;                       ///< misfit where parameters are not determined; in the first search
+  std::vector<std::string> other_maxima_;                            ///< in words
   std::string why_;                                                  ///< the search stopped
   bool settled_ = false;                                             ///< noise and roughness agree with the residuals they leave
 };

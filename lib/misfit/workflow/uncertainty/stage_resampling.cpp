@@ -126,8 +126,8 @@ class ResamplingJob {
     options.runs = uncertainty_.starts;
     options.seed = session_.study.seed;
     const std::vector<Signals>& experiments = methods_.prepared().experiments;
-    const SearchFrom search = [&](const std::vector<double>& values) {
-      const Maximisation end = maximise_from(from, values, experiments);
+    const SearchFrom search = [&](const RandomStart& start) {
+      const Maximisation end = maximise_from(from, {start.values, start.noise_factors}, experiments);
       return Maximum{end.objective, end.why, end.at.fitted.model.values()};
     };
     std::optional<MultiStarts> starts;
@@ -140,7 +140,7 @@ class ResamplingJob {
     const ProgressFn progress = session_.progress(fmt::format("{} random starts of {}", uncertainty_.starts, from.method));
     const auto results =
         finished(stored_runs([&](std::size_t k) { return starts->run(k); },
-                             jobs("starts", from.method, "from the model's typical sizes", options.runs), progress, &interrupted()));
+                             jobs("starts", from.method, "from the model's typical sizes, noise too", options.runs), progress, &interrupted()));
     if (ranks().first()) attempt(from.method, [&] { out_.starts.push_back(starts->summary(results)); });
   }
 
