@@ -40,26 +40,13 @@ Sizes sizes_of(const std::vector<FilterTrace>& traces, const std::vector<FilterD
   return out;
 }
 
-/// The least random force that its bounds allow, and no jitter beside the white noise.
-FilterNoise without_force(const FilterEstimate& estimate) {
-  constexpr double nearly_nothing = 1e-3;
-  FilterNoise out = estimate.noise;
-  out.force = nearly_nothing * estimate.around.force;
-  for (std::size_t g = 0; g < out.further_forces.size(); ++g) out.further_forces[g] = nearly_nothing * estimate.around.further_forces[g];
-  for (ChannelNoise& channel : out.channels) {
-    channel.white = std::hypot(channel.white, channel.jitter);
-    channel.jitter = nearly_nothing * channel.white;
-  }
-  return out;
-}
-
 }  // namespace
 
 std::optional<FilterEstimate> free_run(const FilterEstimate& estimate) {
   constexpr double least = 1.2;
   constexpr int rounds = 3;  // of the size of the noise: initial states are weighed by it
   FilterEstimate out = estimate;
-  out.noise = without_force(estimate);
+  out.noise = hardly_forced(estimate.noise, estimate.around);
   const Sizes one_step = sizes_of(estimate.traces, estimate.data, out.noise.channels.size());
   FilterRunner runner(out.forced, true);
   runner.set_parameters(out.forced.model.values());

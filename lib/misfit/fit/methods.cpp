@@ -92,7 +92,7 @@ Maximisation maximise_output_error(const FittedMethod& from, const Experiments& 
 // filter_error
 
 /// From the contained fit with what is new off, and as the study has it; then by regression with the effects as the study has them where
-/// it says so, with the effects off, and with what the regression makes of them.
+/// it says so, with the effects off, and with what the regression makes of them, in a free run too.
 std::vector<FilterStart> filter_starts(const EstimationTask& task) {
   std::vector<FilterStart> out = task.contained ? starts_from(*task.contained, task.model) : std::vector<FilterStart>{};
   const auto add = [&](const Model& model) { out.push_back({model, curve_penalties(model)}); };
@@ -100,6 +100,10 @@ std::vector<FilterStart> filter_starts(const EstimationTask& task) {
   if (!off.words.empty()) add(trajectory_start_as_given(task.model, task.experiments)->from.model);
   if (const auto held = trajectory_start_as_given(off.model, task.experiments)) add(held->from.model);
   add(trajectory_start(task.model, task.experiments, task.regression).from.model);
+  if (!task.contained || task.contained->refit_values.empty()) {
+    out.push_back(out.back());
+    out.back().freely = true;
+  }
   return out;
 }
 

@@ -29,7 +29,9 @@ class StartedSearches {
 
   FilterEstimate run() {
     try {
-      return starts_.size() == 1 ? from_first() : from_all();
+      begin_freely();
+      const auto others = std::count_if(starts_.begin(), starts_.end(), [](const FilterStart& start) { return !start.freely; });
+      return others == 1 && !freely_ ? from_first() : from_all();
     } catch (const TimeSpent& spent) {
       const Unhurried writing_up;
       return best_when(spent);
@@ -37,6 +39,20 @@ class StartedSearches {
   }
 
  private:
+  using Begun = std::pair<double, FilterSearch*>;  ///< height after the first rounds
+  static constexpr int first_rounds = 6;
+
+  void begin_freely() {
+    const auto start = std::find_if(starts_.begin(), starts_.end(), [](const FilterStart& s) { return s.freely; });
+    if (start == starts_.end()) return;
+    FilterSearch& search = begin(*start);
+    try {
+      search.approach_freely(first_rounds);
+      if (const double height = search.height(); std::isfinite(height)) freely_.emplace(height, &search);
+    } catch (const RunError&) {  // the other starts remain
+    }
+  }
+
   FilterSearch& begin(const FilterStart& start) {
     searches_.push_back(std::make_unique<FilterSearch>(start, experiments_, options_));
     return *searches_.back();
@@ -52,7 +68,7 @@ class StartedSearches {
   }
 
   FilterEstimate from_all() {
-    const std::vector<std::pair<double, FilterSearch*>> begun = begin_all();
+    const std::vector<Begun> begun = begin_all();
     const bool all_replaced = std::all_of(begun.begin(), begun.end(), [](const auto& s) { return !s.second->replaced().empty(); });
     double highest = -std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < begun.size(); ++k) {
@@ -69,13 +85,13 @@ class StartedSearches {
     return from_first();
   }
 
-  /// A few rounds from each start; the highest first. Those from which the model cannot be run are left out; others are tried in their place
-  /// unless the model runs from a contained fit, which is nearer to the maximum than what they begin with.
-  std::vector<std::pair<double, FilterSearch*>> begin_all() {
-    constexpr int first_rounds = 6;
-    std::vector<std::pair<double, FilterSearch*>> out;
+  /// A few rounds from each start; the highest first. Those from which the model cannot be run are left out; others are tried in their
+  /// place unless the model runs from a contained fit, which is nearer to the maximum than what they begin with.
+  std::vector<Begun> begin_all() {
+    std::vector<Begun> out;
     bool contained_runs = false;
     for (const FilterStart& start : starts_) {
+      if (start.freely) continue;
       FilterSearch& search = begin(start);
       try {
         search.approach(first_rounds, contained_runs ? FilterSearch::Unrunnable::refused : FilterSearch::Unrunnable::replaced);
@@ -87,12 +103,13 @@ class StartedSearches {
       out.emplace_back(height, &search);
       contained_runs = contained_runs || start.noise.has_value();
     }
+    if (freely_) out.push_back(*freely_);
     std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     return out;
   }
 
   /// Worth going on beside the highest: neither clearly lower, nor as high and so at the same maximum.
-  static bool may_end_higher(const std::vector<std::pair<double, FilterSearch*>>& begun, std::size_t k) {
+  static bool may_end_higher(const std::vector<Begun>& begun, std::size_t k) {
     constexpr double clearly_lower = 10.0, same = 0.5;  // [log-likelihood]
     constexpr std::size_t most = 2;
     const double below = begun.front().first - begun[k].first;
@@ -126,6 +143,7 @@ class StartedSearches {
   const std::vector<Signals>& experiments_;
   const FilterOptions& options_;
   std::vector<std::unique_ptr<FilterSearch>> searches_;
+  std::optional<Begun> freely_;
   std::optional<FilterEstimate> best_;
 };
 

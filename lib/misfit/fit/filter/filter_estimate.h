@@ -27,6 +27,9 @@ struct FilterStart {
   Model model;
   std::vector<Penalty> penalties;
   std::optional<FilterNoise> noise = {};  ///< nullopt: FilterOptions::noise
+  /// Begin with hardly any random force, as output error does, and with what noise that leaves. Beside another start; left out where the
+  /// free run from it does not follow the motion.
+  bool freely = false;
 };
 
 /// The maximum of the penalised likelihood with everything that diagnosis and discovery need of it.

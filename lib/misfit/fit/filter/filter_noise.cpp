@@ -113,4 +113,15 @@ NoiseStep discretise(const FilterNoise& noise, double h) {
   return out;
 }
 
+FilterNoise hardly_forced(FilterNoise noise, const FilterNoise& around) {
+  constexpr double nearly_nothing = 1e-3;
+  noise.force = nearly_nothing * around.force;
+  for (std::size_t g = 0; g < noise.further_forces.size(); ++g) noise.further_forces[g] = nearly_nothing * around.further_forces[g];
+  for (ChannelNoise& channel : noise.channels) {
+    channel.white = std::hypot(channel.white, channel.jitter);
+    channel.jitter = nearly_nothing * channel.white;
+  }
+  return noise;
+}
+
 }  // namespace misfit

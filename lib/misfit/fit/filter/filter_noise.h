@@ -53,6 +53,8 @@ struct NoiseVector {
 /// log density of the noise's prior, constants left out.
 [[nodiscard]] double log_prior(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around);
 [[nodiscard]] FilterNoise unpack(const std::vector<double>& logs, const SystemSpec& spec);
+/// With the least random force that the bounds about `around` allow, and white noise alone, as large as it was with its jitter.
+[[nodiscard]] FilterNoise hardly_forced(FilterNoise noise, const FilterNoise& around);
 /// Place of a group's strength among them; of the number of groups: how many logarithms there are.
 [[nodiscard]] std::size_t place_of_force(int group, const SystemSpec& spec);
 

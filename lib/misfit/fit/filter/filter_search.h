@@ -45,6 +45,16 @@ class FilterSearch {
     rounds_left_ -= rounds;
   }
 
+  /// The same with hardly any random force until the parameters have settled: where the force may have a long memory it explains what the
+  /// model does not yet, and no step of the parameters gains. RunError: the free run does not follow the motion.
+  void approach_freely(int rounds) {
+    run_freely();
+    at_.remember();
+    if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
+    at_.iterate(rounds, tolerance());
+    rounds_left_ -= rounds;
+  }
+
   /// On to the end. RunError: the model cannot be run where it ended.
   void finish() {
     if (!out_.converged && rounds_left_ > 0) at_.iterate(rounds_left_, tolerance());
@@ -163,6 +173,66 @@ class FilterSearch {
       if (!at_.joint_step(exact.gradient, out_.joint_covariance, restricted_.slope)) return;
       if (*out_.newton_decrement < kDecrementOfOneSigma) return;
     }
+  }
+
+  void run_freely() {
+    constexpr int most_rounds = 15;
+    constexpr double settled = 0.01;  // of the residuals' RMS
+    out_.noise = hardly_forced(out_.noise, out_.around);
+    if (!at_.linearise()) throw RunError(at_.failure());
+    if (!follows()) throw RunError("the free run does not follow the motion");
+    double before = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < most_rounds; ++k) {
+      const double residuals = rescale_noise();
+      if (!at_.linearise()) throw RunError(at_.failure());
+      if (before - residuals < settled) break;
+      before = residuals;
+      at_.gauss_newton_step();
+    }
+  }
+
+  /// Whitened innovations of an output that count: their mean square.
+  [[nodiscard]] double variance_ratio(std::size_t output) const {
+    double squares = 0.0, count = 0.0;
+    for (std::size_t e = 0; e < out_.data.size(); ++e) {
+      for (std::size_t k = out_.data[e].first; k < out_.traces[e].samples; ++k) {
+        const std::size_t at = out_.traces[e].place(k, output);
+        if (out_.data[e].use[at] != SampleRole::counted) continue;
+        squares += out_.traces[e].e[at] * out_.traces[e].e[at] / out_.traces[e].S[at];
+        count += 1.0;
+      }
+    }
+    return count > 0.0 ? squares / count : 1.0;
+  }
+
+  /// Have the residuals of every output less than half of the variance that was measured?
+  [[nodiscard]] bool follows() const {
+    constexpr double most = 0.5;
+    for (std::size_t o = 0; o < out_.noise.channels.size(); ++o) {
+      const double residual = out_.noise.channels[o].white * std::sqrt(variance_ratio(o));
+      double sum = 0.0, squares = 0.0, count = 0.0;
+      for (const FilterData& data : out_.data) {
+        for (const double value : data.signals->measured[o].values) {
+          if (!std::isfinite(value)) continue;
+          sum += value;
+          squares += value * value;
+          count += 1.0;
+        }
+      }
+      if (!(count * residual * residual < most * (squares - sum * sum / std::max(count, 1.0)))) return false;
+    }
+    return true;
+  }
+
+  /// White noise as large as the residuals. Mean over the outputs of its logarithm.
+  double rescale_noise() {
+    double out = 0.0;
+    for (std::size_t o = 0; o < out_.noise.channels.size(); ++o) {
+      ChannelNoise& channel = out_.noise.channels[o];
+      if (!channel.held) channel.white *= std::sqrt(variance_ratio(o));
+      out += std::log(channel.white) / static_cast<double>(out_.noise.channels.size());
+    }
+    return out;
   }
 
   [[nodiscard]] double innovation_variance() const {
