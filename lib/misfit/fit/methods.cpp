@@ -91,6 +91,20 @@ Maximisation maximise_output_error(const FittedMethod& from, const Experiments& 
 
 // filter_error
 
+/// By output error, where the model follows the motion without a random force; nullopt where it does not, or not in time.
+std::optional<Model> free_fit(const Model& start, const EstimationTask& task) {
+  try {
+    if (!follows_freely(start, task.experiments)) return std::nullopt;
+    OutputErrorStart options;
+    options.coloured = false;
+    options.from_regression = true;
+    const FittedModel fitted = output_error({{}, start, curve_penalties(start), {}}, task.experiments, options);
+    return fitted.fit.usable() ? std::optional(fitted.model) : std::nullopt;
+  } catch (const RunError&) {
+    return std::nullopt;
+  }
+}
+
 /// From the contained fit with what is new off, and as the study has it; then by regression with the effects as the study has them where
 /// it says so, with the effects off, and with what the regression makes of them, in a free run too.
 std::vector<FilterStart> filter_starts(const EstimationTask& task) {
@@ -100,8 +114,9 @@ std::vector<FilterStart> filter_starts(const EstimationTask& task) {
   if (!off.words.empty()) add(trajectory_start_as_given(task.model, task.experiments)->from.model);
   if (const auto held = trajectory_start_as_given(off.model, task.experiments)) add(held->from.model);
   add(trajectory_start(task.model, task.experiments, task.regression).from.model);
-  if (!task.contained || task.contained->refit_values.empty()) {
-    out.push_back(out.back());
+  if (task.contained && !task.contained->refit_values.empty()) return out;
+  if (const std::optional<Model> freely = free_fit(out.back().model, task)) {
+    add(*freely);
     out.back().freely = true;
   }
   return out;

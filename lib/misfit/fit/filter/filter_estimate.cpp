@@ -165,4 +165,8 @@ FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penaltie
   return estimate_filter({{start, std::move(penalties), {}}}, experiments, options);
 }
 
+bool follows_freely(const Model& model, const std::vector<Signals>& experiments) {
+  return FilterSearch({model, curve_penalties(model)}, experiments, {}).follows_freely();
+}
+
 }  // namespace misfit

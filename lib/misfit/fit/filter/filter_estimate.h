@@ -27,8 +27,7 @@ struct FilterStart {
   Model model;
   std::vector<Penalty> penalties;
   std::optional<FilterNoise> noise = {};  ///< nullopt: FilterOptions::noise
-  /// Begin with hardly any random force, as output error does, and with what noise that leaves. Beside another start; left out where the
-  /// free run from it does not follow the motion.
+  /// Begin with hardly any random force, as output error does, and with what noise that leaves. Beside another start.
   bool freely = false;
 };
 
@@ -99,5 +98,8 @@ struct FilterEstimate {
 /// clearly lower; of these the end with the higher marginal likelihood (marginal_loglik()).
 [[nodiscard]] FilterEstimate estimate_filter(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
                                              const FilterOptions& options = {});
+
+/// Has a free run of the model, its initial states estimated, residuals of less than half of the variance of every output?
+[[nodiscard]] bool follows_freely(const Model& model, const std::vector<Signals>& experiments);
 
 }  // namespace misfit

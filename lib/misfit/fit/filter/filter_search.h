@@ -46,13 +46,34 @@ class FilterSearch {
   }
 
   /// The same with hardly any random force until the parameters have settled: where the force may have a long memory it explains what the
-  /// model does not yet, and no step of the parameters gains. RunError: the free run does not follow the motion.
+  /// model does not yet, and no step of the parameters gains. RunError: the model cannot be run so.
   void approach_freely(int rounds) {
     run_freely();
     at_.remember();
     if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
     at_.iterate(rounds, tolerance());
     rounds_left_ -= rounds;
+  }
+
+  /// Has the free run from its start, initial states estimated, residuals of less than half of the variance of every output?
+  [[nodiscard]] bool follows_freely() {
+    out_.noise = hardly_forced(out_.noise, out_.around);
+    if (!at_.linearise()) return false;
+    constexpr double most = 0.5;
+    for (std::size_t o = 0; o < out_.noise.channels.size(); ++o) {
+      const double residual = out_.noise.channels[o].white * std::sqrt(variance_ratio(o));
+      double sum = 0.0, squares = 0.0, count = 0.0;
+      for (const FilterData& data : out_.data) {
+        for (const double value : data.signals->measured[o].values) {
+          if (!std::isfinite(value)) continue;
+          sum += value;
+          squares += value * value;
+          count += 1.0;
+        }
+      }
+      if (!(count * residual * residual < most * (squares - sum * sum / std::max(count, 1.0)))) return false;
+    }
+    return true;
   }
 
   /// On to the end. RunError: the model cannot be run where it ended.
@@ -180,7 +201,6 @@ class FilterSearch {
     constexpr double settled = 0.01;  // of the residuals' RMS
     out_.noise = hardly_forced(out_.noise, out_.around);
     if (!at_.linearise()) throw RunError(at_.failure());
-    if (!follows()) throw RunError("the free run does not follow the motion");
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < most_rounds; ++k) {
       const double residuals = rescale_noise();
@@ -203,25 +223,6 @@ class FilterSearch {
       }
     }
     return count > 0.0 ? squares / count : 1.0;
-  }
-
-  /// Have the residuals of every output less than half of the variance that was measured?
-  [[nodiscard]] bool follows() const {
-    constexpr double most = 0.5;
-    for (std::size_t o = 0; o < out_.noise.channels.size(); ++o) {
-      const double residual = out_.noise.channels[o].white * std::sqrt(variance_ratio(o));
-      double sum = 0.0, squares = 0.0, count = 0.0;
-      for (const FilterData& data : out_.data) {
-        for (const double value : data.signals->measured[o].values) {
-          if (!std::isfinite(value)) continue;
-          sum += value;
-          squares += value * value;
-          count += 1.0;
-        }
-      }
-      if (!(count * residual * residual < most * (squares - sum * sum / std::max(count, 1.0)))) return false;
-    }
-    return true;
   }
 
   /// White noise as large as the residuals. Mean over the outputs of its logarithm.
