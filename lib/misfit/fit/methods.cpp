@@ -49,6 +49,11 @@ Fit refit_equation_error(const FittedMethod& from, const Experiments& experiment
 
 // output_error
 
+/// A regression on noisy derivatives can end at values from which the model cannot be run.
+std::string begun_at_own_values(const std::string& why) {
+  return "the model cannot be run from the regression's values (" + why + "): the search began at the study's own";
+}
+
 Estimation run_output_error(const EstimationTask& task) {
   TrajectoryStart start = trajectory_start(task.model, task.experiments, task.regression);
   Estimation out{{estimators::output_error.name, {}, {}, {}, {}}, {}};
@@ -60,6 +65,11 @@ Estimation run_output_error(const EstimationTask& task) {
   OutputErrorStart options;
   options.from_regression = start.regressed;
   out.at.fitted = output_error(start.from, task.experiments, options);
+  if (out.at.fitted.fit.status != FitStatus::failed || !start.regressed) return out;
+  FittedModel own = output_error({{}, task.model, curve_penalties(task.model), {}}, task.experiments);
+  if (!own.fit.usable()) return out;
+  own.fit.warnings.push_back(begun_at_own_values(out.at.fitted.fit.message));
+  out.at.fitted = std::move(own);
   return out;
 }
 
@@ -92,14 +102,15 @@ Maximisation maximise_output_error(const FittedMethod& from, const Experiments& 
 // filter_error
 
 /// By output error, where the model follows the motion without a random force; nullopt where it does not, or not in time.
-std::optional<Model> free_fit(const Model& start, const EstimationTask& task) {
+std::optional<FilterStart> free_start(const Model& start, const EstimationTask& task, bool from_regression) {
   try {
     if (!follows_freely(start, task.experiments)) return std::nullopt;
     OutputErrorStart options;
     options.coloured = false;
-    options.from_regression = true;
+    options.from_regression = from_regression;
     const FittedModel fitted = output_error({{}, start, curve_penalties(start), {}}, task.experiments, options);
-    return fitted.fit.usable() ? std::optional(fitted.model) : std::nullopt;
+    if (!fitted.fit.usable()) return std::nullopt;
+    return FilterStart{fitted.model, curve_penalties(fitted.model), {}, true};
   } catch (const RunError&) {
     return std::nullopt;
   }
@@ -115,10 +126,7 @@ std::vector<FilterStart> filter_starts(const EstimationTask& task) {
   if (const auto held = trajectory_start_as_given(off.model, task.experiments)) add(held->from.model);
   add(trajectory_start(task.model, task.experiments, task.regression).from.model);
   if (task.contained && !task.contained->refit_values.empty()) return out;
-  if (const std::optional<Model> freely = free_fit(out.back().model, task)) {
-    add(*freely);
-    out.back().freely = true;
-  }
+  if (auto freely = free_start(out.back().model, task, true)) out.push_back(std::move(*freely));
   return out;
 }
 
@@ -130,6 +138,15 @@ Estimation run_filter_error(const EstimationTask& task) {
     options.use = same_use(*task.contained, task.experiments);
   }
   FilterError result = filter_error(filter_starts(task), task.experiments, options);
+  if (!result.estimate) {
+    std::vector<FilterStart> own = {{task.model, curve_penalties(task.model)}};
+    if (auto freely = free_start(task.model, task, false)) own.push_back(std::move(*freely));
+    FilterError again = filter_error(own, task.experiments, options);
+    if (again.estimate) {
+      again.fit.warnings.push_back(begun_at_own_values(result.fit.message));
+      result = std::move(again);
+    }
+  }
   Estimation out{{estimators::filter_error.name, {std::move(result.fit), task.model, {}, {}}, {}, {}, {}}, std::move(result.estimate)};
   if (!out.filter) return out;
   out.at.fitted.model = out.filter->model;

@@ -213,7 +213,8 @@ class Estimator {
   /// Whenever the roughness is chosen anew, the last lengthening comes first again: a single trajectory alone would creep along the curved
   /// valley of equal phase.
   bool search(const ShootingPass& lengthened) {
-    constexpr int most_rounds = 8, most_iterations = 200;
+    constexpr int with_roughness = 8, of_noise_alone = 40, most_iterations = 200;
+    const int most_rounds = any_chosen(penalties_) ? with_roughness : of_noise_alone;
     const ShootingPass whole{0, 10.0, std::min(1e8, largest_radius_), most_iterations, 1e-7};
     double before = 0.0;
     settled_ = false;
