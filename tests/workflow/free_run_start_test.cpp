@@ -122,8 +122,7 @@ TEST(ACylinderWithALatePressure, IsFittedFromTheStudysOwnValuesWhereTheRegressio
   misfit_models_register(registry);
   const TemporaryFolder folder;
   folder.write("d.csv", recording_of_cylinder());
-  folder
-      .write("m.toml", R"([system]
+  folder.write("m.toml", R"toml([system]
 doc = "a valve-controlled cylinder"
 [states]
 x = { unit = "m", scale = 0.1 }
@@ -141,8 +140,12 @@ Kq = { unit = "m^3/s", value = 0.000223, free = true }
 Kc = { unit = "m^3/s/Pa", value = 1.06e-10, free = true }
 [equations]
 v = "(A*p - k*x - b*v)/m"
-p = "C*(Kq*u - A*v - Kc*p)"[outputs] x = {unit = "m", noise = 0.001} p = {unit = "Pa", noise = 1e4}) ");
-      folder.write("study.toml", R"([study]
+p = "C*(Kq*u - A*v - Kc*p)"
+[outputs]
+x = { unit = "m", noise = 0.001 }
+p = { unit = "Pa", noise = 1e4 }
+)toml");
+  folder.write("study.toml", R"toml([study]
 name = "cylinder"
 question = "What is missing?"
 methods = ["output_error", "filter_error"]
@@ -153,7 +156,7 @@ file = "m.toml"
 name = "one"
 data = "d.csv"
 [effects]
-)");
+)toml");
   Identification identification({.study = (folder.path() / "study.toml").string(), .out = (folder.path() / "out").string()}, registry);
   for (const char* method : {"output_error", "filter_error"}) {
     const Fit fit = identification.fit(method);
