@@ -29,10 +29,9 @@ void hold(const std::map<std::string, double>& held, CandidateModel& out) {
   std::sort(out.cells.begin(), out.cells.end());
   out.cells.erase(std::unique(out.cells.begin(), out.cells.end()), out.cells.end());
   if (out.frequency >= 0 && held_value(out.frequency)) out.frequency = -1;
-  for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
-    const int parameter = effect.coefficients[c].parameter;
-    if (parameter < 0) continue;
-    if (const auto value = held_value(parameter)) out.model.parameters[parameter].value = *value;
+  for (const auto& coefficient : effect.coefficients) {
+    if (coefficient.parameter < 0) continue;
+    if (const auto value = held_value(coefficient.parameter)) out.model.parameters[coefficient.parameter].value = *value;
   }
 }
 

@@ -32,8 +32,8 @@ struct MultiStartOptions {
 };
 
 /// Values about the model's: a parameter with a prior is drawn from it, any other free one is moved by its typical size times a normal
-/// number; a curve by a straight line over its knots whose level and slope are drawn so. Bounds are kept. Of the noise the logarithms are moved
-/// by a normal number: which output a model follows that cannot follow all hangs on it.
+/// number; a curve by a straight line over its knots whose level and slope are drawn so. Bounds are kept. Of the noise the logarithms are
+/// moved by a normal number: which output a model follows that cannot follow all hangs on it.
 [[nodiscard]] RandomStart random_start(const Model& model, std::mt19937_64& random);
 
 /// The fit again from random starts: is there a higher maximum than the one that was found, and how many searches find it? Start k depends

@@ -271,38 +271,52 @@ class Estimator {
   /// a search ends at hangs on the noise it began with. Looked for with the sigma of each output in turn a fiftieth and, of three or
   /// more, fifty times what it is; the highest is kept, others within 10 in 2 log L of it are named.
   void weigh_outputs_otherwise() {
-    constexpr double ratio = 0.02, clearly = 0.5;
-    std::vector<std::size_t> outputs;
-    for (std::size_t o = 0; o < setting_.sigma.size(); ++o) {
-      if (!shooting_.model().known_noise[o].fixed) outputs.push_back(o);
-    }
-    if (outputs.size() < 2 || !look_at_the_end() || !end_.smoothed.ok) return;
-    const std::vector<double> factors = outputs.size() == 2 ? std::vector{ratio} : std::vector{ratio, 1.0 / ratio};
+    const std::vector<Weighing> weighings = other_weighings();
+    if (weighings.empty() || !look_at_the_end() || !end_.smoothed.ok) return;
     Ended best = ended();
     std::vector<Ended> others;
     try {
-      for (const std::size_t o : outputs) {
-        for (const double factor : factors) {
-          if (ends_elsewhere(o, factor, best)) {
-            Ended end = ended();
-            if (end.height > best.height + clearly) std::swap(end, best);
-            if (end.settled) others.push_back(std::move(end));
-          }
-          return_to(best);
-        }
-      }
+      for (const Weighing& weighing : weighings) weigh(weighing, best, others);
     } catch (const TimeSpent&) {  // what there is stands
       return_to(best);
     }
     name_others(best, std::move(others));
   }
 
+  struct Weighing {
+    std::size_t output;
+    double factor;  ///< of its sigma
+  };
+
+  [[nodiscard]] std::vector<Weighing> other_weighings() const {
+    constexpr double ratio = 0.02;
+    std::vector<Weighing> out;
+    for (std::size_t o = 0; o < setting_.sigma.size(); ++o) {
+      if (!shooting_.model().known_noise[o].fixed) out.push_back({o, ratio});
+    }
+    const std::size_t outputs = out.size();
+    if (outputs < 2) return {};
+    for (std::size_t i = 0; i < outputs && outputs > 2; ++i) out.push_back({out[i].output, 1.0 / ratio});
+    return out;
+  }
+
+  /// Ends at the highest.
+  void weigh(const Weighing& weighing, Ended& best, std::vector<Ended>& others) {
+    constexpr double clearly = 0.5;
+    if (ends_elsewhere(weighing, best)) {
+      Ended end = ended();
+      if (end.height > best.height + clearly) std::swap(end, best);
+      if (end.settled) others.push_back(std::move(end));
+    }
+    return_to(best);
+  }
+
   /// A search that begins with another noise of one output. False: it leads nowhere, or back.
-  bool ends_elsewhere(std::size_t output, double factor, const Ended& from) {
+  bool ends_elsewhere(const Weighing& weighing, const Ended& from) {
     constexpr double another = 0.1;  // relative change of a noise
     constexpr int few_iterations = 30;
     std::vector<double> sigma = from.sigma;
-    sigma[output] *= factor;
+    sigma[weighing.output] *= weighing.factor;
     shooting_.set_sigma(sigma);
     const double edf = end_.smoothed.edf;
     if (!solve({0, 10.0, std::min(1e8, largest_radius_), few_iterations, 1e-5})) return false;
