@@ -163,7 +163,7 @@ std::vector<KeyGroup> effect_groups() {
          .meaning = "Quantity that the effect reads, or port that it adds to, in place of the one of that name."}}},
       {"effects.NAME.start", "Values to start from.",
        {{.name = "PARAMETER", .type = Type::number, .unit = "of the parameter", .otherwise = "as the effect says", .any = true,
-         .meaning = "Start of the estimation."}}},
+         .meaning = "Start of the estimation. Where none is given for a free frequency, sector, delay, edge or time constant, a scan of it is made."}}},
       {"effects.NAME", "An effect that the study declares by a formula.",
        {{.name = "formula", .otherwise = "required",
          .meaning = "What the effect adds to the port, as \"-c*x*abs(x)\"; units are checked."},

@@ -138,9 +138,9 @@ class ResamplingJob {
     });
     if (!possible) return;
     const ProgressFn progress = session_.progress(fmt::format("{} random starts of {}", uncertainty_.starts, from.method));
-    const auto results =
-        finished(stored_runs([&](std::size_t k) { return starts->run(k); },
-                             jobs("starts", from.method, "from the model's typical sizes, noise too", options.runs), progress, &interrupted()));
+    const auto results = finished(stored_runs([&](std::size_t k) { return starts->run(k); },
+                                              jobs("starts", from.method, "from the model's typical sizes, noise too", options.runs),
+                                              progress, &interrupted()));
     if (ranks().first()) attempt(from.method, [&] { out_.starts.push_back(starts->summary(results)); });
   }
 
