@@ -84,10 +84,10 @@ Fit refit_output_error(const FittedMethod& from, const Experiments& experiments)
   return output_error(with_own_roughness(from.fitted), experiments, quick_output_error()).fit;
 }
 
-Maximisation maximise_output_error(const FittedMethod& from, const Experiments& experiments, SearchStart begin) {
+Maximisation maximise_output_error(const FittedMethod& from, const Experiments& experiments, const SearchStart& begin) {
   FittedModel start = from.fitted;
   OutputErrorStart options = quick_output_error();
-  if (begin == SearchStart::values) {
+  if (!begin.fitted) {
     start.initial_states.clear();
     options.from_regression = false;
   }
@@ -173,11 +173,11 @@ Fit refit_filter_error(const FittedMethod& from, const Experiments& experiments)
 }
 
 /// Verified: the noise at its restricted likelihood, as in the fit. Without that the two blocks drift to another maximum in turn.
-Maximisation maximise_filter_error(const FittedMethod& from, const Experiments& experiments, SearchStart begin) {
+Maximisation maximise_filter_error(const FittedMethod& from, const Experiments& experiments, const SearchStart& begin) {
   FilterOptions options = warm_filter(from);
-  if (begin == SearchStart::values) {
+  if (!begin.fitted) {
     options.noise.reset();
-    options.noise_factors = from.noise_factors;
+    options.noise_factors = begin.noise_factors;
   }
   options.use = from.use;
   options.verify = true;
@@ -197,7 +197,7 @@ constexpr std::array table{
 };
 
 /// What cannot be run, or not in time, has no maximum.
-Maximisation maximise(const FittedMethod& from, const Experiments& experiments, SearchStart start) {
+Maximisation maximise(const FittedMethod& from, const Experiments& experiments, const SearchStart& start) {
   const Watch watch("a search by " + from.method, from.time_limit);
   try {
     Maximisation out = estimator(from.method).maximise(from, experiments, start);
@@ -239,9 +239,7 @@ Fit fit_again(const FittedMethod& from, const Experiments& experiments) {
   }
 }
 
-Maximisation maximise_near(const FittedMethod& from, const Experiments& experiments) {
-  return maximise(from, experiments, SearchStart::fitted);
-}
+Maximisation maximise_near(const FittedMethod& from, const Experiments& experiments) { return maximise(from, experiments, {}); }
 
 Maximisation maximise_from(const FittedMethod& from, const AnotherStart& start, const Experiments& experiments) {
   FittedMethod there = from;
@@ -253,8 +251,7 @@ Maximisation maximise_from(const FittedMethod& from, const AnotherStart& start, 
     const auto noise = there.fitted.fit.noise.find(outputs[o].name);
     if (noise != there.fitted.fit.noise.end() && !model.known_noise[o].fixed) noise->second.value *= start.noise_factors[o];
   }
-  there.noise_factors = start.noise_factors;
-  return maximise(there, experiments, SearchStart::values);
+  return maximise(there, experiments, {false, start.noise_factors});
 }
 
 }  // namespace misfit

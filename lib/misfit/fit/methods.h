@@ -30,8 +30,7 @@ struct FittedMethod {
   std::optional<FilterNoise> noise, around;                 ///< of a method with a random force
   std::optional<std::vector<std::vector<SampleRole>>> use;  ///< of the same: which measurements count
   SlidingBinOptions bins = {};
-  double time_limit = 0.0;                 ///< of every fit from here [s]; 0: none
-  std::vector<double> noise_factors = {};  ///< AnotherStart::noise_factors
+  double time_limit = 0.0;  ///< of every fit from here [s]; 0: none
 };
 
 struct Estimation {
@@ -47,9 +46,10 @@ struct Maximisation {
 };
 
 /// Where a search for a maximum begins.
-enum class SearchStart {
-  fitted,  ///< where the fit stands, its noise and initial states too
-  values   ///< at the values of its parameters alone, as a new fit does: initial states and noise are looked for
+struct SearchStart {
+  bool fitted = true;  ///< where the fit stands, its noise and initial states too; else at the values of its parameters alone, as a new fit
+                       ///< does: initial states and noise are looked for, …
+  std::vector<double> noise_factors = {};  ///< … the noise from its usual one times these (AnotherStart)
 };
 
 /// One row of the table of estimators: everything that others ask of a method. Several threads may call all of it at once.
@@ -60,7 +60,7 @@ struct Estimator {
   /// white residuals. RunError: the model cannot be run on these data.
   Fit (*refit)(const FittedMethod& from, const std::vector<Signals>& experiments);
   /// nullptr: the method has no likelihood.
-  Maximisation (*maximise)(const FittedMethod& from, const std::vector<Signals>& experiments, SearchStart start);
+  Maximisation (*maximise)(const FittedMethod& from, const std::vector<Signals>& experiments, const SearchStart& start);
 };
 
 /// InputError for a name that no method has.

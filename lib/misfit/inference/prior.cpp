@@ -143,4 +143,13 @@ std::vector<PriorRows> prior_rows(const GaussianPrior& prior) {
   return out;
 }
 
+bool any_chosen(const std::vector<Penalty>& penalties) {
+  return std::any_of(penalties.begin(), penalties.end(), [](const Penalty& p) { return p.chosen; });
+}
+
+std::vector<Penalty> with_weights_held(std::vector<Penalty> penalties) {
+  for (Penalty& p : penalties) p.chosen = false;
+  return penalties;
+}
+
 }  // namespace misfit

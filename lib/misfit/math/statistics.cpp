@@ -43,6 +43,14 @@ double resolution_of(std::vector<double> values) {
   return least;
 }
 
+double standard_deviation(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0, n = 0.0;
+  for (double v : values) {
+    if (std::isfinite(v)) sum += v, squares += v * v, n += 1.0;
+  }
+  return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
+}
+
 double usual_step(const std::vector<double>& t) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);

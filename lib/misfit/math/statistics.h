@@ -14,6 +14,9 @@ namespace misfit {
 /// Usual step of a time base: the median difference [s]; 1 for fewer than two samples.
 [[nodiscard]] double usual_step(const std::vector<double>& t);
 
+/// Of the finite ones, about their mean; 0 of fewer than two.
+[[nodiscard]] double standard_deviation(const std::vector<double>& values);
+
 /// Robust standard deviation about the median: 1.4826 × median |x − median(x)|, which is sigma for normal x and unmoved by up to half of
 /// the values being wild. Values that are not finite are passed over; NaN if there is none.
 [[nodiscard]] double mad_sigma(const std::vector<double>& values);

@@ -166,7 +166,8 @@ FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penaltie
 }
 
 bool follows_freely(const Model& model, const std::vector<Signals>& experiments) {
-  return FilterSearch({model, curve_penalties(model)}, experiments, {}).follows_freely();
+  LikelihoodAscent at(model, curve_penalties(model), experiments, {});
+  return follows_freely(at);
 }
 
 }  // namespace misfit

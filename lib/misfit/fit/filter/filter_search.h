@@ -7,15 +7,16 @@
 #include <limits>
 #include <optional>
 
-#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_estimate.h"
 #include "misfit/fit/filter/first_noise.h"
+#include "misfit/fit/filter/free_approach.h"
 #include "misfit/fit/filter/likelihood_ascent.h"
 #include "misfit/fit/filter/likelihood_derivatives.h"
 #include "misfit/fit/filter/noise_survey.h"
+#include "misfit/fit/filter/other_weights.h"
 #include "misfit/fit/filter/restricted_likelihood.h"
 #include "misfit/fit/filter/runnable_start.h"
 #include "misfit/math/bfgs.h"
@@ -37,50 +38,24 @@ class FilterSearch {
   /// As far as the first rounds of the blocks in turn. RunError: the model cannot be run from its start, or from none in its place.
   void approach(int rounds, Unrunnable unrunnable = Unrunnable::replaced) {
     begin(unrunnable);
-    at_.remember();
-    if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
+    plan_first();
     set_floor();
     if (!noise_given_) search_noise(at_, options_.threads);
-    at_.iterate(rounds, tolerance());  // refine_jointly() steps over both blocks at once
-    rounds_left_ -= rounds;
+    iterate_first(rounds);
   }
 
-  /// The same with hardly any random force until the parameters have settled: where the force may have a long memory it explains what the
-  /// model does not yet, and no step of the parameters gains. RunError: the model cannot be run so.
+  /// The same from a free run (free_approach.h). RunError: the model cannot be run so.
   void approach_freely(int rounds) {
-    run_freely();
-    at_.remember();
-    if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
-    at_.iterate(rounds, tolerance());
-    rounds_left_ -= rounds;
-  }
-
-  /// Has the free run from its start, initial states estimated, residuals of less than half of the variance of every output?
-  [[nodiscard]] bool follows_freely() {
-    out_.noise = hardly_forced(out_.noise, out_.around);
-    if (!at_.linearise()) return false;
-    constexpr double most = 0.5;
-    for (std::size_t o = 0; o < out_.noise.channels.size(); ++o) {
-      const double residual = out_.noise.channels[o].white * std::sqrt(variance_ratio(o));
-      double sum = 0.0, squares = 0.0, count = 0.0;
-      for (const FilterData& data : out_.data) {
-        for (const double value : data.signals->measured[o].values) {
-          if (!std::isfinite(value)) continue;
-          sum += value;
-          squares += value * value;
-          count += 1.0;
-        }
-      }
-      if (!(count * residual * residual < most * (squares - sum * sum / std::max(count, 1.0)))) return false;
-    }
-    return true;
+    settle_freely(at_);
+    plan_first();
+    iterate_first(rounds);
   }
 
   /// On to the end. RunError: the model cannot be run where it ended.
   void finish() {
     if (!out_.converged && rounds_left_ > 0) at_.iterate(rounds_left_, tolerance());
     if (!options_.noise && !out_.around.time_held) survey_noise();
-    if (!options_.noise && options_.verify) weigh_outputs_otherwise();
+    if (!options_.noise && options_.verify) weigh_outputs_otherwise(at_, {all_rounds, tolerance(), options_.threads});
     if (!options_.use) reject_outliers();
     if (options_.verify) refine_jointly();
     return_to_floor();
@@ -123,6 +98,16 @@ class FilterSearch {
 
   /// [log-likelihood] Coarse where refine_jointly() follows.
   [[nodiscard]] double tolerance() const { return options_.verify ? 0.2 : 0.02; }
+
+  void plan_first() {
+    at_.remember();
+    if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
+  }
+
+  void iterate_first(int rounds) {
+    at_.iterate(rounds, tolerance());  // refine_jointly() steps over both blocks at once
+    rounds_left_ -= rounds;
+  }
 
   void begin(Unrunnable unrunnable) {
     const FilterNoise first_noise = out_.noise;
@@ -173,7 +158,7 @@ class FilterSearch {
   /// Where noise, measurements and roughness are given, the end is compared with the start: of two models each is to end at its maximum on
   /// the same, and the larger one never below the smaller one from which it began.
   void set_floor() {
-    if (!noise_given_ || !options_.use || chooses_roughness(at_)) return;
+    if (!noise_given_ || !options_.use || any_chosen(out_.penalties)) return;
     floor_.emplace(Floor{at_.theta, pack(out_.noise, out_.model.system->spec(), out_.around).value, at_.objective});
   }
 
@@ -194,46 +179,6 @@ class FilterSearch {
       if (!at_.joint_step(exact.gradient, out_.joint_covariance, restricted_.slope)) return;
       if (*out_.newton_decrement < kDecrementOfOneSigma) return;
     }
-  }
-
-  void run_freely() {
-    constexpr int most_rounds = 15;
-    constexpr double settled = 0.01;  // of the residuals' RMS
-    out_.noise = hardly_forced(out_.noise, out_.around);
-    if (!at_.linearise()) throw RunError(at_.failure());
-    double before = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < most_rounds; ++k) {
-      const double residuals = rescale_noise();
-      if (!at_.linearise()) throw RunError(at_.failure());
-      if (before - residuals < settled) break;
-      before = residuals;
-      at_.gauss_newton_step();
-    }
-  }
-
-  /// Whitened innovations of an output that count: their mean square.
-  [[nodiscard]] double variance_ratio(std::size_t output) const {
-    double squares = 0.0, count = 0.0;
-    for (std::size_t e = 0; e < out_.data.size(); ++e) {
-      for (std::size_t k = out_.data[e].first; k < out_.traces[e].samples; ++k) {
-        const std::size_t at = out_.traces[e].place(k, output);
-        if (out_.data[e].use[at] != SampleRole::counted) continue;
-        squares += out_.traces[e].e[at] * out_.traces[e].e[at] / out_.traces[e].S[at];
-        count += 1.0;
-      }
-    }
-    return count > 0.0 ? squares / count : 1.0;
-  }
-
-  /// White noise as large as the residuals. Mean over the outputs of its logarithm.
-  double rescale_noise() {
-    double out = 0.0;
-    for (std::size_t o = 0; o < out_.noise.channels.size(); ++o) {
-      ChannelNoise& channel = out_.noise.channels[o];
-      if (!channel.held) channel.white *= std::sqrt(variance_ratio(o));
-      out += std::log(channel.white) / static_cast<double>(out_.noise.channels.size());
-    }
-    return out;
   }
 
   [[nodiscard]] double innovation_variance() const {
@@ -259,76 +204,6 @@ class FilterSearch {
       out_.notes.push_back("the likelihood has another maximum at a correlation time of the random force of about " +
                            format_value(other.noise.force_time) + " s, lower by " + format_value(2.0 * below) + " in 2 log L");
     }
-  }
-
-  /// Outputs that the model cannot all follow at once: the likelihood has a maximum for each that it could follow best, and which of them
-  /// a search ends at hangs on the noise it began with. Looked for with the sigma of each output in turn a fiftieth and, of three or
-  /// more, fifty times what it is; the highest is kept, others within 10 in 2 log L of it are named.
-  void weigh_outputs_otherwise() {
-    constexpr double ratio = 0.02;
-    std::vector<std::size_t> outputs;
-    for (std::size_t o = 0; o < out_.noise.channels.size(); ++o) {
-      if (!out_.model.known_noise[o].fixed) outputs.push_back(o);
-    }
-    if (outputs.size() < 2 || at_.theta.size() == 0) return;
-    const std::vector<double> factors = outputs.size() == 2 ? std::vector{ratio} : std::vector{ratio, 1.0 / ratio};
-    for (const std::size_t o : outputs) {
-      for (const double factor : factors) look_beyond(o, factor);
-    }
-  }
-
-  /// Stays where it is unless the search from another noise of this output ends higher.
-  void look_beyond(std::size_t output, double factor) {
-    constexpr double clearly_higher = 0.5, nearly = 5.0;  // [log-likelihood]
-    const LikelihoodAscent::Point before = at_.here();
-    const double then = height();
-    FilterNoise noise = before.noise;
-    noise.channels[output].white *= factor;
-    noise.channels[output].jitter *= factor;
-    try {
-      if (!at_.begin_with(noise) || !leads_away(before)) {
-        at_.return_to(before);
-        return;
-      }
-      at_.iterate(all_rounds, tolerance());
-    } catch (const TimeSpent&) {
-      const Unhurried back;
-      at_.return_to(before);
-      throw;
-    }
-    const double now = height();
-    const LikelihoodAscent::Point there = at_.here();
-    const bool higher = now > then + clearly_higher;
-    if (!higher) at_.return_to(before);
-    if (moved(before.theta, there.theta) && std::abs(now - then) < nearly) name_other(higher ? before : there, std::abs(now - then));
-  }
-
-  /// A step of the parameters with the noise as it is: do they move, and is the noise about them another one?
-  bool leads_away(const LikelihoodAscent::Point& from) {
-    constexpr double another = 0.2;  // relative change of a noise
-    at_.gauss_newton_step();
-    if (!moved(from.theta, at_.theta)) return false;
-    const NoiseFit now = fit_noise(at_.runs(), from.noise, {out_.around, options_.threads, kRefinements});
-    if (!std::isfinite(now.minus_log_density)) return false;
-    const auto level = [](const ChannelNoise& noise) { return std::hypot(noise.white, noise.jitter); };
-    return !std::equal(now.noise.channels.begin(), now.noise.channels.end(), from.noise.channels.begin(),
-                       [&](const ChannelNoise& a, const ChannelNoise& b) { return std::abs(level(a) / level(b) - 1.0) < another; });
-  }
-
-  /// By more than five sigmas of the present covariance.
-  [[nodiscard]] bool moved(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
-    constexpr double far = 5.0;
-    if (out_.covariance.rows() != from.size()) return false;
-    return ((to - from).cwiseAbs().array() > far * out_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt().array()).any();
-  }
-
-  void name_other(const LikelihoodAscent::Point& other, double below) {
-    const auto& outputs = out_.model.system->spec().outputs;
-    std::string noise;
-    for (std::size_t o = 0; o < outputs.size(); ++o)
-      noise += (o == 0 ? "" : ", ") + outputs[o].name + ": " + in_display_unit(other.noise.channels[o].white, outputs[o].unit);
-    out_.notes.push_back("the likelihood has another maximum, lower by " + format_value(2.0 * below) +
-                         " in 2 log L, that follows the outputs in another proportion (noise of " + noise + ")");
   }
 
   /// Gates the measurements and estimates again until the rejected set no longer changes: outliers in the data bias the first estimates, by
@@ -511,8 +386,7 @@ class FilterSearch {
   }
 
   void set_covariance() {
-    std::vector<Penalty> given = out_.penalties;
-    for (auto& p : given) p.chosen = false;
+    std::vector<Penalty> given = with_weights_held(out_.penalties);
     const PenalisedFit smoothed = estimate_smoothing(at_.normal_equations(), given, 1.0);
     if (smoothed.ok) {
       out_.covariance = smoothed.covariance;

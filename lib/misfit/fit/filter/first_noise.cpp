@@ -45,12 +45,8 @@ NoiseAtStart noise_at_start(LikelihoodAscent& at, int threads) {
 
 }  // namespace
 
-bool chooses_roughness(const LikelihoodAscent& at) {
-  return std::any_of(at.out.penalties.begin(), at.out.penalties.end(), [](const Penalty& p) { return p.chosen; });
-}
-
 double height_of(const LikelihoodAscent& at) {
-  return chooses_roughness(at) ? marginal_loglik(at.normal_equations(), at.out.penalties, at.objective) : at.objective;
+  return any_chosen(at.out.penalties) ? marginal_loglik(at.normal_equations(), at.out.penalties, at.objective) : at.objective;
 }
 
 void search_noise(LikelihoodAscent& at, int threads) {

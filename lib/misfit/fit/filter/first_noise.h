@@ -4,9 +4,6 @@
 
 namespace misfit {
 
-/// Is the roughness of a curve among what is estimated?
-[[nodiscard]] bool chooses_roughness(const LikelihoodAscent& at);
-
 /// [log-likelihood] By which starts of one model are compared (marginal_loglik), parameters and noise as they are.
 [[nodiscard]] double height_of(const LikelihoodAscent& at);
 

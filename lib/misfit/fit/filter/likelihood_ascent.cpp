@@ -51,10 +51,7 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
                                    const FilterOptions& options)
     : threads_(options.threads) {
   out.model = start;
-  out.penalties = std::move(penalties);
-  if (!options.choose_roughness) {
-    for (auto& penalty : out.penalties) penalty.chosen = false;
-  }
+  out.penalties = options.choose_roughness ? std::move(penalties) : with_weights_held(std::move(penalties));
   out.forced = with_random_force(start);
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     const IntegrationPlan* plan = options.plans ? &(*options.plans)[e] : nullptr;
@@ -289,7 +286,7 @@ void LikelihoodAscent::iterate(int most, double tolerance) {
   out.converged = false;
   for (int k = 0; k < most; ++k) {
     const double before = objective;
-    const bool choosing = std::any_of(out.penalties.begin(), out.penalties.end(), [](const Penalty& p) { return p.chosen; });
+    const bool choosing = any_chosen(out.penalties);
     const double edf = out.edf;
     const double not_gained = gauss_newton_step();
     try_noise(fit_noise(runs(), out.noise, {out.around, threads_, k < 3 ? 3 : kRefinements}));

@@ -6,40 +6,21 @@
 #include <optional>
 #include <utility>
 
-#include "misfit/core/display.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
 #include "misfit/data/estimators.h"
+#include "misfit/fit/shooting/output_error_estimate.h"
 #include "misfit/fit/shooting/output_error_integration.h"
-#include "misfit/fit/shooting/output_error_result.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
+#include "misfit/inference/output_weights.h"
 #include "misfit/inference/short_record.h"
 
 namespace misfit {
 namespace {
 
 using namespace output_error_parts;
-
-bool any_chosen(const std::vector<Penalty>& penalties) {
-  return std::any_of(penalties.begin(), penalties.end(), [](const Penalty& p) { return p.chosen; });
-}
-
-std::vector<Penalty> kept(std::vector<Penalty> penalties) {
-  for (auto& p : penalties) p.chosen = false;
-  return penalties;
-}
-
-/// The noise of an earlier fit instead of a first guess.
-Setting with_noise(const FittedModel& start, Setting setting) {
-  const auto& outputs = start.model.system->spec().outputs;
-  for (std::size_t o = 0; o < setting.sigma.size(); ++o) {
-    const auto known = start.fit.noise.find(outputs[o].name);
-    if (known != start.fit.noise.end() && known->second.value > 0.0) setting.sigma[o] = known->second.value;
-  }
-  return setting;
-}
 
 class Estimator {
  public:
@@ -50,7 +31,7 @@ class Estimator {
         regression_says_driven_(options.from_regression && !start.fit.method.empty() ? std::optional(start.fit.driven) : std::nullopt),
         setting_(options.keep_roughness ? with_noise(start, setting_of(start.model, experiments, options))
                                         : setting_of(start.model, experiments, options)),
-        penalties_(options.keep_roughness ? kept(start.penalties)
+        penalties_(options.keep_roughness ? with_weights_held(start.penalties)
                                           : curve_penalties(start.model)),  // not those of a regression, whose noise is another one
         shooting_(start.model, experiments, {setting_.sigma, setting_.state_scale}, start_states(setting_)),
         integration_(shooting_, experiments, start.integration, options.coloured),
@@ -147,30 +128,13 @@ class Estimator {
     return last_.usable;
   }
 
-  /// Do the segments predict better than a constant would? If not, what the solver reached is no start for longer ones.
-  bool follows() {
-    const std::vector<RowMatrix> y = shooting_.predict_segments();
-    for (std::size_t e = 0; e < y.size(); ++e) {
-      for (std::size_t o = 0; o < setting_.sigma.size(); ++o) {
-        double squares = 0.0, count = 0.0;
-        for (std::size_t i = 0; i < experiments_[e].samples(); ++i) {
-          if (!shooting_.counts(e, i, o)) continue;
-          squares += std::pow(y[e](i, o) - experiments_[e].measured[o].values[i], 2);
-          count += 1.0;
-        }
-        if (!(std::sqrt(squares / std::max(count, 1.0)) <= motion_size(experiments_[e].measured[o].values))) return false;
-      }
-    }
-    return true;
-  }
-
   /// Segments six times as long; by a smaller factor where the simulation from the present initial states fails.
   bool lengthen(ShootingPass& pass) {
     for (const double factor : {6.0, 3.0, 2.0, 1.5, 1.25}) {
       const Shooting::State before = shooting_.state();
       ShootingPass next = pass;
       next.length = static_cast<std::size_t>(factor * static_cast<double>(pass.length));
-      if (solve(next) && follows()) {
+      if (solve(next) && segments_follow(shooting_, experiments_)) {
         pass = next;
         return true;
       }
@@ -202,7 +166,7 @@ class Estimator {
       integration_.plan();
     }
     bool found = search(lengthened);
-    if (found && options_.coloured) weigh_outputs_otherwise();
+    if (found && options_.coloured) weigh_outputs();
     while (found && settled_ && !integration_.negligible_at(end_.runs, end_.smoothed.covariance)) found = approach() || search({});
     if (!found) return failed(why_);
     if (settled_ && options_.coloured && !newton_steps() && reach_minimum()) static_cast<void>(newton_steps());
@@ -242,19 +206,14 @@ class Estimator {
     std::vector<double> sigma;
     LeastSquares::Summary last;
     bool settled;
-    double height;  ///< log-likelihood with priors; where roughness is chosen, with the parameters integrated out
+    double height;
   };
 
+  /// After look_at_the_end().
   [[nodiscard]] Ended ended() const {
-    double height = log_prior(shooting_.model(), penalties_) - 0.5 * end_.linearised.rss;
-    for (std::size_t e = 0; e < experiments_.size(); ++e) {
-      for (std::size_t i = 0; i < experiments_[e].samples(); ++i) {
-        for (std::size_t o = 0; o < shooting_.sigma().size(); ++o)
-          if (shooting_.counts(e, i, o)) height -= std::log(shooting_.sigma()[o]);
-      }
-    }
-    if (any_chosen(penalties_)) height = marginal_loglik(end_.linearised, penalties_, height);
-    return {shooting_.state(), penalties_, shooting_.sigma(), last_, settled_, height};
+    return {shooting_.state(), penalties_,
+            shooting_.sigma(), last_,
+            settled_,          height_of(end_, {shooting_, end_.runs, experiments_}, penalties_)};
   }
 
   void return_to(const Ended& end) {
@@ -267,59 +226,36 @@ class Estimator {
     end_is_present_ = false;
   }
 
-  /// Outputs that the model cannot all follow at once: the likelihood has a maximum for each that it could follow best, and which of them
-  /// a search ends at hangs on the noise it began with. Looked for with the sigma of each output in turn a fiftieth and, of three or
-  /// more, fifty times what it is; the highest is kept, others within 10 in 2 log L of it are named.
-  void weigh_outputs_otherwise() {
-    const std::vector<Weighing> weighings = other_weighings();
-    if (weighings.empty() || !look_at_the_end() || !end_.smoothed.ok) return;
+  /// inference/output_weights.h; stands at the highest end, end_ of it.
+  void weigh_outputs() {
+    if (other_weighings(shooting_.model()).empty() || !look_at_the_end() || !end_.smoothed.ok) return;
     Ended best = ended();
-    std::vector<Ended> others;
+    WeighedSearch<Ended> search;
+    search.return_to = [&](const Ended& end) {
+      best = end;
+      return_to(end);
+    };
+    search.end_from = [&](const Weighing& weighing, const Ended& from) {
+      return ends_elsewhere(weighing, from) ? std::optional(ended()) : std::nullopt;
+    };
     try {
-      for (const Weighing& weighing : weighings) weigh(weighing, best, others);
+      other_maxima_ = weigh_outputs_otherwise(shooting_.model(), best, search);
     } catch (const TimeSpent&) {  // what there is stands
       return_to(best);
     }
-    name_others(best, std::move(others));
-  }
-
-  struct Weighing {
-    std::size_t output;
-    double factor;  ///< of its sigma
-  };
-
-  [[nodiscard]] std::vector<Weighing> other_weighings() const {
-    constexpr double ratio = 0.02;
-    std::vector<Weighing> out;
-    for (std::size_t o = 0; o < setting_.sigma.size(); ++o) {
-      if (!shooting_.model().known_noise[o].fixed) out.push_back({o, ratio});
-    }
-    const std::size_t outputs = out.size();
-    if (outputs < 2) return {};
-    for (std::size_t i = 0; i < outputs && outputs > 2; ++i) out.push_back({out[i].output, 1.0 / ratio});
-    return out;
-  }
-
-  /// Ends at the highest.
-  void weigh(const Weighing& weighing, Ended& best, std::vector<Ended>& others) {
-    constexpr double clearly = 0.5;
-    if (ends_elsewhere(weighing, best)) {
-      Ended end = ended();
-      if (end.height > best.height + clearly) std::swap(end, best);
-      if (end.settled) others.push_back(std::move(end));
-    }
-    return_to(best);
+    const Unhurried back;
+    static_cast<void>(look_at_the_end());
   }
 
   /// A search that begins with another noise of one output. False: it leads nowhere, or back.
   bool ends_elsewhere(const Weighing& weighing, const Ended& from) {
     constexpr double another = 0.1;  // relative change of a noise
-    constexpr int few_iterations = 30;
+    constexpr int few_iterations = 8;
     std::vector<double> sigma = from.sigma;
     sigma[weighing.output] *= weighing.factor;
     shooting_.set_sigma(sigma);
     const double edf = end_.smoothed.edf;
-    if (!solve({0, 10.0, std::min(1e8, largest_radius_), few_iterations, 1e-5})) return false;
+    if (!solve({0, 10.0, std::min(1e8, largest_radius_), few_iterations, 1e-3})) return false;
     const auto led_away = [&] {
       const std::vector<Segment> runs = shooting_.run(false);
       const std::vector<double> now = channel_sigmas({shooting_, runs, experiments_}, edf);
@@ -329,23 +265,6 @@ class Estimator {
       return away;
     };
     return led_away() && search({}) && settled_ && look_at_the_end() && end_.smoothed.ok && led_away();
-  }
-
-  /// The same place may have been found more than once.
-  void name_others(const Ended& best, std::vector<Ended> others) {
-    constexpr double nearly = 5.0, same = 0.1;  // log-likelihood
-    const auto& outputs = shooting_.model().system->spec().outputs;
-    std::sort(others.begin(), others.end(), [](const Ended& a, const Ended& b) { return a.height > b.height; });
-    const double* before = nullptr;
-    for (const Ended& other : others) {
-      if (other.height < best.height - nearly || (before != nullptr && *before - other.height < same)) continue;
-      before = &other.height;
-      std::string noise;
-      for (std::size_t o = 0; o < outputs.size(); ++o)
-        noise += (o == 0 ? "" : ", ") + outputs[o].name + ": " + in_display_unit(other.sigma[o], outputs[o].unit);
-      other_maxima_.push_back("the likelihood has another maximum, lower by " + format_value(2.0 * (best.height - other.height)) +
-                              " in 2 log L, that follows the outputs in another proportion (noise of " + noise + ")");
-    }
   }
 
   bool stopped(const std::string& why) {
@@ -444,18 +363,10 @@ class Estimator {
     return out;
   }
 
-  /// Normal equations, Gaussian posterior and simulated segments at the estimate.
-  struct Ending {
-    NormalEquations linearised;
-    PenalisedFit smoothed;
-    std::vector<Segment> runs;
-    [[nodiscard]] double degrees() const { return linearised.count - smoothed.edf; }
-  };
-
   /// The Gaussian and the runs at the present values, noise and roughness as they are.
   bool look_at_the_end() {
     if (end_is_present_) return true;
-    std::vector<Penalty> penalties = kept(penalties_);
+    std::vector<Penalty> penalties = with_weights_held(penalties_);
     if (!shooting_.linearise(end_.linearised, &end_.runs)) return false;
     end_.smoothed = estimate_smoothing(end_.linearised, penalties, 1.0);
     end_is_present_ = true;
@@ -473,7 +384,8 @@ class Estimator {
     if (const std::string which = undetermined(out.model, end_.linearised); !which.empty()) return failed(at_the_end(which));
     integration_.describe(out);
     set_noise(shooting_, end_.degrees(), fit);
-    const Eigen::MatrixXd covariance = describe_estimates(end_, out);
+    const Eigen::MatrixXd covariance =
+        describe_estimates(end_, {shooting_, end_.runs, experiments_}, {setting_.states, penalties_, options_.coloured}, out);
     predictions_of({shooting_, end_.runs, experiments_}, covariance, fit);
     errors_of(experiments_, fit);
     set_initial_states(shooting_, experiments_, out);
@@ -510,32 +422,6 @@ class Estimator {
   [[nodiscard]] bool same_noise(const std::vector<double>& sigma, double difference = 0.01) const {
     return std::equal(sigma.begin(), sigma.end(), shooting_.sigma().begin(),
                       [difference](double now, double then) { return std::abs(now / then - 1.0) < difference; });
-  }
-
-  /// Parameters, curves and trim with the covariance of all unknowns, which is returned: allowing for autocorrelated residuals, and what
-  /// white ones would give beside it.
-  Eigen::MatrixXd describe_estimates(const Ending& end, FittedModel& out) const {
-    const RowMatrix visited = visited_quantities(out.model, experiments_, setting_.states);
-    const Eigen::MatrixXd& plain = end.smoothed.covariance;
-    const Eigen::Index columns = out.model.theta().size();
-    if (!options_.coloured) {
-      describe(out.model, plain.topLeftCorner(columns, columns), visited, out.fit);
-      return plain;
-    }
-    const double degrees = end.degrees();
-    const ColouredCovariance coloured =
-        residual_covariance(residual_rows({shooting_, end.runs, experiments_}), plain, out.model.outputs(), degrees);
-    Eigen::MatrixXd covariance = with_uncertain_roughness(end.linearised, penalties_, 1.0, coloured.excess);
-    out.plain_covariance = with_uncertain_roughness(end.linearised, penalties_, 1.0).topLeftCorner(columns, columns);
-    describe(out.model, out.plain_covariance, visited, out.fit);
-    keep_plain_sigmas(out.fit);
-    describe(out.model, covariance.topLeftCorner(columns, columns), visited, out.fit);
-    describe_roughness(out.model, roughness_paths(end.linearised, penalties_, 1.0), out.fit);
-    if (degrees < kShortRecord && !out.model.noise_held()) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
-    out.fit.facts["covariance"] = in_words(coloured);
-    const auto& outputs = out.model.system->spec().outputs;
-    for (std::size_t o = 0; o < outputs.size(); ++o) out.fit.noise.at(outputs[o].name).sigma *= std::sqrt(coloured.squared_correlations[o]);
-    return covariance;
   }
 
   const std::vector<Signals>& experiments_;

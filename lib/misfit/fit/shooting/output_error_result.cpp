@@ -12,6 +12,7 @@
 #include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/record_residuals.h"
+#include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
 
 namespace misfit::output_error_parts {
@@ -209,12 +210,20 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
   }
 }
 
-double motion_size(const std::vector<double>& values) {
-  double sum = 0.0, squares = 0.0, n = 0.0;
-  for (double v : values) {
-    if (std::isfinite(v)) sum += v, squares += v * v, n += 1.0;
+bool segments_follow(Shooting& shooting, const std::vector<Signals>& experiments) {
+  const std::vector<RowMatrix> y = shooting.predict_segments();
+  for (std::size_t e = 0; e < y.size(); ++e) {
+    for (std::size_t o = 0; o < shooting.sigma().size(); ++o) {
+      double squares = 0.0, count = 0.0;
+      for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
+        if (!shooting.counts(e, i, o)) continue;
+        squares += std::pow(y[e](i, o) - experiments[e].measured[o].values[i], 2);
+        count += 1.0;
+      }
+      if (!(std::sqrt(squares / std::max(count, 1.0)) <= standard_deviation(experiments[e].measured[o].values))) return false;
+    }
   }
-  return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
+  return true;
 }
 
 double misfit_of(const EndOfSearch& end) {
@@ -230,7 +239,7 @@ std::string why_undetermined(const std::string& which, std::string unsettled, co
   const auto& outputs = end.shooting.model().system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     const auto [squares, count] = squares_of(channel_residuals(end, o));
-    const double rms = std::sqrt(squares / std::max(count, 1.0)), size = motion_size(end.experiments.front().measured[o].values);
+    const double rms = std::sqrt(squares / std::max(count, 1.0)), size = standard_deviation(end.experiments.front().measured[o].values);
     if (rms < follows * size) continue;
     unsettled = "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
                 ", motion RMS " + in_display_unit(size, outputs[o].unit) + ")";
@@ -275,7 +284,7 @@ void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit) {
   const ChannelPrediction& p = fit.predictions.front();
   const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
   const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period), unknowns);
-  const double noise = measurement_noise(p.measured), rms = fit.rms.at(p.channel).value, size = motion_size(p.measured);
+  const double noise = measurement_noise(p.measured), rms = fit.rms.at(p.channel).value, size = standard_deviation(p.measured);
   fit.facts["whiteness"] = "residuals of " + p.channel + " at " + in_words(test);
   fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
                            ", measurement noise about " + in_display_unit(noise, p.unit);

@@ -39,8 +39,8 @@ void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, 
 /// fit.noise.
 void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 
-/// Standard deviation of the known values.
-[[nodiscard]] double motion_size(const std::vector<double>& values);
+/// Do the segments of the last solve predict better than a constant would? If not, what the solver reached is no start for longer ones.
+[[nodiscard]] bool segments_follow(Shooting& shooting, const std::vector<Signals>& experiments);
 
 /// Minus the log-likelihood of the residuals with each channel's noise at its maximum, but for constants.
 [[nodiscard]] double misfit_of(const EndOfSearch& end);

@@ -34,6 +34,15 @@ Setting setting_of(const Model& model, const std::vector<Signals>& experiments, 
   return s;
 }
 
+Setting with_noise(const FittedModel& start, Setting setting) {
+  const auto& outputs = start.model.system->spec().outputs;
+  for (std::size_t o = 0; o < setting.sigma.size(); ++o) {
+    const auto known = start.fit.noise.find(outputs[o].name);
+    if (known != start.fit.noise.end() && known->second.value > 0.0) setting.sigma[o] = known->second.value;
+  }
+  return setting;
+}
+
 std::vector<RowMatrix> start_states(const Setting& setting) {
   std::vector<RowMatrix> out;
   for (const auto& states : setting.states) {

@@ -20,6 +20,9 @@ struct Setting {
 
 [[nodiscard]] Setting setting_of(const Model& model, const std::vector<Signals>& experiments, const OutputErrorStart& options);
 
+/// The noise of an earlier fit instead of a first guess.
+[[nodiscard]] Setting with_noise(const FittedModel& start, Setting setting);
+
 /// States at every sample to begin with: read from the measurement, gaps bridged linearly between the known neighbours.
 [[nodiscard]] std::vector<RowMatrix> start_states(const Setting& setting);
 

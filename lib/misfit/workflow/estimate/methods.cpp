@@ -62,15 +62,15 @@ MethodRun Methods::run_in_time(const std::string& method) {
   work->prepared = prepared();
   const auto regression = [this]() -> const FittedModel& { return this->regression(); };
   std::optional<ContainedFit> contained = contained_fit_of(session_);
-  const std::optional<ScannedStudy>& scanned = this->scanned();
-  if (scanned) {
+  const ScannedStudy* scanned = contained ? nullptr : this->scanned();  // a rung begins where discovery ended
+  if (scanned != nullptr) {
     work->prepared.model = scanned->model;
     contained = scanned->contained;
   }
   Estimation result = method_of_study.run(
       {work->prepared.model, work->prepared.experiments, regression, {}, session_.options.threads, std::move(contained)});
   Fit& fit = result.at.fitted.fit;
-  if (scanned) fit.facts.insert(scanned->facts.begin(), scanned->facts.end());
+  if (scanned != nullptr) fit.facts.insert(scanned->facts.begin(), scanned->facts.end());
   add_notes(work->prepared, fit);
   if (method_of_study.info.deterministic) return {std::move(result.at), nullptr};
   if (work->prepared.model.free_parameters().empty())
@@ -89,9 +89,10 @@ const Prepared& Methods::prepared() {
   return *prepared_;
 }
 
-const std::optional<ScannedStudy>& Methods::scanned() {
-  if (!scanned_) scanned_ = contained_fit_of(session_) ? std::nullopt : scanned_study(session_, prepared());
-  return *scanned_;
+const ScannedStudy* Methods::scanned() {
+  if (!looked_for_scans_) scanned_ = scanned_study(session_, prepared());
+  looked_for_scans_ = true;
+  return scanned_ ? &*scanned_ : nullptr;
 }
 
 const FittedModel& Methods::regression() {

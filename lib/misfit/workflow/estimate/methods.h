@@ -31,14 +31,15 @@ class Methods {
 
  private:
   [[nodiscard]] MethodRun run_in_time(const std::string& method);
-  /// Not of a rung, which begins where discovery ended.
-  [[nodiscard]] const std::optional<ScannedStudy>& scanned();
+  /// nullptr: the study has no effect to scan.
+  [[nodiscard]] const ScannedStudy* scanned();
   [[nodiscard]] const FittedModel& regression();
   [[nodiscard]] FittedMethod run_in_regression_form(const Estimator& method);
 
   Session& session_;
   std::optional<Prepared> prepared_;
-  std::optional<std::optional<ScannedStudy>> scanned_;
+  std::optional<ScannedStudy> scanned_;
+  bool looked_for_scans_ = false;
   std::optional<FittedModel> regression_;
 };
 
