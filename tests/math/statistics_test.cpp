@@ -70,5 +70,11 @@ TEST(Statistics, SidakOfTinyAndLargeProbabilities) {
   EXPECT_EQ(sidak(0.0, 5), 0.0);
 }
 
+TEST(StandardDeviation, IsThatOfTheFiniteValuesAboutTheirMean) {
+  EXPECT_NEAR(standard_deviation({2.0, 4.0, missing, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0}), 2.0, 1e-12) << "mean 5, squares 32 over 8";
+  EXPECT_EQ(standard_deviation({3.0, missing}), 0.0);
+  EXPECT_EQ(standard_deviation({}), 0.0);
+}
+
 }  // namespace
 }  // namespace misfit

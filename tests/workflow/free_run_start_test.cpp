@@ -2,7 +2,6 @@
 // model does not explain yet. A cylinder whose pressure is measured late: the regression ends at values from which the model cannot be run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <misfit_models_registry.h>
 
 #include <array>
 #include <cmath>
@@ -10,8 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "misfit/misfit.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/workflow/text_study.h"
 
 namespace {
 
@@ -41,11 +39,7 @@ std::string recording() {
 }
 
 TEST(AHeatedBlockWithALateSensor, IsFittedByTheFilterNotWorseThanByOutputError) {
-  Registry registry;
-  misfit_models_register(registry);
-  const TemporaryFolder folder;
-  folder.write("d.csv", recording());
-  folder.write("m.toml", R"([system]
+  testing_text_study::TextStudy study(R"toml([system]
 doc = "a heated block"
 [states]
 T = { unit = "K", initial = "free" }
@@ -59,22 +53,10 @@ ambient = { unit = "K", value = 293.0, free = true }
 T = "(gain*u - (T - ambient))/tau"
 [outputs]
 T = { unit = "K", noise = 0.05 }
-)");
-  folder.write("study.toml", R"([study]
-name = "block"
-question = "Is the sensor late?"
-methods = ["output_error", "filter_error"]
-seed = 1
-[system]
-file = "m.toml"
-[[experiment]]
-name = "one"
-data = "d.csv"
-[effects]
-sensor_delay = {}
-)");
-  Identification identification({.study = (folder.path() / "study.toml").string(), .out = (folder.path() / "out").string()}, registry);
-  const Fit freely = identification.fit("output_error"), filtered = identification.fit("filter_error");
+)toml",
+                                      recording());
+  const std::string late = "sensor_delay = {}";
+  const Fit freely = study.fit("output_error", late), filtered = study.fit("filter_error", late);
   ASSERT_TRUE(freely.loglik && filtered.loglik) << freely.message << filtered.message;
   EXPECT_GT(*filtered.loglik, *freely.loglik - 0.5) << "its model contains that of output error: a random force of 0";
   constexpr double of_the_approximation = 0.3;  // [s] a rational one, seen by a step of the input
@@ -118,11 +100,7 @@ std::string recording_of_cylinder() {
 }
 
 TEST(ACylinderWithALatePressure, IsFittedFromTheStudysOwnValuesWhereTheRegressionsCannotBeRun) {
-  Registry registry;
-  misfit_models_register(registry);
-  const TemporaryFolder folder;
-  folder.write("d.csv", recording_of_cylinder());
-  folder.write("m.toml", R"toml([system]
+  testing_text_study::TextStudy study(R"toml([system]
 doc = "a valve-controlled cylinder"
 [states]
 x = { unit = "m", scale = 0.1 }
@@ -144,22 +122,10 @@ p = "C*(Kq*u - A*v - Kc*p)"
 [outputs]
 x = { unit = "m", noise = 0.001 }
 p = { unit = "Pa", noise = 1e4 }
-)toml");
-  folder.write("study.toml", R"toml([study]
-name = "cylinder"
-question = "What is missing?"
-methods = ["output_error", "filter_error"]
-seed = 1
-[system]
-file = "m.toml"
-[[experiment]]
-name = "one"
-data = "d.csv"
-[effects]
-)toml");
-  Identification identification({.study = (folder.path() / "study.toml").string(), .out = (folder.path() / "out").string()}, registry);
+)toml",
+                                      recording_of_cylinder());
   for (const char* method : {"output_error", "filter_error"}) {
-    const Fit fit = identification.fit(method);
+    const Fit fit = study.fit(method, "");
     EXPECT_TRUE(fit.usable()) << method << ": " << fit.message;
     EXPECT_THAT(fit.warnings, testing::Contains(testing::HasSubstr("began at the study's own"))) << method;
   }

@@ -1,15 +1,13 @@
 // A study with an effect whose frequency it says nothing of: the likelihood has a maximum per frequency, and one near the effect's default
 // is not the one that is there.
 #include <gmock/gmock.h>
-#include <misfit_models_registry.h>
 
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <random>
 
-#include "misfit/misfit.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/workflow/text_study.h"
 
 namespace {
 
@@ -44,10 +42,9 @@ std::string recording() {
 
 class AShakenOscillator : public testing::Test {
  protected:
-  AShakenOscillator() {
-    misfit_models_register(registry_);
-    folder_.write("d.csv", recording());
-    folder_.write("m.toml", R"([system]
+  Fit fit(const std::string& method, const std::string& effect) { return study_.fit(method, effect); }
+
+  testing_text_study::TextStudy study_{R"toml([system]
 doc = "an oscillator"
 [states]
 y = { unit = "m", initial = "free" }
@@ -59,21 +56,8 @@ c = { unit = "1/s", value = 0.5, bounds = [0.0, 10.0], free = true }
 w = "-k*y - c*w"
 [outputs]
 y = { unit = "m", noise = 0.005 }
-)");
-  }
-
-  Fit fit(const std::string& method, const std::string& effect) {
-    folder_.write("study.toml",
-                  "[study]\nname = \"shaken\"\nquestion = \"How fast?\"\nmethods = [\"" + method +
-                      "\"]\nseed = 1\n[system]\nfile = \"m.toml\"\n[[experiment]]\nname = \"one\"\ndata = \"d.csv\"\n[effects]\n" + effect +
-                      "\n");
-    Identification identification(
-        {.study = (folder_.path() / "study.toml").string(), .out = (folder_.path() / "out").string(), .methods = {method}}, registry_);
-    return identification.fit(method);
-  }
-
-  TemporaryFolder folder_;
-  Registry registry_;
+)toml",
+                                       recording()};
 };
 
 void expect_found(const Fit& fit) {

@@ -322,12 +322,8 @@ void Stepper::explicit_step_linear(double* x, const Interval& interval, const Sh
       return substep_linear<3>(x, interval, share, by);
     case 4:
       return substep_linear<4>(x, interval, share, by);
-    case 5:
-      return substep_linear<5>(x, interval, share, by);
     case 6:
       return substep_linear<6>(x, interval, share, by);
-    case 8:
-      return substep_linear<8>(x, interval, share, by);
     default:
       return substep_linear<0>(x, interval, share, by);
   }

@@ -5,9 +5,9 @@
 namespace misfit {
 
 /// Calls run.operator()<M, NY>() with the numbers of model states and outputs as constants, where a filter of that size has been compiled
-/// by itself, else with Eigen::Dynamic twice: the same result to rounding, at about half the speed. Compiled are one output with up to two
-/// states of the system, a random force and two memories of effects, and the parachute with and without memories: other sizes cost compile
-/// time alone.
+/// by itself, else with Eigen::Dynamic twice: the same result to rounding, slower (a flight of 8 × 2 takes a third longer). Compiled are
+/// one output with up to two states of the system, a random force and two memories of effects, and the parachute with and without memories:
+/// other sizes cost compile time alone.
 template <class Run>
 auto with_filter_size(int states, int outputs, const Run& run) {
   if (outputs == 1) {

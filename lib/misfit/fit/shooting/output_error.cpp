@@ -230,16 +230,11 @@ class Estimator {
   void weigh_outputs() {
     if (other_weighings(shooting_.model()).empty() || !look_at_the_end() || !end_.smoothed.ok) return;
     Ended best = ended();
-    WeighedSearch<Ended> search;
-    search.return_to = [&](const Ended& end) {
-      best = end;
-      return_to(end);
-    };
-    search.end_from = [&](const Weighing& weighing, const Ended& from) {
+    const auto end_from = [&](const Weighing& weighing, const Ended& from) {
       return ends_elsewhere(weighing, from) ? std::optional(ended()) : std::nullopt;
     };
     try {
-      other_maxima_ = weigh_outputs_otherwise(shooting_.model(), best, search);
+      other_maxima_ = weigh_outputs_otherwise<Ended>(shooting_.model(), best, {end_from, [&](const Ended& end) { return_to(best = end); }});
     } catch (const TimeSpent&) {  // what there is stands
       return_to(best);
     }
