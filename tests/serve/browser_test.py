@@ -80,6 +80,19 @@ class Page:
             time.sleep(0.1)
         raise AssertionError(f"{what}: not within {seconds} s. The page says: {self.text('body')[:3000]}")
 
+    def frames(self):
+        """What the mouse or a key has caused is drawn: two frames later."""
+        self.driver.execute_async_script("const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()))")
+
+    def still(self, value, what):
+        """The value, once it has not changed for a second."""
+        def unchanged():
+            before = value()
+            time.sleep(1)
+            return value() == before
+        self.wait(unchanged, f"{what} changes no more")
+        return value()
+
     def one(self, selector):
         return self.driver.find_element(By.CSS_SELECTOR, selector)
 
@@ -111,6 +124,14 @@ class Page:
         self.driver.quit()
 
 
+def leave_the_server(page, server):
+    """It ends while the page is open: a question that its end meets is refused, reset or empty."""
+    page.no_faults()
+    server.end()
+    page.driver.get("about:blank")
+    page.no_faults(but="net::ERR_")
+
+
 def random_force(page):
     """[unit of the force] As the verdict has it: before, after."""
     match = re.search(r"random force: ([\d.]+)[^\n]*? to ([\d.]+)", page.text("#verdict"))
@@ -127,14 +148,16 @@ def point_at_the_worst_place(page):
     seen = {}
     for k in range(1, 12):
         ActionChains(page.driver).move_to_element_with_offset(over, int(width * (k / 12 - 0.5)), 0).perform()
-        time.sleep(0.1)
+        page.frames()
         seen[page.text("#marked")] = k
     marked = [words for words in seen if re.match(r"Marked: [1-9]\d* samples with ", words)]
     assert len(marked) >= 4, seen
     ActionChains(page.driver).move_to_element_with_offset(over, 0, 0).click().perform()
+    page.wait(lambda: int(page.one("#time").get_attribute("data-marks")) > 0, "the marks")
+    page.frames()
     fixed = page.text("#marked")
-    assert int(page.one("#time").get_attribute("data-marks")) > 0
     ActionChains(page.driver).move_to_element(page.one("h1")).perform()
+    page.frames()
     assert page.text("#marked") == fixed, "a click keeps the marks"
     return fixed
 
@@ -142,7 +165,8 @@ def point_at_the_worst_place(page):
 def force_of_the_accepted(page, name):
     """Pointing shows the force that it adds, its button keeps it, another view removes it."""
     words = f"what {name} adds"
-    assert words not in page.text("#force")
+    ActionChains(page.driver).move_to_element(page.one("h1")).perform()
+    page.wait(lambda: words not in page.text("#force"), "no force while nothing is pointed at")
     ActionChains(page.driver).move_to_element(page.one("#candidates tr.accepted td.number")).perform()
     page.wait(lambda: words in page.text("#force"), "its force while it is pointed at")
     ActionChains(page.driver).move_to_element(page.one("h1")).perform()
@@ -164,11 +188,10 @@ def move_the_roughness(page):
     page.view("curves")
     slider = page.wait(lambda: page.one(".slider input"), "the slider of a roughness")
     page.wait(lambda: page.one("#view canvas"), "the curve")
-    time.sleep(0.5)
-    before = drawn()
+    before = page.still(drawn, "the curve")
     assert "as fitted" in page.text(".slider output")
     page.js("arguments[0].value = arguments[0].max; arguments[0].dispatchEvent(new Event('input'))", slider)
-    assert "(log marginal likelihood)" in page.text(".slider output")
+    page.wait(lambda: "(log marginal likelihood)" in page.text(".slider output"), "what the likelihood says")
     page.wait(lambda: drawn() != before, "another curve")
     page.js("[...document.querySelectorAll('.slider button')].find((b) => b.textContent === 'As fitted').click()")
     page.wait(lambda: drawn() == before, "the curve as fitted")
@@ -191,10 +214,10 @@ def find_and_add():
     # The time cursor by keys, in all plots.
     plot = page.one("#motion .plot")
     plot.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
-    values = page.js("return [...document.querySelectorAll('#motion .value, #force .value')].filter((v) => v.textContent !== '').length")
-    assert values >= 3, values
+    values = "return [...document.querySelectorAll('#motion .value, #force .value')].filter((v) => v.textContent !== '').length"
+    page.wait(lambda: page.js(values) >= 3, "the values at the cursor")
     plot.send_keys(Keys.ESCAPE)
-    assert page.text("#marked") == ""
+    page.wait(lambda: page.text("#marked") == "", "no marks after Escape")
     move_the_roughness(page)
     page.view("candidates")
     first = page.wait(lambda: page.one("#candidates tr.accepted button.adds"), "an accepted candidate").get_attribute("data-effect")
@@ -202,7 +225,7 @@ def find_and_add():
     page.click("#candidates tr.accepted button.adds")
     page.job("done", 2)
     page.wait(lambda: page.one("#model").get_attribute("value") == "1", "the new rung is shown")
-    before, after = random_force(page)
+    before, after = page.wait(lambda: random_force(page), "the random force before and after")
     assert after < before, (before, after)
     page.view("ladder")
     page.wait(lambda: page.one("#view [aria-pressed=true]").text == f"1: + {first}", "the rung")
@@ -220,9 +243,8 @@ def find_and_add():
         assert not page.driver.find_elements(By.CSS_SELECTOR, "#view > div > p.warning"), page.text("#view")
     for width in (800, 400):
         page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
-        time.sleep(0.4)
-        assert page.js("return document.documentElement.scrollWidth") <= width, "nothing is wider than the screen"
-    server.end()
+        page.wait(lambda: page.js("return document.documentElement.scrollWidth") <= width, f"nothing is wider than {width} pixels", 30)
+    leave_the_server(page, server)
     report_without_server(page, verdict)
     page.end()
 
@@ -231,7 +253,7 @@ def report_without_server(page, verdict):
     """report.html in the run folder is the same page: everything but doing; what is printed is the document."""
     page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     page.open("file://" + os.path.join(FOLDER, "out", "report.html"))
-    assert page.text("#verdict") == verdict
+    page.wait(lambda: page.text("#verdict") == verdict, "the same verdict without a server", 30)
     assert not page.one("#work").is_displayed()
     assert not page.one("body > main").is_displayed(), "the document is not seen while the page is"
     assert not page.driver.find_elements(By.CSS_SELECTOR, "button.adds, [data-view=commands]")
@@ -383,9 +405,9 @@ def hostile():
         time.sleep(0.3)
     assert page.js("return document.title") == f"{script} · misfit"
     assert page.js("return document.querySelectorAll('body script:not([src]), body img:not(#frame)').length") == 0
-    server.end()
+    leave_the_server(page, server)
     page.open("file://" + os.path.join(FOLDER, "out", "report.html"))
-    assert page.text("h1") == script
+    page.wait(lambda: page.text("h1") == script, "the name as a name, without a server")
     assert page.js("return document.title") == f"{script} · misfit"
     page.end()
 
