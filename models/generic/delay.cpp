@@ -4,21 +4,21 @@ namespace {
 
 using namespace misfit;
 
-/// The input acts later than it is recorded: transport, a slow valve, a computer. Second-order Pade approximation by two own states: with
-/// z1'' = 12/tau^2 (u - z1) - 6/tau z1' the delayed input is u - tau z1'.
+/// The input acts later than it is recorded: transport, a slow valve, a computer. What was recorded before is read, so that it is exact:
+/// lib/misfit/model/recorded_inputs.h. A delayed state is own states that approximate it, in the
+/// equations of a declared system.
 struct Delay {
-  static constexpr const char* formula =
-      "F = delayed_gain (u(t - tau) - u), u(t - tau) = u - tau z_rate; z' = z_rate, z_rate' = 12/tau^2 (u - z) - 6/tau z_rate";
+  static constexpr const char* formula = "F = delayed_gain (u(t - tau) - u(t))";
   static constexpr const char* symbols =
-      "delayed_gain [port/input]: the gain by which the model lets the input act, tau delay [s], u the input [any], z, z_rate filtered "
-      "input and its rate";
-  static constexpr const char* valid = "signals slower than 1.7/tau (phase to 1 %); after a jump it rings for about tau";
+      "delayed_gain [port/input]: the gain by which the model lets the input act, tau delay [s], u the input [any] as recorded: held or "
+      "straight between its samples, its first value before them";
+  static constexpr const char* valid = "any recorded input; jumps too";
   static constexpr const char* size = "tau = 0.1 s at 1 rad/s: 10 % of the input, 90 deg after it";
-  static constexpr const char* source = "Golub and Van Loan, Matrix Computations, 11.3: Pade (2, 2) of exp(-tau s)";
-  static constexpr const char* excludes = "delays longer than the fastest part of the input, delays that change";
+  static constexpr const char* source = "Ljung, System Identification, 2nd ed., 4.2: input delay n_k, here with fractions of a step";
+  static constexpr const char* excludes = "delays that change, what acted before the recording began";
 
   enum Quantity { input };
-  static constexpr Role quantities[] = {{.name = "input", .unit = "*"}};
+  static constexpr Role quantities[] = {{.name = "input", .unit = "*", .late_by = "delay"}};
   enum Port { port };
   static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
   enum Coefficient { delayed_gain, delay };
@@ -39,36 +39,29 @@ struct Delay {
        .upper = 1e9,
        .scale = 0.1,
        .doc = "delay",
-       .scan = {.from = 1.0, .to = 20.0, .count = 4, .over = "step"}},
+       .scan = {.from = 0.5, .to = 40.0, .count = 14, .over = "step"}},
   };
-  enum State { z, z_rate };
-  static constexpr OwnStateSpec states[] = {{.name = "z", .unit = "{input}"}, {.name = "z_rate", .unit = "{input}/s"}};
 
   template <class T, class K>
-  static void add(const Reads<T, K>& in, T* F, T* drift) {
-    const T& tau = in.c[delay];
-    F[port] = -in.c[delayed_gain] * tau * in.z[z_rate];
-    drift[z] = in.z[z_rate];
-    drift[z_rate] = (12.0 * (in.q[input] - in.z[z]) / tau - 6.0 * in.z[z_rate]) / tau;
+  static void add(const Reads<T, K>& in, T* F) {
+    F[port] = in.c[delayed_gain] * (in.late(input, in.c[delay]) - in.q[input]);
   }
-
-  /// Its poles lie at |s| = sqrt(12)/tau.
-  static double fastest_rate(const Reads<double, double>& in) { return 3.4641 / in.c[delay]; }
 
   static std::vector<Example> examples() {
     return {{.quantities = {3.0},
              .coefficients = {2.0, 0.5},
-             .states = {2.0, 1.5},
-             .ports = {-1.5},
-             .drifts = {1.5, 30.0},
-             .source = "-2 x 0.5 x 1.5; 12 x 1/0.25 - 6 x 1.5/0.5"},
-            {.quantities = {1.0},
-             .coefficients = {-1.0, 2.0},
-             .states = {4.0, -0.25},
-             .t = 1.0,
-             .ports = {-0.5},
-             .drifts = {-0.25, -8.25},
-             .source = "by hand: 12 x -3/4 + 6 x 0.25/2"}};
+             .t = 2.0,
+             .ports = {-1.0},
+             .source = "by hand: 2 x (2.5 - 3), half way between 2 at 1 s and 3 at 2 s",
+             .past_times = {0.0, 1.0, 2.0},
+             .past_values = {1.0, 2.0, 3.0}},
+            {.quantities = {4.0},
+             .coefficients = {-1.0, 2.25},
+             .t = 3.0,
+             .ports = {3.25},
+             .source = "by hand: -(0.75 - 4), a quarter before 1 s on the line from 0 to 1",
+             .past_times = {0.0, 1.0, 3.0},
+             .past_values = {0.0, 1.0, 4.0}}};
   }
 };
 

@@ -112,7 +112,7 @@ RowMatrix run_truth(CoverageFlight& flight, const std::vector<double>& start, do
   for (const auto& input : flight.truth.system->spec().inputs) s.inputs.push_back({input.name, input.unit, still});
   Stepper stepper(flight.truth);
   Segment run;
-  run_randomly({stepper, s, input_table(s, flight.truth.inputs())}, start.data(), dice.random, run);
+  run_randomly({stepper, s, input_table(s, flight.truth)}, start.data(), dice.random, run);
   if (!run.finite) return {};
   s.t.erase(s.t.begin(), s.t.begin() + ahead);
   for (auto& input : s.inputs) input.values.resize(s.t.size());

@@ -169,7 +169,7 @@ Signals fly(const Model& model, double seconds, Dice& dice) {
   x[0] = std::sin(eta) * std::sin(phi);
   x[1] = std::sin(eta) * std::cos(phi);
   Segment run;
-  run_randomly({stepper, s, input_table(s, 0)}, x.data(), dice.random, run);
+  run_randomly({stepper, s, input_table(s, model)}, x.data(), dice.random, run);
   if (!run.finite) throw std::runtime_error("the simulated motion is not finite");
   std::normal_distribution<double> normal;
   s.t.erase(s.t.begin(), s.t.begin() + before);

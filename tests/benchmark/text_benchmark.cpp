@@ -41,7 +41,7 @@ struct World {
       signals.inputs[0].values.push_back(0.8 * signals.t.back());
       signals.inputs[1].values.push_back(0.8);
     }
-    inputs = input_table(signals, 2);
+    inputs = input_table(signals, in_cpp);
   }
 };
 

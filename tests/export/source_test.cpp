@@ -59,7 +59,7 @@ void scatter(Model& model, std::mt19937_64& random) {
 Questions questions_of(const Model& model, std::mt19937_64& random, int count = 200) {
   Questions ask;
   ask.states = model.states();
-  ask.inputs = model.inputs();
+  ask.inputs = model.inputs() + int_size(model.late_inputs());
   ask.outputs = model.outputs();
   ask.sample_time = Evaluator(model).shifts_time();
   for (int i = 0; i < count; ++i) {
@@ -71,14 +71,25 @@ Questions questions_of(const Model& model, std::mt19937_64& random, int count = 
   return ask;
 }
 
+/// A record in which every input has always been what the exported code is given as its late value, behind the inputs `u`.
+RecordedInputs always_late(const Model& model, const double* u) {
+  RecordedInputs out{{0.0}, std::vector<Hold>(static_cast<std::size_t>(model.inputs()), Hold::first_order), {}};
+  out.values.assign(out.stride(), 0.0);
+  const std::vector<LateInputUse> late = model.late_inputs();
+  for (std::size_t i = 0; i < late.size(); ++i)
+    out.values[static_cast<std::size_t>(late[i].input)] = u[static_cast<std::size_t>(model.inputs()) + i];
+  return out;
+}
+
 std::vector<Row> evaluated(const Model& model, const Questions& ask) {
   Evaluator evaluator(model);
   std::vector<Row> rows;
   for (const Row& point : ask.points) {
     const double *x = point.data(), *u = x + ask.states, t = point.back();
     Row row(ask.states + ask.outputs + 1);
-    evaluator.rates(x, u, t, row.data());
-    evaluator.predict(x, u, t, row.data() + ask.states);
+    const RecordedInputs recorded = always_late(model, u);
+    evaluator.rates(x, {u, &recorded}, t, row.data());
+    evaluator.predict(x, {u, &recorded}, t, row.data() + ask.states);
     if (!ask.sample_time) row.pop_back();
     for (const Curve& curve : model.curves) {
       const CurvePoint at = curve.spline.at(point[0]);

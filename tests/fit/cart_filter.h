@@ -42,7 +42,7 @@ struct Cart {
       signals.measured[1].values.push_back(-0.9 * std::sin(3.0 * t) + 0.08 * normal(random));
     }
     data.signals = &signals;
-    data.inputs = input_table(signals, 1);
+    data.inputs = input_table(signals, model.model);
     data.use.assign(2 * samples, SampleRole::counted);
     data.start = Eigen::VectorXd::Zero(model.model.states());
     data.start.head(2) << 0.3, 0.0;

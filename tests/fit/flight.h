@@ -38,7 +38,7 @@ inline Signals fly(double seconds, unsigned seed, const std::vector<EffectReques
   x[1] = 0.15;
   Stepper stepper(truth);
   Segment run;
-  run_randomly({stepper, s, input_table(s, 0)}, x.data(), random, run);
+  run_randomly({stepper, s, input_table(s, truth)}, x.data(), random, run);
   s.t.erase(s.t.begin(), s.t.begin() + before);
   for (Eigen::Index o = 0; o < 2; ++o) {
     Signal channel;

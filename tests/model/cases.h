@@ -153,6 +153,9 @@ inline std::vector<Case> cases() {
 struct Sample {
   std::vector<double> x, u;
   double t;
+  RecordedInputs recorded;  ///< from long before to long after
+
+  [[nodiscard]] InputsAt inputs() const { return {u.data(), &recorded}; }
 };
 inline std::vector<Sample> samples_of(const Model& model, int count) {
   std::mt19937 random(23);
@@ -161,12 +164,16 @@ inline std::vector<Sample> samples_of(const Model& model, int count) {
   const auto& states = model.system->spec().states;
   const bool spherical = states.size() == 4;
   for (int s = 0; s < count; ++s) {
-    Sample sample{{}, {}, 0.7 * s};
+    Sample sample{{}, {}, 0.7 * s, {}};
     for (int i = 0; i < model.states(); ++i) {
       const double size = spherical && i < 4 ? 1.5 * states[static_cast<std::size_t>(i)].scale : i == 1 ? 1.0 : 0.25;
       sample.x.push_back(s == 0 ? 0.0 : size * normal(random));
     }
     for (int i = 0; i < model.inputs(); ++i) sample.u.push_back(s == 0 ? 0.0 : normal(random));
+    sample.recorded = {{-100.0, 200.0}, std::vector<Hold>(sample.u.size(), Hold::first_order), {}};
+    for (const double end : {1.7, -2.3}) {
+      for (int i = 0; i < std::max(model.inputs(), 1); ++i) sample.recorded.values.push_back(end + 0.3 * i);
+    }
     samples.push_back(sample);
   }
   return samples;

@@ -20,12 +20,12 @@ class AssembledModel : public testing::TestWithParam<Case> {
 
   Eigen::VectorXd rates(const Sample& at) {
     Eigen::VectorXd dx(n_);
-    evaluator_.rates(at.x.data(), at.u.data(), at.t, dx.data());
+    evaluator_.rates(at.x.data(), at.inputs(), at.t, dx.data());
     return dx;
   }
   Eigen::VectorXd outputs(const Sample& at) {
     Eigen::VectorXd y(outputs_);
-    evaluator_.predict(at.x.data(), at.u.data(), at.t, y.data());
+    evaluator_.predict(at.x.data(), at.inputs(), at.t, y.data());
     return y;
   }
 
@@ -37,7 +37,7 @@ class AssembledModel : public testing::TestWithParam<Case> {
     const int n = evaluator.states();
     std::vector<double> rows(static_cast<std::size_t>(n) * kRowStride, std::nan(""));
     Linear l{Eigen::VectorXd(n), {}};
-    evaluator.linearise_rates({at.x.data(), at.u.data(), at.t}, slots, l.value.data(), rows.data());
+    evaluator.linearise_rates({at.x.data(), at.inputs(), at.t}, slots, l.value.data(), rows.data());
     l.D = dense(rows, n, n, slots, evaluator.columns());
     return l;
   }
@@ -45,7 +45,7 @@ class AssembledModel : public testing::TestWithParam<Case> {
     const int outputs = evaluator.outputs() + 1;
     std::vector<double> rows(static_cast<std::size_t>(outputs) * kRowStride, std::nan(""));
     Linear l{Eigen::VectorXd(outputs), {}};
-    evaluator.linearise_outputs({at.x.data(), at.u.data(), at.t}, slots, l.value.data(), rows.data());
+    evaluator.linearise_outputs({at.x.data(), at.inputs(), at.t}, slots, l.value.data(), rows.data());
     l.D = dense(rows, outputs, evaluator.states(), slots, evaluator.columns());
     return l;
   }

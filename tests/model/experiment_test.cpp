@@ -82,7 +82,9 @@ TEST(SignalsFrom, AnInputWithADelayIsSeenLater) {
   using Values = std::vector<double>;
   EXPECT_EQ(seen("delay = \"2 s\"").inputs[0].values, (Values{5.0, 5.0, 5.0, 7.0, 11.0}));
   EXPECT_EQ(seen("delay = \"500 ms\"").inputs[0].values, (Values{5.0, 6.0, 9.0, 12.0, 15.0})) << "between samples";
-  EXPECT_EQ(seen("delay = 0.5, hold = \"zero_order\"").inputs[0].values, (Values{5.0, 5.0, 7.0, 11.0, 13.0}));
+  EXPECT_EQ(seen("delay = 1.0, hold = \"zero_order\"").inputs[0].values, (Values{5.0, 5.0, 7.0, 11.0, 13.0}));
+  EXPECT_EQ(seen("delay = 0.25, hold = \"zero_order\"").inputs[0].values, (Values{5.0, 6.5, 10.0, 12.5, 16.0}))
+      << "its mean over an interval";
   EXPECT_EQ(seen("hold = \"zero_order\"").inputs[0].values, (Values{5.0, 7.0, 11.0, 13.0, 17.0}));
   EXPECT_EQ(seen("delay = 9.0").inputs[0].values, (Values{5.0, 5.0, 5.0, 5.0, 5.0})) << "longer than the record";
   const std::vector<std::string> notes = seen("delay = 2.0").notes;

@@ -19,13 +19,24 @@ struct Inputs {
   std::vector<double> row;
   std::size_t nq, nc, nz, nk;
   double t;
+  RecordedInputs past;
+  std::vector<int> input;  // of `past`: of it every quantity is the only one
 
   explicit Inputs(const Example& e)
-      : nq(e.quantities.size()), nc(e.coefficients.size()), nz(e.states.size()), nk(e.constants.size()), t(e.t) {
+      : nq(e.quantities.size()),
+        nc(e.coefficients.size()),
+        nz(e.states.size()),
+        nk(e.constants.size()),
+        t(e.t),
+        past(e.past()),
+        input(nq, 0) {
     for (const auto* part : {&e.quantities, &e.coefficients, &e.states, &e.constants}) row.insert(row.end(), part->begin(), part->end());
   }
-  [[nodiscard]] Reads<double, double> reads() const {
-    return {row.data(), row.data() + nq, row.data() + nq + nc, row.data() + nq + nc + nz, t};
+  /// Calls use(reads): what it reads lives as long as the call.
+  template <class Use>
+  void read(const Use& use) const {
+    const InputsAt now{row.data(), past.t.empty() ? nullptr : &past};
+    use(Reads<double, double>{row.data(), row.data() + nq, row.data() + nq + nc, row.data() + nq + nc + nz, t, {&now, input.data()}});
   }
 };
 
@@ -38,8 +49,14 @@ class EffectLaws : public testing::TestWithParam<std::string> {
 
   [[nodiscard]] Eigen::VectorXd outputs(const Inputs& in) const {
     Eigen::VectorXd out = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(outputs_), std::nan(""));
-    effect_.evaluate(in.reads(), out.data());
+    in.read([&](const auto& reads) { effect_.evaluate(reads, out.data()); });
     return out;
+  }
+
+  [[nodiscard]] double fastest_rate(const Inputs& in) const {
+    double rate = std::nan("");
+    in.read([&](const auto& reads) { rate = effect_.fastest_rate(reads, 1.0); });
+    return rate;
   }
 
   struct Linear {
@@ -50,7 +67,7 @@ class EffectLaws : public testing::TestWithParam<std::string> {
     const std::size_t width = in.row.size() - (constants_too ? 0 : in.nk);
     std::vector<double> J(std::max<std::size_t>(outputs_ * width, 1), std::nan(""));
     Linear l{Eigen::VectorXd::Constant(static_cast<Eigen::Index>(outputs_), std::nan("")), {}};
-    effect_.linearise(in.reads(), l.out.data(), J.data(), constants_too);
+    in.read([&](const auto& reads) { effect_.linearise(reads, l.out.data(), J.data(), constants_too); });
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     l.J = Eigen::Map<const Rows>(J.data(), static_cast<Eigen::Index>(outputs_), static_cast<Eigen::Index>(width));
     return l;
@@ -155,7 +172,7 @@ TEST_P(EffectLaws, EveryShapeOfACandidateIsScannedHeldOrBorrowed) {
   for (const auto& example : examples_) {
     std::vector<double> intensity(spec_.states.size() + 1, 0.0);
     const Inputs in(example);
-    effect_.diffusion(in.reads(), intensity.data());
+    in.read([&](const auto& reads) { effect_.diffusion(reads, intensity.data()); });
     for (double value : intensity) candidate = candidate && !(value > 0.0);
   }
   if (!candidate) return;
@@ -237,7 +254,7 @@ TEST_P(EffectLaws, IsFiniteWithFiniteDerivativesWhenAllQuantitiesAndStatesAreZer
     for (std::size_t i = 0; i < in.nz; ++i) in.row[in.nq + in.nc + i] = 0.0;
     EXPECT_TRUE(outputs(in).allFinite());
     EXPECT_TRUE(linear(in, true).J.allFinite());
-    EXPECT_TRUE(std::isfinite(effect_.fastest_rate(in.reads(), 1.0)));
+    EXPECT_TRUE(std::isfinite(fastest_rate(in)));
   }
 }
 
@@ -247,7 +264,7 @@ TEST_P(EffectLaws, IsFiniteAtItsDefaultsWhereEveryFitStarts) {
     for (std::size_t i = 0; i < in.nc; ++i) in.row[in.nq + i] = spec_.coefficients[i].value;
     EXPECT_TRUE(outputs(in).allFinite());
     EXPECT_TRUE(linear(in, true).J.allFinite());
-    EXPECT_GE(effect_.fastest_rate(in.reads(), 1.0), 0.0);
+    EXPECT_GE(fastest_rate(in), 0.0);
   }
 }
 
@@ -283,7 +300,7 @@ TEST_P(EffectLaws, DiffusionIsFiniteAndNotNegative) {
   for (const auto& example : examples_) {
     std::vector<double> intensity(spec_.states.size() + 1, 0.0);
     const Inputs in(example);
-    effect_.diffusion(in.reads(), intensity.data());
+    in.read([&](const auto& reads) { effect_.diffusion(reads, intensity.data()); });
     for (double value : intensity) EXPECT_TRUE(std::isfinite(value) && value >= 0.0);
   }
 }

@@ -44,7 +44,7 @@ TEST(DeclaredTank, EmptiesStaysEmptyAndFillsAgain) {
   const Model model = assemble(request_of("text"), *known);
   Stepper stepper(model);
   const Signals signals = filling();
-  const InputTable inputs = input_table(signals, 1);
+  const InputTable inputs = input_table(signals, model);
   const double x0 = 0.25;  // sqrt(x) falls by k1/2 per second: empty after 2 s
   const RowMatrix x = run_states({stepper, signals, inputs}, {0, 60, &x0});
   ASSERT_EQ(x.rows(), 60);
@@ -63,7 +63,7 @@ TEST(DeclaredTank, ForgetsWhereItCameFromOnceItWasEmpty) {
   Model model = assemble(request_of("text"), *known);
   Stepper stepper(model);
   const Signals signals = filling();
-  const InputTable inputs = input_table(signals, 1);
+  const InputTable inputs = input_table(signals, model);
   const double x0 = 0.25;
   Segment linear;
   run_segment({stepper, signals, inputs}, {0, 60, &x0, true}, linear);
@@ -89,7 +89,7 @@ TEST(DeclaredTank, WithoutARangeFailsInWords) {
   const Model model = assemble(request_of("text"), *known);
   Stepper stepper(model);
   const Signals signals = filling();
-  const InputTable inputs = input_table(signals, 1);
+  const InputTable inputs = input_table(signals, model);
   const double x0 = 0.25;
   Segment out;
   run_segment({stepper, signals, inputs}, {0, 60, &x0, true}, out);

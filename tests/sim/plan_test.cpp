@@ -159,7 +159,7 @@ class FreeRunOf : public testing::TestWithParam<World> {
     signals_.name = "made up";
     signals_.t = world_.t;
     if (!world_.input.empty()) signals_.inputs = {{"u", "-", world_.input, 0.0}};
-    inputs_ = input_table(signals_, model_.inputs());
+    inputs_ = input_table(signals_, model_);
   }
 
   RowMatrix run() { return run_states({stepper_, signals_, inputs_}, {0, signals_.samples(), world_.x0.data()}); }
@@ -217,7 +217,7 @@ TEST(IntegrationPlan, OfAMotionThatOneStepPerSampleFollowsIsOneStepPerSample) {
   Signals signals;
   signals.t = evenly(1.0 / 60.0, 200);
   signals.inputs = {{"phi", "rad", Vector(200, 0.3), 0.0}, {"phi_rate", "rad/s", Vector(200, 0.0), 0.0}};
-  InputTable inputs = input_table(signals, model.inputs());
+  InputTable inputs = input_table(signals, model);
   const Vector x0 = {0.2, 0.4};
   const RowMatrix before = run_states({stepper, signals, inputs}, {0, 200, x0.data()});
   inputs.plan = plan_along({stepper, signals, inputs}, before, kSearchTolerance);
@@ -232,7 +232,7 @@ TEST(IntegrationPlan, SaysWhereTwentyThousandStepsDoNotSuffice) {
   Signals signals;
   signals.t = {0.0, 1.0};
   const double x0 = 0.0;
-  const IntegrationPlan plan = plan_run({stepper, signals, input_table(signals, 0)}, &x0);
+  const IntegrationPlan plan = plan_run({stepper, signals, input_table(signals, model)}, &x0);
   EXPECT_THAT(plan.lack, AllOf(HasSubstr("at t = "), HasSubstr("state x"), HasSubstr("of its range")));
 }
 
@@ -245,7 +245,7 @@ TEST(IntegrationPlan, KeepsToAFastestRateThatTheSystemGives) {
     Signals signals;
     signals.t = {0.0, 0.1};
     const double x0 = 1.0;
-    const IntegrationPlan plan = plan_run({stepper, signals, input_table(signals, 0)}, &x0, kSearchTolerance);
+    const IntegrationPlan plan = plan_run({stepper, signals, input_table(signals, model)}, &x0, kSearchTolerance);
     EXPECT_GE(static_cast<double>(plan.parts.size()), std::min(0.1 * rate / kLargestProduct, 1000.0)) << rate;
   }
 }
@@ -269,7 +269,7 @@ TEST(IntegrationPlan, AtAFinerToleranceErrsByTheRatioAskedFor) {
   signals.t = duffing.t;
   signals.inputs = {{"u", "-", duffing.input, 0.0}};
   const RowMatrix exact = reference(duffing);
-  InputTable inputs = input_table(signals, 1);
+  InputTable inputs = input_table(signals, model);
   std::vector<double> errors;
   for (const double tolerance : {1e-6, 0.0}) {
     inputs.plan = plan_along({stepper, signals, inputs}, exact, tolerance > 0.0 ? tolerance : finer_tolerance({inputs.plan}, ratio));
@@ -287,7 +287,7 @@ TEST(IntegrationPlan, PartsBesideShortOnesAreAtMostTwiceAsLong) {
   Stepper stepper(model);
   Signals signals;
   signals.t = ball.t;
-  const InputTable inputs = input_table(signals, 0);
+  const InputTable inputs = input_table(signals, model);
   const RowMatrix exact = reference(ball);
   const IntegrationPlan plan = plan_along({stepper, signals, inputs}, exact, kSearchTolerance);
   double before = 1.0;

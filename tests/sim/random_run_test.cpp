@@ -35,7 +35,7 @@ RowMatrix pixels(const Model& m, const Signals& signals, unsigned seed) {
   std::mt19937_64 random(seed);
   const std::vector<double> x0(static_cast<std::size_t>(m.states()), 0.0);
   Segment out;
-  run_randomly({stepper, signals, input_table(signals, 0)}, x0.data(), random, out);
+  run_randomly({stepper, signals, input_table(signals, m)}, x0.data(), random, out);
   EXPECT_TRUE(out.finite);
   return out.y;
 }
@@ -75,7 +75,7 @@ TEST(RandomRun, GustsMoveTheAxisAsWhiteNoiseThroughTwoIntegrationsWould) {
     std::mt19937_64 random(static_cast<unsigned>(100 + run));
     const std::vector<double> x0(static_cast<std::size_t>(m.states()), 0.0);
     Segment out;
-    run_randomly({stepper, signals, input_table(signals, 0)}, x0.data(), random, out);
+    run_randomly({stepper, signals, input_table(signals, m)}, x0.data(), random, out);
     ASSERT_TRUE(out.finite);
     sum += out.end[2] * out.end[2] + out.end[3] * out.end[3];
   }
@@ -108,7 +108,7 @@ TEST(RandomRun, WithoutNoiseItIsTheTrajectory) {
   Signals signals = clock(120, 1.0 / 59.94);
   signals.inputs = {{"phi", "rad", std::vector<double>(120, 0.3), 0.0}, {"phi_rate", "rad/s", std::vector<double>(120, 0.0), 0.0}};
   for (std::size_t i = 0; i < 120; ++i) signals.inputs[1].values[i] = std::sin(0.1 * static_cast<double>(i));
-  const InputTable inputs = input_table(signals, 2);
+  const InputTable inputs = input_table(signals, m);
   const std::vector<double> x0 = {0.3, 0.1, 0.25};
   Stepper stepper(m);
   Segment exact, out;

@@ -17,7 +17,7 @@ class StepOf : public testing::TestWithParam<Case> {
   const std::vector<int> free_ = model_.free_parameters();
   const int n_ = model_.states(), columns_ = static_cast<int>(free_.size());
 
-  Interval interval(const Sample& from, const Sample& to, double h) const { return {from.t, from.t + h, from.u.data(), to.u.data()}; }
+  Interval interval(const Sample& from, const Sample& to, double h) const { return {from.t, from.t + h, from.inputs(), to.inputs()}; }
 
   Eigen::VectorXd stepped(std::vector<double> x, const Interval& over) {
     EXPECT_TRUE(stepper_.step(x.data(), over));

@@ -39,7 +39,7 @@ class SegmentOf : public testing::TestWithParam<Case> {
   const std::vector<int> free_ = model_.free_parameters();
   static constexpr std::size_t samples = 14, last = 12;
   const Signals signals_ = recording(model_, samples);
-  const InputTable inputs_ = input_table(signals_, model_.inputs());
+  const InputTable inputs_ = input_table(signals_, model_);
 
   Segment run(const std::vector<double>& x0, bool sensitivities) {
     Segment out;
@@ -125,7 +125,7 @@ TEST(TrajectoryTest, ANonFiniteStateIsReportedWithTheFirstSampleThatIsNotFinite)
   const Model model = Case{"", parachute(true)}.model();
   Signals signals = recording(model, 30);
   signals.inputs[1].values[17] = std::nan("");  // the step 16 → 17 meets it
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   Stepper stepper(model);
   const std::vector<double> x0 = start_of(model);
   for (bool sensitivities : {false, true}) {
@@ -143,7 +143,7 @@ TEST(TrajectoryTest, AnExplodingModelIsReportedNotReturned) {
   Model model = Case{"", parachute(false)}.model();
   set_line(model, "C_m_alphadot", 0.0, 45.0, 0.0);  // feeds in energy without bound
   const Signals signals = recording(model, 400);
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   Stepper stepper(model);
   Segment out;
   run_segment({stepper, signals, inputs}, {0, 400, start_of(model).data(), true}, out);
@@ -156,7 +156,7 @@ TEST(TrajectoryTest, AnExplodingModelIsReportedNotReturned) {
 TEST(TrajectoryTest, TheSameStepperGivesTheSameBitsTwice) {
   const Model model = Case{"", parachute(true, {effect("lag"), effect("coulomb_friction")})}.model();
   const Signals signals = recording(model, 20);
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   Stepper stepper(model);
   Segment once, twice;
   run_segment({stepper, signals, inputs}, {0, 20, start_of(model).data(), true}, once);
@@ -176,7 +176,7 @@ TEST(TrajectoryTest, AClockThatRunsAheadReadsTheMotionThatComesLater) {
     signals.inputs[0].values[i] = 0.7;
     signals.inputs[1].values[i] = 0.0;
   }
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   const std::vector<double> x0 = {0.3, 0.0};
   Segment now, later;
   Stepper on_time(model);
@@ -222,7 +222,7 @@ Frictions recovered_frictions(const std::string& dry, const Signals& signals, do
   request.parameters["C_m"].free = request.parameters["C_m_alphadot"].free = false;
   Model model = assemble(request, registry());
   set_parachute_curves(model);
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   const std::vector<int> free = model.free_parameters();  // friction, viscosity: the width is fixed unless a study frees it
   EXPECT_EQ(free.size(), 2U);
   const std::vector<double> x0 = {20.0 * degree, 0.0};
@@ -260,7 +260,7 @@ TEST(PredictAt, SeesTheShiftOfTheClock) {
   Model model = assemble(with_values(parachute(false, {effect("time_offset")}), {{"clock_offset", 0.02}}), registry());
   set_parachute_curves(model);
   const Signals signals = recording(model, 20);
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   const std::vector<double> x0 = {0.3, 0.1};
   Stepper stepper(model);
   Segment run;

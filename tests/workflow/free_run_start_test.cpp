@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "tests/workflow/text_study.h"
@@ -38,8 +40,7 @@ std::string recording() {
   return text;
 }
 
-TEST(AHeatedBlockWithALateSensor, IsFittedByTheFilterNotWorseThanByOutputError) {
-  testing_text_study::TextStudy study(R"toml([system]
+constexpr const char* heated_block = R"toml([system]
 doc = "a heated block"
 [states]
 T = { unit = "K", initial = "free" }
@@ -53,8 +54,10 @@ ambient = { unit = "K", value = 293.0, free = true }
 T = "(gain*u - (T - ambient))/tau"
 [outputs]
 T = { unit = "K", noise = 0.05 }
-)toml",
-                                      recording());
+)toml";
+
+TEST(AHeatedBlockWithALateSensor, IsFittedByTheFilterNotWorseThanByOutputError) {
+  testing_text_study::TextStudy study(heated_block, recording());
   const std::string late = "sensor_delay = {}";
   const Fit freely = study.fit("output_error", late), filtered = study.fit("filter_error", late);
   ASSERT_TRUE(freely.loglik && filtered.loglik) << freely.message << filtered.message;
@@ -63,6 +66,19 @@ T = { unit = "K", noise = 0.05 }
   EXPECT_NEAR(filtered.parameters.at("sensor_delay").value, delay, of_the_approximation);
   EXPECT_NEAR(filtered.parameters.at("tau").value, time_constant, 0.6);
   EXPECT_NEAR(filtered.parameters.at("gain").value, gain, 0.6);
+}
+
+TEST(AHeatedBlockWhoseHeaterActsLate, HasItsDelayWithinItsIntervalThoughTheHeaterJumps) {
+  testing_text_study::TextStudy study(heated_block, recording());
+  for (const char* method : {"output_error", "filter_error"}) {
+    const Fit fit = study.fit(method, "delay = { input = \"u\" }");
+    ASSERT_TRUE(fit.loglik) << fit.message;
+    for (const auto& [name, value] : std::map<std::string, double>{{"delay", delay}, {"tau", time_constant}, {"gain", gain}}) {
+      const Estimate& estimate = fit.parameters.at(name);
+      EXPECT_NEAR(estimate.value, value, 3.5 * estimate.sigma) << method << ", " << name << " ± " << estimate.sigma;
+      EXPECT_LT(estimate.sigma, 0.01 * value) << method << ", " << name;
+    }
+  }
 }
 
 /// A valve-controlled cylinder against a spring, its pressure measured 65 ms late; by Euler steps of half a millisecond.

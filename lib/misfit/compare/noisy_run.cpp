@@ -63,7 +63,7 @@ std::optional<Signals> noisy_run(const StochasticModel& model, const Signals& li
   for (std::size_t i = 0; i < model.start_sigma.size(); ++i) start[own + i] += model.start_sigma[i] * normal(random);
   Stepper stepper(*model.model);
   Segment run;
-  run_randomly({stepper, like, input_table(like, model.model->inputs())}, start.data(), random, run, model.intensity);
+  run_randomly({stepper, like, input_table(like, *model.model)}, start.data(), random, run, model.intensity);
   if (!run.finite) return std::nullopt;
   Signals out = like;
   for (std::size_t c = 0; c < out.measured.size(); ++c) {

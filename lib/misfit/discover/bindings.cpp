@@ -196,7 +196,7 @@ std::vector<double> sigmas_of_quantities(const FilterEstimate& estimate) {
     const Eigen::Index n = trace.n, columns = n + 2 * Eigen::Index{trace.ny};
     const std::size_t stride = std::max<std::size_t>((trace.samples - data.first) / samples, 1);
     for (std::size_t k = data.first; k < trace.samples; k += stride) {
-      const Point at{trace.predicted_at(k).data(), data.inputs.at(k), data.signals->t[k], parameters.data(), no_ports.data()};
+      const Point at{trace.predicted_at(k).data(), data.inputs.at(k).values, data.signals->t[k], parameters.data(), no_ports.data()};
       system.linearise_quantities(at, ~std::uint64_t{0}, q.data(), {slope.data(), nullptr, nullptr});
       const Eigen::Map<const RowMatrix> P(trace.P.data() + k * n * columns, n, columns);
       const Eigen::VectorXd variance = (slope * P.topLeftCorner(states, states) * slope.transpose()).diagonal();

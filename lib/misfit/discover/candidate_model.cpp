@@ -42,6 +42,10 @@ bool has_linear_memory(const Effect& effect) {
   return states > 0;
 }
 
+bool reads_the_past(const EffectSpec& effect) {
+  return std::any_of(effect.quantities.begin(), effect.quantities.end(), [](const Role& role) { return role.late_by[0] != '\0'; });
+}
+
 /// Does any of its examples change with the time of the recording?
 bool reads_time(const Effect& effect) {
   const std::size_t size = effect.spec().ports.size() + effect.spec().states.size();
@@ -170,7 +174,7 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
     if (q >= 0) out.quantities.push_back(q);
   }
   if (reads_time(*bound.effect)) out.quantities.push_back(kTime);
-  out.lags = has_linear_memory(*bound.effect);
+  out.lags = has_linear_memory(*bound.effect) || reads_the_past(effect.spec());
 }
 
 Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {

@@ -27,7 +27,7 @@ struct CandidateModel {
   std::vector<int> ports;  ///< dynamic ports it writes
   std::vector<std::string> port_names;
   std::vector<int> quantities;  ///< of the system that it reads; kTime for the time of the recording
-  bool lags = false;            ///< it has own states with linear dynamics: a lag, a delay
+  bool lags = false;            ///< it has own states with linear dynamics, or reads an input's past: a lag, a delay
 };
 
 /// Stands for the time of the recording among indices of quantities, as in diagnose/features.h.

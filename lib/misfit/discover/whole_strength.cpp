@@ -60,7 +60,7 @@ double gain_of_input(const FilterEstimate& estimate, const Model& model, int qua
     constexpr std::size_t samples = 100;  // of each experiment
     const std::size_t stride = std::max<std::size_t>((trace.samples - data.first) / samples, 1);
     for (std::size_t k = data.first; k < trace.samples; k += stride)
-      gains.push_back(gain.at(trace.filtered(k), data.inputs.at(k), data.signals->t[k]));
+      gains.push_back(gain.at(trace.filtered(k), data.inputs.at(k).values, data.signals->t[k]));
   }
   std::erase_if(gains, [](double g) { return !std::isfinite(g); });
   return gains.empty() ? 0.0 : median(gains);

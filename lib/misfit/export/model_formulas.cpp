@@ -22,7 +22,8 @@ class Builder {
  public:
   explicit Builder(const Model& model) : model_(model), system_(*model.system) {
     out_.states = model.states();
-    out_.inputs = model.inputs();
+    out_.late = model.late_inputs();
+    out_.inputs = model.inputs() + int_size(out_.late);
     out_.parameters = int_size(model.parameters);
   }
 
@@ -124,8 +125,19 @@ class Builder {
     const int time = out_.graph.leaf(out_.time());
     return trace(bound.ports.size() + z.size(), [&](Symbol* out) {
       const Symbols reads_q = symbols_of(q), reads_c = symbols_of(c), reads_z = symbols_of(z), reads_k = symbols_of(k);
-      static_cast<void>(bound.effect->trace({reads_q.data(), reads_c.data(), reads_z.data(), reads_k.data(), Symbol::of_node(time)}, out));
+      const Symbols late = late_or_now(bound, reads_q);
+      static_cast<void>(bound.effect->trace(
+          {reads_q.data(), reads_c.data(), reads_z.data(), reads_k.data(), Symbol::of_node(time), {nullptr, nullptr, late.data()}}, out));
     });
+  }
+
+  /// Of what an effect reads: the input that stands for its past, else what it is.
+  Symbols late_or_now(const BoundEffect& bound, Symbols out) {
+    for (int i = 0; i < int_size(out_.late); ++i) {
+      const LateInputUse& use = out_.late[i];
+      if (&model_.effects[use.effect] == &bound) out[use.quantity] = Symbol::of_node(out_.graph.leaf(out_.input(model_.inputs() + i)));
+    }
+    return out;
   }
 
   int curve_leaf(int curve) {

@@ -17,6 +17,7 @@ struct ModelFormulas {
   };
   formula::Graph graph;
   int states = 0, inputs = 0, parameters = 0;
+  std::vector<LateInputUse> late;    ///< each is an input more, behind those of the system
   std::vector<CurveUse> curve_uses;  ///< leaf first_curve() + i
   std::vector<int> rates, outputs;   ///< nodes
   int sample_time = -1;              ///< node of the shift of the time at which the outputs are taken [s]; -1: none

@@ -67,6 +67,12 @@ std::vector<std::string> signature_lines(const SourceParts& parts, const Model& 
                               in_unit(model.own_state_names[i], model.own_state_units[i]), number_text(model.own_states[i].initial)));
   for (int i = 0; i < int_size(spec.inputs); ++i)
     out.push_back(fmt::format("u[{}]  {}{}", i, in_unit(spec.inputs[i].name, spec.inputs[i].unit), held(spec.inputs[i])));
+  for (int i = 0; i < int_size(parts.formulas.late); ++i) {
+    const LateInputUse& late = parts.formulas.late[i];
+    out.push_back(fmt::format("u[{}]  {} as it was {} s ({}) earlier", int_size(spec.inputs) + i,
+                              in_unit(spec.inputs[late.input].name, spec.inputs[late.input].unit),
+                              number_text(model.parameters[late.delay].value), shown(model.parameters[late.delay].name)));
+  }
   for (int i = 0; i < int_size(spec.outputs); ++i)
     out.push_back(fmt::format("y[{}]  {}", i, in_unit(spec.outputs[i].name, spec.outputs[i].unit)));
   out.emplace_back("t     time of the recording [s]");

@@ -134,7 +134,7 @@ class CurveBands {
 
 RowMatrix visited_quantities(const Model& model, const Signals& signals, const ReconstructedStates& states) {
   Evaluator evaluator(model);
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   const Eigen::Index count = std::count(states.ok.begin(), states.ok.end(), true);
   RowMatrix out(count, model.system->spec().quantities.size());
   Eigen::Index row = 0;
@@ -254,11 +254,6 @@ void keep_plain_sigmas(Fit& fit) {
 
 namespace {
 
-struct Instant {
-  const double *x, *u;  ///< state, inputs
-  double t;
-};
-
 /// What a unit of the static curve does to the rates at one state.
 class GainOfCurve {
  public:
@@ -293,7 +288,7 @@ class GainOfCurve {
 
 }  // namespace
 
-std::vector<std::string> scale_uncertainties(const Model& model, const double* x, const double* u, double t) {
+std::vector<std::string> scale_uncertainties(const Model& model, const double* x, const InputsAt& u, double t) {
   constexpr double min_share = 1e-3;
   std::vector<std::string> out;
   const Curve* curve = model.find_curve(model.system->spec().static_curve);

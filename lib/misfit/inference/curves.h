@@ -40,7 +40,7 @@ void keep_plain_sigmas(Fit& fit);
 /// What fixed constants of known uncertainty do to the scale of the static curve, in words: "C_m scales with … : m_a = 0.294 ± 0.033 kg
 /// alone makes it uncertain by 6.6 %". From the change of the gain of the curve in the equation of motion by one sigma of each constant, at
 /// the state `x`. Empty if nothing is uncertain.
-[[nodiscard]] std::vector<std::string> scale_uncertainties(const Model& model, const double* x, const double* u, double t);
+[[nodiscard]] std::vector<std::string> scale_uncertainties(const Model& model, const double* x, const InputsAt& u, double t);
 
 /// Marks a curve, and every derived curve that contains it, as something the method cannot give.
 void mark_not_informative(const Model& model, const std::string& curve, const std::string& why, Fit& fit);

@@ -18,7 +18,7 @@ constexpr std::size_t fewest_samples = 5;
 /// The model's fastest rate over the samples at which its states are known; 0 if it says nothing.
 double rate_of_model(const Model& model, const Signals& signals, const ReconstructedStates& states) {
   Evaluator evaluator(model);
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   constexpr std::size_t evaluated_samples = 20;
   const std::size_t stride = std::max<std::size_t>(1, signals.samples() / evaluated_samples);
   double fastest = 0.0;

@@ -154,7 +154,8 @@ Eigen::VectorXd regressors(const Recording& recording, Eigen::Index sample) {
     out.push_back(states.x(sample, j));
     out.push_back(states.dx(sample, j));
   }
-  for (int u = 0; u < inputs.inputs; ++u) out.push_back(inputs.at(sample)[u]);
+  const std::size_t i = sample, stride = inputs.recorded.stride();
+  for (std::size_t u = 0; u < inputs.recorded.hold.size(); ++u) out.push_back(inputs.recorded.values[i * stride + u]);
   return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
 }
 
@@ -208,7 +209,7 @@ OwnStates own_states_along(const Model& model, const Signals& signals, const Rec
   OwnStates out{RowMatrix::Zero(states.x.rows(), own), Eigen::VectorXd::Zero(own), Eigen::VectorXd::Zero(own),
                 Eigen::MatrixXd::Zero(own, model.system_states())};
   if (own == 0 || states.x.rows() == 0) return out;
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   const Recording recording{model, signals, states, inputs};
   Along along(recording);
   out.start = along.at_rest();

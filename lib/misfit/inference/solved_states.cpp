@@ -27,11 +27,7 @@ double spread_of(const std::vector<double>& values) {
 class OutputSolver {
  public:
   OutputSolver(const Model& model, const Signals& signals, const std::vector<bool>& shown)
-      : model_(model),
-        spec_(model.system->spec()),
-        signals_(signals),
-        inputs_(input_table(signals, model.inputs())),
-        constants_(model.values()) {
+      : model_(model), spec_(model.system->spec()), signals_(signals), inputs_(input_table(signals, model)), constants_(model.values()) {
     for (std::size_t j = 0; j < spec_.states.size(); ++j) start_[j] = start_of(model.state_specs[j]);
     for (const Signal& channel : signals.measured) weight_.push_back(1.0 / std::max(spread_of(channel.values), 1e-300));
     for (std::size_t j = 0; j < spec_.states.size(); ++j) {
@@ -71,7 +67,7 @@ class OutputSolver {
   [[nodiscard]] Linear linearise(std::size_t i, const States& x) const {
     std::array<double, kMaxOutputs> y{};
     std::array<double, std::size_t{kMaxOutputs} * kMaxStates> slope{};
-    model_.system->linearise_outputs({x.data(), inputs_.at(i), signals_.t[i], constants_.data()}, y.data(), slope.data(), nullptr);
+    model_.system->linearise_outputs({x.data(), inputs_.at(i).values, signals_.t[i], constants_.data()}, y.data(), slope.data(), nullptr);
     Linear out{Eigen::VectorXd(spec_.outputs.size()), Eigen::MatrixXd(spec_.outputs.size(), unknown_.size())};
     for (Eigen::Index o = 0; o < out.residual.size(); ++o) {
       out.residual[o] = weight_[o] * (signals_.measured[o].values[i] - y[o]);
@@ -87,7 +83,7 @@ class OutputSolver {
     for (const double beside : {0.0, 0.5, -0.5}) {
       States x = start_;
       for (std::size_t j = 0; j < spec_.states.size(); ++j) x[j] += beside * spec_.states[j].scale;
-      model_.system->linearise_outputs({x.data(), inputs_.at(0), signals_.t[0], constants_.data()}, y.data(), slope.data(), nullptr);
+      model_.system->linearise_outputs({x.data(), inputs_.at(0).values, signals_.t[0], constants_.data()}, y.data(), slope.data(), nullptr);
       for (std::size_t o = 0; o < spec_.outputs.size(); ++o) {
         const double by = slope[o * spec_.states.size() + state];
         if (std::isfinite(by) && by != 0.0) return true;

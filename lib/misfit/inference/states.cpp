@@ -138,7 +138,7 @@ void add_own_states(const Model& model, const Signals& signals, ReconstructedSta
   states.x.rightCols(static_cast<Eigen::Index>(model.own_states.size())) = own_states_along(model, signals, states).z;
 }
 
-void set_own_states_at_rest(const Model& model, const double* u, double t, Eigen::Ref<Eigen::VectorXd> at) {
+void set_own_states_at_rest(const Model& model, const InputsAt& u, double t, Eigen::Ref<Eigen::VectorXd> at) {
   constexpr double determined = 1e-9;  // reciprocal condition of a block
   const Eigen::Index system = model.system_states();
   for (std::size_t z = 0; z < model.own_states.size(); ++z) at[system + static_cast<Eigen::Index>(z)] = model.own_states[z].initial;

@@ -29,7 +29,7 @@ struct ReconstructedStates {
 /// Own states of effects at rest where the system's states, inputs and time are `at` (values of the model's states; own states are set):
 /// where their drift is 0, effect by effect, by one Newton step, which is exact for the linear memories (a lag at the level it follows).
 /// Those whose drift does not tell them (play inside its clearance) stay at their declared initial value.
-void set_own_states_at_rest(const Model& model, const double* u, double t, Eigen::Ref<Eigen::VectorXd> at);
+void set_own_states_at_rest(const Model& model, const InputsAt& u, double t, Eigen::Ref<Eigen::VectorXd> at);
 
 /// Fills the columns of own states: the memories of effects along the motion (own_states.h).
 void add_own_states(const Model& model, const Signals& signals, ReconstructedStates& states);

@@ -102,7 +102,17 @@ int Assembler::bind_quantity(const EffectRequest& request, const Role& role, Por
   }
   check_order(request.where, "effect '" + shown(request.name) + "'", target, index, kind);
   check_unit(request, role, "quantity '" + shown(target) + "'", unit_of_quantity(index));
+  if (role.late_by[0] != '\0') check_input(request, target);
   return index;
+}
+
+/// Only of inputs is the past known.
+void Assembler::check_input(const EffectRequest& request, const std::string& target) const {
+  if (index_of(system().inputs, target) >= 0) return;
+  std::vector<std::string> inputs;
+  for (const auto& input : system().inputs) inputs.push_back(input.name);
+  throw InputError(request.where, "effect '" + shown(request.name) + "' reads the past of an input, '" + shown(target) +
+                                      "' is none of system '" + system().key + "'" + suggest(target, inputs));
 }
 
 void Assembler::check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const {

@@ -74,6 +74,7 @@ class Assembler {
   int bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const;
   /// Effects on quantity ports read base quantities only; only effects on sensors read predicted outputs
   /// (lib/misfit/README.md, 4.1).
+  void check_input(const EffectRequest& request, const std::string& target) const;
   void check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const;
   int find_quantity(const std::string& name) const;
   std::vector<std::string> quantity_names() const;

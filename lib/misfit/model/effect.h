@@ -10,7 +10,8 @@
 // number behind value_of(…) for more than a comparison, `static constexpr bool traceable = false;` says so, and it is not exported.
 //
 // What this interface cannot express: forces that depend on accelerations (declare them as a change of `inertia`, a quantity port), jumps
-// of the state, and memory without a finite state (a pure delay: use own states that approximate it).
+// of the state, and memory without a finite state of anything but inputs, whose past is read by in.late(…) (a delayed state: use own
+// states that approximate it, as in models/generic/sensor_delay.cpp).
 
 #include <array>
 #include <cstddef>
@@ -26,6 +27,7 @@
 #include "misfit/math/scalar.h"
 #include "misfit/model/index_names.h"
 #include "misfit/model/limits.h"
+#include "misfit/model/recorded_inputs.h"
 
 namespace misfit {
 
@@ -49,6 +51,8 @@ struct Role {
   const char* completes = "";
   /// Of `displacement`: what drives may also be an input of the same unit, as for play between an actuator and what it moves.
   bool input_too = false;
+  /// Its past is read, by Reads::late(), as much earlier as this coefficient says: it must be an input of the system.
+  const char* late_by = "";
 };
 
 /// Where discovery looks for a shape before the refit refines it.
@@ -116,6 +120,11 @@ struct Example {
   double t = 0.0;
   std::vector<double> ports = {}, drifts = {};  ///< expected
   const char* source = "";
+  /// Where the past of an input is read (Role::late_by): how it ran, straight between these times.
+  std::vector<double> past_times = {}, past_values = {};
+
+  /// The past as recorded inputs of which number 0 is that input.
+  [[nodiscard]] RecordedInputs past() const { return {past_times, {Hold::first_order}, past_values}; }
 };
 
 /// Everything the outside may know of an effect; views of the static declarations of its struct.
@@ -132,6 +141,13 @@ struct EffectSpec {
   void set_texts(const std::array<const char*, 7>& texts);
 };
 
+/// Where the past of inputs is found.
+struct Past {
+  const InputsAt* inputs = nullptr;       ///< nullptr: they have always been as they are
+  const int* input = nullptr;             ///< of the system, by the effect's quantity
+  const formula::Symbol* late = nullptr;  ///< where formulas are read: what stands for it, by the effect's quantity
+};
+
 /// What a formula sees. K is double when constants are fixed, T when one of them is free.
 template <class T, class K>
 struct Reads {
@@ -140,6 +156,23 @@ struct Reads {
   const T* z;                                                           ///< own states, order of `states`
   const K* k;                                                           ///< constants, order of `constants`
   std::conditional_t<std::is_same_v<T, formula::Symbol>, T, double> t;  ///< [s]
+  Past past = {};
+
+  /// The input that a quantity is (Role::late_by) as it was `delay` ago [its unit]: recorded_inputs.h.
+  [[nodiscard]] T late(int quantity, const T& delay) const {
+    if constexpr (std::is_same_v<T, formula::Symbol>) {
+      return past.late == nullptr ? q[quantity] : past.late[quantity];
+    } else {
+      return late_number(quantity, delay);
+    }
+  }
+
+ private:
+  [[nodiscard]] T late_number(int quantity, const T& delay) const {
+    if (past.inputs == nullptr || past.inputs->record == nullptr) return q[quantity];
+    const LateInput then = late_input(*past.inputs, past.input[quantity], t, value_of(delay));
+    return T(then.value) + then.by_delay * (delay - T(value_of(delay)));
+  }
 };
 using SymbolReads = Reads<formula::Symbol, formula::Symbol>;
 
@@ -264,9 +297,9 @@ class EffectOf final : public Effect {
       const T* s = seeds.data();
       if constexpr (W > NQ + NC + NZ) {
         for (int i = 0; i < NK; ++i) seeds[NQ + NC + NZ + i] = T(in.k[i], NQ + NC + NZ + i);
-        call<T, T>({s, s + NQ, s + NQ + NC, s + NQ + NC + NZ, in.t}, results.data());
+        call<T, T>({s, s + NQ, s + NQ + NC, s + NQ + NC + NZ, in.t, in.past}, results.data());
       } else {
-        call<T, double>({s, s + NQ, s + NQ + NC, in.k, in.t}, results.data());
+        call<T, double>({s, s + NQ, s + NQ + NC, in.k, in.t, in.past}, results.data());
       }
       for (int o = 0; o < NO; ++o) {
         out[o] = results[o].a;

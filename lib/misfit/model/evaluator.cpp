@@ -141,7 +141,10 @@ void Evaluator::flatten_effect(const BoundEffect& bound) {
   const auto note = [&](int quantity) {
     if (quantity >= 0 && quantity < nq_) needed_ |= std::uint64_t{1} << quantity;
   };
-  for (std::size_t i = 0; i < bound.quantities.size(); ++i) note(use.quantity[i] = bound.quantities[i]);
+  for (std::size_t i = 0; i < bound.quantities.size(); ++i) {
+    note(use.quantity[i] = bound.quantities[i]);
+    use.input[i] = model_->input_of_quantity(bound.quantities[i]);
+  }
   std::copy(bound.ports.begin(), bound.ports.end(), use.port.begin());
   std::copy(bound.constants.begin(), bound.constants.end(), use.constant.begin());
   for (std::size_t i = 0; i < bound.coefficients.size(); ++i) {
@@ -187,7 +190,7 @@ void Evaluator::gather(const Use& use, const double* own, double* values) const 
 }
 
 Reads<double, double> Evaluator::reads(const Use& use, const double* values, double t) const {
-  return {values, values + use.nq, values + use.nq + use.nc, values + use.nq + use.nc + use.nz, t};
+  return {values, values + use.nq, values + use.nq + use.nc, values + use.nq + use.nc + use.nz, t, {&inputs_, use.input.data()}};
 }
 
 void Evaluator::add_value(const Use& use, const Point& at, double* targets, double* drifts) {
@@ -212,7 +215,7 @@ void Evaluator::base_and_derived(const Point& at) {
   system_->quantities(at, needed_, q_.data());
 }
 
-void Evaluator::rates(const double* x, const double* u, double t, double* dx) {
+void Evaluator::rates(const double* x, const InputsAt& u, double t, double* dx) {
   const Point at = point({x, u, t});
   base_and_derived(at);
   std::fill(F_.begin(), F_.begin() + nf_, 0.0);
@@ -235,7 +238,7 @@ void Evaluator::own_drifts(const Point& at, double* drifts) {
   }
 }
 
-void Evaluator::predict(const double* x, const double* u, double t, double* y) {
+void Evaluator::predict(const double* x, const InputsAt& u, double t, double* y) {
   const Point at = point({x, u, t});
   system_->outputs(at, y);
   y[ny_] = 0.0;
@@ -246,7 +249,7 @@ void Evaluator::predict(const double* x, const double* u, double t, double* y) {
   for (const auto& use : sensor_) add_value(use, at, y, drifts.data());
 }
 
-void Evaluator::quantities(const double* x, const double* u, double t, double* q) {
+void Evaluator::quantities(const double* x, const InputsAt& u, double t, double* q) {
   const std::uint64_t needed = needed_;
   needed_ = ~std::uint64_t{0};
   const Point at = point({x, u, t});
@@ -270,7 +273,7 @@ double Evaluator::response_of(const Use& use, const Point& at) {
   return std::abs(response);
 }
 
-double Evaluator::fastest_rate(const double* x, const double* u, double t) {
+double Evaluator::fastest_rate(const double* x, const InputsAt& u, double t) {
   const Point at = point({x, u, t});
   base_and_derived(at);
   system_->outputs(at, q_.data() + nq_);
@@ -286,13 +289,13 @@ double Evaluator::fastest_rate(const double* x, const double* u, double t) {
   return fastest;
 }
 
-std::string Evaluator::explain(const double* x, const double* u, double t) {
+std::string Evaluator::explain(const double* x, const InputsAt& u, double t) {
   std::array<double, kMaxStates> dx{};
   rates(x, u, t, dx.data());
   return system_->explain(point({x, u, t}), F_.data());
 }
 
-void Evaluator::diffusion(const double* x, const double* u, double t, double* intensity) {
+void Evaluator::diffusion(const double* x, const InputsAt& u, double t, double* intensity) {
   const Point at = point({x, u, t});
   base_and_derived(at);
   system_->outputs(at, q_.data() + nq_);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "misfit/model/model.h"
+#include "misfit/model/recorded_inputs.h"
 
 namespace misfit {
 
@@ -53,7 +54,7 @@ struct SlotRows {
 /// State, inputs and time at which a model is evaluated.
 struct Instant {
   const double* x;
-  const double* u;
+  InputsAt u;
   double t;
 };
 
@@ -74,7 +75,7 @@ class Evaluator {
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] bool shifts_time() const { return shifts_time_; }  ///< some effect writes `sample_time`
 
-  void rates(const double* x, const double* u, double t, double* dx);
+  void rates(const double* x, const InputsAt& u, double t, double* dx);
   /// dx and its derivative rows D[i·kRowStride + …] for i < states(): ∂/∂x, then ∂/∂(slot). New slots may be added.
   void linearise_rates(const Instant& instant, Slots& slots, double* dx, double* D);
   /// The same for the inner loop: D gets the columns ∂/∂x only, and B the (few) derivatives by slots. False, with nothing done, where the
@@ -92,24 +93,25 @@ class Evaluator {
   [[nodiscard]] int observed(int o) const { return observed_[o]; }
 
   /// y and, last, the shift of the sample time [s] (outputs() + 1 values).
-  void predict(const double* x, const double* u, double t, double* y);
+  void predict(const double* x, const InputsAt& u, double t, double* y);
   /// The same with derivative rows for each of the outputs() + 1 values.
   void linearise_outputs(const Instant& instant, Slots& slots, double* y, double* D);
 
   /// Fastest rate of the system and its effects at this state, jumps at their steepest [1/s].
-  [[nodiscard]] double fastest_rate(const double* x, const double* u, double t);
+  [[nodiscard]] double fastest_rate(const double* x, const InputsAt& u, double t);
   /// Why rates() is not finite at this state, in words: see System::explain(). Empty if it is not known.
-  [[nodiscard]] std::string explain(const double* x, const double* u, double t);
+  [[nodiscard]] std::string explain(const double* x, const InputsAt& u, double t);
   /// Noise intensity of each own state [unit/sqrt(s)] (states() − the system's, in their order); zeros for deterministic memory.
-  void diffusion(const double* x, const double* u, double t, double* intensity);
+  void diffusion(const double* x, const InputsAt& u, double t, double* intensity);
   /// Value of every quantity at a state (for maps, figures and simulated tables).
-  void quantities(const double* x, const double* u, double t, double* q);
+  void quantities(const double* x, const InputsAt& u, double t, double* q);
 
  private:
   struct Use {  // one bound effect, flattened
     const Effect* effect;
     int width, outputs, ports, nq, nc, nz, nk, first_state;
     std::array<int, kMaxWidth> quantity, port, constant, parameter, curve;
+    std::array<int, kMaxWidth> input;  // of the system, by the quantity that is it; -1: a quantity that is none
   };
   void flatten();
   void flatten_effect(const BoundEffect& bound);
@@ -126,7 +128,10 @@ class Evaluator {
   struct Targets {  // to which an effect adds: ports, and the drifts of its own states, with rows of kRowStride
     double *ports, *rows, *drifts, *drift_rows;
   };
-  [[nodiscard]] Point point(const Instant& at) const { return {at.x, at.u, at.t, p_.data(), P_.data()}; }
+  [[nodiscard]] Point point(const Instant& at) {
+    inputs_ = at.u;
+    return {at.x, at.u.values, at.t, p_.data(), P_.data()};
+  }
   [[nodiscard]] const double* own_states(const Point& at) const { return at.x + nx_; }
   void add_value(const Use& use, const Point& at, double* targets, double* drifts);
   void linearise_effect(const Use& use, const Point& at, Linearisation& l) const;
@@ -144,6 +149,7 @@ class Evaluator {
     std::vector<Link> numbers, columns;    // place → parameter; those that are free coefficients: place → column
     std::vector<Link> constants;           // place → column of free constants that it reads
     std::vector<Link> outputs;             // place among the outputs → row of force_x_
+    std::array<int, kMaxWidth> input;      // Use::input
     std::vector<double> values;
   };
   struct CurveEntry {  // value times the four weights of a curve, at its four slots
@@ -186,6 +192,7 @@ class Evaluator {
   const System* system_;
   int n_, nx_, ny_, nf_, np_, nq_, nk_, columns_;
   std::uint64_t needed_ = 0;
+  InputsAt inputs_;  // of the last point()
   bool shifts_time_ = false, quantity_effects_ = false, free_constants_ = false, general_ = false;
   bool general_rates_ = false;                 // as general_, of the rates: constants of the sensor may be free
   bool constants_in_rates_ = false;            // some free constant acts on the rates

@@ -52,7 +52,7 @@ void Evaluator::evaluate_curves(Slots& slots) {
 /// Order of the numbers as in gather(): quantities, coefficients, own states, constants. A quantity that is absent stays 0.
 void Evaluator::plan_effect(const Use& use) {
   const int width = use.nq + use.nc + use.nz + (constants_in_rates_ ? use.nk : 0);
-  Plan plan{use.effect, width, use.nq, use.nc, use.nz, use.first_state, {}, {}, {}, {}, {}, {}, {}};
+  Plan plan{use.effect, width, use.nq, use.nc, use.nz, use.first_state, {}, {}, {}, {}, {}, {}, use.input, {}};
   plan.values.assign(use.nq + use.nc + use.nz + use.nk, 0.0);
   for (int i = 0; i < use.nq; ++i) {
     const int quantity = use.quantity[i];
@@ -98,7 +98,8 @@ void Evaluator::add_entries(Plan& plan, const Point& at, Slots& slots, double* d
   const double* coefficients = values + plan.nq;
   double* states = values + plan.nq + plan.nc;
   for (int i = 0; i < plan.nz; ++i) states[i] = own_states(at)[plan.first_state + i];
-  plan.effect->linearise({values, coefficients, states, states + plan.nz, at.t}, out.data(), J.data(), constants_in_rates_);
+  plan.effect->linearise({values, coefficients, states, states + plan.nz, at.t, {&inputs_, plan.input.data()}}, out.data(), J.data(),
+                         constants_in_rates_);
   for (const Link& output : plan.outputs) {
     const double value = out[output.place];
     if (output.other < nf_) {

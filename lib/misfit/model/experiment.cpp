@@ -11,21 +11,18 @@
 #include "misfit/data/log/time_base.h"
 #include "misfit/math/angle.h"
 #include "misfit/math/statistics.h"
+#include "misfit/model/recorded_inputs.h"
 
 namespace misfit {
 namespace {
 
-/// values(t − delay) at every t, the first value before the record; between samples as `hold` says.
+/// The input as it was `delay` earlier, at every sample; one that is held is held at its mean over the interval that follows.
 std::vector<double> delayed(const std::vector<double>& t, const std::vector<double>& values, double delay, Hold hold) {
+  const RecordedInputs recorded{t, {hold}, values};
   std::vector<double> out;
-  std::size_t k = 0;  // of the last sample not after t − delay
-  constexpr double relative_rounding = 1e-9;
-  for (const double now : t) {
-    const double then = now - delay;
-    while (k + 1 < t.size() && t[k + 1] <= then + relative_rounding * (t[k + 1] - t[k])) ++k;
-    const bool between = hold == Hold::first_order && k + 1 < t.size() && then > t[k];
-    const double share = between ? (then - t[k]) / (t[k + 1] - t[k]) : 0.0;
-    out.push_back(share > 0.0 ? values[k] + share * (values[k + 1] - values[k]) : values[k]);
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double end = hold == Hold::zero_order && i + 1 < t.size() ? t[i + 1] : t[i];
+    out.push_back(late_input({values.data(), &recorded, t[i], end}, 0, 0.5 * (t[i] + end), delay).value);
   }
   return out;
 }

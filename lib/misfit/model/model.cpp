@@ -11,6 +11,23 @@ std::string roughness_unit(const Curve& curve) {
   return bind_unit("{of} {of} {of}/{curve}/{curve}", {{"of", curve.of_unit}, {"curve", curve.unit}});
 }
 
+int Model::input_of_quantity(int quantity) const {
+  const SystemSpec& spec = system->spec();
+  return quantity < 0 || quantity >= int_size(spec.quantities) ? -1 : index_of(spec.inputs, spec.quantities[quantity].name);
+}
+
+std::vector<LateInputUse> Model::late_inputs() const {
+  std::vector<LateInputUse> out;
+  for (int e = 0; e < int_size(effects); ++e) {
+    const EffectSpec& spec = effects[e].effect->spec();
+    for (int q = 0; q < int_size(spec.quantities); ++q) {
+      const int delay = index_of(spec.coefficients, spec.quantities[q].late_by), input = input_of_quantity(effects[e].quantities[q]);
+      if (delay >= 0 && input >= 0) out.push_back({e, q, input, effects[e].coefficients[delay].parameter});
+    }
+  }
+  return out;
+}
+
 bool Model::noise_held() const {
   return std::all_of(known_noise.begin(), known_noise.end(), [](const KnownNoise& noise) { return noise.fixed; });
 }

@@ -116,6 +116,12 @@ struct KnownNoise {
   bool fixed = false;  ///< held in every fit; else a start
 };
 
+/// An input whose past an effect reads: Role::late_by.
+struct LateInputUse {
+  int effect = 0, quantity = 0;  ///< index into Model::effects; place among what it reads
+  int input = 0, delay = 0;      ///< of the system; parameter
+};
+
 /// A system, its effects and the parameter table. Sensor ports are the outputs, in order, then `sample_time`; predicted outputs can be read
 /// as quantities by effects on sensor ports: index = system's quantities + output.
 struct Model {
@@ -136,6 +142,8 @@ struct Model {
   [[nodiscard]] int states() const { return system_states() + int_size(own_states); }
   [[nodiscard]] int outputs() const { return int_size(system->spec().outputs); }
   [[nodiscard]] int inputs() const { return int_size(system->spec().inputs); }
+  [[nodiscard]] int input_of_quantity(int quantity) const;  ///< the input of its name; −1: it is none
+  [[nodiscard]] std::vector<LateInputUse> late_inputs() const;
   [[nodiscard]] bool noise_held() const;                   ///< of every output: nothing of it is estimated
   [[nodiscard]] std::vector<double> values() const;        ///< of all parameters
   [[nodiscard]] std::vector<int> free_parameters() const;  ///< index into `parameters` of each column

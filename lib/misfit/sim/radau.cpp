@@ -28,7 +28,7 @@ RadauStep::RadauStep(Evaluator& evaluator)
 
 /// f and its derivatives at a stage, into f_ and L_.
 void RadauStep::linearise_stage(std::size_t stage, const RadauInputs& at, Slots& slots) {
-  evaluator_->linearise_rates({Y_.data() + stage * n_, at.u[stage].data(), at.t[stage]}, slots, f_.data() + stage * n_,
+  evaluator_->linearise_rates({Y_.data() + stage * n_, at.u[stage], at.t[stage]}, slots, f_.data() + stage * n_,
                               L_.data() + stage * n_ * stride);
 }
 

@@ -13,7 +13,8 @@ namespace misfit {
 /// Time and inputs at the three stages of a step.
 struct RadauInputs {
   std::array<double, 3> t{};
-  std::array<std::array<double, kMaxInputs>, 3> u{};
+  std::array<InputsAt, 3> u{};  ///< of `values`
+  std::array<std::array<double, kMaxInputs>, 3> values{};
 };
 
 /// One step of Radau IIA with three stages [HW]: implicit, order 5 (stiff systems: not less than 3), L-stable. For parts of an interval on

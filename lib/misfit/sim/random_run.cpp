@@ -13,7 +13,8 @@ namespace {
 void inputs_at(const Model& model, const Interval& within, double fraction, double* u) {
   const auto& specs = model.system->spec().inputs;
   for (std::size_t i = 0; i < specs.size(); ++i)
-    u[i] = specs[i].hold == Hold::zero_order ? within.u0[i] : within.u0[i] + fraction * (within.u1[i] - within.u0[i]);
+    u[i] = specs[i].hold == Hold::zero_order ? within.u0.values[i]
+                                             : within.u0.values[i] + fraction * (within.u1.values[i] - within.u0.values[i]);
 }
 
 /// One realisation in progress.
@@ -35,7 +36,9 @@ class RandomRun {
       inputs_at(model_, whole, part / parts, from.data());
       inputs_at(model_, whole, (part + 1.0) / parts, to.data());
       add_noise(x, 0.5 * h / parts);
-      if (!stepper_.step(x, {whole.t0 + h * part / parts, whole.t0 + h * (part + 1.0) / parts, from.data(), to.data()})) return false;
+      const RecordedInputs* record = whole.u0.record;
+      if (!stepper_.step(x, {whole.t0 + h * part / parts, whole.t0 + h * (part + 1.0) / parts, {from.data(), record}, {to.data(), record}}))
+        return false;
       add_noise(x, 0.5 * h / parts);
     }
     return true;
@@ -76,7 +79,7 @@ class RandomRun {
 
 }  // namespace
 
-bool has_random_states(Evaluator& evaluator, const double* x, const double* u, double t) {
+bool has_random_states(Evaluator& evaluator, const double* x, const InputsAt& u, double t) {
   std::array<double, kMaxStates> intensity{};
   evaluator.diffusion(x, u, t, intensity.data());
   return std::any_of(intensity.begin(), intensity.end(), [](double value) { return value > 0.0; });

@@ -8,7 +8,7 @@
 namespace misfit {
 
 /// Whether some effect of the model has a random own state (gusts, jitter) that is excited at this state.
-[[nodiscard]] bool has_random_states(Evaluator& evaluator, const double* x, const double* u, double t);
+[[nodiscard]] bool has_random_states(Evaluator& evaluator, const double* x, const InputsAt& u, double t);
 
 /// A realisation of a model with random own states, dz = drift dt + diffusion dW, over all samples of `signals`; y and finite are filled.
 /// Each interval is cut so that fastest rate × step < 0.1, and each part is stepped as: half of the noise, deterministic step map, half of

@@ -38,7 +38,7 @@ Stepper::Stepper(const Model& model) : evaluator_(model), n_(model.states()), nu
   sum_.assign(size, 0.0);
 }
 
-void Stepper::prepare(const double* x, const double* u, double t, double planned) {
+void Stepper::prepare(const double* x, const InputsAt& u, double t, double planned) {
   fastest_rate_ = evaluator_.fastest_rate(x, u, t);
   excess_ = std::max(fastest_rate_ - planned, 0.0);
   failure_.clear();
@@ -48,8 +48,8 @@ double Stepper::linearised_rate(const double* x, const Interval& interval, doubl
   std::array<double, kMaxInputs> u{};
   std::array<double, kMaxStates> dx{};
   Slots slots;
-  inputs_at(interval, fraction, u.data());
-  evaluator_.linearise_rates({x, u.data(), interval.t0 + fraction * (interval.t1 - interval.t0)}, slots, dx.data(), L_.data());
+  const InputsAt inputs = inputs_at(interval, fraction, u.data());
+  evaluator_.linearise_rates({x, inputs, interval.t0 + fraction * (interval.t1 - interval.t0)}, slots, dx.data(), L_.data());
   double fastest = 0.0;
   for (int i = 0; i < n_; ++i) {
     for (int j = i; j < n_; ++j) {
@@ -107,11 +107,13 @@ int Stepper::pieces_of(const Interval& interval, double from, const StepPart& pa
   return static_cast<int>(std::clamp(std::isfinite(wanted) ? wanted : 1.0, 1.0, most));
 }
 
-void Stepper::inputs_at(const Interval& interval, double fraction, double* u) const {
+InputsAt Stepper::inputs_at(const Interval& interval, double fraction, double* u) const {
+  const double *begin = interval.u0.values, *end = interval.u1.values;
   for (int i = 0; i < nu_; ++i) {
     const bool held = zero_order_[i];
-    u[i] = held ? interval.u0[i] : interval.u0[i] + fraction * (interval.u1[i] - interval.u0[i]);
+    u[i] = held ? begin[i] : begin[i] + fraction * (end[i] - begin[i]);
   }
+  return {u, interval.u0.record, interval.t0, interval.t1};
 }
 
 void Stepper::explicit_step(double* x, const Interval& interval, const Share& share) {
@@ -125,8 +127,8 @@ void Stepper::explicit_step(double* x, const Interval& interval, const Share& sh
       for (int i = 0; i < n_; ++i) stage[i] = x[i] + h * stage_at[s] * dx[i];
     }
     const double fraction = share.from + stage_at[s] * (share.to - share.from);
-    inputs_at(interval, fraction, u.data());
-    evaluator_.rates(stage.data(), u.data(), interval.t0 + fraction * (interval.t1 - interval.t0), dx.data());
+    const InputsAt inputs = inputs_at(interval, fraction, u.data());
+    evaluator_.rates(stage.data(), inputs, interval.t0 + fraction * (interval.t1 - interval.t0), dx.data());
     for (int i = 0; i < n_; ++i) sum[i] += h * stage_weight[s] * dx[i];
   }
   std::copy_n(sum.begin(), n_, x);
@@ -142,7 +144,7 @@ bool Stepper::implicit_step(const Interval& interval, const Share& share, const 
   for (std::size_t s = 0; s < at.t.size(); ++s) {
     const double fraction = share.from + RadauStep::stage_at[s] * length;
     at.t[s] = interval.t0 + fraction * (interval.t1 - interval.t0);
-    inputs_at(interval, fraction, at.u[s].data());
+    at.u[s] = inputs_at(interval, fraction, at.values[s].data());
   }
   return solve(*radau_, length * (interval.t1 - interval.t0), at);
 }
@@ -219,11 +221,11 @@ bool Stepper::explain_step(const double* x, const Interval& interval, const Shar
   for (const double weight : stage_at) {
     for (int i = 0; i < n_; ++i) stage[i] = x[i] + h * weight * dx[i];
     const double fraction = share.from + weight * (share.to - share.from), t = interval.t0 + fraction * (interval.t1 - interval.t0);
-    inputs_at(interval, fraction, u.data());
-    evaluator_.rates(stage.data(), u.data(), t, dx.data());
+    const InputsAt inputs = inputs_at(interval, fraction, u.data());
+    evaluator_.rates(stage.data(), inputs, t, dx.data());
     if (finite(stage.data()) && finite(dx.data())) continue;
     failure_ = "at t = " + format_value(t) + " s: ";
-    const std::string why = evaluator_.explain(stage.data(), u.data(), t);
+    const std::string why = evaluator_.explain(stage.data(), inputs, t);
     const auto& states = evaluator_.model().state_specs;
     for (std::size_t i = 0; why.empty() && i < states.size(); ++i)
       failure_ +=
@@ -280,20 +282,21 @@ void Stepper::substep_linear(double* x, const Interval& interval, const Share& s
   const double h = (to - from) * (interval.t1 - interval.t0);
   std::array<double, (N > 0 ? N : kMaxStates)> stage, sum, dx{};
   std::array<double, kMaxInputs> u;
+  InputsAt inputs;
   std::copy_n(x, n, stage.begin());
   std::copy_n(x, n, sum.begin());
   double* X = D;
   double* next = X_.data();
   for (std::size_t s = 0; s < stage_at.size(); ++s) {
     const double fraction = from + stage_at[s] * (to - from);
-    if (s == 0 || stage_at[s] != stage_at[s - 1]) inputs_at(interval, fraction, u.data());
+    if (s == 0 || stage_at[s] != stage_at[s - 1]) inputs = inputs_at(interval, fraction, u.data());
     if (s > 0) {
       for (int i = 0; i < n; ++i) stage[i] = x[i] + h * stage_at[s] * dx[i];
     }
     const int before = n + slots.count();
     const double t = interval.t0 + fraction * (interval.t1 - interval.t0);
-    const bool sparse = evaluator_.linearise_rates_sparsely({stage.data(), u.data(), t}, slots, dx.data(), L_.data());
-    if (!sparse) evaluator_.linearise_rates({stage.data(), u.data(), t}, slots, dx.data(), L_.data());
+    const bool sparse = evaluator_.linearise_rates_sparsely({stage.data(), inputs, t}, slots, dx.data(), L_.data());
+    if (!sparse) evaluator_.linearise_rates({stage.data(), inputs, t}, slots, dx.data(), L_.data());
     const int width = n + slots.count();
     if (width > before) {  // columns met for the first time: nothing of them has moved the state yet
       const auto clear = [&](double* rows) {

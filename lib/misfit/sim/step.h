@@ -16,8 +16,7 @@ namespace misfit {
 /// One sample interval: inputs at both ends, run between them as each input's Hold says.
 struct Interval {
   double t0 = 0.0, t1 = 0.0;  ///< [s]
-  const double* u0 = nullptr;
-  const double* u1 = nullptr;
+  InputsAt u0 = {}, u1 = {};
   std::span<const StepPart> parts = {};  ///< of a plan; empty: equal parts, rate of prepare() × part ≤ 0.5
   double rate = 0.0;                     ///< fastest rate for which `parts` were made [1/s]
 };
@@ -44,7 +43,7 @@ class Stepper {
   [[nodiscard]] int states() const { return n_; }
 
   /// To be called at the start of a trajectory and after parameters change. `planned`: rate there when the plan was made [1/s].
-  void prepare(const double* x, const double* u, double t, double planned = std::numeric_limits<double>::infinity());
+  void prepare(const double* x, const InputsAt& u, double t, double planned = std::numeric_limits<double>::infinity());
   [[nodiscard]] double fastest_rate() const { return fastest_rate_; }
   /// Of the equations linearised at x, a share into the interval: the largest |A_ii| and sqrt|A_ij A_ji| [1/s].
   [[nodiscard]] double linearised_rate(const double* x, const Interval& interval, double fraction);
@@ -75,7 +74,8 @@ class Stepper {
   template <class Advance>
   [[nodiscard]] bool for_each_part(const Interval& interval, const Advance& advance) const;
   [[nodiscard]] int pieces_of(const Interval& interval, double from, const StepPart& part) const;
-  void inputs_at(const Interval& interval, double fraction, double* u) const;
+  /// Inputs at a share of the interval: their values are in `u`.
+  InputsAt inputs_at(const Interval& interval, double fraction, double* u) const;
   void explicit_step(double* x, const Interval& interval, const Share& share);
   void explicit_step_linear(double* x, const Interval& interval, const Share& share, const SlotRows& by);
   template <class Solve>

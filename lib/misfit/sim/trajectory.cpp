@@ -172,16 +172,16 @@ bool predict_at(const Simulation& simulation, std::size_t i, const double* x, do
   return true;
 }
 
-InputTable input_table(const Signals& signals, int inputs) {
-  InputTable table;
-  table.inputs = inputs;
-  const std::size_t stride = inputs > 0 ? inputs : 1;
-  table.values.assign(signals.samples() * stride, 0.0);
-  for (int k = 0; k < std::min(int_size(signals.inputs), inputs); ++k) {
+InputTable input_table(const Signals& signals, const Model& model) {
+  RecordedInputs recorded{signals.t, {}, {}};
+  for (const InputSpec& input : model.system->spec().inputs) recorded.hold.push_back(input.hold);
+  const std::size_t stride = recorded.stride();
+  recorded.values.assign(signals.samples() * stride, 0.0);
+  for (std::size_t k = 0; k < std::min(signals.inputs.size(), recorded.hold.size()); ++k) {
     if (signals.inputs[k].values.size() != signals.samples()) continue;  // an input nobody needs
-    for (std::size_t i = 0; i < signals.samples(); ++i) table.values[i * stride + k] = signals.inputs[k].values[i];
+    for (std::size_t i = 0; i < signals.samples(); ++i) recorded.values[i * stride + k] = signals.inputs[k].values[i];
   }
-  return table;
+  return {std::move(recorded), {}};
 }
 
 void run_in_batches(const Simulation& simulation, const Stretch& stretch, Segment& out, const std::function<void(Segment&)>& take) {

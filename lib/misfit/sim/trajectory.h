@@ -12,12 +12,11 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 
 /// The inputs of an experiment, sample-major, for the stepper, and how it goes from sample to sample.
 struct InputTable {
-  int inputs = 0;
-  std::vector<double> values;  ///< samples × max(inputs, 1)
-  IntegrationPlan plan = {};   ///< none: parts as the fastest rate at the start of a trajectory asks (planner.h makes one)
-  [[nodiscard]] const double* at(std::size_t sample) const { return values.data() + sample * (inputs > 0 ? inputs : 1); }
+  RecordedInputs recorded;
+  IntegrationPlan plan = {};  ///< none: parts as the fastest rate at the start of a trajectory asks (planner.h makes one)
+  [[nodiscard]] InputsAt at(std::size_t sample) const { return {recorded.values.data() + sample * recorded.stride(), &recorded}; }
 };
-[[nodiscard]] InputTable input_table(const Signals& signals, int inputs);
+[[nodiscard]] InputTable input_table(const Signals& signals, const Model& model);
 
 /// What is run: a model on the inputs of a recording. The parameters are those the stepper's evaluator holds.
 struct Simulation {

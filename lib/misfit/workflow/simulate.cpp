@@ -117,7 +117,7 @@ Case from_fit(Session& session) {
 
 Table simulate(const Case& c, const Session& session) {
   Stepper stepper(c.model);
-  InputTable inputs = input_table(c.signals, c.model.inputs());
+  InputTable inputs = input_table(c.signals, c.model);
   std::mt19937_64 random(session.study.seed);
   Segment run;
   if (has_random_states(stepper.evaluator(), c.initial.data(), inputs.at(0), c.signals.t.front())) {

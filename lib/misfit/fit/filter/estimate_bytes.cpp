@@ -49,9 +49,15 @@ void fields(Bytes& bytes, MaybeConst<IntegrationPlan> auto& data) {
 }
 
 template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<RecordedInputs> auto& data) {
+  auto& [t, hold, values] = data;
+  bytes(t, hold, values);
+}
+
+template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<InputTable> auto& data) {
-  auto& [inputs, values, plan] = data;
-  bytes(inputs, values, plan);
+  auto& [recorded, plan] = data;
+  bytes(recorded, plan);
 }
 
 /// All but the measurements and what is read from them.

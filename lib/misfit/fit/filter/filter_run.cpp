@@ -66,7 +66,7 @@ double departure_from_start(const ReconstructedStates& states, const Signals& si
 FilterData filter_data(const FilterModel& model, const Signals& signals, double integration, const IntegrationPlan* plan) {
   FilterData out;
   out.signals = &signals;
-  out.inputs = input_table(signals, model.model.inputs());
+  out.inputs = input_table(signals, model.model);
   const std::size_t ny = model.model.outputs();
   out.read = std::make_shared<const ReconstructedStates>(reconstruct_states(model.model, signals));
   const ReconstructedStates& states = *out.read;

@@ -102,7 +102,7 @@ SizedRecording sized_means(const FilterModel& model, const FilterData& data, std
   const Signals signals = averaged(*data.signals, count);
   FilterData means;
   means.signals = &signals;
-  means.inputs = input_table(signals, model.model.inputs());
+  means.inputs = input_table(signals, model.model);
   means.first = std::min(data.first / count, signals.samples() - 1);
   means.start = data.start;
   return sized(model, means);

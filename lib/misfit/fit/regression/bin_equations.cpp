@@ -117,7 +117,7 @@ ReconstructedStates stencil_states(const BinForm& form, const Signals& signals, 
 
 std::vector<BinEquation> bin_equations(const BinForm& form, const Signals& signals, const ReconstructedStates& states) {
   Evaluator evaluator(form.model);
-  const InputTable inputs = input_table(signals, form.model.inputs());
+  const InputTable inputs = input_table(signals, form.model);
   std::vector<double> dx(form.model.states()), quantities(form.model.system->spec().quantities.size());
   const auto with = [&](double static_value, double damping_value) {
     std::vector<double> values = form.model.values();

@@ -77,7 +77,7 @@ class Regressor {
   Regressor(const Model& model, const std::vector<Signals>& experiments) : experiments_(experiments) {
     for (const auto& experiment : experiments) {
       states_.push_back(reconstruct_states(model, experiment));
-      inputs_.push_back(input_table(experiment, model.inputs()));
+      inputs_.push_back(input_table(experiment, model));
       between_.push_back(between_steps(model, experiment));
     }
     rows_ = dynamic_states(model, states_.front().shown);
@@ -267,7 +267,7 @@ double describe_estimates(const Regressor& regressor, const Regression& regressi
 void add_remarks(const Regressor& regressor, const NormalEquations& sums, FittedModel& out) {
   const ReconstructedStates& states = regressor.states().front();
   const Signals& first = regressor.experiments().front();
-  const InputTable inputs = input_table(first, out.model.inputs());
+  const InputTable inputs = input_table(first, out.model);
   const std::size_t known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
   out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(known), first.t[known]);
   if (regressor.smeared()) {

@@ -393,7 +393,7 @@ class Estimator {
   void add_remarks(const Ending& end, const Eigen::MatrixXd& covariance, FittedModel& out) const {
     Fit& fit = out.fit;
     const Eigen::Index columns = out.model.theta().size();
-    const InputTable inputs = input_table(experiments_.front(), out.model.inputs());
+    const InputTable inputs = input_table(experiments_.front(), out.model);
     const std::vector<std::string> scales =
         scale_uncertainties(out.model, out.initial_states.front().data(), inputs.at(0), experiments_.front().t.front());
     fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());

@@ -20,7 +20,7 @@ Shooting::Shooting(Model model, const std::vector<Signals>& experiments, Shootin
       free_(model_.free_parameters()),
       values_(model_.values()),
       stepper_(std::make_unique<Stepper>(model_)) {
-  for (const auto& experiment : experiments) inputs_.push_back(input_table(experiment, model_.inputs()));
+  for (const auto& experiment : experiments) inputs_.push_back(input_table(experiment, model_));
   for (std::size_t e = 0; e < history_.size(); ++e) {
     RowMatrix& history = history_[e];
     for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {

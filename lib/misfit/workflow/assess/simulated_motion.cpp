@@ -53,7 +53,7 @@ std::vector<MotionPath> paths_of(const Model& model, const Signals& signals) {
   }
   if (places.empty()) return out;
   const ReconstructedStates states = reconstruct_states(model, signals);
-  const InputTable inputs = input_table(signals, model.inputs());
+  const InputTable inputs = input_table(signals, model);
   Evaluator evaluator(model);
   std::vector<double> q(spec.quantities.size());
   for (std::size_t i = 0; i < signals.samples(); ++i) {

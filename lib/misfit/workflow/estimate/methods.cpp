@@ -17,7 +17,7 @@ void add_scale(const Prepared& form, Fit& fit) {
   const ReconstructedStates states = reconstruct_states(form.model, signals);
   const std::ptrdiff_t sample = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
   if (sample == std::ssize(states.ok)) return;
-  const InputTable inputs = input_table(signals, form.model.inputs());
+  const InputTable inputs = input_table(signals, form.model);
   const auto scales = scale_uncertainties(form.model, states.x.row(sample).data(), inputs.at(sample), signals.t[sample]);
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
 }
