@@ -189,6 +189,40 @@ TEST(ColouredCovariance, SeveralExperimentsShareTheirCorrelation) {
   EXPECT_NEAR(own, 1.0, 0.15);
 }
 
+/// Two channels of one constant and slope, 5 and 95 % of the rows, never together; the noise of the slow one has memory from one of its
+/// own samples to the next.
+TEST(ColouredCovariance, OfChannelsWithOwnClocksCountsLagsInTheirOwnSamples) {
+  constexpr Eigen::Index n = 16000, every = 20, slow = n / every;
+  constexpr int seeds = 40;
+  for (const double phi : {0.0, 0.6}) {
+    RowMatrix J = RowMatrix::Zero(2 * n, 2), own(slow, 2);
+    std::vector<bool> counts(2 * n, false);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Eigen::Index row = 2 * i + (i % every == 7 ? 1 : 0);
+      counts[static_cast<std::size_t>(row)] = true;
+      // The slow channel is five times as exact: what is known comes from both.
+      const double t = static_cast<double>(i) / n - 0.5, weight = row % 2 == 0 ? 1.0 : 5.0;
+      J.row(row) << weight, weight * t;
+      if (row % 2 == 1) own.row(i / every) = J.row(row);
+    }
+    const Eigen::MatrixXd plain = (J.transpose() * J).inverse(), slow_plain = (own.transpose() * own).inverse();
+    const Eigen::MatrixXd of_slow = slow_plain.inverse() * exact(own, slow_plain, phi, Eigen::MatrixXd::Zero(2, 2)) * slow_plain.inverse();
+    const Eigen::MatrixXd truth = plain * (J.transpose() * J - own.transpose() * own + of_slow) * plain;
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(2);
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+      std::mt19937_64 random(seed);
+      std::normal_distribution<double> normal;
+      const Eigen::VectorXd coloured = first_order(random, slow, phi);
+      Eigen::VectorXd y = Eigen::VectorXd::Constant(2 * n, std::nan(""));
+      for (Eigen::Index i = 0; i < n; ++i) y[2 * i + (i % every == 7 ? 1 : 0)] = i % every == 7 ? coloured[i / every] : normal(random);
+      const Regression regression = solved(J, y, Eigen::MatrixXd::Zero(2, 2), counts);
+      const ColouredCovariance found = coloured_covariance({regression.rows}, regression.plain, 2);
+      mean += found.covariance.diagonal().cwiseQuotient(truth.diagonal()) / seeds;
+    }
+    for (Eigen::Index c = 0; c < 2; ++c) EXPECT_NEAR(mean[c], 1.0, 0.12) << "correlation " << phi;
+  }
+}
+
 TEST(ColouredCovariance, IsPositiveForHardlyAnySamples) {
   for (const Eigen::Index n : {5, 9, 30}) {
     std::mt19937_64 random(3);

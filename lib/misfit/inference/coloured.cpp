@@ -223,9 +223,68 @@ class Sandwich {
   ColouredCovariance out_;
 };
 
+bool counts(const ResidualRows& e, Eigen::Index channels, Eigen::Index sample, Eigen::Index channel) {
+  return std::isfinite(e.r[sample * channels + channel]);
+}
+
+/// Some two channels are hardly ever measured at the same sample.
+bool have_own_clocks(const std::vector<ResidualRows>& experiments, Eigen::Index channels) {
+  constexpr double together = 0.5;  // of the measurements of the one that has fewer
+  Eigen::MatrixXd pairs = Eigen::MatrixXd::Zero(channels, channels);
+  for (const ResidualRows& e : experiments) {
+    Eigen::VectorXd mask(channels);
+    for (Eigen::Index i = 0; i < e.r.size() / channels; ++i) {
+      for (Eigen::Index a = 0; a < channels; ++a) mask[a] = counts(e, channels, i, a) ? 1.0 : 0.0;
+      pairs += mask * mask.transpose();
+    }
+  }
+  for (Eigen::Index a = 0; a < channels; ++a) {
+    for (Eigen::Index b = 0; b < a; ++b) {
+      const double fewer = std::min(pairs(a, a), pairs(b, b));
+      if (fewer > 0.0 && pairs(a, b) < together * fewer) return true;
+    }
+  }
+  return false;
+}
+
+/// The measurements of one channel, one after the other.
+std::vector<ResidualRows> of_channel(const std::vector<ResidualRows>& experiments, Eigen::Index channels, Eigen::Index channel) {
+  std::vector<ResidualRows> out;
+  for (const ResidualRows& e : experiments) {
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index i = 0; i < e.r.size() / channels; ++i) {
+      if (counts(e, channels, i, channel)) rows.push_back(i * channels + channel);
+    }
+    if (!rows.empty()) out.push_back({e.J(rows, Eigen::all), e.r(rows), e.place});
+  }
+  return out;
+}
+
+/// Each channel by itself, lags in its own samples; correlations between channels are not known.
+ColouredCovariance by_own_clocks(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels) {
+  ColouredCovariance out = white_covariance(plain, channels);
+  for (Eigen::Index a = 0; a < channels; ++a) {
+    const std::vector<ResidualRows> own = of_channel(experiments, channels, a);
+    double measurements = 0.0;
+    for (const ResidualRows& e : own) measurements += static_cast<double>(e.r.size());
+    if (own.empty()) continue;
+    const ColouredCovariance one = residual_covariance(own, plain, 1, measurements);
+    out.excess += one.excess;
+    out.squared_correlations[a] = one.squared_correlations[0];
+    out.degrees = std::min(out.degrees, one.degrees);
+    out.lags = std::max(out.lags, one.lags);
+    if (std::abs(one.largest_correlation) <= std::abs(out.largest_correlation)) continue;
+    out.largest_correlation = one.largest_correlation;
+    out.largest_lag = one.largest_lag;
+  }
+  out.covariance = plain + plain * out.excess * plain;
+  return out;
+}
+
 }  // namespace
 
 ColouredCovariance coloured_covariance(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels) {
+  if (channels > 1 && have_own_clocks(experiments, channels)) return by_own_clocks(experiments, plain, channels);
   return Sandwich(experiments, plain, channels).run();
 }
 

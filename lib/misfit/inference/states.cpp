@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "misfit/core/watch.h"
 #include "misfit/inference/own_states.h"
+#include "misfit/inference/slow_channel.h"
 #include "misfit/inference/solved_states.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/evaluator.h"
@@ -15,69 +17,70 @@
 namespace misfit {
 namespace {
 
-struct LocalFit {
-  double value, slope, curvature;  // of f, f', f''
-  bool ok = false;
-};
-
-struct Series {
-  const std::vector<double>&t, &y;
-  double h;  ///< usual step
-};
-
-/// Points within `reach` usual steps.
-LocalFit quadratic_within(const Series& series, std::size_t i, std::size_t reach) {
-  const auto& [t, y, h] = series;
-  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  int points = 0;
-  bool before = false, after = false;
-  const std::size_t from = i >= reach ? i - reach : 0, to = std::min(i + reach, t.size() - 1);
-  for (std::size_t k = from; k <= to; ++k) {
-    const double s = (t[k] - t[i]) / h;
-    if (!std::isfinite(y[k]) || std::abs(s) > static_cast<double>(reach) + 1.0) continue;
-    const Eigen::Vector3d a(1.0, s, s * s);
-    N += a * a.transpose();
-    b += a * y[k];
-    ++points;
-    before = before || k < i;
-    after = after || k > i;
-  }
-  if (points < 4 || !before || !after) return {};
-  const Eigen::Vector3d c = N.ldlt().solve(b);
-  return {c[0], c[1] / h, 2.0 * c[2] / (h * h), true};
+std::size_t measurements(const Signal& channel) {
+  return std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return std::isfinite(v); });
 }
 
-LocalFit local_quadratic(const Series& series, std::size_t i) {
-  constexpr std::size_t usual = 2, farthest = 4;
-  for (std::size_t reach = usual; reach <= farthest; ++reach) {
-    const LocalFit fit = quadratic_within(series, i, reach);
-    if (fit.ok) return fit;
-  }
-  return {};
+/// Of the channel that has fewest.
+std::size_t fewest_measurements(const Signals& signals) {
+  std::size_t out = signals.samples();
+  for (const Signal& channel : signals.measured) out = std::min(out, measurements(channel));
+  return out;
 }
 
-/// Fills state and rate from one series of values.
-void add_series(const std::vector<StateSpec>& states, int state, const Series& series, ReconstructedStates& out) {
-  int rate = -1;
-  for (std::size_t j = 0; j < states.size(); ++j) {
-    if (states[j].rate_of == state) rate = static_cast<int>(j);
+/// What shows the states: of several series of one state that of most measurements, the first of these.
+class ShownStates {
+ public:
+  ShownStates(const std::vector<StateSpec>& states, const std::vector<double>& t)
+      : states_(states), t_(t), series_(states.size()), measured_(states.size(), 0) {}
+
+  void add(int state, const std::vector<double>& values, std::size_t measured) {
+    if (series_[state] && measured <= measured_[state]) return;
+    series_[state] = values;
+    measured_[state] = measured;
   }
-  out.shown[state] = true;
-  if (rate >= 0) out.shown[rate] = true;
-  for (Eigen::Index i = 0; i < out.x.rows(); ++i) {
-    const LocalFit fit = local_quadratic(series, i);
-    if (!fit.ok) {
-      out.ok[i] = false;
-      continue;
+
+  /// Measured ones, and the rates of these that are not measured themselves.
+  [[nodiscard]] std::vector<bool> shown(std::size_t states) const {
+    std::vector<bool> out(states, false);
+    for (std::size_t j = 0; j < states_.size(); ++j) out[j] = series_[j] || (states_[j].rate_of >= 0 && series_[states_[j].rate_of]);
+    return out;
+  }
+
+  void fill(ReconstructedStates& out) const {
+    out.shown = shown(out.shown.size());
+    for (std::size_t j = 0; j < states_.size(); ++j) {
+      if (series_[j]) fill_from(static_cast<int>(j), *series_[j], out);
     }
-    out.x(i, state) = fit.value;
-    out.dx(i, state) = fit.slope;
-    if (rate < 0) continue;
-    out.x(i, rate) = fit.slope;
-    out.dx(i, rate) = fit.curvature;
   }
-}
+
+ private:
+  void fill_from(int state, const std::vector<double>& values, ReconstructedStates& out) const {
+    int rate = -1;
+    for (std::size_t j = 0; j < states_.size(); ++j) {
+      if (states_[j].rate_of == state && !series_[j]) rate = static_cast<int>(j);
+    }
+    const Series series{t_, values, usual_step(t_)};
+    const std::optional<SlowChannel> slow = SlowChannel::of(t_, values);
+    for (Eigen::Index i = 0; i < out.x.rows(); ++i) {
+      const LocalFit fit = slow ? slow->at(t_[i]) : local_quadratic(series, i);
+      if (!fit.ok) {
+        out.ok[i] = false;
+        continue;
+      }
+      out.x(i, state) = fit.value;
+      out.dx(i, state) = fit.slope;
+      if (rate < 0) continue;
+      out.x(i, rate) = fit.slope;
+      out.dx(i, rate) = fit.curvature;
+    }
+  }
+
+  const std::vector<StateSpec>& states_;
+  const std::vector<double>& t_;
+  std::vector<std::optional<std::vector<double>>> series_;
+  std::vector<std::size_t> measured_;
+};
 
 /// Values of the readable states at every sample; NaN where a channel is missing or has no such state.
 std::vector<std::vector<double>> read_all(const Model& model, const Signals& signals) {
@@ -99,6 +102,20 @@ std::vector<std::vector<double>> read_all(const Model& model, const Signals& sig
   return out;
 }
 
+/// See measurement_noise(); NaN where fewer than ten differences are known.
+double noise_of_neighbours(const std::vector<double>& values) {
+  static constexpr std::array<double, 6> weights = {-1.0, 5.0, -10.0, 10.0, -5.0, 1.0};
+  constexpr double gain_squared = 252.0;  // sum of squares of the weights
+  std::vector<double> differences;
+  for (std::size_t i = 0; i + weights.size() <= values.size(); ++i) {
+    double d = 0.0;
+    for (std::size_t k = 0; k < weights.size(); ++k) d += weights[k] * values[i + k];
+    if (std::isfinite(d)) differences.push_back(d);
+  }
+  if (differences.size() < 10) return std::numeric_limits<double>::quiet_NaN();
+  return mad_sigma(differences) / std::sqrt(gain_squared);
+}
+
 }  // namespace
 
 double start_of(const StateSpec& state) {
@@ -110,22 +127,24 @@ double start_of(const StateSpec& state) {
 ReconstructedStates reconstruct_states(const Model& model, const Signals& signals) {
   const auto& spec = model.system->spec();
   const Eigen::Index samples = signals.samples();
-  const double h = usual_step(signals.t);
   ReconstructedStates out;
   out.x = RowMatrix::Zero(samples, model.states());
   out.dx = RowMatrix::Zero(samples, model.states());
   out.ok.assign(signals.samples(), true);
   out.shown.assign(model.states(), false);
+  ShownStates states(spec.states, signals.t);
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     if (spec.outputs[o].observes >= 0 && o < signals.measured.size())
-      add_series(spec.states, spec.outputs[o].observes, {signals.t, signals.measured[o].values, h}, out);
+      states.add(spec.outputs[o].observes, signals.measured[o].values, measurements(signals.measured[o]));
   }
+  const Signals filled = with_slow_channels_filled(signals);
   if (!spec.readable_states.empty() && signals.measured.size() == spec.outputs.size()) {
-    const std::vector<std::vector<double>> values = read_all(model, signals);
-    for (std::size_t r = 0; r < values.size(); ++r) add_series(spec.states, spec.readable_states[r], {signals.t, values[r], h}, out);
+    const std::vector<std::vector<double>> values = read_all(model, filled);
+    for (std::size_t r = 0; r < values.size(); ++r) states.add(spec.readable_states[r], values[r], fewest_measurements(signals));
   }
-  const SolvedStates solved = solve_outputs(model, signals, out.shown);
-  for (std::size_t s = 0; s < solved.states.size(); ++s) add_series(spec.states, solved.states[s], {signals.t, solved.values[s], h}, out);
+  const SolvedStates solved = solve_outputs(model, filled, states.shown(out.shown.size()));
+  for (std::size_t s = 0; s < solved.states.size(); ++s) states.add(solved.states[s], solved.values[s], fewest_measurements(signals));
+  states.fill(out);
   for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
     if (!out.shown[j]) out.x.col(j).setConstant(start_of(model.state_specs[j]));
   }
@@ -179,16 +198,11 @@ double motion_frequency(const Model& model, const ReconstructedStates& states) {
 }
 
 double measurement_noise(const std::vector<double>& values) {
-  static constexpr std::array<double, 6> weights = {-1.0, 5.0, -10.0, 10.0, -5.0, 1.0};
-  constexpr double gain_squared = 252.0;  // sum of squares of the weights
-  std::vector<double> differences;
-  for (std::size_t i = 0; i + weights.size() <= values.size(); ++i) {
-    double d = 0.0;
-    for (std::size_t k = 0; k < weights.size(); ++k) d += weights[k] * values[i + k];
-    if (std::isfinite(d)) differences.push_back(d);
-  }
-  if (differences.size() < 10) return std::numeric_limits<double>::quiet_NaN();
-  return mad_sigma(differences) / std::sqrt(gain_squared);
+  const double noise = noise_of_neighbours(values);
+  if (std::isfinite(noise)) return noise;
+  std::vector<double> known = values;  // a slow channel: from its own samples
+  std::erase_if(known, [](double value) { return !std::isfinite(value); });
+  return noise_of_neighbours(known);
 }
 
 }  // namespace misfit

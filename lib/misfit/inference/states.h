@@ -18,9 +18,10 @@ struct ReconstructedStates {
 };
 
 /// Quadratic least squares over five neighbouring samples, or, where fewer than four of them are there, over seven or nine (uneven times
-/// and missing samples allowed; never stretched over a gap of more than five usual steps): value, slope, second derivative. A state is
-/// shown if an output observes it, if System::read_states() gives it, if solve_outputs() finds it, or if it is the rate of one that is. Own
-/// states of effects are computed along these (own_states_along()).
+/// and missing samples allowed; never stretched over a gap of more than five usual steps): value, slope, second derivative; of a channel
+/// with a slower clock of its own between its own samples (slow_channel.h). A state is shown if an output observes it, if
+/// System::read_states() gives it, if solve_outputs() finds it, or if it is the rate of one that is. Own states of effects are computed
+/// along these (own_states_along()).
 [[nodiscard]] ReconstructedStates reconstruct_states(const Model& model, const Signals& signals);
 
 /// What a state is taken to be before anything shows it: its declared start, else one scale inside its range, else 0.
@@ -38,7 +39,7 @@ void add_own_states(const Model& model, const Signals& signals, ReconstructedSta
 [[nodiscard]] double motion_frequency(const Model& model, const ReconstructedStates& states);
 
 /// White measurement noise of a channel from its fifth differences, robustly (MAD): smooth motion at ω h < 0.3 contributes less than 0.3 %
-/// of its amplitude.
+/// of its amplitude. Of a channel that lacks so many samples that no six stand together: of those it has.
 [[nodiscard]] double measurement_noise(const std::vector<double>& values);
 
 }  // namespace misfit

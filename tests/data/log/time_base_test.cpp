@@ -86,9 +86,28 @@ TEST(OneTimeBase, AnInputOfAnotherClockIsHeldOrInterpolatedAndTheEndsWithoutItAr
 TEST(OneTimeBase, AMeasurementOfASlowerClockStandsOnceAndIsMissingElsewhere) {
   MadeUpLog log;
   log.topic("y", {0, 1e5, 2e5, 3e5}, {1, 2, 3, 4}).topic("slow", {0.9e5, 1.2e5, 9e5}, {7, 8, 9});
-  const Result r = brought(log, {{"y.x"}, {"slow.x"}});
+  const Result r = brought(log, {{"y.x"}, {"slow.x"}}, "y.time");
   EXPECT_THAT(r.table.columns[2].values, ElementsAre(IsNan(), 7, IsNan(), IsNan()));
   EXPECT_THAT(r.notes, ElementsAre(HasSubstr("1 of its 3 samples stand at the nearest time of 'y.time', moved by at most 0.01 s")));
+}
+
+TEST(OneTimeBase, OfSeveralClocksHasTheTimesOfAllAndEveryMeasurementAtItsOwn) {
+  MadeUpLog log;
+  log.topic("y", {0, 1e5, 2e5, 3e5}, {1, 2, 3, 4}).topic("slow", {0.9e5, 2e5, 2.7e5}, {7, 8, 9}).topic("u", {0, 1.5e5, 2e5}, {10, 20, 30});
+  const Result r = brought(log, {{"y.x"}, {"slow.x"}, {"u.x", Between::held}});
+  EXPECT_THAT(r.table.columns[0].values, ElementsAre(0.0, 0.09, 0.1, 0.15, 0.2, 0.27, 0.3));
+  EXPECT_THAT(r.table.columns[1].values, ElementsAre(1, IsNan(), 2, IsNan(), 3, IsNan(), 4));
+  EXPECT_THAT(r.table.columns[2].values, ElementsAre(IsNan(), 7, IsNan(), IsNan(), 8, 9, IsNan()));
+  EXPECT_THAT(r.table.columns[3].values, ElementsAre(10, 10, 10, 20, 30, 30, 30));
+  EXPECT_THAT(r.notes, Contains("3 clocks: every measurement stands at its own time, in 7 rows"));
+}
+
+TEST(OneTimeBase, AFastHeldInputMakesNoRows) {
+  MadeUpLog log;
+  std::vector<double> t(40), u(40);
+  for (std::size_t i = 0; i < t.size(); ++i) t[i] = 1e4 * static_cast<double>(i), u[i] = static_cast<double>(i);
+  log.topic("y", {0, 1e5, 2e5, 3e5}, {1, 2, 3, 4}).topic("slow", {0.9e5, 2.7e5}, {7, 9}).topic("u", t, u);
+  EXPECT_EQ(brought(log, {{"y.x"}, {"slow.x"}, {"u.x", Between::held}}).table.rows(), 6U);
 }
 
 TEST(OneTimeBase, TimesThatDoNotIncreaseAreLeftOutAndCounted) {

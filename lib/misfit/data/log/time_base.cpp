@@ -31,7 +31,7 @@ class TimeBase {
     for (const WantedChannel& w : wanted_) channels_.push_back(log_.index_of(w.name));
     base_ = time ? log_.index_of(*time) : clock_of_most();
     read_channels();
-    const Clock base = clock(base_);
+    const Clock base = time ? clock(base_) : clock_of_all();
     if (base.t.empty()) fail("'" + name(base_) + "' has no value: no time is known");
     table_.source = log_.source;
     table_.add(time.value_or("t"), "s", base.t);
@@ -68,6 +68,40 @@ class TimeBase {
     fail("channel '" + shown(channel.name) +
          "' has no time of its own: say which one is it, as columns = { t = \"…\" } or --time; of as many " +
          "samples are: " + (alike.empty() ? "none" : some_names("time", alike)));
+  }
+
+  /// That of the measured channels. Where they have several, the times of all, so that every sample stands at its own; those of held inputs
+  /// as well, whose changes act when they come, unless they are more than all measurements.
+  [[nodiscard]] Clock clock_of_all() {
+    std::map<std::size_t, std::size_t> measured, held;  // samples by clock
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      const std::size_t own = clock_of(channels_[i]);
+      if (wanted_[i].between == Between::nearest) measured[own] = log_.channels[own].samples;
+      if (wanted_[i].between == Between::held) held[own] = log_.channels[own].samples;
+    }
+    if (measured.size() < 2) return clock(base_);
+    joined_ = true;
+    std::size_t samples = 0;
+    for (const auto& [own, size] : measured) samples += size;
+    for (const auto& [own, size] : held) {
+      if (size <= samples) measured[own] = size;
+    }
+    Clock out;
+    for (const auto& [own, size] : measured) {
+      const Clock here = clock(own);
+      out.t.insert(out.t.end(), here.t.begin(), here.t.end());
+    }
+    join(out.t);
+    notes_.push_back(fmt::format("{} clocks: every measurement stands at its own time, in {} rows", measured.size(), out.t.size()));
+    return out;
+  }
+
+  /// In order; times that are the same but for rounding once.
+  static void join(std::vector<double>& t) {
+    constexpr double rounding = 1e-6;  // of the usual step
+    std::sort(t.begin(), t.end());
+    const double same = t.size() > 1 ? rounding * (t.back() - t.front()) / static_cast<double>(t.size() - 1) : 0.0;
+    t.erase(std::unique(t.begin(), t.end(), [&](double a, double b) { return b - a <= same; }), t.end());
   }
 
   /// A channel without a clock has that of the base, if it has as many samples.
@@ -119,7 +153,7 @@ class TimeBase {
     const LogChannel& c = log_.channels[channels_[i]];
     const std::size_t own = clock_of(channels_[i]);
     std::vector<double> values;
-    if (own == base_) {
+    if (own == base_ && !joined_) {
       for (const std::size_t row : base.rows) values.push_back(c.values[row]);
     } else {
       const Clock clock_here = clock(own);
@@ -144,6 +178,7 @@ class TimeBase {
       distance[j] = d;
       out[j] = channel.values[own.rows[k]];
     }
+    if (joined_) return out;
     for (const double d : distance) farthest = std::isinf(d) ? farthest : std::max(farthest, d);
     notes_.push_back(fmt::format(
         "'{}' has a clock of its own: {} of its {} samples stand at the nearest time of '{}', moved by at most {} s; the others "
@@ -177,9 +212,10 @@ class TimeBase {
         names[most] = fmt::format("{} more", names.size() - most);
         names.resize(most + 1);
       }
-      notes_.push_back(fmt::format("{} ({} samples) {} of {} own: {} at the times of '{}'", join_words(names), how.first,
+      notes_.push_back(fmt::format("{} ({} samples) {} of {} own: {} at the times of {}", join_words(names), how.first,
                                    one ? "has a clock" : "have a clock", one ? "its" : "their",
-                                   how.second ? "interpolated linearly" : "the last value is held", name(base_)));
+                                   how.second ? "interpolated linearly" : "the last value is held",
+                                   joined_ ? std::string("the measurements") : "'" + name(base_) + "'"));
     }
   }
 
@@ -208,6 +244,7 @@ class TimeBase {
   std::vector<std::size_t> inputs_;                                           // columns of inputs that were brought from another clock
   std::map<std::pair<std::size_t, bool>, std::vector<std::string>> brought_;  // held or linear channels, by samples
   std::size_t base_ = 0;
+  bool joined_ = false;  // the rows are of several clocks
   Table table_;
 };
 

@@ -12,7 +12,7 @@
 namespace misfit {
 
 enum class Between {
-  nearest,  ///< a measurement: each of its samples stands once, at the time that is nearest, and is missing at others
+  nearest,  ///< a measurement: each of its samples stands once, at its own time or the nearest, and is missing at others
   held,     ///< the last value that is known
   linear,
 };
@@ -24,8 +24,9 @@ struct WantedChannel {
 };
 
 /// Time in seconds (column `time`, or "t"), then the wanted channels in their own units. The time base is the clock `time`, if that is
-/// given, else that of the `nearest` channels; if they have several, that of most samples. What was done to channels of other clocks, and
-/// how many samples were left out and why, is said in `notes`. InputError: no such channel (with the nearest names), a channel without a
+/// given (`nearest` channels of other clocks then stand at the nearest of its times), else that of the `nearest` channels; if they have
+/// several, the times of all, and of held inputs. What was done to channels of other clocks, and how many samples were left out and why, is
+/// said in `notes`. InputError: no such channel (with the nearest names), a channel without a
 /// time, a time whose unit is none of time.
 [[nodiscard]] Table on_one_time_base(LogReader& reader, const std::vector<WantedChannel>& wanted, const std::optional<std::string>& time,
                                      std::vector<std::string>& notes);

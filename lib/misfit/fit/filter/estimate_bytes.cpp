@@ -8,8 +8,8 @@ namespace misfit {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<ChannelNoise> auto& data) {
-  auto& [white, jitter, jitter_frequency, jitter_damping, held] = data;
-  bytes(white, jitter, jitter_frequency, jitter_damping, held);
+  auto& [white, jitter, jitter_frequency, jitter_damping, held, no_jitter] = data;
+  bytes(white, jitter, jitter_frequency, jitter_damping, held, no_jitter);
 }
 
 template <class Bytes>

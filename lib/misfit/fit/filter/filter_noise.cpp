@@ -55,7 +55,7 @@ NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterN
     const std::string& name = spec.outputs[o].name;
     const double reach = usual.held ? 1.0 : 1e2;
     push(out, name, channel.white, {usual.white / reach, usual.white * reach});
-    push(out, name + "_jitter", channel.jitter, {1e-3 * usual.white, usual.held ? 1e-3 * usual.white : 1e2 * usual.white});
+    push(out, name + "_jitter", channel.jitter, {1e-3 * usual.white, (usual.held || usual.no_jitter ? 1e-3 : 1e2) * usual.white});
     push(out, name + "_jitter_frequency", channel.jitter_frequency, {0.5 * usual.jitter_frequency, 3.3 * usual.jitter_frequency});
     push(out, name + "_jitter_damping", channel.jitter_damping, {0.01, 0.99});
   }

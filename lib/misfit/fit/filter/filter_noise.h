@@ -20,6 +20,7 @@ struct ChannelNoise {
   double jitter_frequency = 1.0;  ///< [Hz]
   double jitter_damping = 0.3;    ///< of critical
   bool held = false;              ///< white is known and all there is
+  bool no_jitter = false;         ///< white is all there is
 };
 
 /// Log-normal: log of a group's strength ~ N(log median, log_sigma²).

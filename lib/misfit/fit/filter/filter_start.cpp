@@ -155,8 +155,32 @@ void mark_known(const FilterModel& model, FilterNoise& usual) {
   usual.prior = {model.force_group[port - model.force_ports.begin()], known.median, known.sigma / known.median};
 }
 
+/// Usual step of a channel's own samples [s].
+double own_step(const std::vector<double>& t, const std::vector<double>& values) {
+  std::vector<double> own;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (std::isfinite(values[i])) own.push_back(t[i]);
+  }
+  return usual_step(own.size() > 1 ? own : t);
+}
+
+/// White noise and jitter as large, well above the motion (circular frequency `motion`), which the model itself must explain; pack() lets
+/// the jitter's frequency down to half of this. A channel whose clock is slower than the rows and shows nothing so fast has none.
+ChannelNoise usual_channel(const Signals& signals, std::size_t o, const KnownNoise& known, const OutputSpec& output, double motion) {
+  constexpr double share_of_rate = 0.15, highest_share = 0.3, above_motion = 3.0, slower = 1.2;
+  const std::vector<double>& values = signals.measured[o].values;
+  const double step = own_step(signals.t, values), least = above_motion * motion / (2.0 * std::numbers::pi);
+  ChannelNoise out;
+  out.white = known.sigma > 0.0 ? known.sigma : measurement_noise(values);
+  if (!(out.white > 0.0)) out.white = output.noise > 0.0 ? output.noise : 1.0;
+  out.jitter_frequency = std::min(std::max(share_of_rate / step, least), highest_share / step);
+  out.no_jitter = step > slower * usual_step(signals.t) && out.jitter_frequency < least;
+  out.jitter = known.fixed || out.no_jitter ? 1e-3 * out.white : out.white;
+  return out;
+}
+
 FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>& data) {
-  constexpr double share_of_motion = 0.3, samples_of_memory = 6.0, share_of_rate = 0.15;
+  constexpr double share_of_motion = 0.3, samples_of_memory = 6.0;
   FilterNoise out;
   const Signals& first = *data.front().signals;
   const SizedRecording recording = sized_by_motion(model, data.front());
@@ -169,17 +193,10 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   const auto usual_force = [&](int group) { return share_of_motion * force_size(model, group, data.front(), rates) * of_equal_intensity; };
   out.force = usual_force(0);
   for (int group = 1; group < model.force_groups(); ++group) out.further_forces.push_back(usual_force(group));
-  // Well above the motion, which the model itself must explain: pack() lets the frequency down to half of this.
-  constexpr double above_motion = 3.0;
-  const double jitter_frequency =
-      std::min(std::max(share_of_rate / h, above_motion * motion_frequency(model.model, states) / (2.0 * std::numbers::pi)), 0.3 / h);
   const auto& outputs = model.model.system->spec().outputs;
-  for (std::size_t o = 0; o < outputs.size(); ++o) {
-    const KnownNoise& known = model.model.known_noise[o];
-    double white = known.sigma > 0.0 ? known.sigma : measurement_noise(first.measured[o].values);
-    if (!(white > 0.0)) white = outputs[o].noise > 0.0 ? outputs[o].noise : 1.0;
-    out.channels.push_back({white, known.fixed ? 1e-3 * white : white, jitter_frequency, 0.3});
-  }
+  const double motion = motion_frequency(model.model, states);
+  for (std::size_t o = 0; o < outputs.size(); ++o)
+    out.channels.push_back(usual_channel(first, o, model.model.known_noise[o], outputs[o], motion));
   mark_known(model, out);
   return out;
 }

@@ -378,7 +378,7 @@ class Estimator {
     if (!end_.smoothed.ok) return failed(singular_message(end_.linearised));
     if (const std::string which = undetermined(out.model, end_.linearised); !which.empty()) return failed(at_the_end(which));
     integration_.describe(out);
-    set_noise(shooting_, end_.degrees(), fit);
+    set_noise(shooting_, experiments_, end_.degrees(), fit);
     const Eigen::MatrixXd covariance =
         describe_estimates(end_, {shooting_, end_.runs, experiments_}, {setting_.states, penalties_, options_.coloured}, out);
     predictions_of({shooting_, end_.runs, experiments_}, covariance, fit);

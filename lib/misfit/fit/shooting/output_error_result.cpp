@@ -131,10 +131,18 @@ void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, F
   }
 }
 
-void set_noise(const Shooting& shooting, double degrees, Fit& fit) {
+void set_noise(const Shooting& shooting, const std::vector<Signals>& experiments, double degrees, Fit& fit) {
   const auto& outputs = shooting.model().system->spec().outputs;
-  const double degrees_each = std::max(degrees / static_cast<double>(outputs.size()), 1.0);
+  std::vector<double> measured(outputs.size(), 0.0);
+  double all = 0.0;
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
+      for (std::size_t o = 0; o < outputs.size(); ++o) measured[o] += shooting.counts(e, i, o) ? 1.0 : 0.0;
+    }
+  }
+  for (const double count : measured) all += count;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
+    const double degrees_each = std::max(degrees * measured[o] / std::max(all, 1.0), 1.0);
     const double sigma = shooting.sigma()[o];
     const double sigma_of_it = shooting.model().known_noise[o].fixed ? 0.0 : sigma / std::sqrt(2.0 * degrees_each);
     fit.noise[outputs[o].name] = {sigma, sigma_of_it, outputs[o].unit};

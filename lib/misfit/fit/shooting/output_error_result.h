@@ -25,8 +25,8 @@ struct EndOfSearch {
 /// Channels of every experiment with sigma from noise and `covariance` of (parameters, initial states of each experiment).
 void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, Fit& fit);
 
-/// Noise of every output with its standard error from `degrees` of freedom in all.
-void set_noise(const Shooting& shooting, double degrees, Fit& fit);
+/// Noise of every output with its standard error from `degrees` of freedom in all, of which each has its share of the measurements.
+void set_noise(const Shooting& shooting, const std::vector<Signals>& experiments, double degrees, Fit& fit);
 /// Of every experiment, and which of them are taken from samples that are all held out.
 void set_initial_states(const Shooting& shooting, const std::vector<Signals>& experiments, FittedModel& out);
 /// Why no sigma is given.
