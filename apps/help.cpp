@@ -94,8 +94,9 @@ std::string data_text() {
   return out + "\n" +
          paragraph(
              "A matrix is a channel per column: x[0], x[1]. The time of an array is the one called t, time or timestamp beside it, of as "
-             "many numbers. Channels with clocks of their own are brought to the times of the outputs: inputs held or interpolated as the "
-             "model says, slower measurements once each at the nearest time; notes say what was done and left out.") +
+             "many numbers. Where sensors have clocks of their own the rows are the times of all of them, so that every measurement stands "
+             "at its own (with columns = { t = ... }: at the nearest of those times); inputs are held or interpolated as the model says; "
+             "notes say what was done and left out.") +
          "\n" +
          paragraph(
              "misfit init LOG lists the channels of a log of several clocks; then say which: --topic TOPIC, or --output CHANNEL and "

@@ -138,7 +138,7 @@ KeyGroup experiment_group() {
                   "any other reads angles through [camera]."},
       {.name = "columns", .type = Type::table, .otherwise = "headers are called as the signals",
        .meaning = "Signal = header of its column (of a video: x_px, y_px, x_m or y_m), { t = \"t_s\", y = \"y_V\" }, or channel of a log: { y = \"topic.field\" }. In a log, "
-                  "channels of other clocks are brought to the times of the outputs', or to `t`; what was done is noted."},
+                  "the rows are the times of all outputs and of held inputs, or those of `t`; what was done is noted."},
       {.name = "exclude", .type = Type::integer, .fallback = "0", .least = 0, .most = max_excluded,
        .meaning = "Samples at the beginning that do not count: a transient of the rig."},
       {.name = "validation", .type = Type::file, .otherwise = "nothing is held out",
