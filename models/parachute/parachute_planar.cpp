@@ -30,7 +30,7 @@ struct ParachutePlanar {
   }
   static std::vector<std::string> flags() { return {"induced_angle"}; }
 
-  static bool wants(std::uint64_t needed, QuantityIndex i) { return (needed >> static_cast<unsigned>(i) & 1U) != 0U; }
+  static bool wants(std::uint64_t needed, QuantityIndex i) { return is_needed(needed, static_cast<int>(i)); }
 
   template <class T, class K>
   static T moment_of_inertia(const K* k, const T* P) {

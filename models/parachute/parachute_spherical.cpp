@@ -50,7 +50,7 @@ struct ParachuteSpherical {
   }
   static std::vector<std::string> flags() { return {"plane_by_plane"}; }
 
-  static bool wants(std::uint64_t needed, QuantityIndex i) { return (needed >> static_cast<unsigned>(i) & 1U) != 0U; }
+  static bool wants(std::uint64_t needed, QuantityIndex i) { return is_needed(needed, static_cast<int>(i)); }
 
   /// The axis with the unit vectors of its tilt and clock angle: only y and z parts of them are needed.
   template <class T>

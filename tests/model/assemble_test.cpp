@@ -181,10 +181,10 @@ TEST(Assemble, BoundsAloneDoNotTurnADefaultCurveIntoANumber) {
 
 TEST(Assemble, TooManyStatesAreRefusedWithTheLimit) {
   std::vector<EffectRequest> lags;
-  for (int i = 0; i < 15; ++i) lags.push_back(effect("lag", {}, "lag_" + std::to_string(i)));
-  EXPECT_THAT(message_of(parachute(true, lags)), AllOf(HasSubstr("study.toml:4"), HasSubstr("17 states"), HasSubstr("at most 16")));
+  for (int i = 0; i < kMaxStates - 1; ++i) lags.push_back(effect("lag", {}, "lag_" + std::to_string(i)));
+  EXPECT_THAT(message_of(parachute(true, lags)), AllOf(HasSubstr("study.toml:4"), HasSubstr("81 states"), HasSubstr("at most 80")));
   lags.pop_back();
-  EXPECT_EQ(assemble(parachute(true, lags), registry()).states(), 16);
+  EXPECT_EQ(assemble(parachute(true, lags), registry()).states(), kMaxStates);
 }
 
 TEST(Assemble, TooManyFreeParametersAreRefusedWithTheLimit) {

@@ -226,7 +226,7 @@ TEST(InitOfManyColumns, KeepsTheFirstOnesWithinTheLimitsAndNamesTheOthers) {
   const fs::path data = folder.write("x.csv", waves(20, 10));
   const RecordingSurvey survey = survey_recording(data, names_of_formulas());
   const GuessedModel model = guess_model(survey);
-  EXPECT_EQ(model.inputs.size(), static_cast<std::size_t>(kMaxInputs));
+  EXPECT_EQ(model.inputs.size(), static_cast<std::size_t>(most_guessed.inputs));
   EXPECT_EQ(model.inputs.front(), "u0");
   ASSERT_FALSE(model.outputs.empty());
   EXPECT_EQ(model.outputs.front().name, "y0");

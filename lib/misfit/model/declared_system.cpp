@@ -21,7 +21,9 @@ constexpr std::array<double, kMaxPorts> no_forces{};
 class DeclaredSystem final : public System {
  public:
   explicit DeclaredSystem(std::shared_ptr<const Compiled> compiled) : c_(std::move(compiled)) {
-    for (std::size_t i = 0; i < c_->spec.states.size() + 2 * c_->spec.inputs.size(); ++i) plain_ |= std::uint64_t{1} << i;
+    constexpr int with_own_bit = 63;
+    const int plain = int_size(c_->spec.states) + 2 * int_size(c_->spec.inputs);
+    for (int i = 0; i < std::min(plain, with_own_bit); ++i) plain_ |= needed_bit(i);
     spec_ = c_->spec;
     if (!(spec_.fastest_rate > 0.0)) spec_.fastest_rate = nominal_rate();
     find_rates_of_quantities();

@@ -139,7 +139,7 @@ void Evaluator::flatten_effect(const BoundEffect& bound) {
   use.width = use.nq + use.nc + use.nz + (free_constants_ ? use.nk : 0);
   use.first_state = bound.first_state;
   const auto note = [&](int quantity) {
-    if (quantity >= 0 && quantity < nq_) needed_ |= std::uint64_t{1} << quantity;
+    if (quantity >= 0 && quantity < nq_) needed_ |= needed_bit(quantity);
   };
   for (std::size_t i = 0; i < bound.quantities.size(); ++i) {
     note(use.quantity[i] = bound.quantities[i]);
@@ -220,7 +220,7 @@ void Evaluator::rates(const double* x, const InputsAt& u, double t, double* dx) 
   base_and_derived(at);
   std::fill(F_.begin(), F_.begin() + nf_, 0.0);
   for (const auto& use : dynamic_) add_value(use, at, F_.data(), dx + nx_);
-  if (n_ > nx_) own_drifts(at, dx + nx_);
+  if (own_elsewhere_) own_drifts(at, dx + nx_);
   system_->rates(at, F_.data(), dx);
 }
 

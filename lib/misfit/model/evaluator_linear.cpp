@@ -111,7 +111,7 @@ void Evaluator::base_and_derived_linear(const Point& at, Slots& slots) {
   const int width = n_ + columns_;
   const auto rows_from_blocks = [&](bool with_ports) {
     for (int i = 0; i < nq_; ++i) {
-      if ((needed_ >> i & 1U) == 0U) continue;
+      if (!is_needed(needed_, i)) continue;
       double* row = row_of(q_rows_, i);
       std::fill(row, row + width, 0.0);
       std::copy_n(q_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
@@ -150,7 +150,7 @@ void Evaluator::linearise_rates(const Instant& instant, Slots& slots, double* dx
   for (int i = nx_; i < n_; ++i) std::fill_n(D + i * kRowStride, width, 0.0);
   double* own_rows = D + nx_ * kRowStride;
   for (const auto& use : dynamic_) add_linear(use, at, slots, {F_.data(), F_rows_.data(), dx + nx_, own_rows});
-  if (n_ > nx_) own_drifts_linear(at, slots, dx + nx_, own_rows);
+  if (own_elsewhere_) own_drifts_linear(at, slots, dx + nx_, own_rows);
 
   RateDerivatives d{r_x_.data(), quantity_effects_ ? r_P_.data() : nullptr, r_F_.data(), free_constants_ ? r_k_.data() : nullptr};
   system_->linearise_rates(at, F_.data(), dx, d);

@@ -1,5 +1,6 @@
 // The common case of the right-hand side's derivatives, written for speed: see Evaluator::linearise_rates_simply.
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -124,7 +125,8 @@ template <int NX>
 void Evaluator::chain_output(const Plan& plan, int row, const double* j, Slots& slots) {
   const int nx = NX > 0 ? NX : nx_;
   // Kept out of memory so that the loop does not wait for its own stores.
-  std::array<double, (NX > 0 ? NX : kMaxStates)> sum{};
+  std::array<double, (NX > 0 ? NX : kMaxStates)> sum;
+  std::fill_n(sum.begin(), nx, 0.0);
   const auto chain = [&](double weight, int quantity) {
     const double* from = q_x_.data() + static_cast<std::ptrdiff_t>(quantity) * nx;
     for (int x = 0; x < nx; ++x) sum[x] += weight * from[x];

@@ -144,7 +144,11 @@ struct PointOf {
 using Point = PointOf<double, double>;
 using SymbolPoint = PointOf<formula::Symbol, formula::Symbol, formula::Symbol>;
 
-/// The skeleton of a model. `needed` has bit i set if quantity i is read by somebody: others may be left 0.
+/// Bit of a quantity in `needed`; the last bit stands for all quantities from the 64th on.
+[[nodiscard]] constexpr std::uint64_t needed_bit(int quantity) { return std::uint64_t{1} << (quantity < 63 ? quantity : 63); }
+[[nodiscard]] constexpr bool is_needed(std::uint64_t needed, int quantity) { return (needed & needed_bit(quantity)) != 0U; }
+
+/// The skeleton of a model. `needed` says which quantities are read by somebody (needed_bit()): others may be left 0.
 class System {
  public:
   virtual ~System() = default;

@@ -130,7 +130,7 @@ class SystemOf final : public System {
       system_.template quantities<T, double>(PointOf<T, double>{x.data(), at.u, at.t, at.k, ports.data()}, needed, out.data());
     }
     for (int i = 0; i < S::NQ; ++i) {
-      if ((needed >> i & 1U) == 0U) continue;
+      if (!is_needed(needed, i)) continue;
       const T& jet = out[i];
       q[i] = jet.a;
       block(jet, 0, S::NX, d.x + i * S::NX);

@@ -12,7 +12,6 @@
 #include "misfit/core/units.h"
 #include "misfit/formula/syntax.h"
 #include "misfit/inference/states.h"
-#include "misfit/model/limits.h"
 #include "misfit/model/role_units.h"
 
 namespace misfit {
@@ -43,9 +42,9 @@ void refuse_extremes(const RecordingSurvey& survey) {
   }
 }
 
-/// What a declared system still takes.
+/// What a first model still takes.
 struct Room {
-  int states = kMaxStates, outputs = kMaxOutputs, parameters = kMaxConstants;
+  int states = most_guessed.states, outputs = most_guessed.outputs, parameters = most_guessed.parameters;
 
   bool take(const GuessedOutput& output) {
     const bool oscillatory = output.guess.order == 2;
@@ -84,7 +83,7 @@ void name_parts(std::set<std::string>& taken, GuessedOutput& output) {
 void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedModel& model, GuessData& data) {
   std::vector<std::string> left_out;
   for (const ColumnSurvey* c : survey.of_use(ColumnUse::input)) {
-    if (std::ssize(model.inputs) == kMaxInputs) {
+    if (std::ssize(model.inputs) == most_guessed.inputs) {
       left_out.push_back(c->name);
       continue;
     }
@@ -98,7 +97,7 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
                     : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
     data.drivers.push_back({table.values(c->name, model.input_units.back()), c->measured, false});
   }
-  note_left_out("inputs", left_out, fmt::format("a system has at most {} inputs", kMaxInputs), model.remarks);
+  note_left_out("inputs", left_out, fmt::format("a first model has at most {} inputs", most_guessed.inputs), model.remarks);
 }
 
 /// A measured column and what the model says of it.
@@ -110,7 +109,7 @@ struct Candidate {
 /// Other outputs as drivers of one: only where every output with all its terms has room in a system.
 bool may_couple(std::size_t outputs, std::size_t inputs) {
   const int n = static_cast<int>(outputs), terms = n + 2 + static_cast<int>(inputs);
-  return n > 1 && 2 * n <= std::min(kMaxStates, kMaxOutputs) && n * terms <= kMaxConstants;
+  return n > 1 && 2 * n <= std::min(most_guessed.states, most_guessed.outputs) && n * terms <= most_guessed.parameters;
 }
 
 std::string unit_ratio(const std::string& above, const std::string& below) { return bind_unit("{a}/{b}", {{"a", above}, {"b", below}}); }
@@ -204,7 +203,8 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
     model.outputs.push_back(std::move(output));
   }
   note_left_out("outputs", left_out,
-                fmt::format("a system has at most {} outputs, {} states and {} parameters", kMaxOutputs, kMaxStates, kMaxConstants),
+                fmt::format("a first model has at most {} outputs, {} states and {} parameters", most_guessed.outputs, most_guessed.states,
+                            most_guessed.parameters),
                 model.remarks);
   return model;
 }

@@ -27,6 +27,12 @@ struct GuessedOutput {
   LinearGuess guess;
 };
 
+/// A first model is to be fitted in seconds.
+struct MostGuessed {
+  int states = 16, inputs = 8, outputs = 8, parameters = 32;
+};
+inline constexpr MostGuessed most_guessed;
+
 struct GuessedModel {
   std::vector<std::string> inputs, input_units;  ///< SI
   std::vector<std::string> holds, hold_reasons;
