@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "tests/apps/program.h"
+#include "tests/core/ulog_writer.h"
 
 namespace {
 
@@ -12,50 +12,18 @@ using namespace program;
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Writes a ULog file (PX4 guide, "ULog File Format").
-class UlogWriter {
- public:
-  UlogWriter() { put(std::uint64_t{0}); }
-  void message(char type, const std::string& content) {
-    put(static_cast<std::uint16_t>(content.size()));
-    text_ += type;
-    text_ += content;
-  }
-  void topic(std::uint16_t number, const std::string& name) {
-    message('F', name + ":uint64_t timestamp;float x;float temperature_degC;");
-    message('A', std::string(1, '\0') + bytes(number) + name);
-  }
-  void record(std::uint16_t number, double seconds, double x) {
-    message('D',
-            bytes(number) + bytes(static_cast<std::uint64_t>(std::llround(1e6 * seconds))) + bytes(static_cast<float>(x)) + bytes(25.0F));
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  template <class T>
-  static std::string bytes(T value) {
-    std::string out(sizeof value, '\0');
-    std::memcpy(out.data(), &value, sizeof value);
-    return out;
-  }
-  template <class T>
-  void put(T value) {
-    text_ += bytes(value);
-  }
-  std::string text_ = "ULog\x01\x12\x35\x01";
-};
-
 /// A motor of first order, tau = 0.5 s, 2 (rad/s)/V: the speed at 100 Hz, its voltage when it changes, each second.
 std::string motor_log() {
   UlogWriter log;
-  log.topic(0, "motor");
-  log.topic(1, "command");
+  const std::string fields = "float x;float temperature_degC;";
+  log.topic(0, "motor", fields);
+  log.topic(1, "command", fields);
   double w = 0.0;
   for (int k = 0; k < 2000; ++k) {
     const double u = (k / 100) % 3;
-    if (k % 100 == 0) log.record(1, 0.01 * k, u);
+    if (k % 100 == 0) log.record(1, 0.01 * k, static_cast<float>(u), 25.0F);
     const double noise = 0.01 * std::sin(1e4 * std::sin(12.9898 * k));
-    log.record(0, 0.01 * k, w + noise);
+    log.record(0, 0.01 * k, static_cast<float>(w + noise), 25.0F);
     w = 2.0 * u + (w - 2.0 * u) * std::exp(-0.01 / 0.5);
   }
   return log.text();

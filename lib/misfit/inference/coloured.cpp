@@ -7,6 +7,7 @@
 
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
+#include "misfit/inference/own_clocks.h"
 #include "misfit/inference/short_record.h"
 #include "misfit/math/spectrum.h"
 #include "misfit/math/whiteness.h"
@@ -227,24 +228,16 @@ bool counts(const ResidualRows& e, Eigen::Index channels, Eigen::Index sample, E
   return std::isfinite(e.r[sample * channels + channel]);
 }
 
-/// Some two channels are hardly ever measured at the same sample.
 bool have_own_clocks(const std::vector<ResidualRows>& experiments, Eigen::Index channels) {
-  constexpr double together = 0.5;  // of the measurements of the one that has fewer
-  Eigen::MatrixXd pairs = Eigen::MatrixXd::Zero(channels, channels);
+  MeasuredTogether together(channels);
+  Eigen::VectorXd measured(channels);
   for (const ResidualRows& e : experiments) {
-    Eigen::VectorXd mask(channels);
     for (Eigen::Index i = 0; i < e.r.size() / channels; ++i) {
-      for (Eigen::Index a = 0; a < channels; ++a) mask[a] = counts(e, channels, i, a) ? 1.0 : 0.0;
-      pairs += mask * mask.transpose();
+      for (Eigen::Index a = 0; a < channels; ++a) measured[a] = counts(e, channels, i, a) ? 1.0 : 0.0;
+      together.add(measured);
     }
   }
-  for (Eigen::Index a = 0; a < channels; ++a) {
-    for (Eigen::Index b = 0; b < a; ++b) {
-      const double fewer = std::min(pairs(a, a), pairs(b, b));
-      if (fewer > 0.0 && pairs(a, b) < together * fewer) return true;
-    }
-  }
-  return false;
+  return together.have_own_clocks();
 }
 
 /// The measurements of one channel, one after the other.

@@ -55,7 +55,7 @@ struct ColouredCovariance {
 /// window; negative eigenvalues of the spectral density are set to zero, so that Σ is positive semi-definite [P]. By Fourier transforms, in
 /// pieces of at most 14336 samples between which correlation is neglected: O(n log n · columns + n · columns²).
 ///
-/// Channels with clocks of their own, hardly ever measured at the same sample, are taken each by itself, lags in its own samples (few of
+/// Channels whose sensors have clocks of their own (own_clocks.h) are taken each by itself, lags in its own samples (few of
 /// them as in residual_covariance()); that their noise has nothing in common is then assumed.
 ///
 /// `plain`: H⁻¹. Assumes stationary residuals and even sampling: lags are counted in samples. Does not correct the bias that random forcing

@@ -154,8 +154,8 @@ Eigen::VectorXd regressors(const Recording& recording, Eigen::Index sample) {
     out.push_back(states.x(sample, j));
     out.push_back(states.dx(sample, j));
   }
-  const std::size_t i = sample, stride = inputs.recorded.stride();
-  for (std::size_t u = 0; u < inputs.recorded.hold.size(); ++u) out.push_back(inputs.recorded.values[i * stride + u]);
+  const double* u = inputs.at(sample).values;
+  out.insert(out.end(), u, u + model.inputs());
   return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
 }
 

@@ -8,8 +8,9 @@
 #include <optional>
 
 #include "misfit/core/watch.h"
+#include "misfit/inference/own_clocks.h"
+#include "misfit/inference/own_samples.h"
 #include "misfit/inference/own_states.h"
-#include "misfit/inference/slow_channel.h"
 #include "misfit/inference/solved_states.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/evaluator.h"
@@ -31,8 +32,9 @@ std::size_t fewest_measurements(const Signals& signals) {
 /// What shows the states: of several series of one state that of most measurements, the first of these.
 class ShownStates {
  public:
-  ShownStates(const std::vector<StateSpec>& states, const std::vector<double>& t)
-      : states_(states), t_(t), series_(states.size()), measured_(states.size(), 0) {}
+  /// `own_clocks`: of the sensors.
+  ShownStates(const std::vector<StateSpec>& states, const std::vector<double>& t, bool own_clocks)
+      : states_(states), t_(t), own_clocks_(own_clocks), series_(states.size()), measured_(states.size(), 0) {}
 
   void add(int state, const std::vector<double>& values, std::size_t measured) {
     if (series_[state] && measured <= measured_[state]) return;
@@ -61,9 +63,9 @@ class ShownStates {
       if (states_[j].rate_of == state && !series_[j]) rate = static_cast<int>(j);
     }
     const Series series{t_, values, usual_step(t_)};
-    const std::optional<SlowChannel> slow = SlowChannel::of(t_, values);
+    const std::optional<OwnSamples> own = own_clocks_ ? std::optional(OwnSamples(t_, values)) : std::nullopt;
     for (Eigen::Index i = 0; i < out.x.rows(); ++i) {
-      const LocalFit fit = slow ? slow->at(t_[i]) : local_quadratic(series, i);
+      const LocalFit fit = own ? own->at(t_[i]) : local_quadratic(series, i);
       if (!fit.ok) {
         out.ok[i] = false;
         continue;
@@ -78,6 +80,7 @@ class ShownStates {
 
   const std::vector<StateSpec>& states_;
   const std::vector<double>& t_;
+  bool own_clocks_;
   std::vector<std::optional<std::vector<double>>> series_;
   std::vector<std::size_t> measured_;
 };
@@ -99,6 +102,13 @@ std::vector<std::vector<double>> read_all(const Model& model, const Signals& sig
     if (!known || !model.system->read_states(y.data(), constants.data(), x.data())) continue;
     for (std::size_t r = 0; r < readable.size(); ++r) out[r][i] = x[readable[r]];
   }
+  return out;
+}
+
+/// At these rows, NaN at the others.
+std::vector<double> scattered(const std::vector<double>& values, const std::vector<std::size_t>& rows, std::size_t size) {
+  std::vector<double> out(size, std::nan(""));
+  for (std::size_t i = 0; i < rows.size(); ++i) out[rows[i]] = values[i];
   return out;
 }
 
@@ -132,18 +142,23 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
   out.dx = RowMatrix::Zero(samples, model.states());
   out.ok.assign(signals.samples(), true);
   out.shown.assign(model.states(), false);
-  ShownStates states(spec.states, signals.t);
+  const bool own_clocks = have_own_clocks(signals);
+  ShownStates states(spec.states, signals.t, own_clocks);
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     if (spec.outputs[o].observes >= 0 && o < signals.measured.size())
       states.add(spec.outputs[o].observes, signals.measured[o].values, measurements(signals.measured[o]));
   }
-  const Signals filled = with_slow_channels_filled(signals);
+  const DensestRows dense = own_clocks ? at_densest(signals) : DensestRows{};
+  const Signals& together = own_clocks ? dense.signals : signals;
+  const auto add = [&](int state, const std::vector<double>& values) {
+    states.add(state, own_clocks ? scattered(values, dense.rows, signals.samples()) : values, fewest_measurements(signals));
+  };
   if (!spec.readable_states.empty() && signals.measured.size() == spec.outputs.size()) {
-    const std::vector<std::vector<double>> values = read_all(model, filled);
-    for (std::size_t r = 0; r < values.size(); ++r) states.add(spec.readable_states[r], values[r], fewest_measurements(signals));
+    const std::vector<std::vector<double>> values = read_all(model, together);
+    for (std::size_t r = 0; r < values.size(); ++r) add(spec.readable_states[r], values[r]);
   }
-  const SolvedStates solved = solve_outputs(model, filled, states.shown(out.shown.size()));
-  for (std::size_t s = 0; s < solved.states.size(); ++s) states.add(solved.states[s], solved.values[s], fewest_measurements(signals));
+  const SolvedStates solved = solve_outputs(model, together, states.shown(out.shown.size()));
+  for (std::size_t s = 0; s < solved.states.size(); ++s) add(solved.states[s], solved.values[s]);
   states.fill(out);
   for (std::size_t j = 0; j < model.state_specs.size(); ++j) {
     if (!out.shown[j]) out.x.col(j).setConstant(start_of(model.state_specs[j]));
@@ -200,7 +215,7 @@ double motion_frequency(const Model& model, const ReconstructedStates& states) {
 double measurement_noise(const std::vector<double>& values) {
   const double noise = noise_of_neighbours(values);
   if (std::isfinite(noise)) return noise;
-  std::vector<double> known = values;  // a slow channel: from its own samples
+  std::vector<double> known = values;  // a sensor with a clock of its own: from its own samples
   std::erase_if(known, [](double value) { return !std::isfinite(value); });
   return noise_of_neighbours(known);
 }

@@ -18,8 +18,8 @@ struct ReconstructedStates {
 };
 
 /// Quadratic least squares over five neighbouring samples, or, where fewer than four of them are there, over seven or nine (uneven times
-/// and missing samples allowed; never stretched over a gap of more than five usual steps): value, slope, second derivative; of a channel
-/// with a slower clock of its own between its own samples (slow_channel.h). A state is shown if an output observes it, if
+/// and missing samples allowed; never stretched over a gap of more than five usual steps): value, slope, second derivative; of sensors
+/// with clocks of their own (own_clocks.h) between their own samples (own_samples.h). A state is shown if an output observes it, if
 /// System::read_states() gives it, if solve_outputs() finds it, or if it is the rate of one that is. Own states of effects are computed
 /// along these (own_states_along()).
 [[nodiscard]] ReconstructedStates reconstruct_states(const Model& model, const Signals& signals);

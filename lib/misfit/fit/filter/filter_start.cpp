@@ -6,6 +6,8 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/units.h"
+#include "misfit/inference/own_clocks.h"
+#include "misfit/inference/own_samples.h"
 #include "misfit/math/whiteness.h"
 
 namespace misfit {
@@ -97,15 +99,20 @@ SizedRecording sized(const FilterModel& model, const FilterData& data) {
   return out;
 }
 
+/// The same recording with the rows of `signals`, of which the first that counts is `first`.
+FilterData with_rows(const FilterModel& model, const FilterData& data, const Signals& signals, std::size_t first) {
+  FilterData out;
+  out.signals = &signals;
+  out.inputs = input_table(signals, model.model);
+  out.first = std::min(first, signals.samples() - 1);
+  out.start = data.start;
+  return out;
+}
+
 /// Of means of `count` neighbours.
 SizedRecording sized_means(const FilterModel& model, const FilterData& data, std::size_t count) {
   const Signals signals = averaged(*data.signals, count);
-  FilterData means;
-  means.signals = &signals;
-  means.inputs = input_table(signals, model.model);
-  means.first = std::min(data.first / count, signals.samples() - 1);
-  means.start = data.start;
-  return sized(model, means);
+  return sized(model, with_rows(model, data, signals, data.first / count));
 }
 
 /// Are the shown rates of rates mostly differentiated noise? Then they have no memory beyond the five samples that they are read from, and
@@ -131,6 +138,11 @@ bool mostly_noise(const FilterModel& model, const SizedRecording& recording, con
 /// moves. There a size read from neighbours would be that of the noise, which grows with the square of the rate of sampling, and the least
 /// random force that is looked for (a thousandth of the usual one) could be larger than any there is.
 SizedRecording sized_by_motion(const FilterModel& model, const FilterData& data) {
+  if (have_own_clocks(*data.signals)) {
+    const DensestRows dense = at_densest(*data.signals);
+    const auto first = std::lower_bound(dense.rows.begin(), dense.rows.end(), data.first);
+    return sized_by_motion(model, with_rows(model, data, dense.signals, first - dense.rows.begin()));
+  }
   constexpr std::size_t fewest = 100;  // means
   SizedRecording out = sized(model, data);
   for (std::size_t count = 2; data.signals->samples() / count >= fewest; count *= 2) {
@@ -155,26 +167,17 @@ void mark_known(const FilterModel& model, FilterNoise& usual) {
   usual.prior = {model.force_group[port - model.force_ports.begin()], known.median, known.sigma / known.median};
 }
 
-/// Usual step of a channel's own samples [s].
-double own_step(const std::vector<double>& t, const std::vector<double>& values) {
-  std::vector<double> own;
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    if (std::isfinite(values[i])) own.push_back(t[i]);
-  }
-  return usual_step(own.size() > 1 ? own : t);
-}
-
 /// White noise and jitter as large, well above the motion (circular frequency `motion`), which the model itself must explain; pack() lets
-/// the jitter's frequency down to half of this. A channel whose clock is slower than the rows and shows nothing so fast has none.
+/// the jitter's frequency down to half of this. A sensor with a clock of its own that shows nothing so fast has none.
 ChannelNoise usual_channel(const Signals& signals, std::size_t o, const KnownNoise& known, const OutputSpec& output, double motion) {
-  constexpr double share_of_rate = 0.15, highest_share = 0.3, above_motion = 3.0, slower = 1.2;
+  constexpr double share_of_rate = 0.15, highest_share = 0.3, above_motion = 3.0;
   const std::vector<double>& values = signals.measured[o].values;
-  const double step = own_step(signals.t, values), least = above_motion * motion / (2.0 * std::numbers::pi);
+  const double step = own_step(signals, o), least = above_motion * motion / (2.0 * std::numbers::pi);
   ChannelNoise out;
   out.white = known.sigma > 0.0 ? known.sigma : measurement_noise(values);
   if (!(out.white > 0.0)) out.white = output.noise > 0.0 ? output.noise : 1.0;
   out.jitter_frequency = std::min(std::max(share_of_rate / step, least), highest_share / step);
-  out.no_jitter = step > slower * usual_step(signals.t) && out.jitter_frequency < least;
+  out.no_jitter = out.jitter_frequency < least && have_own_clocks(signals);
   out.jitter = known.fixed || out.no_jitter ? 1e-3 * out.white : out.white;
   return out;
 }
@@ -185,7 +188,7 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   const Signals& first = *data.front().signals;
   const SizedRecording recording = sized_by_motion(model, data.front());
   const ReconstructedStates& states = recording.states;
-  const double h = usual_step(first.t), step = recording.step;
+  const double h = step_of_measurements(first), step = recording.step;
   constexpr double memory_of_white = 0.3;  // samples: correlated by 4 % at the next
   out.force_time = model.model.force_time ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * step;
   const double of_equal_intensity = std::sqrt(samples_of_memory * step / out.force_time);

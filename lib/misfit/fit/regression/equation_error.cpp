@@ -15,6 +15,7 @@
 #include "misfit/inference/curves.h"
 #include "misfit/inference/driven.h"
 #include "misfit/inference/identifiable.h"
+#include "misfit/inference/own_clocks.h"
 #include "misfit/inference/short_record.h"
 #include "misfit/math/bounded.h"
 
@@ -43,7 +44,8 @@ std::string hidden_states(const Model& model, const std::vector<bool>& shown) {
 }
 
 /// Samples at which no derivative is taken across a step of an input that is held between its samples: a local polynomial smears the kink
-/// that the state has there. All, and `smeared`, where more than half would be left out: then the input steps at nearly every sample.
+/// that the state has there: the samples beside it, of sensors with clocks of their own also those within two steps of the fastest. All,
+/// and `smeared`, where more than half would be left out: then the input steps at nearly every sample.
 struct Between {
   std::vector<bool> steps;
   bool smeared = false;
@@ -53,12 +55,15 @@ Between between_steps(const Model& model, const Signals& signals) {
   const auto& inputs = model.system->spec().inputs;
   const std::size_t n = signals.samples();
   Between out{std::vector<bool>(n, true)};
+  const double reach = have_own_clocks(signals) ? 2.0 * step_of_measurements(signals) : 0.0;
   for (std::size_t k = 0; k < inputs.size() && k < signals.inputs.size(); ++k) {
     if (inputs[k].hold != Hold::zero_order) continue;
     const std::vector<double>& u = signals.inputs[k].values;
     for (std::size_t i = 1; i < n; ++i) {
       if (u[i] == u[i - 1]) continue;
       for (std::size_t at = i - 1; at <= std::min(i + 1, n - 1); ++at) out.steps[at] = false;
+      for (std::size_t at = i; at-- > 0 && signals.t[i] - signals.t[at] < reach;) out.steps[at] = false;
+      for (std::size_t at = i + 1; at < n && signals.t[at] - signals.t[i] < reach; ++at) out.steps[at] = false;
     }
   }
   const std::size_t left = std::count(out.steps.begin(), out.steps.end(), true);
