@@ -7,7 +7,7 @@
 
 namespace misfit::formula {
 
-inline constexpr int kMaxRegisters = 20000;  ///< of one program: leaves, constants and one per operation
+inline constexpr int kMaxRegisters = 3000;  ///< of one program: leaves, constants and one per operation
 
 /// A part of a graph as a flat list of operations on registers: leaves first, then constants, then results in order.
 class Program {
