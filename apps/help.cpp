@@ -104,6 +104,10 @@ std::string data_text() {
          "\n  [[experiment]]\n  data = \"flight.ulg\"\n"
          "  columns = { w = \"vehicle_angular_velocity.xyz[0]\", u = \"actuator_controls_0.control[0]\" }\n\n" +
          paragraph(
+             "A recording is split at gaps of more than 10 sampling intervals and more than 50 rad of the fastest motion: its parts, "
+             "NAME_part_1 and so on, have initial states of their own. Shorter gaps are simulated across.") +
+         "\n" +
+         paragraph(
              "Units: SI and their kin, as us, ns, min, rpm, degC, \xC2\xB0, kW, mA, bar, km/h. A unit of time that is not known "
              "stops; any other is said, and its numbers are taken as they are. Excel and Parquet files are not read: save them as CSV.");
 }

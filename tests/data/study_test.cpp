@@ -216,8 +216,9 @@ TEST_F(StudyFolder, AnEffectIsATableOfTexts) {
   expect_parts(error_with("[effects]\ngravity = { rate = 1 }\n"), {"study.toml:4", "effects.gravity.rate", "text"});
 }
 
-TEST_F(StudyFolder, ACurveNeedsItsQuantityAndIncreasingKnots) {
-  expect_parts(error_with("[curves]\nC_m = {}\n"), {"study.toml:4", "curves.C_m.of"});
+TEST_F(StudyFolder, ACurveWithKnotsOrATableNeedsItsQuantityAndKnotsIncrease) {
+  for (const char* curve : {"{ knots = [1, 2] }", "{ table = \"c.csv\" }", "{ of = \"\" }"})
+    expect_parts(error_with(std::string("[curves]\nC_m = ") + curve + "\n"), {"study.toml:4", "curves.C_m.of"});
   for (const char* knots : {"[1]", "[1, 1]", "[2, 1]"}) {
     expect_parts(error_with(std::string("[curves]\nC_m = { of = \"alpha_T\", knots = ") + knots + " }\n"),
                  {"study.toml:4", "curves.C_m.knots"});

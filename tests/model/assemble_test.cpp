@@ -142,8 +142,15 @@ TEST(Assemble, ACurveThatTheModelLacksNamesTheNearest) {
 TEST(Assemble, ACurveOfAQuantityThatIsNotKnownNamesTheNearest) {
   EXPECT_THAT(message_of(with_curve("C_m", {"alpha_t", {0.1, 0.2}, {}, {}})),
               AllOf(HasSubstr("study.toml:60"), HasSubstr("no quantity 'alpha_t'"), HasSubstr("'alpha_T'")));
-  EXPECT_THAT(message_of(with_curve("C_m", {"", {0.1, 0.2}, {}, {}})),
+  EXPECT_THAT(message_of(with_curve("offset", {"", {0.1, 0.2}, {}, {}})),
               AllOf(HasSubstr("study.toml:60"), HasSubstr("`of` must name a quantity")));
+}
+
+TEST(Assemble, ACurveWithoutAQuantityIsOneOfThatOfItsSpecification) {
+  const Model model = assemble(with_curve("C_m", {"", {0.1, 0.2}, 3.0, {}}), registry());
+  ASSERT_NE(model.find_curve("C_m"), nullptr);
+  EXPECT_EQ(model.find_curve("C_m")->of, "alpha_T");
+  EXPECT_EQ(model.find_curve("C_m")->roughness, 3.0);
 }
 
 TEST(Assemble, KnotsThatDoNotIncreaseAreRefused) {

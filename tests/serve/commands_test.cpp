@@ -149,6 +149,9 @@ TEST(CommandsOfThePage, AStoppedOneLeavesAFolderToGoOnWith) {
   ASSERT_EQ(server.post("/api/job", {{"verb", "fit"}}).status, 200);
   EXPECT_EQ(server.job()["state"], "done");
   EXPECT_EQ(server.get("/api/motion").parsed()["methods"].size(), 2U);
+  const std::string file = study.path("study.toml").string();
+  EXPECT_THAT(server.get("/api/session").parsed()["text"].get<std::string>(),
+              HasSubstr("\n# stopped: misfit run " + file + "\nmisfit fit " + file + "\n"));
 }
 
 TEST(CommandsOfThePage, EndWithTheServerThatIsKilledAndAreGoneOnWithByTheNext) {

@@ -8,6 +8,7 @@
 namespace misfit::serve {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 
 TEST(TheScriptOfASession, HasCommandsAndTextsInTheirOrder) {
@@ -19,6 +20,21 @@ TEST(TheScriptOfASession, HasCommandsAndTextsInTheirOrder) {
   EXPECT_THAT(script.text(), HasSubstr("set -e\n"));
   EXPECT_THAT(script.text(), HasSubstr("\nmisfit add 'my study' 'it'\\''s' --out o\n"
                                        "cat > 'my study/study.toml' <<'END_OF_STUDY_'\na = 'END_OF_STUDY'\nEND_OF_STUDY_\n"));
+}
+
+TEST(TheScriptOfASession, DoesNotDoAgainWhatWasStoppedOrRefusedAndGoesOnAfterAMethodThatDeclined) {
+  const TemporaryFolder folder;
+  const SessionScript script(folder.path());
+  script.record("misfit add s drag");
+  script.record("misfit add s drag");
+  script.record_end("misfit add s drag", 1, true);
+  script.record("misfit set s 'a.b=1'");
+  script.record_end("misfit set s 'a.b=1'", 2, false);
+  script.record("misfit fit s");
+  script.record_end("misfit fit s", 1, false);
+  script.record_end("misfit run s", 1, false);  // never recorded
+  EXPECT_THAT(script.text(), EndsWith("\nmisfit add s drag\n# stopped: misfit add s drag\n# ended with status 2: misfit set s 'a.b=1'\n"
+                                      "misfit fit s || [ $? -eq 1 ]\n"));
 }
 
 }  // namespace

@@ -106,8 +106,15 @@ TEST(Verdict, WithoutASearchTheResidualsSpeakAndDiscoverIsNext) {
   EXPECT_THAT(v.where, HasSubstr("between 0 V and 1 V (p = 1e-20)."));
   EXPECT_EQ(v.next, "misfit discover configs/motor");
 
+  c.diagnosis->maps.clear();
+  v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::nothing_missing);
+  EXPECT_THAT(v.sentence, HasSubstr("no map of the missing force stands out"));
   c.diagnosis.reset();
-  EXPECT_EQ(c.verdict().kind, VerdictKind::nothing_missing);
+  v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::not_searched);
+  EXPECT_EQ(v.sentence, "Fitted, not diagnosed yet: whether and where the model fails has not been asked.");
+  EXPECT_EQ(v.next, "misfit diagnose configs/motor");
   c.fits.front().force.clear();
   c.fits.front().method = "output_error";
   EXPECT_THAT(c.verdict().sentence, HasSubstr("output_error are not white, since forces that it does not have drive the motion"));
@@ -268,7 +275,7 @@ TEST(Verdict, IsWrittenWithTheChangeInPerCent) {
 TEST(Verdict, CommandsNameTheRunFolderAndQuoteWhatAShellWouldSplit) {
   const std::vector<Fit> fits{filter_fit()};
   const VerdictInput input{"my studies/motor", "out 2", &fits};
-  EXPECT_EQ(verdict_of(input).next, "misfit discover 'my studies/motor' --out 'out 2'");
+  EXPECT_EQ(verdict_of(input).next, "misfit diagnose 'my studies/motor' --out 'out 2'");
   EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
 }
 

@@ -198,7 +198,8 @@ KeyGroup parameters_group() {
 
 KeyGroup curves_group() {
   return {"curves.NAME", "A coefficient as a function of a quantity: a cubic B-spline with a roughness penalty.",
-     {{.name = "of", .otherwise = "required", .meaning = "Quantity that it depends on, as alpha_T."},
+     {{.name = "of", .otherwise = "that of a coefficient that is a curve by itself, as C_m",
+       .meaning = "Quantity that it depends on, as alpha_T; needed with knots or a table."},
       {.name = "knots", .type = Type::numbers, .unit = "deg for angles, else that of the quantity", .fallback = "\"auto\"",
        .form = "\"auto\" or list of numbers",
        .meaning = "Breakpoints of the spline, increasing, at least two; auto: 17 over the range that the data visit."},

@@ -266,9 +266,9 @@ void read_curves(const Section& root, Study& study) {
     const DescribedSection section = described(*curves, key, "curves.NAME");
     CurveStudy curve;
     curve.where = curves->where(key);
-    const auto of = section.text("of");
-    if (!of || of->empty()) section.fail("of", "the quantity that the curve depends on is needed, as of = \"alpha_T\"");
-    curve.of = *of;
+    curve.of = section.text("of").value_or("");
+    if (curve.of.empty() && (section.has("of") || section.has("knots") || section.has("table")))
+      section.fail("of", "the quantity that the curve depends on is needed, as of = \"alpha_T\"");
     if (!is_auto(section, "knots")) curve.knots = section.quantities("knots");
     const auto falls = [](const config::Number& a, const config::Number& b) {
       return a.unit.empty() == b.unit.empty() && !(a.value < b.value);

@@ -89,7 +89,11 @@ std::vector<std::string> Assembler::owned_names() const {
 
 std::optional<CurveRequest> Assembler::curve_request(const std::string& name, const CoefficientSpec& spec) const {
   const auto found = request_.curves.find(name);
-  if (found != request_.curves.end()) return found->second;
+  if (found != request_.curves.end()) {
+    CurveRequest request = found->second;
+    if (request.of.empty()) request.of = spec.curve_of;
+    return request;
+  }
   const auto number = request_.parameters.find(name);
   if (spec.curve_of[0] == '\0' || (number != request_.parameters.end() && number->second.value)) return std::nullopt;
   CurveRequest request;

@@ -15,7 +15,7 @@ namespace misfit {
 
 /// A curve as asked for. Knots in SI (radians for angles); empty: to be chosen from data before the model is assembled.
 struct CurveRequest {
-  std::string of;
+  std::string of;  ///< empty: the quantity of the coefficient's specification (`curve_of`)
   std::vector<double> knots;
   std::optional<double> roughness;  ///< nullopt: chosen from the data
   Source where;

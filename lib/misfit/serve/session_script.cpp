@@ -1,6 +1,7 @@
 #include "misfit/serve/session_script.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -40,6 +41,16 @@ std::string command_of(const std::vector<std::string>& words) {
 void SessionScript::record_text(const std::string& study, const std::string& text) const {
   const std::string mark = end_mark(text);
   append("cat > " + shell_word(study) + " <<'" + mark + "'\n" + text + (text.ends_with('\n') ? "" : "\n") + mark + "\n");
+}
+
+void SessionScript::record_end(const std::string& command, int status, bool stopped) const {
+  std::string lines = text();
+  const std::string line = "\n" + command + "\n";
+  const std::size_t at = lines.rfind(line);
+  if (at == std::string::npos) return;
+  std::string instead = "# stopped: " + command;
+  if (!stopped) instead = status == 1 ? command + " || [ $? -eq 1 ]" : fmt::format("# ended with status {}: {}", status, command);
+  write_atomically(path_, lines.replace(at + 1, command.size(), instead));
 }
 
 std::string SessionScript::text() const {

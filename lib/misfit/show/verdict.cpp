@@ -184,6 +184,9 @@ class Judge {
           command("discover"));
     } else if (!out_.where.empty()) {
       say(VerdictKind::not_searched, "something is missing from the model" + ask, command("discover"));
+    } else if (!fit_->force.empty() && in_.diagnosis == nullptr) {
+      say(VerdictKind::not_searched, "fitted, not diagnosed yet: whether and where the model fails has not been asked",
+          command("diagnose"));
     } else {
       say(VerdictKind::nothing_missing,
           "nothing shows that an effect is missing: " + residuals() + "; the effects of the library were not tested", command("discover"));
