@@ -60,6 +60,10 @@ std::vector<Fit> fits_shown(Session& session, StageLines& lines) {
   return fits;
 }
 
+bool has_filter(const std::vector<Fit>& fits) {
+  return std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name && fit.usable(); });
+}
+
 }  // namespace
 
 int run_verb(const Options& options, const Registry& registry) {
@@ -71,14 +75,14 @@ int run_verb(const Options& options, const Registry& registry) {
   show_stage(lines, "attitude", session.study, attitude_stage(session));
   const std::vector<Fit> fits = fits_shown(session, lines);
   lines.result("compare", compare_stage(session, fits));
-  const bool filtered =
-      std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name && fit.usable(); });
-  if (const auto diagnosis = filtered ? diagnose_stage(session) : std::nullopt) lines.result("diagnose", *diagnosis);
-  if (filtered && options.automatic) {
+  // A search that is asked for makes the filter's fit itself where the study does not name it.
+  const bool search = has_filter(fits) || (options.automatic && !filter_declined(session));
+  if (const auto diagnosis = search ? diagnose_stage(session) : std::nullopt) lines.result("diagnose", *diagnosis);
+  if (search && options.automatic) {
     if (!options.json) lines.head();
     extend_ladder(ladder, registry, ladder_listener(ladder, options));
     diagnose_rungs(ladder);
-  } else if (const auto discovery = filtered ? discover_stage(session) : std::nullopt) {
+  } else if (const auto discovery = search ? discover_stage(session) : std::nullopt) {
     lines.result("discover", *discovery);
   }
   if (const auto known = known_ladder(session)) lines.result("ladder", *known);

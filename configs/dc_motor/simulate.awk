@@ -1,9 +1,9 @@
 # The recording motor.csv of this study: a simulated DC motor on a bench, made by `awk -f simulate.awk > motor.csv`, with an integrator and a
-# generator of chance of its own, by no part of misfit. 30 s at 200 Hz; the voltage steps at random times to random values.
+# pseudo-random generator of its own, by no part of misfit. 30 s at 200 Hz; the voltage steps at random times to random values.
 #
 #   J w' = K (u - K w) / R - b w - c tanh(w/w0)        explicit Euler, 50 steps per sample
 #   J = 2e-4 kg m^2, K = 0.05 V s/rad, R = 1.2 ohm, b = 1e-4 N m s/rad; dry friction of the bearing c = 0.02 N m (w0 = 0.1 rad/s),
-# which is 100 rad/s^2 of deceleration. Reading noise of the speed: 0.3 rad/s (1 sigma).
+# which is 100 rad/s^2 of deceleration. Measurement noise of the speed: 0.3 rad/s (1 sigma).
 
 function uniform() {  # Park and Miller's generator, exact in doubles
   state = (16807 * state) % 2147483647

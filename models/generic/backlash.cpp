@@ -5,9 +5,9 @@ namespace {
 
 using namespace misfit;
 
-/// Gear play: what follows the displacement (z) moves only once the displacement has crossed the clearance. The force is what a spring
-/// between both has less or more for it, so that the model keeps its linear part. z follows within backlash_tau, a numerical time, instead
-/// of in no time.
+/// Gear play: what follows the displacement (z) moves only once the displacement has crossed the clearance. Added is the
+/// change of the force of the spring between both that the play makes; the linear part stays in the model. z follows within backlash_tau, a
+/// numerical time, instead of in no time.
 struct Backlash {
   static constexpr const char* formula =
       "F = play_stiffness (z - displacement), z' = (what of displacement - z lies beyond +-play)/backlash_tau";
@@ -17,7 +17,8 @@ struct Backlash {
       "side that drives [any]";
   static constexpr const char* valid =
       "backlash_tau short against the motion: z then lags by backlash_tau times its rate; friction holds z inside the clearance";
-  static constexpr const char* size = "a gear with 0.5 deg of play and 100 N m/rad: up to 0.4 N m, always against the last direction";
+  static constexpr const char* size =
+      "a gear with 0.5 deg of clearance (play = 0.25 deg) and 100 N m/rad: up to 0.44 N m, always against the last direction";
   static constexpr const char* source =
       "Tao and Kokotovic, Adaptive Control of Systems with Actuator and Sensor Nonlinearities (1996): play operator; here relaxed over "
       "backlash_tau";

@@ -122,6 +122,21 @@ TEST(RunOnAMotor, FindsAddsAndShowsTheFrictionThatItsModelLacks) {
     EXPECT_LT(std::abs(amplitude.get<double>()), 500.0) << "a force of the size of the friction, not what the drag makes up for";
 }
 
+TEST(RunOnAMotor, SearchesWhereThatIsAskedThoughTheStudyNamesOutputErrorAlone) {
+  const StudyCopy study("dc_motor");
+  std::string text = content(study.path("study.toml"));
+  const std::string methods = "methods = [";
+  const std::size_t from = text.find(methods), to = text.find(']', from);
+  ASSERT_NE(from, std::string::npos);
+  study.write("study.toml", text.replace(from, to - from, methods + "\"output_error\""));
+  const Outcome outcome = study.run("run", {"--auto"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json ladder = study.result("ladder.json");
+  ASSERT_EQ(ladder.size(), 2U) << outcome.out;
+  EXPECT_EQ(ladder[1].at("added"), "coulomb_friction");
+  EXPECT_EQ(study.result("verdict.json").at("verdict"), "effect_added");
+}
+
 TEST_F(RunOnValidation, APipeGetsNoProgressCharacters) {
   EXPECT_EQ((outcome.out + outcome.err).find_first_of("\r\033"), std::string::npos);
 }

@@ -157,7 +157,8 @@ TEST(CompareMotion, OneOfTwoExperimentsThatDepartsIsNamed) {
 TEST(CompareMotion, TwoExperimentsOfTheSameKindHaveOneVerdict) {
   const SimulatedMotion motion = two_experiments(900, 1.0, 99, 1500);
   EXPECT_GT(motion.p_value, 0.01);
-  EXPECT_THAT(motion.sentences.front(), testing::StartsWith("the fitted model reproduces the statistics of the measured motion"));
+  EXPECT_THAT(motion.sentences.front(),
+              testing::StartsWith("no difference between the statistics of the measured and the simulated motion is significant at 1 %"));
 }
 
 /// As for one experiment: of 150 trials 15 are expected at or below 0.1; the smaller of two p-values by themselves would give some 28.

@@ -128,7 +128,8 @@ Signals tank_record() {
     s.t.push_back(0.1 * i);
     s.inputs[0].values.push_back(u);
     s.measured[0].values.push_back(y + 5e-3 * normal(random));
-    const double decay = std::exp(-0.5 * 0.1);  // drain 0.5, inflow 1: the valve's lag of 10 microseconds is nothing beside a reading
+    const double decay =
+        std::exp(-0.5 * 0.1);  // drain 0.5, inflow 1: the valve's lag of 10 microseconds is nothing beside a sampling interval
     y = y * decay + u / 0.5 * (1.0 - decay);
   }
   return s;

@@ -25,7 +25,7 @@ void read_all(LogReader& reader) {
   }
 }
 
-/// As a file: told apart by its first bytes, CSV where they are none's.
+/// As a file: recognised by its first bytes, CSV where they are none's.
 void read_file_of(const std::string& content) {
   static const std::string file = "/dev/shm/misfit_log_fuzz_" + std::to_string(getpid());
   std::ofstream(file, std::ios::binary) << content;

@@ -33,7 +33,7 @@ struct World {
   bool stiff = false;
   std::vector<double> input = {};
   double most_parts = 0.0;  ///< per sample interval, on average
-  double accuracy = 1e-6;   ///< error of each state, of its range: a thousandth of what a reading with noise of 0.1 % would show
+  double accuracy = 1e-6;   ///< error of each state, of its range: a thousandth of what a measurement with noise of 0.1 % would show
 };
 void PrintTo(const World& world, std::ostream* out) { *out << world.name; }
 

@@ -263,9 +263,10 @@ void conclude_motion(SimulatedMotion& motion) {
                     p_equals(motion.p_value), groups, motion.runs));
     motion.sentences.insert(motion.sentences.end(), departing.begin(), departing.end());
   } else {
-    motion.sentences.push_back(
-        fmt::format("the fitted model reproduces the statistics of the measured motion: {} over {} groups of statistics",
-                    p_equals(motion.p_value), groups));
+    motion.sentences.push_back(fmt::format(
+        "no difference between the statistics of the measured and the simulated motion is significant at 1 %: {} over {} groups "
+        "of statistics",
+        p_equals(motion.p_value), groups));
   }
   motion.sentences.push_back(
       fmt::format("{} of {} statistics lie outside the 95 % band of the simulated motions; about {:.0f} would by chance", outside, numbers,

@@ -23,7 +23,7 @@ struct Even {
 
 /// No places: it is not evenly sampled, or has so many gaps that the transform would be mostly zeros.
 Even even_places(const std::vector<double>& t, double highest) {
-  constexpr double largest_phase_error = 0.01;  // [rad]: a line loses half of its square of its power
+  constexpr double largest_phase_error = 0.01;  // [rad]: a line loses at most its square of its power
   constexpr double max_grid_steps_per_sample = 8.0;
   Even out;
   if (t.size() < 3) return out;

@@ -24,7 +24,7 @@ struct ScreeningResult {
   Eigen::MatrixXd columns;       ///< at the best cell
   double cells_effective = 1.0;  ///< independent cells among those scanned
   double p_value = 1.0;          ///< corrected for its cells, not for other families
-  double log_p = 0.0;            ///< natural logarithm of the p-value of the best cell: ranks what is below 1e-300
+  double log_p = 0.0;            ///< log(p of the best cell) + log(cells_effective): ranks what is below 1e-300
   bool runs = true;              ///< false: the model cannot be run with it
   std::size_t cells = 0;
   FrequencyGrid frequencies;  ///< that were scanned; none where it has no frequency

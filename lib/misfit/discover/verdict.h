@@ -34,9 +34,9 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 [[nodiscard]] std::optional<std::string> outlasts_recording(const Model& model, double seconds);
 
 /// "its step = 0.77 V, but the measurements are 0.11 V (RMS) from multiples of it" where the model's last effect reads an output in whole
-/// steps (CoefficientSpec::multiples) and the measurements that enter the fit are not in such steps, whatever the first of them is: further
-/// off than 0.05 of a step and twice their white noise (measurement_noise()), which may come after the rounding. nullopt: they are, or no
-/// effect says so.
+/// steps (CoefficientSpec::measured_as is OfMeasurements::step) and the measurements that enter the fit are not in such steps, whatever the
+/// first of them is: further off than 0.05 of a step and twice their white noise (measurement_noise()), which may come after the rounding.
+/// nullopt: they are, or no effect says so.
 [[nodiscard]] std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments);
 
 /// "its threshold = -1.9 K is not among the values of Tc, 3.1 to 22 K" where an edge of the model's last effect lies further than a tenth
