@@ -53,15 +53,23 @@ void show_stage(StageLines& lines, const char* stage, const Study& study, const 
   }
 }
 
-std::vector<Fit> fits_shown(Session& session, StageLines& lines) {
+std::vector<Fit> fits_shown(Session& session, StageLines& lines, const std::vector<std::string>& methods) {
   session.options.listener.fitted = [&lines](const Fit& fit) { lines.result(fit.method, std::vector<Fit>{fit}); };
-  std::vector<Fit> fits = fit_stage(session);
+  std::vector<Fit> fits = fit_stage(session, methods);
   session.options.listener.fitted = {};
   return fits;
 }
 
-bool has_filter(const std::vector<Fit>& fits) {
-  return std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name && fit.usable(); });
+const Fit* filter_among(const std::vector<Fit>& fits) {
+  const auto found = std::find_if(fits.begin(), fits.end(), [](const Fit& fit) { return fit.method == random_force_estimator().name; });
+  return found == fits.end() ? nullptr : &*found;
+}
+
+/// Can the model be searched? A search that is asked for makes the filter's fit where the study does not name it.
+bool can_search(Session& session, StageLines& lines, const std::vector<Fit>& fits, bool asked) {
+  const Fit* filter = filter_among(fits);
+  if (filter != nullptr || !asked) return filter != nullptr && filter->usable();
+  return fits_shown(session, lines, {random_force_estimator().name}).front().usable();
 }
 
 }  // namespace
@@ -73,10 +81,9 @@ int run_verb(const Options& options, const Registry& registry) {
   show_stage(lines, "track", session.study, track_stage(session));
   if (const auto calibration = calibrate_stage(session)) lines.result("calibrate", *calibration);
   show_stage(lines, "attitude", session.study, attitude_stage(session));
-  const std::vector<Fit> fits = fits_shown(session, lines);
+  const std::vector<Fit> fits = fits_shown(session, lines, session.methods());
   lines.result("compare", compare_stage(session, fits));
-  // A search that is asked for makes the filter's fit itself where the study does not name it.
-  const bool search = has_filter(fits) || (options.automatic && !filter_declined(session));
+  const bool search = can_search(session, lines, fits, options.automatic);
   if (const auto diagnosis = search ? diagnose_stage(session) : std::nullopt) lines.result("diagnose", *diagnosis);
   if (search && options.automatic) {
     if (!options.json) lines.head();

@@ -135,6 +135,7 @@ TEST(RunOnAMotor, SearchesWhereThatIsAskedThoughTheStudyNamesOutputErrorAlone) {
   ASSERT_EQ(ladder.size(), 2U) << outcome.out;
   EXPECT_EQ(ladder[1].at("added"), "coulomb_friction");
   EXPECT_EQ(study.result("verdict.json").at("verdict"), "effect_added");
+  expect_parts(outcome.out, {"  output_error ", "  filter_error ", "  diagnose ", "  discover "});
 }
 
 TEST_F(RunOnValidation, APipeGetsNoProgressCharacters) {

@@ -89,15 +89,11 @@ std::vector<std::string> Assembler::owned_names() const {
 
 std::optional<CurveRequest> Assembler::curve_request(const std::string& name, const CoefficientSpec& spec) const {
   const auto found = request_.curves.find(name);
-  if (found != request_.curves.end()) {
-    CurveRequest request = found->second;
-    if (request.of.empty()) request.of = spec.curve_of;
-    return request;
-  }
   const auto number = request_.parameters.find(name);
-  if (spec.curve_of[0] == '\0' || (number != request_.parameters.end() && number->second.value)) return std::nullopt;
-  CurveRequest request;
-  request.of = spec.curve_of;
+  const bool asked = found != request_.curves.end(), is_number = number != request_.parameters.end() && number->second.value;
+  if (!asked && (spec.curve_of[0] == '\0' || is_number)) return std::nullopt;
+  CurveRequest request = asked ? found->second : CurveRequest{};
+  if (request.of.empty()) request.of = spec.curve_of;
   return request;
 }
 

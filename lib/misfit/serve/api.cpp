@@ -110,29 +110,14 @@ JobRequest request_in(const json& body) {
 }  // namespace
 
 Api::Api(SessionOptions options, const Registry& registry, std::string program)
-    : options_(std::move(options)), registry_(registry), results_(options_), script_(results_.folder()), jobs_(std::move(program)) {
+    : options_(std::move(options)),
+      registry_(registry),
+      results_(options_),
+      script_(results_.folder()),
+      jobs_(std::move(program), [this](const JobReport& job) {
+        if (job.state != JobState::done) script_.record_end(job.command, job.status, job.state == JobState::stopped);
+      }) {
   (void)read_file(results_.study());  // InputError: there is none
-}
-
-Api::~Api() {
-  try {
-    record_end();
-  } catch (const std::exception&) {  // the disk is full: the script stays as it was
-    return;
-  }
-}
-
-void Api::record_end() {
-  const JobReport job = jobs_.report();
-  if (job.number == ended_ || job.state == JobState::running) return;
-  ended_ = job.number;
-  if (job.status != 0) script_.record_end(job.command, job.status, job.state == JobState::stopped);
-}
-
-Answer Api::session() {
-  const std::lock_guard lock(mutex_);
-  record_end();
-  return {200, fmt::format(R"({{"text":{}}})", json_string(script_.text()))};
 }
 
 Answer Api::answer(const Ask& ask) {
@@ -204,7 +189,7 @@ Answer Api::get(const Ask& ask) {
   if (ask.path == "/api/calibration") return {200, page::calibration_view(results_.places().front())};
   if (ask.path == "/api/ladder") return {200, page::ladder_view(results_.folder())};
   if (ask.path == "/api/study") return study(place(ask));
-  if (ask.path == "/api/session") return session();
+  if (ask.path == "/api/session") return {200, fmt::format(R"({{"text":{}}})", json_string(script_.text()))};
   return failure(404, "there is no such page");
 }
 
@@ -280,7 +265,6 @@ Answer Api::save(const std::string& text, const std::string& hash) {
   const std::lock_guard lock(mutex_);
   if (const auto fault = save_text(results_.study(), whole, hash, registry_))
     return {422, fmt::format(R"({{"error":{},"fault":{}}})", json_string(fault->message), json_of(fault))};
-  record_end();
   script_.record_text(results_.study().string(), whole);
   return {200, fmt::format(R"({{"hash":"{}"}})", hash_text(whole))};
 }
@@ -326,7 +310,6 @@ Answer Api::start(const JobRequest& request) {
   const std::string command = command_of(words);
   const std::lock_guard lock(mutex_);
   if (jobs_.report().state == JobState::running) return failure(409, "a command is at work already: wait for its end, or stop it");
-  record_end();
   script_.record(command);  // first: nothing is done that is not recorded
   if (!jobs_.start(words, command)) return failure(503, "misfit is about to end");
   return {200, json_of(jobs_.report())};

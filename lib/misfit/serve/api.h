@@ -32,9 +32,6 @@ struct JobRequest {
 class Api {
  public:
   Api(SessionOptions options, const Registry& registry, std::string program);
-  ~Api();
-  Api(const Api&) = delete;
-  Api& operator=(const Api&) = delete;
 
   [[nodiscard]] Answer answer(const Ask& ask);
 
@@ -61,9 +58,6 @@ class Api {
   [[nodiscard]] std::vector<std::string> words_of(const JobRequest& request);
   [[nodiscard]] std::vector<std::string> words_of_add(const JobRequest& request) const;
   [[nodiscard]] std::vector<std::string> words_of_remove(const JobRequest& request) const;
-  [[nodiscard]] Answer session();
-  /// Writes to the script how the last command ended, once.
-  void record_end();
   [[nodiscard]] Answer save(const std::string& text, const std::string& hash);
   [[nodiscard]] page::Place place(const Ask& ask) const;
   [[nodiscard]] std::string where(const Ask& ask) const;
@@ -79,7 +73,6 @@ class Api {
   std::mutex mutex_;  ///< of known_, and of what is written
   std::shared_ptr<const Known> known_;
   Jobs jobs_;
-  int ended_ = 0;            ///< number of the command whose end the script has
   std::mutex frames_mutex_;  ///< of frames_
   std::map<std::filesystem::path, FrameReader> frames_;
 };

@@ -21,6 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t most_notes = 200, most_output = 1 << 16, most_points = 4000, longest_line = 4096;
 constexpr std::chrono::seconds patience{10};
+constexpr int not_started = 127;  // status of a program that cannot be run, as a shell has it
 
 struct Pipe {
   int from = -1, to = -1;
@@ -80,7 +81,7 @@ struct Start {
   ::signal(SIGTERM, SIG_DFL);
   ::signal(SIGPIPE, SIG_IGN);
   ::execve(start.program, start.words, start.variables);
-  ::_exit(127);
+  ::_exit(not_started);
 }
 
 void keep_last(std::string& text, std::size_t most) {
@@ -97,7 +98,8 @@ struct Jobs::Process {
   int status = 0;
 };
 
-Jobs::Jobs(std::string program) : program_(std::move(program)), thread_([this] { work(); }) {}
+Jobs::Jobs(std::string program, std::function<void(const JobReport&)> ended)
+    : program_(std::move(program)), ended_(std::move(ended)), thread_([this] { work(); }) {}
 
 Jobs::~Jobs() {
   {
@@ -147,8 +149,8 @@ void Jobs::work() {
       run(words);
     } catch (const std::exception& error) {
       const std::lock_guard again(mutex_);
-      report_.state = JobState::failed;
       report_.notes.emplace_back(error.what());
+      ended_with(not_started, JobState::failed);
     }
     lock.lock();
   }
@@ -240,9 +242,21 @@ void Jobs::end(const Process& process) {
   const std::lock_guard lock(mutex_);
   pid_ = 0;
   if (!process.line.empty()) hear(process.line);
-  report_.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  report_.state = report_.status == 0 ? JobState::done : report_.stopping ? JobState::stopped : JobState::failed;
   report_.seconds = std::chrono::duration<double>(Clock::now() - process.begin).count();
+  const int own = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  const bool stopped = report_.stopping || ends_;
+  ended_with(own, own == 0 ? JobState::done : stopped ? JobState::stopped : JobState::failed);
+}
+
+/// With the lock held.
+void Jobs::ended_with(int status, JobState state) {
+  report_.status = status;
+  report_.state = state;
+  try {
+    ended_(report_);
+  } catch (const std::exception& error) {  // the disk is full
+    report_.notes.emplace_back(error.what());
+  }
 }
 
 }  // namespace misfit::serve

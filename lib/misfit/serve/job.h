@@ -1,6 +1,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -39,7 +40,8 @@ struct JobReport {
 /// is killed). Its arguments are given one by one: there is no shell.
 class Jobs {
  public:
-  explicit Jobs(std::string program);
+  /// `ended` hears of each command's end before report() says so; from another thread, with the lock held: it does not ask this object.
+  Jobs(std::string program, std::function<void(const JobReport&)> ended);
   ~Jobs();
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
@@ -57,8 +59,10 @@ class Jobs {
   void read(Process& process);
   void hear(const std::string& line);
   void end(const Process& process);
+  void ended_with(int status, JobState state);
 
   std::string program_;
+  std::function<void(const JobReport&)> ended_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<std::vector<std::string>> next_;

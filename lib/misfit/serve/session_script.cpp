@@ -45,12 +45,10 @@ void SessionScript::record_text(const std::string& study, const std::string& tex
 
 void SessionScript::record_end(const std::string& command, int status, bool stopped) const {
   std::string lines = text();
-  const std::string line = "\n" + command + "\n";
-  const std::size_t at = lines.rfind(line);
-  if (at == std::string::npos) return;
+  if (!lines.ends_with("\n" + command + "\n")) return;
   std::string instead = "# stopped: " + command;
   if (!stopped) instead = status == 1 ? command + " || [ $? -eq 1 ]" : fmt::format("# ended with status {}: {}", status, command);
-  write_atomically(path_, lines.replace(at + 1, command.size(), instead));
+  write_atomically(path_, lines.replace(lines.size() - command.size() - 1, command.size(), instead));
 }
 
 std::string SessionScript::text() const {

@@ -17,7 +17,7 @@ class SessionScript {
   explicit SessionScript(const std::filesystem::path& folder) : path_(folder / "session.sh") {}
 
   void record(const std::string& command) const { append(command + "\n"); }
-  /// The command recorded last ended otherwise than well. With status 1 it may have left results (a method that declines): its line lets
+  /// The command, recorded last, ended otherwise than well. With status 1 it may have left results (a method that declines): its line lets
   /// the others follow. Stopped or refused, it is not to be done again: its line becomes a comment.
   void record_end(const std::string& command, int status, bool stopped) const;
   /// That the study was given this text.
