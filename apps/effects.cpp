@@ -20,6 +20,12 @@ std::string joined(const std::vector<Role>& roles) {
   return out.empty() ? "none" : out;
 }
 
+/// "a curve of alpha_T", "a curve of what its role `of` names"; "": a number.
+std::string curve_in_words(const EffectSpec& spec, const CoefficientSpec& c) {
+  if (c.curve_of[0] == '\0') return "";
+  return spec.curve_role(c) < 0 ? fmt::format("a curve of {}", c.curve_of) : fmt::format("a curve of what its role `{}` names", c.curve_of);
+}
+
 std::string coefficients_of(const EffectSpec& spec) {
   std::string out;
   for (const auto& c : spec.coefficients) {
@@ -29,7 +35,7 @@ std::string coefficients_of(const EffectSpec& spec) {
     }
     out += fmt::format("{}{} [{}] {} in [{:g}, {:g}]{}", out.empty() ? "" : "; ", c.name, c.unit,
                        c.kind == CoefficientKind::strength ? "strength" : "shape", c.lower, c.upper,
-                       c.curve_of[0] == '\0' ? "" : fmt::format(", a curve of {}", c.curve_of));
+                       c.curve_of[0] == '\0' ? "" : ", " + curve_in_words(spec, c));
   }
   return out.empty() ? "none" : out;
 }
@@ -91,7 +97,7 @@ std::string parameters_table(const EffectSpec& spec) {
   std::vector<std::vector<std::string>> rows{{"parameter", "unit", "kind", "default", "bounds", "meaning"}};
   for (const auto& c : spec.coefficients) {
     const std::string kind = c.shared ? "of another effect" : c.kind == CoefficientKind::strength ? "strength" : "shape";
-    const std::string meaning = c.curve_of[0] == '\0' ? c.doc : fmt::format("{}; a curve of {}", c.doc, c.curve_of);
+    const std::string meaning = c.curve_of[0] == '\0' ? c.doc : fmt::format("{}; {}", c.doc, curve_in_words(spec, c));
     rows.push_back({c.name, c.unit, kind, c.shared ? "" : fmt::format("{:g}{}", c.value, c.fixed ? ", fixed" : ""),
                     c.shared ? "" : fmt::format("[{:g}, {:g}]", c.lower, c.upper), meaning});
   }
@@ -106,7 +112,9 @@ std::string study_line(const EffectSpec& spec) {
       if (!role.optional) roles += fmt::format("{}{} = \"NAME\"", roles.empty() ? "" : ", ", role.name);
   }
   const std::string line = effect_line(spec.key, spec.key, {});
-  std::string out = fmt::format("  in a study\n    [effects]\n    {}\n    # to act elsewhere: {} = {{ {} }}\n", line, spec.key, roles);
+  const std::string bound = fmt::format("{} = {{ {} }}", spec.key, roles);
+  std::string out = spec.has_unknown_form() ? fmt::format("  in a study\n    [effects]\n    {}\n", bound)
+                                            : fmt::format("  in a study\n    [effects]\n    {}\n    # to act elsewhere: {}\n", line, bound);
   const auto own = std::find_if(spec.coefficients.begin(), spec.coefficients.end(), [](const CoefficientSpec& c) { return !c.shared; });
   if (own != spec.coefficients.end()) {
     out += fmt::format(

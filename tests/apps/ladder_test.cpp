@@ -227,6 +227,59 @@ TEST(AnEffectThatIsAdded, IsWhatDiscoveryFindsWhetherItHasBeenAskedOrNot) {
   }
 }
 
+struct CurvePoint {
+  double x = 0.0, value = 0.0, sigma = 0.0;
+};
+
+/// Where it was visited: the columns are curve, quantity, value, sigma, count.
+std::vector<CurvePoint> curve_in(const fs::path& file) {
+  std::vector<CurvePoint> out;
+  std::istringstream in(content(file));
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream row(line);
+    std::string curve;
+    CurvePoint p;
+    double count = 0.0;
+    if (row >> curve >> p.x >> p.value >> p.sigma >> count && count >= 5.0) out.push_back(p);
+  }
+  return out;
+}
+
+/// No effect of the library is like it.
+double sine_of_the_rate(double w) { return 0.6 * std::sin(5.0 * w); }
+
+TEST(AForceOfUnknownForm, BecomesACurveOfItsQuantityBesideWhichWhatItCanTakeOverIsHeld) {
+  const OscillatorStudy study;
+  study.record_with(sine_of_the_rate);
+  const std::string file = study.path("study.toml").string();
+  const Outcome outcome = run({"discover", file, "--auto"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  ASSERT_EQ(added(study), (std::vector<std::string>{"", "unknown_force"})) << outcome.out << outcome.err;
+  const json rung = json::parse(content(study.path("out/ladder.json"))).at(1);
+  EXPECT_GT(rung.at("actual_drop").get<double>(), 100.0);
+  EXPECT_GT(rung.at("held_out_gain").get<double>(), 0.0);
+  EXPECT_THAT(rung.at("note").get<std::string>(), testing::HasSubstr("c is held"));
+  const std::string folder = "out/rungs/01_unknown_force/";
+  const std::string text = content(study.path(folder + "study.toml"));
+  expect_parts(text, {"unknown_force = { of = \"w\", port = \"dw/dt\" }", "c.free = false"});
+  EXPECT_THAT(text, testing::AllOf(testing::Not(testing::HasSubstr("k.free")), testing::Not(testing::HasSubstr("g.free"))));
+
+  // The curve and the damping that is held are the damping and the force of the truth.
+  const double held = std::stod(text.substr(text.find("c.value = ") + 10));
+  int points = 0, within = 0;
+  for (const CurvePoint& p : curve_in(study.path(folder + "out/fit/filter_error/curves.csv"))) {
+    const double truth = sine_of_the_rate(p.x) - 0.2 * p.x + held * p.x;
+    ++points;
+    within += std::abs(p.value - truth) < 2.0 * p.sigma ? 1 : 0;
+    EXPECT_NEAR(p.value, truth, 0.2) << "at " << p.x << " m/s";
+  }
+  EXPECT_GT(points, 20);
+  EXPECT_GE(within, 0.8 * points);
+}
+
 TEST(APlaceOfAnEffect, IsTheOneThatIsAskedFor) {
   const OscillatorStudy study;
   study.measure_twice();

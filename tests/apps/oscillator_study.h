@@ -58,6 +58,9 @@ starts = 5
   [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
 
+  /// Records it anew with another force in place of dry friction, a function of its rate [m/s].
+  void record_with(double (*force)(double)) const { write("d.csv", recording(force)); }
+
   /// Its position is measured by two sensors: an effect of a sensor has two places.
   void measure_twice() const {
     std::istringstream lines(content(path("d.csv")));
@@ -83,7 +86,9 @@ starts = 5
   }
 
  private:
-  static std::string recording() {
+  static double dry_friction(double w) { return -0.5 * std::tanh(w / 0.02); }
+
+  static std::string recording(double (*force)(double) = dry_friction) {
     std::string text = "t[s],u[N],y[m]\n";
     std::mt19937 random(3);
     std::normal_distribution<double> noise(0.0, 0.005);
@@ -96,7 +101,7 @@ starts = 5
       std::snprintf(row, sizeof row, "%.3f,%.1f,%.5f\n", i * dt, u, y + noise(random));
       text += row;
       for (int k = 0; k < steps; ++k) {
-        w += h * (-4.0 * y - 0.2 * w + 2.0 * u - 0.5 * std::tanh(w / 0.02));
+        w += h * (-4.0 * y - 0.2 * w + 2.0 * u + force(w));
         y += h * w;
       }
     }

@@ -155,6 +155,7 @@ Discovery example_discovery() {
   d.unexplained_port = "dw/dt";
   d.unexplained_quantity = "w";
   d.unexplained_error = true;
+  d.unexplained_effects = {{"unknown_error", {{"of", "w"}, {"output", "y"}}}};
   d.seconds = 12.0;
   return d;
 }
@@ -218,6 +219,9 @@ TEST(DiscoveryFiles, ReadBackWhatWasWritten) {
   EXPECT_EQ(back.unexplained_port, "dw/dt");
   EXPECT_EQ(back.unexplained_quantity, "w");
   EXPECT_TRUE(back.unexplained_error);
+  ASSERT_EQ(back.unexplained_effects.size(), 1U);
+  EXPECT_EQ(back.unexplained_effects.front().effect, "unknown_error");
+  EXPECT_EQ(back.unexplained_effects.front().roles, d.unexplained_effects.front().roles);
   EXPECT_EQ(back.force.at("moment").sigma, 0.8);
   ASSERT_EQ(back.candidates.size(), 2U);
   const Candidate& wake = back.candidates[0];

@@ -23,6 +23,17 @@ std::string owner_of(const std::string& coefficient) {
   throw std::logic_error("nobody lends " + coefficient);
 }
 
+/// Roles without a default: an effect of unknown form has to be told of what it is a curve.
+std::map<std::string, std::string> roles_without_default(const EffectSpec& spec, const ModelRequest& request) {
+  std::map<std::string, std::string> out;
+  for (const CoefficientSpec& c : spec.coefficients) {
+    if (const int role = spec.curve_role(c); role >= 0)
+      out[spec.quantities[static_cast<std::size_t>(role)].name] =
+          registry().system(request.system).make(request.options)->spec().quantities.front().name;
+  }
+  return out;
+}
+
 /// A system in which the effect binds with its default roles, if there is one.
 std::vector<Model> models_with(const std::string& key) {
   std::vector<Model> models;
@@ -31,6 +42,7 @@ std::vector<Model> models_with(const std::string& key) {
                               declared("cascaded_tanks", {}), declared("duffing", {})}) {
     ModelRequest alone = request;
     alone.effects = {effect(key)};
+    alone.effects.front().roles = roles_without_default(registry().effect(key).spec(), request);
     for (const auto& c : coefficients) {
       if (c.shared) alone.effects.push_back(effect(owner_of(c.name)));
     }

@@ -43,8 +43,13 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
   json("held_out_gain", c.held_out_gain), json("p_value", c.p_value), json("group", c.group);
   json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters), json("family", c.family);
   json("roles", c.roles), json("dof", c.dof), json("described", c.described), json("force", c.force);
-  json("free", c.free), json("fixed", c.fixed);
+  json("held", c.held), json("free", c.free), json("fixed", c.fixed);
   json("refit_values", c.refit_values), json("refit_log_noise", c.refit_log_noise);
+}
+
+template <class Archive>
+void fields(Archive& json, MaybeConst<EffectPlace> auto& place) {
+  json("effect", place.effect), json("roles", place.roles);
 }
 
 template <class Archive>
@@ -62,7 +67,8 @@ void fields(Archive& json, MaybeConst<StoredDiscovery> auto& stored) {
   auto& d = stored.discovery;
   json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("force", d.force);
   json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
-  json("unexplained_error", d.unexplained_error), json("sweep_asks", d.sweep_asks), json("added_force", stored.added);
+  json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error), json("sweep_asks", d.sweep_asks),
+      json("added_force", stored.added);
   json("seconds", d.seconds);
 }
 
@@ -72,9 +78,9 @@ std::string effect_at(const std::string& effect, const std::map<std::string, std
   return bindings.empty() ? effect : effect + " (" + bindings + ")";
 }
 
-std::vector<std::string> words_of_place(const Candidate& candidate) {
+std::vector<std::string> words_of_place(const std::map<std::string, std::string>& roles) {
   std::vector<std::string> out;
-  for (const auto& [role, name] : candidate.roles) out.push_back(role + "=" + name);
+  for (const auto& [role, name] : roles) out.push_back(role + "=" + name);
   return out.empty() ? std::vector<std::string>{"default"} : out;
 }
 

@@ -36,18 +36,27 @@ struct Candidate {
   bool accepted = false;
   std::string why;                             ///< of being accepted or not, in words
   std::map<std::string, Estimate> parameters;  ///< at the refit, else one Gauss–Newton step
-  std::vector<std::string> free, fixed;        ///< its coefficients that the refit estimated or held unlike the effect says itself
-  std::map<std::string, Estimate> force;       ///< random force per port after refitting
+  /// Parameters of the model that it can take over, and their values: held when it is added, since both could not be estimated.
+  std::map<std::string, Estimate> held;
+  std::vector<std::string> free, fixed;   ///< its coefficients that the refit estimated or held unlike the effect says itself
+  std::map<std::string, Estimate> force;  ///< random force per port after refitting
   /// Where the refit ended, for whoever begins there: all parameters of the model with the effect in their order [SI], and logarithms of
   /// the noise (NoiseVector). Empty: not refitted.
   std::vector<double> refit_values, refit_log_noise;
   std::vector<AddedForce> added;  ///< at the refit, by experiment; empty: not refitted, or it adds none
 };
 
+/// An effect and what its roles are bound to, as a study would write them.
+struct EffectPlace {
+  std::string effect;
+  std::map<std::string, std::string> roles;
+};
+
 /// "overflow (level = x1, port = dx1/dt)"; the key alone where all roles are the defaults.
 [[nodiscard]] std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles);
 /// The same as words of a command: {"level=x1", "port=dx1/dt"}; {"default"} where all roles are the defaults.
-[[nodiscard]] std::vector<std::string> words_of_place(const Candidate& candidate);
+[[nodiscard]] std::vector<std::string> words_of_place(const std::map<std::string, std::string>& roles);
+[[nodiscard]] inline std::vector<std::string> words_of_place(const Candidate& candidate) { return words_of_place(candidate.roles); }
 
 /// What could be missing, best first.
 struct Discovery {
@@ -57,7 +66,10 @@ struct Discovery {
   std::vector<std::string> tried;         ///< families and cells that were looked at, in words
   std::map<std::string, Estimate> force;  ///< random force before
   std::string unexplained_port,
-      unexplained_quantity;             ///< where a force of unknown form depends on what, if that is the verdict; else empty
+      unexplained_quantity;  ///< where a force of unknown form depends on what, if that is the verdict; else empty
+  /// Effects that would add it to the model as a curve of one quantity: of the one that explains most alone first. Empty: nothing is
+  /// unexplained, or it is not of that kind.
+  std::vector<EffectPlace> unexplained_effects;
   bool unexplained_error = false;       ///< not a force: an error of the output unexplained_port
   std::vector<std::string> sweep_asks;  ///< camera parameters that the calibration sweep asks for and the camera of the study does not have
   double seconds = 0.0;

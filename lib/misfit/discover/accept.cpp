@@ -9,6 +9,7 @@
 #include "misfit/discover/conditional.h"
 #include "misfit/discover/drift.h"
 #include "misfit/discover/pairs.h"
+#include "misfit/discover/unknown_form.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/math/statistics.h"
 
@@ -240,15 +241,15 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
   return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, {best.refit->drop}, context.options);
 }
 
-Unexplained unexplained(const UnknownCurve& form, std::string quantities, double p) {
-  return {form.port, std::move(quantities), form.of_output, p};
-}
-
 /// Step 9: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if
 /// that candidate is more significant than any unknown curve, else the most significant unknown curve.
 std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>& ranked, const std::optional<UnknownCurve>& left,
                                              const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
   const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
+  const auto unexplained = [&](const UnknownCurve& form, std::string quantities, double p) -> Unexplained {
+    const SystemSpec& system = context.estimate.model.system->spec();
+    return {form.port, std::move(quantities), form.of_output, p, effects_of_unknown_form(form, unknown, system, context.registry)};
+  };
   const bool any = best != unknown.end();
   const bool front_better = any && !ranked.empty() && !ranked.front().misnamed && ranked.front().log_p < best->log_p;
   if (left && (!any || front_better)) return unexplained(*left, left->quantities(), left->p_value);

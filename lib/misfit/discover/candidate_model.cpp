@@ -272,7 +272,7 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
   const SystemSpec& system = estimate.model.system->spec();
   for (const std::string& key : registry.effect_keys()) {
     const Effect& effect = registry.effect(key);
-    if (!has_strength(effect.spec()) || driven_by_noise(effect)) continue;
+    if (!has_strength(effect.spec()) || effect.spec().has_unknown_form() || driven_by_noise(effect)) continue;
     for (const Roles& roles : enumerate_bindings(effect.spec(), system)) {
       if (roles.empty() && in_model(request, key)) continue;
       std::optional<CandidateModel> candidate_model = candidate_model_at(estimate, request, registry, effect, roles);
@@ -289,7 +289,7 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
 std::optional<CandidateModel> candidate_model_of(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                                  const EffectRequest& effect, const Calibration* calibration) {
   const Effect& asked = registry.effect(effect.kind);
-  if (!has_strength(asked.spec()) || driven_by_noise(asked)) return std::nullopt;
+  if (!has_strength(asked.spec()) || asked.spec().has_unknown_form() || driven_by_noise(asked)) return std::nullopt;
   std::optional<CandidateModel> out = candidate_model_at(estimate, request, registry, asked, effect.roles);
   if (out) fill(asked, calibration, OperatingRange(estimate), *out);
   return out;

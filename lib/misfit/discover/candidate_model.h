@@ -34,7 +34,8 @@ struct CandidateModel {
 inline constexpr int kTime = -1;
 
 /// Every effect of the registry that suits the model's system, is not in it, and has a strength; generic ones at each place that the system
-/// suggests (bindings.h). Left out: effects driven by noise (the filter has them), and generic ones that a system's own effect specialises.
+/// suggests (bindings.h). Left out: effects driven by noise (the filter has them), those of unknown form (unknown_form.h), and generic ones
+/// that a system's own effect specialises.
 [[nodiscard]] std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request,
                                                            const Registry& registry, const Calibration* calibration);
 

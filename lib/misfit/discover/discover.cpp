@@ -17,6 +17,7 @@
 #include "misfit/discover/free_run.h"
 #include "misfit/discover/refit_jobs.h"
 #include "misfit/discover/unfinished.h"
+#include "misfit/discover/unknown_form.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/math/statistics.h"
@@ -77,6 +78,10 @@ class Search {
   /// Only the effect of the options, with the drop of one step, as a candidate among all families.
   Discovery predict() {
     families_ = static_cast<double>(candidate_models_.size() + count_of_unknown_curves(scores()));
+    if (const Effect& asked = registry_.effect(options_.only); asked.spec().has_unknown_form()) {
+      out_.candidates = candidates_of_unknown_form(scores(), asked, families_);
+      return std::move(out_);
+    }
     std::erase_if(candidate_models_, [&](const CandidateModel& s) { return s.effect != options_.only; });
     screening_ = screen(scores(), candidate_models_, part(0.0, 1.0));
     rank();

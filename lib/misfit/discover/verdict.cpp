@@ -107,6 +107,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     out.unexplained_port = unexplained->port;
     out.unexplained_quantity = unexplained->quantity;
     out.unexplained_error = unexplained->of_output;
+    out.unexplained_effects = unexplained->effects;
     out.verdict = "Something is missing that depends on " + unexplained->quantity + " (" + unexplained_place(out) + ", " +
                   p_equals(unexplained->p_value) + "), and no effect of the library explains it.";
     if (best.actual_drop)

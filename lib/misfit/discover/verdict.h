@@ -12,6 +12,7 @@ struct Unexplained {
   std::string port, quantity;
   bool of_output = false;
   double p_value = 1.0;
+  std::vector<EffectPlace> effects = {};  ///< that add it to the model as a curve
 };
 
 /// The verdict in one sentence, and what would separate a group; `camera`: the measurements are those of a calibrated one.

@@ -133,7 +133,7 @@ int Assembler::bind_constant(const EffectRequest& request, const std::string& na
 BoundCoefficient Assembler::bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request,
                                              PortKind kind) {
   if (spec.shared) return {};  // see share_coefficients()
-  const auto curve = curve_request(name, spec);
+  const auto curve = curve_request(name, spec, request);
   if (curve) return {-1, add_curve(name, spec, *curve, request, kind)};
   if (spec.over_sine) throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"QUANTITY\" }");
   Parameter p = as_parameter(name, spec);

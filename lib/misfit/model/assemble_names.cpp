@@ -87,13 +87,17 @@ std::vector<std::string> Assembler::owned_names() const {
   return names;
 }
 
-std::optional<CurveRequest> Assembler::curve_request(const std::string& name, const CoefficientSpec& spec) const {
+std::optional<CurveRequest> Assembler::curve_request(const std::string& name, const CoefficientSpec& spec, const EffectRequest& by) const {
   const auto found = request_.curves.find(name);
   const auto number = request_.parameters.find(name);
   const bool asked = found != request_.curves.end(), is_number = number != request_.parameters.end() && number->second.value;
   if (!asked && (spec.curve_of[0] == '\0' || is_number)) return std::nullopt;
   CurveRequest request = asked ? found->second : CurveRequest{};
-  if (request.of.empty()) request.of = spec.curve_of;
+  if (!request.of.empty()) return request;
+  const EffectSpec& effect = registry_.effect(by.kind, by.where).spec();
+  const int role = effect.curve_role(spec);
+  request.of = role < 0 ? spec.curve_of
+                        : target_of(by, effect.quantities[role], [&](const std::string& quantity) { return find_quantity(quantity) >= 0; });
   return request;
 }
 

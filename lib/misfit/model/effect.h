@@ -86,9 +86,10 @@ struct CoefficientSpec {
   double scale = 1.0;  ///< typical size [unit]: for steps, random starts and "how big is it"
   const char* doc = "";
   Parity parity = Parity::none;  ///< as a curve: symmetry about 0
-  const char* curve_of = "";     ///< default: a curve of this quantity unless the study gives a number; "" = a number
-  bool over_sine = false;        ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
-  bool fixed = false;            ///< not fitted unless the study frees it: a smoothing width, an origin of time
+  const char* curve_of =
+      "";  ///< default: a curve of this quantity, or of what this role stands for, unless the study gives a number; "" = a number
+  bool over_sine = false;  ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
+  bool fixed = false;      ///< not fitted unless the study frees it: a smoothing width, an origin of time
   ScanSpec scan{};
   /// Of a fixed shape that is 0: the effect's coefficient whose change with time it is [unit/s]. Discovery frees it where that explains
   /// clearly more.
@@ -137,6 +138,10 @@ struct EffectSpec {
   std::string specialises;   ///< key of the generic effect it coincides with: that one is not proposed beside it
   bool dissipative = false;  ///< never adds power at the port's conjugate rate
 
+  /// Index of the role in `quantities` that names what the coefficient is a curve of; −1: none does.
+  [[nodiscard]] int curve_role(const CoefficientSpec& coefficient) const;
+  /// A force or an error of unknown form: one of its coefficients is a curve of what one of its roles stands for.
+  [[nodiscard]] bool has_unknown_form() const;
   /// In the order of the fields.
   void set_texts(const std::array<const char*, 7>& texts);
 };

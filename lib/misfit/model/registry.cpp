@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 
 namespace misfit {
@@ -16,6 +17,15 @@ std::vector<std::string> keys_of(const Map& map) {
 }
 
 }  // namespace
+
+int EffectSpec::curve_role(const CoefficientSpec& coefficient) const {
+  if (coefficient.shared || coefficient.curve_of[0] == '\0') return -1;
+  return index_of(quantities, coefficient.curve_of);
+}
+
+bool EffectSpec::has_unknown_form() const {
+  return std::any_of(coefficients.begin(), coefficients.end(), [this](const CoefficientSpec& c) { return curve_role(c) >= 0; });
+}
 
 void EffectSpec::set_texts(const std::array<const char*, 7>& texts) {
   const std::array<std::string*, 7> fields = {&key, &formula, &symbols, &valid, &size, &source, &excludes};

@@ -133,6 +133,12 @@ class Judge {
            (in_.out.empty() ? "" : " --out " + shell_word(in_.out));
   }
 
+  [[nodiscard]] static std::string at_place(const std::map<std::string, std::string>& roles) {
+    std::string out;
+    for (const std::string& word : words_of_place(roles)) out += " --at " + shell_word(word);
+    return out;
+  }
+
   /// With the 95 % interval of the last one and what the references say.
   void add_trim() {
     const Rung* last = climbed_ ? &in_.ladder->rungs.back() : nullptr;
@@ -234,7 +240,9 @@ class Judge {
     } else if (!d.unexplained_port.empty()) {
       const std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
                                               climbed_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
-      const std::string next = "look at the picture, then write the effect as one line of the study: misfit help study";
+      const std::string next = !d.unexplained_effects.empty()
+                                   ? command("add", d.unexplained_effects.front().effect) + at_place(d.unexplained_effects.front().roles)
+                                   : "look at the picture, then write the effect as one line of the study: misfit help study";
       climbed_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (climbed_ && d.verdict.starts_with("No effect accepted")) {
       added("whether more is missing is not decided" + best_refused(d), "", VerdictKind::not_decided);

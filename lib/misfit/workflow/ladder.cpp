@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
@@ -131,6 +132,14 @@ void compare_with_parent(const FilterWork& child, const FilterWork& parent, int 
   } catch (const TimeSpent& spent) {
     append_note(rung.note, std::string("no actual drop: ") + spent.what());
   }
+}
+
+/// "c is held at 0.5 1/s: the curve takes it over"
+std::string held_in_words(const std::map<std::string, Estimate>& held) {
+  std::string out;
+  for (const auto& [name, e] : held)
+    out += (out.empty() ? "" : "; ") + name + " is held at " + in_display_unit(e.value, e.unit) + ": the curve takes over what it does";
+  return out;
 }
 
 StageInputs inputs_of_ladder(const Session& session) {
@@ -282,6 +291,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   } else {
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
+    if (from) append_note(rung.note, held_in_words(from->held));
     const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.hearer("add"));
     compare_with_parent(*work, *parent_work, options_.threads, rung);
   }

@@ -9,6 +9,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/data/candidates.h"
+#include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/assess/without.h"
 #include "misfit/workflow/ladder.h"
 
@@ -22,6 +23,7 @@ struct OnLadder {
   Candidate from;
   std::vector<Candidate> alternatives;
   bool width_freed = false;
+  int searched_with = -1;  ///< of a curve of unknown form: the last rung beside which a named effect was looked for in its place
 };
 
 /// Those of the round that were refitted and explain more than half of what the accepted one does.
@@ -62,9 +64,9 @@ class Extension {
       if (listener_.discovered) listener_.discovered(discovery);
       families_ = static_cast<double>(discovery.candidates.size());
       const std::optional<Candidate> next = accepted_candidate(discovery, registry_);
-      if (!next || has_left(*next)) break;
-      if (!add(*next, alternatives_to(*next, discovery))) break;
-      while (one_leaves() || one_is_exchanged() || one_is_sharper()) {
+      if (next && has_left(*next)) break;
+      if (next ? !add(*next, alternatives_to(*next, discovery)) : !add_curve(discovery)) break;
+      while (one_leaves() || one_is_exchanged() || one_is_sharper() || one_is_named()) {
       }
     }
     ladder_.last_rung();
@@ -89,6 +91,44 @@ class Extension {
     }
     added_.push_back({rung.id, ladder_.last().model.request.effects.back().name, candidate, std::move(alternatives)});
     return true;
+  }
+
+  /// A force or an error of unknown form becomes a rung as it is: a curve of the quantity that it depends on. What else is missing can then
+  /// be found beside it. False: there is none, or it gains nothing.
+  bool add_curve(const Discovery& discovery) {
+    return std::any_of(discovery.unexplained_effects.begin(), discovery.unexplained_effects.end(),
+                       [this](const EffectPlace& place) { return add_curve(place); });
+  }
+  bool add_curve(const EffectPlace& place) {
+    const auto& [effect, roles] = place;
+    const auto& own = ladder_.last().model.request.effects;
+    if (std::any_of(own.begin(), own.end(),
+                    [&, kind = effect, at = roles](const EffectRequest& e) { return e.kind == kind && e.roles == at; }))
+      return false;  // its knots are too far apart for what is left, or its place is another
+    const std::optional<Candidate> curve = predict_effect(ladder_.last(), effect, {roles});
+    if (!curve || has_left(*curve)) return false;
+    const std::vector<std::string> before = filter_work(ladder_.last())->fit.names;
+    try {
+      if (!add(*curve, {})) return false;
+    } catch (const InputError& error) {  // what it is a curve of hardly moves in the fit that comes first
+      ladder_.root().note(fmt::format("{} cannot be fitted: {}", effect_at(effect, roles), error.what()));
+      return false;
+    } catch (const RunError& error) {
+      stop_if_interrupted();
+      ladder_.root().note(fmt::format("{} cannot be fitted: {}", effect_at(effect, roles), error.what()));
+      return false;
+    }
+    const Rung& rung = ladder_.ladder().rungs.back();
+    const std::vector<std::string>& after = ladder_.last_fit().names;
+    const auto more = std::count_if(after.begin(), after.end(),
+                                    [&](const std::string& name) { return std::find(before.begin(), before.end(), name) == before.end(); });
+    if (!gains_too_little(rung.actual_drop, rung.held_out_gain, static_cast<int>(more), families_)) return true;
+    ladder_.root().note(fmt::format("{} gains too little for its {} coefficients (drop {}, held-out gain {}): its rung is taken off",
+                                    effect_at(effect, roles), more, rung.actual_drop ? format_value(*rung.actual_drop) : "unknown",
+                                    rung.held_out_gain ? format_value(*rung.held_out_gain) : "unknown"));
+    ladder_.remove(std::to_string(rung.id));
+    added_.pop_back();
+    return false;
   }
 
   /// The first that the later ones have made needless goes, and those above it are added again without it. False: there is none.
@@ -144,6 +184,24 @@ class Extension {
       std::erase(again.fixed, width->coefficient);
       again.free.push_back(width->coefficient);
       return rebuild_without(k, again, true);
+    }
+    return false;
+  }
+
+  /// A curve of unknown form stands in for an effect that could not be named among all that was missing then. With what was added after it
+  /// in the model, the search is made once more without it: an effect that is accepted there takes its place. False: there is none.
+  bool one_is_named() {
+    for (std::size_t k = 0; k + 1 < added_.size(); ++k) {
+      const bool unknown = registry_.effect(added_[k].from.effect).spec().has_unknown_form();
+      if (!unknown || added_[k].searched_with == added_.back().rung) continue;
+      added_[k].searched_with = added_.back().rung;
+      const auto without = model_without(ladder_.last(), added_[k].name);
+      if (!without) continue;
+      const std::optional<Candidate> named = accepted_candidate(search_without(ladder_.last(), *without), registry_);
+      if (!named || has_left(*named)) continue;
+      ladder_.root().note(fmt::format("beside what was added after it, {} stands for {}: it takes its place",
+                                      effect_at(named->effect, named->roles), effect_at(added_[k].from.effect, added_[k].from.roles)));
+      return rebuild_without(k, named);
     }
     return false;
   }

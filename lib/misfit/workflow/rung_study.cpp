@@ -1,5 +1,7 @@
 // The study of a new rung: the text of the one below with one line changed.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -49,6 +51,25 @@ EffectStart start_found(const Effect& effect, const Candidate& from) {
     }
   }
   return start;
+}
+
+/// The study's text with these parameters held at these values.
+std::string with_held(std::string text, const std::map<std::string, Estimate>& held) {
+  for (const auto& [name, estimate] : held) {
+    std::vector<std::string> path = {"parameters"};
+    for (std::size_t at = 0, dot = 0; dot != std::string::npos; at = dot + 1) {
+      dot = name.find('.', at);
+      path.push_back(name.substr(at, dot == std::string::npos ? dot : dot - at));
+    }
+    const auto set = [&](const char* key, const std::string& value) {
+      path.emplace_back(key);
+      text = with_value(text, path, value);
+      path.pop_back();
+    };
+    set("value", fmt::format("{}", estimate.value));
+    set("free", "false");
+  }
+  return text;
 }
 
 /// The name that a coefficient has in a system → the name the same one has in another.
@@ -130,7 +151,10 @@ std::string study_with_effect(const Session& session, const std::string& effect,
   }
   const auto start = from ? start_found(found, *from) : EffectStart{};
   const std::string text = text_for_folder(session.study, folder);
-  return edited(session, [&] { return with_effect(text, effect_line(name, effect, roles, start)); });
+  return edited(session, [&] {
+    const std::string added = with_effect(text, effect_line(name, effect, roles, start));
+    return from ? with_held(added, from->held) : added;
+  });
 }
 
 std::string study_with_system(const Session& session, const std::string& kind, const std::filesystem::path& folder,

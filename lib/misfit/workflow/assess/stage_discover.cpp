@@ -82,7 +82,8 @@ AskedPlace asked_place(const std::vector<std::string>& words) {
 std::optional<Candidate> predict_effect(Session& session, const std::string& effect, const AskedPlace& place) {
   if (filter_declined(session)) refuse_declined(session);
   stop_if_interrupted();
-  const auto known = known_discovery(session);
+  const bool listed = !session.registry.effect(effect).spec().has_unknown_form();  // those are listed as unknown curves
+  const auto known = listed ? known_discovery(session) : std::nullopt;
   const Discovery discovery = known ? *known : search(session, effect, [&](const Candidate& c) { return is_at(c, place); });
   const Candidate* found = candidate_at(discovery, effect, place);
   return found == nullptr ? std::nullopt : std::optional(*found);

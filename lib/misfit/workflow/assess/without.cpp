@@ -4,6 +4,7 @@
 
 #include "misfit/core/watch.h"
 #include "misfit/discover/discover.h"
+#include "misfit/discover/refit.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/estimate/estimate.h"
 
@@ -25,6 +26,10 @@ std::optional<Without> needless(Session& session, const std::string& effect, dou
   return out && may_be_chance(out->drop, out->parameters, families) ? std::move(out) : std::nullopt;
 }
 
+bool gains_too_little(const std::optional<double>& drop, const std::optional<double>& held_out_gain, int parameters, double families) {
+  return (drop && may_be_chance(*drop, parameters, families)) || (held_out_gain && !(*held_out_gain > least_held_out_gain(parameters)));
+}
+
 std::optional<FreedWidth> width_of(Session& session, const std::string& effect) {
   stop_if_interrupted();
   const auto work = filter_work(session);
@@ -33,19 +38,34 @@ std::optional<FreedWidth> width_of(Session& session, const std::string& effect) 
   return freed_width(*work->estimate, work->prepared.experiments, effect, session.options.threads);
 }
 
-std::optional<Candidate> in_its_place(Session& session, const Without& without, const Candidate& other) {
+namespace {
+
+Discovery discover_in(Session& session, const Without& without, DiscoverOptions options) {
   stop_if_interrupted();
   const std::optional<Calibration> calibration = calibrate_stage(session);
   const auto work = filter_work(session);
-  const auto same = [&](const Candidate& c) { return c.effect == other.effect && c.roles == other.roles; };
-  DiscoverOptions options;
   options.threads = session.options.threads;
   options.calibration = calibration ? &*calibration : nullptr;
+  options.refit_limit = session.asked_limit().value_or(usual_limit(session.options, work->fit.seconds));
+  return discover(without.estimate, without.request, session.registry, work->prepared.experiments, options);
+}
+
+}  // namespace
+
+Discovery search_without(Session& session, const Without& without) {
+  DiscoverOptions options;
+  options.progress = session.progress("discover");
+  options.stop = &interrupted();
+  return discover_in(session, without, std::move(options));
+}
+
+std::optional<Candidate> in_its_place(Session& session, const Without& without, const Candidate& other) {
+  const auto same = [&](const Candidate& c) { return c.effect == other.effect && c.roles == other.roles; };
+  DiscoverOptions options;
   options.only = other.effect;
   options.refit_best_of = same;
-  options.refit_limit = session.asked_limit().value_or(usual_limit(session.options, work->fit.seconds));
   const Watch watch(other.effect + " in the place of another", 0.0, session.options.listener.hearer("discover"));
-  const Discovery found = discover(without.estimate, without.request, session.registry, work->prepared.experiments, options);
+  const Discovery found = discover_in(session, without, std::move(options));
   const auto candidate = std::find_if(found.candidates.begin(), found.candidates.end(), same);
   return candidate == found.candidates.end() || !candidate->actual_drop ? std::nullopt : std::optional(*candidate);
 }

@@ -17,8 +17,16 @@ namespace misfit {
 /// The same if the effect's strengths are small (may_leave()) and what it explains may be chance (may_be_chance()).
 [[nodiscard]] std::optional<Without> needless(Session& session, const std::string& effect, double families);
 
+/// May the drop of so many parameters be chance (may_be_chance()), or is their gain of the held-out log-likelihood less than discovery asks
+/// for (least_held_out_gain())? What is not known counts for them.
+[[nodiscard]] bool gains_too_little(const std::optional<double>& drop, const std::optional<double>& held_out_gain, int parameters,
+                                    double families);
+
 /// freed_width() of an effect of the model as fitted.
 [[nodiscard]] std::optional<FreedWidth> width_of(Session& session, const std::string& effect);
+
+/// The whole search (discover()) in the model without it.
+[[nodiscard]] Discovery search_without(Session& session, const Without& without);
 
 /// What another effect explains in the place of the one that has gone, screened and refitted there; nullopt: it could not be.
 [[nodiscard]] std::optional<Candidate> in_its_place(Session& session, const Without& without, const Candidate& other);
