@@ -96,6 +96,23 @@ TEST(FrequencyScan, StandOutOfTheirBackground) {
   EXPECT_NEAR(grid.at(grid.count - 1), 22.5, 0.01) << "0.45 of the sampling rate";
 }
 
+TEST(FrequencyScan, TheStrongestLinesAreDifferentLines) {
+  EXPECT_THAT(strongest_lines({1.0, 5.0, 9.0, 8.0, 2.0, 3.0, 3.0, 1.0, 4.0}, 8), testing::ElementsAre(2, 8, 5));
+  EXPECT_THAT(strongest_lines({1.0, 5.0, 9.0, 8.0, 2.0, 3.0, 3.0, 1.0, 4.0}, 2), testing::ElementsAre(2, 8));
+  EXPECT_THAT(strongest_lines({7.0, 1.0}, 8), testing::ElementsAre(0));
+  EXPECT_TRUE(strongest_lines({}, 8).empty());
+
+  const SampleTimes t = {even(0.0, 50.0, 4000)};
+  Eigen::VectorXd x = noise(t[0].size(), 8);
+  for (std::size_t k = 0; k < t[0].size(); ++k)
+    x[static_cast<Eigen::Index>(k)] += 3.0 * std::sin(two_pi * 4.321 * t[0][k]) + 0.5 * std::sin(two_pi * 11.1 * t[0][k]);
+  const FrequencyGrid grid = frequency_grid(t, 0.2, 30.0, 1);
+  const std::vector<std::size_t> lines = strongest_lines(periodogram(x, t, grid), 8);
+  EXPECT_NEAR(grid.at(lines[0]), 4.321, grid.step);
+  const bool weaker_too = std::any_of(lines.begin(), lines.end(), [&](std::size_t f) { return std::abs(grid.at(f) - 11.1) < grid.step; });
+  EXPECT_TRUE(weaker_too) << "36 times as weak";
+}
+
 /// The whole band of a record of an hour and a half at 50 Hz: a sum over all samples at each frequency would be 1.3e11 turns.
 TEST(FrequencyScan, OfALongRecordAreScannedOverTheWholeBand) {
   const SampleTimes t = {even(0.0, 50.0, 262144)};

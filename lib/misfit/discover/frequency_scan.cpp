@@ -130,4 +130,15 @@ void add_over_background(const std::vector<double>& line, std::vector<double>& p
   }
 }
 
+std::vector<std::size_t> strongest_lines(const std::vector<double>& power, std::size_t most) {
+  std::vector<std::size_t> out;
+  for (std::size_t f = 0; f < power.size(); ++f) {
+    const bool rises = f == 0 || power[f] > power[f - 1], falls = f + 1 == power.size() || power[f] >= power[f + 1];
+    if (rises && falls) out.push_back(f);
+  }
+  std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return power[a] > power[b]; });
+  out.resize(std::min(out.size(), most));
+  return out;
+}
+
 }  // namespace misfit

@@ -30,4 +30,7 @@ using SampleTimes = std::vector<std::vector<double>>;
 /// Adds to `power` each line over its background, the running median over 1/20 of the band: lines stand out of it.
 void add_over_background(const std::vector<double>& line, std::vector<double>& power);
 
+/// Where the strongest lines are, at most so many, the strongest first: local maxima, since a line is several steps of the grid wide.
+[[nodiscard]] std::vector<std::size_t> strongest_lines(const std::vector<double>& power, std::size_t most);
+
 }  // namespace misfit

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -85,19 +84,6 @@ void refine_cell(const FilterEstimate& estimate, const ScoreTest& score, Screeni
   }
 }
 
-/// The strongest of the lines, as frequencies.
-std::vector<double> peaks(const FrequencyGrid& grid, const std::vector<double>& power) {
-  constexpr std::size_t max_frequencies = 8;
-  std::vector<std::size_t> order(grid.count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::ptrdiff_t first = std::min(grid.count, max_frequencies);
-  std::partial_sort(order.begin(), order.begin() + first, order.end(),
-                    [&](std::size_t a, std::size_t b) { return power[a] != power[b] ? power[a] > power[b] : a < b; });
-  std::vector<double> out;
-  for (std::ptrdiff_t i = 0; i < first; ++i) out.push_back(grid.at(order[i]));
-  return out;
-}
-
 /// Frequencies whose line in the score of the force steps stands out most.
 std::vector<double> frequency_peaks(const FilterEstimate& estimate, const CandidateModel& candidate_model, const ForceSensitivity& force,
                                     FrequencyGrid& grid) {
@@ -109,7 +95,10 @@ std::vector<double> frequency_peaks(const FilterEstimate& estimate, const Candid
   grid = frequency_grid(times, candidate_model.frequency_from, candidate_model.frequency_to, candidate_model.ports.size());
   std::vector<double> power(grid.count, 0.0);
   for (int port : candidate_model.ports) add_over_background(periodogram(force.score_of_steps(port), times, grid), power);
-  return peaks(grid, power);
+  constexpr std::size_t most = 8;
+  std::vector<double> out;
+  for (const std::size_t f : strongest_lines(power, most)) out.push_back(grid.at(f));
+  return out;
 }
 
 /// The cells of a candidate model; one with a frequency has each of its other cells at every peak.

@@ -84,8 +84,8 @@ class Extension {
     const Rung& rung = ladder_.add(candidate.effect, candidate);
     if (listener_.added) listener_.added(rung);
     if (rung.actual_drop && may_be_chance(*rung.actual_drop, int_size(rung.parameters), families_)) {
-      ladder_.root().note(
-          fmt::format("{} gains nothing once fitted (drop {}): its rung is taken off", candidate.effect, format_value(*rung.actual_drop)));
+      ladder_.root().note(fmt::format("{} gains nothing once fitted (drop {}): its rung is taken off",
+                                      effect_at(candidate.effect, candidate.roles), format_value(*rung.actual_drop)));
       ladder_.remove(std::to_string(rung.id));
       return false;
     }
