@@ -90,6 +90,16 @@ TEST_F(Embedded, IsLeftOutWhereItFindsNoRoomAndItsLastViewsFirst) {
   EXPECT_TRUE(answers.contains("curves?model=0"));
 }
 
+TEST_F(Embedded, KeepsTheLastModelWhereEarlierOnesFindNoRoom) {
+  page.places.push_back({folder.path() / "study.toml", folder.path() / "out/rungs/01", 1, "drag"});
+  const json answers = all()["answers"];
+  ASSERT_TRUE(answers.contains("where?model=0") && answers.contains("where?model=1"));
+  json fewer = answers;
+  for (std::size_t most = 2000; fewer.contains("where?model=0"); most -= 10) fewer = all(most)["answers"];
+  EXPECT_TRUE(fewer.contains("where?model=1"));
+  EXPECT_TRUE(fewer.contains("motion?model=1")) << "the page opens with it";
+}
+
 /// Of two channels alike, measured at random, with one wild residual.
 Fit random_fit(int samples) {
   Fit fit;

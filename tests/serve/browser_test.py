@@ -237,6 +237,7 @@ def find_and_add():
     page.open(server.address)
     page.driver.refresh()
     page.wait(lambda: page.text("#verdict") == verdict, "the same after a reload")
+    assert page.one("#model").get_attribute("value") == "1", "the printed address shows the model of which the verdict speaks"
     for view in ("where", "candidates", "curves", "calibration", "ladder", "study", "commands"):
         page.view(view)
         time.sleep(0.3)
@@ -254,6 +255,7 @@ def report_without_server(page, verdict):
     page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     page.open("file://" + os.path.join(FOLDER, "out", "report.html"))
     page.wait(lambda: page.text("#verdict") == verdict, "the same verdict without a server", 30)
+    assert page.one("#model").get_attribute("value") == "1", "it begins with the model of which the verdict speaks"
     assert not page.one("#work").is_displayed()
     assert not page.one("body > main").is_displayed(), "the document is not seen while the page is"
     assert not page.driver.find_elements(By.CSS_SELECTOR, "button.adds, [data-view=commands]")

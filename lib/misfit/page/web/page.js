@@ -9,12 +9,12 @@ const time = new TimeGroup();
 const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves'], ['calibration', 'Calibration'],
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
-/** What is shown. The address keeps model and tab, so that a reload finds them again. */
+/** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
 const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [] };
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
-  here.model = Number(parts.get('model') ?? 0) || 0;
+  here.model = /^\d+$/.test(parts.get('model') ?? '') ? Number(parts.get('model')) : Infinity;
   here.tab = tabs.some(([name]) => name === parts.get('view')) ? parts.get('view') : 'where';
 }
 function writeAddress() {
@@ -81,7 +81,7 @@ function showHead() {
   const alerts = at('alerts');
   alerts.replaceChildren();
   if (study.fault) alerts.append(element('p', { class: 'warning', id: 'fault' }, `The study has an error: ${study.fault.message} `,
-    element('button', { onclick: () => showTab('study') }, 'Correct it')));
+    element('button', { onclick: () => correct() }, 'Correct it')));
   for (const sentence of outdated) alerts.append(element('p', { class: 'warning' }, sentence));
   if (!verdict) alerts.append(element('p', {}, 'There are no results yet: Run makes them.'));
   at('verdict').replaceChildren(blocks(verdict));
@@ -641,6 +641,12 @@ function choose(model) {
   here.model = model;
   at('model').value = model;
   showAll().catch(say);
+}
+
+/** The study's own text is that of model 0. */
+function correct() {
+  here.tab = 'study';
+  choose(0);
 }
 
 function showTab(name, focus = false) {
