@@ -210,6 +210,8 @@ def find_and_add():
     assert len(page.driver.find_elements(By.CSS_SELECTOR, "#motion .u-over")) >= 2, "measured, residual"
     assert len(page.driver.find_elements(By.CSS_SELECTOR, "#force .u-over")) >= 1
     page.view("where")
+    ps = page.js("return [...document.querySelectorAll('#view .list small')].map((s) => Number(s.textContent.replace('p = ', '').replace('−', '-')))")
+    assert len(ps) > 3 and ps == sorted(ps), ps
     point_at_the_worst_place(page)
     # The time cursor by keys, in all plots.
     plot = page.one("#motion .plot")

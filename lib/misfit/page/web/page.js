@@ -346,7 +346,7 @@ async function showWhere(view) {
   if (!where) return nothing(view, 'This model is not diagnosed yet: Run (or misfit diagnose) does it, from the residuals of filter_error.');
   const conclusions = where.blocks.find((b) => b.kind === 'list');
   if (conclusions) view.append(blocks([conclusions]));
-  const all = [...where.maps, ...where.pairs];
+  const all = [...where.maps, ...where.pairs].sort((a, b) => (a.p ?? 2) - (b.p ?? 2)); // the most significant first; without a p last
   const list = element('div', { class: 'list', role: 'group', 'aria-label': 'Maps of the missing force' });
   const body = element('div');
   const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', onclick: () => show(k) }, words(map.portLabel), ' against ',
@@ -369,7 +369,7 @@ async function showWhere(view) {
     for (const figure of here.figures.splice(0)) if (body.contains(figure.node)) figure.destroy(); else here.figures.push(figure);
     here.samples = null;
     body.replaceChildren();
-    if (k < where.maps.length) await showMap(body, all[k], () => mine === turn);
+    if (where.maps.includes(all[k])) await showMap(body, all[k], () => mine === turn);
     else await showPair(body, all[k], () => mine === turn);
   }
   const before = all.findIndex((map) => map.figure.name === here.map);
@@ -447,10 +447,10 @@ async function showCandidates(view) {
 class AddedForces {
   kept = null;
   turn = 0;
-  offer(line, cell, row, candidate) {
+  offer(line, cell, row) {
     const button = element('button', { class: 'shows', 'aria-pressed': 'false', title: 'Show over time the force that it adds' }, ...cell.childNodes);
     cell.replaceChildren(button);
-    const own = { button, name: row.name, candidate };
+    const own = { button, name: row.name, candidate: row.candidate };
     line.addEventListener('mouseenter', () => this.show(own));
     line.addEventListener('mouseleave', () => this.show(this.kept));
     button.addEventListener('click', () => {
@@ -480,7 +480,7 @@ function candidateTable(table, rows, last) {
     const more = k >= most ? ' more' : '';
     const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
       ...columns.map((n) => element('td', { class: side(n) }, words(table.rows[k][n]))));
-    if (row.force) pointing.offer(line, line.children[1], row, k);
+    if (row.force) pointing.offer(line, line.children[1], row);
     body.append(line, element('tr', { class: 'why' + more }, element('td'), element('td', { colspan: columns.length }, words(row.why))));
   });
   const all = element('table', { id: 'candidates' }, element('thead', {}, head), body);
