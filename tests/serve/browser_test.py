@@ -197,6 +197,25 @@ def move_the_roughness(page):
     page.wait(lambda: drawn() == before, "the curve as fitted")
 
 
+def focused(page):
+    return page.js("return document.activeElement.textContent")
+
+
+def remove_asks_first(page):
+    """Once, where it stands; a doubt leads back, and the keys stay where they were."""
+    number = page.one("#job").get_attribute("data-number")
+    page.click("button.removes")
+    page.wait(lambda: "Take this rung off the ladder?" in page.text(".asking"), "the question")
+    assert focused(page) == "Keep", focused(page)
+    page.driver.switch_to.active_element.send_keys(Keys.ESCAPE)
+    page.wait(lambda: focused(page) == "Remove this rung", "back at the button")
+    page.driver.switch_to.active_element.send_keys(Keys.ENTER)
+    page.wait(lambda: focused(page) == "Keep", "asked by a key")
+    page.driver.switch_to.active_element.send_keys(Keys.ENTER)
+    page.wait(lambda: focused(page) == "Remove this rung", "kept")
+    assert page.one("#job").get_attribute("data-number") == number, "nothing was removed"
+
+
 def find_and_add():
     """Run, find where it fails, add the first candidate, see the error fall, reload."""
     server = Server()
@@ -225,12 +244,15 @@ def find_and_add():
     first = page.wait(lambda: page.one("#candidates tr.accepted button.adds"), "an accepted candidate").get_attribute("data-effect")
     force_of_the_accepted(page, first)
     page.click("#candidates tr.accepted button.adds")
+    page.wait(lambda: "at work" in page.text("#candidates tr.accepted .began"), "its state at the button")
+    page.wait(lambda: focused(page) == "Stop", "the focus is on the stop beside it")
     page.job("done", 2)
     page.wait(lambda: page.one("#model").get_attribute("value") == "1", "the new rung is shown")
     before, after = page.wait(lambda: random_force(page), "the random force before and after")
     assert after < before, (before, after)
     page.view("ladder")
     page.wait(lambda: page.one("#view [aria-pressed=true]").text == f"1: + {first}", "the rung")
+    remove_asks_first(page)
     page.view("curves")
     page.wait(lambda: "model 0, " in page.text("#view"), "the curves as they were before")
     page.view("commands")
@@ -292,10 +314,10 @@ def settings():
     page.click("#settings summary")
     page.click("[data-parameter=k]")
     page.job("done", 2)
+    page.wait(lambda: "done" in page.text("#view .began"), "its end at the button")
     assert "k.free = false" in read(STUDY)
     page.wait(lambda: "Run makes them again" in page.text("#alerts"), "the results are outdated")
     page.wait(lambda: page.one("[data-parameter=k]"), "the parameter")
-    page.click("#settings summary")
     page.wait(lambda: page.text("[data-parameter=k]") == "Estimate", "it is held")
     assert not page.one("#holdout").is_displayed()
     over = page.one("#motion .u-over")
@@ -370,8 +392,11 @@ def stop_and_kill():
     page = Page(server.address)
     page.click("#run")
     page.job("running", 1)
-    page.click("#stop")
+    page.wait(lambda: focused(page) == "Stop", "the focus is where the next key is wanted")
+    page.driver.switch_to.active_element.send_keys(Keys.ENTER)
     page.job("stopped", 1)
+    page.wait(lambda: focused(page) == "Run", "and goes back to what began it")
+    assert page.text("#work .began").startswith("stopped"), page.text("#work .began")
     page.click("#run")
     page.job("running", 2)
     time.sleep(0.5)

@@ -51,6 +51,26 @@ export function blocks(list, { figures = () => {}, skip = () => false } = {}) {
   return out;
 }
 
+/** A button that asks once, in its own place, before it acts; Escape and `no` lead back. */
+export function askingButton(properties, text, { question, yes, no }, act) {
+  const begin = element('button', { ...properties, onclick: () => ask() }, text), place = element('span', { class: 'asking' }, begin);
+  function back() {
+    place.replaceChildren(begin);
+    begin.focus();
+  }
+  function ask() {
+    const keep = element('button', { onclick: back }, no);
+    place.replaceChildren(question, ' ', element('button', { class: 'yes', onclick: () => { back(); act(); } }, yes), ' ', keep);
+    keep.focus();
+  }
+  place.addEventListener('keydown', (event) => {
+    if (event.key !== 'Escape' || begin.isConnected) return;
+    event.stopPropagation();
+    back();
+  });
+  return place;
+}
+
 /** A number for readers: `digits` significant ones, a real minus sign. */
 export function shown(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';

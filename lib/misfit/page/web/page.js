@@ -1,5 +1,5 @@
 // The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
-import { blocks, element, plain, shown, words } from '/dom.js';
+import { askingButton, blocks, element, plain, shown, words } from '/dom.js';
 import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
 import { get, live, post, Refused } from '/server.js';
 import { editor } from '/editor.js';
@@ -10,7 +10,7 @@ const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
 /** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
-const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [] };
+const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false };
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
@@ -93,13 +93,15 @@ function showHead() {
 }
 
 function showJob(job) {
-  const running = job.state === 'running', box = at('job');
+  const running = job.state === 'running', box = at('job'), focused = document.activeElement;
   const idle = (here.idle = !running && here.state.study.fault === null);
   for (const id of ['run', 'fit', 'discover']) at(id).disabled = !idle;
   at('add').disabled = !idle || at('effect').value === '';
   for (const button of document.querySelectorAll('button.adds, button.removes, button.sets')) button.disabled = !idle;
   at('stop').hidden = !running;
   at('stop').textContent = job.stopping ? 'Stop at once' : 'Stop';
+  began.follow(job);
+  if (focused !== document.body && (focused.disabled || focused.hidden)) began.takeFocus(running);
   at('command').hidden = box.hidden = job.state === 'none';
   if (job.state === 'none') return;
   at('command').textContent = job.command;
@@ -140,14 +142,82 @@ function sparkline(values) {
   return out;
 }
 
-// `more`: what the verb needs: { effect, at } to add, { rung } to remove.
-async function start(verb, more = {}) {
+/** The state of the last command, at the button that began it: buttons have a data-key, by which they are found when a view is drawn anew. */
+class Began {
+  key = null;
+  number = null;
+  constructor() {
+    this.words = element('span', { 'aria-live': 'polite' });
+    this.clock = element('span', { 'aria-hidden': true });
+    this.stop = element('button', { class: 'stops', hidden: true, onclick: () => stop() });
+    this.node = element('span', { class: 'began' }, this.words, this.clock, this.stop);
+  }
+  button() {
+    return this.key === null ? null : document.querySelector(`button[data-key="${CSS.escape(this.key)}"]`);
+  }
+  /** Behind its button; beside the buttons above behind all of them, so that none moves. */
+  place() {
+    const button = this.button(), bar = button?.closest('#work .buttons');
+    if (!button) return;
+    const hadFocus = this.node.contains(document.activeElement);
+    if (bar) {
+      if (this.node.parentNode !== bar) bar.append(this.node);
+    } else if (button.nextSibling !== this.node) button.after(this.node);
+    if (hadFocus && document.activeElement === document.body) this.stop.focus({ preventScroll: true });
+  }
+  say(words, { clock = '', bad = false, stop = '' } = {}) {
+    if (this.words.textContent !== words) this.words.textContent = words;
+    this.clock.textContent = clock;
+    this.node.classList.toggle('warning', bad);
+    this.stop.textContent = stop;
+    this.stop.hidden = stop === '' || this.node.closest('.buttons') !== null;
+    this.place();
+  }
+  asked(key) {
+    this.key = key;
+    this.number = null;
+    this.node.remove();
+    this.place();
+    this.say('asked for');
+  }
+  refused(error) {
+    this.say(error.message, { bad: true });
+    if (!this.button()) say(error);
+  }
+  follow(job) {
+    if (job.number !== this.number || job.state === 'none') return;
+    const clock = ` ${shown(job.seconds, 3)} s `;
+    if (job.state === 'running') this.say(job.stopping ? 'stopping' : 'at work', { clock, stop: job.stopping ? 'Stop at once' : 'Stop' });
+    else if (job.state === 'done') this.say('done', { clock });
+    else if (job.state === 'stopped') this.say('stopped', { clock });
+    else this.say(job.notes.at(-1) ?? `ended with status ${job.status}`, { bad: true });
+  }
+  /** Of a button that cannot be used any more: to what is next, the end of the command, or to what began it. */
+  takeFocus(running) {
+    const button = this.button();
+    const next = running ? [this.stop, at('stop')] : [button, at('job')];
+    next.find((one) => one?.isConnected && !one.disabled && !one.hidden)?.focus({ preventScroll: true });
+  }
+}
+const began = new Began();
+
+async function stop() {
   try {
-    if (verb === 'stop') await post('stop');
-    else await post('job', { verb, ...more });
+    await post('stop');
     await look();
   } catch (error) {
-    say(error);
+    began.refused(error);
+  }
+}
+
+// `key`: of the button; `more`: what the verb needs: { effect, at } to add, { rung } to remove.
+async function start(key, verb, more = {}) {
+  began.asked(key);
+  try {
+    began.number = (await post('job', { verb, ...more })).number;
+    await look();
+  } catch (error) {
+    began.refused(error);
   }
 }
 
@@ -349,7 +419,7 @@ async function showWhere(view) {
   const all = [...where.maps, ...where.pairs].sort((a, b) => (a.p ?? 2) - (b.p ?? 2)); // the most significant first; without a p last
   const list = element('div', { class: 'list', role: 'group', 'aria-label': 'Maps of the missing force' });
   const body = element('div');
-  const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', onclick: () => show(k) }, words(map.portLabel), ' against ',
+  const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', 'data-map': map.figure.name, onclick: () => show(k) }, words(map.portLabel), ' against ',
     words(map.label ?? map.xLabel), map.yLabel ? ' and ' : '', map.yLabel ? words(map.yLabel) : '', ' ', element('small', {}, `p = ${shown(map.p, 2)}`)));
   list.append(...buttons);
   view.append(element('h3', {}, 'Missing force against…'), list, body);
@@ -475,8 +545,9 @@ function candidateTable(table, rows, last) {
   const body = element('tbody'), pointing = new AddedForces();
   rows.forEach((row, k) => {
     const button = live && row.addable && last
-      ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, title: `misfit add … ${[row.effect, ...row.at].join(' --at=')}`, disabled: !here.idle,
-          onclick: () => start('add', { effect: row.effect, at: row.at }) }, 'Add') : '';
+      ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, 'data-key': `add ${row.name}`,
+          title: `misfit add … ${[row.effect, ...row.at].join(' --at=')}`, disabled: !here.idle,
+          onclick: () => start(`add ${row.name}`, 'add', { effect: row.effect, at: row.at }) }, 'Add') : '';
     const more = k >= most ? ' more' : '';
     const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
       ...columns.map((n) => element('td', { class: side(n) }, words(table.rows[k][n]))));
@@ -505,8 +576,9 @@ function roughnessOf(paths, figures, parent) {
   const slider = element('input', { type: 'range', min: 0, step: 'any', 'aria-label': `roughness of ${path.curve}`, 'data-curve': path.curve, oninput: () => move() });
   const said = element('output', {}), back = element('button', { onclick: () => begin() }, 'As fitted');
   const setting = live && here.model === 0 && here.state.study.fault === null && here.state.settable.curves.some((c) => c.name === path.curve);
-  const set = setting ? element('button', { class: 'sets', disabled: !here.idle, title: 'writes it into the study; Run refits',
-    onclick: () => start('set', { what: 'roughness', name: path.curve, value: value().toPrecision(3) }) }, 'Set') : null;
+  const key = `slider ${path.curve}`;
+  const set = setting ? element('button', { class: 'sets', 'data-key': key, disabled: !here.idle, title: 'writes it into the study; Run refits',
+    onclick: () => start(key, 'set', { what: 'roughness', name: path.curve, value: value().toPrecision(3) }) }, 'Set') : null;
   const methods = element('select', { 'aria-label': 'method', hidden: paths.length < 2, onchange: () => { path = paths[methods.value]; begin(); } },
     ...paths.map((p, k) => element('option', { value: k, selected: p === path }, p.method)));
   const used = () => nearest(path.roughness, path.used);
@@ -544,17 +616,17 @@ function roughnessOf(paths, figures, parent) {
 
 /** What of the study's own model is estimated and how; each change is `misfit set`, the results are made anew by Run. */
 function settings() {
-  const set = (what, name, value) => start('set', { what, name, value });
+  const set = (what, name, value) => start(`${what} ${name}`, 'set', { what, name, value });
   const rows = here.state.settable.parameters.map(({ name, label, unit, free }) => element('tr', {}, element('td', {}, words(label), ' [', words(unit), ']'),
-    element('td', {}, free ? 'estimated' : 'held'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, disabled: !here.idle,
+    element('td', {}, free ? 'estimated' : 'held'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, 'data-key': `free ${name}`, disabled: !here.idle,
       onclick: () => set('free', name, `${!free}`) }, free ? 'Hold' : 'Estimate'))));
   for (const { name, label, unit, roughness } of here.state.settable.curves) {
     const box = element('input', { value: roughness, size: 12, 'aria-label': `roughness of ${name}` });
     rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), ']'), element('td', {}, box), element('td', {},
-      element('button', { class: 'sets', 'data-roughness': name, title: 'auto, or a number of at least 0', disabled: !here.idle,
+      element('button', { class: 'sets', 'data-roughness': name, 'data-key': `roughness ${name}`, title: 'auto, or a number of at least 0', disabled: !here.idle,
         onclick: () => set('roughness', name, box.value.trim()) }, 'Set'))));
   }
-  return element('details', { id: 'settings' }, element('summary', {}, 'Hold or estimate a parameter, change a roughness'), element('table', {}, element('tbody', {}, ...rows)),
+  return element('details', { id: 'settings', open: here.settingsOpen, ontoggle: (event) => (here.settingsOpen = event.target.open) }, element('summary', {}, 'Hold or estimate a parameter, change a roughness'), element('table', {}, element('tbody', {}, ...rows)),
     element('p', { class: 'soft' }, 'A change is written into the study; Run makes the results anew.'));
 }
 
@@ -569,15 +641,17 @@ async function showLadder(view) {
   if (!ladder) return nothing(view, 'The ladder begins when an effect is added: each added effect is a rung.');
   const choice = element('div', { class: 'rungs', role: 'group', 'aria-label': 'Rungs' }, ...ladder.rungs.map((rung) => {
     const k = here.state.models.findIndex((m) => m.id === rung.id);
-    return element('button', { 'aria-pressed': `${k === here.model}`, onclick: () => choose(k) }, `${rung.id}: ${rung.added === '' ? rung.system : `+ ${rung.added}`}`);
+    return element('button', { 'aria-pressed': `${k === here.model}`, 'data-rung': rung.id, onclick: () => choose(k) }, `${rung.id}: ${rung.added === '' ? rung.system : `+ ${rung.added}`}`);
   }));
   view.append(element('p', { class: 'soft' }, 'A click shows the results of that model everywhere on this page.'), choice);
   draw(view, ladder.figure, { height: 0.75 });
   const current = ladder.rungs.find((rung) => rung.id === here.state.models[here.model].id), last = ladder.rungs[ladder.rungs.length - 1];
   if (current) view.append(element('h3', {}, `Rung ${current.id}`), blocks(current.blocks));
   if (live && current && current.added !== '') {
-    view.append(element('button', { class: 'removes', title: `misfit remove … ${current.id}`, disabled: !here.idle,
-      onclick: () => start('remove', { rung: `${current.id}` }) }, last === current ? 'Remove this rung' : 'Remove this rung and those above it'));
+    const above = last === current ? 'this rung' : 'this rung and those above it', key = `remove ${current.id}`;
+    view.append(element('p', {}, askingButton({ class: 'removes', title: `misfit remove … ${current.id}`, 'data-key': key, disabled: !here.idle }, `Remove ${above}`,
+      { question: `Take ${above} off the ladder? What they computed stays in the run folder.`, yes: 'Remove', no: 'Keep' },
+      () => start(key, 'remove', { rung: `${current.id}` }))));
   }
   view.append(element('details', {}, element('summary', {}, 'All rungs in numbers'), blocks(ladder.blocks.filter((b) => b.kind !== 'figures'))));
 }
@@ -593,7 +667,7 @@ const study = editor({ get, post, look });
 const views = { where: showWhere, candidates: showCandidates, curves: showCurves, calibration: showCalibration, ladder: showLadder,
   study: (view) => study.show(view, here.model), commands: showCommands };
 
-let turn = 0;
+let turn = 0, focusedBefore = null;
 async function showView() {
   const mine = ++turn;
   writeAddress();
@@ -608,6 +682,7 @@ async function showView() {
   here.samples = null;
   if (here.added) drawForce(null);
   const scroll = scrollY;
+  if (at('view').contains(document.activeElement)) focusedBefore = document.activeElement;
   for (const figure of old) figure.destroy();
   at('view').replaceChildren(view);
   at('view').dataset.view = here.tab;
@@ -616,7 +691,18 @@ async function showView() {
   } catch (error) {
     if (mine === turn) view.append(element('p', { class: 'warning' }, error.message));
   }
-  if (mine === turn) scrollTo(0, scroll);
+  if (mine !== turn) return;
+  scrollTo(0, scroll);
+  began.place();
+  if (focusedBefore && document.activeElement === document.body) focusAgain(focusedBefore);
+  focusedBefore = null;
+}
+
+/** On what has the same place in a view that is drawn anew; else on the view. */
+function focusAgain(old) {
+  const key = ['data-key', 'data-curve', 'data-map', 'data-rung', 'id'].find((name) => old.hasAttribute(name));
+  const same = key && at('view').querySelector(`[${key}="${CSS.escape(old.getAttribute(key))}"]`);
+  (same && !same.disabled ? same : at('view')).focus({ preventScroll: true });
 }
 
 async function showAll() {
@@ -666,15 +752,16 @@ function begin() {
     showTab(tabs[(k + step + tabs.length) % tabs.length][0], true);
     event.preventDefault();
   });
-  for (const verb of ['run', 'fit', 'discover', 'stop']) at(verb).addEventListener('click', () => start(verb));
-  at('add').addEventListener('click', () => start('add', { effect: at('effect').value }));
+  for (const verb of ['run', 'fit', 'discover']) at(verb).addEventListener('click', () => start(verb, verb));
+  at('stop').addEventListener('click', stop);
+  at('add').addEventListener('click', () => start('add', 'add', { effect: at('effect').value }));
   at('effect').addEventListener('change', () => { at('add').disabled = !here.idle || at('effect').value === ''; });
   at('model').addEventListener('change', (event) => choose(Number(event.target.value)));
   at('method').addEventListener('change', (event) => { here.method = Number(event.target.value); showMotion().catch(say); });
   at('experiment').addEventListener('change', (event) => { here.experiment = Number(event.target.value); showMotion().then(showView).catch(say); });
   at('whole').addEventListener('click', () => time.zoom(null));
   at('unmark').addEventListener('click', unmark);
-  at('holdout').addEventListener('click', () => start('set', { what: 'validation', name: here.name, value: here.fixed[0].join(' ') }));
+  at('holdout').addEventListener('click', () => start('holdout', 'set', { what: 'validation', name: here.name, value: here.fixed[0].join(' ') }));
   addEventListener('keydown', (event) => { if (event.key === 'Escape') unmark(); });
   addEventListener('beforeunload', (event) => { if (study.changed()) event.preventDefault(); });
   onScreenChange(() => { drawTime(); showView().catch(say); });
