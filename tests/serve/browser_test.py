@@ -235,8 +235,15 @@ def find_and_add():
     # The time cursor by keys, in all plots.
     plot = page.one("#motion .plot")
     plot.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
-    values = "return [...document.querySelectorAll('#motion .value, #force .value')].filter((v) => v.textContent !== '').length"
-    page.wait(lambda: page.js(values) >= 3, "the values at the cursor")
+    readouts = "return [...document.querySelectorAll('#motion .readout, #force .readout')].map((r) => r.textContent)"
+    places = "return [...document.querySelectorAll('#time .u-over')].map((o) => [o.getBoundingClientRect().left, o.getBoundingClientRect().top + scrollY])"
+    said = page.wait(lambda: all(page.js(readouts)) and page.js(readouts), "the values at the cursor, in all plots")
+    assert re.match(r"[\d.]+ s · .*measured −?[\d.]+ px · predicted −?[\d.]+ ± [\d.]+ px", said[0]), said
+    assert re.match(r"[\d.]+ s · moment_y −?[\d.]+ ± [\d.]+ N m$", said[-2]), said
+    before = page.js(places)
+    for k in range(8):
+        plot.send_keys(Keys.SHIFT, Keys.ARROW_RIGHT)
+        assert page.js(places) == before, "the readout moves no plot"
     plot.send_keys(Keys.ESCAPE)
     page.wait(lambda: page.text("#marked") == "", "no marks after Escape")
     move_the_roughness(page)

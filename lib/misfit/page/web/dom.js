@@ -78,3 +78,12 @@ export function shown(value, digits = 4) {
   const text = size !== 0 && (size >= 1e6 || size < 1e-4) ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
   return text.replace('-', '−');
 }
+
+/** "12.3 ± 4.5": the sigma with two digits, the value with as many places. */
+export function shownWithSigma(value, sigma) {
+  if (!(sigma > 0) || !Number.isFinite(value)) return shown(value);
+  const size = Math.max(Math.abs(value), sigma);
+  if (size >= 1e6 || size < 1e-4) return `${shown(value, 3)} ± ${shown(sigma, 2)}`;
+  const places = Math.min(Math.max(1 - Math.floor(Math.log10(sigma)), 0), 8);
+  return `${value.toFixed(places).replace('-', '−')} ± ${sigma.toFixed(places)}`;
+}

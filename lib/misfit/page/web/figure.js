@@ -1,7 +1,7 @@
 // Draws a figure of the report (lib/misfit/report/figure.h) with uPlot: axes, zoom and cursor are uPlot's, the series are painted here, thinned
 // to what the screen has pixels for (least and largest value of each column).
 import uPlot from '/uPlot.esm.js';
-import { element, plain, shown, words } from '/dom.js';
+import { element, plain, shown, shownWithSigma, words } from '/dom.js';
 
 const darkScreen = matchMedia('(prefers-color-scheme: dark)');
 const onDark = { '#000000': '#e4e7ea', '#8a8a8a': '#8f989f', '#0072b2': '#5fb4ea', '#d55e00': '#ff8c42', '#009e73': '#37c79b', '#cc79a7': '#e39cc4',
@@ -86,7 +86,8 @@ class Plot {
     this.node = element('div', { class: 'panel' });
     this.legend = this.makeLegend();
     this.host = element('div', { class: 'plot', tabindex: 0, role: 'img', 'aria-label': this.spoken() });
-    this.node.append(this.legend, this.host);
+    this.readout = this.values.length > 0 ? element('p', { class: 'readout' }) : null;
+    this.node.append(this.legend, this.readout ?? '', this.host);
     if ((last && view.options.xLabel !== false) || panel.beside)
       this.node.append(element('p', { class: 'xlabel' }, words(panel.beside?.label ?? xLabel), panel.beside ? '' : this.unitText(this.figure.xUnit)));
     (view.row ?? view.node).append(this.node);
@@ -154,12 +155,36 @@ class Plot {
         swatch.style.borderRadius = '50%';
       }
       if (['line', 'dashed', 'dotted', 'steps'].includes(s.style)) swatch.style.height = '3px';
-      const value = element('span', { class: 'value' });
-      out.append(element('span', {}, swatch, words(s.legend), value));
-      if (s.sorted && s.y && s.style !== 'bars') this.values.push([s, value]);
+      out.append(element('span', {}, swatch, words(s.legend)));
+      if (s.sorted && s.y && s.style !== 'bars') this.values.push({ s, name: plain(s.legend).split(', ±')[0], sigma: this.sigmaOf(s) });
+      else if (s.style === 'band' && s.sorted && plain(s.legend).startsWith('±')) this.values.push({ s, name: '', sigma: { band: s } });
     }
     if (this.series.some((s) => s.style === 'cells')) out.append(this.scale());
     return out;
+  }
+
+  /** Where ± of a series stands: in itself, in the band about it, or, of a prediction, in the band of the residuals; null: nowhere. */
+  sigmaOf(s) {
+    if (s.style === 'error_bars') return { band: s };
+    const about = this.series.find((b) => b.style === 'band' && plain(b.legend) === '' && b.x === s.x && b.colour === s.colour && s.style === 'line');
+    const all = this.figure.panels.flatMap((panel) => panel.series);
+    const predicted = s.style === 'line' && s.key.startsWith('predicted') ? all.find((b) => b.style === 'band' && plain(b.legend).endsWith('of the prediction')) : null;
+    const band = about ?? (predicted && this.figure.xs[predicted.x] === s.x ? predicted : null);
+    return band ? { band } : null;
+  }
+
+  /** What stands at a place: "12.35 s · predicted 121.1 ± 1.8 px". */
+  words(x) {
+    const xUnit = plain(this.figure.xUnit), unit = plain(this.panel.unit), behind = (one) => (one === '' || one === '-' ? '' : ` ${one}`);
+    const out = [`${this.view.group ? '' : `${plain(this.figure.xLabel)} `}${shown(x, 5)}${behind(xUnit)}`];
+    for (const { s, name, sigma } of this.values) {
+      if (s.x.length === 0) continue;
+      const k = nearest(s.x, x), v = s.y?.[k] ?? null, lo = sigma?.band.lo[k] ?? null, hi = sigma?.band.hi[k] ?? null;
+      const half = lo === null || hi === null ? null : 0.5 * (hi - lo);
+      if (name === '' && half !== null) out.push(`${plain(s.legend)}: ± ${shown(half, 2)}${behind(unit)}`);
+      else if (v !== null) out.push(`${name} ${shownWithSigma(v, half)}${behind(unit)}`);
+    }
+    return out.join(' · ');
   }
 
   /** The scale of the colours of cells. */
@@ -268,14 +293,9 @@ class Plot {
     const inside = left !== undefined && left >= 0;
     if (inside) this.cursor = this.u.posToVal(left, 'x');
     if (this.view.group && inside) this.view.options.oncursor?.(this.cursor);
-    for (const [s, node] of this.values) {
-      let text = '';
-      if (inside && s.x.length > 0) {
-        const v = s.y[nearest(s.x, this.cursor)];
-        if (v !== null) text = shown(v, 4);
-      }
-      if (node.textContent !== text) node.textContent = text;
-    }
+    if (!this.readout) return;
+    const text = inside ? this.words(this.cursor) : '';
+    if (this.readout.textContent !== text) this.readout.textContent = this.readout.title = text;
   }
   key(event) {
     const [from, to] = this.window, all = this.xRange;

@@ -650,7 +650,7 @@ async function showLadder(view) {
   if (live && current && current.added !== '') {
     const above = last === current ? 'this rung' : 'this rung and those above it', key = `remove ${current.id}`;
     view.append(element('p', {}, askingButton({ class: 'removes', title: `misfit remove … ${current.id}`, 'data-key': key, disabled: !here.idle }, `Remove ${above}`,
-      { question: `Take ${above} off the ladder? What they computed stays in the run folder.`, yes: 'Remove', no: 'Keep' },
+      { question: `Take ${above} off the ladder? What was computed stays in the run folder.`, yes: 'Remove', no: 'Keep' },
       () => start(key, 'remove', { rung: `${current.id}` }))));
   }
   view.append(element('details', {}, element('summary', {}, 'All rungs in numbers'), blocks(ladder.blocks.filter((b) => b.kind !== 'figures'))));
