@@ -238,7 +238,7 @@ def find_and_add():
     readouts = "return [...document.querySelectorAll('#motion .readout, #force .readout')].map((r) => r.textContent)"
     places = "return [...document.querySelectorAll('#time .u-over')].map((o) => [o.getBoundingClientRect().left, o.getBoundingClientRect().top + scrollY])"
     said = page.wait(lambda: all(page.js(readouts)) and page.js(readouts), "the values at the cursor, in all plots")
-    assert re.match(r"[\d.]+ s · .*measured −?[\d.]+ px · predicted −?[\d.]+ ± [\d.]+ px", said[0]), said
+    assert re.match(r"[\d.]+ s · .*measured −?[\d.]+ · predicted −?[\d.]+ ± [\d.]+ px", said[0]), said
     assert re.match(r"[\d.]+ s · moment_y −?[\d.]+ ± [\d.]+ N m$", said[-2]), said
     before = page.js(places)
     for k in range(8):
@@ -373,17 +373,23 @@ def mend():
     """A study with an error is mended in the page."""
     good = read(STUDY)
     with open(STUDY, "w", encoding="utf-8") as file:
-        file.write(good.replace("seed = 1", "seeds = 1"))
+        file.write(good.replace("seed = 1", "seeds = 1").replace("starts = 5", "start = 5") + "# a line\n" * 60)
     server = Server()
     page = Page(server.address)
     page.wait(lambda: "The study has an error" in page.text("#alerts"), "the error")
     assert not page.one("#run").is_enabled()
     page.click("#fault button")
     area = page.wait(lambda: page.one("#view textarea"), "the text")
-    assert page.text(".editor pre .bad") == "5"
+    assert [bad.text for bad in page.driver.find_elements(By.CSS_SELECTOR, ".editor pre .bad")] == ["5", "16"], "every fault, at its line"
+    assert "start" in page.text("#further"), page.text("#further")
+    page.js("arguments[0].scrollTop = 1e9", area)
+    page.wait(lambda: page.js("return document.querySelector('.editor pre').scrollTop") > 0, "the numbers follow")
+    assert page.js("return document.querySelector('.editor pre').scrollTop - arguments[0].scrollTop", area) == 0, "at the end of the text, too"
     assert "seed" in page.text("#check")
     page.click("#check button")  # to line 5, which is then chosen
     area.send_keys("seed = 1")
+    page.js("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))", area, page.js("return arguments[0].value", area).replace(
+        "start = 5", "starts = 5").replace("# a line\n", ""))
     page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked while typed")
     page.click("#save")
     page.wait(lambda: "Saved" in page.text("#check"), "saved")

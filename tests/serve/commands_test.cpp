@@ -76,12 +76,12 @@ TEST(CommandsOfThePage, AStudyWithAnErrorIsMendedInIt) {
   EXPECT_THAT(fault["message"], HasSubstr("seed"));
   const json shown = server.get("/api/study").parsed();
   EXPECT_EQ(shown["text"], bad);
-  EXPECT_EQ(server.post("/api/check", {{"text", bad}}).parsed()["fault"]["line"], 5);
+  EXPECT_EQ(server.post("/api/check", {{"text", bad}}).parsed()["faults"][0]["line"], 5);
   EXPECT_EQ(server.post("/api/save", {{"text", bad}, {"hash", shown["hash"]}}).status, 422);
   EXPECT_EQ(content(study.path("study.toml")), bad) << "what is wrong is not written";
   EXPECT_EQ(server.post("/api/save", {{"text", good}, {"hash", "0123456789abcdef"}}).status, 400) << "changed meanwhile";
   EXPECT_EQ(content(study.path("study.toml")), bad);
-  EXPECT_EQ(server.post("/api/check", {{"text", good}}).parsed()["fault"], nullptr);
+  EXPECT_EQ(server.post("/api/check", {{"text", good}}).parsed()["faults"], json::array());
   ASSERT_EQ(server.post("/api/save", {{"text", good}, {"hash", shown["hash"]}}).status, 200);
   EXPECT_EQ(content(study.path("study.toml")), good);
   EXPECT_EQ(server.state()["study"]["fault"], nullptr);

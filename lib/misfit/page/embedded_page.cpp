@@ -85,7 +85,7 @@ std::string state_of(const EmbeddedPage& page) {
 }
 
 std::string study_of(const Place& place) {
-  return fmt::format(R"({{"text":{},"hash":"","file":{},"editable":false,"fault":null}})", json_string(read_file(place.study)),
+  return fmt::format(R"({{"text":{},"hash":"","file":{},"editable":false,"faults":[]}})", json_string(read_file(place.study)),
                      json_string(place.study.filename().string()));
 }
 

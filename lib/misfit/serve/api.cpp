@@ -62,6 +62,12 @@ std::string json_of(const std::optional<TextFault>& fault) {
   return fmt::format(R"({{"message":{},"line":{}}})", json_string(fault->message), fault->line);
 }
 
+std::string json_of(const std::vector<TextFault>& faults) {
+  std::vector<std::string> out;
+  for (const TextFault& fault : faults) out.push_back(json_of(std::optional(fault)));
+  return json_list(out);
+}
+
 std::string json_of(const CostTrace& trace) {
   std::vector<std::string> points;
   for (const auto& [iteration, value] : trace.points) points.push_back(fmt::format("[{},{}]", iteration, json_number(value)));
@@ -201,7 +207,7 @@ Answer Api::post(const Ask& ask) {
     return {200, json_of(jobs_.report())};
   }
   if (ask.path == "/api/check")
-    return {200, fmt::format(R"({{"fault":{}}})", json_of(fault_of(results_.study(), text_in(body, "text"), registry_)))};
+    return {200, fmt::format(R"({{"faults":{}}})", json_of(faults_of(results_.study(), text_in(body, "text"), registry_)))};
   if (ask.path == "/api/save") return save(text_in(body, "text"), text_in(body, "hash"));
   if (ask.path == "/api/job") return start(request_in(body));
   return failure(404, "there is no such page");
@@ -254,8 +260,8 @@ std::string Api::state() {
 
 Answer Api::study(const Place& place) const {
   const std::string text = read_file(place.study);
-  return {200, fmt::format(R"({{"text":{},"hash":"{}","file":{},"editable":{},"fault":{}}})", json_string(text), hash_text(text),
-                           json_string(place.study.string()), place.id == 0, json_of(fault_of(place.study, text, registry_)))};
+  return {200, fmt::format(R"({{"text":{},"hash":"{}","file":{},"editable":{},"faults":{}}})", json_string(text), hash_text(text),
+                           json_string(place.study.string()), place.id == 0, json_of(faults_of(place.study, text, registry_)))};
 }
 
 Answer Api::save(const std::string& text, const std::string& hash) {
@@ -264,7 +270,8 @@ Answer Api::save(const std::string& text, const std::string& hash) {
   const std::string whole = text.ends_with('\n') ? text : text + "\n";
   const std::lock_guard lock(mutex_);
   if (const auto fault = save_text(results_.study(), whole, hash, registry_))
-    return {422, fmt::format(R"({{"error":{},"fault":{}}})", json_string(fault->message), json_of(fault))};
+    return {422, fmt::format(R"({{"error":{},"faults":{}}})", json_string(fault->message),
+                             json_of(faults_of(results_.study(), whole, registry_)))};
   script_.record_text(results_.study().string(), whole);
   return {200, fmt::format(R"({{"hash":"{}"}})", hash_text(whole))};
 }

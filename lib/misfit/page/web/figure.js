@@ -86,6 +86,7 @@ class Plot {
     this.node = element('div', { class: 'panel' });
     this.legend = this.makeLegend();
     this.host = element('div', { class: 'plot', tabindex: 0, role: 'img', 'aria-label': this.spoken() });
+    this.values.sort((a, b) => (a.name === '') - (b.name === '')); // what is known of all before what is said of it
     this.readout = this.values.length > 0 ? element('p', { class: 'readout' }) : null;
     this.node.append(this.legend, this.readout ?? '', this.host);
     if ((last && view.options.xLabel !== false) || panel.beside)
@@ -173,7 +174,7 @@ class Plot {
     return band ? { band } : null;
   }
 
-  /** What stands at a place: "12.35 s · predicted 121.1 ± 1.8 px". */
+  /** What stands at a place: "12.35 s · measured 121 · predicted 121.1 ± 1.8 px". */
   words(x) {
     const xUnit = plain(this.figure.xUnit), unit = plain(this.panel.unit), behind = (one) => (one === '' || one === '-' ? '' : ` ${one}`);
     const out = [`${this.view.group ? '' : `${plain(this.figure.xLabel)} `}${shown(x, 5)}${behind(xUnit)}`];
@@ -181,10 +182,10 @@ class Plot {
       if (s.x.length === 0) continue;
       const k = nearest(s.x, x), v = s.y?.[k] ?? null, lo = sigma?.band.lo[k] ?? null, hi = sigma?.band.hi[k] ?? null;
       const half = lo === null || hi === null ? null : 0.5 * (hi - lo);
-      if (name === '' && half !== null) out.push(`${plain(s.legend)}: ± ${shown(half, 2)}${behind(unit)}`);
-      else if (v !== null) out.push(`${name} ${shownWithSigma(v, half)}${behind(unit)}`);
+      if (name === '' && half !== null) out.push(`${plain(s.legend).replace(/^± /, '')} ${shown(half, 2)}`);
+      else if (v !== null) out.push(`${name} ${shownWithSigma(v, half)}`);
     }
-    return out.join(' · ');
+    return out.join(' · ') + (out.length > 1 ? behind(unit) : '');
   }
 
   /** The scale of the colours of cells. */
