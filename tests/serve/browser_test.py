@@ -260,6 +260,8 @@ def find_and_add():
     page.view("ladder")
     page.wait(lambda: page.one("#view [aria-pressed=true]").text == f"1: + {first}", "the rung")
     remove_asks_first(page)
+    option = page.one(f"#effect option[value={first}]")
+    assert not option.is_enabled() and "already in the model" in option.get_attribute("textContent"), "it cannot be added again"
     page.view("curves")
     page.wait(lambda: "model 0, " in page.text("#view"), "the curves as they were before")
     page.view("commands")

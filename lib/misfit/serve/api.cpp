@@ -14,6 +14,7 @@
 #include "misfit/data/study_reader.h"
 #include "misfit/page/json_text.h"
 #include "misfit/page/views.h"
+#include "misfit/workflow/ladder.h"
 #include "misfit/workflow/session/study_change.h"
 
 namespace misfit::serve {
@@ -225,6 +226,7 @@ void Api::open_study(Known& known) const {
       known.outdated = outdated(session);
       known.references = references(session);
       known.settable = settable_of(session);
+      known.effects = effects();
       for (const ExperimentStudy& experiment : session.study.experiments) {
         if (experiment.video) known.films.emplace_back(experiment.name, *experiment.video);
       }
@@ -235,6 +237,12 @@ void Api::open_study(Known& known) const {
   known.study =
       fmt::format(R"({{"name":{},"question":{},"file":{},"folder":{},"fault":{}}})", json_string(name), page::json_words(question),
                   json_string(results_.study().string()), json_string(results_.folder().string()), json_of(fault));
+}
+
+std::vector<Addable> Api::effects() const {
+  const Place last = results_.places().back();
+  const SessionOptions options = last.id == 0 ? options_ : options_for(options_, last.study);
+  return addable_effects(Session(options, registry_, RunFolder::Access::read), page::discovery_of(last));
 }
 
 std::shared_ptr<const Api::Known> Api::known() {
@@ -254,7 +262,7 @@ std::string Api::state() {
   const auto all = known();
   return fmt::format(
       R"({{"version":"{}","study":{},"models":{},"outdated":{},"verdict":{},"effects":{},"settable":{},"films":{},"job":{}}})",
-      all->version, all->study, all->models, strings(all->outdated), all->verdict, strings(registry_.effect_keys()), json_of(all->settable),
+      all->version, all->study, all->models, strings(all->outdated), all->verdict, json_of(all->effects), json_of(all->settable),
       films_of(all->films), json_of(jobs_.report()));
 }
 

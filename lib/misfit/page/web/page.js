@@ -88,8 +88,18 @@ function showHead() {
   at('model').replaceChildren(...models.map((m, k) => element('option', { value: k }, m.added === '' ? "0: the study's own" : `${m.id}: + ${m.added}`)));
   at('model').value = here.model;
   const chosen = at('effect').value;
-  at('effect').replaceChildren(element('option', { value: '' }, 'an effect…'), ...effects.map((key) => element('option', { value: key }, key)));
+  const refused = effects.filter((one) => one.refused !== '');
+  at('effect').replaceChildren(element('option', { value: '' }, 'an effect…'),
+    ...effects.filter((one) => one.refused === '').map(({ effect }) => element('option', { value: effect }, effect)),
+    refused.length === 0 ? '' : element('optgroup', { label: 'Not for this model, at their usual place' },
+      ...refused.map(({ effect, refused: why }) => element('option', { value: effect, disabled: true, title: why }, `${effect}: ${reason(why)}`))));
   if (chosen) at('effect').value = chosen;
+}
+
+/** What misfit says against an effect, without its name again; the whole sentence is the title. */
+function reason(why) {
+  const said = why.replace(/^effect '[^']*' (is )?/, '').replace(/^does not suit this model: (effect '[^']*': )?/, '').replace(/ \(.*\)$/, '');
+  return said.length > 70 ? `${said.slice(0, 68)}…` : said;
 }
 
 function showJob(job) {
