@@ -216,6 +216,12 @@ def remove_asks_first(page):
     assert page.one("#job").get_attribute("data-number") == number, "nothing was removed"
 
 
+def nothing_is_cut_off(page, where):
+    page.js("for (const more of document.querySelectorAll('#view details')) more.open = true")
+    cut = "return [...document.querySelectorAll('#view .wide, #view p, #view td')].filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent)"
+    page.wait(lambda: page.js(cut) == [], f"tables and texts as wide as their place: {where}", 20)
+
+
 def find_and_add():
     """Run, find where it fails, add the first candidate, see the error fall, reload."""
     server = Server()
@@ -275,9 +281,12 @@ def find_and_add():
         page.view(view)
         time.sleep(0.3)
         assert not page.driver.find_elements(By.CSS_SELECTOR, "#view > div > p.warning"), page.text("#view")
-    for width in (800, 400):
+    for width in (1280, 800, 400):
         page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
         page.wait(lambda: page.js("return document.documentElement.scrollWidth") <= width, f"nothing is wider than {width} pixels", 30)
+        for view in ("where", "candidates", "ladder", "study"):
+            page.view(view)
+            nothing_is_cut_off(page, f"{view} at {width} pixels")
     leave_the_server(page, server)
     report_without_server(page, verdict)
     page.end()

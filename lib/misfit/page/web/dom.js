@@ -25,11 +25,28 @@ export function words(text) {
 
 export const plain = (text) => (typeof text === 'string' ? text : (text ?? []).map(([piece]) => piece).join(''));
 
+/** A table that is wider than its place becomes rows of labelled values: nothing is cut off. Its cells have data-label. */
+const tables = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    const known = `${target.clientWidth}`;
+    if (target.dataset.fitted === known) continue;
+    target.dataset.fitted = known;
+    target.classList.remove('stacked');
+    target.classList.toggle('stacked', target.scrollWidth > target.clientWidth + 1);
+  }
+});
+export function fittedTable(...children) {
+  const out = element('div', { class: 'wide' }, ...children);
+  tables.observe(out);
+  return out;
+}
+
 function table(block) {
   const align = (k) => (block.columns[k]?.right ? { class: 'number' } : {});
   const head = element('tr', {}, ...block.columns.map((c, k) => element('th', { scope: 'col', ...align(k) }, words(c.heading))));
-  const body = element('tbody', {}, ...block.rows.map((row) => element('tr', {}, ...row.map((cell, k) => element('td', align(k), words(cell))))));
-  return element('div', { class: 'wide' }, element('table', {}, element('thead', {}, head), body));
+  const label = (k) => ({ 'data-label': k === 0 ? null : plain(block.columns[k]?.heading) });
+  const body = element('tbody', {}, ...block.rows.map((row) => element('tr', {}, ...row.map((cell, k) => element('td', { ...align(k), ...label(k) }, words(cell))))));
+  return fittedTable(element('table', {}, element('thead', {}, head), body));
 }
 
 /** Blocks as of a terminal or the report. `figures(name, parent)` draws what belongs to a place; `skip(block)`: left out. */

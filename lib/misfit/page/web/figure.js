@@ -213,8 +213,8 @@ class Plot {
     const y = { ...axis, values, size: 54, space: 20 };
     const marks = this.panel.beside ? this.view.marks : this.panel.marks;
     if (marks.length > 0) {
-      const longest = Math.max(...marks.map(([, text]) => plain(text).length));
-      Object.assign(y, marked(marks), { size: Math.min(7 * longest + 14, 0.48 * this.width()) });
+      const longest = Math.max(...marks.map(([, text]) => plain(text).length)), size = Math.min(7 * longest + 14, 0.5 * this.width());
+      Object.assign(y, marked(marks), { size, values: () => marks.map(([, text]) => shortened(plain(text), Math.floor((size - 10) / 6.8))) });
       if (this.panel.beside && this.view.row) Object.assign(y, { values: () => marks.map(() => ''), size: 10 });
     }
     return [x, y];
@@ -394,6 +394,13 @@ function shade(v) {
 function seen(pen, s) {
   if (!s.sorted) return [0, s.x.length];
   return [Math.max(lowerBound(s.x, pen.x0) - 1, 0), Math.min(lowerBound(s.x, pen.x1) + 1, s.x.length)];
+}
+
+/** A name in so many letters: its begin and its end. */
+function shortened(text, most) {
+  if (text.length <= most) return text;
+  const end = Math.floor(0.6 * (most - 1));
+  return `${text.slice(0, most - 1 - end)}…${text.slice(text.length - end)}`;
 }
 
 /** Calls `column(px, first, least, largest, last)` for each column of pixels; null for a gap. */

@@ -1,5 +1,5 @@
 // The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
-import { askingButton, blocks, element, plain, shown, words } from '/dom.js';
+import { askingButton, blocks, element, fittedTable, plain, shown, words } from '/dom.js';
 import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
 import { get, live, post, Refused } from '/server.js';
 import { editor } from '/editor.js';
@@ -549,7 +549,8 @@ class AddedForces {
 
 function candidateTable(table, rows, last) {
   const most = 12; // rows to begin with
-  const columns = table.columns.map((_, n) => n).filter((n) => !['rank', 'accepted'].includes(plain(table.columns[n].heading)));
+  const heading = (n) => plain(table.columns[n].heading), empty = (n) => table.rows.every((row) => plain(row[n]) === '–');
+  const columns = table.columns.map((_, n) => n).filter((n) => !['rank', 'accepted'].includes(heading(n)) && !empty(n));
   const side = (n) => (table.columns[n].right ? 'number' : null);
   const head = element('tr', {}, element('td'), ...columns.map((n) => element('th', { scope: 'col', class: side(n) }, words(table.columns[n].heading))));
   const body = element('tbody'), pointing = new AddedForces();
@@ -560,13 +561,13 @@ function candidateTable(table, rows, last) {
           onclick: () => start(`add ${row.name}`, 'add', { effect: row.effect, at: row.at }) }, 'Add') : '';
     const more = k >= most ? ' more' : '';
     const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
-      ...columns.map((n) => element('td', { class: side(n) }, words(table.rows[k][n]))));
+      ...columns.map((n) => element('td', { class: side(n), 'data-label': heading(n) === 'effect' ? null : heading(n) }, words(table.rows[k][n]))));
     if (row.force) pointing.offer(line, line.children[1], row);
     body.append(line, element('tr', { class: 'why' + more }, element('td'), element('td', { colspan: columns.length }, words(row.why))));
   });
   const all = element('table', { id: 'candidates' }, element('thead', {}, head), body);
   const rest = rows.length > most ? element('button', { onclick: () => { all.classList.add('all'); rest.remove(); } }, `All ${rows.length}`) : null;
-  return element('div', { class: 'wide' }, all, rest);
+  return element('div', {}, fittedTable(all), rest);
 }
 
 async function showCurves(view) {
@@ -636,7 +637,7 @@ function settings() {
       element('button', { class: 'sets', 'data-roughness': name, 'data-key': `roughness ${name}`, title: 'auto, or a number of at least 0', disabled: !here.idle,
         onclick: () => set('roughness', name, box.value.trim()) }, 'Set'))));
   }
-  return element('details', { id: 'settings', open: here.settingsOpen, ontoggle: (event) => (here.settingsOpen = event.target.open) }, element('summary', {}, 'Hold or estimate a parameter, change a roughness'), element('table', {}, element('tbody', {}, ...rows)),
+  return element('details', { id: 'settings', open: here.settingsOpen, ontoggle: (event) => (here.settingsOpen = event.target.open) }, element('summary', {}, 'Hold or estimate a parameter, change a roughness'), fittedTable(element('table', {}, element('tbody', {}, ...rows))),
     element('p', { class: 'soft' }, 'A change is written into the study; Run makes the results anew.'));
 }
 
