@@ -5,11 +5,23 @@ import { element, plain, shown, shownWithSigma, words } from '/dom.js';
 
 const darkScreen = matchMedia('(prefers-color-scheme: dark)');
 const onDark = { '#000000': '#e4e7ea', '#8a8a8a': '#8f989f', '#0072b2': '#5fb4ea', '#d55e00': '#ff8c42', '#009e73': '#37c79b', '#cc79a7': '#e39cc4',
-  '#e69f00': '#f0b73a', '#56b4e9': '#8fd0f7', '#dcdcdc': '#2c3237' };
+  '#e69f00': '#f0b73a', '#56b4e9': '#8fd0f7', '#dcdcdc': '#17191b' };
+const dotsOnDark = { '#000000': '#a3adb6', '#8a8a8a': '#666f77' }; // thousands of dots: as bright as lines they would hide these
 
-/** The colour on this screen: those of the report are made for white paper. */
-export const colour = (hex) => (darkScreen.matches ? onDark[hex.toLowerCase()] ?? hex : hex);
-const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+/** The colour on this screen: those of the report are made for white paper. `kind`: the style of the series. */
+export const colour = (hex, kind = '') => {
+  if (!darkScreen.matches) return hex;
+  const known = hex.toLowerCase();
+  return (kind === 'points' ? dotsOnDark[known] : undefined) ?? onDark[known] ?? hex;
+};
+
+/** A colour of the style sheet; asking the document for it lays the page out, so that it is asked once. */
+const styles = new Map();
+darkScreen.addEventListener('change', () => styles.clear());
+function style(name) {
+  if (!styles.has(name)) styles.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+  return styles.get(name);
+}
 
 /** Of numbers that ascend: the first place whose number is not below `value`. */
 export function lowerBound(numbers, value) {
@@ -149,7 +161,7 @@ class Plot {
     for (const s of this.series) {
       if (plain(s.legend) === '') continue;
       const swatch = element('span', { class: 'swatch' });
-      swatch.style.background = colour(s.colour);
+      swatch.style.background = colour(s.colour, s.style);
       if (s.style === 'band' || s.style === 'pale_band') swatch.style.opacity = 0.35;
       if (['points', 'markers', 'error_bars', 'x_bars'].includes(s.style)) {
         swatch.style.width = swatch.style.height = '.5rem';
@@ -194,7 +206,10 @@ class Plot {
     bar.style.width = '7rem';
     bar.style.background = `linear-gradient(to right, ${[-1, -0.5, 0, 0.5, 1].map((v) => shade(v)).join(', ')})`;
     const most = this.most();
-    return element('span', {}, words(this.figure.zLabel), ` ${shown(-most, 2)} `, bar, ` ${shown(most, 2)}`);
+    const none = element('span', { class: 'swatch' });
+    none.style.background = `repeating-linear-gradient(135deg, ${colour(this.panel.ground || '#dcdcdc')} 0 3px, ${stripes()} 3px 4px)`;
+    return element('span', {}, words(this.figure.zLabel), ` ${shown(-most, 2)} `, bar, ` ${shown(most, 2)} `, this.panel.ground ? none : '',
+      this.panel.ground ? 'too few samples' : '');
   }
   most() {
     const out = [0, 3];
@@ -333,8 +348,7 @@ class Plot {
     ctx.rect(left, top, width, height);
     ctx.clip();
     if (this.panel.ground) {
-      ctx.fillStyle = colour(this.panel.ground);
-      ctx.fillRect(left, top, width, height);
+      hatch(pen, colour(this.panel.ground));
     }
     if (this.view.group) this.paintMarks(pen, this.view.group.marks);
     for (const [from, to] of this.view.cells ?? []) {
@@ -350,7 +364,7 @@ class Plot {
       ctx.stroke();
     }
     for (const s of [...this.series, ...(this.view.overlay ?? [])]) {
-      ctx.strokeStyle = ctx.fillStyle = colour(s.colour);
+      ctx.strokeStyle = ctx.fillStyle = colour(s.colour, s.style);
       ctx.lineWidth = Math.max(s.width * 0.8, 1) * pen.ratio;
       ctx.setLineDash(s.style === 'dashed' ? [7 * pen.ratio, 4 * pen.ratio] : s.style === 'dotted' ? [2 * pen.ratio, 3 * pen.ratio] : []);
       painters[s.style]?.(pen, s, this);
@@ -382,9 +396,24 @@ class Plot {
   }
 }
 
+/** Where there is nothing: stripes, which no value has. */
+function hatch({ ctx, left, top, width, height, ratio }, ground) {
+  ctx.fillStyle = ground;
+  ctx.fillRect(left, top, width, height);
+  ctx.strokeStyle = stripes();
+  ctx.lineWidth = ratio;
+  ctx.beginPath();
+  for (let x = left - height; x < left + width; x += 7 * ratio) {
+    ctx.moveTo(x, top + height);
+    ctx.lineTo(x + height, top);
+  }
+  ctx.stroke();
+}
+const stripes = () => (darkScreen.matches ? '#4c555d' : '#b4babf');
+
 /** From blue through the paper's colour to orange, of −1…1. */
 function shade(v) {
-  const paper = darkScreen.matches ? [32, 38, 43] : [250, 250, 250];
+  const paper = darkScreen.matches ? [72, 79, 86] : [250, 250, 250];
   const end = v < 0 ? (darkScreen.matches ? [95, 180, 234] : [0, 114, 178]) : darkScreen.matches ? [255, 140, 66] : [213, 94, 0];
   const share = Math.min(Math.abs(v), 1);
   return `rgb(${paper.map((p, k) => Math.round(p + share * (end[k] - p))).join(', ')})`;
