@@ -190,9 +190,11 @@ def move_the_roughness(page):
     page.wait(lambda: page.one("#view canvas"), "the curve")
     before = page.still(drawn, "the curve")
     assert "as fitted" in page.text(".slider output")
+    assert page.text(".slider").startswith("Smoothness of ") and page.text(".slider .soft:last-of-type") == "smooth", "larger to the right, as its name says"
     page.js("arguments[0].value = arguments[0].max; arguments[0].dispatchEvent(new Event('input'))", slider)
     page.wait(lambda: "(log marginal likelihood)" in page.text(".slider output"), "what the likelihood says")
     page.wait(lambda: drawn() != before, "another curve")
+    assert float(re.search(r"([\d.e+]+) times as fitted", page.text(".slider output"))[1]) > 1, "smooth: a larger roughness than fitted"
     page.js("[...document.querySelectorAll('.slider button')].find((b) => b.textContent === 'As fitted').click()")
     page.wait(lambda: drawn() == before, "the curve as fitted")
 

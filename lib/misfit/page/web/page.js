@@ -584,7 +584,7 @@ async function showCurves(view) {
 function roughnessOf(paths, figures, parent) {
   if (paths.length === 0) return;
   let path = paths[paths.length - 1];
-  const slider = element('input', { type: 'range', min: 0, step: 'any', 'aria-label': `roughness of ${path.curve}`, 'data-curve': path.curve, oninput: () => move() });
+  const slider = element('input', { type: 'range', min: 0, step: 'any', 'aria-label': `smoothness of ${path.curve}`, 'data-curve': path.curve, oninput: () => move() });
   const said = element('output', {}), back = element('button', { onclick: () => begin() }, 'As fitted');
   const setting = live && here.model === 0 && here.state.study.fault === null && here.state.settable.curves.some((c) => c.name === path.curve);
   const key = `slider ${path.curve}`;
@@ -609,7 +609,7 @@ function roughnessOf(paths, figures, parent) {
     }
     for (const figure of figures) figure.redraw();
     const support = between(path.support, mixed);
-    said.replaceChildren(asFitted ? '' : 'Black: ', `${shown(value(), 3)} `, words(path.unit), asFitted
+    said.replaceChildren(asFitted ? '' : 'Black: ', `roughness = ${shown(value(), 3)} `, words(path.unit), asFitted
       ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}`
       : `, ${shown(value() / path.used, 2)} times as fitted, all other unknowns following (linearised); ${support < 0 ? 'less' : 'more'} likely by ${
         shown(Math.abs(support), 2)} (log marginal likelihood)`);
@@ -621,7 +621,7 @@ function roughnessOf(paths, figures, parent) {
     move();
   }
   begin();
-  parent.append(element('div', { class: 'slider' }, element('span', {}, 'roughness of ', words(path.label)), methods, element('span', { class: 'soft' }, 'rough'), slider,
+  parent.append(element('div', { class: 'slider' }, element('span', { title: 'the key roughness of the curve: the larger it is, the smoother is the curve' }, 'Smoothness of ', words(path.label)), methods, element('span', { class: 'soft' }, 'rough'), slider,
     element('span', { class: 'soft' }, 'smooth'), back, set, said));
 }
 
@@ -633,7 +633,7 @@ function settings() {
       onclick: () => set('free', name, `${!free}`) }, free ? 'Hold' : 'Estimate'))));
   for (const { name, label, unit, roughness } of here.state.settable.curves) {
     const box = element('input', { value: roughness, size: 12, 'aria-label': `roughness of ${name}` });
-    rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), ']'), element('td', {}, box), element('td', {},
+    rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), '], larger: smoother'), element('td', {}, box), element('td', {},
       element('button', { class: 'sets', 'data-roughness': name, 'data-key': `roughness ${name}`, title: 'auto, or a number of at least 0', disabled: !here.idle,
         onclick: () => set('roughness', name, box.value.trim()) }, 'Set'))));
   }
