@@ -145,6 +145,8 @@ def point_at_the_worst_place(page):
     over = page.one("#view figure .u-over")
     page.js("arguments[0].scrollIntoView({block: 'center'})", over)
     width = over.size["width"]
+    series = "return [...document.querySelectorAll('#time .u-wrap > canvas')].map((c) => c.toDataURL())"
+    painted = page.js(series)
     seen = {}
     for k in range(1, 12):
         ActionChains(page.driver).move_to_element_with_offset(over, int(width * (k / 12 - 0.5)), 0).perform()
@@ -152,6 +154,8 @@ def point_at_the_worst_place(page):
         seen[page.text("#marked")] = k
     marked = [words for words in seen if re.match(r"Marked: [1-9]\d* samples with ", words)]
     assert len(marked) >= 4, seen
+    assert page.js(series) == painted, "marks stand on a canvas of their own: 50 000 points are not drawn again for each step of the mouse"
+    assert page.js("const c = document.querySelector('#motion .u-under canvas'); return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v > 0)")
     ActionChains(page.driver).move_to_element_with_offset(over, 0, 0).click().perform()
     page.wait(lambda: int(page.one("#time").get_attribute("data-marks")) > 0, "the marks")
     page.frames()
@@ -183,7 +187,7 @@ def force_of_the_accepted(page, name):
 def move_the_roughness(page):
     """The curve follows the slider, and goes back."""
     def drawn():
-        return page.js("return document.querySelector('#view canvas').toDataURL()")
+        return page.js("return document.querySelector('#view .u-wrap > canvas').toDataURL()")
 
     page.view("curves")
     slider = page.wait(lambda: page.one(".slider input"), "the slider of a roughness")

@@ -62,7 +62,7 @@ export class TimeGroup {
   }
   setMarks(marks) {
     this.marks = marks;
-    for (const plot of this.plots) plot.u.redraw(false);
+    for (const plot of this.plots) plot.paintLayers();
   }
   point(t) {
     for (const plot of this.plots) plot.pointAt(t);
@@ -256,6 +256,10 @@ class Plot {
       hooks: { draw: [() => this.paint()], setCursor: [() => this.read()], setSelect: [() => this.selected()] },
     };
     this.u = new uPlot(options, [this.xRange, [null, null]], this.host);
+    this.below = element('canvas', { class: 'layer' });
+    this.above = element('canvas', { class: 'layer' });
+    this.u.under.append(this.below);
+    this.u.over.append(this.above);
     this.showX(this.window);
     this.host.addEventListener('keydown', (event) => this.key(event));
     this.u.over.addEventListener('mousemove', (event) => this.hover(event));
@@ -335,13 +339,46 @@ class Plot {
     event.preventDefault();
   }
 
+  /** What draws on a canvas whose axes begin at `left`, `top`. */
+  pen(ctx, left, top) {
+    const { width, height } = this.u.bbox, { min: x0, max: x1 } = this.u.scales.x, { min: y0, max: y1 } = this.u.scales.y;
+    return { ctx, left, top, width, height, x0, x1, ratio: devicePixelRatio || 1,
+      X: (v) => left + ((v - x0) / (x1 - x0)) * width, Y: (v) => top + ((y1 - v) / (y1 - y0)) * height };
+  }
+  /** An empty canvas of the size of the axes; null: it was empty, and nothing comes into it. */
+  emptied(layer, used) {
+    const { width, height } = this.u.bbox, fits = layer.width === width && layer.height === height;
+    if (!used && !layer.used) return null;
+    layer.used = used;
+    if (fits) layer.getContext('2d').clearRect(0, 0, width, height);
+    else [layer.width, layer.height] = [width, height];
+    return this.pen(layer.getContext('2d'), 0, 0);
+  }
+  /** What changes with the mouse is painted beside the series, which stay as they are: below marked times and cells, above boxes and marked
+      samples. */
+  paintLayers() {
+    if (!this.above || !(this.u.scales.x.max > this.u.scales.x.min)) return;
+    const marks = this.view.group?.marks ?? [], cells = this.view.cells ?? [], boxes = this.view.boxes ?? [], { marked } = this.view;
+    const below = this.emptied(this.below, marks.length + cells.length > 0);
+    if (below) {
+      paintIntervals(below, marks);
+      paintIntervals(below, cells);
+    }
+    const above = this.emptied(this.above, boxes.length > 0 || Boolean(marked));
+    if (!above) return;
+    const { ctx } = above;
+    for (const s of marked ? this.series.filter((one) => one.style === 'points') : []) markedPoints(above, s, marked);
+    ctx.strokeStyle = style('--ink');
+    ctx.lineWidth = 2.5 * above.ratio;
+    for (const [x0, x1, y0, y1] of boxes) ctx.strokeRect(above.X(x0), above.Y(y1), above.X(x1) - above.X(x0), above.Y(y0) - above.Y(y1));
+  }
+
   /** Everything but the axes. */
   paint() {
     const u = this.u;
     if (!u) return;
-    const { left, top, width, height } = u.bbox, { min: x0, max: x1 } = u.scales.x, { min: y0, max: y1 } = u.scales.y;
-    const pen = { ctx: u.ctx, left, top, width, height, x0, x1, ratio: devicePixelRatio || 1,
-      X: (v) => left + ((v - x0) / (x1 - x0)) * width, Y: (v) => top + ((y1 - v) / (y1 - y0)) * height };
+    const { left, top, width, height } = u.bbox;
+    const pen = this.pen(u.ctx, left, top);
     const ctx = u.ctx;
     ctx.save();
     ctx.beginPath();
@@ -349,11 +386,6 @@ class Plot {
     ctx.clip();
     if (this.panel.ground) {
       hatch(pen, colour(this.panel.ground));
-    }
-    if (this.view.group) this.paintMarks(pen, this.view.group.marks);
-    for (const [from, to] of this.view.cells ?? []) {
-      ctx.fillStyle = style('--mark');
-      ctx.fillRect(pen.X(from), top, Math.max(pen.X(to) - pen.X(from), 1), height);
     }
     if (this.panel.zero) {
       ctx.strokeStyle = style('--soft');
@@ -371,11 +403,6 @@ class Plot {
       ctx.setLineDash([]);
       ctx.globalAlpha = 1;
     }
-    for (const rectangle of this.view.boxes ?? []) {
-      ctx.strokeStyle = style('--ink');
-      ctx.lineWidth = 2.5 * pen.ratio;
-      ctx.strokeRect(pen.X(rectangle[0]), pen.Y(rectangle[3]), pen.X(rectangle[1]) - pen.X(rectangle[0]), pen.Y(rectangle[2]) - pen.Y(rectangle[3]));
-    }
     if (this.series.every((s) => s.x.length === 0)) {
       ctx.fillStyle = style('--soft');
       ctx.font = `${13 * pen.ratio}px sans-serif`;
@@ -383,16 +410,19 @@ class Plot {
       ctx.fillText('no data', left + width / 2, top + height / 2);
     }
     ctx.restore();
+    this.paintLayers();
   }
-  paintMarks(pen, marks) {
-    pen.ctx.fillStyle = style('--mark');
-    let last = -1;
-    for (const [from, to] of marks) {
-      if (to < pen.x0 || from > pen.x1) continue;
-      const a = Math.max(pen.X(from), last), b = Math.max(pen.X(to), pen.X(from) + 1.5 * pen.ratio);
-      if (b > a) pen.ctx.fillRect(a, pen.top, b - a, pen.height);
-      last = Math.max(last, b);
-    }
+}
+
+/** Of marked times and cells. */
+function paintIntervals(pen, intervals) {
+  pen.ctx.fillStyle = style('--mark');
+  let last = -1;
+  for (const [from, to] of intervals) {
+    if (to < pen.x0 || from > pen.x1) continue;
+    const a = Math.max(pen.X(from), last), b = Math.max(pen.X(to), pen.X(from) + 1.5 * pen.ratio);
+    if (b > a) pen.ctx.fillRect(a, pen.top, b - a, pen.height);
+    last = Math.max(last, b);
   }
 }
 
@@ -489,34 +519,40 @@ function line(pen, s) {
   ctx.stroke();
 }
 
+const manyDots = 12000;
+
+/** Small squares at the samples that are `wanted`; of very many those that would cover others are left out. */
+function dots(pen, s, [from, to], side, wanted) {
+  const taken = to - from > manyDots ? new Set() : null;
+  for (let i = from; i < to; ++i) {
+    if (!wanted(i) || s.y[i] === null || s.x[i] === null) continue;
+    const x = pen.X(s.x[i]), y = pen.Y(s.y[i]);
+    if (taken) {
+      const place = Math.round(x / 2) * 100000 + Math.round(y / 2);
+      if (taken.has(place)) continue;
+      taken.add(place);
+    }
+    pen.ctx.fillRect(x - side / 2, y - side / 2, side, side);
+  }
+}
+const sideOfDots = (pen, [from, to]) => (to - from > 3000 ? 1.8 : 2.6) * pen.ratio;
+
 function points(pen, s, plot) {
-  const { ctx } = pen, [from, to] = seen(pen, s), many = to - from > 12000;
-  const size = (to - from > 3000 ? 1.8 : 2.6) * pen.ratio;
-  const marked = plot.view.marked;
-  if (s.sorted && many) {
+  const { ctx } = pen, range = seen(pen, s), [from, to] = range;
+  if (s.sorted && to - from > manyDots) {
     byColumn(pen, s.x, s.y, s.y, from, to, (px, first, least, largest) => {
       if (px !== null) ctx.fillRect(px, pen.Y(largest) - 1, 1, pen.Y(least) - pen.Y(largest) + 2);
     });
     return;
   }
-  const taken = many ? new Set() : null;
-  const dot = (i, by) => {
-    if (s.y[i] === null || s.x[i] === null) return;
-    const x = pen.X(s.x[i]), y = pen.Y(s.y[i]);
-    if (taken) {
-      const place = Math.round(x / 2) * 100000 + Math.round(y / 2);
-      if (taken.has(place)) return;
-      taken.add(place);
-    }
-    ctx.fillRect(x - by / 2, y - by / 2, by, by);
-  };
-  if (marked) ctx.globalAlpha = 0.35;
-  for (let i = from; i < to; ++i) dot(i, size);
-  if (!marked) return;
-  ctx.globalAlpha = 1;
-  ctx.fillStyle = style('--marked');
-  taken?.clear();
-  for (let i = from; i < to; ++i) if (marked[i]) dot(i, 1.6 * size);
+  if (plot.view.marked) ctx.globalAlpha = 0.35;
+  dots(pen, s, range, sideOfDots(pen, range), () => true);
+}
+
+function markedPoints(pen, s, marked) {
+  const range = seen(pen, s);
+  pen.ctx.fillStyle = style('--marked');
+  dots(pen, s, range, 1.6 * sideOfDots(pen, range), (i) => marked[i]);
 }
 
 function band(pen, s, alpha) {
@@ -617,7 +653,8 @@ const painters = {
 };
 
 /** A figure in the document. options: group (TimeGroup), height (of panels, in those of the report), title and caption (false: none), onpoint,
-    onleave, onpick, onkeypoint, oncursor. `cells`, `boxes`, `marked`: what is emphasised; `overlay`: series that are drawn over the others; redraw() after a change. */
+    onleave, onpick, onkeypoint, oncursor. `cells`, `boxes`: what is emphasised, highlight() after a change; mark(): samples;
+    `overlay`: series that are drawn over the others, redraw() after a change. */
 export class Figure {
   constructor(parent, figure, options = {}) {
     this.figure = figure;
@@ -663,6 +700,17 @@ export class Figure {
   }
   redraw() {
     for (const plot of this.plots) plot.u.redraw(false);
+  }
+  /** After a change of `cells` or `boxes`: the series stay. */
+  highlight() {
+    for (const plot of this.plots) plot.paintLayers();
+  }
+  /** The samples with a 1 stand out; null: none. */
+  mark(samples) {
+    const others = Boolean(samples) !== Boolean(this.marked); // these fade
+    this.marked = samples;
+    if (others) this.redraw();
+    else this.highlight();
   }
   resize() {
     const width = this.node.clientWidth;

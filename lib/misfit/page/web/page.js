@@ -369,7 +369,7 @@ function unmark() {
   for (const figure of here.figures) {
     if (!figure.fixedCells && !figure.fixedBoxes) continue;
     figure.cells = figure.boxes = figure.fixedCells = figure.fixedBoxes = undefined;
-    figure.redraw();
+    figure.highlight();
   }
   mark([], '', true);
 }
@@ -385,8 +385,7 @@ function markPoints() {
     mask = new Uint8Array(samples.t.length);
     for (const [from, to] of marks) for (let i = lowerBound(samples.t, from); i < samples.t.length && samples.t[i] <= to; ++i) mask[i] = 1;
   }
-  samples.figure.marked = mask;
-  samples.figure.redraw();
+  samples.figure.mark(mask);
 }
 
 // ---- views
@@ -471,13 +470,13 @@ async function showMap(body, map, current) {
     hot = k;
     figure.cells = [[from, to]];
     if (fixed) figure.fixedCells = figure.cells;
-    figure.redraw();
+    figure.highlight();
     const { out, count } = intervals(t, (i) => values[i] !== null && values[i] >= from && values[i] < to);
     mark(out, `Marked: ${count} samples with ${map.quantity} from ${shown(from, 4)} to ${shown(to, 4)} ${unit}`, fixed);
   };
   const figure = draw(body, map.change ?? map.figure, { height: 0.8,
     onpoint: (plot, x) => choose(plot.view, x, false), onpick: (plot, x) => choose(plot.view, x, true), onkeypoint: (plot, x) => choose(plot.view, x, true),
-    onleave: (plot) => { hot = null; plot.view.cells = plot.view.fixedCells ?? []; plot.view.redraw(); mark([], '', false); } });
+    onleave: (plot) => { hot = null; plot.view.cells = plot.view.fixedCells ?? []; plot.view.highlight(); mark([], '', false); } });
   figure.node.append(element('p', { class: 'soft' }, samples || map.quantity === 'time'
     ? 'Point at a place: its samples are marked in the motion. A click keeps them marked.' : 'Its samples are not at hand here; `misfit open` marks them in the motion.'));
   if (samples) {
@@ -487,8 +486,10 @@ async function showMap(body, map, current) {
 }
 
 async function showPair(body, map, current) {
-  const [x, y] = await Promise.all([samplesOf(map.x), samplesOf(map.y)].map((p) => p.catch(() => null)));
+  const [first, second] = await Promise.all([samplesOf(map.x), samplesOf(map.y)].map((p) => p.catch(() => null)));
   if (!current()) return;
+  const timeOf = (name, other) => (name === 'time' && other ? { t: other.t, values: other.t } : null); // a sample's own
+  const x = first ?? timeOf(map.x, second), y = second ?? timeOf(map.y, first);
   const cells = map.figure.panels[0].series[0], xs = map.figure.xs[cells.x];
   let hot = null;
   const choose = (figure, px, py, fixed) => {
@@ -498,7 +499,7 @@ async function showPair(body, map, current) {
     const box = [xs[k] - cells.lo[k], xs[k] + cells.lo[k], cells.y[k] - cells.hi[k], cells.y[k] + cells.hi[k]];
     figure.boxes = [box];
     if (fixed) figure.fixedBoxes = figure.boxes;
-    figure.redraw();
+    figure.highlight();
     if (!x || !y) return;
     const { out, count } = intervals(x.t, (i) => x.values[i] !== null && y.values[i] !== null && x.values[i] >= box[0] && x.values[i] < box[1] &&
       y.values[i] >= box[2] && y.values[i] < box[3]);
@@ -506,7 +507,7 @@ async function showPair(body, map, current) {
       `${shown(box[2], 4)} to ${shown(box[3], 4)} ${plain(map.figure.panels[0].unit)}; force ${shown(cells.z[k], 2)} sigma`, fixed);
   };
   draw(body, map.figure, { height: 0.9, onpoint: (plot, px, py) => choose(plot.view, px, py, false), onpick: (plot, px, py) => choose(plot.view, px, py, true),
-    onleave: (plot) => { hot = null; plot.view.boxes = plot.view.fixedBoxes ?? []; plot.view.redraw(); mark([], '', false); } });
+    onleave: (plot) => { hot = null; plot.view.boxes = plot.view.fixedBoxes ?? []; plot.view.highlight(); mark([], '', false); } });
 }
 
 async function showCandidates(view) {
@@ -576,7 +577,9 @@ async function showCurves(view) {
   const figures = curves.figures.map((figure) => draw(view, figure, { height: 0.8 }));
   figures.forEach((figure, k) => roughnessOf(curves.roughness.filter((path) => path.curves[0].figure === k), figures, figure.node));
   view.append(blocks(curves.blocks));
-  if (live && here.model === 0 && here.state.study.fault === null) view.append(settings());
+  if (!live) return;
+  if (here.model !== 0) nothing(view, "Parameters are held and roughness is set with model 0, the study's own.");
+  else if (here.state.study.fault === null) view.append(settings());
 }
 
 /** A slider for the roughness of a curve, by each of the methods that have one: the curve, and those derived from it, follow at once, by the
