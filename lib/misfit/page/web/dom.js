@@ -23,6 +23,17 @@ export function words(text) {
   return out;
 }
 
+/** The same, with places where a long name may go on in the next line: before '(' and behind '_' and ':'. */
+export function breakable(text) {
+  const out = words(text);
+  for (const node of [...out.childNodes]) {
+    if (node.nodeType !== Node.TEXT_NODE) continue;
+    const pieces = node.data.split(/(?=\()|(?<=[_:])/);
+    node.replaceWith(...pieces.flatMap((piece, k) => (k === 0 ? [piece] : [element('wbr'), piece])));
+  }
+  return out;
+}
+
 export const plain = (text) => (typeof text === 'string' ? text : (text ?? []).map(([piece]) => piece).join(''));
 
 /** A table that is wider than its place becomes rows of labelled values: nothing is cut off. Its cells have data-label. */

@@ -229,7 +229,7 @@ class Plot {
     const marks = this.panel.beside ? this.view.marks : this.panel.marks;
     if (marks.length > 0) {
       const longest = Math.max(...marks.map(([, text]) => plain(text).length)), size = Math.min(7 * longest + 14, 0.5 * this.width());
-      Object.assign(y, marked(marks), { size, values: () => marks.map(([, text]) => shortened(plain(text), Math.floor((size - 10) / 6.8))) });
+      Object.assign(y, marked(marks), { size, values: () => marks.map(([, text]) => shortened(plain(text), Math.floor((size - 10) / 7.4))) });
       if (this.panel.beside && this.view.row) Object.assign(y, { values: () => marks.map(() => ''), size: 10 });
     }
     return [x, y];

@@ -1,5 +1,5 @@
 // The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
-import { askingButton, blocks, element, fittedTable, plain, shown, words } from '/dom.js';
+import { askingButton, blocks, breakable, element, fittedTable, plain, shown, words } from '/dom.js';
 import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
 import { get, live, post, Refused } from '/server.js';
 import { editor } from '/editor.js';
@@ -562,7 +562,7 @@ function candidateTable(table, rows, last) {
           onclick: () => start(`add ${row.name}`, 'add', { effect: row.effect, at: row.at }) }, 'Add') : '';
     const more = k >= most ? ' more' : '';
     const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
-      ...columns.map((n) => element('td', { class: side(n), 'data-label': heading(n) === 'effect' ? null : heading(n) }, words(table.rows[k][n]))));
+      ...columns.map((n) => element('td', { class: side(n), 'data-label': heading(n) === 'effect' ? null : heading(n) }, breakable(table.rows[k][n]))));
     if (row.force) pointing.offer(line, line.children[1], row);
     body.append(line, element('tr', { class: 'why' + more }, element('td'), element('td', { colspan: columns.length }, words(row.why))));
   });
