@@ -36,7 +36,8 @@ std::string systems_text(const Registry& registry) {
 
 std::string study_text(const Registry& registry) {
   return paragraph(
-             "study.toml is TOML. Numbers are in SI, angles in radians, or texts with a unit: 0.6, \"24 in\", \"3 deg/s\". Files are taken "
+             "study.toml is TOML. Numbers are in SI, angles in radians, or texts with a unit: 0.6, \"24 in\", \"3 deg/s\" (\"0.6\" is "
+             "0.6). Files are taken "
              "from "
              "the folder of the study. Keys in capitals stand for names that you choose or that the model has. An unknown key is an "
              "error.") +

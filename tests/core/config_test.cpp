@@ -57,6 +57,7 @@ TEST(Number, ReadsBareNumbersAndUnits) {
   EXPECT_EQ(s.number("bare", "m")->unit, "m");
   EXPECT_EQ(s.number("size", "m")->where.line, 3);
   EXPECT_FALSE(s.number("absent", "m").has_value());
+  EXPECT_EQ(parse("V = \"35.1\"").number("V", "m/s")->value, 35.1) << "a text without a unit is in SI, as a number is";
 }
 
 TEST(Number, ReadsSigmaWhereItIsAllowed) {

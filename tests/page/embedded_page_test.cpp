@@ -8,8 +8,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <tuple>
 
 #include "misfit/page/assets.h"
+#include "misfit/page/views.h"
 #include "tests/core/temporary_folder.h"
 
 namespace misfit::page {
@@ -88,6 +90,43 @@ TEST_F(Embedded, IsLeftOutWhereItFindsNoRoomAndItsLastViewsFirst) {
   for (std::size_t most = 2000; answers.contains("calibration?"); most -= 10) answers = all(most)["answers"];
   EXPECT_TRUE(answers.contains("motion?model=0"));
   EXPECT_TRUE(answers.contains("curves?model=0"));
+}
+
+TEST_F(Embedded, KeepsTheLastModelWhereEarlierOnesFindNoRoom) {
+  page.places.push_back({folder.path() / "study.toml", folder.path() / "out/rungs/01", 1, "drag"});
+  const json answers = all()["answers"];
+  ASSERT_TRUE(answers.contains("where?model=0") && answers.contains("where?model=1"));
+  json fewer = answers;
+  for (std::size_t most = 2000; fewer.contains("where?model=0"); most -= 10) fewer = all(most)["answers"];
+  EXPECT_TRUE(fewer.contains("where?model=1"));
+  EXPECT_TRUE(fewer.contains("motion?model=1")) << "the page opens with it";
+}
+
+TEST_F(Embedded, ListsCandidatesByTheirSignificanceThoseOfUnknownFormIncluded) {
+  Discovery d;
+  for (const auto& [effect, p, drop] :
+       {std::tuple{"lag", 1.0, 12.0}, {"drag", 0.3, 6.0}, {"unknown:F(x)", 1e-9, 60.0}, {"friction", 1e-8, 50.0}}) {
+    d.candidates.emplace_back();
+    d.candidates.back().rank = static_cast<int>(d.candidates.size());
+    d.candidates.back().effect = effect;
+    d.candidates.back().p_value = p;
+    d.candidates.back().predicted_drop = drop;
+  }
+  d.candidates.back().accepted = true;
+  std::filesystem::create_directories(folder.path() / "out");
+  write_discovery(folder.path() / "out", d);
+  const json view = json::parse(candidates_view(page.places.front(), {}));
+  std::vector<std::string> effects;
+  for (const json& row : view["rows"]) {
+    effects.push_back(row["effect"]);
+    EXPECT_EQ(d.candidates[row["candidate"].get<std::size_t>()].effect, row["effect"]) << "by which its force is asked for";
+  }
+  EXPECT_THAT(effects, testing::ElementsAre("friction", "unknown:F(x)", "drag", "lag"));
+  for (const json& block : view["blocks"]) {
+    if (block["kind"] != "table") continue;
+    EXPECT_EQ(block["rows"][1][1], "unknown:F(x)") << "the table is in the order of the rows";
+  }
+  EXPECT_EQ(view["figure"]["panels"][0]["marks"][0][1], "friction");
 }
 
 /// Of two channels alike, measured at random, with one wild residual.

@@ -135,9 +135,8 @@ TEST(LadderFigure, ForceStandsWithItsSigmaAndTheTrimWithNinetyFivePercent) {
   const Series* force = find(figure, "force");
   ASSERT_NE(force, nullptr);
   EXPECT_EQ(force->y, (std::vector<double>{35.0, 31.0, 26.9}));
-  const Series* bars = find(figure, "force_sigma");
-  ASSERT_NE(bars, nullptr);
-  EXPECT_NEAR(bars->hi[0] - bars->y[0], 0.8, 1e-12);
+  EXPECT_EQ(force->style, Style::error_bars);
+  EXPECT_NEAR(force->hi[0] - force->y[0], 0.8, 1e-12);
   const Series* trim = find(figure, "trim");
   ASSERT_NE(trim, nullptr);
   EXPECT_NEAR(trim->hi[1] - trim->y[1], 1.96 * 0.2, 1e-9);
@@ -154,6 +153,21 @@ TEST(LadderFigure, ChannelsOfOneSystemKeepTheirUnits) {
   for (const Panel& panel : figure.panels) units.push_back(panel.y_unit);
   EXPECT_EQ(units, (std::vector<std::string>{"", "N m", "px", "px", "deg"}));
   EXPECT_EQ(find(figure, "P_y_RMS__1_step")->y, (std::vector<double>{1.78, 1.76}));
+}
+
+TEST(LadderFigure, ASmallChangeIsSeenAndDoesNotLookLarge) {
+  Ladder one = ladder();
+  one.rungs.erase(one.rungs.begin());
+  Figure figure = ladder_figure(one);
+  const auto range_of = [&](std::size_t panel) { return figure.panels[panel].y_range.value_or(std::array<double, 2>{}); };
+  EXPECT_EQ(range_of(0)[0], 0.0) << "drops are bars: from 0";
+  const auto [low, high] = range_of(2);
+  EXPECT_GT(low, 1.5) << "1.78 px and 1.76 px: about them";
+  EXPECT_GT(high - low, 0.178) << "at least a tenth of the value high";
+  EXPECT_LT(high - low, 0.25);
+  one.rungs.back().rms.at("P_y").value = 0.4;
+  figure = ladder_figure(one);
+  EXPECT_EQ(range_of(2)[0], 0.0) << "to a fraction: from 0";
 }
 
 TEST(LadderFigure, ChannelsOfDifferentSystemsAreDrawnOverTheirFirstValue) {

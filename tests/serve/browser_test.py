@@ -145,6 +145,8 @@ def point_at_the_worst_place(page):
     over = page.one("#view figure .u-over")
     page.js("arguments[0].scrollIntoView({block: 'center'})", over)
     width = over.size["width"]
+    series = "return [...document.querySelectorAll('#time .u-wrap > canvas')].map((c) => c.toDataURL())"
+    painted = page.js(series)
     seen = {}
     for k in range(1, 12):
         ActionChains(page.driver).move_to_element_with_offset(over, int(width * (k / 12 - 0.5)), 0).perform()
@@ -152,6 +154,8 @@ def point_at_the_worst_place(page):
         seen[page.text("#marked")] = k
     marked = [words for words in seen if re.match(r"Marked: [1-9]\d* samples with ", words)]
     assert len(marked) >= 4, seen
+    assert page.js(series) == painted, "marks stand on a canvas of their own: 50 000 points are not drawn again for each step of the mouse"
+    assert page.js("const c = document.querySelector('#motion .u-under canvas'); return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v > 0)")
     ActionChains(page.driver).move_to_element_with_offset(over, 0, 0).click().perform()
     page.wait(lambda: int(page.one("#time").get_attribute("data-marks")) > 0, "the marks")
     page.frames()
@@ -183,18 +187,45 @@ def force_of_the_accepted(page, name):
 def move_the_roughness(page):
     """The curve follows the slider, and goes back."""
     def drawn():
-        return page.js("return document.querySelector('#view canvas').toDataURL()")
+        return page.js("return document.querySelector('#view .u-wrap > canvas').toDataURL()")
 
     page.view("curves")
     slider = page.wait(lambda: page.one(".slider input"), "the slider of a roughness")
     page.wait(lambda: page.one("#view canvas"), "the curve")
     before = page.still(drawn, "the curve")
     assert "as fitted" in page.text(".slider output")
+    assert page.text(".slider").startswith("Smoothness of ") and page.text(".slider .soft:last-of-type") == "smooth", "larger to the right, as its name says"
     page.js("arguments[0].value = arguments[0].max; arguments[0].dispatchEvent(new Event('input'))", slider)
     page.wait(lambda: "(log marginal likelihood)" in page.text(".slider output"), "what the likelihood says")
     page.wait(lambda: drawn() != before, "another curve")
+    assert float(re.search(r"([\d.e+]+) times as fitted", page.text(".slider output"))[1]) > 1, "smooth: a larger roughness than fitted"
     page.js("[...document.querySelectorAll('.slider button')].find((b) => b.textContent === 'As fitted').click()")
     page.wait(lambda: drawn() == before, "the curve as fitted")
+
+
+def focused(page):
+    return page.js("return document.activeElement.textContent")
+
+
+def remove_asks_first(page):
+    """Once, where it stands; a doubt leads back, and the keys stay where they were."""
+    number = page.one("#job").get_attribute("data-number")
+    page.click("button.removes")
+    page.wait(lambda: "Take this rung off the ladder?" in page.text(".asking"), "the question")
+    assert focused(page) == "Keep", focused(page)
+    page.driver.switch_to.active_element.send_keys(Keys.ESCAPE)
+    page.wait(lambda: focused(page) == "Remove this rung", "back at the button")
+    page.driver.switch_to.active_element.send_keys(Keys.ENTER)
+    page.wait(lambda: focused(page) == "Keep", "asked by a key")
+    page.driver.switch_to.active_element.send_keys(Keys.ENTER)
+    page.wait(lambda: focused(page) == "Remove this rung", "kept")
+    assert page.one("#job").get_attribute("data-number") == number, "nothing was removed"
+
+
+def nothing_is_cut_off(page, where):
+    page.js("for (const more of document.querySelectorAll('#view details')) more.open = true")
+    cut = "return [...document.querySelectorAll('#view .wide, #view p, #view td')].filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent)"
+    page.wait(lambda: page.js(cut) == [], f"tables and texts as wide as their place: {where}", 20)
 
 
 def find_and_add():
@@ -210,12 +241,21 @@ def find_and_add():
     assert len(page.driver.find_elements(By.CSS_SELECTOR, "#motion .u-over")) >= 2, "measured, residual"
     assert len(page.driver.find_elements(By.CSS_SELECTOR, "#force .u-over")) >= 1
     page.view("where")
+    ps = page.js("return [...document.querySelectorAll('#view .list small')].map((s) => Number(s.textContent.replace('p = ', '').replace('−', '-')))")
+    assert len(ps) > 3 and ps == sorted(ps), ps
     point_at_the_worst_place(page)
     # The time cursor by keys, in all plots.
     plot = page.one("#motion .plot")
     plot.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
-    values = "return [...document.querySelectorAll('#motion .value, #force .value')].filter((v) => v.textContent !== '').length"
-    page.wait(lambda: page.js(values) >= 3, "the values at the cursor")
+    readouts = "return [...document.querySelectorAll('#motion .readout, #force .readout')].map((r) => r.textContent)"
+    places = "return [...document.querySelectorAll('#time .u-over')].map((o) => [o.getBoundingClientRect().left, o.getBoundingClientRect().top + scrollY])"
+    said = page.wait(lambda: all(page.js(readouts)) and page.js(readouts), "the values at the cursor, in all plots")
+    assert re.match(r"[\d.]+ s · .*measured −?[\d.]+ · predicted −?[\d.]+ ± [\d.]+ px", said[0]), said
+    assert re.match(r"[\d.]+ s · moment_y −?[\d.]+ ± [\d.]+ N m$", said[-2]), said
+    before = page.js(places)
+    for k in range(8):
+        plot.send_keys(Keys.SHIFT, Keys.ARROW_RIGHT)
+        assert page.js(places) == before, "the readout moves no plot"
     plot.send_keys(Keys.ESCAPE)
     page.wait(lambda: page.text("#marked") == "", "no marks after Escape")
     move_the_roughness(page)
@@ -223,12 +263,17 @@ def find_and_add():
     first = page.wait(lambda: page.one("#candidates tr.accepted button.adds"), "an accepted candidate").get_attribute("data-effect")
     force_of_the_accepted(page, first)
     page.click("#candidates tr.accepted button.adds")
+    page.wait(lambda: "at work" in page.text("#candidates tr.accepted .began"), "its state at the button")
+    page.wait(lambda: focused(page) == "Stop", "the focus is on the stop beside it")
     page.job("done", 2)
     page.wait(lambda: page.one("#model").get_attribute("value") == "1", "the new rung is shown")
     before, after = page.wait(lambda: random_force(page), "the random force before and after")
     assert after < before, (before, after)
     page.view("ladder")
     page.wait(lambda: page.one("#view [aria-pressed=true]").text == f"1: + {first}", "the rung")
+    remove_asks_first(page)
+    option = page.one(f"#effect option[value={first}]")
+    assert not option.is_enabled() and "already in the model" in option.get_attribute("textContent"), "it cannot be added again"
     page.view("curves")
     page.wait(lambda: "model 0, " in page.text("#view"), "the curves as they were before")
     page.view("commands")
@@ -237,13 +282,17 @@ def find_and_add():
     page.open(server.address)
     page.driver.refresh()
     page.wait(lambda: page.text("#verdict") == verdict, "the same after a reload")
+    assert page.one("#model").get_attribute("value") == "1", "the printed address shows the model of which the verdict speaks"
     for view in ("where", "candidates", "curves", "calibration", "ladder", "study", "commands"):
         page.view(view)
         time.sleep(0.3)
         assert not page.driver.find_elements(By.CSS_SELECTOR, "#view > div > p.warning"), page.text("#view")
-    for width in (800, 400):
+    for width in (1280, 800, 400):
         page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
         page.wait(lambda: page.js("return document.documentElement.scrollWidth") <= width, f"nothing is wider than {width} pixels", 30)
+        for view in ("where", "candidates", "ladder", "study"):
+            page.view(view)
+            nothing_is_cut_off(page, f"{view} at {width} pixels")
     leave_the_server(page, server)
     report_without_server(page, verdict)
     page.end()
@@ -254,6 +303,7 @@ def report_without_server(page, verdict):
     page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     page.open("file://" + os.path.join(FOLDER, "out", "report.html"))
     page.wait(lambda: page.text("#verdict") == verdict, "the same verdict without a server", 30)
+    assert page.one("#model").get_attribute("value") == "1", "it begins with the model of which the verdict speaks"
     assert not page.one("#work").is_displayed()
     assert not page.one("body > main").is_displayed(), "the document is not seen while the page is"
     assert not page.driver.find_elements(By.CSS_SELECTOR, "button.adds, [data-view=commands]")
@@ -288,10 +338,10 @@ def settings():
     page.click("#settings summary")
     page.click("[data-parameter=k]")
     page.job("done", 2)
+    page.wait(lambda: "done" in page.text("#view .began"), "its end at the button")
     assert "k.free = false" in read(STUDY)
     page.wait(lambda: "Run makes them again" in page.text("#alerts"), "the results are outdated")
     page.wait(lambda: page.one("[data-parameter=k]"), "the parameter")
-    page.click("#settings summary")
     page.wait(lambda: page.text("[data-parameter=k]") == "Estimate", "it is held")
     assert not page.one("#holdout").is_displayed()
     over = page.one("#motion .u-over")
@@ -340,17 +390,23 @@ def mend():
     """A study with an error is mended in the page."""
     good = read(STUDY)
     with open(STUDY, "w", encoding="utf-8") as file:
-        file.write(good.replace("seed = 1", "seeds = 1"))
+        file.write(good.replace("seed = 1", "seeds = 1").replace("starts = 5", "start = 5") + "# a line\n" * 60)
     server = Server()
     page = Page(server.address)
     page.wait(lambda: "The study has an error" in page.text("#alerts"), "the error")
     assert not page.one("#run").is_enabled()
     page.click("#fault button")
     area = page.wait(lambda: page.one("#view textarea"), "the text")
-    assert page.text(".editor pre .bad") == "5"
+    assert [bad.text for bad in page.driver.find_elements(By.CSS_SELECTOR, ".editor pre .bad")] == ["5", "16"], "every fault, at its line"
+    assert "start" in page.text("#further"), page.text("#further")
+    page.js("arguments[0].scrollTop = 1e9", area)
+    page.wait(lambda: page.js("return document.querySelector('.editor pre').scrollTop") > 0, "the numbers follow")
+    assert page.js("return document.querySelector('.editor pre').scrollTop - arguments[0].scrollTop", area) == 0, "at the end of the text, too"
     assert "seed" in page.text("#check")
     page.click("#check button")  # to line 5, which is then chosen
     area.send_keys("seed = 1")
+    page.js("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))", area, page.js("return arguments[0].value", area).replace(
+        "start = 5", "starts = 5").replace("# a line\n", ""))
     page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked while typed")
     page.click("#save")
     page.wait(lambda: "Saved" in page.text("#check"), "saved")
@@ -366,8 +422,11 @@ def stop_and_kill():
     page = Page(server.address)
     page.click("#run")
     page.job("running", 1)
-    page.click("#stop")
+    page.wait(lambda: focused(page) == "Stop", "the focus is where the next key is wanted")
+    page.driver.switch_to.active_element.send_keys(Keys.ENTER)
     page.job("stopped", 1)
+    page.wait(lambda: focused(page) == "Run", "and goes back to what began it")
+    assert page.text("#work .began").startswith("stopped"), page.text("#work .began")
     page.click("#run")
     page.job("running", 2)
     time.sleep(0.5)

@@ -45,9 +45,19 @@ TEST(CommandsOfThePage, AreWhatOneWouldTypeAndGiveTheSameBytesWhenDoneAgain) {
   EXPECT_EQ(candidates["rows"].size(),
             candidates["blocks"][1]["kind"] == "table" ? candidates["blocks"][1]["rows"].size() : candidates["rows"].size());
   const std::string effect = "coulomb_friction";
+  const auto refused = [&](const std::string& of) {
+    const json state = server.state();
+    for (const json& one : state["effects"]) {
+      if (one["effect"] == of) return one["refused"].get<std::string>();
+    }
+    return std::string("not in the list");
+  };
+  EXPECT_EQ(refused(effect), "");
+  EXPECT_THAT(refused("strut_wake"), HasSubstr("does not suit this model")) << "an effect of parachutes";
   EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}}).parsed()["command"], "misfit add " + file + " " + effect);
   ASSERT_EQ(server.job()["state"], "done");
   EXPECT_EQ(server.state()["models"].size(), 2U);
+  EXPECT_THAT(refused(effect), HasSubstr("already in the model"));
   EXPECT_EQ(server.get("/api/ladder").parsed()["rungs"].size(), 2U);
   EXPECT_NE(server.get("/api/where?model=1").parsed()["maps"][0]["change"], nullptr);
   EXPECT_EQ(server.end().status, 0);
@@ -76,12 +86,12 @@ TEST(CommandsOfThePage, AStudyWithAnErrorIsMendedInIt) {
   EXPECT_THAT(fault["message"], HasSubstr("seed"));
   const json shown = server.get("/api/study").parsed();
   EXPECT_EQ(shown["text"], bad);
-  EXPECT_EQ(server.post("/api/check", {{"text", bad}}).parsed()["fault"]["line"], 5);
+  EXPECT_EQ(server.post("/api/check", {{"text", bad}}).parsed()["faults"][0]["line"], 5);
   EXPECT_EQ(server.post("/api/save", {{"text", bad}, {"hash", shown["hash"]}}).status, 422);
   EXPECT_EQ(content(study.path("study.toml")), bad) << "what is wrong is not written";
   EXPECT_EQ(server.post("/api/save", {{"text", good}, {"hash", "0123456789abcdef"}}).status, 400) << "changed meanwhile";
   EXPECT_EQ(content(study.path("study.toml")), bad);
-  EXPECT_EQ(server.post("/api/check", {{"text", good}}).parsed()["fault"], nullptr);
+  EXPECT_EQ(server.post("/api/check", {{"text", good}}).parsed()["faults"], json::array());
   ASSERT_EQ(server.post("/api/save", {{"text", good}, {"hash", shown["hash"]}}).status, 200);
   EXPECT_EQ(content(study.path("study.toml")), good);
   EXPECT_EQ(server.state()["study"]["fault"], nullptr);

@@ -196,6 +196,27 @@ TEST(Verdict, AnErrorThatRisesIsNotSaidToFall) {
   EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the random force rises from 20.0 ± 1.0 V/s to 22.0 ± 1.0 V/s (+10 %)"));
 }
 
+TEST(Verdict, AChangeWithinItsSigmaIsCalledSoAndTheMapWhereTheModelFailedLeads) {
+  Case c;
+  c.climb();
+  c.ladder->rungs[1].force = {{"dw/dt", {19.4, 0.9, "V/s"}}};
+  c.ladder->rungs[1].k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 7.9}}};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w, 32 samples ahead falls from 8 V to 7.9 V (-1.2 %)"));
+  c.fail_at_rest();
+  c.rung_diagnosis = c.diagnosis;
+  c.rung_diagnosis->maps.front().p_corrected = 0.7;
+  const Verdict v = c.verdict();
+  EXPECT_THAT(v.sentence, HasSubstr("was missing: with it the map of dw/dt over w goes from p = 1e-20 to p = 0.7; whether"));
+  ASSERT_EQ(v.errors.size(), 2U);
+  EXPECT_EQ(shown(v.errors[1]), "20.0 ± 1.0 V/s to 19.40 ± 0.90 V/s (within its sigma)");
+  c.ladder->rungs[1].force = {{"dw/dt", {18.4, 0.9, "V/s"}}};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the random force falls from 20.0 ± 1.0 V/s to 18.4")) << "beyond its sigma it leads";
+  c.ladder->rungs[1].force = {{"dw/dt", {19.4, 0.9, "V/s"}}};
+  c.ladder->rungs[1].k_step = {};
+  c.diagnosis.reset();
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("the random force changes by less than its sigma, from 20.0 ± 1.0 V/s to 19.40 ± 0.90 V/s"));
+}
+
 TEST(Verdict, ACalibrationThatItsSweepContradictsComesBeforeEveryEffect) {
   Case c;
   c.calibration.emplace().rms_px = 4.58;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <misfit_models_registry.h>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
@@ -48,6 +49,43 @@ TEST_F(ChangedStudy, WhatIsNoSettingIsRefusedWithItsWords) {
   for (const char* words : {"", "=", "a", "a=", "=1", "\"a=1"}) EXPECT_THROW((void)read_setting(words), InputError) << words;
   for (const char* key : {"a b", "parameters..k", ".k", "k", "[parameters].k", "a = 1\nb"})
     EXPECT_THAT([&] { (void)with(std::string(key) + "=1"); }, ThrowsMessage<InputError>(HasSubstr("parameters.k.free"))) << key;
+}
+
+const Registry& all_effects() {
+  static const Registry all = [] {
+    Registry r;
+    misfit_models_register(r);
+    return r;
+  }();
+  return all;
+}
+
+/// The lines of what is wrong.
+std::vector<int> lines_of(const std::vector<TextFault>& faults) {
+  std::vector<int> out;
+  for (const TextFault& fault : faults) out.push_back(fault.line);
+  return out;
+}
+
+TEST_F(ChangedStudy, EveryFaultIsSaidNotOnlyTheFirst) {
+  const auto faults = [&](const std::string& study) { return faults_of(folder.path() / "study.toml", study, all_effects()); };
+  const std::string good =
+      "[study]\nname = \"two\"\nseed = 1\n[system]\nkind = \"lti\"\n[[experiment]]\ndata = \"a.csv\"\nexclude = [0.2, 0.3]\n[effects]\n";
+  std::string bad = good;
+  const auto change = [&](const std::string& from, const std::string& to) { bad.replace(bad.find(from), from.size(), to); };
+  change("seed", "seeds");
+  change("exclude = [0.2, 0.3]", "exclude = \"some\"");
+  change("data = \"a.csv\"", "data = \"a.csv\"\nvalidaton = \"last 25 %\"");
+  const std::vector<TextFault> found = faults(bad);
+  EXPECT_THAT(lines_of(found), testing::IsSupersetOf({3, 8, 9})) << "seeds, validaton, exclude";
+  EXPECT_EQ(found.front().message, fault_of(folder.path() / "study.toml", bad, all_effects())->message) << "the first is what a run says";
+
+  bad = good;
+  change("data = \"a.csv\"", "data = \"none.csv\"");
+  for (const TextFault& fault : faults(bad)) EXPECT_THAT(fault.message, testing::Not(HasSubstr("is needed"))) << "not what follows only";
+  EXPECT_EQ(lines_of(faults("[study]\nname = = 1\nseeds = 1\n")), (std::vector<int>{2, 3, 0}))
+      << "what is no TOML, an unknown key, and [system], which is missing";
+  EXPECT_EQ(lines_of(faults("")), (std::vector<int>{0}));
 }
 
 }  // namespace

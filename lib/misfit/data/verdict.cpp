@@ -1,5 +1,6 @@
 #include "misfit/data/verdict.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "misfit/data/json_fields.h"
@@ -10,6 +11,8 @@ std::optional<double> ErrorChange::per_cent() const {
   if (!after || !(std::abs(before.value) > 0.0) || !std::isfinite(after->value)) return std::nullopt;
   return 100.0 * (after->value / before.value - 1.0);
 }
+
+bool ErrorChange::within_sigma() const { return after && std::abs(after->value - before.value) < std::max(before.sigma, after->sigma); }
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<ErrorChange> auto& e) {

@@ -35,6 +35,8 @@ struct ErrorChange {
 
   /// 100 (after/before − 1); nullopt where either is not there.
   [[nodiscard]] std::optional<double> per_cent() const;
+  /// It changes by less than the larger of the sigmas before and after: no change is seen. False where no sigma is known.
+  [[nodiscard]] bool within_sigma() const;
 };
 
 /// What a study has come to: one sentence from calibration, fits, diagnosis, discovery and ladder together.

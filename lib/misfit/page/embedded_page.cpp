@@ -85,14 +85,14 @@ std::string state_of(const EmbeddedPage& page) {
 }
 
 std::string study_of(const Place& place) {
-  return fmt::format(R"({{"text":{},"hash":"","file":{},"editable":false,"fault":null}})", json_string(read_file(place.study)),
+  return fmt::format(R"({{"text":{},"hash":"","file":{},"editable":false,"faults":[]}})", json_string(read_file(place.study)),
                      json_string(place.study.filename().string()));
 }
 
 /// Motion by every method and the missing force.
 void add_first_views(const EmbeddedPage& page, std::size_t model, AllAnswers& out) {
   const std::string number = fmt::format("model={}", model);
-  const bool needed = model == 0;
+  const bool needed = model + 1 == page.places.size();  // it is shown first
   out.push_back({"where?" + number, where_view(page.places[model], model > 0 ? &page.places[model - 1] : nullptr), needed});
   const std::vector<Fit> fits = fits_of(page.places[model]);
   out.push_back({"motion?" + number, motion_view(fits, std::nullopt), needed});
@@ -139,8 +139,8 @@ void add_pointed_at(const EmbeddedPage& page, AllAnswers& out) {
 AllAnswers all_answers(const EmbeddedPage& page) {
   AllAnswers out;
   out.push_back({"state?", state_of(page), true});
-  for (std::size_t model = 0; model < page.places.size(); ++model) add_first_views(page, model, out);
-  for (std::size_t model = 0; model < page.places.size(); ++model) add_other_views(page, model, out);
+  for (std::size_t model = page.places.size(); model-- > 0;) add_first_views(page, model, out);
+  for (std::size_t model = page.places.size(); model-- > 0;) add_other_views(page, model, out);
   out.push_back({"ladder?", ladder_view(page.places.front().folder)});
   out.push_back({"calibration?", calibration_view(page.places.front())});
   add_pointed_at(page, out);

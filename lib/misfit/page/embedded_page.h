@@ -20,8 +20,9 @@ struct EmbeddedPage {
 
 /// The answers that the server would give, as JSON: {"lists": [[…], …], "answers": {"where?model=0": …}}. Long lists of numbers, which many
 /// answers share, stand once: in an answer {"$": k} stands for the list k. They are put in while all stay below `most` bytes, those of the
-/// first view of a model before its others. Where they are too many, recordings are thinned (thinned.h), and a warning of the page says so.
-/// Empty if not even the motion and the missing force of the first model find room.
+/// last model, which the page shows first, before those of earlier ones, and those of the first view of a model before its others. Where
+/// they are too many, recordings are thinned (thinned.h), and a warning of the page says so. Empty if not even the motion and the missing
+/// force of the last model find room.
 [[nodiscard]] std::string embedded_answers(const EmbeddedPage& page, std::size_t most);
 
 /// The page of `misfit open` without a server, as markup of at most so many bytes for the end of the body of report.html: template, style

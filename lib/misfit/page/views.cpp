@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <tuple>
 
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
@@ -66,14 +68,27 @@ std::string roughness_of(const Fit& fit, const RoughnessPath& path, const std::v
                      list_of(path.curves, curve));
 }
 
-/// What the table of blocks_of(Discovery) has no column for. In its order. `at`: the words of its place, where the effect has several.
-std::string row_of(const Candidate& c, const std::vector<Candidate>& all, const std::vector<std::string>& known) {
+/// Places of candidates, what is most significant first: the accepted one, then by p, then by the drop.
+std::vector<std::size_t> by_significance(const std::vector<Candidate>& all) {
+  std::vector<std::size_t> out(all.size());
+  std::iota(out.begin(), out.end(), 0U);
+  const auto key = [&](std::size_t k) {
+    const Candidate& c = all[k];
+    return std::tuple(!c.accepted, std::isfinite(c.p_value) ? c.p_value : 1.0, -c.actual_drop.value_or(c.predicted_drop));
+  };
+  std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  return out;
+}
+
+/// What the table of blocks_of(Discovery) has no column for. In its order. `at`: the words of its place, where the effect has several;
+/// `place`: in the discovery.
+std::string row_of(const Candidate& c, std::size_t place, const std::vector<Candidate>& all, const std::vector<std::string>& known) {
   const bool addable = std::find(known.begin(), known.end(), c.effect) != known.end();
   const auto places = std::count_if(all.begin(), all.end(), [&](const Candidate& other) { return other.effect == c.effect; });
   const std::vector<std::string> at = addable && places > 1 ? words_of_place(c) : std::vector<std::string>{};
-  return fmt::format(R"({{"effect":{},"name":{},"why":{},"accepted":{},"addable":{},"at":{},"force":{}}})", json_string(c.effect),
-                     json_string(effect_at(c.effect, c.roles)), json_words(c.why), c.accepted, addable, list_of(at, json_string),
-                     !c.added.empty());
+  return fmt::format(R"({{"effect":{},"name":{},"why":{},"accepted":{},"addable":{},"at":{},"force":{},"candidate":{}}})",
+                     json_string(c.effect), json_string(effect_at(c.effect, c.roles)), json_words(c.why), c.accepted, addable,
+                     list_of(at, json_string), !c.added.empty(), place);
 }
 
 /// The curve as a model without the effects of the last rungs has it.
@@ -140,9 +155,15 @@ std::string samples_view(const Diagnosis& diagnosis, std::size_t experiment, std
 std::string candidates_view(const Place& place, const std::vector<std::string>& effects) {
   const std::optional<Discovery> d = discovery_of(place);
   if (!d) return "null";
-  const std::string figure = d->candidates.empty() ? "null" : json_of(report::candidates_figure(d->candidates));
-  return fmt::format(R"({{"blocks":{},"rows":{},"figure":{}}})", json_of(blocks_of(*d)),
-                     list_of(d->candidates, [&](const Candidate& c) { return row_of(c, d->candidates, effects); }), figure);
+  Discovery sorted = *d;
+  std::vector<std::string> rows;
+  sorted.candidates.clear();
+  for (const std::size_t k : by_significance(d->candidates)) {
+    sorted.candidates.push_back(d->candidates[k]);
+    rows.push_back(row_of(d->candidates[k], k, d->candidates, effects));
+  }
+  const std::string figure = rows.empty() ? "null" : json_of(report::candidates_figure(sorted.candidates));
+  return fmt::format(R"({{"blocks":{},"rows":{},"figure":{}}})", json_of(blocks_of(sorted)), json_list(rows), figure);
 }
 
 std::string added_view(const Diagnosis& diagnosis, const Discovery& discovery, std::size_t experiment, std::size_t candidate) {

@@ -21,10 +21,10 @@ namespace misfit::page {
 /// Every sample of the missing force against a quantity, in the order of its times: {"t", "values", "figure"}. InputError: no such
 /// experiment or quantity.
 [[nodiscard]] std::string samples_view(const Diagnosis& diagnosis, std::size_t experiment, std::size_t quantity);
-/// `effects`: keys of those that the program can add.
+/// The most significant candidate first. `effects`: keys of those that the program can add.
 [[nodiscard]] std::string candidates_view(const Place& place, const std::vector<std::string>& effects);
-/// The missing force over time with what a candidate adds; `candidate`: its place in candidates_view. InputError: no such experiment or
-/// candidate.
+/// The missing force over time with what a candidate adds; `candidate`: its place in the discovery, which candidates_view names.
+/// InputError: no such experiment or candidate.
 [[nodiscard]] std::string added_view(const Diagnosis& diagnosis, const Discovery& discovery, std::size_t experiment, std::size_t candidate);
 /// Of places[model] by every method; dotted: of the models below it by the last method that has the curve.
 [[nodiscard]] std::string curves_view(const std::vector<Place>& places, std::size_t model, const std::vector<Reference>& references);

@@ -67,10 +67,9 @@ void add_force(const Rung& rung, std::vector<Panel>& panels) {
   if (e == nullptr) return;
   const std::string unit = display_unit(e->unit);
   const double factor = convert(1.0, e->unit, unit);
-  constexpr double width = 0.5;
-  Panel& panel = panel_for(panels, "random force", unit);
-  add_box(series_for(panel, "force", "remaining random force, ± 1 sigma", Style::boxes, palette(1)), rung.id, e->value * factor, width);
-  add_point(series_for(panel, "force_sigma", "", Style::error_bars, black), rung.id, e->value * factor, e->sigma * factor);
+  Series& series =
+      series_for(panel_for(panels, "random force", unit), "force", "remaining random force, ± 1 sigma", Style::error_bars, palette(1));
+  add_point(series, rung.id, e->value * factor, e->sigma * factor);
 }
 
 /// Predicted and actual drop side by side.
@@ -107,14 +106,14 @@ std::string colour_of(const std::string& channel, Errors& errors) {
   return palette(place == 1 ? 2 : place == 2 ? 3 : place);  // 1 is the random force
 }
 
-/// What one channel of a rung adds to the panel of `what`; `place`: of its box among those of the rung.
+/// What one channel of a rung adds to the panel of `what`.
 struct ChannelError {
   std::string what, channel;
   Estimate rms;
-  std::size_t place = 0;
+  std::size_t place = 0;  ///< among those of the rung
 };
 
-/// One box per channel, side by side; or, relative, a line of markers.
+/// One marker per channel, side by side; or, relative, a line of markers.
 void add_channel(const Rung& rung, const ChannelError& error, std::vector<Panel>& panels, Errors& errors) {
   const Estimate& e = error.rms;
   const std::string key = as_key(error.channel + "_" + error.what);
@@ -131,11 +130,11 @@ void add_channel(const Rung& rung, const ChannelError& error, std::vector<Panel>
     return;
   }
   const std::string unit = display_unit(e.unit);
-  constexpr double all = 0.5;
+  constexpr double all = 0.3;
   const double width = all / static_cast<double>(std::max<std::size_t>(rung.rms.size(), 1));
-  const double x = rung.id - 0.5 * all + (static_cast<double>(error.place) + 0.5) * width;
-  Series& series = series_for(panel_for(panels, error.what, unit), key, error.channel, Style::boxes, colour);
-  add_box(series, x, e.value * convert(1.0, e.unit, unit), 0.9 * width);
+  Series& series = series_for(panel_for(panels, error.what, unit), key, error.channel, Style::markers, colour);
+  series.x.push_back(rung.id - 0.5 * all + (static_cast<double>(error.place) + 0.5) * width);
+  series.y.push_back(e.value * convert(1.0, e.unit, unit));
 }
 
 void add_errors(const Rung& rung, std::vector<Panel>& near, std::vector<Panel>& far, Errors& errors) {
@@ -160,23 +159,36 @@ void add_trim(const Rung& rung, std::vector<Panel>& panels) {
   add_point(series, rung.id, rung.trim->value * factor, two_sided * rung.trim->sigma * factor);
 }
 
-/// From 0 for what is an amount; with some room for all.
-void set_range(Panel& panel) {
+/// Least and largest of what is drawn.
+std::array<double, 2> extent_of(const Panel& panel) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  double low = panel.y_label == "trim" || panel.y_unit.starts_with("%") ? infinite : 0.0, high = -infinite;
+  std::array<double, 2> out{infinite, -infinite};
   for (const Series& s : panel.series) {
     for (const auto* values : {&s.y, &s.lo, &s.hi}) {
       if (s.style == Style::boxes && values != &s.y) continue;  // these run along x
       for (const double v : *values) {
-        if (!std::isfinite(v)) continue;
-        low = std::min(low, v);
-        high = std::max(high, v);
+        if (std::isfinite(v)) out = {std::min(out[0], v), std::max(out[1], v)};
       }
     }
   }
-  constexpr double min_drop = 10.0;  // less is nothing, and is not to look like much
-  if (panel.y_label == "drop") high = std::max(high, min_drop);
-  if (!(high > low)) return;
+  return out;
+}
+
+/// Drops are bars and begin at 0. The others are points: about their values, so that a small change is seen, but at least a tenth of the
+/// value high, so that it does not look large; an amount that falls to a fraction begins at 0.
+void set_range(Panel& panel) {
+  auto [low, high] = extent_of(panel);
+  constexpr double min_drop = 10.0, least_height = 0.1, fraction = 0.5;
+  if (panel.y_label == "drop") {
+    low = std::min(low, 0.0);
+    high = std::max(high, min_drop);  // less is nothing, and is not to look like much
+  } else if (panel.y_label != "trim") {
+    if (low < fraction * high && !panel.y_unit.starts_with("%")) low = std::min(low, 0.0);
+    const double lacking = std::max(least_height * std::abs(high) - (high - low), 0.0);
+    low -= 0.5 * lacking;
+    high += 0.5 * lacking;
+  }
+  if (!(high > low) || !std::isfinite(high - low)) return;
   const double room = 0.08 * (high - low);
   panel.y_range = {low == 0.0 ? 0.0 : low - room, high + room};
 }
@@ -190,7 +202,8 @@ Figure ladder_figure(const Ladder& ladder) {
   figure.caption =
       "Each rung adds one effect to its parent. Drop = 2 (log-likelihood with the effect − without); a change of system has none. The "
       "random "
-      "force is the part of the excitation that the model does not explain; errors are of predictions from the filtered state.";
+      "force is the part of the excitation that the model does not explain; errors are of predictions from the filtered state. Axes of "
+      "points need not begin at 0; they are at least a tenth of the value high.";
   figure.x_label = "model";
   std::vector<Panel> drop, force, near, far, trim;
   Errors errors;

@@ -14,6 +14,7 @@
 #include "misfit/data/study_reader.h"
 #include "misfit/page/json_text.h"
 #include "misfit/page/views.h"
+#include "misfit/workflow/ladder.h"
 #include "misfit/workflow/session/study_change.h"
 
 namespace misfit::serve {
@@ -60,6 +61,12 @@ std::string strings(const std::vector<std::string>& texts) {
 std::string json_of(const std::optional<TextFault>& fault) {
   if (!fault) return "null";
   return fmt::format(R"({{"message":{},"line":{}}})", json_string(fault->message), fault->line);
+}
+
+std::string json_of(const std::vector<TextFault>& faults) {
+  std::vector<std::string> out;
+  for (const TextFault& fault : faults) out.push_back(json_of(std::optional(fault)));
+  return json_list(out);
 }
 
 std::string json_of(const CostTrace& trace) {
@@ -201,7 +208,7 @@ Answer Api::post(const Ask& ask) {
     return {200, json_of(jobs_.report())};
   }
   if (ask.path == "/api/check")
-    return {200, fmt::format(R"({{"fault":{}}})", json_of(fault_of(results_.study(), text_in(body, "text"), registry_)))};
+    return {200, fmt::format(R"({{"faults":{}}})", json_of(faults_of(results_.study(), text_in(body, "text"), registry_)))};
   if (ask.path == "/api/save") return save(text_in(body, "text"), text_in(body, "hash"));
   if (ask.path == "/api/job") return start(request_in(body));
   return failure(404, "there is no such page");
@@ -219,6 +226,7 @@ void Api::open_study(Known& known) const {
       known.outdated = outdated(session);
       known.references = references(session);
       known.settable = settable_of(session);
+      known.effects = effects();
       for (const ExperimentStudy& experiment : session.study.experiments) {
         if (experiment.video) known.films.emplace_back(experiment.name, *experiment.video);
       }
@@ -229,6 +237,12 @@ void Api::open_study(Known& known) const {
   known.study =
       fmt::format(R"({{"name":{},"question":{},"file":{},"folder":{},"fault":{}}})", json_string(name), page::json_words(question),
                   json_string(results_.study().string()), json_string(results_.folder().string()), json_of(fault));
+}
+
+std::vector<Addable> Api::effects() const {
+  const Place last = results_.places().back();
+  const SessionOptions options = last.id == 0 ? options_ : options_for(options_, last.study);
+  return addable_effects(Session(options, registry_, RunFolder::Access::read), page::discovery_of(last));
 }
 
 std::shared_ptr<const Api::Known> Api::known() {
@@ -248,14 +262,14 @@ std::string Api::state() {
   const auto all = known();
   return fmt::format(
       R"({{"version":"{}","study":{},"models":{},"outdated":{},"verdict":{},"effects":{},"settable":{},"films":{},"job":{}}})",
-      all->version, all->study, all->models, strings(all->outdated), all->verdict, strings(registry_.effect_keys()), json_of(all->settable),
+      all->version, all->study, all->models, strings(all->outdated), all->verdict, json_of(all->effects), json_of(all->settable),
       films_of(all->films), json_of(jobs_.report()));
 }
 
 Answer Api::study(const Place& place) const {
   const std::string text = read_file(place.study);
-  return {200, fmt::format(R"({{"text":{},"hash":"{}","file":{},"editable":{},"fault":{}}})", json_string(text), hash_text(text),
-                           json_string(place.study.string()), place.id == 0, json_of(fault_of(place.study, text, registry_)))};
+  return {200, fmt::format(R"({{"text":{},"hash":"{}","file":{},"editable":{},"faults":{}}})", json_string(text), hash_text(text),
+                           json_string(place.study.string()), place.id == 0, json_of(faults_of(place.study, text, registry_)))};
 }
 
 Answer Api::save(const std::string& text, const std::string& hash) {
@@ -264,7 +278,8 @@ Answer Api::save(const std::string& text, const std::string& hash) {
   const std::string whole = text.ends_with('\n') ? text : text + "\n";
   const std::lock_guard lock(mutex_);
   if (const auto fault = save_text(results_.study(), whole, hash, registry_))
-    return {422, fmt::format(R"({{"error":{},"fault":{}}})", json_string(fault->message), json_of(fault))};
+    return {422, fmt::format(R"({{"error":{},"faults":{}}})", json_string(fault->message),
+                             json_of(faults_of(results_.study(), whole, registry_)))};
   script_.record_text(results_.study().string(), whole);
   return {200, fmt::format(R"({{"hash":"{}"}})", hash_text(whole))};
 }

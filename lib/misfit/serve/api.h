@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 
+#include "misfit/serve/addable.h"
 #include "misfit/serve/http.h"
 #include "misfit/serve/job.h"
 #include "misfit/serve/results.h"
@@ -44,6 +45,7 @@ class Api {
     std::vector<std::string> outdated;  ///< sentences
     std::vector<Reference> references;
     Settable settable;
+    std::vector<Addable> effects;
     std::vector<std::pair<std::string, std::filesystem::path>> films;  ///< experiment, its video
   };
 
@@ -52,6 +54,8 @@ class Api {
   [[nodiscard]] std::string state();
   [[nodiscard]] std::shared_ptr<const Known> known();
   void open_study(Known& known) const;
+  /// Of the last model of the ladder.
+  [[nodiscard]] std::vector<Addable> effects() const;
   [[nodiscard]] Answer study(const page::Place& place) const;
   [[nodiscard]] Answer start(const JobRequest& request);
   /// Behind the study, out of what is known here: nothing of a request becomes a word of a command. InputError: it is not.

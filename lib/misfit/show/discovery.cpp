@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "misfit/core/text.h"
+#include "misfit/data/verdict.h"
 #include "misfit/show/results.h"
 #include "misfit/show/rows.h"
 
@@ -92,7 +93,7 @@ class BeforeAndAfter {
     add_channels("one step ahead", before.rms, after.rms);
     add_steps(before, after);
     add_channels("held out, one step ahead", before.validation_rms, after.validation_rms);
-    add("random force", force_text(before.force), force_text(after.force), change(strength(before), strength(after)));
+    add("random force", force_text(before.force), force_text(after.force), change_of_force(before, after));
     if (before.trim || after.trim) add("trim", shown(before.trim), shown(after.trim));
     if (!after.actual_drop) return;
     add("log-likelihood", shown_drop(before.loglik), shown_drop(after.loglik));
@@ -129,9 +130,10 @@ class BeforeAndAfter {
       add_channels(fmt::format("{} steps ahead", kLadderSteps[k]), at(before), at(after));
     }
   }
-  static double strength(const Rung& r) {
-    const auto force = force_strength(r.force);
-    return force ? force->value : std::nan("");
+  static std::string change_of_force(const Rung& before, const Rung& after) {
+    const auto was = force_strength(before.force), is = force_strength(after.force);
+    if (!was || !is) return kMissing;
+    return ErrorChange{"random force", *was, *is, ""}.within_sigma() ? "within its sigma" : change(was->value, is->value);
   }
 };
 

@@ -45,11 +45,17 @@ std::vector<ErrorChange> errors_of(const Fit& fit) {
   return out;
 }
 
+constexpr double clear_fall = -20.0;  // [%]
+
+/// A change that stands for itself: beyond its sigma, or a clear fall where no sigma is known.
+bool is_telling(const ErrorChange& e) {
+  return std::max(e.before.sigma, e.after ? e.after->sigma : 0.0) > 0.0 ? !e.within_sigma() : e.per_cent().value_or(0.0) <= clear_fall;
+}
+
 /// A fall of the error in what was measured says more than one of the random force, unless it is small beside that.
 void most_telling_first(std::vector<ErrorChange>& errors) {
-  constexpr double clear_fall = -20.0;  // [%]
   const auto rank = [](const ErrorChange& e) {
-    const double change = e.per_cent().value_or(0.0);
+    const double change = e.within_sigma() ? 0.0 : e.per_cent().value_or(0.0);
     const bool measured = e.what != "random force" && change <= clear_fall;
     return measured ? change - 100.0 : change;
   };
@@ -78,6 +84,8 @@ std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last) {
 }
 
 std::string change_in_words(const ErrorChange& e) {
+  if (e.within_sigma())
+    return fmt::format("the {} changes by less than its sigma, from {} to {}", e.what, briefly(e.before), briefly(*e.after));
   const double change = e.per_cent().value_or(0.0);
   return fmt::format("the {} {} from {}", e.what, change < 0.0 ? "falls" : "rises", shown(e));
 }
@@ -160,10 +168,14 @@ class Judge {
     }
   }
 
+  /// The same map of the last rung; nullptr: it has none.
+  [[nodiscard]] const ForceMap* map_after(const ForceMap& map) const {
+    return in_.rung_diagnosis == nullptr ? nullptr : find_map(*in_.rung_diagnosis, map.port, map.quantity);
+  }
   /// Of the study's own model, and what the ladder has left of it.
   [[nodiscard]] std::string where_it_fails(const ForceMap& map) const {
     if (map.sentence.empty()) return "";
-    const ForceMap* after = in_.rung_diagnosis == nullptr ? nullptr : find_map(*in_.rung_diagnosis, map.port, map.quantity);
+    const ForceMap* after = map_after(map);
     if (after == nullptr) return as_sentence(map.sentence + " (" + p_equals(map.p_corrected) + ")");
     return as_sentence(
         fmt::format("{} ({}); with {}: {}", map.sentence, p_equals(map.p_corrected), names_added(), p_equals(after->p_corrected)));
@@ -222,7 +234,8 @@ class Judge {
                                ? "one of " + join_words(best.group) + " is missing, and these data cannot say which: " + name + " fits best"
                                : (climbed_ ? "still missing: " : "missing: ") + name;
     sentence += values + " (" + p_equals(best.p_value) + ")";
-    if (climbed_ && !out_.errors.empty()) sentence += "; with " + names_added() + " " + change_in_words(out_.errors.front());
+    if (const std::string change = climbed_ ? change_by_ladder() : ""; !change.empty())
+      sentence += "; with " + names_added() + " " + change;
     say(best.group.size() > 1 ? VerdictKind::several_possible : VerdictKind::missing, sentence, command("add", best.effect));
   }
   /// The random force that the refit with the candidate leaves.
@@ -270,6 +283,17 @@ class Judge {
     }
   }
 
+  /// What the ladder changes: of the errors where that can be told from chance, else of the map of the force where the study's own model
+  /// fails; empty: nothing is known of it.
+  [[nodiscard]] std::string change_by_ladder() const {
+    const bool fails = !out_.where.empty();
+    const ForceMap* before = fails ? &in_.diagnosis->maps.front() : nullptr;
+    const ForceMap* after = fails ? map_after(*before) : nullptr;
+    if (after != nullptr && (out_.errors.empty() || !is_telling(out_.errors.front())))
+      return fmt::format("the map of {} over {} goes from {} to {}", before->port, before->quantity, p_equals(before->p_corrected),
+                         p_equals(after->p_corrected));
+    return out_.errors.empty() ? "" : change_in_words(out_.errors.front());
+  }
   [[nodiscard]] std::string names_added() const {
     std::vector<std::string> names;
     for (const Rung& rung : in_.ladder->rungs) {
@@ -280,7 +304,8 @@ class Judge {
   void added(const std::string& rest, const std::string& next, VerdictKind kind = VerdictKind::effect_added) {
     const std::string names = names_added();
     const bool one = in_.ladder->rungs.size() == 2;
-    const std::string change = out_.errors.empty() ? "" : (one ? "with it " : "with them ") + change_in_words(out_.errors.front()) + "; ";
+    std::string change = change_by_ladder();
+    if (!change.empty()) change = (one ? "with it " : "with them ") + change + "; ";
     say(kind, names + (one ? " was" : " were") + " missing: " + change + rest, next);
     out_.sentence.replace(0, names.size(), names);  // names of effects keep their small letters
   }
@@ -299,6 +324,7 @@ std::string shown(const ErrorChange& e) {
   const std::string remark = e.remark.empty() ? "" : " (" + e.remark + ")";
   if (!e.after) return briefly(e.before) + remark;
   if (e.what == "trim") return briefly(e.before) + " to " + briefly(*e.after) + remark;
+  if (e.within_sigma()) return briefly(e.before) + " to " + briefly(*e.after) + " (within its sigma)";
   const auto change = e.per_cent();
   return briefly(e.before) + " to " + briefly(*e.after) +
          (change ? fmt::format(" ({:+.{}f} %)", *change, std::abs(*change) < 10.0 || std::abs(*change) > 99.0 ? 1 : 0) : "");

@@ -23,13 +23,41 @@ export function words(text) {
   return out;
 }
 
+/** The same, with places where a long name may go on in the next line: before '(' and behind '_' and ':'. */
+export function breakable(text) {
+  const out = words(text);
+  for (const node of [...out.childNodes]) {
+    if (node.nodeType !== Node.TEXT_NODE) continue;
+    const pieces = node.data.split(/(?=\()|(?<=[_:])/);
+    node.replaceWith(...pieces.flatMap((piece, k) => (k === 0 ? [piece] : [element('wbr'), piece])));
+  }
+  return out;
+}
+
 export const plain = (text) => (typeof text === 'string' ? text : (text ?? []).map(([piece]) => piece).join(''));
+
+/** A table that is wider than its place becomes rows of labelled values: nothing is cut off. Its cells have data-label. */
+const tables = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    const known = `${target.clientWidth}`;
+    if (target.dataset.fitted === known) continue;
+    target.dataset.fitted = known;
+    target.classList.remove('stacked');
+    target.classList.toggle('stacked', target.scrollWidth > target.clientWidth + 1);
+  }
+});
+export function fittedTable(...children) {
+  const out = element('div', { class: 'wide' }, ...children);
+  tables.observe(out);
+  return out;
+}
 
 function table(block) {
   const align = (k) => (block.columns[k]?.right ? { class: 'number' } : {});
   const head = element('tr', {}, ...block.columns.map((c, k) => element('th', { scope: 'col', ...align(k) }, words(c.heading))));
-  const body = element('tbody', {}, ...block.rows.map((row) => element('tr', {}, ...row.map((cell, k) => element('td', align(k), words(cell))))));
-  return element('div', { class: 'wide' }, element('table', {}, element('thead', {}, head), body));
+  const label = (k) => ({ 'data-label': k === 0 ? null : plain(block.columns[k]?.heading) });
+  const body = element('tbody', {}, ...block.rows.map((row) => element('tr', {}, ...row.map((cell, k) => element('td', { ...align(k), ...label(k) }, words(cell))))));
+  return fittedTable(element('table', {}, element('thead', {}, head), body));
 }
 
 /** Blocks as of a terminal or the report. `figures(name, parent)` draws what belongs to a place; `skip(block)`: left out. */
@@ -51,10 +79,39 @@ export function blocks(list, { figures = () => {}, skip = () => false } = {}) {
   return out;
 }
 
+/** A button that asks once, in its own place, before it acts; Escape and `no` lead back. */
+export function askingButton(properties, text, { question, yes, no }, act) {
+  const begin = element('button', { ...properties, onclick: () => ask() }, text), place = element('span', { class: 'asking' }, begin);
+  function back() {
+    place.replaceChildren(begin);
+    begin.focus();
+  }
+  function ask() {
+    const keep = element('button', { onclick: back }, no);
+    place.replaceChildren(question, ' ', element('button', { class: 'yes', onclick: () => { back(); act(); } }, yes), ' ', keep);
+    keep.focus();
+  }
+  place.addEventListener('keydown', (event) => {
+    if (event.key !== 'Escape' || begin.isConnected) return;
+    event.stopPropagation();
+    back();
+  });
+  return place;
+}
+
 /** A number for readers: `digits` significant ones, a real minus sign. */
 export function shown(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
   const size = Math.abs(value);
   const text = size !== 0 && (size >= 1e6 || size < 1e-4) ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
   return text.replace('-', '−');
+}
+
+/** "12.3 ± 4.5": the sigma with two digits, the value with as many places. */
+export function shownWithSigma(value, sigma) {
+  if (!(sigma > 0) || !Number.isFinite(value)) return shown(value);
+  const size = Math.max(Math.abs(value), sigma);
+  if (size >= 1e6 || size < 1e-4) return `${shown(value, 3)} ± ${shown(sigma, 2)}`;
+  const places = Math.min(Math.max(1 - Math.floor(Math.log10(sigma)), 0), 8);
+  return `${value.toFixed(places).replace('-', '−')} ± ${sigma.toFixed(places)}`;
 }

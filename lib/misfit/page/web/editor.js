@@ -4,7 +4,7 @@ import { element } from '/dom.js';
 export function editor({ get, post, look }) {
   let known = null; // as it lies on disk
   let text = null; // as it is typed; null: unchanged
-  let fault = null, timer = 0, parts = null;
+  let faults = [], timer = 0, parts = null;
   let saved = false; // by this page, and unchanged since
 
   const changed = () => text !== null && text !== known?.text;
@@ -12,14 +12,17 @@ export function editor({ get, post, look }) {
   function number() {
     const lines = parts.area.value.split('\n').length;
     parts.lines.replaceChildren();
-    for (let k = 1; k <= lines; ++k) parts.lines.append(k === fault?.line ? element('span', { class: 'bad' }, `${k}`) : `${k}\n`);
+    for (let k = 1; k <= lines; ++k) parts.lines.append(faults.some((fault) => fault.line === k) ? element('span', { class: 'bad' }, `${k}`) : `${k}\n`);
     parts.lines.scrollTop = parts.area.scrollTop;
   }
   function tell(message, kind) {
     parts.message.className = kind;
     parts.message.replaceChildren(message);
-    if (fault?.line) parts.message.append(' ', element('button', { onclick: () => go(fault.line) }, `To line ${fault.line}`));
-    parts.save.disabled = !changed() || fault !== null;
+    const jump = ({ line }) => (line ? element('button', { onclick: () => go(line) }, `To line ${line}`) : '');
+    if (faults.length > 0) parts.message.append(' ', jump(faults[0]));
+    parts.further.replaceChildren(...faults.slice(1).map((fault) => element('li', {}, fault.message, ' ', jump(fault))));
+    parts.furtherHead.hidden = faults.length < 2;
+    parts.save.disabled = !changed() || faults.length > 0;
     parts.undo.disabled = !changed();
   }
   function go(line) {
@@ -29,14 +32,14 @@ export function editor({ get, post, look }) {
     parts.area.setSelectionRange(begin, end < 0 ? parts.area.value.length : end);
     parts.area.scrollTop = Math.max(0, (line - 5) * parseFloat(getComputedStyle(parts.area).lineHeight));
   }
-  const verdict = () => tell(fault ? fault.message : changed() ? 'Nothing is wrong with it; not saved yet.' : saved ? 'Saved. Run makes the results anew.' : 'Nothing is wrong with it.', fault ? 'fault' : 'fine');
+  const verdict = () => tell(faults.length > 0 ? faults[0].message : changed() ? 'Nothing is wrong with it; not saved yet.' : saved ? 'Saved. Run makes the results anew.' : 'Nothing is wrong with it.', faults.length > 0 ? 'fault' : 'fine');
 
   async function check() {
     const asked = parts.area.value;
     try {
       const answer = await post('check', { text: asked });
       if (asked !== parts.area.value) return;
-      fault = answer.fault;
+      faults = answer.faults;
       number();
       verdict();
     } catch (error) {
@@ -56,13 +59,13 @@ export function editor({ get, post, look }) {
       const answer = await post('save', { text: parts.area.value, hash: known.hash });
       known = { ...known, text: parts.area.value, hash: answer.hash };
       text = null;
-      fault = null;
+      faults = [];
       saved = true;
       number();
       verdict();
       await look();
     } catch (error) {
-      fault = error.answer?.fault ?? fault;
+      faults = error.answer?.faults ?? faults;
       number();
       tell(error.message, 'fault');
     }
@@ -70,7 +73,7 @@ export function editor({ get, post, look }) {
   function undo() {
     parts.area.value = known.text;
     text = null;
-    fault = known.fault;
+    faults = known.faults;
     number();
     verdict();
   }
@@ -82,15 +85,16 @@ export function editor({ get, post, look }) {
       if (fresh.hash !== known?.hash) saved = false;
       known = fresh;
       text = null;
-      fault = fresh.fault;
+      faults = fresh.faults;
     }
     const area = element('textarea', { spellcheck: 'false', wrap: 'off', 'aria-label': 'Text of the study', readonly: !fresh.editable, oninput: typed });
     area.value = kept ? text : fresh.text;
     parts = { area, lines: element('pre', { 'aria-hidden': 'true' }), message: element('p', { 'aria-live': 'polite', id: 'check' }),
+      furtherHead: element('p', { hidden: true }, 'Further, with the values in the lines above left out:'), further: element('ul', { class: 'fault', id: 'further' }),
       save: element('button', { id: 'save', class: 'main', onclick: save }, 'Save'), undo: element('button', { onclick: undo }, 'Undo all') };
     area.addEventListener('scroll', () => (parts.lines.scrollTop = area.scrollTop));
     view.append(element('p', { class: 'soft' }, fresh.file, fresh.editable ? '' : ': the study of a rung, written by misfit; the study itself is edited with model 0.'),
-      element('div', { class: 'editor' }, parts.lines, area), parts.message);
+      element('div', { class: 'editor' }, parts.lines, area), parts.message, parts.furtherHead, parts.further);
     if (fresh.editable) view.append(element('div', { class: 'buttons' }, parts.save, parts.undo));
     number();
     if (kept && fresh.hash !== known.hash) tell('The file was changed by somebody else meanwhile: copy what you typed, then "Undo all" and reload.', 'fault');

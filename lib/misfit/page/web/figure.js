@@ -1,15 +1,27 @@
 // Draws a figure of the report (lib/misfit/report/figure.h) with uPlot: axes, zoom and cursor are uPlot's, the series are painted here, thinned
 // to what the screen has pixels for (least and largest value of each column).
 import uPlot from '/uPlot.esm.js';
-import { element, plain, shown, words } from '/dom.js';
+import { element, plain, shown, shownWithSigma, words } from '/dom.js';
 
 const darkScreen = matchMedia('(prefers-color-scheme: dark)');
 const onDark = { '#000000': '#e4e7ea', '#8a8a8a': '#8f989f', '#0072b2': '#5fb4ea', '#d55e00': '#ff8c42', '#009e73': '#37c79b', '#cc79a7': '#e39cc4',
-  '#e69f00': '#f0b73a', '#56b4e9': '#8fd0f7', '#dcdcdc': '#2c3237' };
+  '#e69f00': '#f0b73a', '#56b4e9': '#8fd0f7', '#dcdcdc': '#17191b' };
+const dotsOnDark = { '#000000': '#a3adb6', '#8a8a8a': '#666f77' }; // thousands of dots: as bright as lines they would hide these
 
-/** The colour on this screen: those of the report are made for white paper. */
-export const colour = (hex) => (darkScreen.matches ? onDark[hex.toLowerCase()] ?? hex : hex);
-const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+/** The colour on this screen: those of the report are made for white paper. `kind`: the style of the series. */
+export const colour = (hex, kind = '') => {
+  if (!darkScreen.matches) return hex;
+  const known = hex.toLowerCase();
+  return (kind === 'points' ? dotsOnDark[known] : undefined) ?? onDark[known] ?? hex;
+};
+
+/** A colour of the style sheet; asking the document for it lays the page out, so that it is asked once. */
+const styles = new Map();
+darkScreen.addEventListener('change', () => styles.clear());
+function style(name) {
+  if (!styles.has(name)) styles.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+  return styles.get(name);
+}
 
 /** Of numbers that ascend: the first place whose number is not below `value`. */
 export function lowerBound(numbers, value) {
@@ -50,7 +62,7 @@ export class TimeGroup {
   }
   setMarks(marks) {
     this.marks = marks;
-    for (const plot of this.plots) plot.u.redraw(false);
+    for (const plot of this.plots) plot.paintLayers();
   }
   point(t) {
     for (const plot of this.plots) plot.pointAt(t);
@@ -86,7 +98,9 @@ class Plot {
     this.node = element('div', { class: 'panel' });
     this.legend = this.makeLegend();
     this.host = element('div', { class: 'plot', tabindex: 0, role: 'img', 'aria-label': this.spoken() });
-    this.node.append(this.legend, this.host);
+    this.values.sort((a, b) => (a.name === '') - (b.name === '')); // what is known of all before what is said of it
+    this.readout = this.values.length > 0 ? element('p', { class: 'readout' }) : null;
+    this.node.append(this.legend, this.readout ?? '', this.host);
     if ((last && view.options.xLabel !== false) || panel.beside)
       this.node.append(element('p', { class: 'xlabel' }, words(panel.beside?.label ?? xLabel), panel.beside ? '' : this.unitText(this.figure.xUnit)));
     (view.row ?? view.node).append(this.node);
@@ -147,19 +161,43 @@ class Plot {
     for (const s of this.series) {
       if (plain(s.legend) === '') continue;
       const swatch = element('span', { class: 'swatch' });
-      swatch.style.background = colour(s.colour);
+      swatch.style.background = colour(s.colour, s.style);
       if (s.style === 'band' || s.style === 'pale_band') swatch.style.opacity = 0.35;
       if (['points', 'markers', 'error_bars', 'x_bars'].includes(s.style)) {
         swatch.style.width = swatch.style.height = '.5rem';
         swatch.style.borderRadius = '50%';
       }
       if (['line', 'dashed', 'dotted', 'steps'].includes(s.style)) swatch.style.height = '3px';
-      const value = element('span', { class: 'value' });
-      out.append(element('span', {}, swatch, words(s.legend), value));
-      if (s.sorted && s.y && s.style !== 'bars') this.values.push([s, value]);
+      out.append(element('span', {}, swatch, words(s.legend)));
+      if (s.sorted && s.y && s.style !== 'bars') this.values.push({ s, name: plain(s.legend).split(', ±')[0], sigma: this.sigmaOf(s) });
+      else if (s.style === 'band' && s.sorted && plain(s.legend).startsWith('±')) this.values.push({ s, name: '', sigma: { band: s } });
     }
     if (this.series.some((s) => s.style === 'cells')) out.append(this.scale());
     return out;
+  }
+
+  /** Where ± of a series stands: in itself, in the band about it, or, of a prediction, in the band of the residuals; null: nowhere. */
+  sigmaOf(s) {
+    if (s.style === 'error_bars') return { band: s };
+    const about = this.series.find((b) => b.style === 'band' && plain(b.legend) === '' && b.x === s.x && b.colour === s.colour && s.style === 'line');
+    const all = this.figure.panels.flatMap((panel) => panel.series);
+    const predicted = s.style === 'line' && s.key.startsWith('predicted') ? all.find((b) => b.style === 'band' && plain(b.legend).endsWith('of the prediction')) : null;
+    const band = about ?? (predicted && this.figure.xs[predicted.x] === s.x ? predicted : null);
+    return band ? { band } : null;
+  }
+
+  /** What stands at a place: "12.35 s · measured 121 · predicted 121.1 ± 1.8 px". */
+  words(x) {
+    const xUnit = plain(this.figure.xUnit), unit = plain(this.panel.unit), behind = (one) => (one === '' || one === '-' ? '' : ` ${one}`);
+    const out = [`${this.view.group ? '' : `${plain(this.figure.xLabel)} `}${shown(x, 5)}${behind(xUnit)}`];
+    for (const { s, name, sigma } of this.values) {
+      if (s.x.length === 0) continue;
+      const k = nearest(s.x, x), v = s.y?.[k] ?? null, lo = sigma?.band.lo[k] ?? null, hi = sigma?.band.hi[k] ?? null;
+      const half = lo === null || hi === null ? null : 0.5 * (hi - lo);
+      if (name === '' && half !== null) out.push(`${plain(s.legend).replace(/^± /, '')} ${shown(half, 2)}`);
+      else if (v !== null) out.push(`${name} ${shownWithSigma(v, half)}`);
+    }
+    return out.join(' · ') + (out.length > 1 ? behind(unit) : '');
   }
 
   /** The scale of the colours of cells. */
@@ -168,7 +206,10 @@ class Plot {
     bar.style.width = '7rem';
     bar.style.background = `linear-gradient(to right, ${[-1, -0.5, 0, 0.5, 1].map((v) => shade(v)).join(', ')})`;
     const most = this.most();
-    return element('span', {}, words(this.figure.zLabel), ` ${shown(-most, 2)} `, bar, ` ${shown(most, 2)}`);
+    const none = element('span', { class: 'swatch' });
+    none.style.background = `repeating-linear-gradient(135deg, ${colour(this.panel.ground || '#dcdcdc')} 0 3px, ${stripes()} 3px 4px)`;
+    return element('span', {}, words(this.figure.zLabel), ` ${shown(-most, 2)} `, bar, ` ${shown(most, 2)} `, this.panel.ground ? none : '',
+      this.panel.ground ? 'too few samples' : '');
   }
   most() {
     const out = [0, 3];
@@ -187,8 +228,8 @@ class Plot {
     const y = { ...axis, values, size: 54, space: 20 };
     const marks = this.panel.beside ? this.view.marks : this.panel.marks;
     if (marks.length > 0) {
-      const longest = Math.max(...marks.map(([, text]) => plain(text).length));
-      Object.assign(y, marked(marks), { size: Math.min(7 * longest + 14, 0.48 * this.width()) });
+      const longest = Math.max(...marks.map(([, text]) => plain(text).length)), size = Math.min(7 * longest + 14, 0.5 * this.width());
+      Object.assign(y, marked(marks), { size, values: () => marks.map(([, text]) => shortened(plain(text), Math.floor((size - 10) / 7.4))) });
       if (this.panel.beside && this.view.row) Object.assign(y, { values: () => marks.map(() => ''), size: 10 });
     }
     return [x, y];
@@ -215,6 +256,10 @@ class Plot {
       hooks: { draw: [() => this.paint()], setCursor: [() => this.read()], setSelect: [() => this.selected()] },
     };
     this.u = new uPlot(options, [this.xRange, [null, null]], this.host);
+    this.below = element('canvas', { class: 'layer' });
+    this.above = element('canvas', { class: 'layer' });
+    this.u.under.append(this.below);
+    this.u.over.append(this.above);
     this.showX(this.window);
     this.host.addEventListener('keydown', (event) => this.key(event));
     this.u.over.addEventListener('mousemove', (event) => this.hover(event));
@@ -268,14 +313,9 @@ class Plot {
     const inside = left !== undefined && left >= 0;
     if (inside) this.cursor = this.u.posToVal(left, 'x');
     if (this.view.group && inside) this.view.options.oncursor?.(this.cursor);
-    for (const [s, node] of this.values) {
-      let text = '';
-      if (inside && s.x.length > 0) {
-        const v = s.y[nearest(s.x, this.cursor)];
-        if (v !== null) text = shown(v, 4);
-      }
-      if (node.textContent !== text) node.textContent = text;
-    }
+    if (!this.readout) return;
+    const text = inside ? this.words(this.cursor) : '';
+    if (this.readout.textContent !== text) this.readout.textContent = this.readout.title = text;
   }
   key(event) {
     const [from, to] = this.window, all = this.xRange;
@@ -299,26 +339,53 @@ class Plot {
     event.preventDefault();
   }
 
+  /** What draws on a canvas whose axes begin at `left`, `top`. */
+  pen(ctx, left, top) {
+    const { width, height } = this.u.bbox, { min: x0, max: x1 } = this.u.scales.x, { min: y0, max: y1 } = this.u.scales.y;
+    return { ctx, left, top, width, height, x0, x1, ratio: devicePixelRatio || 1,
+      X: (v) => left + ((v - x0) / (x1 - x0)) * width, Y: (v) => top + ((y1 - v) / (y1 - y0)) * height };
+  }
+  /** An empty canvas of the size of the axes; null: it was empty, and nothing comes into it. */
+  emptied(layer, used) {
+    const { width, height } = this.u.bbox, fits = layer.width === width && layer.height === height;
+    if (!used && !layer.used) return null;
+    layer.used = used;
+    if (fits) layer.getContext('2d').clearRect(0, 0, width, height);
+    else [layer.width, layer.height] = [width, height];
+    return this.pen(layer.getContext('2d'), 0, 0);
+  }
+  /** What changes with the mouse is painted beside the series, which stay as they are: below marked times and cells, above boxes and marked
+      samples. */
+  paintLayers() {
+    if (!this.above || !(this.u.scales.x.max > this.u.scales.x.min)) return;
+    const marks = this.view.group?.marks ?? [], cells = this.view.cells ?? [], boxes = this.view.boxes ?? [], { marked } = this.view;
+    const below = this.emptied(this.below, marks.length + cells.length > 0);
+    if (below) {
+      paintIntervals(below, marks);
+      paintIntervals(below, cells);
+    }
+    const above = this.emptied(this.above, boxes.length > 0 || Boolean(marked));
+    if (!above) return;
+    const { ctx } = above;
+    for (const s of marked ? this.series.filter((one) => one.style === 'points') : []) markedPoints(above, s, marked);
+    ctx.strokeStyle = style('--ink');
+    ctx.lineWidth = 2.5 * above.ratio;
+    for (const [x0, x1, y0, y1] of boxes) ctx.strokeRect(above.X(x0), above.Y(y1), above.X(x1) - above.X(x0), above.Y(y0) - above.Y(y1));
+  }
+
   /** Everything but the axes. */
   paint() {
     const u = this.u;
     if (!u) return;
-    const { left, top, width, height } = u.bbox, { min: x0, max: x1 } = u.scales.x, { min: y0, max: y1 } = u.scales.y;
-    const pen = { ctx: u.ctx, left, top, width, height, x0, x1, ratio: devicePixelRatio || 1,
-      X: (v) => left + ((v - x0) / (x1 - x0)) * width, Y: (v) => top + ((y1 - v) / (y1 - y0)) * height };
+    const { left, top, width, height } = u.bbox;
+    const pen = this.pen(u.ctx, left, top);
     const ctx = u.ctx;
     ctx.save();
     ctx.beginPath();
     ctx.rect(left, top, width, height);
     ctx.clip();
     if (this.panel.ground) {
-      ctx.fillStyle = colour(this.panel.ground);
-      ctx.fillRect(left, top, width, height);
-    }
-    if (this.view.group) this.paintMarks(pen, this.view.group.marks);
-    for (const [from, to] of this.view.cells ?? []) {
-      ctx.fillStyle = style('--mark');
-      ctx.fillRect(pen.X(from), top, Math.max(pen.X(to) - pen.X(from), 1), height);
+      hatch(pen, colour(this.panel.ground));
     }
     if (this.panel.zero) {
       ctx.strokeStyle = style('--soft');
@@ -329,17 +396,12 @@ class Plot {
       ctx.stroke();
     }
     for (const s of [...this.series, ...(this.view.overlay ?? [])]) {
-      ctx.strokeStyle = ctx.fillStyle = colour(s.colour);
+      ctx.strokeStyle = ctx.fillStyle = colour(s.colour, s.style);
       ctx.lineWidth = Math.max(s.width * 0.8, 1) * pen.ratio;
       ctx.setLineDash(s.style === 'dashed' ? [7 * pen.ratio, 4 * pen.ratio] : s.style === 'dotted' ? [2 * pen.ratio, 3 * pen.ratio] : []);
       painters[s.style]?.(pen, s, this);
       ctx.setLineDash([]);
       ctx.globalAlpha = 1;
-    }
-    for (const rectangle of this.view.boxes ?? []) {
-      ctx.strokeStyle = style('--ink');
-      ctx.lineWidth = 2.5 * pen.ratio;
-      ctx.strokeRect(pen.X(rectangle[0]), pen.Y(rectangle[3]), pen.X(rectangle[1]) - pen.X(rectangle[0]), pen.Y(rectangle[2]) - pen.Y(rectangle[3]));
     }
     if (this.series.every((s) => s.x.length === 0)) {
       ctx.fillStyle = style('--soft');
@@ -348,22 +410,40 @@ class Plot {
       ctx.fillText('no data', left + width / 2, top + height / 2);
     }
     ctx.restore();
-  }
-  paintMarks(pen, marks) {
-    pen.ctx.fillStyle = style('--mark');
-    let last = -1;
-    for (const [from, to] of marks) {
-      if (to < pen.x0 || from > pen.x1) continue;
-      const a = Math.max(pen.X(from), last), b = Math.max(pen.X(to), pen.X(from) + 1.5 * pen.ratio);
-      if (b > a) pen.ctx.fillRect(a, pen.top, b - a, pen.height);
-      last = Math.max(last, b);
-    }
+    this.paintLayers();
   }
 }
 
+/** Of marked times and cells. */
+function paintIntervals(pen, intervals) {
+  pen.ctx.fillStyle = style('--mark');
+  let last = -1;
+  for (const [from, to] of intervals) {
+    if (to < pen.x0 || from > pen.x1) continue;
+    const a = Math.max(pen.X(from), last), b = Math.max(pen.X(to), pen.X(from) + 1.5 * pen.ratio);
+    if (b > a) pen.ctx.fillRect(a, pen.top, b - a, pen.height);
+    last = Math.max(last, b);
+  }
+}
+
+/** Where there is nothing: stripes, which no value has. */
+function hatch({ ctx, left, top, width, height, ratio }, ground) {
+  ctx.fillStyle = ground;
+  ctx.fillRect(left, top, width, height);
+  ctx.strokeStyle = stripes();
+  ctx.lineWidth = ratio;
+  ctx.beginPath();
+  for (let x = left - height; x < left + width; x += 7 * ratio) {
+    ctx.moveTo(x, top + height);
+    ctx.lineTo(x + height, top);
+  }
+  ctx.stroke();
+}
+const stripes = () => (darkScreen.matches ? '#4c555d' : '#b4babf');
+
 /** From blue through the paper's colour to orange, of −1…1. */
 function shade(v) {
-  const paper = darkScreen.matches ? [32, 38, 43] : [250, 250, 250];
+  const paper = darkScreen.matches ? [72, 79, 86] : [250, 250, 250];
   const end = v < 0 ? (darkScreen.matches ? [95, 180, 234] : [0, 114, 178]) : darkScreen.matches ? [255, 140, 66] : [213, 94, 0];
   const share = Math.min(Math.abs(v), 1);
   return `rgb(${paper.map((p, k) => Math.round(p + share * (end[k] - p))).join(', ')})`;
@@ -373,6 +453,13 @@ function shade(v) {
 function seen(pen, s) {
   if (!s.sorted) return [0, s.x.length];
   return [Math.max(lowerBound(s.x, pen.x0) - 1, 0), Math.min(lowerBound(s.x, pen.x1) + 1, s.x.length)];
+}
+
+/** A name in so many letters: its begin and its end. */
+function shortened(text, most) {
+  if (text.length <= most) return text;
+  const end = Math.floor(0.6 * (most - 1));
+  return `${text.slice(0, most - 1 - end)}…${text.slice(text.length - end)}`;
 }
 
 /** Calls `column(px, first, least, largest, last)` for each column of pixels; null for a gap. */
@@ -432,34 +519,40 @@ function line(pen, s) {
   ctx.stroke();
 }
 
+const manyDots = 12000;
+
+/** Small squares at the samples that are `wanted`; of very many those that would cover others are left out. */
+function dots(pen, s, [from, to], side, wanted) {
+  const taken = to - from > manyDots ? new Set() : null;
+  for (let i = from; i < to; ++i) {
+    if (!wanted(i) || s.y[i] === null || s.x[i] === null) continue;
+    const x = pen.X(s.x[i]), y = pen.Y(s.y[i]);
+    if (taken) {
+      const place = Math.round(x / 2) * 100000 + Math.round(y / 2);
+      if (taken.has(place)) continue;
+      taken.add(place);
+    }
+    pen.ctx.fillRect(x - side / 2, y - side / 2, side, side);
+  }
+}
+const sideOfDots = (pen, [from, to]) => (to - from > 3000 ? 1.8 : 2.6) * pen.ratio;
+
 function points(pen, s, plot) {
-  const { ctx } = pen, [from, to] = seen(pen, s), many = to - from > 12000;
-  const size = (to - from > 3000 ? 1.8 : 2.6) * pen.ratio;
-  const marked = plot.view.marked;
-  if (s.sorted && many) {
+  const { ctx } = pen, range = seen(pen, s), [from, to] = range;
+  if (s.sorted && to - from > manyDots) {
     byColumn(pen, s.x, s.y, s.y, from, to, (px, first, least, largest) => {
       if (px !== null) ctx.fillRect(px, pen.Y(largest) - 1, 1, pen.Y(least) - pen.Y(largest) + 2);
     });
     return;
   }
-  const taken = many ? new Set() : null;
-  const dot = (i, by) => {
-    if (s.y[i] === null || s.x[i] === null) return;
-    const x = pen.X(s.x[i]), y = pen.Y(s.y[i]);
-    if (taken) {
-      const place = Math.round(x / 2) * 100000 + Math.round(y / 2);
-      if (taken.has(place)) return;
-      taken.add(place);
-    }
-    ctx.fillRect(x - by / 2, y - by / 2, by, by);
-  };
-  if (marked) ctx.globalAlpha = 0.35;
-  for (let i = from; i < to; ++i) dot(i, size);
-  if (!marked) return;
-  ctx.globalAlpha = 1;
-  ctx.fillStyle = style('--marked');
-  taken?.clear();
-  for (let i = from; i < to; ++i) if (marked[i]) dot(i, 1.6 * size);
+  if (plot.view.marked) ctx.globalAlpha = 0.35;
+  dots(pen, s, range, sideOfDots(pen, range), () => true);
+}
+
+function markedPoints(pen, s, marked) {
+  const range = seen(pen, s);
+  pen.ctx.fillStyle = style('--marked');
+  dots(pen, s, range, 1.6 * sideOfDots(pen, range), (i) => marked[i]);
 }
 
 function band(pen, s, alpha) {
@@ -560,7 +653,8 @@ const painters = {
 };
 
 /** A figure in the document. options: group (TimeGroup), height (of panels, in those of the report), title and caption (false: none), onpoint,
-    onleave, onpick, onkeypoint, oncursor. `cells`, `boxes`, `marked`: what is emphasised; `overlay`: series that are drawn over the others; redraw() after a change. */
+    onleave, onpick, onkeypoint, oncursor. `cells`, `boxes`: what is emphasised, highlight() after a change; mark(): samples;
+    `overlay`: series that are drawn over the others, redraw() after a change. */
 export class Figure {
   constructor(parent, figure, options = {}) {
     this.figure = figure;
@@ -606,6 +700,17 @@ export class Figure {
   }
   redraw() {
     for (const plot of this.plots) plot.u.redraw(false);
+  }
+  /** After a change of `cells` or `boxes`: the series stay. */
+  highlight() {
+    for (const plot of this.plots) plot.paintLayers();
+  }
+  /** The samples with a 1 stand out; null: none. */
+  mark(samples) {
+    const others = Boolean(samples) !== Boolean(this.marked); // these fade
+    this.marked = samples;
+    if (others) this.redraw();
+    else this.highlight();
   }
   resize() {
     const width = this.node.clientWidth;

@@ -1,5 +1,5 @@
 // The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
-import { blocks, element, plain, shown, words } from '/dom.js';
+import { askingButton, blocks, breakable, element, fittedTable, plain, shown, words } from '/dom.js';
 import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
 import { get, live, post, Refused } from '/server.js';
 import { editor } from '/editor.js';
@@ -9,12 +9,12 @@ const time = new TimeGroup();
 const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves'], ['calibration', 'Calibration'],
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
-/** What is shown. The address keeps model and tab, so that a reload finds them again. */
-const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [] };
+/** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
+const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false };
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
-  here.model = Number(parts.get('model') ?? 0) || 0;
+  here.model = /^\d+$/.test(parts.get('model') ?? '') ? Number(parts.get('model')) : Infinity;
   here.tab = tabs.some(([name]) => name === parts.get('view')) ? parts.get('view') : 'where';
 }
 function writeAddress() {
@@ -81,25 +81,37 @@ function showHead() {
   const alerts = at('alerts');
   alerts.replaceChildren();
   if (study.fault) alerts.append(element('p', { class: 'warning', id: 'fault' }, `The study has an error: ${study.fault.message} `,
-    element('button', { onclick: () => showTab('study') }, 'Correct it')));
+    element('button', { onclick: () => correct() }, 'Correct it')));
   for (const sentence of outdated) alerts.append(element('p', { class: 'warning' }, sentence));
   if (!verdict) alerts.append(element('p', {}, 'There are no results yet: Run makes them.'));
   at('verdict').replaceChildren(blocks(verdict));
   at('model').replaceChildren(...models.map((m, k) => element('option', { value: k }, m.added === '' ? "0: the study's own" : `${m.id}: + ${m.added}`)));
   at('model').value = here.model;
   const chosen = at('effect').value;
-  at('effect').replaceChildren(element('option', { value: '' }, 'an effect…'), ...effects.map((key) => element('option', { value: key }, key)));
+  const refused = effects.filter((one) => one.refused !== '');
+  at('effect').replaceChildren(element('option', { value: '' }, 'an effect…'),
+    ...effects.filter((one) => one.refused === '').map(({ effect }) => element('option', { value: effect }, effect)),
+    refused.length === 0 ? '' : element('optgroup', { label: 'Not for this model, at their usual place' },
+      ...refused.map(({ effect, refused: why }) => element('option', { value: effect, disabled: true, title: why }, `${effect}: ${reason(why)}`))));
   if (chosen) at('effect').value = chosen;
 }
 
+/** What misfit says against an effect, without its name again; the whole sentence is the title. */
+function reason(why) {
+  const said = why.replace(/^effect '[^']*' (is )?/, '').replace(/^does not suit this model: (effect '[^']*': )?/, '').replace(/ \(.*\)$/, '');
+  return said.length > 70 ? `${said.slice(0, 68)}…` : said;
+}
+
 function showJob(job) {
-  const running = job.state === 'running', box = at('job');
+  const running = job.state === 'running', box = at('job'), focused = document.activeElement;
   const idle = (here.idle = !running && here.state.study.fault === null);
   for (const id of ['run', 'fit', 'discover']) at(id).disabled = !idle;
   at('add').disabled = !idle || at('effect').value === '';
   for (const button of document.querySelectorAll('button.adds, button.removes, button.sets')) button.disabled = !idle;
   at('stop').hidden = !running;
   at('stop').textContent = job.stopping ? 'Stop at once' : 'Stop';
+  began.follow(job);
+  if (focused !== document.body && (focused.disabled || focused.hidden)) began.takeFocus(running);
   at('command').hidden = box.hidden = job.state === 'none';
   if (job.state === 'none') return;
   at('command').textContent = job.command;
@@ -140,14 +152,82 @@ function sparkline(values) {
   return out;
 }
 
-// `more`: what the verb needs: { effect, at } to add, { rung } to remove.
-async function start(verb, more = {}) {
+/** The state of the last command, at the button that began it: buttons have a data-key, by which they are found when a view is drawn anew. */
+class Began {
+  key = null;
+  number = null;
+  constructor() {
+    this.words = element('span', { 'aria-live': 'polite' });
+    this.clock = element('span', { 'aria-hidden': true });
+    this.stop = element('button', { class: 'stops', hidden: true, onclick: () => stop() });
+    this.node = element('span', { class: 'began' }, this.words, this.clock, this.stop);
+  }
+  button() {
+    return this.key === null ? null : document.querySelector(`button[data-key="${CSS.escape(this.key)}"]`);
+  }
+  /** Behind its button; beside the buttons above behind all of them, so that none moves. */
+  place() {
+    const button = this.button(), bar = button?.closest('#work .buttons');
+    if (!button) return;
+    const hadFocus = this.node.contains(document.activeElement);
+    if (bar) {
+      if (this.node.parentNode !== bar) bar.append(this.node);
+    } else if (button.nextSibling !== this.node) button.after(this.node);
+    if (hadFocus && document.activeElement === document.body) this.stop.focus({ preventScroll: true });
+  }
+  say(words, { clock = '', bad = false, stop = '' } = {}) {
+    if (this.words.textContent !== words) this.words.textContent = words;
+    this.clock.textContent = clock;
+    this.node.classList.toggle('warning', bad);
+    this.stop.textContent = stop;
+    this.stop.hidden = stop === '' || this.node.closest('.buttons') !== null;
+    this.place();
+  }
+  asked(key) {
+    this.key = key;
+    this.number = null;
+    this.node.remove();
+    this.place();
+    this.say('asked for');
+  }
+  refused(error) {
+    this.say(error.message, { bad: true });
+    if (!this.button()) say(error);
+  }
+  follow(job) {
+    if (job.number !== this.number || job.state === 'none') return;
+    const clock = ` ${shown(job.seconds, 3)} s `;
+    if (job.state === 'running') this.say(job.stopping ? 'stopping' : 'at work', { clock, stop: job.stopping ? 'Stop at once' : 'Stop' });
+    else if (job.state === 'done') this.say('done', { clock });
+    else if (job.state === 'stopped') this.say('stopped', { clock });
+    else this.say(job.notes.at(-1) ?? `ended with status ${job.status}`, { bad: true });
+  }
+  /** Of a button that cannot be used any more: to what is next, the end of the command, or to what began it. */
+  takeFocus(running) {
+    const button = this.button();
+    const next = running ? [this.stop, at('stop')] : [button, at('job')];
+    next.find((one) => one?.isConnected && !one.disabled && !one.hidden)?.focus({ preventScroll: true });
+  }
+}
+const began = new Began();
+
+async function stop() {
   try {
-    if (verb === 'stop') await post('stop');
-    else await post('job', { verb, ...more });
+    await post('stop');
     await look();
   } catch (error) {
-    say(error);
+    began.refused(error);
+  }
+}
+
+// `key`: of the button; `more`: what the verb needs: { effect, at } to add, { rung } to remove.
+async function start(key, verb, more = {}) {
+  began.asked(key);
+  try {
+    began.number = (await post('job', { verb, ...more })).number;
+    await look();
+  } catch (error) {
+    began.refused(error);
   }
 }
 
@@ -289,7 +369,7 @@ function unmark() {
   for (const figure of here.figures) {
     if (!figure.fixedCells && !figure.fixedBoxes) continue;
     figure.cells = figure.boxes = figure.fixedCells = figure.fixedBoxes = undefined;
-    figure.redraw();
+    figure.highlight();
   }
   mark([], '', true);
 }
@@ -305,8 +385,7 @@ function markPoints() {
     mask = new Uint8Array(samples.t.length);
     for (const [from, to] of marks) for (let i = lowerBound(samples.t, from); i < samples.t.length && samples.t[i] <= to; ++i) mask[i] = 1;
   }
-  samples.figure.marked = mask;
-  samples.figure.redraw();
+  samples.figure.mark(mask);
 }
 
 // ---- views
@@ -346,10 +425,10 @@ async function showWhere(view) {
   if (!where) return nothing(view, 'This model is not diagnosed yet: Run (or misfit diagnose) does it, from the residuals of filter_error.');
   const conclusions = where.blocks.find((b) => b.kind === 'list');
   if (conclusions) view.append(blocks([conclusions]));
-  const all = [...where.maps, ...where.pairs];
+  const all = [...where.maps, ...where.pairs].sort((a, b) => (a.p ?? 2) - (b.p ?? 2)); // the most significant first; without a p last
   const list = element('div', { class: 'list', role: 'group', 'aria-label': 'Maps of the missing force' });
   const body = element('div');
-  const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', onclick: () => show(k) }, words(map.portLabel), ' against ',
+  const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', 'data-map': map.figure.name, onclick: () => show(k) }, words(map.portLabel), ' against ',
     words(map.label ?? map.xLabel), map.yLabel ? ' and ' : '', map.yLabel ? words(map.yLabel) : '', ' ', element('small', {}, `p = ${shown(map.p, 2)}`)));
   list.append(...buttons);
   view.append(element('h3', {}, 'Missing force against…'), list, body);
@@ -369,7 +448,7 @@ async function showWhere(view) {
     for (const figure of here.figures.splice(0)) if (body.contains(figure.node)) figure.destroy(); else here.figures.push(figure);
     here.samples = null;
     body.replaceChildren();
-    if (k < where.maps.length) await showMap(body, all[k], () => mine === turn);
+    if (where.maps.includes(all[k])) await showMap(body, all[k], () => mine === turn);
     else await showPair(body, all[k], () => mine === turn);
   }
   const before = all.findIndex((map) => map.figure.name === here.map);
@@ -391,13 +470,13 @@ async function showMap(body, map, current) {
     hot = k;
     figure.cells = [[from, to]];
     if (fixed) figure.fixedCells = figure.cells;
-    figure.redraw();
+    figure.highlight();
     const { out, count } = intervals(t, (i) => values[i] !== null && values[i] >= from && values[i] < to);
     mark(out, `Marked: ${count} samples with ${map.quantity} from ${shown(from, 4)} to ${shown(to, 4)} ${unit}`, fixed);
   };
   const figure = draw(body, map.change ?? map.figure, { height: 0.8,
     onpoint: (plot, x) => choose(plot.view, x, false), onpick: (plot, x) => choose(plot.view, x, true), onkeypoint: (plot, x) => choose(plot.view, x, true),
-    onleave: (plot) => { hot = null; plot.view.cells = plot.view.fixedCells ?? []; plot.view.redraw(); mark([], '', false); } });
+    onleave: (plot) => { hot = null; plot.view.cells = plot.view.fixedCells ?? []; plot.view.highlight(); mark([], '', false); } });
   figure.node.append(element('p', { class: 'soft' }, samples || map.quantity === 'time'
     ? 'Point at a place: its samples are marked in the motion. A click keeps them marked.' : 'Its samples are not at hand here; `misfit open` marks them in the motion.'));
   if (samples) {
@@ -407,8 +486,10 @@ async function showMap(body, map, current) {
 }
 
 async function showPair(body, map, current) {
-  const [x, y] = await Promise.all([samplesOf(map.x), samplesOf(map.y)].map((p) => p.catch(() => null)));
+  const [first, second] = await Promise.all([samplesOf(map.x), samplesOf(map.y)].map((p) => p.catch(() => null)));
   if (!current()) return;
+  const timeOf = (name, other) => (name === 'time' && other ? { t: other.t, values: other.t } : null); // a sample's own
+  const x = first ?? timeOf(map.x, second), y = second ?? timeOf(map.y, first);
   const cells = map.figure.panels[0].series[0], xs = map.figure.xs[cells.x];
   let hot = null;
   const choose = (figure, px, py, fixed) => {
@@ -418,7 +499,7 @@ async function showPair(body, map, current) {
     const box = [xs[k] - cells.lo[k], xs[k] + cells.lo[k], cells.y[k] - cells.hi[k], cells.y[k] + cells.hi[k]];
     figure.boxes = [box];
     if (fixed) figure.fixedBoxes = figure.boxes;
-    figure.redraw();
+    figure.highlight();
     if (!x || !y) return;
     const { out, count } = intervals(x.t, (i) => x.values[i] !== null && y.values[i] !== null && x.values[i] >= box[0] && x.values[i] < box[1] &&
       y.values[i] >= box[2] && y.values[i] < box[3]);
@@ -426,7 +507,7 @@ async function showPair(body, map, current) {
       `${shown(box[2], 4)} to ${shown(box[3], 4)} ${plain(map.figure.panels[0].unit)}; force ${shown(cells.z[k], 2)} sigma`, fixed);
   };
   draw(body, map.figure, { height: 0.9, onpoint: (plot, px, py) => choose(plot.view, px, py, false), onpick: (plot, px, py) => choose(plot.view, px, py, true),
-    onleave: (plot) => { hot = null; plot.view.boxes = plot.view.fixedBoxes ?? []; plot.view.redraw(); mark([], '', false); } });
+    onleave: (plot) => { hot = null; plot.view.boxes = plot.view.fixedBoxes ?? []; plot.view.highlight(); mark([], '', false); } });
 }
 
 async function showCandidates(view) {
@@ -447,10 +528,10 @@ async function showCandidates(view) {
 class AddedForces {
   kept = null;
   turn = 0;
-  offer(line, cell, row, candidate) {
+  offer(line, cell, row) {
     const button = element('button', { class: 'shows', 'aria-pressed': 'false', title: 'Show over time the force that it adds' }, ...cell.childNodes);
     cell.replaceChildren(button);
-    const own = { button, name: row.name, candidate };
+    const own = { button, name: row.name, candidate: row.candidate };
     line.addEventListener('mouseenter', () => this.show(own));
     line.addEventListener('mouseleave', () => this.show(this.kept));
     button.addEventListener('click', () => {
@@ -469,23 +550,25 @@ class AddedForces {
 
 function candidateTable(table, rows, last) {
   const most = 12; // rows to begin with
-  const columns = table.columns.map((_, n) => n).filter((n) => !['rank', 'accepted'].includes(plain(table.columns[n].heading)));
+  const heading = (n) => plain(table.columns[n].heading), empty = (n) => table.rows.every((row) => plain(row[n]) === '–');
+  const columns = table.columns.map((_, n) => n).filter((n) => !['rank', 'accepted'].includes(heading(n)) && !empty(n));
   const side = (n) => (table.columns[n].right ? 'number' : null);
   const head = element('tr', {}, element('td'), ...columns.map((n) => element('th', { scope: 'col', class: side(n) }, words(table.columns[n].heading))));
   const body = element('tbody'), pointing = new AddedForces();
   rows.forEach((row, k) => {
     const button = live && row.addable && last
-      ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, title: `misfit add … ${[row.effect, ...row.at].join(' --at=')}`, disabled: !here.idle,
-          onclick: () => start('add', { effect: row.effect, at: row.at }) }, 'Add') : '';
+      ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, 'data-key': `add ${row.name}`,
+          title: `misfit add … ${[row.effect, ...row.at].join(' --at=')}`, disabled: !here.idle,
+          onclick: () => start(`add ${row.name}`, 'add', { effect: row.effect, at: row.at }) }, 'Add') : '';
     const more = k >= most ? ' more' : '';
     const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
-      ...columns.map((n) => element('td', { class: side(n) }, words(table.rows[k][n]))));
-    if (row.force) pointing.offer(line, line.children[1], row, k);
+      ...columns.map((n) => element('td', { class: side(n), 'data-label': heading(n) === 'effect' ? null : heading(n) }, breakable(table.rows[k][n]))));
+    if (row.force) pointing.offer(line, line.children[1], row);
     body.append(line, element('tr', { class: 'why' + more }, element('td'), element('td', { colspan: columns.length }, words(row.why))));
   });
   const all = element('table', { id: 'candidates' }, element('thead', {}, head), body);
   const rest = rows.length > most ? element('button', { onclick: () => { all.classList.add('all'); rest.remove(); } }, `All ${rows.length}`) : null;
-  return element('div', { class: 'wide' }, all, rest);
+  return element('div', {}, fittedTable(all), rest);
 }
 
 async function showCurves(view) {
@@ -494,7 +577,9 @@ async function showCurves(view) {
   const figures = curves.figures.map((figure) => draw(view, figure, { height: 0.8 }));
   figures.forEach((figure, k) => roughnessOf(curves.roughness.filter((path) => path.curves[0].figure === k), figures, figure.node));
   view.append(blocks(curves.blocks));
-  if (live && here.model === 0 && here.state.study.fault === null) view.append(settings());
+  if (!live) return;
+  if (here.model !== 0) nothing(view, "Parameters are held and roughness is set with model 0, the study's own.");
+  else if (here.state.study.fault === null) view.append(settings());
 }
 
 /** A slider for the roughness of a curve, by each of the methods that have one: the curve, and those derived from it, follow at once, by the
@@ -502,11 +587,12 @@ async function showCurves(view) {
 function roughnessOf(paths, figures, parent) {
   if (paths.length === 0) return;
   let path = paths[paths.length - 1];
-  const slider = element('input', { type: 'range', min: 0, step: 'any', 'aria-label': `roughness of ${path.curve}`, 'data-curve': path.curve, oninput: () => move() });
+  const slider = element('input', { type: 'range', min: 0, step: 'any', 'aria-label': `smoothness of ${path.curve}`, 'data-curve': path.curve, oninput: () => move() });
   const said = element('output', {}), back = element('button', { onclick: () => begin() }, 'As fitted');
   const setting = live && here.model === 0 && here.state.study.fault === null && here.state.settable.curves.some((c) => c.name === path.curve);
-  const set = setting ? element('button', { class: 'sets', disabled: !here.idle, title: 'writes it into the study; Run refits',
-    onclick: () => start('set', { what: 'roughness', name: path.curve, value: value().toPrecision(3) }) }, 'Set') : null;
+  const key = `slider ${path.curve}`;
+  const set = setting ? element('button', { class: 'sets', 'data-key': key, disabled: !here.idle, title: 'writes it into the study; Run refits',
+    onclick: () => start(key, 'set', { what: 'roughness', name: path.curve, value: value().toPrecision(3) }) }, 'Set') : null;
   const methods = element('select', { 'aria-label': 'method', hidden: paths.length < 2, onchange: () => { path = paths[methods.value]; begin(); } },
     ...paths.map((p, k) => element('option', { value: k, selected: p === path }, p.method)));
   const used = () => nearest(path.roughness, path.used);
@@ -526,7 +612,7 @@ function roughnessOf(paths, figures, parent) {
     }
     for (const figure of figures) figure.redraw();
     const support = between(path.support, mixed);
-    said.replaceChildren(asFitted ? '' : 'Black: ', `${shown(value(), 3)} `, words(path.unit), asFitted
+    said.replaceChildren(asFitted ? '' : 'Black: ', `roughness = ${shown(value(), 3)} `, words(path.unit), asFitted
       ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}`
       : `, ${shown(value() / path.used, 2)} times as fitted, all other unknowns following (linearised); ${support < 0 ? 'less' : 'more'} likely by ${
         shown(Math.abs(support), 2)} (log marginal likelihood)`);
@@ -538,23 +624,23 @@ function roughnessOf(paths, figures, parent) {
     move();
   }
   begin();
-  parent.append(element('div', { class: 'slider' }, element('span', {}, 'roughness of ', words(path.label)), methods, element('span', { class: 'soft' }, 'rough'), slider,
+  parent.append(element('div', { class: 'slider' }, element('span', { title: 'the key roughness of the curve: the larger it is, the smoother is the curve' }, 'Smoothness of ', words(path.label)), methods, element('span', { class: 'soft' }, 'rough'), slider,
     element('span', { class: 'soft' }, 'smooth'), back, set, said));
 }
 
 /** What of the study's own model is estimated and how; each change is `misfit set`, the results are made anew by Run. */
 function settings() {
-  const set = (what, name, value) => start('set', { what, name, value });
+  const set = (what, name, value) => start(`${what} ${name}`, 'set', { what, name, value });
   const rows = here.state.settable.parameters.map(({ name, label, unit, free }) => element('tr', {}, element('td', {}, words(label), ' [', words(unit), ']'),
-    element('td', {}, free ? 'estimated' : 'held'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, disabled: !here.idle,
+    element('td', {}, free ? 'estimated' : 'held'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, 'data-key': `free ${name}`, disabled: !here.idle,
       onclick: () => set('free', name, `${!free}`) }, free ? 'Hold' : 'Estimate'))));
   for (const { name, label, unit, roughness } of here.state.settable.curves) {
     const box = element('input', { value: roughness, size: 12, 'aria-label': `roughness of ${name}` });
-    rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), ']'), element('td', {}, box), element('td', {},
-      element('button', { class: 'sets', 'data-roughness': name, title: 'auto, or a number of at least 0', disabled: !here.idle,
+    rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), '], larger: smoother'), element('td', {}, box), element('td', {},
+      element('button', { class: 'sets', 'data-roughness': name, 'data-key': `roughness ${name}`, title: 'auto, or a number of at least 0', disabled: !here.idle,
         onclick: () => set('roughness', name, box.value.trim()) }, 'Set'))));
   }
-  return element('details', { id: 'settings' }, element('summary', {}, 'Hold or estimate a parameter, change a roughness'), element('table', {}, element('tbody', {}, ...rows)),
+  return element('details', { id: 'settings', open: here.settingsOpen, ontoggle: (event) => (here.settingsOpen = event.target.open) }, element('summary', {}, 'Hold or estimate a parameter, change a roughness'), fittedTable(element('table', {}, element('tbody', {}, ...rows))),
     element('p', { class: 'soft' }, 'A change is written into the study; Run makes the results anew.'));
 }
 
@@ -569,15 +655,17 @@ async function showLadder(view) {
   if (!ladder) return nothing(view, 'The ladder begins when an effect is added: each added effect is a rung.');
   const choice = element('div', { class: 'rungs', role: 'group', 'aria-label': 'Rungs' }, ...ladder.rungs.map((rung) => {
     const k = here.state.models.findIndex((m) => m.id === rung.id);
-    return element('button', { 'aria-pressed': `${k === here.model}`, onclick: () => choose(k) }, `${rung.id}: ${rung.added === '' ? rung.system : `+ ${rung.added}`}`);
+    return element('button', { 'aria-pressed': `${k === here.model}`, 'data-rung': rung.id, onclick: () => choose(k) }, `${rung.id}: ${rung.added === '' ? rung.system : `+ ${rung.added}`}`);
   }));
   view.append(element('p', { class: 'soft' }, 'A click shows the results of that model everywhere on this page.'), choice);
   draw(view, ladder.figure, { height: 0.75 });
   const current = ladder.rungs.find((rung) => rung.id === here.state.models[here.model].id), last = ladder.rungs[ladder.rungs.length - 1];
   if (current) view.append(element('h3', {}, `Rung ${current.id}`), blocks(current.blocks));
   if (live && current && current.added !== '') {
-    view.append(element('button', { class: 'removes', title: `misfit remove … ${current.id}`, disabled: !here.idle,
-      onclick: () => start('remove', { rung: `${current.id}` }) }, last === current ? 'Remove this rung' : 'Remove this rung and those above it'));
+    const above = last === current ? 'this rung' : 'this rung and those above it', key = `remove ${current.id}`;
+    view.append(element('p', {}, askingButton({ class: 'removes', title: `misfit remove … ${current.id}`, 'data-key': key, disabled: !here.idle }, `Remove ${above}`,
+      { question: `Take ${above} off the ladder? What was computed stays in the run folder.`, yes: 'Remove', no: 'Keep' },
+      () => start(key, 'remove', { rung: `${current.id}` }))));
   }
   view.append(element('details', {}, element('summary', {}, 'All rungs in numbers'), blocks(ladder.blocks.filter((b) => b.kind !== 'figures'))));
 }
@@ -593,7 +681,7 @@ const study = editor({ get, post, look });
 const views = { where: showWhere, candidates: showCandidates, curves: showCurves, calibration: showCalibration, ladder: showLadder,
   study: (view) => study.show(view, here.model), commands: showCommands };
 
-let turn = 0;
+let turn = 0, focusedBefore = null;
 async function showView() {
   const mine = ++turn;
   writeAddress();
@@ -608,6 +696,7 @@ async function showView() {
   here.samples = null;
   if (here.added) drawForce(null);
   const scroll = scrollY;
+  if (at('view').contains(document.activeElement)) focusedBefore = document.activeElement;
   for (const figure of old) figure.destroy();
   at('view').replaceChildren(view);
   at('view').dataset.view = here.tab;
@@ -616,7 +705,18 @@ async function showView() {
   } catch (error) {
     if (mine === turn) view.append(element('p', { class: 'warning' }, error.message));
   }
-  if (mine === turn) scrollTo(0, scroll);
+  if (mine !== turn) return;
+  scrollTo(0, scroll);
+  began.place();
+  if (focusedBefore && document.activeElement === document.body) focusAgain(focusedBefore);
+  focusedBefore = null;
+}
+
+/** On what has the same place in a view that is drawn anew; else on the view. */
+function focusAgain(old) {
+  const key = ['data-key', 'data-curve', 'data-map', 'data-rung', 'id'].find((name) => old.hasAttribute(name));
+  const same = key && at('view').querySelector(`[${key}="${CSS.escape(old.getAttribute(key))}"]`);
+  (same && !same.disabled ? same : at('view')).focus({ preventScroll: true });
 }
 
 async function showAll() {
@@ -643,6 +743,12 @@ function choose(model) {
   showAll().catch(say);
 }
 
+/** The study's own text is that of model 0. */
+function correct() {
+  here.tab = 'study';
+  choose(0);
+}
+
 function showTab(name, focus = false) {
   here.tab = name;
   showView().catch(say);
@@ -660,15 +766,16 @@ function begin() {
     showTab(tabs[(k + step + tabs.length) % tabs.length][0], true);
     event.preventDefault();
   });
-  for (const verb of ['run', 'fit', 'discover', 'stop']) at(verb).addEventListener('click', () => start(verb));
-  at('add').addEventListener('click', () => start('add', { effect: at('effect').value }));
+  for (const verb of ['run', 'fit', 'discover']) at(verb).addEventListener('click', () => start(verb, verb));
+  at('stop').addEventListener('click', stop);
+  at('add').addEventListener('click', () => start('add', 'add', { effect: at('effect').value }));
   at('effect').addEventListener('change', () => { at('add').disabled = !here.idle || at('effect').value === ''; });
   at('model').addEventListener('change', (event) => choose(Number(event.target.value)));
   at('method').addEventListener('change', (event) => { here.method = Number(event.target.value); showMotion().catch(say); });
   at('experiment').addEventListener('change', (event) => { here.experiment = Number(event.target.value); showMotion().then(showView).catch(say); });
   at('whole').addEventListener('click', () => time.zoom(null));
   at('unmark').addEventListener('click', unmark);
-  at('holdout').addEventListener('click', () => start('set', { what: 'validation', name: here.name, value: here.fixed[0].join(' ') }));
+  at('holdout').addEventListener('click', () => start('holdout', 'set', { what: 'validation', name: here.name, value: here.fixed[0].join(' ') }));
   addEventListener('keydown', (event) => { if (event.key === 'Escape') unmark(); });
   addEventListener('beforeunload', (event) => { if (study.changed()) event.preventDefault(); });
   onScreenChange(() => { drawTime(); showView().catch(say); });

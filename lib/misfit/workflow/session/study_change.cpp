@@ -1,6 +1,7 @@
 #include "misfit/workflow/session/study_change.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 
 #include "misfit/core/error.h"
@@ -58,6 +59,53 @@ TomlPath with_number_of_experiment(const Study& study, TomlPath path) {
   throw InputError("no experiment is called '" + shown(path[1]) + "'" + suggest(path[1], names));
 }
 
+/// Of the line, counted from 1: its first byte and the one behind its last.
+std::pair<std::size_t, std::size_t> bytes_of_line(const std::string& text, int line) {
+  std::size_t begin = 0;
+  for (int k = 1; k < line && begin < text.size(); ++k) begin = std::min(text.find('\n', begin), text.size() - 1) + 1;
+  return {begin, std::min(text.find('\n', begin), text.size())};
+}
+
+/// A text without a value whose absence may be an error itself.
+struct Shortened {
+  std::string text, key;
+};
+
+/// Does the message name the key, as a word, before its suggestions? Not in the place with which it begins.
+bool names(const TextFault& fault, const fs::path& file, const std::string& key) {
+  std::string said = fault.message.substr(0, fault.message.find(" — "));
+  if (said.starts_with(file.string())) said.erase(0, file.string().size());
+  const auto in_word = [&](std::size_t at) {
+    return at < said.size() && (std::isalnum(static_cast<unsigned char>(said[at])) != 0 || said[at] == '_');
+  };
+  for (std::size_t at = said.find(key); at != std::string::npos; at = said.find(key, at + 1)) {
+    if ((at == 0 || !in_word(at - 1)) && !in_word(at + key.size())) return true;
+  }
+  return false;
+}
+
+/// Blanks the value that begins in the line; of what is no TOML, the line. nullopt: there is none.
+std::optional<Shortened> without_value_in(const std::string& text, int line) {
+  auto [begin, end] = bytes_of_line(text, line);
+  std::string key;
+  try {
+    const std::vector<TomlNode> nodes = toml_outline(text);
+    const auto found = std::find_if(nodes.begin(), nodes.end(), [&, from = begin, to = end](const TomlNode& node) {
+      return node.key_end > node.key_begin && node.key_begin >= from && node.key_begin < to && node.end > node.key_end;
+    });
+    if (found == nodes.end()) return std::nullopt;
+    key = found->path.back();
+    end = std::max(end, found->end);
+  } catch (const InputError&) {
+    // no TOML: the whole line goes
+  }
+  Shortened out{text, key};
+  for (std::size_t at = begin; at < end; ++at) {
+    if (out.text[at] != '\n') out.text[at] = ' ';
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<TextFault> fault_of(const fs::path& file, const std::string& text, const Registry& registry) {
@@ -72,6 +120,25 @@ std::optional<TextFault> fault_of(const fs::path& file, const std::string& text,
     return TextFault{error.what(), 0};
   }
   return std::nullopt;
+}
+
+std::vector<TextFault> faults_of(const fs::path& file, const std::string& text, const Registry& registry) {
+  constexpr std::size_t most = 10;
+  std::vector<TextFault> out;
+  std::string rest = text;
+  std::vector<std::string> left_out;
+  while (out.size() < most) {
+    const std::optional<TextFault> fault = fault_of(file, rest, registry);
+    const auto follows = [&](const std::string& key) { return !key.empty() && names(*fault, file, key); };
+    const auto known = [&](const TextFault& other) { return other.line == fault->line; };
+    if (!fault || std::any_of(left_out.begin(), left_out.end(), follows) || std::any_of(out.begin(), out.end(), known)) break;
+    out.push_back(*fault);
+    const std::optional<Shortened> shorter = fault->line > 0 ? without_value_in(rest, fault->line) : std::nullopt;
+    if (!shorter) break;
+    rest = shorter->text;
+    left_out.push_back(shorter->key);
+  }
+  return out;
 }
 
 std::optional<TextFault> save_text(const fs::path& file, const std::string& text, const std::string& hash_before,

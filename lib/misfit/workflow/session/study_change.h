@@ -19,6 +19,10 @@ struct TextFault {
 /// What misfit says of the text as the content of `file`: keys, values, names and files, as before a run. nullopt: nothing.
 [[nodiscard]] std::optional<TextFault> fault_of(const std::filesystem::path& file, const std::string& text, const Registry& registry);
 
+/// The same, and what it says further once the values in the faulty lines are left out: not what only follows from their absence, as far as
+/// that can be told. At most ten; it ends at one whose line is not known or holds no value.
+[[nodiscard]] std::vector<TextFault> faults_of(const std::filesystem::path& file, const std::string& text, const Registry& registry);
+
 /// Writes it whole or not at all, if nothing is wrong with it (else that is returned), `file` still has the text of this hash
 /// (hash_text), and is no link. InputError: it is not written for one of the latter.
 [[nodiscard]] std::optional<TextFault> save_text(const std::filesystem::path& file, const std::string& text, const std::string& hash_before,
