@@ -150,5 +150,24 @@ TEST(UnitText, WritesFactorsAsTheyAreRead) {
   EXPECT_EQ(unit_text({{"m", 1.0 / 3.0 + 1.0 / 3.0 + 1.0 / 3.0}, {"kg", 1e-9}}), "m") << "powers gather rounding";
 }
 
+TEST(InRadians, IsTheUnitOfAnAngleThatIsShownInRadians) {
+  for (const auto& [si, own] : std::vector<std::pair<std::string, std::string>>{
+           {"rad", "radian"}, {"rad/s", "radian/s"}, {"rad/s^2", "radian/s^2"}, {"radian/s", "radian/s"}, {"rad/s^3", "rad/s^3"}, {"V", "V"}, {"V/rad", "V/rad"}}) {
+    EXPECT_EQ(in_radians(si), own);
+    EXPECT_DOUBLE_EQ(parse_unit(own).to_si, 1.0) << own;
+  }
+  for (const std::string own : {"radian", "radian/s", "radian/s^2"}) {
+    EXPECT_EQ(display_unit(own), "rad" + own.substr(6));
+    EXPECT_EQ(si_unit(display_unit(own)), own) << "a file that was written is read back";
+    EXPECT_EQ(si_unit(display_unit("rad" + own.substr(6))), "rad" + own.substr(6));
+  }
+  EXPECT_EQ(rate_unit("radian"), "radian/s");
+  EXPECT_EQ(rate_unit("radian/s"), "radian/s^2");
+  EXPECT_EQ(unit_text({{"V", 1.0}, {"radian", -1.0}}), "V/rad");
+  EXPECT_TRUE(shown_in_degrees("rad"));
+  EXPECT_FALSE(shown_in_degrees("radian"));
+  EXPECT_FALSE(shown_in_degrees("m"));
+}
+
 }  // namespace
 }  // namespace misfit

@@ -61,6 +61,33 @@ TEST(DiscoverGeneric, FindsTheWholeLagOfAnActuator) {
   EXPECT_THAT(first.fixed, testing::ElementsAre("lagged_gain"));
 }
 
+/// The record of the cart whose position is stamped `shift` samples early (what it was later) or late.
+Signals with_shifted_position(int shift) {
+  Signals s = record_of_cart({}, {});
+  std::vector<double>& position = s.measured[0].values;
+  if (shift > 0) {
+    position.erase(position.begin(), position.begin() + shift);
+    position.insert(position.end(), shift, std::nan(""));
+  } else {
+    position.erase(position.end() + shift, position.end());
+    position.insert(position.begin(), -shift, std::nan(""));
+  }
+  return s;
+}
+
+TEST(DiscoverGeneric, NamesTheClockOfASensorThatIsEarly) {
+  const Discovery found = discovered(cart({effect("viscous_friction")}), {"stiffness"}, with_shifted_position(1));
+  expect_first(found, "sensor_clock", "sensor_offset", 0.05, 0.02);
+  EXPECT_EQ(found.candidates.front().roles.at("time_of_output"), "sample_time_position_reading");
+  EXPECT_NEAR(found.candidates.front().parameters.at("sensor_offset").value, 0.05,
+              3.0 * found.candidates.front().parameters.at("sensor_offset").sigma);
+}
+
+TEST(DiscoverGeneric, CallsASensorThatIsLateLate) {
+  expect_first(discovered(cart({effect("viscous_friction")}), {"stiffness"}, with_shifted_position(-1)), "sensor_delay", "sensor_delay", 0.05,
+               0.05);
+}
+
 TEST(DiscoverGeneric, NamesNothingWhereNothingIsHidden) {
   for (const auto& c : in_cart("", {}).candidates) EXPECT_FALSE(c.accepted) << c.effect << ": " << c.why;
 }

@@ -24,7 +24,7 @@ using Row = std::vector<double>;
 /// What is asked of the generated code: rates, outputs and curves at each of the points (states, inputs, time).
 struct Questions {
   int states = 0, inputs = 0, outputs = 0;
-  bool sample_time = false;
+  std::vector<std::string> sample_times;  ///< functions of x, u, t
   std::vector<std::string> curves;  ///< functions of the first state
   std::vector<Row> points;
 };
@@ -74,7 +74,7 @@ inline std::vector<Row> run_c(const std::string& source, const Questions& ask) {
        << "    int n = 0;\n";
   if (ask.states > 0)
     main << "    rates(x, u, t, r);\n    n = " << ask.states << ";\n    outputs(x, u, t, r + n);\n    n += " << ask.outputs << ";\n";
-  if (ask.sample_time) main << "    r[n++] = sample_time(x, u, t);\n";
+  for (const std::string& name : ask.sample_times) main << "    r[n++] = " << name << "(x, u, t);\n";
   for (const std::string& curve : ask.curves) main << "    r[n++] = " << curve << "(p[0]);\n";
   main << "    for (int i = 0; i < n; ++i) printf(\"%.17g \", r[i]);\n    printf(\"\\n\");\n  }\n}\n";
   write_file(folder.path() / "main.c", main.str());
@@ -90,7 +90,7 @@ inline std::vector<Row> run_python(const std::string& source, const Questions& a
           "line.split()]\n"
        << "  x, u, t = p[:" << ask.states << "], p[" << ask.states << ":" << ask.states + ask.inputs << "], p[-1]\n  r = []\n";
   if (ask.states > 0) main << "  r += model.rates(x, u, t) + model.outputs(x, u, t)\n";
-  if (ask.sample_time) main << "  r += [model.sample_time(x, u, t)]\n";
+  for (const std::string& name : ask.sample_times) main << "  r += [model." << name << "(x, u, t)]\n";
   for (const std::string& curve : ask.curves) main << "  r += [model." << curve << "(p[0])]\n";
   main << "  print(*map(repr, r))\n";
   write_file(folder.path() / "main.py", main.str());

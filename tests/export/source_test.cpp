@@ -56,12 +56,26 @@ void scatter(Model& model, std::mt19937_64& random) {
   }
 }
 
+/// Sensor ports behind the outputs to which an effect adds: name, and place in what the evaluator predicts.
+std::vector<std::pair<std::string, int>> shifts_of(const Model& model) {
+  std::vector<std::pair<std::string, int>> out;
+  const int outputs = model.outputs();
+  for (int port = outputs; port <= 2 * outputs; ++port) {
+    const bool used = std::any_of(model.effects.begin(), model.effects.end(), [&](const BoundEffect& e) {
+      return e.kind == PortKind::sensor && std::find(e.ports.begin(), e.ports.end(), port) != e.ports.end();
+    });
+    if (used)
+      out.emplace_back(port == outputs ? all_sample_times : sample_time_of(model.system->spec().outputs[port - outputs - 1].name), port);
+  }
+  return out;
+}
+
 Questions questions_of(const Model& model, std::mt19937_64& random, int count = 200) {
   Questions ask;
   ask.states = model.states();
   ask.inputs = model.inputs() + int_size(model.late_inputs());
   ask.outputs = model.outputs();
-  ask.sample_time = Evaluator(model).shifts_time();
+  for (const auto& [name, port] : shifts_of(model)) ask.sample_times.push_back(name);
   for (int i = 0; i < count; ++i) {
     Row point;
     for (int k = 0; k < ask.states + ask.inputs; ++k) point.push_back(uniform(random, -1.0, 1.0) * (i % 3 == 0 ? 4.0 : 0.5));
@@ -86,11 +100,12 @@ std::vector<Row> evaluated(const Model& model, const Questions& ask) {
   std::vector<Row> rows;
   for (const Row& point : ask.points) {
     const double *x = point.data(), *u = x + ask.states, t = point.back();
-    Row row(ask.states + ask.outputs + 1);
+    Row row(ask.states), y(evaluator.sensor_ports());
     const RecordedInputs recorded = always_late(model, u);
     evaluator.rates(x, {u, &recorded}, t, row.data());
-    evaluator.predict(x, {u, &recorded}, t, row.data() + ask.states);
-    if (!ask.sample_time) row.pop_back();
+    evaluator.predict(x, {u, &recorded}, t, y.data());
+    row.insert(row.end(), y.begin(), y.begin() + ask.outputs);
+    for (const auto& [name, port] : shifts_of(model)) row.push_back(y[static_cast<std::size_t>(port)]);
     for (const Curve& curve : model.curves) {
       const CurvePoint at = curve.spline.at(point[0]);
       double value = 0.0;
@@ -125,7 +140,7 @@ TEST(GeneratedCode, AgreesWithEffectsOnEveryKindOfPort) {
                                        effect("bias", {{"output", "y"}}), effect("delay", {{"input", "u"}}), effect("hysteresis"),
                                        effect("backlash", {{"displacement", "y"}}), effect("drift"), effect("periodic_forcing"),
                                        effect("dead_zone", {{"displacement", "y"}}), effect("sensor_delay"), effect("sensor_saturation"),
-                                       effect("time_offset")}),
+                                       effect("time_offset"), effect("sensor_clock", {{"time_of_output", "sample_time_y"}})}),
                    *known, 3);
 }
 

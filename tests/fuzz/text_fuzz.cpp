@@ -57,8 +57,8 @@ void try_formula(const std::string& text) {
 void run_once(const Model& model) {
   Evaluator evaluator(model);
   std::vector<double> x(static_cast<std::size_t>(model.states()), 0.3), u(static_cast<std::size_t>(model.inputs()) + 1, 0.2);
-  std::vector<double> dx(x.size()), D(static_cast<std::size_t>(std::max(model.states(), model.outputs() + 1)) * kRowStride),
-      y(static_cast<std::size_t>(model.outputs()) + 1);
+  std::vector<double> dx(x.size()), D(static_cast<std::size_t>(std::max(model.states(), evaluator.sensor_ports())) * kRowStride),
+      y(static_cast<std::size_t>(evaluator.sensor_ports()));
   Slots slots;
   evaluator.linearise_rates({x.data(), u.data(), 0.0}, slots, dx.data(), D.data());
   slots.clear();

@@ -96,6 +96,9 @@ inline std::vector<Case> cases_of_other_systems() {
                     {"drag", 0.7}})},
       {"cart_late_sensor_and_input", with_values(cart({effect("sensor_delay"), effect("delay"), effect("cubic_stiffness")}),
                                                  {{"late_share", 0.8}, {"sensor_delay", 0.2}, {"delayed_gain", 1.5}, {"delay", 0.3}})},
+      {"cart_sensors_with_clocks", with_values(cart({effect("sensor_clock", {{"time_of_output", "sample_time_speed_reading"}}),
+                                                     effect("viscous_friction"), effect("sensor_lag")}),
+                                               {{"sensor_offset", -0.07}, {"clock_rate", 0.02}, {"share", 0.7}})},
       {"tanks_that_spill",
        with_values(
            tanks({effect("overflow", {{"level", "x1"}, {"port", "dx1/dt"}}),

@@ -97,6 +97,49 @@ TEST(DeclaredDuffing, SaysWhatMisfitWantsToKnow) {
   EXPECT_NEAR(spec.fastest_rate, std::sqrt(30.0 + 150.0 * 0.01), 1e-12);
 }
 
+const std::string turntable_text = R"toml(
+[display]
+angle = "rad"
+[states]
+angle = { unit = "rad" }
+w = { unit = "rad/s", rate_of = "angle" }
+[inputs]
+u = { unit = "V" }
+[parameters]
+gain = { unit = "rad/s^2/V", value = 10.0 }
+[equations]
+w = "gain*u"
+[outputs]
+angle = { unit = "rad", noise = 1e-3 }
+w = { unit = "rad/s", noise = 1e-2 }
+)toml";
+
+/// Units of what effects add follow those of the system.
+TEST(DeclaredDisplay, InRadiansShowsAnglesTheirRatesAndWhatEffectsAddInRadians) {
+  const auto known = registry_with(turntable_text);
+  const Model model = assemble(request_of("text", {effect("coulomb_friction"), effect("viscous_friction")}), *known);
+  const SystemSpec& spec = model.system->spec();
+  EXPECT_EQ(display_unit(spec.states[0].unit), "rad");
+  EXPECT_EQ(display_unit(spec.outputs[1].unit), "rad/s");
+  std::map<std::string, std::string> shown_units;
+  for (const Parameter& p : model.parameters) shown_units[p.name] = display_unit(p.unit);
+  EXPECT_EQ(shown_units.at("gain"), "rad/s^2/V");
+  EXPECT_EQ(shown_units.at("friction"), "rad/s^2");
+  EXPECT_EQ(shown_units.at("width"), "rad/s");
+  EXPECT_EQ(shown_units.at("viscosity"), "1/s");
+}
+
+TEST(DeclaredDisplay, TakesDegreesOrRadiansAlone) {
+  std::string text = turntable_text;
+  text.replace(text.find("\"rad\""), 5, "\"radians\"");
+  try {
+    static_cast<void>(registry_with(text));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("text.toml:3"), HasSubstr("radians"), HasSubstr("rad")));
+  }
+}
+
 TEST(DeclaredDuffing, TakesEffectsOnItsPortsQuantitiesAndInputs) {
   const auto known = registry_with(duffing_text);
   for (const std::string port : {"push", "dv/dt", "dy/dt", "u", "spring", "y"}) {

@@ -16,7 +16,7 @@ class AssembledModel : public testing::TestWithParam<Case> {
   const Model model_ = GetParam().model();
   Evaluator evaluator_{model_};
   const std::vector<int> free_ = model_.free_parameters();
-  const int n_ = model_.states(), columns_ = static_cast<int>(free_.size()), outputs_ = model_.outputs() + 1;
+  const int n_ = model_.states(), columns_ = static_cast<int>(free_.size()), outputs_ = evaluator_.sensor_ports();
 
   Eigen::VectorXd rates(const Sample& at) {
     Eigen::VectorXd dx(n_);
@@ -42,7 +42,7 @@ class AssembledModel : public testing::TestWithParam<Case> {
     return l;
   }
   static Linear linear_outputs(Evaluator& evaluator, const Sample& at, Slots& slots) {
-    const int outputs = evaluator.outputs() + 1;
+    const int outputs = evaluator.sensor_ports();
     std::vector<double> rows(static_cast<std::size_t>(outputs) * kRowStride, std::nan(""));
     Linear l{Eigen::VectorXd(outputs), {}};
     evaluator.linearise_outputs({at.x.data(), at.inputs(), at.t}, slots, l.value.data(), rows.data());

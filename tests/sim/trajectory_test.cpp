@@ -57,7 +57,7 @@ class SegmentOf : public testing::TestWithParam<Case> {
   static void expect_column(const Eigen::VectorXd& linear, const Eigen::VectorXd& difference, const std::string& name) {
     // How outputs move with the clock is taken from the rate of the motion, not from the step map: equal to the accuracy of a step
     // (sim/trajectory.cpp).
-    const double relative = name == "clock_offset" ? 1e-4 : 1e-5;
+    const double relative = (name == "clock_offset" || name == "sensor_offset" || name == "clock_rate") ? 1e-4 : 1e-5;
     for (Eigen::Index i = 0; i < linear.size(); ++i)
       EXPECT_NEAR(linear[i], difference[i], relative * std::abs(difference[i]) + 1e-8 * (1.0 + difference.lpNorm<Eigen::Infinity>()))
           << name << ", row " << i;

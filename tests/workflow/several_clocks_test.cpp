@@ -131,7 +131,7 @@ x = { unit = "m", formula = "L*sin(theta)", noise = 0.01 }
 y = { unit = "m", formula = "-L*cos(theta)", noise = 0.01 }
 )toml";
 
-Fit fitted(const std::string& system, const Topics& topics, const std::string& method) {
+Fit fitted(const std::string& system, const Topics& topics, const std::string& method, const std::string& effects = "") {
   const TemporaryFolder folder;
   Registry registry;
   misfit_models_register(registry);
@@ -142,7 +142,7 @@ Fit fitted(const std::string& system, const Topics& topics, const std::string& m
   folder.write("study.toml",
                "[study]\nname = \"log\"\nquestion = \"What is missing?\"\nmethods = [\"" + method +
                    "\"]\nseed = 1\n[system]\nfile = \"m.toml\"\n[[experiment]]\nname = \"one\"\ndata = \"log.ulg\"\ncolumns = { " +
-                   columns + " }\n");
+                   columns + " }\n" + effects);
   const std::string study = (folder.path() / "study.toml").string(), out = (folder.path() / "out").string();
   return Identification({.study = study, .out = out, .methods = {method}}, registry).fit(method);
 }
@@ -168,6 +168,21 @@ TEST(ALogOfSeveralClocks, IsFittedWithMeasurementsAtTheirOwnTimes) {
   expect(log, "equation_error", 2.0);
   expect(log, "output_error", 0.04);
   expect(recording(6, 1.2), "filter_error", 0.2);
+}
+
+/// The second position is stamped 30 ms before it was measured, and its clock runs 0.4 % slow: by the truth's other three parameters nothing
+/// moves.
+TEST(ALogOfSeveralClocks, WithAnEarlyClockGivesItsOffsetAndRate) {
+  Topics log = recording(7, 4.0);
+  constexpr double offset = 0.03, rate = 0.004;
+  for (Sample& s : log.at("x2")) s.t = (s.t - offset) / (1.0 + rate);
+  const Fit fit = fitted(two_masses, log, "output_error",
+                         "[effects]\nsensor_clock = { time_of_output = \"sample_time_x2\" }\n[parameters]\nclock_rate = { free = true }\n");
+  expect_right(fit, {{"k1", k1}, {"k2", k2}, {"c1", c1}, {"c2", c2}, {"sensor_offset", offset}, {"clock_rate", rate}}, "output_error");
+  EXPECT_LT(fit.parameters.at("sensor_offset").sigma, 1e-3);
+  EXPECT_LT(fit.parameters.at("clock_rate").sigma, 1e-3);
+  const Fit blind = fitted(two_masses, log, "output_error");
+  EXPECT_GT(std::abs(blind.parameters.at("k2").value - k2), 5.0 * fit.parameters.at("k2").sigma) << "without it the springs pay for it";
 }
 
 constexpr double stiffness = 19.6, damping = 0.15;

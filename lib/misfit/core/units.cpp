@@ -79,6 +79,7 @@ constexpr Known known_units[] = {
     {"mph", 1609.344 / 3600.0, speed, false, "m/s"},
     {"knot", 1852.0 / 3600.0, speed, false, "m/s"},
     {"rad", 1.0, none, true},
+    {"radian", 1.0, none, true},
     {"deg", std::numbers::pi / 180.0, none, true, "rad"},
     {"mrad", 1e-3, none, true, "rad"},
     {"rev", turn, none, true, "rad"},
@@ -358,10 +359,25 @@ double convert_difference(double value, std::string_view from, std::string_view 
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> displayed = {
-    {{"rad", "deg"}, {"rad/s", "deg/s"}, {"rad/s^2", "deg/s^2"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> displayed = {
+    {{"rad", "deg"}, {"rad/s", "deg/s"}, {"rad/s^2", "deg/s^2"}, {"radian", "rad"}, {"radian/s", "rad/s"}, {"radian/s^2", "rad/s^2"}}};
+
+/// A unit made of others, where only an angle and its rates are shown in one of two ways: "V/radian" is "V/rad".
+std::string with_one_radian(std::string unit) {
+  if (std::any_of(displayed.begin(), displayed.end(), [&](const auto& d) { return unit == d.first; })) return unit;
+  constexpr std::string_view word = "radian";
+  for (std::size_t at = unit.find(word); at != std::string::npos; at = unit.find(word, at)) unit.replace(at, word.size(), "rad");
+  return unit;
+}
 
 }  // namespace
+
+std::string in_radians(std::string_view si) {
+  if (!si.starts_with("rad") || si.starts_with("radian")) return std::string(si);
+  return with_one_radian("radian" + std::string(si.substr(3)));
+}
+
+bool shown_in_degrees(std::string_view si) { return si != "radian" && parse_unit(si).angle; }
 
 std::string display_unit(std::string_view si) {
   for (const auto& [own, shown] : displayed) {
@@ -381,7 +397,7 @@ std::string rate_unit(std::string_view unit) {
   if (unit.empty() || unit == "-") return "1/s";
   std::string out(unit);
   out += unit.ends_with("/s") ? "^2" : "/s";
-  return out;
+  return with_one_radian(std::move(out));
 }
 
 std::string unit_text(const std::vector<std::pair<std::string, double>>& factors) {
@@ -396,7 +412,7 @@ std::string unit_text(const std::vector<std::pair<std::string, double>>& factors
     if (size != 1.0) side += fmt::format("^{}", size);
   }
   if (above.empty() && below.empty()) return "-";
-  return (above.empty() ? "1" : above) + below;
+  return with_one_radian((above.empty() ? "1" : above) + below);
 }
 
 }  // namespace misfit

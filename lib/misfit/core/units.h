@@ -26,10 +26,9 @@ struct Unit {
 
 /// Parses "kg m^2", "px/m", "N m", "deg/s", "1/s", "m/s^2", "in", "Pa", "V". Factors are separated by blank, '*' or '·', a '/'
 /// divides by the ONE factor that follows it; powers stand after '^' (also negative or broken: "V^0.5", "V^(1/2)") or are a digit ("m2").
-/// Known: m mm cm um km in ft; l ml; kg g mg lb; s ms us ns min h d; Hz kHz MHz; mph knot; rad deg mrad rev rpm; N kN mN lbf; Pa kPa hPa
-/// MPa bar mbar psf psi; J kJ Wh kWh; W mW kW MW; A mA uA; V mV uV kV; Ohm; T mT uT; K degC degF; px pix pixel; - % 1; with the signs of
-/// plain_unit().
-/// Throws InputError naming the unknown part and the nearest known unit.
+/// Known: m mm cm um km in ft; l ml; kg g mg lb; s ms us ns min h d; Hz kHz MHz; mph knot; rad (or radian) deg mrad rev rpm; N kN mN lbf;
+/// Pa kPa hPa MPa bar mbar psf psi; J kJ Wh kWh; W mW kW MW; A mA uA; V mV uV kV; Ohm; T mT uT; K degC degF; px pix pixel; - % 1; with the
+/// signs of plain_unit(). Throws InputError naming the unknown part and the nearest known unit.
 [[nodiscard]] Unit parse_unit(std::string_view text);
 
 /// Signs as letters: "°" → "deg", "°C" → "degC", "µs" → "us", "Ω" → "Ohm", "²" → "^2", in UTF-8 or Latin-1.
@@ -61,9 +60,15 @@ void convert(std::span<double> values, std::string_view from, std::string_view t
 /// The unit of a time derivative: "rad/s" → "rad/s^2", "V" → "V/s", "-" → "1/s".
 [[nodiscard]] std::string rate_unit(std::string_view unit);
 
-/// The unit people like to read for a quantity whose inside unit is `si`: rad → deg, rad/s → deg/s, rad/s^2 → deg/s^2; else itself.
+/// The unit people like to read for a quantity whose inside unit is `si`: rad → deg, rad/s → deg/s, rad/s^2 → deg/s^2, and of what is
+/// shown in radians radian → rad, radian/s → rad/s, radian/s^2 → rad/s^2; else itself.
 [[nodiscard]] std::string display_unit(std::string_view si);
-/// The other way: deg → rad, deg/s → rad/s, deg/s^2 → rad/s^2; else itself.
+/// The other way: deg → rad, rad → radian, and their rates; else itself.
 [[nodiscard]] std::string si_unit(std::string_view display);
+/// rad → radian, rad/s → radian/s, rad/s^2 → radian/s^2: the inside unit of an angle, or of its rate, that is shown in radians; else
+/// itself.
+[[nodiscard]] std::string in_radians(std::string_view si);
+/// Of the inside unit of an angle: are bare numbers of it, such as knots, in degrees, as they are shown?
+[[nodiscard]] bool shown_in_degrees(std::string_view si);
 
 }  // namespace misfit

@@ -152,6 +152,14 @@ std::vector<Roles> times_other_outputs(const std::vector<Roles>& places, const S
   return out;
 }
 
+/// Of a single output that time is the time of all.
+std::vector<Roles> times_of_outputs(const SystemSpec& system) {
+  std::vector<Roles> out;
+  if (!suggests_places(system) || system.outputs.size() < 2) return out;
+  for (const OutputSpec& output : system.outputs) out.push_back({{"time_of_output", sample_time_of(output.name)}});
+  return out;
+}
+
 template <class List>
 std::vector<std::string> names_of(const List& list) {
   std::vector<std::string> names;
@@ -216,6 +224,7 @@ bool is_generic(const EffectSpec& effect) {
 
 std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system) {
   std::vector<Roles> out = {{}};
+  if (has_role(effect.ports, "time_of_output")) return times_of_outputs(system);
   if (!is_generic(effect)) return out;
   std::vector<Roles> places = {{}};
   if (has_role(effect.ports, "port") || has_role(effect.ports, "to_port")) places = natural_ports(system);

@@ -140,7 +140,8 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
       p.free = true;
       p.value = 0.0;
       out.strengths.push_back(parameter);
-      out.one_sided.push_back(coefficients[c].lower >= 0.0);
+      p.lower = std::max(p.lower, coefficients[c].lower_as_candidate);
+      out.one_sided.push_back(p.lower >= 0.0);
       strength_specs.push_back(&coefficients[c]);
     } else if (coefficients[c].scan.count > 0) {
       out.shapes.push_back(parameter);
@@ -258,7 +259,11 @@ std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEff
     const std::size_t i = p;
     if (effect.kind == PortKind::dynamic) out.push_back(system.dynamic_ports[i].name);
     if (effect.kind == PortKind::quantity) out.push_back(system.quantity_ports[i].name);
-    if (effect.kind == PortKind::sensor) out.push_back(i < system.outputs.size() ? system.outputs[i].name : "sample_time");
+    const std::size_t outputs = system.outputs.size();
+    if (effect.kind != PortKind::sensor) continue;
+    out.push_back(i < outputs    ? system.outputs[i].name
+                  : i == outputs ? std::string(all_sample_times)
+                                 : "time of " + system.outputs[i - outputs - 1].name);
   }
   return out;
 }

@@ -137,9 +137,9 @@ std::string right_hand_side(const SourceParts& parts, const Model& model) {
   out += fmt::format("enum {{ n_states = {}, n_inputs = {}, n_outputs = {} }};\n", parts.formulas.states, parts.formulas.inputs,
                      int_size(parts.formulas.outputs));
   out += function("rates", "dx", parts.formulas.rates) + function("outputs", "y", parts.formulas.outputs);
-  if (parts.formulas.sample_time >= 0) {
-    out += "\ndouble sample_time(const double *x, const double *u, double t) {\n  double shift;\n  (void)x, (void)u, (void)t;\n" +
-           statements(parts.formulas, {parts.formulas.sample_time}, {"shift"}, names, c_language) + "  return shift;\n}\n";
+  for (const auto& [name, node] : parts.formulas.sample_times) {
+    out += "\ndouble " + name + "(const double *x, const double *u, double t) {\n  double shift;\n  (void)x, (void)u, (void)t;\n" +
+           statements(parts.formulas, {node}, {"shift"}, names, c_language) + "  return shift;\n}\n";
   }
   return out;
 }

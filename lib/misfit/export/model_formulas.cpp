@@ -94,10 +94,15 @@ class Builder {
   void find_outputs() {
     Nodes outputs = trace(model_.outputs(), [&](Symbol* y) { system_.trace_outputs(point(), y); });
     quantities_.insert(quantities_.end(), outputs.begin(), outputs.end());
-    outputs.push_back(out_.graph.constant(0.0));
+    const std::vector<OutputSpec>& specs = system_.spec().outputs;
+    outputs.resize(2 * specs.size() + 1, out_.graph.constant(0.0));
     outputs = add_effects(PortKind::sensor, outputs);
-    if (!out_.graph.is(outputs.back(), 0.0)) out_.sample_time = outputs.back();
-    outputs.pop_back();
+    for (std::size_t i = specs.size(); i < outputs.size(); ++i) {
+      if (out_.graph.is(outputs[i], 0.0)) continue;
+      const std::string name = i == specs.size() ? all_sample_times : sample_time_of(specs[i - specs.size() - 1].name);
+      out_.sample_times.emplace_back(name, outputs[i]);
+    }
+    outputs.resize(specs.size());
     out_.outputs = std::move(outputs);
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "misfit/formula/graph.h"
@@ -20,8 +21,9 @@ struct ModelFormulas {
   std::vector<LateInputUse> late;    ///< each is an input more, behind those of the system
   std::vector<CurveUse> curve_uses;  ///< leaf first_curve() + i
   std::vector<int> rates, outputs;   ///< nodes
-  int sample_time = -1;              ///< node of the shift of the time at which the outputs are taken [s]; -1: none
-  std::string lack;                  ///< why there are no formulas; empty: there are
+  /// Nodes of the shifts of the times at which outputs are taken [s], with the name that each has as a port; empty: none is shifted.
+  std::vector<std::pair<std::string, int>> sample_times;
+  std::string lack;  ///< why there are no formulas; empty: there are
 
   [[nodiscard]] int input(int i) const { return states + i; }
   [[nodiscard]] int time() const { return states + inputs; }

@@ -175,9 +175,9 @@ std::string right_hand_side(const SourceParts& parts, const Model& model) {
   std::string out = "\n\n" + comment(signature_lines(parts, model)) + names_text("states", spec.states) +
                     names_text("inputs", spec.inputs) + names_text("output_names", spec.outputs);
   out += function("rates", "dx", parts.formulas.rates) + function("outputs", "y", parts.formulas.outputs);
-  if (parts.formulas.sample_time < 0) return out;
-  return out + "\n\ndef sample_time(x, u, t):\n" +
-         statements(parts.formulas, {parts.formulas.sample_time}, {"shift"}, names, python_language) + "  return shift\n";
+  for (const auto& [name, node] : parts.formulas.sample_times)
+    out += "\n\ndef " + name + "(x, u, t):\n" + statements(parts.formulas, {node}, {"shift"}, names, python_language) + "  return shift\n";
+  return out;
 }
 
 }  // namespace

@@ -77,7 +77,9 @@ std::vector<std::string> signature_lines(const SourceParts& parts, const Model& 
     out.push_back(fmt::format("y[{}]  {}", i, in_unit(spec.outputs[i].name, spec.outputs[i].unit)));
   out.emplace_back("t     time of the recording [s]");
   out.push_back(fmt::format("Without noise, and without the random force that {} estimates.", random_force_estimator().name));
-  if (parts.formulas.sample_time >= 0) out.emplace_back("The outputs belong to the time t + sample_time.");
+  for (const auto& [name, node] : parts.formulas.sample_times)
+    out.push_back((name == all_sample_times ? "The outputs belong" : "That output belongs") + std::string(" to the time t + ") + name +
+                  ".");
   return out;
 }
 

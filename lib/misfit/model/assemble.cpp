@@ -170,8 +170,12 @@ void Assembler::check_everything_used() const {
       throw InputError(request.where, "[parameters]: the model has no parameter '" + shown(name) + "'" + suggest(name, names));
   }
   for (const auto& [name, request] : request_.curves) {
-    if (!used_curves_.contains(name))
-      throw InputError(request.where, "[curves]: the model has no coefficient '" + shown(name) + "'" + suggest(name, curves));
+    if (used_curves_.contains(name)) continue;
+    if (index_of(system().constants, name) >= 0)
+      throw InputError(request.where, "[curves]: '" + shown(name) +
+                                          "' is a parameter of the system; only coefficients of effects can be curves" +
+                                          (curves.empty() ? ", and the model has none" : ": " + join_words(curves)));
+    throw InputError(request.where, "[curves]: the model has no coefficient '" + shown(name) + "'" + suggest(name, curves));
   }
 }
 

@@ -128,7 +128,10 @@ std::optional<Assembler::Place> Assembler::find_port(const std::string& name) co
   if (auto place = search(system().dynamic_ports, PortKind::dynamic)) return place;
   if (auto place = search(system().quantity_ports, PortKind::quantity)) return place;
   if (auto place = search(system().outputs, PortKind::sensor)) return place;
-  if (name == "sample_time") return Place{PortKind::sensor, model_.outputs(), "s"};
+  if (name == all_sample_times) return Place{PortKind::sensor, model_.outputs(), "s"};
+  for (int o = 0; o < model_.outputs(); ++o) {
+    if (name == sample_time_of(system().outputs[o].name)) return Place{PortKind::sensor, model_.outputs() + 1 + o, "s"};
+  }
   return std::nullopt;
 }
 
@@ -137,7 +140,8 @@ std::vector<std::string> Assembler::port_names() const {
   for (const auto& port : system().dynamic_ports) names.push_back(port.name);
   for (const auto& port : system().quantity_ports) names.push_back(port.name);
   for (const auto& output : system().outputs) names.push_back(output.name);
-  names.emplace_back("sample_time");
+  names.emplace_back(all_sample_times);
+  for (const auto& output : system().outputs) names.push_back(sample_time_of(output.name));
   return names;
 }
 

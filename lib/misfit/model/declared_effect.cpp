@@ -126,7 +126,7 @@ class FormulaEffectBuilder {
       CoefficientSpec c;
       c.name = keep(name);
       c.kind = CoefficientKind::shape;
-      c.unit = keep(text.unit);
+      c.unit = keep(declared::shown_unit(text.unit, system_));
       c.value = text.value.value_or(std::clamp(0.0, text.lower, text.upper));
       c.lower = text.lower;
       c.upper = text.upper;

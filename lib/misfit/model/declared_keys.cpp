@@ -27,6 +27,12 @@ KeyGroup system_group() {
                   "estimate of their error, implicit where stiff, and are checked at the estimate (integration in fit.json)."}}};
 }
 
+KeyGroup display_group() {
+  return {"display", "How results are shown; what is read has units of its own.",
+     {{.name = "angle", .type = Type::choice, .fallback = "\"deg\"", .choices = {"deg", "rad"},
+       .meaning = "Angles and their rates: deg, deg/s, deg/s^2, or rad, rad/s, rad/s^2; knots without a unit are in it, too."}}};
+}
+
 std::vector<KeyGroup> state_groups() {
   return {{"states.NAME", "A state of the system; at least one is needed.",
        {unit_key(),
@@ -92,7 +98,7 @@ KeyGroup role_group() {
 // clang-format on
 
 std::vector<KeyGroup> all_groups() {
-  std::vector<KeyGroup> out{system_group()};
+  std::vector<KeyGroup> out{system_group(), display_group()};
   const auto add = [&](const std::vector<KeyGroup>& groups) { out.insert(out.end(), groups.begin(), groups.end()); };
   add(state_groups());
   add({input_group(), {"parameters.NAME", "A constant of the system.", declared_parameter_keys(false)}});

@@ -1,5 +1,7 @@
 #include "misfit/model/declared_parameter.h"
 
+#include "misfit/core/units.h"
+
 namespace misfit::declared {
 
 std::string read_unit(const config::Section& section) {
@@ -12,6 +14,8 @@ std::string read_unit(const config::Section& section) {
   }
   return *text;
 }
+
+std::string shown_unit(const std::string& unit, const SystemSpec& system) { return system.angles_in_radians ? in_radians(unit) : unit; }
 
 ParameterText read_parameter(const config::DescribedSection& section) {
   ParameterText p;

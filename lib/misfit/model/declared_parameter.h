@@ -6,6 +6,7 @@
 
 #include "misfit/core/keys.h"
 #include "misfit/formula/measure.h"
+#include "misfit/model/system.h"
 
 namespace misfit::declared {
 
@@ -23,5 +24,8 @@ struct ParameterText {
 
 /// The unit of an entry, which must be there and SI.
 [[nodiscard]] std::string read_unit(const config::Section& section);
+
+/// The same as the system has it shown: radian for rad, where its [display] says so.
+[[nodiscard]] std::string shown_unit(const std::string& unit, const SystemSpec& system);
 
 }  // namespace misfit::declared

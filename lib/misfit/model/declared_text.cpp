@@ -25,6 +25,7 @@ class Reader {
 
   Declaration run() {
     read_head();
+    read_display();
     each("states", true, [&](const DescribedSection& s, const std::string& name) { read_state(s, name); });
     each("inputs", false, [&](const DescribedSection& s, const std::string& name) { read_input(s, name); });
     each("parameters", false, [&](const DescribedSection& s, const std::string& name) { read_parameter(s, name); });
@@ -51,6 +52,14 @@ class Reader {
     head.finish();
   }
 
+  void read_display() {
+    const DescribedSection display = described(root_, "display", "display");
+    out_.spec.angles_in_radians = *display.choice("angle") == "rad";
+    display.finish();
+  }
+
+  [[nodiscard]] std::string unit_of(const DescribedSection& section) const { return shown_unit(read_unit(section), out_.spec); }
+
   template <class Read>
   void each(const char* section_name, bool needed, const Read& read) {
     const auto section = root_.table(section_name);
@@ -74,7 +83,7 @@ class Reader {
   void read_state(const DescribedSection& s, const std::string& name) {
     StateSpec state;
     state.name = name;
-    state.unit = read_unit(s);
+    state.unit = unit_of(s);
     state.lower = s.value("min", state.unit).value_or(state.lower);
     state.upper = s.value("max", state.unit).value_or(state.upper);
     if (!(state.lower < state.upper)) s.fail("max", "must be above min");
@@ -107,7 +116,7 @@ class Reader {
   void read_input(const DescribedSection& s, const std::string& name) {
     InputSpec input;
     input.name = name;
-    input.unit = read_unit(s);
+    input.unit = unit_of(s);
     input.doc = *s.text("doc");
     if (*s.choice("hold") == "zero_order") input.hold = Hold::zero_order;
     input.delay = *s.value("delay");
@@ -118,7 +127,7 @@ class Reader {
     const ParameterText text = declared::read_parameter(s);
     ConstantSpec p;
     p.name = name;
-    p.unit = text.unit;
+    p.unit = shown_unit(text.unit, out_.spec);
     p.doc = text.doc;
     p.lower = text.lower;
     p.upper = text.upper;
@@ -138,7 +147,7 @@ class Reader {
   void read_quantity(const DescribedSection& s, const std::string& name) {
     QuantitySpec q;
     q.name = name;
-    q.unit = read_unit(s);
+    q.unit = unit_of(s);
     q.doc = *s.text("doc");
     q.carries_sign = true;
     out_.quantities.push_back(formula_of(s, "formula", "quantity " + name, q.unit));
@@ -148,7 +157,7 @@ class Reader {
   void read_port(const DescribedSection& s, const std::string& name) {
     PortSpec port;
     port.name = name;
-    port.unit = read_unit(s);
+    port.unit = unit_of(s);
     port.doc = *s.text("doc");
     port.conjugate = s.text("rate").value_or("");
     out_.spec.dynamic_ports.push_back(port);
@@ -198,7 +207,7 @@ class Reader {
   void read_output(const DescribedSection& s, const std::string& name) {
     OutputSpec output;
     output.name = name;
-    output.unit = read_unit(s);
+    output.unit = unit_of(s);
     output.noise = s.value("noise", output.unit).value_or(0.0);
     const std::string of = "output " + name;
     out_.outputs.push_back(s.has("formula") ? formula_of(s, "formula", of, output.unit)

@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -101,7 +102,9 @@ struct CoefficientSpec {
   const char* whole_of = "";       ///< role of an input: `whole` is a share of the gain by which the model lets it act on the first port
   const char* calibrated_as = "";  ///< camera parameter whose calibration sigma is the prior of this strength, if there is a calibration
   double prior_sigma = 0.0;        ///< as a candidate: Gaussian about 0 where there is no calibration [unit]; 0: no prior
-  double own_sigma = 0.0;          ///< in every fit: Gaussian about the value [unit]; 0: no prior
+  /// Of a strength: discovery does not look below it, where another effect says the same better (a late sensor is a sensor_delay).
+  double lower_as_candidate = -std::numeric_limits<double>::infinity();
+  double own_sigma = 0.0;  ///< in every fit: Gaussian about the value [unit]; 0: no prior
   /// The coefficient of this name of another effect of the model, number or curve, with that one's parameters: for effects that change what
   /// another adds (a wake that weakens the static moment). InputError where no effect of the model has it. Declared as a shape; of the rest
   /// of this specification only name, unit and doc count, and value and bounds in the worked examples and laws.

@@ -26,8 +26,8 @@ Evaluator::Evaluator(const Model& model) : model_(&model), system_(model.system.
   const auto size = [](int rows, int columns) { return at_least_one(rows * columns); };
   q_rows_.assign(size(nq_ + ny_, kRowStride), 0.0);
   P_rows_.assign(size(np_, kRowStride), 0.0);
-  F_rows_.assign(size(nf_ + ny_ + 1, kRowStride), 0.0);
-  scratch_.assign(size(std::max({np_, nf_, ny_ + 1, n_}), kRowStride), 0.0);
+  F_rows_.assign(size(nf_ + sensor_ports(), kRowStride), 0.0);
+  scratch_.assign(size(std::max({np_, nf_, sensor_ports(), n_}), kRowStride), 0.0);
   force_x_.assign(size(nf_ + n_ - nx_, n_), 0.0);
   q_x_.assign(size(nq_, nx_), 0.0);
   q_P_.assign(size(nq_, np_), 0.0);
@@ -154,8 +154,11 @@ void Evaluator::flatten_effect(const BoundEffect& bound) {
   }
   auto& list = bound.kind == PortKind::quantity ? quantity_ : bound.kind == PortKind::dynamic ? dynamic_ : sensor_;
   list.push_back(use);
-  if (bound.kind == PortKind::sensor)
-    shifts_time_ = shifts_time_ || std::find(bound.ports.begin(), bound.ports.end(), ny_) != bound.ports.end();
+  if (bound.kind != PortKind::sensor) return;
+  for (const int port : bound.ports) {
+    shifts_time_ = shifts_time_ || port >= ny_;
+    shifts_apart_ = shifts_apart_ || port > ny_;
+  }
 }
 
 void Evaluator::set_parameters(const double* values) {
@@ -226,7 +229,7 @@ void Evaluator::rates(const double* x, const InputsAt& u, double t, double* dx) 
 
 /// Memory of effects on quantity and sensor ports drifts as well.
 void Evaluator::own_drifts(const Point& at, double* drifts) {
-  std::array<double, kMaxPorts + kMaxOutputs> unused{};
+  std::array<double, kMaxPorts + kMaxSensorPorts> unused{};
   for (const auto& use : quantity_) {
     if (use.nz > 0) add_value(use, at, unused.data(), drifts);
   }
@@ -241,7 +244,7 @@ void Evaluator::own_drifts(const Point& at, double* drifts) {
 void Evaluator::predict(const double* x, const InputsAt& u, double t, double* y) {
   const Point at = point({x, u, t});
   system_->outputs(at, y);
-  y[ny_] = 0.0;
+  std::fill(y + ny_, y + sensor_ports(), 0.0);
   if (sensor_.empty()) return;
   base_and_derived(at);
   std::copy(y, y + ny_, q_.begin() + nq_);

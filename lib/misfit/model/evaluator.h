@@ -73,7 +73,13 @@ class Evaluator {
   [[nodiscard]] int states() const { return n_; }
   [[nodiscard]] int outputs() const { return ny_; }
   [[nodiscard]] int columns() const { return columns_; }
-  [[nodiscard]] bool shifts_time() const { return shifts_time_; }  ///< some effect writes `sample_time`
+  /// Places of predict() and linearise_outputs(): the outputs, the shift of the time at which all are taken, and, where effects shift the
+  /// time of one output, that of each.
+  [[nodiscard]] int sensor_ports() const { return shifts_apart_ ? 2 * ny_ + 1 : ny_ + 1; }
+  [[nodiscard]] bool shifts_time() const { return shifts_time_; }    ///< some effect shifts the time at which outputs are taken
+  [[nodiscard]] bool shifts_apart() const { return shifts_apart_; }  ///< some effect shifts that of one output alone
+  /// The shift of output o [s], by what predict() has written.
+  [[nodiscard]] double time_shift(const double* y, int o) const { return y[ny_] + (shifts_apart_ ? y[ny_ + 1 + o] : 0.0); }
 
   void rates(const double* x, const InputsAt& u, double t, double* dx);
   /// dx and its derivative rows D[i·kRowStride + …] for i < states(): ∂/∂x, then ∂/∂(slot). New slots may be added.
@@ -92,9 +98,9 @@ class Evaluator {
   /// State that output o is; only if outputs_are_states().
   [[nodiscard]] int observed(int o) const { return observed_[o]; }
 
-  /// y and, last, the shift of the sample time [s] (outputs() + 1 values).
+  /// y and the shifts of the times at which they are taken [s] (sensor_ports() values).
   void predict(const double* x, const InputsAt& u, double t, double* y);
-  /// The same with derivative rows for each of the outputs() + 1 values.
+  /// The same with derivative rows for each of the sensor_ports() values.
   void linearise_outputs(const Instant& instant, Slots& slots, double* y, double* D);
 
   /// Fastest rate of the system and its effects at this state, jumps at their steepest [1/s].
@@ -193,7 +199,7 @@ class Evaluator {
   int n_, nx_, ny_, nf_, np_, nq_, nk_, columns_;
   std::uint64_t needed_ = 0;
   InputsAt inputs_;  // of the last point()
-  bool shifts_time_ = false, quantity_effects_ = false, free_constants_ = false, general_ = false;
+  bool shifts_time_ = false, shifts_apart_ = false, quantity_effects_ = false, free_constants_ = false, general_ = false;
   bool general_rates_ = false;                 // as general_, of the rates: constants of the sensor may be free
   bool constants_in_rates_ = false;            // some free constant acts on the rates
   std::vector<Link> free_constants_in_rates_;  // constant → column

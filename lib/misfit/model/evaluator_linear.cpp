@@ -185,7 +185,7 @@ void Evaluator::clear_new_slot(int slot, int rows, double* D) const {
 }
 
 void Evaluator::own_drifts_linear(const Point& at, Slots& slots, double* drifts, double* own_rows) {
-  std::array<double, kMaxPorts + kMaxOutputs> unused{};
+  std::array<double, kMaxPorts + kMaxSensorPorts> unused{};
   const auto drift = [&](const Use& use) {
     std::fill(scratch_.begin(), scratch_.end(), 0.0);
     add_linear(use, at, slots, {unused.data(), scratch_.data(), drifts, own_rows});
@@ -240,8 +240,10 @@ void Evaluator::linearise_outputs(const Instant& instant, Slots& slots, double* 
     y[i] = q_[nq_ + i];
     std::copy_n(row_of(q_rows_, nq_ + i), width, D + i * kRowStride);
   }
-  y[ny_] = 0.0;
-  std::fill_n(D + ny_ * kRowStride, width, 0.0);
+  for (int i = ny_; i < sensor_ports(); ++i) {
+    y[i] = 0.0;
+    std::fill_n(D + i * kRowStride, width, 0.0);
+  }
   std::array<double, kMaxStates> drifts{};
   for (const auto& use : sensor_) {
     std::fill(scratch_.begin(), scratch_.end(), 0.0);

@@ -142,7 +142,7 @@ class Reader {
       if (table_.find(header(base)) == nullptr) static_cast<void>(table_.at(header(input.name)));  // throws, naming the nearest
       const std::string base_unit = input.unit.ends_with("/s") ? input.unit.substr(0, input.unit.size() - 2) : input.unit;
       std::vector<double> level = kept(values_of(base, base_unit));
-      if (base_unit == "rad") level = unwrapped(level);
+      if (parse_unit(base_unit).angle) level = unwrapped(level);
       values = central_rate(out_.t, level);
       out_.notes.push_back("input " + input.name + " differentiated from " + base);
     } else {

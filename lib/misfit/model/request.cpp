@@ -147,12 +147,12 @@ std::string unit_of(const SystemSpec& spec, const std::string& quantity) {
   return "";
 }
 
-/// Knots without a unit of an angle are in degrees.
+/// Knots without a unit are in the unit that is shown: degrees of an angle, but where [display] of the system says rad.
 void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& request) {
   for (const auto& [name, curve] : study.curves) {
     CurveRequest out{curve.of, {}, curve.roughness, curve.where};
     const std::string unit = unit_of(spec, curve.of);
-    const double bare = !unit.empty() && parse_unit(unit).angle ? kDegree : 1.0;
+    const double bare = !unit.empty() && shown_in_degrees(unit) ? kDegree : 1.0;
     for (const config::Number& knot : curve.knots.value_or(std::vector<config::Number>{})) {
       if (!unit.empty() && !knot.unit.empty() && !parse_unit(knot.unit).same_dimension(parse_unit(unit)))
         throw InputError(knot.where, "[curves] " + name + ": knots need [" + unit + "], not [" + knot.unit + "]");

@@ -72,6 +72,10 @@ struct OutputSpec {
   double noise = 0.0;  ///< typical white measurement noise [unit], a start only
 };
 
+/// Sensor ports behind the outputs: shifts of the time at which all outputs are taken, and at which one is [s].
+inline constexpr const char* all_sample_times = "sample_time";
+[[nodiscard]] inline std::string sample_time_of(const std::string& output) { return std::string(all_sample_times) + "_" + output; }
+
 /// A curve that is a combination of the model's own: Σ factor(x) · d^order curve / dx^order.
 struct DerivedCurve {
   struct Term {
@@ -97,6 +101,7 @@ struct ComparedQuantity {
 
 struct SystemSpec {
   std::string key, doc, formula, source;
+  bool angles_in_radians = false;  ///< angles and their rates are shown in radians: their units are in_radians()
   std::vector<StateSpec> states;
   std::vector<InputSpec> inputs;
   std::vector<std::string> equation_inputs;  ///< inputs that the system's own equations need
@@ -104,7 +109,7 @@ struct SystemSpec {
   int base_quantities = 0;
   std::vector<PortSpec> quantity_ports, dynamic_ports;
   std::vector<ConstantSpec> constants;
-  std::vector<OutputSpec> outputs;                       ///< each is also a sensor port of the same name; then `sample_time [s]`
+  std::vector<OutputSpec> outputs;                       ///< each is also a sensor port of the same name; then their times
   std::map<std::string, std::string> roles;              ///< default quantity or port of generic roles: "rate", "level", "port", "output"
   std::map<std::string, std::string> coefficient_names;  ///< effect's coefficient → name it has in this system ("C_mq" → "C_m_alphadot")
   std::vector<std::string> force_ports;                  ///< dynamic ports of the random force that drives the motion, in fixed axes

@@ -163,7 +163,11 @@ std::string candidates_view(const Place& place, const std::vector<std::string>& 
     rows.push_back(row_of(d->candidates[k], k, d->candidates, effects));
   }
   const std::string figure = rows.empty() ? "null" : json_of(report::candidates_figure(sorted.candidates));
-  return fmt::format(R"({{"blocks":{},"rows":{},"figure":{}}})", json_of(blocks_of(sorted)), json_list(rows), figure);
+  const std::string unknown = list_of(d->unexplained_effects, [](const EffectPlace& e) {
+    return fmt::format(R"({{"effect":{},"name":{},"at":{}}})", json_string(e.effect), json_string(effect_at(e.effect, e.roles)),
+                       list_of(words_of_place(e.roles), json_string));
+  });
+  return fmt::format(R"({{"blocks":{},"rows":{},"unknown":{},"figure":{}}})", json_of(blocks_of(sorted)), json_list(rows), unknown, figure);
 }
 
 std::string added_view(const Diagnosis& diagnosis, const Discovery& discovery, std::size_t experiment, std::size_t candidate) {

@@ -17,7 +17,8 @@ Words twelve_words() {
                                "; smoothed over time it is the missing force, and what the model lacks is in it"},
           {"drop", "2 log likelihood ratio: by how much an effect improves the fit; chance gives about 1 per parameter"},
           {"held-out gain",
-           "gain of the log likelihood (not doubled) of what was kept out of the estimation (validation): above 0, the effect "
+           "gain of the log likelihood (not doubled), parameters uncertain, of what was kept out of the estimation (validation): above 0, "
+           "the effect "
            "predicts better"},
           {"family-wise p", "the probability that chance gives any one of all tested candidates such a drop; accepted below 0.01"},
           {"ladder, rung", "the sequence of models, each with one effect more; a rung is one of them"}};

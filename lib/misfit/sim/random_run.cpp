@@ -95,7 +95,7 @@ void run_randomly(const Simulation& simulation, const double* x0, std::mt19937_6
   out.last = signals.samples();
   out.finite = false;
   out.y.resize(out.last, stepper.evaluator().outputs());
-  std::array<double, kMaxOutputs + 1> y{};
+  std::array<double, kMaxSensorPorts> y{};
   for (std::size_t i = 0; i < out.last; ++i) {
     out.failed_at = i;
     prepare_at(simulation, i, x.data());  // where its time is shifted

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "misfit/core/lists.h"
+#include "misfit/sim/sampled_outputs.h"
 
 namespace misfit {
 namespace {
@@ -42,12 +42,6 @@ class Sensitivity {
     }
     for (int s = 0; s < slots.count(); ++s) out[slots.column(s)] += D[n_ + s];
   }
-  /// Adds speed ⊗ direction: the state also moves with the shift of the sample time.
-  void add_direction(const double* speed, const double* direction) {
-    for (int i = 0; i < n_; ++i) {
-      for (int c = 0; c < width(); ++c) row(i)[c] += speed[i] * direction[c];
-    }
-  }
   [[nodiscard]] std::vector<double> empty_row() const { return std::vector<double>(stride_); }
 
  private:
@@ -74,30 +68,20 @@ class Sensitivity {
 struct State {
   std::array<double, kMaxStates> x{};
   Sensitivity S;  ///< ∂x/∂(θ, x0)
-  std::vector<double> D, O, row;
+  std::vector<double> D, row;
   Slots slots;
-  std::array<double, kMaxOutputs + 1> y{};
+  std::array<double, kMaxSensorPorts> y{};
+  SampledOutputs outputs;
 
   State(const Simulation& simulation, const Stretch& stretch)
       : S(simulation.stepper.states(), stretch.sensitivities ? simulation.stepper.evaluator().columns() : 0),
         D(simulation.stepper.states() * kRowStride),
-        O((simulation.stepper.evaluator().outputs() + 1) * kRowStride),
-        row(S.empty_row()) {
+        row(S.empty_row()),
+        outputs(simulation.stepper) {
     std::copy_n(stretch.x0, simulation.stepper.states(), x.begin());
     prepare_at(simulation, stretch.first, x.data());
   }
 };
-
-/// From the time of sample i to the shifted one: the parts of the interval beside it are fine enough for what is shorter.
-Interval shifted_interval(const Simulation& run, std::size_t i, double shift) {
-  const auto& [stepper, signals, inputs] = run;
-  Interval out{signals.t[i], signals.t[i] + shift, inputs.at(i), inputs.at(i)};
-  if (i + 1 < signals.samples() && std::abs(shift) <= signals.t[i + 1] - signals.t[i]) {
-    out.parts = inputs.plan.of(i);
-    out.rate = inputs.plan.rate_at(i);
-  }
-  return out;
-}
 
 double* output_row(std::size_t i, int o, int outputs, Segment& out) { return out.y_rows.row((i - out.first) * outputs + o).data(); }
 
@@ -113,34 +97,16 @@ void copy_states(const Evaluator& evaluator, State& at, double* rows) {
 
 /// Rows of ∂y/∂(θ, x0) at sample i into out.y_rows.
 bool predict_linear(const Simulation& simulation, std::size_t i, State& at, Segment& out) {
-  const auto& [stepper, signals, inputs] = simulation;
-  Evaluator& evaluator = stepper.evaluator();
+  Evaluator& evaluator = simulation.stepper.evaluator();
   const int ny = evaluator.outputs();
   if (evaluator.outputs_are_states()) {
     copy_states(evaluator, at, output_row(i, 0, ny, out));
     return true;
   }
-  at.slots.clear();
-  evaluator.linearise_outputs({at.x.data(), inputs.at(i), signals.t[i]}, at.slots, at.y.data(), at.O.data());
-  const double shift = evaluator.shifts_time() ? at.y[ny] : 0.0;
-  std::optional<Sensitivity> moved_S;
-  const Sensitivity* use = &at.S;
-  if (evaluator.shifts_time()) {
-    std::vector<double> by_shift = at.S.empty_row();
-    at.S.combine(at.O.data() + ny * kRowStride, at.slots, by_shift.data());  // ∂τ/∂(θ, x0)
-    std::array<double, kMaxStates> moved = at.x, speed{};
-    if (!stepper.step_linear(moved.data(), shifted_interval(simulation, i, shift), at.slots, at.D.data())) return false;
-    moved_S = at.S;
-    moved_S->advance(at.D.data(), at.slots);
-    // The rate of the motion, where the exact derivative would be that of the step map by its length: equal to the accuracy of a step.
-    evaluator.rates(moved.data(), inputs.at(i), signals.t[i] + shift, speed.data());
-    moved_S->add_direction(speed.data(), by_shift.data());
-    at.slots.clear();
-    evaluator.linearise_outputs({moved.data(), inputs.at(i), signals.t[i]}, at.slots, at.y.data(), at.O.data());
-    use = &*moved_S;
-  }
+  if (!at.outputs.linearise(simulation, i, at.x.data(), at.slots)) return false;
   for (int o = 0; o < ny; ++o) {
-    use->combine(at.O.data() + o * kRowStride, at.slots, at.row.data());
+    at.y[o] = at.outputs.y(o);
+    at.S.combine(at.outputs.row(o), at.slots, at.row.data());
     std::copy_n(at.row.data(), at.S.width(), output_row(i, o, ny, out));
   }
   return true;
@@ -157,19 +123,6 @@ void prepare_at(const Simulation& run, std::size_t i, const double* x) {
   const auto& [stepper, signals, inputs] = run;
   const bool planned = i < inputs.plan.rate.size();
   stepper.prepare(x, inputs.at(i), signals.t[i], planned ? inputs.plan.rate[i] : std::numeric_limits<double>::infinity());
-}
-
-bool predict_at(const Simulation& simulation, std::size_t i, const double* x, double* y) {
-  const auto& [stepper, signals, inputs] = simulation;
-  Evaluator& evaluator = stepper.evaluator();
-  evaluator.predict(x, inputs.at(i), signals.t[i], y);
-  const double shift = evaluator.shifts_time() ? y[evaluator.outputs()] : 0.0;
-  if (shift == 0.0) return true;
-  std::array<double, kMaxStates> moved;
-  std::copy_n(x, stepper.states(), moved.begin());
-  if (!stepper.step(moved.data(), shifted_interval(simulation, i, shift))) return false;
-  evaluator.predict(moved.data(), inputs.at(i), signals.t[i], y);
-  return true;
 }
 
 InputTable input_table(const Signals& signals, const Model& model) {

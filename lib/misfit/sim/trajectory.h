@@ -38,8 +38,8 @@ struct Stretch {
 /// Stepper::prepare() at state x of sample i.
 void prepare_at(const Simulation& run, std::size_t i, const double* x);
 
-/// Predicted outputs y (outputs + 1 places) at sample i, at the shifted time where an effect shifts it: the state is carried there by the
-/// step map itself. False if it cannot be carried there.
+/// Predicted outputs y (Evaluator::sensor_ports() places) at sample i, each at the time at which it is taken: see SampledOutputs. False if
+/// the state cannot be carried there.
 [[nodiscard]] bool predict_at(const Simulation& simulation, std::size_t i, const double* x, double* y);
 
 /// What a run over samples first … last − 1 predicts. Sample `last` (if it exists) is where the next segment starts.

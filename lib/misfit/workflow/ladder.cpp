@@ -14,6 +14,7 @@
 #include "misfit/data/contained_fit.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/data/estimators.h"
+#include "misfit/discover/refit.h"
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/filter/k_step.h"
@@ -100,7 +101,8 @@ struct Gain {
 };
 
 /// 2 [log L(with) − log L(without)] on the same measurements and with the same weights of roughness, each at its own maximum, priors
-/// counted. The child's is looked for from its fit and from the parent's with what is new off, so that it is never below that.
+/// counted. The child's is looked for from its fit and from the parent's with what is new off, so that it is never below that. The held-out gain
+/// is that of discovery, with the parameters uncertain.
 Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   FilterOptions options;
   options.threads = threads;
@@ -117,7 +119,7 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   const FilterEstimate with = estimate_filter(starts, child.prepared.experiments, options);
   if (without.out_of_time || with.out_of_time) throw TimeSpent(Watch::current()->words());
   Gain gain{2.0 * (with.objective - without.objective), std::nullopt};
-  if (parent.fit.validation_loglik) gain.held_out = with.validation_loglik - without.validation_loglik;
+  if (parent.fit.validation_loglik) gain.held_out = predictive_loglik(with) - predictive_loglik(without);
   return gain;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "misfit/fit/filter/filter_steps.h"
+#include "misfit/sim/sampled_outputs.h"
 
 namespace misfit {
 
@@ -36,7 +37,7 @@ class FilterPass {
         kalman_(n_, ny_),
         steps_(input.noise),
         D_(N_ * kRowStride),
-        O_((ny_ + 1) * kRowStride),
+        outputs_(stepper),
         a_(StateVector::Zero(n_)) {
     start_covariance(model_, data_, noise_, kalman_);
     if (options_.jacobian != nullptr) begin_derivatives();
@@ -46,7 +47,7 @@ class FilterPass {
 
   bool run() {
     for (std::size_t k = data_.first; k < signals_.samples(); ++k) {
-      predict_outputs(k);
+      if (!predict_outputs(k)) return fails(k);
       for (int o = 0; o < ny_; ++o) {
         if (!update_by(k, o)) return fails(k);
       }
@@ -79,10 +80,9 @@ class FilterPass {
     return false;
   }
 
-  [[nodiscard]] const double* output_row(int o) const { return O_.data() + static_cast<std::ptrdiff_t>(o) * kRowStride; }
-
-  /// Outputs, their rows and their variances before the update by any measurement of the sample.
-  void predict_outputs(std::size_t k) {
+  /// Outputs, their rows and their variances before the update by any measurement of the sample. False where one
+  /// cannot be predicted.
+  [[nodiscard]] bool predict_outputs(std::size_t k) {
     const auto NY_ = static_cast<std::size_t>(ny_);
     std::copy_n(x_.begin(), n_, trace_.predicted.begin() + (k * N_));
     if (options_.keep_P) {
@@ -90,23 +90,17 @@ class FilterPass {
       joint.leftCols(n_) = kalman_.P;
       joint.rightCols(twice(ny_)) = kalman_.C;
     }
-    slots_.clear();
-    evaluator_.linearise_outputs({x_.data(), data_.inputs.at(k), signals_.t[k]}, slots_, y_.data(), O_.data());
-    if (evaluator_.shifts_time()) evaluator_.rates(x_.data(), data_.inputs.at(k), signals_.t[k], speed_.data());
+    if (!outputs_.linearise({stepper_, signals_, data_.inputs}, k, x_.data(), slots_)) return false;
     kalman_.x.setZero();
     for (int o = 0; o < ny_; ++o) {
       const std::size_t at = trace_.place(k, o);
       const std::size_t channel = o;
-      for (int i = 0; i < n_; ++i) a_[i] = output_row(o)[i];
-      if (evaluator_.shifts_time()) {
-        motion_[channel] = 0.0;
-        for (int i = 0; i < n_; ++i) motion_[channel] += a_[i] * speed_[i];
-        y_[channel] += motion_[channel] * y_[NY_];
-      }
+      for (int i = 0; i < n_; ++i) a_[i] = outputs_.row(o)[i];
       Eigen::Map<Eigen::VectorXd>(trace_.H.data() + at * N_, n_) = a_;
-      trace_.y[at] = y_[channel] + kalman_.j[twice(o)];
+      trace_.y[at] = outputs_.y(o) + kalman_.j[twice(o)];
       trace_.y_variance[at] = kalman_.variance(a_, o, noise_.channels[channel].white);
     }
+    return true;
   }
 
   /// False if the innovation is not a number.
@@ -117,7 +111,7 @@ class FilterPass {
     if (use == SampleRole::none) return true;
     a_ = trace_.H_at(at);
     const double S = kalman_.variance(a_, o, noise_.channels[channel].white);
-    const double z = signals_.measured[channel].values[k] - y_[channel];
+    const double z = signals_.measured[channel].values[k] - outputs_.y(o);
     const double innovation = z - a_.dot(kalman_.x) - kalman_.j[twice(o)];
     if (!(S > 0.0) || !std::isfinite(innovation)) return false;
     if (options_.rejected != nullptr && is_wild(at, channel, innovation * innovation > kOutlierGate * kOutlierGate * S)) return true;
@@ -165,12 +159,8 @@ class FilterPass {
   void differentiate_update(std::size_t at, int o, SampleRole use) {
     s_row_ = a_.transpose().lazyProduct(s_model_);
     s_row_ += s_jitter_.row(twice(o));
-    const double* row = output_row(o) + n_;
+    const double* row = outputs_.row(o) + n_;
     for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += row[c];
-    if (evaluator_.shifts_time()) {
-      const double* by_shift = output_row(ny_) + n_;
-      for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += motion_[o] * by_shift[c];
-    }
     if (use == SampleRole::counted) {
       FilterJacobian& jacobian = *options_.jacobian;
       const Eigen::Index r = jacobian.index.size();
@@ -226,14 +216,13 @@ class FilterPass {
   std::size_t N_;
   Kalman<M, NY> kalman_;
   NoiseSteps steps_;
-  std::vector<double> D_, O_;
+  std::vector<double> D_;
+  SampledOutputs outputs_;
   StateVector a_;
   Slots slots_;
-  std::array<double, kMaxStates> x_{}, speed_{};
-  std::array<double, kMaxOutputs + 1> y_{};
-  std::array<int, kMaxOutputs> wild_run_{};   // measurements beyond the gate in a row; -1: too many
-  std::array<double, kMaxOutputs> motion_{};  // of each output over time: a measurement taken later sees it
-  RowMatrix s_model_, s_jitter_, s_work_;     // ∂(state)/∂θ with the gains held
+  std::array<double, kMaxStates> x_{};
+  std::array<int, kMaxOutputs> wild_run_{};  // measurements beyond the gate in a row; -1: too many
+  RowMatrix s_model_, s_jitter_, s_work_;    // ∂(state)/∂θ with the gains held
   Eigen::RowVectorXd s_row_;
 };
 

@@ -52,7 +52,7 @@ class FreeRuns {
 
   /// False: nothing can be read from the state.
   bool compare(const double* x, std::size_t k, std::size_t length) {
-    std::array<double, kMaxOutputs + 1> y{};
+    std::array<double, kMaxSensorPorts> y{};
     if (!predict_at({stepper_, signals_, data_.inputs}, k, x, y.data())) return false;
     for (std::size_t o = 0; o < errors_.squares.size(); ++o) {
       if (data_.use[k * errors_.squares.size() + o] != errors_.counted) continue;

@@ -248,7 +248,7 @@ bool Shooting::move_to(const Eigen::VectorXd& unknowns) {
 std::vector<RowMatrix> Shooting::predict_segments() {
   set_theta(model_.theta().data());
   std::vector<RowMatrix> out;
-  std::vector<double> y(model_.outputs() + 1);
+  std::array<double, kMaxSensorPorts> y{};
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     out.emplace_back(history_[e].rows(), model_.outputs());
     for (Eigen::Index i = 0; i < history_[e].rows(); ++i) {

@@ -518,10 +518,20 @@ async function showCandidates(view) {
   const table = found.blocks.find((b) => b.kind === 'table');
   view.append(blocks(lead));
   if (!last) nothing(view, 'Effects are added to the last model of the ladder; these are the candidates of an earlier one.');
+  if (live && last && found.unknown.length > 0) view.append(asCurve(found.unknown));
   if (table) view.append(candidateTable(table, found.rows, last));
   if (found.figure) draw(view, found.figure, { height: 0.85 });
   const rest = found.blocks.filter((b) => !lead.includes(b) && b !== table && b.kind !== 'figures' && !(b.kind === 'heading' && b.level === 1));
   view.append(element('details', {}, element('summary', {}, 'Remarks, reasons and what was tried'), blocks(rest)));
+}
+
+/** Of a force or an error that no named effect describes: it can stay in the model as a curve of a quantity. */
+function asCurve(unknown) {
+  const button = (one) => element('button', { class: 'adds', 'data-effect': one.effect, 'data-key': `add ${one.name}`, disabled: !here.idle,
+    title: `misfit add … ${[one.effect, ...one.at].join(' --at=')}`,
+    onclick: () => start(`add ${one.name}`, 'add', { effect: one.effect, at: one.at }) }, `Add ${one.name}`);
+  return element('p', { class: 'unknown' }, 'No effect of the list describes it. Added as a curve of one quantity, it takes over what no formula does: ',
+    ...unknown.map(button));
 }
 
 /** Pointing at a candidate shows the force that it adds beside the missing one; its button keeps it there. */

@@ -111,13 +111,13 @@ class Resolved {
   }
 
   void set_curve(const Curve& curve) {
-    const bool angle = curve.of_unit == "rad";
+    const bool angle = curve.of_unit == "rad";  // else SI, which is what is shown
     std::vector<std::string> knots;
     for (const double knot : curve.spline.breakpoints()) knots.push_back(knot_text(knot, angle));
     document_.set({"curves", curve.name, "of"}, toml_string(curve.of));
     document_.set({"curves", curve.name, "knots"}, toml_list(knots));
     document_.set({"curves", curve.name, "roughness"}, curve.roughness ? toml_number(*curve.roughness) : "\"auto\"");
-    comments_[{"curves", curve.name}] = "knots in " + (angle ? "deg" : curve.of_unit);
+    comments_[{"curves", curve.name}] = "knots in " + display_unit(curve.of_unit);
   }
 
   /// What is neither given nor simply free.

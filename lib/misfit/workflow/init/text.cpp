@@ -65,6 +65,19 @@ std::string remark_on(const ColumnSurvey& column) {
   return toml_comment(column.header.starts_with(column.name) ? column.why : "'" + column.header + "': " + column.why);
 }
 
+/// Angles are shown as they were recorded: in degrees where a column is, else in radians. Empty where no column is an angle or its rate.
+std::string display_of(const RecordingSurvey& survey) {
+  bool angles = false;
+  for (const ColumnSurvey& column : survey.columns) {
+    if (column.use != ColumnUse::input && column.use != ColumnUse::output && column.use != ColumnUse::rate) continue;
+    for (const auto& [symbol, power] : unit_symbols(column.unit)) {
+      if (symbol == "deg") return "";
+      angles = angles || parse_unit(symbol).angle;
+    }
+  }
+  return angles ? "[display]\nangle = \"rad\"              # as recorded; or \"deg\"\n\n" : "";
+}
+
 }  // namespace
 
 std::string model_text(const GuessedModel& model, const RecordingSurvey& survey) {
@@ -73,7 +86,8 @@ std::string model_text(const GuessedModel& model, const RecordingSurvey& survey)
       "# together. `free = true` is estimated by misfit fit; the values are where it starts.\n"
       "[system]\n"
       "doc = \"linear model, estimated from the recording by misfit init\"\n"
-      "source = \"Ljung, System Identification (1999), 4.2\"\n\n[states]\n";
+      "source = \"Ljung, System Identification (1999), 4.2\"\n\n" +
+      display_of(survey) + "[states]\n";
   for (const auto& o : model.outputs) {
     text += fmt::format("{} = {{ unit = {}, initial = \"free\" }}\n", o.name, toml_string(o.unit));
     if (o.guess.order == 2)

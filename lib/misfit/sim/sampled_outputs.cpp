@@ -1,0 +1,156 @@
+#include "misfit/sim/sampled_outputs.h"
+
+#include <algorithm>
+
+namespace misfit {
+namespace {
+
+/// Inputs at a time within interval k, between samples k and k + 1, as each is held there.
+void inputs_within(const Simulation& run, std::size_t k, double t, double* u) {
+  const auto& [stepper, signals, inputs] = run;
+  const double share = (t - signals.t[k]) / (signals.t[k + 1] - signals.t[k]);
+  const double* before = inputs.at(k).values;
+  const double* after = inputs.at(k + 1).values;
+  for (std::size_t j = 0; j < inputs.recorded.hold.size(); ++j)
+    u[j] = inputs.recorded.hold[j] == Hold::zero_order ? before[j] : before[j] + share * (after[j] - before[j]);
+}
+
+/// The inputs at the time that was reached.
+struct Reached {
+  std::array<double, kMaxInputs> u{};
+  double t = 0.0;
+};
+
+/// step(interval) for each piece of the way from sample i to the time `shift` after or before it. Before the first and after the last
+/// sample inputs stay as they are there. False as soon as a step is.
+template <class Step>
+bool along(const Simulation& run, std::size_t i, double shift, Reached& reached, const Step& step) {
+  const auto& [stepper, signals, inputs] = run;
+  std::array<double, kMaxInputs> begin{};
+  const std::size_t count = inputs.recorded.hold.size();
+  std::copy_n(inputs.at(i).values, count, reached.u.begin());
+  reached.t = signals.t[i];
+  const double end = reached.t + shift;
+  for (std::size_t k = i; reached.t != end;) {
+    const bool forward = end > reached.t;
+    if (forward ? k + 1 >= signals.samples() : k == 0) {
+      const Interval beyond{reached.t, end, inputs.at(k), inputs.at(k)};
+      reached.t = end;
+      return step(beyond);
+    }
+    const std::size_t of = forward ? k : k - 1;
+    const double to = forward ? std::min(end, signals.t[of + 1]) : std::max(end, signals.t[of]);
+    inputs_within(run, of, reached.t, begin.data());
+    inputs_within(run, of, to, reached.u.data());
+    const InputsAt from{begin.data(), &inputs.recorded}, at{reached.u.data(), &inputs.recorded};
+    if (!step({reached.t, to, from, at, inputs.plan.of(of), inputs.plan.rate_at(of)})) return false;
+    reached.t = to;
+    k = forward ? of + 1 : of;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool predict_at(const Simulation& simulation, std::size_t i, const double* x, double* y) {
+  const auto& [stepper, signals, inputs] = simulation;
+  Evaluator& evaluator = stepper.evaluator();
+  evaluator.predict(x, inputs.at(i), signals.t[i], y);
+  if (!evaluator.shifts_time()) return true;
+  std::array<double, kMaxSensorPorts> there{};
+  std::array<double, kMaxStates> moved{};
+  for (int o = 0; o < evaluator.outputs(); ++o) {
+    const double shift = evaluator.time_shift(y, o);
+    if (shift == 0.0) continue;
+    if (o == 0 || evaluator.shifts_apart()) {
+      Reached reached;
+      std::copy_n(x, stepper.states(), moved.begin());
+      if (!along(simulation, i, shift, reached, [&](const Interval& piece) { return stepper.step(moved.data(), piece); })) return false;
+      evaluator.predict(moved.data(), {reached.u.data(), &inputs.recorded}, signals.t[i], there.data());
+    }
+    y[o] = there[o];
+  }
+  return true;
+}
+
+SampledOutputs::SampledOutputs(Stepper& stepper)
+    : evaluator_(stepper.evaluator()), n_(stepper.states()), ny_(evaluator_.outputs()), width_(n_ + evaluator_.columns()) {
+  rows_.assign(evaluator_.sensor_ports() * kRowStride, 0.0);
+  if (!evaluator_.shifts_time()) return;
+  const auto states = static_cast<std::size_t>(n_), width = static_cast<std::size_t>(width_);
+  D_.assign(states * kRowStride, 0.0);
+  moved_rows_ = rows_;
+  shift_rows_.assign(ny_ * width, 0.0);
+  carried_.assign(states * width, 0.0);
+  next_ = carried_;
+}
+
+/// The state and its derivatives at the shifted time, and how fast the state moves there.
+bool SampledOutputs::carry(const Simulation& run, std::size_t i, double shift, const double* x) {
+  std::copy_n(x, n_, moved_.begin());
+  std::fill(carried_.begin(), carried_.end(), 0.0);
+  for (int j = 0; j < n_; ++j) carried_[j * width_ + j] = 1.0;
+  Reached reached;
+  const bool there = along(run, i, shift, reached, [&](const Interval& piece) {
+    if (!run.stepper.step_linear(moved_.data(), piece, step_slots_, D_.data())) return false;
+    for (int r = 0; r < n_; ++r) {
+      const double* row = D_.data() + r * kRowStride;
+      double* next = next_.data() + static_cast<std::ptrdiff_t>(r) * width_;
+      std::fill_n(next, width_, 0.0);
+      for (int j = 0; j < n_; ++j) {
+        for (int c = 0; c < width_; ++c) next[c] += row[j] * carried_[j * width_ + c];
+      }
+      for (int s = 0; s < step_slots_.count(); ++s) next[n_ + step_slots_.column(s)] += row[n_ + s];
+    }
+    carried_.swap(next_);
+    return true;
+  });
+  if (!there) return false;
+  const InputsAt u{reached.u.data(), &run.inputs.recorded};
+  evaluator_.rates(moved_.data(), u, reached.t, speed_.data());
+  step_slots_.clear();
+  evaluator_.linearise_outputs({moved_.data(), u, run.signals.t[i]}, step_slots_, moved_y_.data(), moved_rows_.data());
+  return true;
+}
+
+/// Of an output at the carried state: `slots` are those of its row, each the number of its column.
+void SampledOutputs::write_row(int output, const Slots& slots) {
+  const double* at_moved = moved_rows_.data() + output * kRowStride;
+  double* row = rows_.data() + output * kRowStride;
+  double motion = 0.0;
+  for (int j = 0; j < n_; ++j) motion += at_moved[j] * speed_[j];
+  const double* by_shift = shift_rows_.data() + static_cast<std::ptrdiff_t>(output) * width_;
+  for (int c = 0; c < n_ + slots.count(); ++c) row[c] = motion * by_shift[c];
+  for (int j = 0; j < n_; ++j) {
+    for (int c = 0; c < n_ + slots.count(); ++c) row[c] += at_moved[j] * carried_[j * width_ + c];
+  }
+  for (int s = 0; s < step_slots_.count(); ++s) row[n_ + step_slots_.column(s)] += at_moved[n_ + s];
+}
+
+bool SampledOutputs::linearise(const Simulation& run, std::size_t i, const double* x, Slots& slots) {
+  slots.clear();
+  evaluator_.linearise_outputs({x, run.inputs.at(i), run.signals.t[i]}, slots, y_.data(), rows_.data());
+  if (!evaluator_.shifts_time()) return true;
+  std::fill(shift_rows_.begin(), shift_rows_.end(), 0.0);
+  std::array<double, kMaxOutputs> shift{};
+  for (int o = 0; o < ny_; ++o) {
+    shift[o] = evaluator_.time_shift(y_.data(), o);
+    double* by_shift = shift_rows_.data() + static_cast<std::ptrdiff_t>(o) * width_;
+    const auto add = [&](const double* port_row) {
+      for (int j = 0; j < n_; ++j) by_shift[j] += port_row[j];
+      for (int s = 0; s < slots.count(); ++s) by_shift[n_ + slots.column(s)] += port_row[n_ + s];
+    };
+    add(row(ny_));
+    if (evaluator_.shifts_apart()) add(row(ny_ + 1 + o));
+  }
+  slots.clear();
+  for (int c = 0; c < evaluator_.columns(); ++c) static_cast<void>(slots.slot(c));
+  for (int o = 0; o < ny_; ++o) {
+    if ((o == 0 || evaluator_.shifts_apart()) && !carry(run, i, shift[o], x)) return false;
+    y_[o] = moved_y_[o];
+    write_row(o, slots);
+  }
+  return true;
+}
+
+}  // namespace misfit
