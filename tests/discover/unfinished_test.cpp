@@ -40,6 +40,7 @@ TEST_F(UnfinishedDiscovery, ARefitWithoutTimeSaysNothingAgainstItsEffect) {
   DiscoverOptions options;
   options.refit_limit = 1e-6;
   const Discovery found = discover(options);
+  EXPECT_EQ(found.outcome, SearchOutcome::not_decided);
   EXPECT_THAT(found.verdict, StartsWith("Not decided: the refit"));
   EXPECT_THAT(found.verdict, AllOf(HasSubstr("coulomb_friction"), HasSubstr("not finished within the time limit")));
   const auto friction =
@@ -56,6 +57,7 @@ TEST_F(UnfinishedDiscovery, ARoundWithoutTimeEndsInWords) {
   DiscoverOptions options;
   options.round_limit = 1e-6;
   const Discovery found = discover(options);
+  EXPECT_EQ(found.outcome, SearchOutcome::not_finished);
   EXPECT_THAT(found.verdict, StartsWith("Not finished: the time limit of 1e-06 s for this round of discover was spent before"));
   for (const Candidate& c : found.candidates) EXPECT_FALSE(c.accepted);
 }

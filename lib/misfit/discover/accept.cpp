@@ -126,7 +126,7 @@ double gain_of(const RankedCandidate& e) { return 0.5 * e.refit->drop + e.candid
 bool shapes_a_sensor(const RankedCandidate& e) {
   const CandidateModel& candidate_model = *e.screening->candidate_model;
   const bool memory = !candidate_model.model.effects.back().effect->spec().states.empty();
-  return candidate_model.family == "sensor" && !candidate_model.has_priors && (memory || !candidate_model.shapes.empty());
+  return candidate_model.family == CandidateFamily::sensor && !candidate_model.has_priors && (memory || !candidate_model.shapes.empty());
 }
 
 /// Step 1, and the order of step 2.

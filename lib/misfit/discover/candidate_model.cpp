@@ -233,7 +233,8 @@ std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate,
   } catch (const InputError&) {
     return std::nullopt;
   }
-  out.family = out.model.effects.back().kind == PortKind::sensor ? "sensor" : is_generic(effect.spec()) ? "generic" : "physics";
+  const bool on_sensor = out.model.effects.back().kind == PortKind::sensor;
+  out.family = on_sensor ? CandidateFamily::sensor : is_generic(effect.spec()) ? CandidateFamily::generic : CandidateFamily::physics;
   for (auto& p : out.model.parameters) p.free = false;
   for (std::size_t i = 0; i < estimate.model.parameters.size(); ++i)  // the effect's own follow behind
     out.model.parameters[i].value = estimate.model.parameters[i].value;
@@ -301,8 +302,8 @@ Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const Candid
   forced.model.parameters[forced.time_parameter].value = estimate.noise.force_time;
   for (std::size_t i = 0; i < candidate_model.shapes.size(); ++i) forced.model.parameters[candidate_model.shapes[i]].value = cell[i];
   if (cell.size() > candidate_model.shapes.size()) forced.model.parameters[candidate_model.frequency].value = cell.back();
-  return candidate_model.family == "sensor" ? columns_of_whole_runs(estimate, candidate_model, forced)
-                                            : columns_with_gains_held(estimate, candidate_model, forced);
+  return candidate_model.family == CandidateFamily::sensor ? columns_of_whole_runs(estimate, candidate_model, forced)
+                                                           : columns_with_gains_held(estimate, candidate_model, forced);
 }
 
 }  // namespace misfit

@@ -12,7 +12,8 @@ namespace misfit {
 
 /// A candidate effect assembled into the model: its strengths are free and 0, everything else is held; shapes have the values of a cell.
 struct CandidateModel {
-  std::string effect, family;                ///< family: "physics", "generic", "sensor"
+  std::string effect;
+  CandidateFamily family = CandidateFamily::physics;
   std::map<std::string, std::string> roles;  ///< as a study would bind them; empty: the defaults
   ModelRequest request;                      ///< the model's, with the effect as a number everywhere
   Model model;                               ///< values of the estimate; only the strengths free

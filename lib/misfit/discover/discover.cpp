@@ -205,7 +205,7 @@ class Search {
     for (const FilterTrace& trace : calm_->traces) counted += static_cast<double>(trace.counted);
     std::vector<const ScreeningResult*> best;
     for (const ScreeningResult& s : calm_screening_) {
-      const bool a_force = s.candidate_model->family != "sensor";  // the random force takes over nothing else
+      const bool a_force = s.candidate_model->family != CandidateFamily::sensor;  // the random force takes over nothing else
       if (a_force && s.runs && s.result.dof > 0 && s.result.chi2 > least_share * counted) best.push_back(&s);
     }
     std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });

@@ -76,7 +76,7 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
     double sigma = sigma_of(estimate, at);
     // With Kalman gains held the covariance of a sensor effect is too small (sensitivity_columns); screening uses whole runs.
     const bool screened = strength >= 0 && strength < screening.result.sigma.size();
-    if (candidate_model.family == "sensor" && screened && p.free) sigma = screening.result.sigma[strength];
+    if (candidate_model.family == CandidateFamily::sensor && screened && p.free) sigma = screening.result.sigma[strength];
     out[p.name] = {p.value, sigma, p.unit};
   }
   return out;

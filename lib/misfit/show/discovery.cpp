@@ -133,7 +133,7 @@ class BeforeAndAfter {
   static std::string change_of_force(const Rung& before, const Rung& after) {
     const auto was = force_strength(before.force), is = force_strength(after.force);
     if (!was || !is) return kMissing;
-    return ErrorChange{"random force", *was, *is, ""}.within_sigma() ? "within its sigma" : change(was->value, is->value);
+    return within_sigma(*was, *is) ? "within its sigma" : change(was->value, is->value);
   }
 };
 
