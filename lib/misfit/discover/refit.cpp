@@ -10,6 +10,8 @@
 #include "misfit/core/watch.h"
 #include "misfit/discover/drift.h"
 #include "misfit/discover/whole_strength.h"
+#include "misfit/fit/filter/contained_start.h"
+#include "misfit/inference/standard_error.h"
 
 namespace misfit {
 namespace {
@@ -20,14 +22,8 @@ std::vector<std::vector<SampleRole>> uses_of(const FilterEstimate& estimate) {
   return out;
 }
 
-std::vector<Penalty> same_roughness(const Model& model, const FilterEstimate& from) {
-  std::vector<Penalty> out = curve_penalties(model);
-  for (auto& p : out) {
-    for (const auto& known : from.penalties) {
-      if (p.curve == known.curve) p.lambda = known.lambda;  // the effect's own curves follow behind
-    }
-  }
-  return out;
+std::vector<Penalty> penalties_as_of(const FilterEstimate& from, const Model& model) {
+  return with_weights_of(from, model, curve_penalties(model));
 }
 
 /// log prior density at all strengths 0 (effect off).
@@ -57,9 +53,7 @@ std::vector<std::vector<SampleRole>> without_last_quarter(const FilterEstimate& 
 
 /// Standard error of a parameter; 0 where it is fixed or no covariance is known.
 double sigma_of(const FilterEstimate& estimate, int parameter) {
-  const int column = place_of(estimate.model.free_parameters(), parameter);
-  if (column < 0 || column >= estimate.covariance.rows()) return 0.0;
-  return std::sqrt(std::max(estimate.covariance(column, column), 0.0));
+  return standard_error_of(estimate.model, estimate.covariance, parameter).value_or(0.0);
 }
 
 /// Of the effect, which is the model's last.
@@ -141,7 +135,7 @@ bool hold_whole(const RefitWork& work, Refit& out) {
   FilterOptions options = options_like(work.without, work.threads);
   options.noise = out.estimate.noise;
   try {
-    FilterEstimate held = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
+    FilterEstimate held = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
     if (held.out_of_time) return false;
     if (held.converged && held.objective > out.estimate.objective - allowed) {
       out.estimate = std::move(held);
@@ -165,7 +159,7 @@ bool let_drift(const RefitWork& work, Refit& out) {
   FilterOptions options = options_like(work.without, work.threads);
   options.noise = out.estimate.noise;
   try {
-    FilterEstimate drifting = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
+    FilterEstimate drifting = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
     if (drifting.out_of_time) return false;
     const double needed = least * static_cast<double>(drifts.size());
     if (drifting.converged && drifting.objective > out.estimate.objective + needed) out.estimate = std::move(drifting);
@@ -298,7 +292,7 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
   }
   constexpr int steps_of_noise = 3;
   const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, {without.around, work.threads, steps_of_noise});
-  const double objective = -noise.minus_log_density + log_prior(model, same_roughness(model, without));
+  const double objective = -noise.minus_log_density + log_prior(model, penalties_as_of(without, model));
   const double drop = 2.0 * (objective - without.objective - prior_of_off(*screening.candidate_model));
   OneStep out{std::max(drop, screening.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing
   if (drop > 0.0) out.model = std::move(model);
@@ -324,7 +318,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
     FilterOptions options = options_like(without, work.threads);
     options.noise = noise;
     try {
-      FilterEstimate there = estimate_filter(start, same_roughness(start, without), work.experiments, options);
+      FilterEstimate there = estimate_filter(start, penalties_as_of(without, start), work.experiments, options);
       if (!out.ok || better(there, out.estimate)) out.estimate = std::move(there);
       out.ok = true;
     } catch (const RunError& error) {

@@ -8,6 +8,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/discover/bindings.h"
+#include "misfit/inference/standard_error.h"
 #include "misfit/inference/states.h"
 
 namespace misfit {
@@ -153,15 +154,12 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
 std::optional<std::string> undetermined_strengths(const Model& model, const Eigen::MatrixXd& covariance,
                                                   const std::vector<int>& strengths) {
   constexpr double least = 2.0;  // sigmas
-  const std::vector<int> free = model.free_parameters();
   std::string values;
   for (const int strength : strengths) {
-    const int column = place_of(free, strength);
-    if (column < 0 || column >= covariance.rows()) return std::nullopt;
-    const double sigma = std::sqrt(std::max(covariance(column, column), 0.0));
+    const std::optional<double> sigma = standard_error_of(model, covariance, strength);
     const Parameter& p = model.parameters[strength];
-    if (!(std::abs(p.value) < least * sigma)) return std::nullopt;
-    values += (values.empty() ? "" : ", ") + p.name + " = " + in_display_unit(p.value, p.unit, sigma);
+    if (!sigma || !(std::abs(p.value) < least * *sigma)) return std::nullopt;
+    values += (values.empty() ? "" : ", ") + p.name + " = " + in_display_unit(p.value, p.unit, *sigma);
   }
   if (values.empty()) return std::nullopt;
   return "its strength is not determined: " + values;

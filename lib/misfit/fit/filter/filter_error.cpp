@@ -20,6 +20,7 @@
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/record_residuals.h"
 #include "misfit/inference/short_record.h"
+#include "misfit/math/covariance.h"
 #include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
 
@@ -51,7 +52,7 @@ std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
                                          ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q))
                                          : Eigen::MatrixXd(information.inverse());
   std::vector<double> out;
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i) out.push_back(known[i] ? std::sqrt(std::max(covariance(i, i), 0.0)) : 0.0);
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) out.push_back(known[i] ? standard_error(covariance, i) : 0.0);
   return out;
 }
 

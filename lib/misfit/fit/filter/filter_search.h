@@ -245,7 +245,7 @@ class FilterSearch {
   ///   3. `restrict_likelihood`: correction of the noise's gradient and information for the estimated parameters (REML).
   ///   4. `invert_joint`: covariance of parameters and noise with roughness and priors.
   ///   5. `step_jointly`: a Newton step inside the bounds that raises the exact objective.
-  /// Ends when no step rises, not even along the axes of the covariance (climb_along_axes(), where a step promised little, twice at
+  /// Ends when no step rises, not even along the axes of the correlation matrix (climb_along_axes(), where a step promised little, twice at
   /// most: each costs about as much as a Newton step), or after a step of less than a sigma.
   void refine_jointly() {
     constexpr int most_steps = 20, most_climbs = 2;
