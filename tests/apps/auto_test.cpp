@@ -1,4 +1,4 @@
-// discover --auto: climbs while something is accepted, and stops where the camera has to be seen to first.
+// discover --auto: goes on while something is accepted, and stops where the camera has to be seen to first.
 
 #include <cmath>
 

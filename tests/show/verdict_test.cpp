@@ -55,7 +55,7 @@ struct Case {
     if (ladder) input.ladder = &*ladder;
     return verdict_of(input);
   }
-  void climb() {
+  void add_effect() {
     Rung first, second;
     first.rms = {{"w", {0.30, 0.0, "V"}}};
     first.k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 8.0}}};
@@ -150,7 +150,7 @@ TEST(Verdict, EffectsThatTheDataCannotDistinguishAreAllNamed) {
 
 TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCent) {
   Case c;
-  c.climb();
+  c.add_effect();
   c.fail_at_rest();
   c.rung_diagnosis = c.diagnosis;
   c.rung_diagnosis->maps.front().p_corrected = 0.7;
@@ -172,7 +172,7 @@ TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCen
 
 TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
   Case c;
-  c.climb();
+  c.add_effect();
   Candidate lag = candidate("lag", 1e-9, false);
   lag.actual_drop = 50.0;
   lag.why = "its size is odd";
@@ -186,7 +186,7 @@ TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
 
 TEST(Verdict, WhatIsStillMissingComesBeforeWhatWasAdded) {
   Case c;
-  c.climb();
+  c.add_effect();
   c.discovery = searched({candidate("drag", 1e-12, true)}, SearchOutcome::accepted, "Missing: drag");
   const Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::missing);
@@ -195,7 +195,7 @@ TEST(Verdict, WhatIsStillMissingComesBeforeWhatWasAdded) {
 
 TEST(Verdict, AnErrorThatRisesIsNotSaidToFall) {
   Case c;
-  c.climb();
+  c.add_effect();
   c.ladder->rungs[1].force = {{"dw/dt", {22.0, 1.0, "V/s"}}};
   c.ladder->rungs[1].k_step = {};
   EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the random force rises from 20.0 ± 1.0 V/s to 22.0 ± 1.0 V/s (+10 %)"));
@@ -203,7 +203,7 @@ TEST(Verdict, AnErrorThatRisesIsNotSaidToFall) {
 
 TEST(Verdict, AChangeWithinItsSigmaIsCalledSoAndTheMapWhereTheModelFailedLeads) {
   Case c;
-  c.climb();
+  c.add_effect();
   c.ladder->rungs[1].force = {{"dw/dt", {19.4, 0.9, "V/s"}}};
   c.ladder->rungs[1].k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 7.9}}};
   EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w, 32 samples ahead falls from 8 V to 7.9 V (-1.2 %)"));
@@ -257,7 +257,7 @@ TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
   c.discovery->unexplained_effects = {{"unknown_force", {{"of", "w"}, {"port", "dw/dt"}}}};
   EXPECT_THAT(c.verdict().next,
               AllOf(testing::StartsWith("misfit add "), HasSubstr(" unknown_force"), testing::EndsWith("--at 'of=w' --at 'port=dw/dt'")));
-  c.climb();
+  c.add_effect();
   EXPECT_EQ(c.verdict().kind, VerdictKind::unknown_form);
   EXPECT_THAT(c.verdict().sentence,
               AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("still missing that depends on w")));
@@ -282,7 +282,7 @@ TEST(Verdict, WithoutAUsableFitItSaysWhy) {
 
 TEST(Verdict, TheTrimStandsWithItsIntervalBesideTheReferences) {
   Case c;
-  c.climb();
+  c.add_effect();
   c.ladder->rungs[0].trim = Estimate{0.20, 0.01, "m"};
   c.ladder->rungs[1].trim = Estimate{0.30, 0.01, "m"};
   Comparison comparison;
@@ -297,7 +297,7 @@ TEST(Verdict, TheTrimStandsWithItsIntervalBesideTheReferences) {
 TEST(Verdict, IsWrittenWithTheChangeInPerCent) {
   const TemporaryFolder folder;
   Case c;
-  c.climb();
+  c.add_effect();
   write_verdict(folder.path() / "verdict.json", c.verdict());
   expect_parts(read_file(folder.path() / "verdict.json"), {"\"verdict\": \"effect_added\"", "\"change_per_cent\": -85.0", "\"unit\": \"V\"",
                                                            "\"next\": \"misfit discover configs/motor\""});

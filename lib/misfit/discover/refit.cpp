@@ -125,9 +125,9 @@ bool several_values_scanned(const CandidateModel& candidate_model, std::size_t i
          std::any_of(cells.begin(), cells.end(), [&](const auto& cell) { return cell[i] != cells.front()[i]; });
 }
 
-/// With its strengths at which the effect is whole held there, if the data allow it. False: there was no time to try, so that a part that
-/// was found says nothing.
-bool hold_whole(const RefitWork& work, Refit& out) {
+/// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood allows it.
+/// False: there was no time to try, so that a part that was found says nothing.
+bool fix_whole_strengths(const RefitWork& work, Refit& out) {
   constexpr double allowed = 2.0;  // of the log-likelihood
   const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
   if (whole.empty()) return true;
@@ -149,8 +149,9 @@ bool hold_whole(const RefitWork& work, Refit& out) {
   return true;
 }
 
-/// With the drifts of its shapes freed, if that gains what chance would once in a thousand times. False: there was no time to try.
-bool let_drift(const RefitWork& work, Refit& out) {
+/// Frees the drifts of its shapes (CoefficientSpec::drift_of), if that gains what chance would once in a thousand times. False: there was
+/// no time to try.
+bool free_drifts(const RefitWork& work, Refit& out) {
   constexpr double least = 5.4;  // of the log-likelihood: 10.8 in chi², 1 degree of freedom
   Model start = out.estimate.model;
   const std::vector<int> drifts = held_drifts(start);
@@ -313,7 +314,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const FilterEstimate& without = work.without;
   Refit out;
   out.request = screening.candidate_model->request;
-  const auto climb = [&](const Model& start, const std::optional<FilterNoise>& noise) {
+  const auto estimate_from = [&](const Model& start, const std::optional<FilterNoise>& noise) {
     if (watch.spent()) return;
     FilterOptions options = options_like(without, work.threads);
     options.noise = noise;
@@ -328,17 +329,17 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   };
   const auto no_maximum = [&] { return !out.ok || !out.estimate.converged; };
   if (work.afresh) {
-    climb(fresh_model(work, screening), std::nullopt);
+    estimate_from(fresh_model(work, screening), std::nullopt);
   } else {
-    if (from.model) climb(*from.model, from.noise);
-    if (no_maximum()) climb(start_model(without, screening, work.registry), without.noise);
+    if (from.model) estimate_from(*from.model, from.noise);
+    if (no_maximum()) estimate_from(start_model(without, screening, work.registry), without.noise);
     const double off = without.objective + prior_of_off(*screening.candidate_model);
-    if (no_maximum() || out.estimate.objective < off) climb(off_model(work, screening), without.noise);
+    if (no_maximum() || out.estimate.objective < off) estimate_from(off_model(work, screening), without.noise);
   }
   const bool in_time = !no_maximum() || !watch.spent();
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
-  if (!in_time || !hold_whole(work, out) || !let_drift(work, out))
+  if (!in_time || !fix_whole_strengths(work, out) || !free_drifts(work, out))
     return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
   note_changes(screening, work.registry, out);
   out.drop = drop_of(out.estimate, without, screening);

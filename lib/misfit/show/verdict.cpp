@@ -102,13 +102,13 @@ const Candidate* accepted(const Discovery& d) {
   return found == d.candidates.end() ? nullptr : &*found;
 }
 
-class Judge {
+class VerdictBuilder {
  public:
-  explicit Judge(const VerdictInput& input) : in_(input) {
+  explicit VerdictBuilder(const VerdictInput& input) : in_(input) {
     fit_ = in_.fits == nullptr ? nullptr : leading_fit(*in_.fits);
-    climbed_ = in_.ladder != nullptr && in_.ladder->rungs.size() > 1;
+    effects_added_ = in_.ladder != nullptr && in_.ladder->rungs.size() > 1;
     if (in_.diagnosis != nullptr && !in_.diagnosis->maps.empty()) out_.where = where_it_fails(in_.diagnosis->maps.front());
-    if (climbed_) {
+    if (effects_added_) {
       out_.errors = errors_between(in_.ladder->rungs.front(), in_.ladder->rungs.back());
     } else if (fit_ != nullptr) {
       out_.errors = errors_of(*fit_);
@@ -120,7 +120,7 @@ class Judge {
     if (fit_ == nullptr) {
       no_result();
     } else if (in_.discovery == nullptr) {
-      climbed_ ? added("whether more is missing has not been asked", command("discover")) : not_searched();
+      effects_added_ ? added("whether more is missing has not been asked", command("discover")) : not_searched();
     } else if (!in_.discovery->sweep_asks.empty()) {
       calibration();
     } else if (const Candidate* best = accepted(*in_.discovery)) {
@@ -150,7 +150,7 @@ class Judge {
 
   /// With the 95 % interval of the last one and what the references say.
   void add_trim() {
-    const Rung* last = climbed_ ? &in_.ladder->rungs.back() : nullptr;
+    const Rung* last = effects_added_ ? &in_.ladder->rungs.back() : nullptr;
     const std::optional<Estimate> before = last != nullptr ? in_.ladder->rungs.front().trim : fit_ != nullptr ? fit_->trim : std::nullopt;
     if (!before) return;
     out_.trim.emplace();
@@ -228,12 +228,12 @@ class Judge {
   void missing(const Candidate& best) {
     const std::string name = effect_at(best.effect, best.roles);
     const std::string values = best.parameters.empty() ? "" : ", with " + values_of(best.parameters);
-    if (!climbed_) with_candidate(best);
+    if (!effects_added_) with_candidate(best);
     std::string sentence = best.group.size() > 1
                                ? "one of " + join_words(best.group) + " is missing, and these data cannot say which: " + name + " fits best"
-                               : (climbed_ ? "still missing: " : "missing: ") + name;
+                               : (effects_added_ ? "still missing: " : "missing: ") + name;
     sentence += values + " (" + p_equals(best.p_value) + ")";
-    if (const std::string change = climbed_ ? change_by_ladder() : ""; !change.empty())
+    if (const std::string change = effects_added_ ? change_by_ladder() : ""; !change.empty())
       sentence += "; with " + names_added() + " " + change;
     say(best.group.size() > 1 ? VerdictKind::several_possible : VerdictKind::missing, sentence, command("add", best.effect));
   }
@@ -251,16 +251,16 @@ class Judge {
       say(VerdictKind::not_decided, d.verdict, command("discover") + " --round-limit 3600");
     } else if (!d.unexplained_port.empty()) {
       const std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
-                                              climbed_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
+                                              effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const std::string next = !d.unexplained_effects.empty()
                                    ? command("add", d.unexplained_effects.front().effect) + at_place(d.unexplained_effects.front().roles)
                                    : "look at the picture, then write the effect as one line of the study: misfit help study";
-      climbed_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
-    } else if (climbed_ && d.outcome == SearchOutcome::best_rejected) {
+      effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
+    } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       added("whether more is missing is not decided; " + best_rejected(d.candidates.front()), "", VerdictKind::not_decided);
     } else if (d.outcome == SearchOutcome::best_rejected || d.outcome == SearchOutcome::none_suits) {
       say(VerdictKind::not_decided, d.verdict, "");
-    } else if (climbed_) {
+    } else if (effects_added_) {
       added("nothing more is found missing", "");
     } else {
       nothing_missing(d);
@@ -306,13 +306,13 @@ class Judge {
 
   const VerdictInput& in_;
   const Fit* fit_ = nullptr;
-  bool climbed_ = false;
+  bool effects_added_ = false;
   Verdict out_;
 };
 
 }  // namespace
 
-Verdict verdict_of(const VerdictInput& input) { return Judge(input).verdict(); }
+Verdict verdict_of(const VerdictInput& input) { return VerdictBuilder(input).verdict(); }
 
 std::string shown(const ErrorChange& e) {
   const std::string remark = e.remark.empty() ? "" : " (" + e.remark + ")";
