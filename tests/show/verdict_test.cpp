@@ -230,7 +230,7 @@ TEST(Verdict, ACalibrationThatItsSweepContradictsComesBeforeEveryEffect) {
   const Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::calibration);
   EXPECT_THAT(v.sentence, AllOf(testing::StartsWith("It is the camera, not the physics"), HasSubstr("4.58 px RMS")));
-  EXPECT_EQ(v.next, "set [camera] take_in = [\"camera_roll\", \"image_centre\"] in the study, then misfit run configs/motor");
+  EXPECT_EQ(v.next, "set [camera] free = [\"camera_roll\", \"image_centre\"] in the study, then misfit run configs/motor");
   c.discovery->outcome = SearchOutcome::camera_against_flight;
   EXPECT_THAT(c.verdict().sentence, testing::StartsWith("The camera comes first"));
 }

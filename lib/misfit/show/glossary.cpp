@@ -27,7 +27,8 @@ Glossary further_glossary() {
   return {
       {"curve", "a parameter as a function of a quantity: a cubic spline with a roughness penalty"},
       {"driven", "motion excited by more than the model has: residuals are correlated, or a random force is estimated"},
-      {"jitter", "the coloured part of a channel's measurement noise: a damped resonance with a standard deviation and a frequency"},
+      {"coloured noise",
+       "the part of a channel's measurement noise that is not white: a damped resonance with a standard deviation and a frequency"},
       {"candidate", "an effect, or an unknown curve, that the model may lack"},
       {"cell", "one combination of the shapes at which a candidate is tested; effective: how many independent tests the cells are worth"},
       {"alias",

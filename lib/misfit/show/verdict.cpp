@@ -222,7 +222,7 @@ class VerdictBuilder {
     say(VerdictKind::calibration,
         (flight_too ? "the camera comes first: its" : "it is the camera, not the physics: its") +
             std::string(" calibration sweep asks for ") + join_words(asks) + ", which the camera of this study does not have" + residual,
-        fmt::format("set [camera] take_in = [\"{}\"] in the study, then {}", fmt::join(asks, "\", \""), command("run")));
+        fmt::format("set [camera] free = [\"{}\"] in the study, then {}", fmt::join(asks, "\", \""), command("run")));
   }
 
   void missing(const Candidate& best) {

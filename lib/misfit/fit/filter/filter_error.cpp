@@ -80,12 +80,12 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
     const std::string& unit = spec.outputs[o].unit;
     fit.noise[name] = as_estimate(2 + 4 * o, unit);
     if (!(sigmas[3 + 4 * o] > 0.0)) {
-      fit.facts["jitter of " + name] = "none: the measurement noise is white";
+      fit.facts["coloured noise of " + name] = "none: the measurement noise is white";
       continue;
     }
-    fit.noise[name + "_jitter"] = as_estimate(3 + 4 * o, unit);
-    fit.noise[name + "_jitter_frequency"] = as_estimate(4 + 4 * o, "Hz");
-    fit.noise[name + "_jitter_damping"] = as_estimate(5 + 4 * o, "-");
+    fit.noise[name + "_coloured"] = as_estimate(3 + 4 * o, unit);
+    fit.noise[name + "_coloured_frequency"] = as_estimate(4 + 4 * o, "Hz");
+    fit.noise[name + "_coloured_damping"] = as_estimate(5 + 4 * o, "-");
   }
 }
 
@@ -298,8 +298,8 @@ void describe_estimates(const FilterEstimate& estimate, Fit& fit) {
   describe_roughness(estimate.model, roughness_paths(problem, estimate.penalties, 1.0), fit);
 }
 
-/// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a jitter that is not
-/// there) has taken no degree of freedom from its variance.
+/// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a coloured noise that is
+/// not there) has taken no degree of freedom from its variance.
 void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
   const Degrees degrees = degrees_of(estimate);
   if (degrees.left() >= kShortRecord) return;

@@ -137,7 +137,7 @@ class FilterSearch {
       for (double& force : out_.noise.further_forces) force *= 2.0;
       for (auto& channel : out_.noise.channels) {
         channel.white *= 1.5;
-        channel.jitter *= 1.5;
+        channel.coloured *= 1.5;
       }
       runs = at_.linearise();
     }
@@ -190,8 +190,8 @@ class FilterSearch {
     return count > 0.0 ? squares / count : 0.0;
   }
 
-  /// The likelihood has a maximum per correlation time at which the random force can stand in for something else (jitter, the motion's own
-  /// memory): the search goes on from the highest, others nearly as high are named.
+  /// The likelihood has a maximum per correlation time at which the random force can stand in for something else (coloured noise, the
+  /// motion's own memory): the search goes on from the highest, others nearly as high are named.
   void survey_noise() {
     constexpr double clearly_higher = 0.5, nearly = 5.0;  // [log-likelihood]
     const std::vector<NoiseFit> maxima = noise_maxima(at_.runs(), out_.noise, {out_.around, options_.threads});

@@ -167,8 +167,8 @@ void mark_known(const FilterModel& model, FilterNoise& usual) {
   usual.prior = {model.force_group[port - model.force_ports.begin()], known.median, known.sigma / known.median};
 }
 
-/// White noise and jitter as large, well above the motion (circular frequency `motion`), which the model itself must explain; pack() lets
-/// the jitter's frequency down to half of this. A sensor with a clock of its own that shows nothing so fast has none.
+/// White noise and coloured noise as large, well above the motion (circular frequency `motion`), which the model itself must explain;
+/// pack() lets the coloured noise's frequency down to half of this. A sensor with a clock of its own that shows nothing so fast has none.
 ChannelNoise usual_channel(const Signals& signals, std::size_t o, const KnownNoise& known, const OutputSpec& output, double motion) {
   constexpr double share_of_rate = 0.15, highest_share = 0.3, above_motion = 3.0;
   const std::vector<double>& values = signals.measured[o].values;
@@ -176,9 +176,9 @@ ChannelNoise usual_channel(const Signals& signals, std::size_t o, const KnownNoi
   ChannelNoise out;
   out.white = known.sigma > 0.0 ? known.sigma : measurement_noise(values);
   if (!(out.white > 0.0)) out.white = output.noise > 0.0 ? output.noise : 1.0;
-  out.jitter_frequency = std::min(std::max(share_of_rate / step, least), highest_share / step);
-  out.no_jitter = out.jitter_frequency < least && have_own_clocks(signals);
-  out.jitter = known.fixed || out.no_jitter ? 1e-3 * out.white : out.white;
+  out.coloured_frequency = std::min(std::max(share_of_rate / step, least), highest_share / step);
+  out.no_coloured = out.coloured_frequency < least && have_own_clocks(signals);
+  out.coloured = known.fixed || out.no_coloured ? 1e-3 * out.white : out.white;
   return out;
 }
 

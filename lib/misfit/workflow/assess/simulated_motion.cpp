@@ -76,7 +76,8 @@ StochasticModel stochastic_model(const FilterEstimate& estimate, const Model& mo
     out.intensity[place] = force * std::sqrt(2.0 / estimate.noise.force_time);
     out.start_sigma[place] = force;
   }
-  for (const ChannelNoise& c : estimate.noise.channels) out.noise.push_back({c.white, c.jitter, c.jitter_frequency, c.jitter_damping});
+  for (const ChannelNoise& c : estimate.noise.channels)
+    out.noise.push_back({c.white, c.coloured, c.coloured_frequency, c.coloured_damping});
   return out;
 }
 
