@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
@@ -86,6 +87,44 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
     fit.noise[name + "_coloured"] = as_estimate(3 + 4 * o, unit);
     fit.noise[name + "_coloured_frequency"] = as_estimate(4 + 4 * o, "Hz");
     fit.noise[name + "_coloured_damping"] = as_estimate(5 + 4 * o, "-");
+  }
+}
+
+/// A part of the noise model in words, and whether its lower bound means that it is not there, which is said elsewhere.
+struct NoisePart {
+  std::size_t at;  ///< in pack()
+  std::string words, unit;
+  bool absent_at_lower;
+};
+
+std::vector<NoisePart> noise_parts(const FilterEstimate& estimate) {
+  const SystemSpec& spec = estimate.model.system->spec();
+  std::vector<NoisePart> out;
+  for (int group = 0; group < estimate.forced.force_groups(); ++group) {
+    const auto port = std::find(estimate.forced.force_group.begin(), estimate.forced.force_group.end(), group);
+    const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[port - estimate.forced.force_group.begin()]];
+    out.push_back({place_of_force(group, spec), std::string("the random force on ") + named.name, named.unit, true});
+  }
+  for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
+    const std::string of = std::string(" noise of ") + spec.outputs[o].name;
+    out.push_back({2 + 4 * o, "the white" + of, spec.outputs[o].unit, false});
+    out.push_back({3 + 4 * o, "the coloured" + of, spec.outputs[o].unit, true});
+  }
+  return out;
+}
+
+/// The bounds of pack() keep a search away from where nothing is determined: an estimate there is none.
+void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit) {
+  constexpr double nearest = 1e-3;  // of the logarithm
+  const NoiseVector vector = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
+  for (const auto& [at, words, unit, absent_at_lower] : noise_parts(estimate)) {
+    if (vector.upper[at] - vector.lower[at] < nearest) continue;  // held by the study
+    const bool lower = vector.value[at]<vector.lower[at] + nearest, upper = vector.value[at]> vector.upper[at] - nearest;
+    if (!upper && (!lower || absent_at_lower)) continue;
+    fit.warnings.push_back(words + " is at its " + (lower ? "lower" : "upper") + " bound " +
+                           in_display_unit(std::exp(vector.value[at]), unit) +
+                           ": the likelihood still rises beyond it, so that this is no estimate" +
+                           (lower ? ", and sigmas that rest on it may be too small" : ""));
   }
 }
 
@@ -328,6 +367,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
   if (estimate.covariance.size() > 0) describe_estimates(estimate, fit);
   add_noise(estimate, threads, fit);
+  warn_of_noise_at_bounds(estimate, fit);
   if (const std::string slow = fit.driven ? warning_of_slow_force(estimate) : ""; !slow.empty()) fit.warnings.push_back(slow);
   add_predictions(estimate, fit);
   report_gaps(estimate, fit);
