@@ -214,7 +214,7 @@ Blocks rung_blocks(const Ladder& ladder, const Rung& rung) {
   constexpr double negligible_drop = 1.0;  // of the drop
   if (rung.actual_drop) {
     out.paragraph(drop_sentence(rung));
-    if (*rung.actual_drop < negligible_drop) out.paragraph("The added effect explains nothing in these data.", Tone::warning);
+    if (*rung.actual_drop < negligible_drop) out.paragraph("The drop of the added effect is not significant.", Tone::warning);
   }
   if (!rung.note.empty()) out.paragraph(as_sentence(rung.note));
   std::vector<std::string> parameters;

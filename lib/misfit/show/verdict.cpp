@@ -210,8 +210,8 @@ class VerdictBuilder {
     }
   }
   [[nodiscard]] std::string residuals() const {
-    if (!fit_->force.empty()) return "no map of the missing force stands out";
-    return "the residuals of " + fit_->method + " look like noise";
+    if (!fit_->force.empty()) return "no map of the missing force is significant";
+    return "nothing stands out in the residuals of " + fit_->method;
   }
 
   void calibration() {

@@ -75,13 +75,13 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
   }
   fit.force["correlation_time"] = as_estimate(1, "s");
   fit.force["correlation_time"].interval = intervals[1];
-  if (!fit.driven) fit.facts["random_force"] = "the estimated random force is 0: the motion is not driven";
+  if (!fit.driven) fit.facts["random_force"] = "no random force is determined by these data: the motion counts as not driven";
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     const std::string& name = spec.outputs[o].name;
     const std::string& unit = spec.outputs[o].unit;
     fit.noise[name] = as_estimate(2 + 4 * o, unit);
     if (!(sigmas[3 + 4 * o] > 0.0)) {
-      fit.facts["coloured noise of " + name] = "none: the measurement noise is white";
+      fit.facts["coloured noise of " + name] = "not determined by these data: the measurement noise counts as white";
       continue;
     }
     fit.noise[name + "_coloured"] = as_estimate(3 + 4 * o, unit);
