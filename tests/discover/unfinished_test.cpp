@@ -29,7 +29,9 @@ class UnfinishedDiscovery : public testing::Test {
     delete request;
     delete signals;
   }
-  static Discovery discover(const DiscoverOptions& options) { return misfit::discover(*estimate, *request, registry(), *signals, options); }
+  static Discovery discover(const DiscoverOptions& options) {
+    return misfit::discover({*estimate, *request, registry(), *signals}, options);
+  }
 
   inline static std::vector<Signals>* signals = nullptr;
   inline static ModelRequest* request = nullptr;

@@ -223,7 +223,9 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Cand
 
 /// The model with the effect there, all held at the estimate; nullopt where the effect does not suit.
 std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                                 const Effect& effect, const Roles& roles) {
+                                                 const EffectPlace& place) {
+  const auto& [key, roles] = place;
+  const Effect& effect = registry.effect(key);
   CandidateModel out;
   out.effect = effect.spec().key;
   out.roles = roles;
@@ -276,7 +278,7 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
     if (!has_strength(effect.spec()) || effect.spec().has_unknown_form() || driven_by_noise(effect)) continue;
     for (const Roles& roles : enumerate_bindings(effect.spec(), system)) {
       if (roles.empty() && in_model(request, key)) continue;
-      std::optional<CandidateModel> candidate_model = candidate_model_at(estimate, request, registry, effect, roles);
+      std::optional<CandidateModel> candidate_model = candidate_model_at(estimate, request, registry, {key, roles});
       if (!candidate_model || already_listed(*candidate_model, out)) continue;
       fill(effect, calibration, operating_range, *candidate_model);
       if (std::find(suiting.begin(), suiting.end(), key) == suiting.end()) suiting.push_back(key);
@@ -287,12 +289,11 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
   return out;
 }
 
-std::optional<CandidateModel> candidate_model_of(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                                 const EffectRequest& effect, const Calibration* calibration) {
-  const Effect& asked = registry.effect(effect.kind);
+std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, const EffectRequest& effect, const Calibration* calibration) {
+  const Effect& asked = fitted.registry.effect(effect.kind);
   if (!has_strength(asked.spec()) || asked.spec().has_unknown_form() || driven_by_noise(asked)) return std::nullopt;
-  std::optional<CandidateModel> out = candidate_model_at(estimate, request, registry, asked, effect.roles);
-  if (out) fill(asked, calibration, OperatingRange(estimate), *out);
+  std::optional<CandidateModel> out = candidate_model_at(fitted.estimate, fitted.request, fitted.registry, {effect.kind, effect.roles});
+  if (out) fill(asked, calibration, OperatingRange(fitted.estimate), *out);
   return out;
 }
 

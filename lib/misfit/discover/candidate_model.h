@@ -41,8 +41,7 @@ inline constexpr int kTime = -1;
                                                            const Registry& registry, const Calibration* calibration);
 
 /// One effect as a study asks for it; nullopt where it has no strength, is driven by noise, or does not suit the system.
-[[nodiscard]] std::optional<CandidateModel> candidate_model_of(const FilterEstimate& estimate, const ModelRequest& request,
-                                                               const Registry& registry, const EffectRequest& effect,
+[[nodiscard]] std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, const EffectRequest& effect,
                                                                const Calibration* calibration);
 
 /// Ports that an effect writes, by name.

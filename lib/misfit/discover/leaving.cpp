@@ -95,17 +95,17 @@ bool may_leave(const FilterEstimate& estimate, const std::string& name, double s
   return any;
 }
 
-std::optional<Without> without_effect(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                      const std::vector<Signals>& experiments, const std::string& name, int threads) {
+std::optional<Without> without_effect(const FittedStudy& fitted, const std::string& name, int threads) {
+  const FilterEstimate& estimate = fitted.estimate;
   const BoundEffect* effect = effect_called(estimate.model, name);
   if (effect == nullptr) return std::nullopt;
   try {
     Without out;
-    out.request = request_without(request, estimate.model, *effect);
-    Model start = assemble(out.request, registry);
+    out.request = request_without(fitted.request, estimate.model, *effect);
+    Model start = assemble(out.request, fitted.registry);
     copy_values(estimate.model, start);
-    out.estimate =
-        estimate_filter(start, with_weights_of(estimate, start, curve_penalties(start)), experiments, options_like(estimate, threads));
+    out.estimate = estimate_filter(start, with_weights_of(estimate, start, curve_penalties(start)), fitted.experiments,
+                                   options_like(estimate, threads));
     if (!out.estimate.converged || out.estimate.out_of_time) return std::nullopt;
     out.drop = 2.0 * (estimate.objective - out.estimate.objective);
     for (const int index : own_parameters(estimate.model, *effect)) out.parameters += estimate.model.parameters[index].free ? 1 : 0;

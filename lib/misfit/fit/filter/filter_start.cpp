@@ -171,7 +171,9 @@ void mark_known(const FilterModel& model, FilterNoise& usual) {
 
 /// White noise and coloured noise as large, well above the motion (circular frequency `motion`), which the model itself must explain;
 /// pack() lets the coloured noise's frequency down to half of this. A sensor with a clock of its own that shows nothing so fast has none.
-ChannelNoise usual_channel(const Signals& signals, std::size_t o, const KnownNoise& known, const OutputSpec& output, double motion) {
+ChannelNoise usual_channel(const Model& model, const Signals& signals, std::size_t o, double motion) {
+  const KnownNoise& known = model.known_noise[o];
+  const OutputSpec& output = model.system->spec().outputs[o];
   constexpr double share_of_rate = 0.15, highest_share = 0.3, above_motion = 3.0;
   const std::vector<double>& values = signals.measured[o].values;
   const double step = own_step(signals, o), least = above_motion * motion / (2.0 * std::numbers::pi);
@@ -198,10 +200,8 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   const auto usual_force = [&](int group) { return share_of_motion * force_size(model, group, data.front(), rates) * of_equal_intensity; };
   out.force = usual_force(0);
   for (int group = 1; group < model.force_groups(); ++group) out.further_forces.push_back(usual_force(group));
-  const auto& outputs = model.model.system->spec().outputs;
   const double motion = motion_frequency(model.model, states);
-  for (std::size_t o = 0; o < outputs.size(); ++o)
-    out.channels.push_back(usual_channel(first, o, model.model.known_noise[o], outputs[o], motion));
+  for (std::size_t o = 0; o < first.measured.size(); ++o) out.channels.push_back(usual_channel(model.model, first, o, motion));
   mark_known(model, out);
   return out;
 }

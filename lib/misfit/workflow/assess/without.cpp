@@ -15,7 +15,7 @@ std::optional<Without> model_without(Session& session, const std::string& effect
   const auto work = filter_work(session);
   if (!work->estimate) return std::nullopt;
   const Watch watch("the model without " + effect, session.fit_limit(), session.options.listener.progress_of("discover"));
-  return without_effect(*work->estimate, work->prepared.request, session.registry, work->prepared.experiments, effect,
+  return without_effect({*work->estimate, work->prepared.request, session.registry, work->prepared.experiments}, effect,
                         session.options.threads);
 }
 
@@ -47,7 +47,7 @@ Discovery discover_in(Session& session, const Without& without, DiscoverOptions 
   options.threads = session.options.threads;
   options.calibration = calibration ? &*calibration : nullptr;
   options.refit_limit = session.asked_limit().value_or(usual_limit(session.options, work->fit.seconds));
-  return discover(without.estimate, without.request, session.registry, work->prepared.experiments, options);
+  return discover({without.estimate, without.request, session.registry, work->prepared.experiments}, options);
 }
 
 }  // namespace
