@@ -9,7 +9,7 @@
 #include "misfit/data/study_keys.h"
 #include "misfit/formula/syntax.h"
 #include "misfit/model/declared_keys.h"
-#include "misfit/show/words.h"
+#include "misfit/show/glossary.h"
 
 namespace misfit {
 namespace {
@@ -65,15 +65,15 @@ std::string effects_text(const Registry& registry) {
 
 std::string words_text() {
   std::string out;
-  const auto add = [&out](const Words& words) {
-    for (const auto& [word, meaning] : words) {
+  const auto add = [&out](const Glossary& terms) {
+    for (const auto& [word, meaning] : terms) {
       const std::string lines = wrap_text(meaning, columns, std::string(19, ' '));
       out += "  " + std::string(word) + lines.substr(2 + std::string_view(word).size()) + "\n";
     }
   };
-  add(twelve_words());
+  add(main_glossary());
   out += "\n";
-  add(further_words());
+  add(further_glossary());
   return out;
 }
 

@@ -100,7 +100,7 @@ Listener terminal_listener() {
           [](const std::string& name) -> ProgressFn {
             return [line = std::make_shared<Progress>(name)](std::size_t done, std::size_t total) { line->update(done, total); };
           },
-          [](const std::string& name) -> Watch::Hearer {
+          [](const std::string& name) -> Watch::ProgressCallback {
             return [line = std::make_shared<Progress>(name)](const SearchState& state) { line->update(state); };
           }};
 }

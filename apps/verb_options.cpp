@@ -126,7 +126,7 @@ void discover_options(CLI::App& verb, Options& options) {
   add_verbose(verb, options);
 }
 
-void add_verb_options(CLI::App& verb, Options& options) {
+void added_effect_options(CLI::App& verb, Options& options) {
   add_study(verb, options);
   verb.add_option("effect", options.effect, "key of the effect, or system:KIND")->type_name("EFFECT")->required();
   verb.add_option("--at", options.at,
@@ -240,7 +240,7 @@ constexpr VerbEntry verbs[] = {{"run", run_verb, run_options},
                                {"fit", fit_verb, fit_options},
                                {"diagnose", diagnose_verb, fit_options},
                                {"discover", discover_verb, discover_options},
-                               {"add", add_verb, add_verb_options},
+                               {"add", add_verb, added_effect_options},
                                {"remove", remove_verb, remove_options},
                                {"set", set_verb, set_options},
                                {"compare", compare_verb, fit_options},

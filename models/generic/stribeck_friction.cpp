@@ -5,15 +5,16 @@ namespace {
 
 using namespace misfit;
 
-/// Friction that is higher at the start of the motion: the excess over the sliding friction, which rises with it over its width and has
-/// faded at some times that. It needs coulomb_friction in the model, whose width it shares: by itself it would be taken for friction with a
-/// width of its own.
+/// Breakaway (Stribeck) friction: what dry friction is higher by at small rates than when sliding. With the rate it rises as the smoothed
+/// step of coulomb_friction does, over the same width, and falls back to 0 over a width stribeck_ratio times as large. It is an addition to
+/// coulomb_friction and shares its width; without that effect in the model it could not be told from dry friction with another width.
 struct StribeckFriction {
   static constexpr const char* formula = "F = -breakaway (tanh(|rate|/width) - tanh(|rate|/(stribeck_ratio width))) rate/|rate|";
   static constexpr const char* symbols =
-      "breakaway excess [port], stribeck_ratio of the rate where it has faded to the width [-], width of coulomb_friction [rate], rate "
-      "along the port(s) [any]";
-  static constexpr const char* valid = "boundary and mixed lubrication; below the width the bearing creeps instead of sticking";
+      "breakaway size of the excess [port], stribeck_ratio of the rates over which it falls and rises [-], width of coulomb_friction "
+      "[rate], rate along the port(s) [any]";
+  static constexpr const char* valid =
+      "boundary and mixed lubrication; at rates below the width it acts as a viscous friction: there is no true sticking";
   static constexpr const char* size = "a dry bearing: 10 to 50 % of its sliding friction, below some deg/s";
   static constexpr const char* source =
       "Makkar, Dixon, Sawyer, Hu, IEEE/ASME AIM (2005): tanh(g2 v) - tanh(g3 v) as the Stribeck part of a smooth friction";
@@ -33,7 +34,7 @@ struct StribeckFriction {
        .lower = 0.0,
        .upper = 1e15,
        .scale = 1.0,
-       .doc = "size of the excess; its peak is 0.30, 0.61, 0.82 of it at a ratio of 2, 5, 14"},
+       .doc = "size of the excess over the sliding friction; the largest excess is 0.30, 0.61, 0.82 of it at a ratio of 2, 5, 14"},
       {.name = "stribeck_ratio",
        .kind = CoefficientKind::shape,
        .value = 5.0,
@@ -41,7 +42,7 @@ struct StribeckFriction {
        .lower = 1.01,
        .upper = 1e3,
        .scale = 1.0,
-       .doc = "rate at which the excess has fallen to a quarter of `breakaway`, over the width",
+       .doc = "over the width: the rate at which the excess has fallen to a quarter of `breakaway`",
        .scan = {.from = 2.0, .to = 14.0, .count = 4}},
       {.name = "width",
        .kind = CoefficientKind::shape,
@@ -58,14 +59,14 @@ struct StribeckFriction {
     const T along = in.q[rate] / in.c[width], across = in.q[rate_lateral] / in.c[width];
     const T s = along * along + across * across;
     const T slow = 1.0 / in.c[stribeck_ratio];
-    // tanh a - tanh b = tanh(a - b) (1 - tanh a tanh b): of two equal numbers never the wrong sign.
+    // The difference of the formula as tanh a - tanh b = tanh(a - b) (1 - tanh a tanh b), which rounding cannot give the wrong sign.
     const T fading = above(T(1.0 - slow * s * tanh_over(s) * tanh_over(T(slow * slow * s))));
     const T excess = in.c[breakaway] * (1.0 - slow) * tanh_over(T((1.0 - slow) * (1.0 - slow) * s)) * fading;
     F[port] = -excess * along;
     F[port_lateral] = -excess * across;
   }
 
-  /// Slope at rate 0, by what a force does to the rate, as for coulomb_friction.
+  /// Slope of the force at rate 0, times `response`, the acceleration per unit force; as for coulomb_friction.
   static double fastest_rate(const Reads<double, double>& in, double response) {
     return in.c[breakaway] * (1.0 - 1.0 / in.c[stribeck_ratio]) / in.c[width] * response;
   }

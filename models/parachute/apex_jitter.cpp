@@ -14,7 +14,8 @@ struct ApexJitter {
   static constexpr const char* valid = "f below half the sampling rate; the same in both axes";
   static constexpr const char* size = "about 1 px near 9 Hz: more than the measurement noise, a tenth of a degree";
   static constexpr const char* source =
-      "paper, Parachute Attitude Measurements: motion of the disk relative to the band; var e = D^2/(4 zeta w^3) = 1 (Lyapunov equation)";
+      "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Parachute Attitude Measurements: motion "
+      "of the disk relative to the band; var e = D^2/(4 zeta w^3) = 1 (Lyapunov equation)";
   static constexpr const char* excludes = "the moment of the ring on the canopy";
 
   enum Port { P_y, P_z };

@@ -11,7 +11,9 @@ struct CameraHeightError {
       "P0 pixels by the calibrated camera, image_scale pixels per metre at the apex [px/m], h_c_error [m], roll of the calibrated camera";
   static constexpr const char* valid = "pinhole camera, square pixels, no distortion";
   static constexpr const char* size = "1 in (Table 2): 9 px, of which less than 1 px varies with the tilt up to 20 deg";
-  static constexpr const char* source = "paper Eqs. 1 and 7; Table 2: h_c +-0.0254 m, read as 3 sigma";
+  static constexpr const char* source =
+      "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Eqs. 1 and 7; Table 2: h_c +-0.0254 m, "
+      "read as 3 sigma";
   static constexpr const char* excludes = "a camera that looks up or down (image_centre), which it resembles";
 
   enum Quantity { image_scale };

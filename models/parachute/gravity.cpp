@@ -8,9 +8,10 @@ using namespace misfit;
 struct Gravity {
   static constexpr const char* formula = "M = m g R_cp cos(phi) cos(eta)";
   static constexpr const char* symbols = "m mass of the parachute [kg], R_cp [m], phi clock angle, eta tilt [rad], g = 9.80665 m/s^2";
-  static constexpr const char* valid = "always; the centre of mass is taken at R_cp as the paper does";
+  static constexpr const char* valid = "always; the centre of mass is taken at R_cp, as the source does";
   static constexpr const char* size = "6.4 N m for m = 0.206 kg, R_cp = 3.15 m: a fifth of the random moment";
-  static constexpr const char* source = "paper Eq. 8, last term; g: CGPM 1901";
+  static constexpr const char* source =
+      "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Eq. 8, last term; g: CGPM 1901";
   static constexpr const char* excludes = "weight of lines and swivel";
 
   enum Quantity { gravity_direction, gravity_direction_lateral };

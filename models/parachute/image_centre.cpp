@@ -10,7 +10,9 @@ struct ImageCentre {
   static constexpr const char* symbols = "P_y0, P_z0 pixels by the calibrated camera; errors of its centre [px]";
   static constexpr const char* valid = "a camera that does not move during the recording";
   static constexpr const char* size = "10 px (Table 2): 1.6 deg of tilt with K = 134 px/m";
-  static constexpr const char* source = "paper Table 2: P_y, P_z +-10 px, read as 3 sigma";
+  static constexpr const char* source =
+      "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Table 2: P_y, P_z +-10 px, read as 3 "
+      "sigma";
   static constexpr const char* excludes =
       "a camera that shakes or drifts; wind that is not along the tunnel axis looks the same (flow_angularity)";
   static constexpr const char* specialises = "bias";  // which would shift P_z without the prior that the calibration gives

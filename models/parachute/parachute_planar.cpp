@@ -94,7 +94,9 @@ struct ParachutePlanar {
     s.key = "parachute_planar";
     s.doc = induced ? "motion in the plane of the tilt, canopy feels V x - R_cp n'" : "the paper's Eq. 8: alpha_T is the state";
     s.formula = "I eta'' = sum of moments, I = (m + m_a) R_cp^2";
-    s.source = "paper Eq. 8; lib/misfit/README.md (8) to (11)";
+    s.source =
+        "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Eq. 8; lib/misfit/README.md (8) to "
+        "(11)";
     s.states = {{.name = "eta", .unit = "rad", .scale = 0.1}, {.name = "eta_rate", .unit = "rad/s", .rate_of = tilt, .scale = 2.0}};
     s.force_ports = {"pitching_moment"};
     s.inputs = {{.name = "phi", .unit = "rad", .doc = "clock angle of the axis, unwrapped", .hold = Hold::first_order},

@@ -174,7 +174,7 @@ struct ParachuteSpherical {
       P = to_image(camera, focal, T(focal * (k[R] * n[y]) / depth), T(focal * (k[R] * n[z] + camera.h_c) / depth));
     } else if constexpr (!std::is_same_v<T, formula::Symbol>) {
       const AxisGeometry rig{value_of(k[R]), value_of(k[l_b]), value_of(k[l_s])};
-      P = project_axis(CameraModel::plane_by_plane, camera, rig, T(atan2(n[z], n_x)), T(atan2(n[y], n_x)));
+      P = project_axis(AxisCamera{CameraModel::plane_by_plane, camera, rig}, T(atan2(n[z], n_x)), T(atan2(n[y], n_x)));
     }
     pixels[0] = P[0];
     pixels[1] = P[1];
@@ -187,7 +187,8 @@ struct ParachuteSpherical {
   bool read_states(const double* pixels, const double* k, double* n) const {
     const CameraParameters<double> camera = camera_of<double>(k);
     const auto angles =
-        read_axis(pinhole ? CameraModel::pinhole : CameraModel::plane_by_plane, camera, {k[R], k[l_b], k[l_s]}, pixels[0], pixels[1]);
+        read_axis(AxisCamera{pinhole ? CameraModel::pinhole : CameraModel::plane_by_plane, camera, AxisGeometry{k[R], k[l_b], k[l_s]}},
+                  pixels[0], pixels[1]);
     if (!angles) return false;
     const std::array<double, 3> direction = axis_direction((*angles)[0], (*angles)[1]);
     n[y] = direction[1];

@@ -4,15 +4,17 @@ namespace {
 
 using namespace misfit;
 
-/// Moment proportional to the rotation rate. Where the system has the relative wind in alpha_T the coefficient is C_mq; in the paper's form
-/// (lib/misfit/README.md, [1], Eq. 8, alpha_T the state itself) the same formula carries the paper's C_m_alphadot = C_mq + (2 R_cp/D)
-/// C_m_alpha cos(alpha_T).
+/// Aerodynamic moment proportional to the rate of rotation. Which derivative the coefficient is depends on the system's alpha_T. Where
+/// alpha_T is the angle of the relative wind, which turns with the rotation, it is the pitch damping derivative C_mq. Where alpha_T is the
+/// tilt itself (induced_angle = false: Eq. 8 of the source), it also has to stand for that turning of the wind and is the derivative
+/// C_m_alphadot = C_mq + (2 R_cp/D) dC_m/dalpha_T cos(alpha_T), lib/misfit/README.md (11).
 struct PitchDamping {
   static constexpr const char* formula = "M = q S D (D/2V) C_mq(alpha_T) omega";
   static constexpr const char* symbols = "q [Pa], S [m^2], D [m], V wind speed [m/s], omega rotation rate of the axis [rad/s], C_mq [-]";
-  static constexpr const char* valid = "quasi-steady: omega D/V << 1";
+  static constexpr const char* valid = "quasi-steady flow: reduced frequency pi f D/V << 1, f the frequency of the motion [Hz]";
   static constexpr const char* size = "C_mq = -0.25 at 1 rad/s: -12.8 N m at 736 Pa, 35.1 m/s, D = 1.58 m";
-  static constexpr const char* source = "paper Eq. 8; lib/misfit/README.md (10), (13)";
+  static constexpr const char* source =
+      "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Eq. 8; lib/misfit/README.md (10), (13)";
   static constexpr const char* excludes = "memory of the wake (aerodynamic lag)";
 
   enum Quantity { dynamic_pressure, wind_speed, pitch_rate, lateral_rate };

@@ -10,7 +10,9 @@ struct ScaleError {
   static constexpr const char* symbols = "P0 pixels by the calibrated camera, c its centre [px], K [px/m], K_error [px/m]";
   static constexpr const char* valid = "a lens without distortion (the distortion would grow with the cube)";
   static constexpr const char* size = "1.97 px/m (Table 2) of 134 px/m: 1.5 %, 0.2 deg at 12 deg of tilt";
-  static constexpr const char* source = "paper Table 2: K +-1.969 px/m, read as 3 sigma";
+  static constexpr const char* source =
+      "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Table 2: K +-1.969 px/m, read as 3 "
+      "sigma";
   static constexpr const char* excludes = "a wrong distance between rig and camera: a scale that depends on the tilt";
 
   enum Quantity { P_y, P_z };

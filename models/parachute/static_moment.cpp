@@ -12,7 +12,8 @@ struct StaticMoment {
       "q dynamic pressure [Pa], S area [m^2], D diameter [m], v x n component of (wind direction x axis) [-]";
   static constexpr const char* valid = "axisymmetric canopy, quasi-steady, |alpha_T| < 90 deg";
   static constexpr const char* size = "C_m about +-0.02 within 3 deg of the trim: 45 N m at 736 Pa for D = 1.58 m";
-  static constexpr const char* source = "paper Eq. 9; lib/misfit/README.md (10), (13)";
+  static constexpr const char* source =
+      "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Eq. 9; lib/misfit/README.md (10), (13)";
   static constexpr const char* specialises = "constant_force";  // which would shift C_m without the roughness that the curve has
   static constexpr const char* excludes = "side moment, hysteresis, wake of the strut";
 
@@ -51,7 +52,7 @@ struct StaticMoment {
              .quantities = {736.0, 0.17364818, 0.0},
              .coefficients = {0.0105 / 0.17364818},
              .ports = {23.900081, 0.0},
-             .source = "paper Eq. 9, Table 1"},
+             .source = "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Eq. 9, Table 1"},
             {.constants = {2.0, 1.5},
              .quantities = {100.0, 0.3, -0.1},
              .coefficients = {0.5},

@@ -75,7 +75,7 @@ TEST(RigOfTheFlight, IsDoneOnceAndShownInTheReport) {
 
 TEST(RigOfTheFlight, ReadingsOfItsNumbersAreApplied) {
   const Flight flight;
-  flight.perturb("{ R = \"0.03 m\", V = \"1 m/s\", m_a = 0.1 }", "readings = { R = \"sigma\", V = \"uniform\", m_a = \"2 sigma\" }");
+  flight.perturb("{ R = \"0.03 m\", V = \"1 m/s\", m_a = 0.1 }", "distribution = { R = \"sigma\", V = \"uniform\", m_a = \"2 sigma\" }");
   ASSERT_EQ(flight.uncertainty({"--runs", "5"}).status, 0);
   const json perturbed = flight.result("uncertainty.json").at("perturbed");
   const std::vector<std::pair<std::string, double>> wanted{{"R", 0.03}, {"V", 1.0 / std::sqrt(3.0)}, {"m_a", 0.05}};
@@ -120,8 +120,8 @@ TEST(WrongPerturbations, AreNamedWithTheirPlaceAndTheNearestName) {
   expect_refused(flight, "{ C_m = 0.1 }", {"'C_m' is estimated", "only what is held"});
   expect_refused(flight, "{ R1 = \"1 in\" }", {"through the calibration alone", "recalibrate"});
   expect_refused(flight, "{}", {"nothing is perturbed"});
-  expect_refused(flight, "{ R = \"1 in\" }", {"uncertainty.readings", "'3 sgma'", "'3 sigma'"}, "readings = \"3 sgma\"");
-  expect_refused(flight, "{ R = \"1 in\" }", {"'K' is not in perturb"}, "readings = { K = \"sigma\" }");
+  expect_refused(flight, "{ R = \"1 in\" }", {"uncertainty.distribution", "'3 sgma'", "'3 sigma'"}, "distribution = \"3 sgma\"");
+  expect_refused(flight, "{ R = \"1 in\" }", {"'K' is not in perturb"}, "distribution = { K = \"sigma\" }");
   expect_refused(flight, "{ K = \"1 px/m\" }", {"'K' is in perturb as well"}, "camera = \"calibration\"");
   expect_refused(flight, "{ K = \"1 px/m\" }", {"uncertainty.camera", "'calibration'"}, "camera = \"calibrated\"");
 }
@@ -151,7 +151,7 @@ TEST(WrongPerturbations, NoSectionNoRunsAndDecliningMethodsAreAnsweredInWords) {
 /// A camera in front of the apex is impossible: those runs are counted with their reason.
 TEST(RigsThatCannotBe, AreLeftOutAndCounted) {
   const Flight flight;
-  flight.perturb("{ l_s = \"2.2 m\" }", "readings = \"sigma\"");
+  flight.perturb("{ l_s = \"2.2 m\" }", "distribution = \"sigma\"");
   ASSERT_EQ(flight.uncertainty({"--runs", "40"}).status, 0);
   const json result = flight.result("uncertainty.json");
   EXPECT_GT(result.at("failed"), 0);

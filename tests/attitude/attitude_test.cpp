@@ -42,7 +42,7 @@ Calibration camera(CameraModel model = CameraModel::pinhole) {
 }
 
 std::array<double, 2> pixels(const Calibration& c, double theta, double psi) {
-  return project_axis(c.model, c.camera, AxisGeometry{rig().R, rig().l_b, rig().l_s}, theta, psi);
+  return project_axis(AxisCamera{c.model, c.camera, AxisGeometry{rig().R, rig().l_b, rig().l_s}}, theta, psi);
 }
 
 void append(Track& track, double t, std::array<double, 2> p, double sigma = 0.5) {

@@ -122,7 +122,7 @@ Row answer(const World& world, double seconds, const Registry& known, const Regi
     options.threads = threads;
     options.calibration = world.calibrated ? &world.calibration : nullptr;
     const double fitted = now();
-    const Discovery found = discover(estimate, request, known, world.experiments, options);
+    const Discovery found = discover({estimate, request, known, world.experiments}, options);
     row.discover_seconds = now() - fitted;
     judge(world, found, row);
     for (const auto& h : world.hidden) row.oracle_drop = std::max(row.oracle_drop, drop_of(world, h, estimate, request, truth, threads));

@@ -47,7 +47,7 @@ MotionSeries compared(const MotionPath& measured, unsigned first_seed, std::size
   for (std::size_t k = 0; k < runs; ++k)
     simulated.push_back(motion_numbers(random_motion(first_seed + static_cast<unsigned>(k), 1.0, measured.values.size()), scales));
   MotionDistances distances;
-  MotionSeries out = compare_motion("flight", measured, scales, motion_numbers(measured, scales), simulated, distances);
+  MotionSeries out = compare_motion(measured, scales, simulated, distances);
   if (overall != nullptr) *overall = overall_p_value(distances);
   return out;
 }
@@ -138,8 +138,8 @@ SimulatedMotion two_experiments(unsigned seed, double departs, std::size_t runs,
     std::vector<MotionNumbers> simulated;
     for (unsigned run = 0; run < runs; ++run)
       simulated.push_back(motion_numbers(random_motion(seed + 10 + 2 * run + experiment, 1.0, samples), scales));
-    out.series.push_back(
-        compare_motion(experiment == 0 ? "calm" : "wild", measured, scales, motion_numbers(measured, scales), simulated, distances));
+    out.series.push_back(compare_motion(measured, scales, simulated, distances));
+    out.series.back().experiment = experiment == 0 ? "calm" : "wild";
   }
   EXPECT_EQ(distances.size(), 8U) << "four groups of each experiment";
   out.p_value = overall_p_value(distances);

@@ -45,18 +45,18 @@ TEST(NoisyRun, MeasurementsHaveTheWhiteNoiseAndTheResonanceTheyAreGiven) {
   const auto noisy = noisy_run(model, like, {0.0, 0.2, 0.0, 0.0}, 7);
   const auto quiet = noisy_run({&still, {}, {}, {{}, {}}}, like, {0.0, 0.2, 0.0, 0.0}, 7);
   ASSERT_TRUE(noisy && quiet);
-  std::vector<double> white, jitter;
+  std::vector<double> white, coloured;
   for (std::size_t i = 0; i < like.samples(); ++i) {
     white.push_back(noisy->measured[0].values[i] - quiet->measured[0].values[i]);
-    jitter.push_back(noisy->measured[1].values[i] - quiet->measured[1].values[i]);
+    coloured.push_back(noisy->measured[1].values[i] - quiet->measured[1].values[i]);
   }
   EXPECT_NEAR(deviation(white), 0.5, 0.01);
-  EXPECT_NEAR(deviation(jitter), 1.2, 0.1);
+  EXPECT_NEAR(deviation(coloured), 1.2, 0.1);
   double product = 0.0;
-  for (std::size_t i = 0; i + 1 < jitter.size(); ++i) product += jitter[i] * jitter[i + 1];
+  for (std::size_t i = 0; i + 1 < coloured.size(); ++i) product += coloured[i] * coloured[i + 1];
   const double omega = 2.0 * std::numbers::pi * 9.0, h = 1.0 / 59.94, free = omega * std::sqrt(1.0 - 0.01);
   const double expected = std::exp(-0.1 * omega * h) * (std::cos(free * h) + 0.1 * omega / free * std::sin(free * h));
-  EXPECT_NEAR(product / (static_cast<double>(jitter.size()) * 1.2 * 1.2), expected, 0.1);
+  EXPECT_NEAR(product / (static_cast<double>(coloured.size()) * 1.2 * 1.2), expected, 0.1);
 }
 
 /// Gusts are unit processes times their size: noise added in squares that doubles the process makes up for half the size.

@@ -89,7 +89,7 @@ TEST_F(CalibrationFile, HasTheFieldsOfTheContract) {
   EXPECT_EQ(json["camera_roll"]["unit"], "rad");
   EXPECT_TRUE(json["camera_roll"]["sigma"].is_null());  // not free
   EXPECT_EQ(json["covariance"][0][1], -1e-9);
-  EXPECT_EQ(json["tests"]["image_centre"]["taken_in"], true);
+  EXPECT_EQ(json["tests"]["image_centre"]["selected"], true);
   EXPECT_TRUE(json["tests"]["camera_roll"]["values"][0].is_null());  // never nan
 }
 

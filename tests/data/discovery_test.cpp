@@ -124,7 +124,7 @@ Discovery example_discovery() {
   Candidate wake;
   wake.rank = 1;
   wake.effect = "strut_wake";
-  wake.family = "physics";
+  wake.family = CandidateFamily::physics;
   wake.ports = {"pitching_moment", "lateral_moment"};
   wake.roles = {{"rate", "pitch_rate"}};
   wake.score = 280.0;
@@ -147,6 +147,7 @@ Discovery example_discovery() {
                 {"second", {4.0}, {"lateral_moment"}, {"N m"}, {{7.0}}}};
   other.added = {{"flight", {0.0, 0.5}, {"dw/dt"}, {"rad/s^2"}, {{1.0, 2.0}}}};
   d.candidates = {wake, other};
+  d.outcome = SearchOutcome::accepted;
   d.verdict = "add strut_wake";
   d.sentences = {"a remark"};
   d.tried = {"14 effects"};
@@ -212,6 +213,7 @@ TEST(DiscoveryFiles, ReadBackWhatWasWritten) {
   const Discovery d = example_discovery();
   write_discovery(folder.path(), d);
   const Discovery back = read_discovery(folder.path());
+  EXPECT_EQ(back.outcome, d.outcome);
   EXPECT_EQ(back.verdict, d.verdict);
   EXPECT_EQ(back.sentences, d.sentences);
   EXPECT_EQ(back.tried, d.tried);
@@ -226,7 +228,7 @@ TEST(DiscoveryFiles, ReadBackWhatWasWritten) {
   ASSERT_EQ(back.candidates.size(), 2U);
   const Candidate& wake = back.candidates[0];
   EXPECT_EQ(wake.effect, "strut_wake");
-  EXPECT_EQ(wake.family, "physics");
+  EXPECT_EQ(wake.family, CandidateFamily::physics);
   EXPECT_EQ(wake.ports, d.candidates[0].ports);
   EXPECT_EQ(wake.roles, d.candidates[0].roles);
   EXPECT_EQ(wake.actual_drop, 290.0);

@@ -30,7 +30,7 @@ R = { value = 1.2, sigma = 0.05 }
 sweep = "static_sweep.csv"
 model = "plane_by_plane"
 offer = ["camera_roll"]
-take_in = ["image_centre"]
+free = ["image_centre"]
 [[experiment]]
 name = "flight"
 track = "track.csv"
@@ -86,7 +86,7 @@ TEST_F(StudyFolder, AWholeStudyGivesGeometryAndCamera) {
   EXPECT_EQ(study.camera.sweep->filename(), "static_sweep.csv");
   EXPECT_EQ(study.camera.model, "plane_by_plane");
   EXPECT_EQ(study.camera.offer, (std::vector<std::string>{"camera_roll"}));
-  EXPECT_EQ(study.camera.take_in, (std::vector<std::string>{"image_centre"}));
+  EXPECT_EQ(study.camera.free, (std::vector<std::string>{"image_centre"}));
 }
 
 TEST_F(StudyFolder, AWholeStudyGivesExperiments) {
@@ -246,13 +246,21 @@ TEST_F(StudyFolder, ThePerturbationsAreChecked) {
   expect_parts(error_with("[uncertainty]\nperturb = { R = \"1 mx\" }\n"), {"study.toml:4", "uncertainty.perturb.R", "'mx'"});
   expect_parts(error_with("[uncertainty]\nperturb = { R = \"0 m\" }\n"), {"study.toml:4", "uncertainty.perturb.R", "above 0"});
   expect_parts(error_with("[uncertainty]\nperturb = { R = [1] }\n"), {"study.toml:4", "uncertainty.perturb.R", "a number is expected"});
-  expect_parts(error_with("[uncertainty]\nreadings = \"4 sigma\"\n"), {"study.toml:4", "'4 sigma'", "'3 sigma'"});
-  expect_parts(error_with("[uncertainty]\nperturb = { R = 1 }\nreadings = { S = \"sigma\" }\n"), {"study.toml:5", "'S' is not in perturb"});
+  expect_parts(error_with("[uncertainty]\ndistribution = \"4 sigma\"\n"), {"study.toml:4", "'4 sigma'", "'3 sigma'"});
+  expect_parts(error_with("[uncertainty]\nperturb = { R = 1 }\ndistribution = { S = \"sigma\" }\n"),
+               {"study.toml:5", "'S' is not in perturb"});
   expect_parts(error_with("[uncertainty]\ncamera = \"given\"\n"), {"study.toml:4", "valid: calibration"});
 }
 
-TEST_F(StudyFolder, ThePerturbationsKeepTheirOrderUnitsAndReadings) {
-  const Study study = read_with("[uncertainty]\nperturb = { R = \"6 in\", K = 2, m_a = \"0.1 kg\" }\nreadings = { K = \"uniform\" }\n");
+TEST_F(StudyFolder, AKeyThatHadAnotherNameIsRefusedWithTheNewOne) {
+  expect_parts(error_with("[uncertainty]\nreadings = \"sigma\"\n"),
+               {"study.toml:4", "uncertainty.readings: this key is called distribution now"});
+  expect_parts(error_with("[camera]\nsweep = \"sweep.csv\"\ntake_in = [\"camera_roll\"]\n"),
+               {"study.toml:5", "camera.take_in: this key is called free now"});
+}
+
+TEST_F(StudyFolder, ThePerturbationsKeepTheirOrderUnitsAndDistributions) {
+  const Study study = read_with("[uncertainty]\nperturb = { R = \"6 in\", K = 2, m_a = \"0.1 kg\" }\ndistribution = { K = \"uniform\" }\n");
   ASSERT_TRUE(study.uncertainty);
   const UncertaintyStudy& u = *study.uncertainty;
   EXPECT_EQ(u.runs, 1000);
@@ -260,11 +268,11 @@ TEST_F(StudyFolder, ThePerturbationsKeepTheirOrderUnitsAndReadings) {
   ASSERT_EQ(u.perturb.size(), 3U);
   EXPECT_EQ(u.perturb[0].name, "R");
   EXPECT_NEAR(u.perturb[0].number.value, 0.1524, 1e-12);
-  EXPECT_EQ(u.perturb[0].reading, "3 sigma");
+  EXPECT_EQ(u.perturb[0].distribution, "3 sigma");
   EXPECT_EQ(u.perturb[1].number.unit, "");
-  EXPECT_EQ(u.perturb[1].reading, "uniform");
+  EXPECT_EQ(u.perturb[1].distribution, "uniform");
   EXPECT_EQ(u.perturb[2].name, "m_a");
-  EXPECT_EQ(read_with("[uncertainty]\nperturb = { R = 1 }\nreadings = \"sigma\"\n").uncertainty->perturb[0].reading, "sigma");
+  EXPECT_EQ(read_with("[uncertainty]\nperturb = { R = 1 }\ndistribution = \"sigma\"\n").uncertainty->perturb[0].distribution, "sigma");
   EXPECT_TRUE(read_with("[uncertainty]\ncamera = \"calibration\"\n").uncertainty->calibrated_camera);
   EXPECT_FALSE(read_with("").uncertainty);
 }

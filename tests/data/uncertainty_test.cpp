@@ -48,7 +48,7 @@ TEST(UncertaintyFile, IsReadAsItWasWritten) {
   EXPECT_EQ(after.method, before.method);
   EXPECT_EQ(after.failures, before.failures);
   EXPECT_EQ(after.notes, before.notes);
-  EXPECT_EQ(after.perturbed[0].reading, before.perturbed[0].reading);
+  EXPECT_EQ(after.perturbed[0].distribution, before.perturbed[0].distribution);
   const SpreadNumber& trim = *after.find("trim");
   EXPECT_EQ(trim.unit, "rad");
   EXPECT_NEAR(trim.mean, 12.5 * degree, 1e-12);

@@ -170,7 +170,7 @@ Calibration asking_for_roll() {
   return calibration;
 }
 
-Discovery accepting(const std::string& effect, const std::string& family) {
+Discovery accepting(const std::string& effect, CandidateFamily family) {
   Discovery d;
   d.candidates.resize(1);
   d.candidates[0].effect = effect;
@@ -181,26 +181,28 @@ Discovery accepting(const std::string& effect, const std::string& family) {
 
 TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
   const Calibration calibration = asking_for_roll();
-  Discovery d = accepting("camera_roll", "sensor");
+  Discovery d = accepting("camera_roll", CandidateFamily::sensor);
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
   EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("recalibrate with them enabled"));
+  EXPECT_EQ(d.outcome, SearchOutcome::camera_incomplete);
   EXPECT_THAT(d.verdict, testing::StartsWith("The camera model is incomplete"));
   EXPECT_THAT(d.sweep_asks, testing::ElementsAre("camera_roll"));
 }
 
 TEST(Verdict, PhysicsSeenThroughACameraThatItsSweepDoubtsIsNotAccepted) {
   const Calibration calibration = asking_for_roll();
-  Discovery d = accepting("strut_wake", "physics");
+  Discovery d = accepting("strut_wake", CandidateFamily::physics);
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
+  EXPECT_EQ(d.outcome, SearchOutcome::camera_against_flight);
   EXPECT_THAT(d.verdict, testing::StartsWith("Sweep and flight disagree"));
   EXPECT_THAT(d.verdict, testing::HasSubstr("the flight gives evidence of strut_wake"));
 }
 
 TEST(Verdict, AForceThatNothingExplainsIsNotTheCamerasAlone) {
   const Calibration calibration = asking_for_roll();
-  Discovery d = accepting("camera_roll", "sensor");
+  Discovery d = accepting("camera_roll", CandidateFamily::sensor);
   d.unexplained_port = "moment";
   d.unexplained_quantity = "alpha_T";
   add_camera_remarks(&calibration, 0.01, d);
@@ -214,10 +216,10 @@ TEST(Verdict, SignificantPhysicsThatWasRefusedIsNotTheCamerasAlone) {
   Discovery d;
   d.candidates.resize(2);
   d.candidates[0].effect = "strut_wake";
-  d.candidates[0].family = "physics";
+  d.candidates[0].family = CandidateFamily::physics;
   d.candidates[0].p_value = 0.02;
   d.candidates[1].effect = "unknown:moment(phi)";
-  d.candidates[1].family = "unknown";
+  d.candidates[1].family = CandidateFamily::unknown;
   d.candidates[1].p_value = 0.005;
   Discovery weaker = d;
   weaker.candidates[1].p_value = 0.05;
@@ -238,6 +240,7 @@ TEST(Verdict, ALargerDropThatIsRefusedIsNamed) {
   d.candidates[1].actual_drop = 100.0;
   d.candidates[1].why = "the held-out likelihood does not rise (-0.4)";
   write_verdict(d, std::nullopt, 0.01, false);
+  EXPECT_EQ(d.outcome, SearchOutcome::accepted);
   EXPECT_THAT(d.verdict, testing::StartsWith("Missing: strut_wake"));
   EXPECT_THAT(d.sentences,
               testing::Contains("upwash has a larger drop (100) but is not accepted: the held-out likelihood does not rise (-0.4)"));
@@ -299,7 +302,7 @@ TEST(CandidateModels, WhatRunsWithTheClockReadsTheTime) {
 TEST(Screen, SaysWhichFrequenciesItLookedAt) {
   CandidateModel candidate_model;
   candidate_model.effect = "vortex_shedding";
-  candidate_model.family = "physics";
+  candidate_model.family = CandidateFamily::physics;
   ScreeningResult s;
   s.candidate_model = &candidate_model;
   s.cells = 8;

@@ -16,7 +16,7 @@ Discovery discovered(ModelRequest model, const std::vector<std::string>& free, c
   const std::vector<Signals> signals = {recorded};
   const Model start = assemble(model, registry());
   const FilterEstimate estimate = estimate_filter(start, {}, signals);
-  return discover(estimate, model, registry(), signals);
+  return discover({estimate, model, registry(), signals});
 }
 
 Discovery in_cart(const std::string& hidden, const Values& values) {

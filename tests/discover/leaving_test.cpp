@@ -21,7 +21,7 @@ struct WithNeedlessFriction {
     estimate = estimate_filter(assemble(request, registry()), {}, signals);
   }
   [[nodiscard]] std::optional<Without> without(const std::string& name) const {
-    return without_effect(estimate, request, registry(), signals, name, 1);
+    return without_effect({estimate, request, registry(), signals}, name, 1);
   }
 };
 

@@ -63,7 +63,7 @@ Discovery of_sledge(const Rubs& rubs) {
   const ModelRequest request = request_of("text");
   const std::vector<Signals> signals = {record_of_sledge(rubs)};
   const FilterEstimate estimate = estimate_filter(assemble(request, *registry), {}, signals);
-  return discover(estimate, request, *registry, signals);
+  return discover({estimate, request, *registry, signals});
 }
 
 TEST(Pairs, DryFrictionAndDragAreNotTakenForACubic) {

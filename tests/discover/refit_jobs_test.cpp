@@ -134,9 +134,9 @@ TEST_F(RefitJobs, ThatFailedSayWhy) {
 TEST_F(RefitJobs, ASearchThatKeepsThemFindsTheSame) {
   const TemporaryFolder folder;
   DiscoverOptions options;
-  const Discovery plain = discover(estimate_, request_, registry(), signals_, options);
+  const Discovery plain = discover({estimate_, request_, registry(), signals_}, options);
   options.refits = {folder.path(), "digest", 0, 0};
-  const Discovery kept = discover(estimate_, request_, registry(), signals_, options);
+  const Discovery kept = discover({estimate_, request_, registry(), signals_}, options);
   ASSERT_EQ(kept.candidates.size(), plain.candidates.size());
   EXPECT_EQ(kept.verdict, plain.verdict);
   EXPECT_TRUE(kept.candidates.front().accepted);
@@ -148,7 +148,7 @@ TEST_F(RefitJobs, ASearchThatIsStoppedSaysSo) {
   const std::atomic<bool> stop{true};
   DiscoverOptions options;
   options.stop = &stop;
-  EXPECT_THROW(static_cast<void>(discover(estimate_, request_, registry(), signals_, options)), RunError);
+  EXPECT_THROW(static_cast<void>(discover({estimate_, request_, registry(), signals_}, options)), RunError);
 }
 
 }  // namespace

@@ -29,7 +29,9 @@ class UnfinishedDiscovery : public testing::Test {
     delete request;
     delete signals;
   }
-  static Discovery discover(const DiscoverOptions& options) { return misfit::discover(*estimate, *request, registry(), *signals, options); }
+  static Discovery discover(const DiscoverOptions& options) {
+    return misfit::discover({*estimate, *request, registry(), *signals}, options);
+  }
 
   inline static std::vector<Signals>* signals = nullptr;
   inline static ModelRequest* request = nullptr;
@@ -40,6 +42,7 @@ TEST_F(UnfinishedDiscovery, ARefitWithoutTimeSaysNothingAgainstItsEffect) {
   DiscoverOptions options;
   options.refit_limit = 1e-6;
   const Discovery found = discover(options);
+  EXPECT_EQ(found.outcome, SearchOutcome::not_decided);
   EXPECT_THAT(found.verdict, StartsWith("Not decided: the refit"));
   EXPECT_THAT(found.verdict, AllOf(HasSubstr("coulomb_friction"), HasSubstr("not finished within the time limit")));
   const auto friction =
@@ -56,6 +59,7 @@ TEST_F(UnfinishedDiscovery, ARoundWithoutTimeEndsInWords) {
   DiscoverOptions options;
   options.round_limit = 1e-6;
   const Discovery found = discover(options);
+  EXPECT_EQ(found.outcome, SearchOutcome::not_finished);
   EXPECT_THAT(found.verdict, StartsWith("Not finished: the time limit of 1e-06 s for this round of discover was spent before"));
   for (const Candidate& c : found.candidates) EXPECT_FALSE(c.accepted);
 }

@@ -61,11 +61,11 @@ struct Cart {
   }
 };
 
-/// All states [model | jitter] of all samples and all measurements as one Gaussian: means and covariances, with the filter's own Φ.
+/// All states [model | coloured noise] of all samples and all measurements as one Gaussian: means and covariances, with the filter's own Φ.
 struct Dense {
   Eigen::VectorXd state_mean, y, y_mean;
   Eigen::MatrixXd states, y_covariance, cross;  ///< state × state, measurement × measurement, state × measurement
-  Eigen::Index n = 0;                           ///< states of one sample, jitter included
+  Eigen::Index n = 0;                           ///< states of one sample, coloured noise included
 
   Dense(const Cart& cart, const FilterTrace& trace) {
     const Eigen::Index m = trace.n, N = static_cast<Eigen::Index>(trace.samples);
@@ -76,7 +76,7 @@ struct Dense {
     P.topLeftCorner(m, m) = cart.data.covariance;
     for (int f : cart.model.force_states) P(f, f) = std::pow(cart.noise.force, 2);
     for (Eigen::Index o = 0; o < 2; ++o)
-      P(m + 2 * o, m + 2 * o) = P(m + 2 * o + 1, m + 2 * o + 1) = std::pow(cart.noise.channels[static_cast<std::size_t>(o)].jitter, 2);
+      P(m + 2 * o, m + 2 * o) = P(m + 2 * o + 1, m + 2 * o + 1) = std::pow(cart.noise.channels[static_cast<std::size_t>(o)].coloured, 2);
     Stepper stepper(cart.model.model);
     Eigen::VectorXd x = cart.data.start;
     stepper.prepare(x.data(), cart.data.inputs.at(0), 0.0);
@@ -105,7 +105,7 @@ struct Dense {
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
     A.topLeftCorner(m, m) = phi(trace, k);
     for (Eigen::Index o = 0; o < 2; ++o) {
-      const auto& p = step.jitter[static_cast<std::size_t>(o)].phi;
+      const auto& p = step.coloured[static_cast<std::size_t>(o)].phi;
       A.block(m + 2 * o, m + 2 * o, 2, 2) << p[0], p[1], p[2], p[3];
     }
     return A;
@@ -128,7 +128,7 @@ struct Dense {
       }
     }
     for (Eigen::Index o = 0; o < 2; ++o) {
-      const auto& q = step.jitter[static_cast<std::size_t>(o)].q;
+      const auto& q = step.coloured[static_cast<std::size_t>(o)].q;
       Q.block(m + 2 * o, m + 2 * o, 2, 2) << q[0], q[1], q[1], q[2];
     }
     return Q;

@@ -20,7 +20,7 @@ void expect_within(const Estimate& estimate, double truth, const std::string& na
   EXPECT_LT(std::abs(estimate.value - truth), 3.0 * estimate.sigma) << name << ' ' << estimate.value << " ± " << estimate.sigma;
 }
 
-TEST(EstimateFilter, RecoversForceJitterAndTrim) {
+TEST(EstimateFilter, RecoversForceColouredNoiseAndTrim) {
   const std::vector<Signals> flights = {fly(30.0, 3)};
   const FilterEstimate estimate = fitted(request_for(flights), flights);
   EXPECT_TRUE(estimate.converged) << estimate.message;
@@ -30,8 +30,8 @@ TEST(EstimateFilter, RecoversForceJitterAndTrim) {
   EXPECT_LT(fit.force.at("moment_y").sigma, 4.0);
   expect_within(fit.force.at("correlation_time"), 0.1, "correlation time");
   expect_within(fit.noise.at("P_y"), 0.5, "white");
-  expect_within(fit.noise.at("P_z_jitter"), 1.0, "jitter");
-  expect_within(fit.noise.at("P_z_jitter_frequency"), 9.0, "jitter frequency");
+  expect_within(fit.noise.at("P_z_coloured"), 1.0, "coloured noise");
+  expect_within(fit.noise.at("P_z_coloured_frequency"), 9.0, "frequency of the coloured noise");
   ASSERT_TRUE(fit.trim.has_value());
   expect_within(*fit.trim, 12.0 * degree, "trim");
 }

@@ -45,12 +45,12 @@ TEST(Discretise, ForceAloneKeepsItsVariance) {
   EXPECT_NEAR(25.0 * std::exp(-0.6) + step.m[0][0], 25.0, 1e-9);
 }
 
-TEST(Discretise, JitterIsStationaryWithTheCorrelationOfADampedResonance) {
+TEST(Discretise, ColouredNoiseIsStationaryWithTheCorrelationOfADampedResonance) {
   const ChannelNoise channel{0.5, 1.3, 9.0, 0.2};
   constexpr double h = 1.0 / 59.94;
   const NoiseStep step = discretise({1.0, 0.1, {channel}}, h);
-  const auto& p = step.jitter[0].phi;
-  const auto& q = step.jitter[0].q;
+  const auto& p = step.coloured[0].phi;
+  const auto& q = step.coloured[0].q;
   Eigen::Matrix2d F, Q;
   F << p[0], p[1], p[2], p[3];
   Q << q[0], q[1], q[1], q[2];
@@ -73,7 +73,7 @@ TEST(NoiseVector, KeepsTheForcesOfEveryUnitOfPorts) {
   const FilterNoise again = unpack(packed.value, spec);
   EXPECT_THAT(again.further_forces, testing::ElementsAre(testing::DoubleNear(0.7, 1e-15), testing::DoubleNear(11.0, 1e-14)));
   EXPECT_NEAR(again.force, 3.0, 1e-15);
-  EXPECT_NEAR(again.channels[1].jitter_frequency, 20.0, 1e-13);
+  EXPECT_NEAR(again.channels[1].coloured_frequency, 20.0, 1e-13);
   for (int group = 0; group < 3; ++group)
     EXPECT_NEAR(packed.value[place_of_force(group, spec)], std::log(noise.force_of(group)), 1e-15) << group;
 }

@@ -91,7 +91,7 @@ std::vector<double> with_gains_held(const Cart& cart, const FilterTrace& trace, 
   Model moved = cart.model.model;
   for (std::size_t i = 0; i < values.size(); ++i) moved.parameters[i].value = values[i];
   Stepper stepper(moved);
-  Eigen::VectorXd x = cart.data.start, jitter = Eigen::VectorXd::Zero(4);
+  Eigen::VectorXd x = cart.data.start, coloured = Eigen::VectorXd::Zero(4);
   stepper.prepare(x.data(), cart.data.inputs.at(0), 0.0);
   std::vector<double> out;
   for (std::size_t k = 0; k < trace.samples; ++k) {
@@ -101,20 +101,20 @@ std::vector<double> with_gains_held(const Cart& cart, const FilterTrace& trace, 
     for (std::size_t o = 0; o < 2; ++o) {
       const std::size_t at = 2 * k + o;
       const Eigen::Map<const Eigen::VectorXd> H(trace.H.data() + at * 3, 3), K(trace.K.data() + at * 3, 3), Kj(trace.Kj.data() + at * 4, 4);
-      const double e = cart.signals.measured[o].values[k] - y[o] - H.dot(x - predicted) - jitter[2 * static_cast<Eigen::Index>(o)];
+      const double e = cart.signals.measured[o].values[k] - y[o] - H.dot(x - predicted) - coloured[2 * static_cast<Eigen::Index>(o)];
       out.push_back(e / std::sqrt(trace.S[at]));
       x += K * e;
-      jitter += Kj * e;
+      coloured += Kj * e;
     }
     if (k + 1 == trace.samples) break;
     const double t0 = cart.signals.t[k], t1 = cart.signals.t[k + 1];
     EXPECT_TRUE(stepper.step(x.data(), {t0, t1, cart.data.inputs.at(k), cart.data.inputs.at(k + 1)}));
     const NoiseStep step = discretise(cart.noise, t1 - t0);
     for (Eigen::Index o = 0; o < 2; ++o) {
-      const auto& p = step.jitter[static_cast<std::size_t>(o)].phi;
-      const double first = jitter[2 * o], second = jitter[2 * o + 1];
-      jitter[2 * o] = p[0] * first + p[1] * second;
-      jitter[2 * o + 1] = p[2] * first + p[3] * second;
+      const auto& p = step.coloured[static_cast<std::size_t>(o)].phi;
+      const double first = coloured[2 * o], second = coloured[2 * o + 1];
+      coloured[2 * o] = p[0] * first + p[1] * second;
+      coloured[2 * o + 1] = p[2] * first + p[3] * second;
     }
   }
   return out;

@@ -67,6 +67,18 @@ TEST(KnownNoise, GivesSigmasWhereTooFewSamplesShowIt) {
   EXPECT_GT(fitted(false, samples, KnownNoise{noise, true}).parameters.at("a").sigma, 0.0);
 }
 
+TEST(KnownNoise, AnEstimateAtItsBoundIsSaid) {
+  const auto said = [](const Fit& fit) {
+    return std::any_of(fit.warnings.begin(), fit.warnings.end(), [](const std::string& w) {
+      return w.starts_with("the white noise of y is at its lower bound ") && w.find("no estimate") != std::string::npos;
+    });
+  };
+  constexpr double far_above = 500.0;  // the search goes down to a hundredth of where it starts
+  EXPECT_TRUE(said(fitted(true, 600, KnownNoise{far_above * noise, false})));
+  EXPECT_FALSE(said(fitted(true, 600, {})));
+  EXPECT_FALSE(said(fitted(true, 600, KnownNoise{noise, true}))) << "held, not estimated";
+}
+
 TEST(KnownForceTime, IsHeld) {
   const auto registry = registry_with(decay_text);
   Model model = assemble(request_of("text"), *registry);

@@ -75,8 +75,8 @@ TEST(NoiseLevels, NorInTheFilter) {
   EXPECT_TRUE(of_y.converged) << of_y.message;
   EXPECT_NEAR(of_y.model.parameters[0].value, 1.3, 0.02);
   EXPECT_NEAR(of_z.model.parameters[0].value, 1.3, 0.02);
-  constexpr double of_jitter = 3.0;  // what is left of y is no white noise: its spectrum has maxima of its own, 2 apart
-  EXPECT_NEAR(of_y.objective, of_z.objective, of_jitter) << "that which follows y is lower by hundreds";
+  constexpr double of_coloured_noise = 3.0;  // what is left of y is no white noise: its spectrum has maxima of its own, 2 apart
+  EXPECT_NEAR(of_y.objective, of_z.objective, of_coloured_noise) << "that which follows y is lower by hundreds";
 }
 
 TEST(NoiseLevels, AMaximumNearlyAsHighIsNamedWithItsNoise) {

@@ -37,8 +37,8 @@ double worst_round_trip(CameraModel model, const CameraParameters<double>& c) {
   double worst = 0.0;
   for (double theta = -25.0; theta <= 25.0; theta += 2.5) {
     for (double psi = -25.0; psi <= 25.0; psi += 2.5) {
-      const auto p = project_axis(model, c, rig, theta * deg, psi * deg);
-      const auto read = read_axis(model, c, rig, p[0], p[1]);
+      const auto p = project_axis(AxisCamera{model, c, rig}, theta * deg, psi * deg);
+      const auto read = read_axis(AxisCamera{model, c, rig}, p[0], p[1]);
       if (!read) return 1e9;
       worst = std::max({worst, std::abs((*read)[0] - theta * deg), std::abs((*read)[1] - psi * deg)});
     }
@@ -57,18 +57,18 @@ TEST(Camera, ReadingUndoesProjectionForBothModelsAndAllParameters) {
 TEST(Camera, PlaneByPlaneIsThePapersEquationOne) {
   const auto c = plain_camera();
   const double theta = 12.0 * deg;
-  const auto p = project_axis(CameraModel::plane_by_plane, c, rig, theta, 0.0);
+  const auto p = project_axis(AxisCamera{CameraModel::plane_by_plane, c, rig}, theta, 0.0);
   EXPECT_NEAR((3.447 * std::sin(theta) + 0.1524) / (5.61 - 3.447 * std::cos(theta)), p[1] / (5.69 * 133.86), 1e-14);
   EXPECT_EQ(p[0], 0.0);  // h_c = 0 in the x-y plane
 }
 
 TEST(Camera, ModelsAgreeInThePitchPlaneAndPartOffIt) {
   const auto c = plain_camera();
-  const auto a = project_axis(CameraModel::plane_by_plane, c, rig, 12.0 * deg, 0.0);
-  const auto b = project_axis(CameraModel::pinhole, c, rig, 12.0 * deg, 0.0);
+  const auto a = project_axis(AxisCamera{CameraModel::plane_by_plane, c, rig}, 12.0 * deg, 0.0);
+  const auto b = project_axis(AxisCamera{CameraModel::pinhole, c, rig}, 12.0 * deg, 0.0);
   EXPECT_NEAR(a[1], b[1], 1e-10);
-  const auto off_a = project_axis(CameraModel::plane_by_plane, c, rig, 9.0 * deg, 9.0 * deg);
-  const auto off_b = project_axis(CameraModel::pinhole, c, rig, 9.0 * deg, 9.0 * deg);
+  const auto off_a = project_axis(AxisCamera{CameraModel::plane_by_plane, c, rig}, 9.0 * deg, 9.0 * deg);
+  const auto off_b = project_axis(AxisCamera{CameraModel::pinhole, c, rig}, 9.0 * deg, 9.0 * deg);
   EXPECT_GT(std::abs(off_a[1] - off_b[1]), 1.0);
 }
 
@@ -110,10 +110,10 @@ TEST(Camera, EachParameterDoesWhatItsNameSays) {
 
 TEST(Camera, PixelThatNoAngleExplainsIsNoAngle) {
   for (const CameraModel model : {CameraModel::plane_by_plane, CameraModel::pinhole}) {
-    EXPECT_FALSE(read_axis(model, plain_camera(), rig, 0.0, 5000.0));
-    EXPECT_FALSE(read_axis(model, plain_camera(), rig, 5000.0, 0.0));
-    EXPECT_FALSE(read_axis(model, plain_camera(), rig, 0.0, std::nan("")));
-    EXPECT_FALSE(read_axis(model, awkward_camera(-3.0), rig, 0.0, 300.0));  // the lens folds back before this radius
+    EXPECT_FALSE(read_axis(AxisCamera{model, plain_camera(), rig}, 0.0, 5000.0));
+    EXPECT_FALSE(read_axis(AxisCamera{model, plain_camera(), rig}, 5000.0, 0.0));
+    EXPECT_FALSE(read_axis(AxisCamera{model, plain_camera(), rig}, 0.0, std::nan("")));
+    EXPECT_FALSE(read_axis(AxisCamera{model, awkward_camera(-3.0), rig}, 0.0, 300.0));  // the lens folds back before this radius
   }
 }
 
@@ -121,7 +121,7 @@ TEST(Camera, DerivativesOfTheReadingAreThoseOfFiniteDifferences) {
   using J = Jet<3>;
   const auto c = awkward_camera(-0.1);
   for (const CameraModel model : {CameraModel::plane_by_plane, CameraModel::pinhole}) {
-    const auto p = project_axis(model, c, rig, 0.2, -0.15);
+    const auto p = project_axis(AxisCamera{model, c, rig}, 0.2, -0.15);
     CameraParameters<J> cj;
     cj.h_c = J(c.h_c);
     cj.K = J(c.K);
@@ -131,18 +131,19 @@ TEST(Camera, DerivativesOfTheReadingAreThoseOfFiniteDifferences) {
     cj.pixel_aspect = J(c.pixel_aspect);
     cj.lens_k1 = J(c.lens_k1, 2);
     cj.camera_distance = J(c.camera_distance);
-    const auto read = read_axis(model, cj, rig, J(p[0], 0), J(p[1], 1));
+    const auto read = read_axis(AxisCamera{model, cj, rig}, J(p[0], 0), J(p[1], 1));
     ASSERT_TRUE(read);
     const double h = 1e-4;
-    const auto up = *read_axis(model, c, rig, p[0], p[1] + h);
-    const auto down = *read_axis(model, c, rig, p[0], p[1] - h);
+    const auto up = *read_axis(AxisCamera{model, c, rig}, p[0], p[1] + h);
+    const auto down = *read_axis(AxisCamera{model, c, rig}, p[0], p[1] - h);
     auto more = c;
     more.lens_k1 += 1e-6;
     auto less = c;
     less.lens_k1 -= 1e-6;
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_NEAR((*read)[i].v[1], (up[i] - down[i]) / (2.0 * h), 1e-10);
-      const double slope = ((*read_axis(model, more, rig, p[0], p[1]))[i] - (*read_axis(model, less, rig, p[0], p[1]))[i]) / 2e-6;
+      const double slope =
+          ((*read_axis(AxisCamera{model, more, rig}, p[0], p[1]))[i] - (*read_axis(AxisCamera{model, less, rig}, p[0], p[1]))[i]) / 2e-6;
       EXPECT_NEAR((*read)[i].v[2], slope, 1e-8);
     }
   }

@@ -25,8 +25,9 @@ TEST(SphericalCamera, PixelsAreThoseOfTheCamera) {
     for (const State& x : some_states) {
       double pixels[3];
       evaluator.predict(x.data(), nullptr, 0.0, pixels);
-      const auto expected = project_axis(plane_by_plane ? CameraModel::plane_by_plane : CameraModel::pinhole, c, {3.447, 5.69, 5.61},
-                                         std::atan2(x[1], n_x(x)), std::atan2(x[0], n_x(x)));
+      const auto expected =
+          project_axis(AxisCamera{plane_by_plane ? CameraModel::plane_by_plane : CameraModel::pinhole, c, AxisGeometry{3.447, 5.69, 5.61}},
+                       std::atan2(x[1], n_x(x)), std::atan2(x[0], n_x(x)));
       EXPECT_NEAR(pixels[0], expected[0], 1e-9);
       EXPECT_NEAR(pixels[1], expected[1], 1e-9);
       State read{};

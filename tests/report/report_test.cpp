@@ -50,7 +50,7 @@ Verdict example_verdict() {
   verdict.kind = VerdictKind::effect_added;
   verdict.sentence = "drag was missing <b>";
   ErrorChange error;
-  error.what = "RMS error of w, 32 samples ahead";
+  error.of = "w, 32 samples ahead";
   error.before = {8.0, 0.0, "V"};
   error.after = Estimate{1.2, 0.0, "V"};
   verdict.errors = {error};

@@ -49,7 +49,7 @@ SearchFrom two_maxima(const Fitted& f, double higher) {
 }
 
 MultiStart started(const Fitted& f, double higher, std::size_t runs = 40) {
-  const MultiStarts starts(f.fit, f.model, 100.0, two_maxima(f, higher), {runs, 5});
+  const MultiStarts starts({f.fit, f.model, 100.0}, two_maxima(f, higher), {runs, 5});
   std::vector<ChainResult> results;
   for (std::size_t k = 0; k < starts.runs(); ++k) results.push_back(starts.run(k));
   return starts.summary(results);

@@ -47,7 +47,7 @@ class Reader {
 
  private:
   bool without(double P_y, double P_z, AxisSample& sample) const {
-    const auto read = read_axis(model_, plain_, axis_, P_y, P_z);
+    const auto read = read_axis(AxisCamera{model_, plain_, axis_}, P_y, P_z);
     if (!read) return false;
     sample.ok = true;
     sample.theta = (*read)[0];
@@ -56,7 +56,7 @@ class Reader {
   }
 
   bool with(double P_y, double P_z, AxisSample& sample) const {
-    const auto read = read_axis(model_, camera_, axis_, PixelJet(P_y, 0), PixelJet(P_z, 1));
+    const auto read = read_axis(AxisCamera{model_, camera_, axis_}, PixelJet(P_y, 0), PixelJet(P_z, 1));
     if (!read) return false;
     sample.ok = true;
     sample.theta = (*read)[0].a;

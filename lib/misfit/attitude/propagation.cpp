@@ -45,20 +45,24 @@ Variance variance(const UncertaintySources& from, std::size_t i, const Linear& l
   return v;
 }
 
-// ∂alpha/∂theta of each sample: average times (1 − lag sin·rate), rate times lag cos. The same for beta and psi.
-std::array<double, window> wind_angle_weights(const std::vector<double>& t, std::size_t i, double mean, double rate, double lag) {
+struct MeanAngle {
+  double angle, rate;
+};
+
+/// ∂alpha/∂theta of each sample: average times (1 − lag sin·rate), rate times lag cos. The same for beta and psi.
+std::array<double, window> wind_angle_weights(const std::vector<double>& t, std::size_t i, const MeanAngle& mean, double lag) {
   std::array<double, window> weights{};
   const std::array<double, 5> derivative = derivative_weights(t, i);
   for (std::size_t k = 0; k < 3; ++k) {
-    weights[reach - 1 + k] += (1.0 - lag * std::sin(mean) * rate) / 3.0;
-    for (std::size_t d = 0; d < 5; ++d) weights[d + k] += lag * std::cos(mean) * derivative[d] / 3.0;
+    weights[reach - 1 + k] += (1.0 - lag * std::sin(mean.angle) * mean.rate) / 3.0;
+    for (std::size_t d = 0; d < 5; ++d) weights[d + k] += lag * std::cos(mean.angle) * derivative[d] / 3.0;
   }
   return weights;
 }
 
 Variance total_angle_variance(const Attitude& a, const UncertaintySources& from, std::size_t i, double lag) {
-  const auto by_theta = wind_angle_weights(a.t, i, a.theta_mean[i], a.theta_rate[i], lag);
-  const auto by_psi = wind_angle_weights(a.t, i, a.psi_mean[i], a.psi_rate[i], lag);
+  const auto by_theta = wind_angle_weights(a.t, i, {a.theta_mean[i], a.theta_rate[i]}, lag);
+  const auto by_psi = wind_angle_weights(a.t, i, {a.psi_mean[i], a.psi_rate[i]}, lag);
   Linear alpha = zero(), beta = zero(), total = zero();
   const double sine = std::sin(a.alpha_T[i]);
   const double along_alpha = sine > 0.0 ? std::sin(a.alpha[i]) * std::cos(a.beta[i]) / sine : 0.0;

@@ -206,9 +206,10 @@ MotionNumbers motion_numbers(const MotionPath& path, const MotionScales& scales)
   return out;
 }
 
-MotionSeries compare_motion(const std::string& experiment, const MotionPath& measured, const MotionScales& scales,
-                            const MotionNumbers& numbers, const std::vector<MotionNumbers>& simulated, MotionDistances& distances) {
-  MotionSeries out{experiment, measured.name, measured.unit, empty_groups(measured, scales)};
+MotionSeries compare_motion(const MotionPath& measured, const MotionScales& scales, const std::vector<MotionNumbers>& simulated,
+                            MotionDistances& distances) {
+  const MotionNumbers numbers = motion_numbers(measured, scales);
+  MotionSeries out{"", measured.name, measured.unit, empty_groups(measured, scales)};
   constexpr double edge = 0.025;
   for (std::size_t g = 0; g < out.groups.size(); ++g) {
     MotionGroup& group = out.groups[g];

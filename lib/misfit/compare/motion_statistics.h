@@ -45,10 +45,9 @@ using MotionDistances = std::vector<std::vector<double>>;
 
 /// The measured path against simulated ones: bands, and p-values by rank [MC]: the share of motions at least as far from the others as the
 /// measured one. With n runs p is at least 1/(n + 1). The parameters are held at their estimates: the band does not hold their uncertainty.
-/// The distances of its groups are added to `distances`.
-[[nodiscard]] MotionSeries compare_motion(const std::string& experiment, const MotionPath& measured, const MotionScales& scales,
-                                          const MotionNumbers& numbers, const std::vector<MotionNumbers>& simulated,
-                                          MotionDistances& distances);
+/// The distances of its groups are added to `distances`. The name of the experiment is left to the caller.
+[[nodiscard]] MotionSeries compare_motion(const MotionPath& measured, const MotionScales& scales,
+                                          const std::vector<MotionNumbers>& simulated, MotionDistances& distances);
 
 /// One p-value for all groups, however they depend on each other: by rank of each motion's largest distance, distances as logarithms over
 /// their mean and standard deviation in the group.

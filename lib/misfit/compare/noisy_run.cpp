@@ -12,19 +12,19 @@ namespace misfit {
 namespace {
 
 /// (j, j'/ω), exactly sampled: with the stationary covariance σ² I the noise of a step is σ² (I − φ φᵀ).
-class Jitter {
+class ColouredNoise {
  public:
-  Jitter(const MeasurementNoise& noise, std::mt19937_64& random)
-      : noise_(noise), state_{noise.jitter * normal_(random), noise.jitter * normal_(random)} {}
+  ColouredNoise(const MeasurementNoise& noise, std::mt19937_64& random)
+      : noise_(noise), state_{noise.coloured * normal_(random), noise.coloured * normal_(random)} {}
 
   [[nodiscard]] double value() const { return state_[0]; }
 
   void step(double h, std::mt19937_64& random) {
-    if (!(noise_.jitter > 0.0)) return;
+    if (!(noise_.coloured > 0.0)) return;
     if (h != h_) discretise(h);
     const double u = normal_(random), v = normal_(random);
-    const std::array<double, 2> next{phi_[0] * state_[0] + phi_[1] * state_[1] + noise_.jitter * root_[0] * u,
-                                     phi_[2] * state_[0] + phi_[3] * state_[1] + noise_.jitter * (root_[1] * u + root_[2] * v)};
+    const std::array<double, 2> next{phi_[0] * state_[0] + phi_[1] * state_[1] + noise_.coloured * root_[0] * u,
+                                     phi_[2] * state_[0] + phi_[3] * state_[1] + noise_.coloured * (root_[1] * u + root_[2] * v)};
     state_ = next;
   }
 
@@ -32,7 +32,7 @@ class Jitter {
   /// φ = e^(−ζωh) (cosh(μh) I + sinh(μh)/μ (A + ζω I)), A = ω [0 1; −1 −2ζ], μ = ω sqrt(ζ² − 1), which may be imaginary.
   void discretise(double h) {
     h_ = h;
-    const double omega = 2.0 * std::numbers::pi * noise_.jitter_frequency, zeta = noise_.jitter_damping;
+    const double omega = 2.0 * std::numbers::pi * noise_.coloured_frequency, zeta = noise_.coloured_damping;
     const std::complex<double> mu = omega * std::sqrt(std::complex<double>(zeta * zeta - 1.0, 0.0));
     const double even = std::real(std::exp(-zeta * omega * h) * std::cosh(mu * h));
     const double odd =
@@ -67,12 +67,12 @@ std::optional<Signals> noisy_run(const StochasticModel& model, const Signals& li
   if (!run.finite) return std::nullopt;
   Signals out = like;
   for (std::size_t c = 0; c < out.measured.size(); ++c) {
-    Jitter jitter(model.noise[c], random);
+    ColouredNoise coloured(model.noise[c], random);
     std::vector<double>& values = out.measured[c].values;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (i > 0) jitter.step(like.t[i] - like.t[i - 1], random);
+      if (i > 0) coloured.step(like.t[i] - like.t[i - 1], random);
       const double measured =
-          run.y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) + jitter.value() + model.noise[c].white * normal(random);
+          run.y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) + coloured.value() + model.noise[c].white * normal(random);
       if (std::isfinite(values[i])) values[i] = measured;
     }
   }

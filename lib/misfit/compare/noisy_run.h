@@ -9,12 +9,12 @@
 
 namespace misfit {
 
-/// Noise of one measurement: white, and a resonance j'' + 2 ζ ω j' + ω² j = noise of stationary sigma `jitter`.
+/// Noise of one measurement: white, and a resonance j'' + 2 ζ ω j' + ω² j = noise of stationary sigma `coloured`.
 struct MeasurementNoise {
-  double white = 0.0;             ///< sigma [unit]
-  double jitter = 0.0;            ///< stationary sigma [unit]
-  double jitter_frequency = 1.0;  ///< ω/2π [Hz]
-  double jitter_damping = 0.3;    ///< ζ
+  double white = 0.0;               ///< sigma [unit]
+  double coloured = 0.0;            ///< stationary sigma [unit]
+  double coloured_frequency = 1.0;  ///< ω/2π [Hz]
+  double coloured_damping = 0.3;    ///< ζ
 };
 
 /// A fitted model with all that is random about it.

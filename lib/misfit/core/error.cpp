@@ -16,7 +16,7 @@ std::string Source::text() const {
 }
 
 InputError::InputError(const Source& where, const std::string& message)
-    : std::runtime_error(where.file.empty() ? message : where.text() + ": " + message) {}
+    : std::runtime_error(where.file.empty() ? message : where.text() + ": " + message), where_(where) {}
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& valid) {
   if (name.empty() || name.size() > longest_name_compared) return {};

@@ -23,6 +23,11 @@ class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
   InputError(const Source& where, const std::string& message);
+  /// Without a file: not known.
+  [[nodiscard]] const Source& where() const noexcept { return where_; }
+
+ private:
+  Source where_;
 };
 
 /// The request is well formed but the data, the model or the machine cannot do it. Exit status 1.

@@ -285,6 +285,9 @@ std::optional<Section> DescribedSection::table(std::string_view key) const {
 }
 
 void DescribedSection::finish() const {
+  for (const Key& key : group_->keys) {
+    if (!key.formerly.empty() && has(key.formerly)) fail(key.formerly, "this key is called " + key.name + " now");
+  }
   Section::finish(group_->names());
   for (const Key& key : group_->keys) {
     const bool alone = !key.needs.empty() && std::none_of(key.needs.begin(), key.needs.end(), [&](const auto& n) { return has(n); });

@@ -29,6 +29,7 @@ struct Key {
   std::string form = {};                  ///< how it is written, where the type does not say it
   std::vector<std::string> needs = {};    ///< it has a meaning only beside one of these keys
   bool any = false;                       ///< stands for any name: of a state, a parameter, a curve
+  std::string formerly = {};              ///< what it was called before: refused, naming the new one
   std::string meaning;
 };
 

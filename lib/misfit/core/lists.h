@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string_view>
 
@@ -27,6 +29,12 @@ int place_of(const List& list, const Value& value) {
     if (list[i] == value) return i;
   }
   return -1;
+}
+
+/// How many numbers are finite: a value that is missing is NaN.
+template <class List>
+std::size_t count_finite(const List& list) {
+  return static_cast<std::size_t>(std::count_if(std::begin(list), std::end(list), [](double v) { return std::isfinite(v); }));
 }
 
 }  // namespace misfit

@@ -32,15 +32,15 @@ std::string in_words(const TimeSpent& spent, const std::string& what, double val
 
 std::string in_words(const TimeSpent& spent) { return fmt::format("{}, before there was any result ({})", spent.what(), more_time); }
 
-Watch::Watch(std::string work, double limit, Hearer hearer)
-    : work_(std::move(work)), limit_(limit), hearer_(std::move(hearer)), outer_(watching) {
+Watch::Watch(std::string work, double limit, ProgressCallback on_progress)
+    : work_(std::move(work)), limit_(limit), on_progress_(std::move(on_progress)), outer_(watching) {
   if (outer_ != nullptr) first_ = outer_->first_;
   if (limit_ > 0.0) {
     constexpr double longest = 1e9;  // beyond it a clock's nanoseconds overflow
     end_ = begin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(limit_, longest)));
     if (first_ == nullptr || *end_ < *first_->end_) first_ = this;
   }
-  if (!hearer_ && outer_ != nullptr) hearer_ = outer_->hearer_;
+  if (!on_progress_ && outer_ != nullptr) on_progress_ = outer_->on_progress_;
   watching = this;
 }
 
@@ -77,12 +77,12 @@ void report_iteration(int iteration, const char* what, double value) {
   if (flag.load(std::memory_order_relaxed)) throw Interrupted();
   if (watching == nullptr) return;
   if (watching->spent()) throw TimeSpent(watching->words());
-  if (!watching->hearer_) return;
+  if (!watching->on_progress_) return;
   const auto seconds = [](auto from, auto to) { return std::chrono::duration<double>(to - from).count(); };
   const auto now = Watch::Clock::now();
   SearchState state{iteration, what, value, watching->work_, seconds(watching->begin_, now)};
   if (watching->first_ != nullptr) state.left = std::max(seconds(now, *watching->first_->end_), 0.0);
-  watching->hearer_(state);
+  watching->on_progress_(state);
 }
 
 }  // namespace misfit

@@ -46,14 +46,14 @@ struct SearchState {
 };
 
 /// Watches over the work that is done in this thread between its construction and its destruction, and in the threads that run_jobs()
-/// starts for it: how long it may take, and who hears of its searches. Watches stand one inside the other; the limit that ends first holds.
-/// Deep loops call look_at_watch(), searches report_iteration(), so that neither needs a parameter on the way there.
+/// starts for it: how long it may take, and who is told how far its searches have come. Watches stand one inside the other; the limit that
+/// ends first holds. Deep loops call look_at_watch(), searches report_iteration(), so that neither needs a parameter on the way there.
 class Watch {
  public:
-  using Hearer = std::function<void(const SearchState&)>;  ///< several threads may call it at once
+  using ProgressCallback = std::function<void(const SearchState&)>;  ///< several threads may call it at once
 
-  /// `limit` [s]; 0: none of its own. Without `hearer` that of the watch around it hears.
-  explicit Watch(std::string work, double limit = 0.0, Hearer hearer = {});
+  /// `limit` [s]; 0: none of its own. Without `on_progress` that of the watch around it is called.
+  explicit Watch(std::string work, double limit = 0.0, ProgressCallback on_progress = {});
   ~Watch();
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
@@ -75,7 +75,7 @@ class Watch {
 
   std::string work_;
   double limit_;
-  Hearer hearer_;
+  ProgressCallback on_progress_;
   const Watch* outer_;
   Clock::time_point begin_ = Clock::now();
   std::optional<Clock::time_point> end_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/table.h"
 #include "misfit/core/units.h"
 
@@ -37,9 +38,7 @@ constexpr std::array<Field, 16> fields = {{{"t", "s", &Attitude::t, true},
 
 }  // namespace
 
-std::size_t samples_read(const Attitude& attitude) {
-  return static_cast<std::size_t>(std::count_if(attitude.eta.begin(), attitude.eta.end(), [](double v) { return std::isfinite(v); }));
-}
+std::size_t samples_read(const Attitude& attitude) { return count_finite(attitude.eta); }
 
 void write_attitude(const std::filesystem::path& path, const Attitude& attitude) {
   Table table;

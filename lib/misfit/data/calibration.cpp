@@ -36,7 +36,7 @@ void check(const Calibration& c) {
 template <class Archive>
 void fields(Archive& json, MaybeConst<CameraTest> auto& test) {
   json("parameters", test.parameters), json("values", test.values), json("sigmas", test.sigmas);
-  json("drop", test.drop), json("p_value", test.p_value), json("taken_in", test.selected);
+  json("drop", test.drop), json("p_value", test.p_value), json("selected", test.selected);
 }
 
 template <class Archive>

@@ -5,6 +5,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/table.h"
+#include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/data/json_fields.h"
 
@@ -41,7 +42,8 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
   json("rank", c.rank), json("effect", c.effect), json("ports", c.ports), json("score", c.score);
   json("predicted_drop", c.predicted_drop), json("actual_drop", c.actual_drop);
   json("held_out_gain", c.held_out_gain), json("p_value", c.p_value), json("group", c.group);
-  json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters), json("family", c.family);
+  json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters),
+      json("family", NameOf(c.family, candidate_family_names));
   json("roles", c.roles), json("dof", c.dof), json("described", c.described), json("force", c.force);
   json("held", c.held), json("free", c.free), json("fixed", c.fixed);
   json("refit_values", c.refit_values), json("refit_log_noise", c.refit_log_noise);
@@ -65,12 +67,15 @@ void fields(Archive& json, MaybeConst<AddedForceTable> auto& table) {
 template <class Archive>
 void fields(Archive& json, MaybeConst<StoredDiscovery> auto& stored) {
   auto& d = stored.discovery;
+  json("outcome", NameOf(d.outcome, search_outcome_names));
   json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("force", d.force);
   json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
   json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error), json("sweep_asks", d.sweep_asks),
       json("added_force", stored.added);
   json("seconds", d.seconds);
 }
+
+std::string to_string(CandidateFamily family) { return candidate_family_names.at(static_cast<std::size_t>(family)); }
 
 std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles) {
   std::string bindings;
@@ -82,6 +87,12 @@ std::vector<std::string> words_of_place(const std::map<std::string, std::string>
   std::vector<std::string> out;
   for (const auto& [role, name] : roles) out.push_back(role + "=" + name);
   return out.empty() ? std::vector<std::string>{"default"} : out;
+}
+
+std::string best_rejected(const Candidate& candidate) {
+  return "best candidate " + effect_at(candidate.effect, candidate.roles) + " (drop " +
+         format_value(candidate.actual_drop.value_or(std::numeric_limits<double>::quiet_NaN())) + ", family-wise " +
+         p_equals(candidate.p_value) + "), rejected: " + candidate.why;
 }
 
 std::string unexplained_place(const Discovery& discovery) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -18,11 +19,16 @@ struct AddedForce {
   std::vector<std::vector<double>> force;      ///< per port
 };
 
+/// What a candidate is: `generic`, of any unit; `unknown`, a curve of unknown form.
+enum class CandidateFamily { physics, generic, sensor, unknown };
+inline constexpr std::array<const char*, 4> candidate_family_names = {"physics", "generic", "sensor", "unknown"};
+[[nodiscard]] std::string to_string(CandidateFamily family);
+
 /// One thing that the model could lack.
 struct Candidate {
   int rank = 0;        ///< 1 = first
   std::string effect;  ///< key, or "unknown:PORT(QUANTITY)"
-  std::string family;  ///< "physics", "generic", "sensor", "unknown"
+  CandidateFamily family = CandidateFamily::physics;
   std::vector<std::string> ports;
   std::map<std::string, std::string> roles;  ///< bindings that differ from the defaults, as a study would write them
   double score = 0.0;                        ///< chi² of the score test at the best cell
@@ -58,9 +64,29 @@ struct EffectPlace {
 [[nodiscard]] std::vector<std::string> words_of_place(const std::map<std::string, std::string>& roles);
 [[nodiscard]] inline std::vector<std::string> words_of_place(const Candidate& candidate) { return words_of_place(candidate.roles); }
 
+/// "best candidate lag (drop 50, family-wise p = 1e-9), rejected: its strength is not determined".
+[[nodiscard]] std::string best_rejected(const Candidate& candidate);
+
+/// What a search for missing effects ends with.
+enum class SearchOutcome {
+  none_missing,          ///< no candidate is significant
+  accepted,              ///< one is
+  unknown_form,          ///< something is missing that no effect of the library explains
+  best_rejected,         ///< the best candidate is significant, but fails another condition
+  none_suits,            ///< no effect of the library suits the system
+  not_decided,           ///< none is accepted, but refits were cut off
+  not_finished,          ///< the search itself was cut off, none accepted by then
+  camera_incomplete,     ///< the calibration sweep asks for parameters that the camera of the study does not have
+  camera_against_flight  ///< the same, and the flight gives evidence of more
+};
+inline constexpr std::array<const char*, 9> search_outcome_names = {"none_missing",  "accepted",          "unknown_form",
+                                                                    "best_rejected", "none_suits",        "not_decided",
+                                                                    "not_finished",  "camera_incomplete", "camera_against_flight"};
+
 /// What could be missing, best first.
 struct Discovery {
   std::vector<Candidate> candidates;
+  SearchOutcome outcome = SearchOutcome::none_missing;
   std::string verdict;                    ///< one sentence: what to add, or that nothing is missing, or that no known effect explains it
   std::vector<std::string> sentences;     ///< further remarks: groups and what would separate them, phantoms, calibration against flight
   std::vector<std::string> tried;         ///< families and cells that were looked at, in words
@@ -78,7 +104,7 @@ struct Discovery {
 /// "a force on dw/dt", "an error of V".
 [[nodiscard]] std::string unexplained_place(const Discovery& discovery);
 
-/// candidates.json (an array), discovery.json (verdict, sentences, tried) and added_force.csv (added_force_NAME.csv for further
+/// candidates.json (an array), discovery.json (outcome, verdict, sentences, tried) and added_force.csv (added_force_NAME.csv for further
 /// experiments; none where no candidate adds a force): columns t and "RANK PORT".
 void write_discovery(const std::filesystem::path& dir, const Discovery& discovery);
 [[nodiscard]] Discovery read_discovery(const std::filesystem::path& dir);

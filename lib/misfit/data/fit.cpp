@@ -98,7 +98,7 @@ void fields(Archive& json, MaybeConst<Fit> auto& fit) {
   std::map<std::string, StoredParameter> parameters = stored_parameters(fit);
   std::optional<double> plain_sigma = plain_sigma_of(fit, trim_key, kDegree);
   json("method", fit.method), json("status", NameOf(fit.status, fit_status_names)), json("message", fit.message);
-  json("warnings", fit.warnings), json("driven", fit.driven), json("parameters", parameters);
+  json("warnings", fit.warnings), json("driven", fit.driven), json("coloured", fit.coloured), json("parameters", parameters);
   json("noise", fit.noise), json("force", fit.force), json("loglik", fit.loglik);
   json("validation_loglik", fit.validation_loglik);
   json("trim_deg", Formed(fit.trim, [&](auto& object, auto& trim) {

@@ -83,6 +83,7 @@ struct Fit {
   std::vector<ChannelPrediction> predictions;
   std::map<std::string, std::string> facts;  ///< further findings in words, for fit.json ("telescoped_sum": "…")
   bool driven = false;                       ///< the motion is driven by something the model does not have
+  bool coloured = false;                     ///< the residuals are clearly not white, as a warning says
   double seconds = 0.0;
   int linearisations = 0;
 

@@ -29,7 +29,7 @@ struct CameraStudy {
   std::string model;                                  ///< "pinhole" or "plane_by_plane"
   std::map<std::string, config::Number> given;        ///< … or h_c, K and any other camera parameter, with sigma where known
   std::vector<std::string> offer;                     ///< optional parameters that calibrate may select; default all
-  std::vector<std::string> take_in;                   ///< optional parameters that calibrate must free whatever the test says
+  std::vector<std::string> free;                      ///< optional parameters that calibrate must free whatever the test says
 
   [[nodiscard]] bool from_sweep() const { return sweep || sweep_images; }
 };
@@ -120,9 +120,10 @@ struct SimulateStudy {
 
 /// One entry of [uncertainty] perturb.
 struct PerturbStudy {
-  std::string name;                 ///< what is perturbed: of the geometry, the camera, the model, or P_y, P_z
-  config::Number number;            ///< how far, as written (unit checked by whoever knows it); positive
-  std::string reading = "3 sigma";  ///< of the number: "3 sigma", "2 sigma", "sigma" of a normal distribution; "uniform": its bounds
+  std::string name;       ///< what is perturbed: of the geometry, the camera, the model, or P_y, P_z
+  config::Number number;  ///< how far, as written (unit checked by whoever knows it); positive
+  /// The number is "3 sigma", "2 sigma" or one "sigma" of a normal distribution, or ± the bounds of a "uniform" one.
+  std::string distribution = "3 sigma";
 };
 
 /// [uncertainty]: the Monte-Carlo over the set-up, block bootstrap, profiles and random starts.

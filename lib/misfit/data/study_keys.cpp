@@ -76,7 +76,8 @@ std::vector<Key> sweep_keys() {
        .meaning = "Projection."},
       {.name = "offer", .type = Type::texts, .otherwise = "all of them", .choices = optional, .needs = {"sweep", "sweep_images"},
        .meaning = "Optional parameters among which the calibration selects by a significance test."},
-      {.name = "take_in", .type = Type::texts, .otherwise = "none", .choices = optional, .needs = {"sweep", "sweep_images"},
+      {.name = "free", .type = Type::texts, .otherwise = "none", .choices = optional, .needs = {"sweep", "sweep_images"},
+       .formerly = "take_in",
        .meaning = "Optional parameters that the calibration estimates whatever the test says."}};
 }
 
@@ -251,17 +252,17 @@ KeyGroup reference_group() {
        .meaning = "CSV with a column of the quantity and one of the curve."}}};
 }
 
-const std::vector<std::string> readings{"3 sigma", "2 sigma", "sigma", "uniform"};
+const std::vector<std::string> distributions{"3 sigma", "2 sigma", "sigma", "uniform"};
 
 KeyGroup uncertainty_group() {
   return {"uncertainty", "Monte Carlo over geometry, camera and mass; bootstrap, profiles, random starts (misfit uncertainty).",
      {{.name = "runs", .type = Type::integer, .fallback = "1000", .least = 1, .most = max_runs, .meaning = "Monte Carlo runs."},
       {.name = "perturb", .type = Type::table, .otherwise = "nothing",
        .meaning = "What is perturbed and how far: { V = \"0.5 m/s\", P_y = \"10 px\" }."},
-      {.name = "readings", .type = Type::choice, .otherwise = "\"3 sigma\"", .choices = readings,
-       .form = R"("3 sigma", "2 sigma", "sigma", "uniform" or table)",
-       .meaning = "What the numbers of perturb are: 3, 2 or 1 standard deviations of a normal distribution, or the bounds of a uniform "
-                  "one. One for all, or a table."},
+      {.name = "distribution", .type = Type::choice, .otherwise = "\"3 sigma\"", .choices = distributions,
+       .form = R"("3 sigma", "2 sigma", "sigma", "uniform" or table)", .formerly = "readings",
+       .meaning = "Distribution of the errors whose size perturb gives: normal, the size being 3, 2 or 1 standard deviations, or uniform "
+                  "within ± the size. One for all, or a table."},
       {.name = "camera", .type = Type::choice, .otherwise = "not perturbed, but for what perturb names", .choices = {"calibration"},
        .meaning = "calibration: the camera's parameters too, with their joint covariance."},
       {.name = "recalibrate", .type = Type::flag, .fallback = "false",
@@ -280,8 +281,8 @@ std::vector<KeyGroup> perturbation_groups() {
        {{.name = "NAME", .type = Type::number, .unit = "of the number", .otherwise = "not perturbed", .least = 0.0, .above = true,
          .any = true,
          .meaning = "A name of [geometry] or [camera], a parameter, or P_y, P_z: an offset of all pixels."}}},
-      {"uncertainty.readings", "Where not all have the same distribution.",
-       {{.name = "NAME", .type = Type::choice, .fallback = "\"3 sigma\"", .choices = readings, .any = true,
+      {"uncertainty.distribution", "Where not all have the same distribution.",
+       {{.name = "NAME", .type = Type::choice, .fallback = "\"3 sigma\"", .choices = distributions, .any = true,
          .meaning = "Of an entry of perturb."}}}};
 }
 

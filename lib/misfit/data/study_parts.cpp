@@ -82,7 +82,7 @@ void read_camera(const Section& root, Study& study) {
   read_sweep_images(section, study);
   camera.model = *section.choice("model");
   camera.offer = section.texts("offer").value_or(section.description().key("offer").choices);
-  camera.take_in = section.texts("take_in").value_or(std::vector<std::string>{});
+  camera.free = section.texts("free").value_or(std::vector<std::string>{});
   for (const char* name : camera_parameter_names) {
     if (const auto number = section.number(name)) camera.given[name] = *number;
   }

@@ -21,20 +21,20 @@ PerturbStudy read_one(const Section& perturb, const std::string& name) {
 }
 
 /// One distribution for all numbers of perturb, or a table of those that differ from "3 sigma".
-void read_readings(const DescribedSection& section, UncertaintyStudy& study) {
-  if (!section.has("readings")) return;
-  if (!section.is_table("readings")) {
-    const std::string reading = *section.choice("readings");
-    for (PerturbStudy& p : study.perturb) p.reading = reading;
+void read_distributions(const DescribedSection& section, UncertaintyStudy& study) {
+  if (!section.has("distribution")) return;
+  if (!section.is_table("distribution")) {
+    const std::string distribution = *section.choice("distribution");
+    for (PerturbStudy& p : study.perturb) p.distribution = distribution;
     return;
   }
-  const DescribedSection table = described(section, "readings", "uncertainty.readings");
+  const DescribedSection table = described(section, "distribution", "uncertainty.distribution");
   std::vector<std::string> names;
   for (const PerturbStudy& p : study.perturb) names.push_back(p.name);
   for (const std::string& name : table.keys()) {
     const auto found = std::find_if(study.perturb.begin(), study.perturb.end(), [&](const PerturbStudy& p) { return p.name == name; });
     if (found == study.perturb.end()) table.fail(name, "'" + shown(name) + "' is not in perturb" + suggest(name, names));
-    found->reading = *table.choice(name);
+    found->distribution = *table.choice(name);
   }
   table.finish();
 }
@@ -52,7 +52,7 @@ void read_uncertainty(const Section& root, Study& study) {
   const DescribedSection perturb = described(section, "perturb", "uncertainty.perturb");
   for (const std::string& name : perturb.keys()) out.perturb.push_back(read_one(perturb, name));
   perturb.finish();
-  read_readings(section, out);
+  read_distributions(section, out);
   out.calibrated_camera = section.choice("camera").has_value();
   out.recalibrate = *section.flag("recalibrate");
   out.bootstrap = section.integer("bootstrap").value_or(0);

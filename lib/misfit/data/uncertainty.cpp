@@ -43,7 +43,7 @@ std::string table_of(const std::vector<SpreadCurve>& curves, const CurveFile& fi
 template <class Archive>
 void fields(Archive& json, MaybeConst<PerturbedParameter> auto& p) {
   json("name", p.name), json("value", p.value), json("sigma", p.sigma), json("unit", p.unit);
-  json("reading", p.reading), json("group", p.group);
+  json("distribution", p.distribution), json("group", p.group);
 }
 
 /// The slope of a curve of an angle is "1/rad": shown per radian as it is; only whole angles change.

@@ -9,11 +9,11 @@ namespace misfit {
 
 /// One parameter of the set-up as it was perturbed.
 struct PerturbedParameter {
-  std::string name, unit;  ///< SI unit
-  double value = 0.0;      ///< nominal [unit]
-  double sigma = 0.0;      ///< of its error [unit]
-  std::string reading;     ///< "normal, 3 sigma = 0.1524 m": how the study's number was read
-  std::string group;       ///< "calibration" where it goes together with others; empty: independent
+  std::string name, unit;    ///< SI unit
+  double value = 0.0;        ///< nominal [unit]
+  double sigma = 0.0;        ///< of its error [unit]
+  std::string distribution;  ///< of its errors: "normal, 3 sigma = 0.1524 m"
+  std::string group;         ///< "calibration" where it goes together with others; empty: independent
 };
 
 /// Which part of a variance comes from one parameter, or from a group of correlated ones, at first order.

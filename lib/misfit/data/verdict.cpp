@@ -12,11 +12,19 @@ std::optional<double> ErrorChange::per_cent() const {
   return 100.0 * (after->value / before.value - 1.0);
 }
 
-bool ErrorChange::within_sigma() const { return after && std::abs(after->value - before.value) < std::max(before.sigma, after->sigma); }
+bool within_sigma(const Estimate& before, const Estimate& after) {
+  return std::abs(after.value - before.value) < std::max(before.sigma, after.sigma);
+}
+
+std::string ErrorChange::what() const {
+  const std::string name = error_kind_names.at(static_cast<std::size_t>(kind));
+  return of.empty() ? name : name + " of " + of;
+}
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<ErrorChange> auto& e) {
-  json("what", e.what), json("before", e.before), json("after", e.after);
+  json.derived("what", e.what());
+  json("before", e.before), json("after", e.after);
   json.derived("change_per_cent", e.per_cent());
   json("remark", e.remark);
 }

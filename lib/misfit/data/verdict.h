@@ -26,17 +26,26 @@ inline constexpr std::array<const char*, 10> verdict_names = {"nothing_missing",
                                                               "several_possible", "unknown_form", "effect_added", "calibration",
                                                               "not_decided",      "no_result"};
 
+/// By which a model is judged.
+enum class ErrorKind { rms_error, random_force, trim };
+inline constexpr std::array<const char*, 3> error_kind_names = {"RMS error", "random force", "trim"};
+
+/// `after` differs from `before` by less than the larger of their sigmas: no change is seen. False where no sigma is known.
+[[nodiscard]] bool within_sigma(const Estimate& before, const Estimate& after);
+
 /// An error of the model before and after an effect is in it.
 struct ErrorChange {
-  std::string what;               ///< "RMS error of P_y, 32 samples ahead"
+  ErrorKind kind = ErrorKind::rms_error;
+  std::string of;                 ///< "P_y, 32 samples ahead"; empty: of the model as a whole
   Estimate before;                ///< SI
   std::optional<Estimate> after;  ///< missing: no effect was added
   std::string remark;             ///< in words: "1.1 % of the motion"
 
+  /// "RMS error of P_y, 32 samples ahead".
+  [[nodiscard]] std::string what() const;
   /// 100 (after/before − 1); nullopt where either is not there.
   [[nodiscard]] std::optional<double> per_cent() const;
-  /// It changes by less than the larger of the sigmas before and after: no change is seen. False where no sigma is known.
-  [[nodiscard]] bool within_sigma() const;
+  [[nodiscard]] bool within_sigma() const { return after && misfit::within_sigma(before, *after); }
 };
 
 /// What a study has come to: one sentence from calibration, fits, diagnosis, discovery and ladder together.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "misfit/core/lists.h"
 #include "misfit/inference/states.h"
 #include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
@@ -77,7 +78,7 @@ std::vector<WhitenessReport> whiteness_of(const FilterEstimate& estimate) {
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
     for (std::size_t o = 0; o < outputs.size(); ++o) {
       std::vector<double> w = standardised(estimate.traces[e], estimate.data[e], o);
-      const std::size_t known = std::count_if(w.begin(), w.end(), [](double v) { return std::isfinite(v); });
+      const std::size_t known = count_finite(w);
       if (known < 100) continue;
       WhitenessReport report;
       report.experiment = estimate.data[e].signals->name;

@@ -206,7 +206,7 @@ Eigen::MatrixXd response(const FilterEstimate& estimate, Eigen::Index m, const T
     const FilterData& data = estimate.data[e];
     const std::size_t NY = trace.ny;
     const Eigen::Index n = trace.n, ny = trace.ny;
-    RowMatrix s = RowMatrix::Zero(n, m), jitter = RowMatrix::Zero(2 * ny, m), work(n, m);
+    RowMatrix s = RowMatrix::Zero(n, m), coloured = RowMatrix::Zero(2 * ny, m), work(n, m);
     Eigen::RowVectorXd v(m);
     double last_h = -1.0;
     NoiseStep noise;
@@ -217,11 +217,11 @@ Eigen::MatrixXd response(const FilterEstimate& estimate, Eigen::Index m, const T
         const std::size_t at = trace.place(k, o);
         if (data.use[at] == SampleRole::none) continue;
         v.noalias() = trace.H_at(at).transpose() * s;
-        v += jitter.row(2 * o);
+        v += coloured.row(2 * o);
         to_output(place, static_cast<int>(o), v);
         if (data.use[at] == SampleRole::counted) out.row(row++) = v / std::sqrt(trace.S[at]);
         s.noalias() -= trace.K_at(at) * v;
-        jitter.noalias() -= trace.Kj_at(at) * v;
+        coloured.noalias() -= trace.Kj_at(at) * v;
       }
       if (k + 1 == trace.samples) break;
       const double h = data.signals->t[k + 1] - data.signals->t[k];
@@ -233,10 +233,10 @@ Eigen::MatrixXd response(const FilterEstimate& estimate, Eigen::Index m, const T
       to_states(place, work);
       s.swap(work);
       for (Eigen::Index o = 0; o < ny; ++o) {
-        const auto& p = noise.jitter[o].phi;
-        v = jitter.row(2 * o);
-        jitter.row(2 * o) = p[0] * v + p[1] * jitter.row(2 * o + 1);
-        jitter.row(2 * o + 1) = p[2] * v + p[3] * jitter.row(2 * o + 1);
+        const auto& p = noise.coloured[o].phi;
+        v = coloured.row(2 * o);
+        coloured.row(2 * o) = p[0] * v + p[1] * coloured.row(2 * o + 1);
+        coloured.row(2 * o + 1) = p[2] * v + p[3] * coloured.row(2 * o + 1);
       }
     }
     offset += trace.samples;

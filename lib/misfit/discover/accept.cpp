@@ -55,7 +55,7 @@ std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& 
   const auto memory = outlasts_recording(e.refit->estimate.model, longest_recording(context.experiments));
   const auto uneven = off_whole_steps(e.refit->estimate.model, context.experiments);
   const auto no_edge = edge_not_visited(e.refit->estimate);
-  e.misnamed = memory || uneven || no_edge || !e.refit->partial.empty();
+  e.degenerate = memory || uneven || no_edge || !e.refit->partial.empty();
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
   if (const auto unknown =
@@ -122,11 +122,12 @@ struct Choice {
 /// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
 double gain_of(const RankedCandidate& e) { return 0.5 * e.refit->drop + e.candidate.held_out_gain.value_or(0.0); }
 
-/// A lag, a delay, a limit of a sensor: forms that could stand for much of what the plant does.
-bool shapes_a_sensor(const RankedCandidate& e) {
+/// Dynamics or a nonlinearity of a sensor (lag, delay, saturation) that nothing is known of beforehand: it can imitate much of what the
+/// plant does.
+bool is_sensor_distortion(const RankedCandidate& e) {
   const CandidateModel& candidate_model = *e.screening->candidate_model;
   const bool memory = !candidate_model.model.effects.back().effect->spec().states.empty();
-  return candidate_model.family == "sensor" && !candidate_model.has_priors && (memory || !candidate_model.shapes.empty());
+  return candidate_model.family == CandidateFamily::sensor && !candidate_model.has_priors && (memory || !candidate_model.shapes.empty());
 }
 
 /// Step 1, and the order of step 2.
@@ -142,7 +143,7 @@ std::vector<Place> not_refused(std::vector<RankedCandidate>& ranked, HeldOut& he
   const auto tied = std::find_if(out.begin(), out.end(), [&](Place e) { return gain_of(*e) < best - tied_gains; });
   std::sort(out.begin(), tied);  // as in the list
   std::stable_sort(out.begin(), tied, [](Place a, Place b) { return estimated_parameters(*a->refit) < estimated_parameters(*b->refit); });
-  std::stable_partition(out.begin(), tied, [](Place e) { return !shapes_a_sensor(*e); });
+  std::stable_partition(out.begin(), tied, [](Place e) { return !is_sensor_distortion(*e); });
   return out;
 }
 
@@ -232,12 +233,12 @@ void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
 std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases,
                                                 const SearchContext& context) {
   const bool refused = !ranked.empty() && ranked.front().refit && ranked.front().candidate.p_value < context.options.p_accept;
-  const double best_drop = refused && !ranked.front().misnamed ? ranked.front().refit->drop : 0.0;
+  const double best_drop = refused && !ranked.front().degenerate ? ranked.front().refit->drop : 0.0;
   if (!aliases.empty() && !(best_drop > 2.0 * aliases.front().at->refit->drop)) return aliases.front().remaining;
   if (!refused) return std::nullopt;
   const RankedCandidate& best = ranked.front();
   const bool periodic = best.screening->candidate_model->frequency >= 0;  // what it leaves is rather a frequency that changes
-  if (best.misnamed || periodic) return std::nullopt;
+  if (best.degenerate || periodic) return std::nullopt;
   return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, {best.refit->drop}, context.options);
 }
 
@@ -251,7 +252,7 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
     return {form.port, std::move(quantities), form.of_output, p, effects_of_unknown_form(form, unknown, system, context.registry)};
   };
   const bool any = best != unknown.end();
-  const bool front_better = any && !ranked.empty() && !ranked.front().misnamed && ranked.front().log_p < best->log_p;
+  const bool front_better = any && !ranked.empty() && !ranked.front().degenerate && ranked.front().log_p < best->log_p;
   if (left && (!any || front_better)) return unexplained(*left, left->quantities(), left->p_value);
   if (!any || (front_better && ranked.front().refit)) return std::nullopt;  // what a known effect explains better is not unknown
   const double p = sidak(best->p_value, context.families);

@@ -15,9 +15,9 @@ struct RankedCandidate {
   std::optional<Refit> refit;
   bool refit_begun = false;
   double log_p = 0.0;  ///< of the refit where there is one
-  /// Its refit is not what its name says: a part of a whole, a memory longer than the recording, an edge where nothing was. Its drop
-  /// explains nothing then.
-  bool misnamed = false;
+  /// Its refit is a limiting case that is no longer the effect: a part of one that exists as a whole only, a memory longer than the
+  /// recording, an edge outside of the operating range. Its drop says nothing of the effect then.
+  bool degenerate = false;
   bool alone_gains_nothing = false;  ///< refused for its held-out gain, and for nothing else
 };
 

@@ -13,9 +13,9 @@
 namespace misfit {
 
 void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const ScoreTest& score, Discovery& out) {
-  if (out.candidates.empty() || !out.candidates.front().accepted || out.candidates.front().family == "sensor") return;
+  if (out.candidates.empty() || !out.candidates.front().accepted || out.candidates.front().family == CandidateFamily::sensor) return;
   for (const auto& s : screening) {
-    if (s.candidate_model->family != "sensor" || !s.candidate_model->has_priors || !s.runs) continue;
+    if (s.candidate_model->family != CandidateFamily::sensor || !s.candidate_model->has_priors || !s.runs) continue;
     const ScoreResult free = score.test(s.columns);
     constexpr double min_share = 0.4;  // of the accepted effect's chi2
     if (free.chi2 < min_share * out.candidates.front().score) continue;
@@ -39,7 +39,7 @@ namespace {
 /// time; so for several effects that are to explain all between them.
 std::vector<int> quantities_that_tell(const CandidateModel& candidate_model, int effects) {
   const bool remembers = !candidate_model.model.effects.back().effect->spec().states.empty();
-  const bool sensor = candidate_model.family == "sensor" && !candidate_model.has_priors;
+  const bool sensor = candidate_model.family == CandidateFamily::sensor && !candidate_model.has_priors;
   const bool periodic = candidate_model.frequency >= 0;
   if (!remembers && !sensor && !periodic && effects == 1) return candidate_model.quantities;
   std::vector<int> all = candidate_model.quantities;

@@ -43,7 +43,7 @@ Candidate named_candidate(const ScreeningResult& s, double families) {
 }
 
 std::string what_was_tried(const ScreeningResult& s) {
-  std::string out = effect_at(s.candidate_model->effect, s.candidate_model->roles) + " (" + s.candidate_model->family +
+  std::string out = effect_at(s.candidate_model->effect, s.candidate_model->roles) + " (" + to_string(s.candidate_model->family) +
                     "): " + std::to_string(s.cells) + (s.cells == 1 ? " cell" : " cells") + ", " +
                     format_value(std::round(s.cells_effective)) + " effective tests";
   const FrequencyGrid& scanned = s.frequencies;
@@ -58,7 +58,7 @@ std::string what_was_tried(const ScreeningResult& s) {
 Candidate unknown_candidate(const UnknownCurve& curve, double families, double p_accept) {
   Candidate c;
   c.effect = "unknown:" + curve.port + "(" + curve.quantity + ")";
-  c.family = "unknown";
+  c.family = CandidateFamily::unknown;
   c.ports = {curve.port};
   c.score = c.predicted_drop = curve.result.chi2;
   c.dof = curve.result.dof;

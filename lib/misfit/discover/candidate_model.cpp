@@ -224,7 +224,9 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Cand
 
 /// The model with the effect there, all held at the estimate; nullopt where the effect does not suit.
 std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                                 const Effect& effect, const Roles& roles) {
+                                                 const EffectPlace& place) {
+  const auto& [key, roles] = place;
+  const Effect& effect = registry.effect(key);
   CandidateModel out;
   out.effect = effect.spec().key;
   out.roles = roles;
@@ -234,7 +236,8 @@ std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate,
   } catch (const InputError&) {
     return std::nullopt;
   }
-  out.family = out.model.effects.back().kind == PortKind::sensor ? "sensor" : is_generic(effect.spec()) ? "generic" : "physics";
+  const bool on_sensor = out.model.effects.back().kind == PortKind::sensor;
+  out.family = on_sensor ? CandidateFamily::sensor : is_generic(effect.spec()) ? CandidateFamily::generic : CandidateFamily::physics;
   for (auto& p : out.model.parameters) p.free = false;
   for (std::size_t i = 0; i < estimate.model.parameters.size(); ++i)  // the effect's own follow behind
     out.model.parameters[i].value = estimate.model.parameters[i].value;
@@ -280,7 +283,7 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
     if (!has_strength(effect.spec()) || effect.spec().has_unknown_form() || driven_by_noise(effect)) continue;
     for (const Roles& roles : enumerate_bindings(effect.spec(), system)) {
       if (roles.empty() && in_model(request, key)) continue;
-      std::optional<CandidateModel> candidate_model = candidate_model_at(estimate, request, registry, effect, roles);
+      std::optional<CandidateModel> candidate_model = candidate_model_at(estimate, request, registry, {key, roles});
       if (!candidate_model || already_listed(*candidate_model, out)) continue;
       fill(effect, calibration, operating_range, *candidate_model);
       if (std::find(suiting.begin(), suiting.end(), key) == suiting.end()) suiting.push_back(key);
@@ -291,12 +294,11 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
   return out;
 }
 
-std::optional<CandidateModel> candidate_model_of(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                                 const EffectRequest& effect, const Calibration* calibration) {
-  const Effect& asked = registry.effect(effect.kind);
+std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, const EffectRequest& effect, const Calibration* calibration) {
+  const Effect& asked = fitted.registry.effect(effect.kind);
   if (!has_strength(asked.spec()) || asked.spec().has_unknown_form() || driven_by_noise(asked)) return std::nullopt;
-  std::optional<CandidateModel> out = candidate_model_at(estimate, request, registry, asked, effect.roles);
-  if (out) fill(asked, calibration, OperatingRange(estimate), *out);
+  std::optional<CandidateModel> out = candidate_model_at(fitted.estimate, fitted.request, fitted.registry, {effect.kind, effect.roles});
+  if (out) fill(asked, calibration, OperatingRange(fitted.estimate), *out);
   return out;
 }
 
@@ -306,8 +308,8 @@ Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const Candid
   forced.model.parameters[forced.time_parameter].value = estimate.noise.force_time;
   for (std::size_t i = 0; i < candidate_model.shapes.size(); ++i) forced.model.parameters[candidate_model.shapes[i]].value = cell[i];
   if (cell.size() > candidate_model.shapes.size()) forced.model.parameters[candidate_model.frequency].value = cell.back();
-  return candidate_model.family == "sensor" ? columns_of_whole_runs(estimate, candidate_model, forced)
-                                            : columns_with_gains_held(estimate, candidate_model, forced);
+  return candidate_model.family == CandidateFamily::sensor ? columns_of_whole_runs(estimate, candidate_model, forced)
+                                                           : columns_with_gains_held(estimate, candidate_model, forced);
 }
 
 }  // namespace misfit

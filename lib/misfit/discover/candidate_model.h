@@ -12,7 +12,8 @@ namespace misfit {
 
 /// A candidate effect assembled into the model: its strengths are free and 0, everything else is held; shapes have the values of a cell.
 struct CandidateModel {
-  std::string effect, family;                ///< family: "physics", "generic", "sensor"
+  std::string effect;
+  CandidateFamily family = CandidateFamily::physics;
   std::map<std::string, std::string> roles;  ///< as a study would bind them; empty: the defaults
   ModelRequest request;                      ///< the model's, with the effect as a number everywhere
   Model model;                               ///< values of the estimate; only the strengths free
@@ -40,8 +41,7 @@ inline constexpr int kTime = -1;
                                                            const Registry& registry, const Calibration* calibration);
 
 /// One effect as a study asks for it; nullopt where it has no strength, is driven by noise, or does not suit the system.
-[[nodiscard]] std::optional<CandidateModel> candidate_model_of(const FilterEstimate& estimate, const ModelRequest& request,
-                                                               const Registry& registry, const EffectRequest& effect,
+[[nodiscard]] std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, const EffectRequest& effect,
                                                                const Calibration* calibration);
 
 /// Ports that an effect writes, by name.

@@ -37,15 +37,14 @@ std::map<std::string, Estimate> random_force(const FilterEstimate& estimate) {
 
 class Search {
  public:
-  Search(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments,
-         const DiscoverOptions& options)
-      : estimate_(estimate),
-        experiments_(experiments),
-        registry_(registry),
+  Search(const FittedStudy& fitted, const DiscoverOptions& options)
+      : estimate_(fitted.estimate),
+        experiments_(fitted.experiments),
+        registry_(fitted.registry),
         options_(options),
-        candidate_models_(candidate_models(estimate, request, registry, options.calibration)),
-        score_(estimate),
-        force_(estimate) {}
+        candidate_models_(candidate_models(fitted.estimate, fitted.request, fitted.registry, options.calibration)),
+        score_(fitted.estimate),
+        force_(fitted.estimate) {}
 
   Discovery run() {
     std::optional<Unexplained> unexplained;
@@ -205,7 +204,7 @@ class Search {
     for (const FilterTrace& trace : calm_->traces) counted += static_cast<double>(trace.counted);
     std::vector<const ScreeningResult*> best;
     for (const ScreeningResult& s : calm_screening_) {
-      const bool a_force = s.candidate_model->family != "sensor";  // the random force takes over nothing else
+      const bool a_force = s.candidate_model->family != CandidateFamily::sensor;  // the random force takes over nothing else
       if (a_force && s.runs && s.result.dof > 0 && s.result.chi2 > least_share * counted) best.push_back(&s);
     }
     std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });
@@ -409,14 +408,13 @@ class Search {
 
 }  // namespace
 
-Discovery discover(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                   const std::vector<Signals>& experiments, const DiscoverOptions& options) {
+Discovery discover(const FittedStudy& fitted, const DiscoverOptions& options) {
   const Stopwatch clock;
   const bool whole = options.only.empty();
   const Watch watch("this round of discover", whole ? options.round_limit : 0.0);
   Discovery out;
   try {
-    Search search(estimate, request, registry, experiments, options);
+    Search search(fitted, options);
     out = whole ? search.run() : search.predict();
   } catch (const TimeSpent& spent) {
     say_cut_off(spent.what(), false, out);

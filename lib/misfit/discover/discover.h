@@ -15,6 +15,14 @@
 
 namespace misfit {
 
+/// A fitted model with what it was made of.
+struct FittedStudy {
+  const FilterEstimate& estimate;
+  const ModelRequest& request;  ///< from which the model of the estimate was assembled
+  const Registry& registry;
+  const std::vector<Signals>& experiments;
+};
+
 struct DiscoverOptions {
   int threads = 0;                           ///< 0: one per core; does not change the answer
   const Calibration* calibration = nullptr;  ///< its covariance and tests are priors of sensor effects
@@ -33,12 +41,11 @@ struct DiscoverOptions {
 
 /// Ranks what the model could lack (lib/misfit/README.md, 6.3 to 6.5): score tests of every effect in the registry that suits the system
 /// and of unknown curves, with shapes scanned; refits of those worth it; groups that the data cannot separate; acceptance by family-wise
-/// p-value and held-out gain. `request` is what the estimate's model was assembled from. With `only` the answer holds that one candidate,
+/// p-value and held-out gain. With `only` the answer holds that one candidate,
 /// its p-value corrected for all families a whole search would look at; no candidate where the effect cannot be screened (it has no
 /// strength, does not suit the system, is driven by noise, or another effect stands for it). With `refits` the answer of ranks other than
 /// the first is empty. RunError: stopped. A refit that its time limit has cut off is named and says nothing of its effect; where that of
 /// the round is spent, the answer is what was found until then, and says so (discover/unfinished.h).
-[[nodiscard]] Discovery discover(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                 const std::vector<Signals>& experiments, const DiscoverOptions& options = {});
+[[nodiscard]] Discovery discover(const FittedStudy& fitted, const DiscoverOptions& options = {});
 
 }  // namespace misfit

@@ -5,6 +5,7 @@
 
 #include "misfit/core/display.h"
 #include "misfit/core/lists.h"
+#include "misfit/inference/standard_error.h"
 
 namespace misfit {
 namespace {
@@ -39,12 +40,10 @@ std::vector<int> held_drifts(const Model& model) {
 
 std::string drifts_in_words(const Model& model, const Eigen::MatrixXd& covariance) {
   std::string out;
-  const std::vector<int> free = model.free_parameters();
   for (const Drift& drift : drifts_of(model)) {
     const Parameter& p = model.parameters[drift.parameter];
     if (!p.free) continue;
-    const int column = place_of(free, drift.parameter);
-    const double sigma = column >= 0 && column < covariance.rows() ? std::sqrt(std::max(covariance(column, column), 0.0)) : 0.0;
+    const double sigma = standard_error_of(model, covariance, drift.parameter).value_or(0.0);
     out += (out.empty() ? "its " : ", its ") + std::string(drift.of) + " drifts by " + in_display_unit(p.value, p.unit, sigma);
   }
   return out;

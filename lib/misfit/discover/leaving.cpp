@@ -8,6 +8,8 @@
 #include "misfit/core/watch.h"
 #include "misfit/discover/bindings.h"
 #include "misfit/discover/refit.h"
+#include "misfit/fit/filter/contained_start.h"
+#include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/model.h"
 
@@ -51,17 +53,6 @@ ModelRequest request_without(const ModelRequest& request, const Model& model, co
   return out;
 }
 
-/// Roughness weights as of the estimate; its curves may stand at other places.
-std::vector<Penalty> penalties_like(const FilterEstimate& estimate, const Model& model) {
-  std::vector<Penalty> out = curve_penalties(model);
-  for (Penalty& own : out) {
-    for (const Penalty& known : estimate.penalties) {
-      if (estimate.model.curves[known.curve].name == model.curves[own.curve].name) own.lambda = known.lambda;
-    }
-  }
-  return out;
-}
-
 void copy_parameter(const Parameter& from, Parameter& to) {
   to.value = from.value;
   to.free = from.free;
@@ -93,29 +84,28 @@ bool may_be_chance(double drop, int parameters, double families) {
 bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas) {
   const BoundEffect* effect = effect_called(estimate.model, name);
   if (effect == nullptr) return false;
-  const std::vector<int> free = estimate.model.free_parameters();
   bool any = false;
   for (const int index : own_parameters(estimate.model, *effect)) {
     const Parameter& p = estimate.model.parameters[index];
     if (p.kind != CoefficientKind::strength || !p.free) continue;
-    const int column = place_of(free, index);
-    if (column < 0 || column >= estimate.covariance.rows()) return false;
+    const std::optional<double> sigma = standard_error_of(estimate.model, estimate.covariance, index);
+    if (!sigma || std::abs(p.value) > sigmas * *sigma) return false;
     any = true;
-    if (std::abs(p.value) > sigmas * std::sqrt(std::max(estimate.covariance(column, column), 0.0))) return false;
   }
   return any;
 }
 
-std::optional<Without> without_effect(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                      const std::vector<Signals>& experiments, const std::string& name, int threads) {
+std::optional<Without> without_effect(const FittedStudy& fitted, const std::string& name, int threads) {
+  const FilterEstimate& estimate = fitted.estimate;
   const BoundEffect* effect = effect_called(estimate.model, name);
   if (effect == nullptr) return std::nullopt;
   try {
     Without out;
-    out.request = request_without(request, estimate.model, *effect);
-    Model start = assemble(out.request, registry);
+    out.request = request_without(fitted.request, estimate.model, *effect);
+    Model start = assemble(out.request, fitted.registry);
     copy_values(estimate.model, start);
-    out.estimate = estimate_filter(start, penalties_like(estimate, start), experiments, options_like(estimate, threads));
+    out.estimate = estimate_filter(start, with_weights_of(estimate, start, curve_penalties(start)), fitted.experiments,
+                                   options_like(estimate, threads));
     if (!out.estimate.converged || out.estimate.out_of_time) return std::nullopt;
     out.drop = 2.0 * (estimate.objective - out.estimate.objective);
     for (const int index : own_parameters(estimate.model, *effect)) out.parameters += estimate.model.parameters[index].free ? 1 : 0;
@@ -145,7 +135,8 @@ std::optional<FreedWidth> freed_width(const FilterEstimate& estimate, const std:
     width.lower = visited.lower_bound(*effect, c);
     width.value = std::clamp(width.value, 1.01 * width.lower, width.upper);
     try {
-      const FilterEstimate there = estimate_filter(start, penalties_like(estimate, start), experiments, options_like(estimate, threads));
+      const FilterEstimate there =
+          estimate_filter(start, with_weights_of(estimate, start, curve_penalties(start)), experiments, options_like(estimate, threads));
       const double value = there.model.parameters[at].value;
       constexpr double at_bound = 1.05;
       if (!there.converged || there.out_of_time || value < at_bound * width.lower) continue;

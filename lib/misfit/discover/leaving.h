@@ -18,11 +18,10 @@ struct Without {
   double p_value = 1.0;  ///< of that drop by chance: chi² tail
 };
 
-/// `request` is what the estimate's model was assembled from, `name` an effect of it as the model calls it (BoundEffect::name). The model
-/// without it is estimated anew from the estimate's values. nullopt: it cannot go (another effect shares its coefficients, or the model
-/// cannot be run without it), the search did not converge, or a limit of time was spent.
-[[nodiscard]] std::optional<Without> without_effect(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                                    const std::vector<Signals>& experiments, const std::string& name, int threads);
+/// `name`: an effect of the model as it calls it (BoundEffect::name). The model without it is estimated anew from the estimate's values.
+/// nullopt: it cannot go (another effect shares its coefficients, or the model cannot be run without it), the search did not converge, or a
+/// limit of time was spent.
+[[nodiscard]] std::optional<Without> without_effect(const FittedStudy& fitted, const std::string& name, int threads);
 
 /// May the drop of 2 log L of an effect with so many parameters be chance, if it is one of so many that were tried? Family-wise p (Sidak)
 /// above 0.01, as for acceptance.

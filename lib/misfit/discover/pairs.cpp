@@ -23,7 +23,7 @@ SecondEffect second_effect_given(const RankedCandidate& in, const ConditionalSco
                                  const std::vector<RankedCandidate>& ranked, double p_accept) {
   SecondEffect best;
   for (const RankedCandidate& other : ranked) {
-    if (&other == &in || !other.screening->runs || other.candidate.described || other.candidate.family == "sensor") continue;
+    if (&other == &in || !other.screening->runs || other.candidate.described || other.candidate.family == CandidateFamily::sensor) continue;
     auto found = conditional.score(other);
     if (!found || found->result.dof == 0 || (best.entry != nullptr && found->log_p >= best.score.log_p)) continue;
     best = {&other, std::move(*found)};
@@ -81,7 +81,7 @@ std::vector<RankedCandidate*> rivals_of(const RankedCandidate& single, std::vect
   for (RankedCandidate& e : ranked) {
     const CandidateModel& other = *e.screening->candidate_model;
     if (&e == &single || !e.screening->runs || e.screening->columns.cols() == 0 || e.candidate.described) continue;
-    if (other.family != "sensor" && !other.lags && compete(*single.screening->candidate_model, other)) out.push_back(&e);
+    if (other.family != CandidateFamily::sensor && !other.lags && compete(*single.screening->candidate_model, other)) out.push_back(&e);
   }
   return out;
 }
@@ -137,7 +137,7 @@ std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vect
 std::optional<PairInstead> better_pair(std::vector<RankedCandidate>& ranked, RankedCandidate& single, HeldOut& held_out,
                                        const SearchContext& context) {
   constexpr double clearly = 10.0;  // of the drop
-  if (single.screening->candidate_model->family == "sensor" || single.screening->candidate_model->lags) return std::nullopt;
+  if (single.screening->candidate_model->family == CandidateFamily::sensor || single.screening->candidate_model->lags) return std::nullopt;
   const BestPairs best = best_pairs(single, rivals_of(single, ranked), context.estimate);
   if (best.first == nullptr) return std::nullopt;
   const Refit both = refit_of_both(*best.first, *best.second, context);

@@ -10,6 +10,8 @@
 #include "misfit/core/watch.h"
 #include "misfit/discover/drift.h"
 #include "misfit/discover/whole_strength.h"
+#include "misfit/fit/filter/contained_start.h"
+#include "misfit/inference/standard_error.h"
 
 namespace misfit {
 namespace {
@@ -20,14 +22,8 @@ std::vector<std::vector<SampleRole>> uses_of(const FilterEstimate& estimate) {
   return out;
 }
 
-std::vector<Penalty> same_roughness(const Model& model, const FilterEstimate& from) {
-  std::vector<Penalty> out = curve_penalties(model);
-  for (auto& p : out) {
-    for (const auto& known : from.penalties) {
-      if (p.curve == known.curve) p.lambda = known.lambda;  // the effect's own curves follow behind
-    }
-  }
-  return out;
+std::vector<Penalty> penalties_as_of(const FilterEstimate& from, const Model& model) {
+  return with_weights_of(from, model, curve_penalties(model));
 }
 
 /// log prior density at all strengths 0 (effect off).
@@ -57,9 +53,7 @@ std::vector<std::vector<SampleRole>> without_last_quarter(const FilterEstimate& 
 
 /// Standard error of a parameter; 0 where it is fixed or no covariance is known.
 double sigma_of(const FilterEstimate& estimate, int parameter) {
-  const int column = place_of(estimate.model.free_parameters(), parameter);
-  if (column < 0 || column >= estimate.covariance.rows()) return 0.0;
-  return std::sqrt(std::max(estimate.covariance(column, column), 0.0));
+  return standard_error_of(estimate.model, estimate.covariance, parameter).value_or(0.0);
 }
 
 /// Of the effect, which is the model's last.
@@ -76,7 +70,7 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
     double sigma = sigma_of(estimate, at);
     // With Kalman gains held the covariance of a sensor effect is too small (sensitivity_columns); screening uses whole runs.
     const bool screened = strength >= 0 && strength < screening.result.sigma.size();
-    if (candidate_model.family == "sensor" && screened && p.free) sigma = screening.result.sigma[strength];
+    if (candidate_model.family == CandidateFamily::sensor && screened && p.free) sigma = screening.result.sigma[strength];
     out[p.name] = {p.value, sigma, p.unit};
   }
   return out;
@@ -131,9 +125,9 @@ bool several_values_scanned(const CandidateModel& candidate_model, std::size_t i
          std::any_of(cells.begin(), cells.end(), [&](const auto& cell) { return cell[i] != cells.front()[i]; });
 }
 
-/// With its strengths at which the effect is whole held there, if the data allow it. False: there was no time to try, so that a part that
-/// was found says nothing.
-bool hold_whole(const RefitWork& work, Refit& out) {
+/// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood allows it.
+/// False: there was no time to try, so that a part that was found says nothing.
+bool fix_whole_strengths(const RefitWork& work, Refit& out) {
   constexpr double allowed = 2.0;  // of the log-likelihood
   const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
   if (whole.empty()) return true;
@@ -141,7 +135,7 @@ bool hold_whole(const RefitWork& work, Refit& out) {
   FilterOptions options = options_like(work.without, work.threads);
   options.noise = out.estimate.noise;
   try {
-    FilterEstimate held = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
+    FilterEstimate held = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
     if (held.out_of_time) return false;
     if (held.converged && held.objective > out.estimate.objective - allowed) {
       out.estimate = std::move(held);
@@ -155,8 +149,9 @@ bool hold_whole(const RefitWork& work, Refit& out) {
   return true;
 }
 
-/// With the drifts of its shapes freed, if that gains what chance would once in a thousand times. False: there was no time to try.
-bool let_drift(const RefitWork& work, Refit& out) {
+/// Frees the drifts of its shapes (CoefficientSpec::drift_of), if that gains what chance would once in a thousand times. False: there was
+/// no time to try.
+bool free_drifts(const RefitWork& work, Refit& out) {
   constexpr double least = 5.4;  // of the log-likelihood: 10.8 in chi², 1 degree of freedom
   Model start = out.estimate.model;
   const std::vector<int> drifts = held_drifts(start);
@@ -165,7 +160,7 @@ bool let_drift(const RefitWork& work, Refit& out) {
   FilterOptions options = options_like(work.without, work.threads);
   options.noise = out.estimate.noise;
   try {
-    FilterEstimate drifting = estimate_filter(start, same_roughness(start, work.without), work.experiments, options);
+    FilterEstimate drifting = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
     if (drifting.out_of_time) return false;
     const double needed = least * static_cast<double>(drifts.size());
     if (drifting.converged && drifting.objective > out.estimate.objective + needed) out.estimate = std::move(drifting);
@@ -298,7 +293,7 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
   }
   constexpr int steps_of_noise = 3;
   const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, {without.around, work.threads, steps_of_noise});
-  const double objective = -noise.minus_log_density + log_prior(model, same_roughness(model, without));
+  const double objective = -noise.minus_log_density + log_prior(model, penalties_as_of(without, model));
   const double drop = 2.0 * (objective - without.objective - prior_of_off(*screening.candidate_model));
   OneStep out{std::max(drop, screening.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing
   if (drop > 0.0) out.model = std::move(model);
@@ -319,12 +314,12 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const FilterEstimate& without = work.without;
   Refit out;
   out.request = screening.candidate_model->request;
-  const auto climb = [&](const Model& start, const std::optional<FilterNoise>& noise) {
+  const auto estimate_from = [&](const Model& start, const std::optional<FilterNoise>& noise) {
     if (watch.spent()) return;
     FilterOptions options = options_like(without, work.threads);
     options.noise = noise;
     try {
-      FilterEstimate there = estimate_filter(start, same_roughness(start, without), work.experiments, options);
+      FilterEstimate there = estimate_filter(start, penalties_as_of(without, start), work.experiments, options);
       if (!out.ok || better(there, out.estimate)) out.estimate = std::move(there);
       out.ok = true;
     } catch (const RunError& error) {
@@ -334,17 +329,17 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   };
   const auto no_maximum = [&] { return !out.ok || !out.estimate.converged; };
   if (work.afresh) {
-    climb(fresh_model(work, screening), std::nullopt);
+    estimate_from(fresh_model(work, screening), std::nullopt);
   } else {
-    if (from.model) climb(*from.model, from.noise);
-    if (no_maximum()) climb(start_model(without, screening, work.registry), without.noise);
+    if (from.model) estimate_from(*from.model, from.noise);
+    if (no_maximum()) estimate_from(start_model(without, screening, work.registry), without.noise);
     const double off = without.objective + prior_of_off(*screening.candidate_model);
-    if (no_maximum() || out.estimate.objective < off) climb(off_model(work, screening), without.noise);
+    if (no_maximum() || out.estimate.objective < off) estimate_from(off_model(work, screening), without.noise);
   }
   const bool in_time = !no_maximum() || !watch.spent();
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
-  if (!in_time || !hold_whole(work, out) || !let_drift(work, out))
+  if (!in_time || !fix_whole_strengths(work, out) || !free_drifts(work, out))
     return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
   note_changes(screening, work.registry, out);
   out.drop = drop_of(out.estimate, without, screening);

@@ -39,15 +39,16 @@ void hold(const std::map<std::string, double>& held, CandidateModel& out) {
 
 std::optional<ScannedStart> scanned_start(const ScanTask& task, const EffectRequest& effect, const std::map<std::string, double>& held) {
   constexpr double least_chi2 = 10.0;
-  std::optional<CandidateModel> model = candidate_model_of(task.without, task.request, task.registry, effect, task.calibration);
+  std::optional<CandidateModel> model = candidate_model_of(task.without, effect, task.calibration);
   if (!model) return std::nullopt;
   hold(held, *model);
-  const ScoreTest score(task.without);
-  const ForceSensitivity force(task.without);
+  const ScoreTest score(task.without.estimate);
+  const ForceSensitivity force(task.without.estimate);
   const std::vector<CandidateModel> alone = {std::move(*model)};
-  const std::vector<ScreeningResult> screened = screen({task.without, score, force, task.threads, task.calibration != nullptr}, alone);
+  const std::vector<ScreeningResult> screened =
+      screen({task.without.estimate, score, force, task.threads, task.calibration != nullptr}, alone);
   if (screened.empty() || !screened.front().runs || !(screened.front().result.chi2 >= least_chi2)) return std::nullopt;
-  const RefitWork work{task.without, task.experiments, task.registry, task.threads};
+  const RefitWork work{task.without.estimate, task.without.experiments, task.without.registry, task.threads};
   const Refit found = refit(work, screened.front(), one_step(work, score, screened.front()));
   if (!found.ok) return std::nullopt;
   ScannedStart out;

@@ -18,10 +18,7 @@ struct ScannedStart {
 
 /// What the scan works on.
 struct ScanTask {
-  const FilterEstimate& without;  ///< of the model without the effect
-  const ModelRequest& request;    ///< of the same
-  const Registry& registry;
-  const std::vector<Signals>& experiments;
+  FittedStudy without;                       ///< without the effect
   const Calibration* calibration = nullptr;  ///< as in DiscoverOptions
   int threads = 0;                           ///< does not change the answer
 };

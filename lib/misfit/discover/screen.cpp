@@ -34,7 +34,7 @@ CellScore score_cell(const FilterEstimate& estimate, const ScoreTest& score, con
 namespace {
 
 /// 1 − mean squared correlation of two cells' columns, free parameters projected out: how much a new cell adds.
-double novelty(const ScoreTest& score, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+double one_minus_squared_correlation(const ScoreTest& score, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   if (a.size() == 0 || b.size() == 0) return 1.0;
   const Eigen::MatrixXd pa = score.projected(a), pb = score.projected(b);
   double shared = 0.0;
@@ -157,7 +157,8 @@ std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<Can
         best.columns = cell.columns;
       }
       best.runs = true;
-      if (c > 0 && candidate_models[s].frequency < 0) best.cells_effective += novelty(work.score, results[s][c - 1].columns, cell.columns);
+      if (c > 0 && candidate_models[s].frequency < 0)
+        best.cells_effective += one_minus_squared_correlation(work.score, results[s][c - 1].columns, cell.columns);
     }
     if (candidate_models[s].frequency >= 0) {
       best.frequencies = frequencies[s];

@@ -20,6 +20,7 @@ void say_unfinished(const std::vector<std::string>& effects, Discovery& discover
   if (any_accepted(discovery)) {
     discovery.sentences.push_back(cut_off + ": tested again once the accepted effect is added");
   } else {
+    discovery.outcome = SearchOutcome::not_decided;
     discovery.verdict = "Not decided: " + cut_off + ", which says nothing against " + (effects.size() > 1 ? "them" : "it") +
                         ". Of the rest: " + discovery.verdict;
   }
@@ -32,6 +33,7 @@ void say_cut_off(const std::string& spent, bool screened, Discovery& discovery) 
   }
   const std::string where = screened ? " after the candidates were tested one by one: which of them is missing is not decided"
                                      : " before all candidates were tested: nothing can be said of any";
+  discovery.outcome = SearchOutcome::not_finished;
   discovery.verdict = "Not finished: " + spent + where + " (more time: --round-limit SECONDS, or time_limit of [discover]).";
 }
 

@@ -144,7 +144,7 @@ std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const E
     Candidate c;
     c.effect = spec.key;
     c.roles = roles_at(spec, curve.port, curve.quantity);
-    c.family = "unknown";
+    c.family = CandidateFamily::unknown;
     c.ports = {curve.port};
     c.score = c.predicted_drop = curve.result.chi2;
     c.dof = curve.result.dof;

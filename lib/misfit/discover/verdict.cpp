@@ -8,6 +8,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/discover/bindings.h"
+#include "misfit/inference/standard_error.h"
 #include "misfit/inference/states.h"
 
 namespace misfit {
@@ -23,7 +24,7 @@ std::string numbers(const Candidate& c) {
 
 bool is_sensor(const Discovery& discovery, const std::string& effect) {
   return std::any_of(discovery.candidates.begin(), discovery.candidates.end(),
-                     [&](const Candidate& c) { return effect_at(c.effect, c.roles) == effect && c.family == "sensor"; });
+                     [&](const Candidate& c) { return effect_at(c.effect, c.roles) == effect && c.family == CandidateFamily::sensor; });
 }
 
 void suggest_experiment(const Candidate& best, bool camera, Discovery& discovery) {
@@ -52,7 +53,7 @@ void note_larger_drops(const Candidate& best, Discovery& discovery) {
 
 /// What the flight gives evidence of besides the camera: accepted, of unknown form, or significant without being either; empty: nothing.
 std::string physics_evidence(const Discovery& discovery, double p_accept) {
-  const auto physical = [](const Candidate& c) { return c.family != "sensor"; };
+  const auto physical = [](const Candidate& c) { return c.family != CandidateFamily::sensor; };
   for (const Candidate& c : discovery.candidates) {
     if (c.accepted && physical(c)) return effect_at(c.effect, c.roles);
   }
@@ -91,11 +92,13 @@ double rms_from_multiples(const std::vector<double>& values, double step) {
 
 void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept, bool camera) {
   if (out.candidates.empty()) {
+    out.outcome = SearchOutcome::none_suits;
     out.verdict = "No effect of the library suits this system: none was tested.";
     return;
   }
   const Candidate& best = out.candidates.front();
   if (best.accepted) {
+    out.outcome = SearchOutcome::accepted;
     out.verdict = "Missing: " + effect_at(best.effect, best.roles) + " (drop " +
                   format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise " + p_equals(best.p_value) +
                   "): " + numbers(best) + ".";
@@ -108,6 +111,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     out.unexplained_quantity = unexplained->quantity;
     out.unexplained_error = unexplained->of_output;
     out.unexplained_effects = unexplained->effects;
+    out.outcome = SearchOutcome::unknown_form;
     out.verdict = "Something is missing that depends on " + unexplained->quantity + " (" + unexplained_place(out) + ", " +
                   p_equals(unexplained->p_value) + "), and no effect of the library explains it.";
     if (best.actual_drop)
@@ -116,8 +120,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     return;
   }
   if (best.actual_drop && best.p_value < p_accept) {
-    out.verdict = "No effect accepted; best candidate " + effect_at(best.effect, best.roles) + " (drop " + format_value(*best.actual_drop) +
-                  ", family-wise " + p_equals(best.p_value) + "), rejected: " + best.why + ".";
+    out.outcome = SearchOutcome::best_rejected;
+    out.verdict = "No effect accepted; " + best_rejected(best) + ".";
     return;
   }
   double least = 1.0;
@@ -129,6 +133,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     }
   }
   const std::string closest = nearest.empty() ? "" : "; the best is " + nearest + " with " + p_equals(least);
+  out.outcome = SearchOutcome::none_missing;
   out.verdict = "No missing effect detected: none of " + std::to_string(out.candidates.size()) + " candidates reaches a family-wise p of " +
                 format_value(p_accept) + " with a held-out gain" + closest + ".";
 }
@@ -149,15 +154,12 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
 std::optional<std::string> undetermined_strengths(const Model& model, const Eigen::MatrixXd& covariance,
                                                   const std::vector<int>& strengths) {
   constexpr double least = 2.0;  // sigmas
-  const std::vector<int> free = model.free_parameters();
   std::string values;
   for (const int strength : strengths) {
-    const int column = place_of(free, strength);
-    if (column < 0 || column >= covariance.rows()) return std::nullopt;
-    const double sigma = std::sqrt(std::max(covariance(column, column), 0.0));
+    const std::optional<double> sigma = standard_error_of(model, covariance, strength);
     const Parameter& p = model.parameters[strength];
-    if (!(std::abs(p.value) < least * sigma)) return std::nullopt;
-    values += (values.empty() ? "" : ", ") + p.name + " = " + in_display_unit(p.value, p.unit, sigma);
+    if (!sigma || !(std::abs(p.value) < least * *sigma)) return std::nullopt;
+    values += (values.empty() ? "" : ", ") + p.name + " = " + in_display_unit(p.value, p.unit, *sigma);
   }
   if (values.empty()) return std::nullopt;
   return "its strength is not determined: " + values;
@@ -239,6 +241,7 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
     c.why = "the calibration sweep shows significant " + join_words(wanted) + ": recalibrate with them enabled, then rerun discover (" +
             c.why + ")";
   }
+  out.outcome = flight.empty() ? SearchOutcome::camera_incomplete : SearchOutcome::camera_against_flight;
   if (flight.empty()) {
     out.verdict = "The camera model is incomplete: " + disagreement + ". Recalibrate with them enabled, then rerun discover.";
   } else {

@@ -10,6 +10,7 @@
 
 #include "misfit/core/shown.h"
 #include "misfit/data/curve_coefficient.h"
+#include "misfit/math/covariance.h"
 
 namespace misfit {
 namespace {
@@ -40,7 +41,7 @@ ExportedCurve curve_of_model(const Exported& exported, const Curve& curve) {
     out.value.push_back(w.dot(c));
     out.slope.push_back(d.dot(c));
     out.sigma.push_back(covariance.size() == 0 ? std::numeric_limits<double>::quiet_NaN()
-                                               : std::sqrt(std::max(0.0, w.dot(covariance.block<4, 4>(point.first, point.first) * w))));
+                                               : standard_error_of_sum(covariance.block<4, 4>(point.first, point.first), w));
   }
   return out;
 }

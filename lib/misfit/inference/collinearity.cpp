@@ -6,6 +6,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/inference/identifiable.h"
+#include "misfit/math/covariance.h"
 
 namespace misfit {
 namespace {
@@ -135,7 +136,7 @@ void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance,
     const Parameter& p = model.parameters[free[c]];
     const Eigen::Index at = c;
     if (p.curve >= 0 || !(covariance(at, at) > 0.0)) continue;
-    const double sigma = std::sqrt(covariance(at, at));
+    const double sigma = standard_error(covariance, at);
     constexpr double min_share_of_prior = 0.95;
     if (p.prior_sigma && sigma > min_share_of_prior * *p.prior_sigma) {
       prior_only += (prior_only.empty() ? "" : ", ") + p.name;
@@ -154,7 +155,7 @@ void reject_prior_conflicts(const Model& model, const Eigen::MatrixXd& covarianc
   const std::vector<int> free = model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c) {
     const Parameter& p = model.parameters[free[c]];
-    const double sigma = std::sqrt(std::max(covariance(c, c), 0.0));
+    const double sigma = standard_error(covariance, static_cast<Eigen::Index>(c));
     if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
     if (std::abs(p.value - p.prior_mean) < max_prior_sigmas * *p.prior_sigma || sigma < max_share_of_prior * *p.prior_sigma) continue;
     fit.status = FitStatus::failed;

@@ -17,13 +17,17 @@ namespace {
 
 constexpr Eigen::Index longest_transform = 16384, max_lags = 2048;
 
-/// A stretch of an experiment, transformed: real and imaginary part of each channel's derivatives, frequencies × columns.
+/// Fourier transform of the derivatives in one piece of an experiment (long ones are cut, so that a transform fits into memory).
 struct Stretch {
-  const std::vector<Eigen::Index>* place = nullptr;
+  const std::vector<Eigen::Index>* place = nullptr;  ///< of its columns among all unknowns
+  /// Per channel: frequencies × columns.
   std::vector<Eigen::MatrixXd> real, imaginary;
 };
 
-using Densities = std::vector<Eigen::MatrixXcd>;  // channels × channels per frequency
+using Densities = std::vector<Eigen::MatrixXcd>;  // per frequency: channels × channels
+
+/// coloured_covariance() for channels with one clock: products of residuals by lag, their spectral density, and with it the middle of the
+/// sandwich H⁻¹ (N + excess + P) H⁻¹; sums over all pairs of samples are products in the frequency domain.
 
 class Sandwich {
  public:
@@ -95,7 +99,7 @@ class Sandwich {
     stretches_.push_back(std::move(stretch));
   }
 
-  /// Σ_i x_a,i x_b,i+k into `out`.
+  /// Adds Σ_i x_a,i x_b,i+k to `out`, for every pair of channels a, b and lag k.
   void add_products(const std::vector<Eigen::VectorXcd>& x, LagProducts& out) const {
     for (Eigen::Index a = 0; a < channels_; ++a) {
       for (Eigen::Index b = 0; b < channels_; ++b) {
@@ -107,7 +111,8 @@ class Sandwich {
     }
   }
 
-  /// Windowed estimates of E[v_a,i v_b,i+k].
+  /// Estimates of E[v_a,i v_b,i+k] of the noise v, multiplied with the flat-top window: products of the residuals, and what the fit has
+  /// taken out of them (`deficit`), over the number of pairs.
   LagProducts correlations(const LagProducts& deficit) {
     LagProducts out(deficit.size(), Eigen::MatrixXd::Zero(channels_, channels_));
     out_.largest_correlation = 0.0;
@@ -132,7 +137,8 @@ class Sandwich {
     return whole(*stretch.place, *stretch.place);
   }
 
-  /// conj(z) A zᵀ per frequency for every stretch; z: channels × columns.
+  /// Spectrum of S A Sᵀ, A over the unknowns: conj(z) A zᵀ at each frequency of every stretch, z the transformed derivatives, channels ×
+  /// columns.
   std::vector<Densities> leverage(const Eigen::MatrixXd& A) const {
     std::vector<Densities> out;
     for (const Stretch& s : stretches_) {
@@ -152,7 +158,7 @@ class Sandwich {
     return out;
   }
 
-  /// What the fit took out of the products by lag: residuals are smaller than the noise, and remember less.
+  /// E[v vᵀ − r rᵀ] summed by lag: the residuals r of a fit are smaller than the noise v, and less correlated.
   LagProducts bias_correction(const Densities& density, const std::vector<Densities>& by_plain,
                               const std::vector<Densities>& by_covariance) const {
     const auto half = static_cast<std::size_t>(size_ / 2 + 1);
@@ -182,7 +188,8 @@ class Sandwich {
     return out;
   }
 
-  /// conj(density) less 1 on the diagonal, by its share of a sum over the whole spectrum.
+  /// conj(density), on the diagonal less the 1 of white residuals, with the weight of each frequency in a sum over the whole spectrum (all
+  /// but the first and the last stand for two).
   [[nodiscard]] Eigen::VectorXcd weighted(const Densities& density, Eigen::Index a, Eigen::Index b) const {
     Eigen::VectorXcd out(std::ssize(density));
     for (Eigen::Index f = 0; f < out.size(); ++f) {
@@ -240,7 +247,7 @@ bool have_own_clocks(const std::vector<ResidualRows>& experiments, Eigen::Index 
   return together.have_own_clocks();
 }
 
-/// The measurements of one channel, one after the other.
+/// The residuals of one channel that count, without the gaps between them: lags are then in its own samples.
 std::vector<ResidualRows> of_channel(const std::vector<ResidualRows>& experiments, Eigen::Index channels, Eigen::Index channel) {
   std::vector<ResidualRows> out;
   for (const ResidualRows& e : experiments) {
@@ -253,7 +260,7 @@ std::vector<ResidualRows> of_channel(const std::vector<ResidualRows>& experiment
   return out;
 }
 
-/// Each channel by itself, lags in its own samples; correlations between channels are not known.
+/// Each channel by itself, lags in its own samples; correlations between channels are neglected, since their samples do not pair.
 ColouredCovariance by_own_clocks(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels) {
   ColouredCovariance out = white_covariance(plain, channels);
   for (Eigen::Index a = 0; a < channels; ++a) {
@@ -325,8 +332,9 @@ ColouredCovariance residual_covariance(const std::vector<ResidualRows>& experime
 
 std::string in_words(const ColouredCovariance& covariance) {
   if (covariance.lags == 0 && std::isinf(covariance.degrees))
-    return "the residuals of this short record show no memory: sigmas are those of white residuals, 95 % intervals by Student's t";
-  return "allows for residuals with memory (Morelli and Klein): correlations up to lag " + std::to_string(covariance.lags) +
+    return "no autocorrelation of the residuals is significant in this short record: sigmas are those of white residuals, 95 % intervals "
+           "by Student's t";
+  return "allows for autocorrelated residuals (Morelli and Klein): correlations up to lag " + std::to_string(covariance.lags) +
          " samples count, the largest is " + format_value(std::round(1000.0 * covariance.largest_correlation) / 1000.0) + " at lag " +
          std::to_string(covariance.largest_lag) + "; plain_sigma is that of white residuals";
 }

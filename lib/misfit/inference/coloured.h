@@ -22,8 +22,8 @@ struct ResidualRows {
 
 struct ColouredCovariance {
   Eigen::MatrixXd covariance;  ///< of all unknowns
-  Eigen::MatrixXd excess;      ///< what memory adds to N: Σ = H⁻¹ + H⁻¹ excess H⁻¹
-  int lags = 0;                ///< residuals this many samples apart count as they are, twice as many not at all
+  Eigen::MatrixXd excess;      ///< what autocorrelation adds to N: Σ = H⁻¹ + H⁻¹ excess H⁻¹
+  int lags = 0;                ///< correlations up to this lag count fully, from there on less, at twice this lag not at all
   double largest_correlation = 0.0;
   int largest_lag = 0;  ///< of the largest correlation in size at lag ≥ 1
   /// Per channel Σ ρ² over all lags: the variance of a residual variance is 2 σ⁴/n times this (Bartlett). 1 for white residuals.
@@ -33,14 +33,16 @@ struct ColouredCovariance {
   double degrees = std::numeric_limits<double>::infinity();
 };
 
-/// Do the residuals of every channel pass a test of whiteness at 5 %, experiments one after the other? For short records, of which
-/// correlations by lag are known too poorly to be used without need: with them 95 % intervals of 50 white residuals hold 70 to 85 %.
+/// Is whiteness of the residuals of every channel, experiments joined, not rejected at 5 %? For short records: their correlations are known
+/// so poorly that a covariance that uses them is worse than the plain one where the residuals are white (95 % intervals of 50 white
+/// residuals then hold the truth in 70 to 85 % of cases).
 [[nodiscard]] bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::Index channels, double unknowns);
 
-/// The same where what memory takes off N (residuals that swing to and fro) is left out: of a short record only what widens is believed.
+/// The same without the directions in which autocorrelation makes the covariance smaller (residuals that alternate): of a short record only
+/// what makes it larger is used.
 [[nodiscard]] ColouredCovariance widening_only(ColouredCovariance covariance, const Eigen::MatrixXd& plain);
 
-/// That of white residuals: `plain`.
+/// The answer for white residuals: `plain`.
 [[nodiscard]] ColouredCovariance white_covariance(const Eigen::MatrixXd& plain, Eigen::Index channels);
 
 /// Covariance of a least-squares estimate whose residuals are not white [MK]:
@@ -63,12 +65,12 @@ struct ColouredCovariance {
 [[nodiscard]] ColouredCovariance coloured_covariance(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain,
                                                      Eigen::Index channels);
 
-/// coloured_covariance(); of a short record (kShortRecord) of so many degrees of freedom, only where the residuals are not white, and then
-/// only what widens.
+/// coloured_covariance(); for fewer `degrees` of freedom than kShortRecord white_covariance(), or where whiteness is rejected
+/// widening_only().
 [[nodiscard]] ColouredCovariance residual_covariance(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain,
                                                      Eigen::Index channels, double degrees);
 
-/// What was done, for a reader: "allows for residuals with memory (…): correlations up to lag 24 samples count, the largest
+/// What was done, for a reader: "allows for autocorrelated residuals (…): correlations up to lag 24 samples count, the largest
 /// is -0.61 at lag 3; …".
 [[nodiscard]] std::string in_words(const ColouredCovariance& covariance);
 

@@ -7,6 +7,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/math/covariance.h"
 
 namespace misfit {
 namespace {
@@ -118,7 +119,7 @@ class CurveBands {
         });
       }
       out.value.push_back(w.value);
-      out.sigma.push_back(std::sqrt(std::max(w.on_columns.dot(covariance_ * w.on_columns), 0.0)));
+      out.sigma.push_back(standard_error_of_sum(covariance_, w.on_columns));
     }
     return out;
   }
@@ -206,7 +207,7 @@ void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMa
   for (Eigen::Index c = 0; c < std::ssize(free); ++c) {
     const Parameter& p = model.parameters[free[c]];
     fit.names.push_back(p.name);
-    fit.parameters[p.name] = {p.value, std::sqrt(std::max(covariance(c, c), 0.0)), p.unit};
+    fit.parameters[p.name] = {p.value, standard_error(covariance, c), p.unit};
   }
   const CurveBands bands(model, covariance, visited);
   fit.curves.clear();

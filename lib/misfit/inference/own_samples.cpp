@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/lists.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -72,11 +73,8 @@ LocalFit OwnSamples::at(double time) const {
 }
 
 DensestRows at_densest(const Signals& signals) {
-  const auto known = [](const Signal& channel) {
-    return std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return std::isfinite(v); });
-  };
   const auto densest = std::max_element(signals.measured.begin(), signals.measured.end(),
-                                        [&](const Signal& a, const Signal& b) { return known(a) < known(b); });
+                                        [](const Signal& a, const Signal& b) { return count_finite(a.values) < count_finite(b.values); });
   DensestRows out;
   for (std::size_t i = 0; i < signals.samples(); ++i) {
     if (std::isfinite(densest->values[i])) out.rows.push_back(i);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/watch.h"
 #include "misfit/inference/own_clocks.h"
 #include "misfit/inference/own_samples.h"
@@ -18,14 +19,10 @@
 namespace misfit {
 namespace {
 
-std::size_t measurements(const Signal& channel) {
-  return std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return std::isfinite(v); });
-}
-
 /// Of the channel that has fewest.
 std::size_t fewest_measurements(const Signals& signals) {
   std::size_t out = signals.samples();
-  for (const Signal& channel : signals.measured) out = std::min(out, measurements(channel));
+  for (const Signal& channel : signals.measured) out = std::min(out, count_finite(channel.values));
   return out;
 }
 
@@ -146,7 +143,7 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
   ShownStates states(spec.states, signals.t, own_clocks);
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     if (spec.outputs[o].observes >= 0 && o < signals.measured.size())
-      states.add(spec.outputs[o].observes, signals.measured[o].values, measurements(signals.measured[o]));
+      states.add(spec.outputs[o].observes, signals.measured[o].values, count_finite(signals.measured[o].values));
   }
   const DensestRows dense = own_clocks ? at_densest(signals) : DensestRows{};
   const Signals& together = own_clocks ? dense.signals : signals;

@@ -103,6 +103,16 @@ struct AxisGeometry {
   double l_s = 0.0;  ///< swivel → camera, along x; R < l_s
 };
 
+/// A camera and where it stands. Keeps a reference to the parameters.
+template <class T>
+struct AxisCamera {
+  CameraModel model = CameraModel::pinhole;
+  const CameraParameters<T>& parameters;
+  AxisGeometry geometry;
+};
+template <class T>
+AxisCamera(CameraModel, const CameraParameters<T>&, AxisGeometry) -> AxisCamera<T>;
+
 /// Unit vector of the axis from theta = atan2(n_z, n_x), psi = atan2(n_y, n_x), both within ±pi/2: n ~ (cos θ cos ψ, cos θ sin ψ, sin θ cos
 /// ψ). Zero over zero only where both angles are ±pi/2.
 template <class T>
@@ -121,7 +131,8 @@ std::array<T, 3> axis_direction(const T& theta, const T& psi) {
 ///   pinhole:         P_z = l_b K (R n_z + h_c)/(L − R n_x),          P_y = l_b K R n_y/(L − R n_x)
 ///   plane_by_plane:  P_z = l_b K (R sin θ + h_c)/(L − R cos θ),      P_y = l_b K R sin ψ/(L − R cos ψ)   [P, Eq. 1]
 template <class T>
-std::array<T, 2> project_axis(CameraModel model, const CameraParameters<T>& c, const AxisGeometry& g, const T& theta, const T& psi) {
+std::array<T, 2> project_axis(const AxisCamera<T>& camera, const T& theta, const T& psi) {
+  const auto& [model, c, g] = camera;
   using std::cos;
   using std::sin;
   const T focal = g.l_b * c.K;
@@ -141,8 +152,8 @@ std::array<T, 2> project_axis(CameraModel model, const CameraParameters<T>& c, c
 /// p_y / focal, v = p_z / focal after from_image(), both are closed:
 ///   pinhole: depth d from R² = (L − d)² + u² d² + (v d − h_c)²;   plane_by_plane: sin(θ + atan v) = (v L − h_c)/(R sqrt(1 + v²)).
 template <class T>
-std::optional<std::array<T, 2>> read_axis(CameraModel model, const CameraParameters<T>& c, const AxisGeometry& g, const T& P_y,
-                                          const T& P_z) {
+std::optional<std::array<T, 2>> read_axis(const AxisCamera<T>& camera, const T& P_y, const T& P_z) {
+  const auto& [model, c, g] = camera;
   using std::asin;
   using std::atan;
   using std::atan2;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "misfit/math/covariance.h"
+
 namespace misfit {
 
 WeightedPoints sorted(const WeightedPoints& points) {
@@ -113,7 +115,7 @@ std::optional<ZeroCrossing> stable_zero(const WeightedPoints& given) {
   const double slope = p.slope(zero);
   if (!(slope < 0.0)) return std::nullopt;
   const Eigen::VectorXd g = p.basis(zero) / slope;
-  return ZeroCrossing{zero, std::sqrt(std::max(0.0, g.dot(p.covariance * g)))};
+  return ZeroCrossing{zero, standard_error_of_sum(p.covariance, g)};
 }
 
 }  // namespace misfit

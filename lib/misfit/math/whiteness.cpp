@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/math/statistics.h"
 
@@ -11,10 +12,6 @@ namespace misfit {
 namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-
-std::size_t finite_values(const std::vector<double>& values) {
-  return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }));
-}
 
 /// Of the pairs at one lag.
 struct Pairs {
@@ -84,7 +81,7 @@ std::vector<double> on_even_grid(const std::vector<double>& t, const std::vector
 
 std::vector<double> joined_series(const std::vector<std::vector<double>>& series) {
   std::size_t values = 0;
-  for (const auto& s : series) values += finite_values(s);
+  for (const auto& s : series) values += count_finite(s);
   std::vector<double> out;
   for (const auto& s : series) {
     if (!out.empty()) out.insert(out.end(), values, nan_value);
@@ -103,7 +100,7 @@ std::vector<double> autocorrelation(const std::vector<double>& residuals, int ma
 }
 
 WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int last_lag, double fitted) {
-  const auto n = static_cast<double>(finite_values(residuals));
+  const auto n = static_cast<double>(count_finite(residuals));
   WhitenessTest test;
   test.first_lag = first_lag;
   test.last_lag = static_cast<int>(std::min({static_cast<double>(std::max(first_lag, last_lag)), n / 4.0, 10.0 + 2.0 * std::sqrt(n)}));

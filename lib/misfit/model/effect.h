@@ -9,9 +9,9 @@
 // The formula is called with numbers, with Jets for derivatives, and with symbols (formula/symbol.h) to be exported. Where it needs the
 // number behind value_of(…) for more than a comparison, `static constexpr bool traceable = false;` says so, and it is not exported.
 //
-// What this interface cannot express: forces that depend on accelerations (declare them as a change of `inertia`, a quantity port), jumps
-// of the state, and memory without a finite state of anything but inputs, whose past is read by in.late(…) (a delayed state: use own
-// states that approximate it, as in models/generic/sensor_delay.cpp).
+// What this interface cannot express: forces that depend on accelerations (declare them as a change of `inertia`, a quantity port); jumps
+// of the state; delays of states. A delayed input is exact, by in.late(…); a delayed state has to be approximated by own states of the
+// effect, as in models/generic/sensor_delay.cpp.
 
 #include <array>
 #include <cstddef>
@@ -35,14 +35,14 @@ namespace misfit {
 class Registry;
 
 enum class CoefficientKind {
-  strength,  ///< 0 means off (all strengths 0: the effect adds nothing)
-  shape      ///< the rest: a frequency, a clock angle, a time constant. Off never sits at a singular shape
+  strength,  ///< with all strengths 0 the effect adds nothing, whatever its shapes are
+  shape      ///< any other: a frequency, a clock angle, a time constant
 };
 
-/// What an effect reads or writes, by role. A role is bound by the study, else to the quantity or port of the same name, else to the
-/// system's default for the role. An optional role that the system lacks reads 0 or is not written. Unit "*": a generic effect, any unit
-/// will do; with another role in braces a generic effect that needs a relation: "{level}/s" suits only ports that are the rate of the
-/// level.
+/// A name under which an effect reads a quantity or adds to a port. What it stands for in a model is said by the study, else it is the
+/// quantity or port of the same name, else the system's default for the role. An optional role that the system lacks reads 0, or what is
+/// added to it is ignored. Unit "*" (generic effects): any unit. A unit with the name of another role in braces depends on what that one
+/// stands for: "{level}/s" for a port that has to be the rate of the level.
 struct Role {
   const char* name = "";
   const char* unit = "";
@@ -50,30 +50,32 @@ struct Role {
   bool positive = false;  ///< the formula divides by it or takes its root: never 0 in use. At all others it must be regular at 0
   /// An optional role that completes this one (the lateral part of a rate): where a study binds that one alone, this one is left out.
   const char* completes = "";
-  /// Of `displacement`: what drives may also be an input of the same unit, as for play between an actuator and what it moves.
+  /// Of a role `displacement`: it may also stand for an input of the same unit, as for play between an actuator and what it moves.
   bool input_too = false;
-  /// Its past is read, by Reads::late(), as much earlier as this coefficient says: it must be an input of the system.
+  /// The coefficient that is the delay with which it is read (Reads::late()): it must then stand for an input of the system.
   const char* late_by = "";
 };
 
-/// Where discovery looks for a shape before the refit refines it.
+/// At which values of a shape discovery tests an effect; from the best of them its refit begins.
 struct ScanSpec {
   double from = 0.0, to = 0.0;  ///< [unit], or shares of what `over` names
   int count =
       0;  ///< values, ends included; −1: a frequency [Hz], steps of 1/(4T); 0: not scanned: allowed for fixed and shared shapes only
-  /// For effects of any unit, which cannot know sizes beforehand. "level" (a role): 0 to 1 stand for the ends of the range that it visits;
-  /// "|level|": shares of its largest size; "step": multiples of the sampling interval, in equal ratios. "": plain numbers.
+  /// What `from` and `to` are shares of, for generic effects, which know no sizes beforehand. "level" (a role): of its operating range, 0
+  /// its lower, 1 its upper end; "|level|": of its largest size; "step": of the sampling interval, in equal ratios. "": plain numbers
+  /// [unit].
   const char* over = "";
-  /// A smoothing about a value of `over`, a quantity: no narrower than the filter resolves that. A linear filter takes the slope of a
-  /// corner at one point, where the mean over the uncertainty of its state counts, and finds what acts across it too small.
+  /// It is the width over which a corner or a step is rounded, in the quantity that `over` names. It is then scanned and estimated no
+  /// narrower than sqrt(π/2) times the filter's standard error of that quantity: the filter linearises at one point, and of a corner that
+  /// is sharper than its state is known it would find too small a strength.
   bool smooths = false;
 };
 
-/// What a shape is of the measurements of the output that its effect reads: discovery takes it from them, where they show it.
+/// A shape that can be read off the measurements of the output that the effect reads, instead of being scanned.
 enum class OfMeasurements {
   none,
-  step,   ///< they are whole multiples of it apart
-  level,  ///< the one of those values that is nearest to 0
+  step,   ///< resolution: all measurements are whole multiples of it apart
+  level,  ///< the measured value nearest to 0
 };
 
 /// A number the effect owns; where the study says so, a curve of any quantity.
@@ -92,26 +94,26 @@ struct CoefficientSpec {
   bool over_sine = false;  ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
   bool fixed = false;      ///< not fitted unless the study frees it: a smoothing width, an origin of time
   ScanSpec scan{};
-  /// Of a fixed shape that is 0: the effect's coefficient whose change with time it is [unit/s]. Discovery frees it where that explains
-  /// clearly more.
+  /// Of a shape that is the drift of another coefficient [its unit/s]: the name of that one. It is held at 0 unless the study frees it, or
+  /// discovery, where that raises the likelihood clearly.
   const char* drift_of = "";
-  OfMeasurements measured_as = OfMeasurements::none;  ///< of a shape; discovery checks a step against the measurements
-  /// Of a strength: where the effect is whole, and less of it is nothing that exists: all of an output is late, or none. Discovery holds it
-  /// there where the data allow it, and refuses an effect of which they show only a part. 0: any strength is possible.
+  OfMeasurements measured_as = OfMeasurements::none;  ///< discovery refuses a `step` of which the measurements are no multiples
+  /// Of a strength that has only this one value besides 0: an output is delayed as a whole, or not at all. Discovery holds the strength at
+  /// it where the data allow that, and refuses the effect where they want a part of it. 0: any strength is possible.
   double whole = 0.0;
-  const char* whole_of = "";       ///< role of an input: `whole` is a share of the gain by which the model lets it act on the first port
+  const char* whole_of = "";       ///< role of an input: `whole` is then relative to the model's gain from it to the first port
   const char* calibrated_as = "";  ///< camera parameter whose calibration sigma is the prior of this strength, if there is a calibration
   double prior_sigma = 0.0;        ///< as a candidate: Gaussian about 0 where there is no calibration [unit]; 0: no prior
   /// Of a strength: discovery does not look below it, where another effect says the same better (a late sensor is a sensor_delay).
   double lower_as_candidate = -std::numeric_limits<double>::infinity();
   double own_sigma = 0.0;  ///< in every fit: Gaussian about the value [unit]; 0: no prior
-  /// The coefficient of this name of another effect of the model, number or curve, with that one's parameters: for effects that change what
-  /// another adds (a wake that weakens the static moment). InputError where no effect of the model has it. Declared as a shape; of the rest
-  /// of this specification only name, unit and doc count, and value and bounds in the worked examples and laws.
+  /// It is the coefficient of this name, number or curve, of another effect in the model: for effects that change what another one adds (a
+  /// wake that weakens the static moment). InputError where no effect of the model has it. Declared as a shape; name, unit and doc count,
+  /// value and bounds only in the worked examples and the tests of all effects.
   bool shared = false;
 };
 
-/// Memory of an effect: z' = drift [unit/s], and if stochastic white noise of spectral density diffusion² is added.
+/// A state of the effect itself: z' = drift [unit/s], plus, where the effect has a diffusion, white noise of spectral density diffusion².
 struct OwnStateSpec {
   const char* name = "";
   const char* unit = "-";
@@ -149,14 +151,14 @@ struct EffectSpec {
   void set_texts(const std::array<const char*, 7>& texts);
 };
 
-/// Where the past of inputs is found.
+/// From where Reads::late() takes the past of inputs.
 struct Past {
-  const InputsAt* inputs = nullptr;       ///< nullptr: they have always been as they are
-  const int* input = nullptr;             ///< of the system, by the effect's quantity
-  const formula::Symbol* late = nullptr;  ///< where formulas are read: what stands for it, by the effect's quantity
+  const InputsAt* inputs = nullptr;       ///< nullptr: inputs have always had their present values
+  const int* input = nullptr;             ///< number of the system's input, for each quantity of the effect
+  const formula::Symbol* late = nullptr;  ///< instead of values where the formula is exported: a symbol, for each quantity of the effect
 };
 
-/// What a formula sees. K is double when constants are fixed, T when one of them is free.
+/// What a formula reads. T: double, a Jet or a symbol; K: double where all constants are fixed, else T.
 template <class T, class K>
 struct Reads {
   const T* q;                                                           ///< quantities, order of `quantities`
@@ -193,8 +195,9 @@ class Effect {
   virtual void evaluate(const Reads<double, double>& in, double* out) const = 0;
   /// J: row-major outputs × (quantities + coefficients + own states [+ constants if `constants_too`]).
   virtual void linearise(const Reads<double, double>& in, double* out, double* J, bool constants_too) const = 0;
-  /// Fastest rate of what it adds [1/s]: integrators keep rate × step < 0.5. 0: no demand. `response`: how fast the quantity of the role
-  /// `rate` changes per unit of the first port, from the system's equations (1/inertia); needed where responds() says so.
+  /// Fastest rate (inverse time constant, circular frequency) of what it adds [1/s]: integrators keep rate × step < 0.5. 0: none.
+  /// `response`: derivative of the rate of change of the quantity `rate` by the first port, from the system's equations (1/inertia); used
+  /// only where responds() is true.
   [[nodiscard]] virtual double fastest_rate(const Reads<double, double>& in, double response) const = 0;
   [[nodiscard]] virtual bool responds() const { return false; }
   /// Noise intensity of each own state [unit/sqrt(s)]; zeros for deterministic memory.

@@ -219,10 +219,11 @@ std::string verdict_view(const std::vector<Place>& places, const std::string& st
   const std::vector<Fit> fits = fits_of(places.front());
   if (fits.empty()) return "null";
   const std::optional<Ladder> ladder = ladder_in(places.front().folder);
-  const bool climbed = places.size() > 1;
+  const bool effects_added = places.size() > 1;
   const std::optional<Calibration> calibration = calibration_of(places.front());
   const std::optional<Comparison> comparison = comparison_of(places.front());
-  const std::optional<Diagnosis> diagnosis = diagnosis_of(places.front()), above = climbed ? diagnosis_of(places.back()) : std::nullopt;
+  const std::optional<Diagnosis> diagnosis = diagnosis_of(places.front()),
+                                 above = effects_added ? diagnosis_of(places.back()) : std::nullopt;
   const std::optional<Discovery> discovery = discovery_of(places.back());
   const auto pointer = [](const auto& result) { return result ? &*result : nullptr; };
   return json_of(blocks_of(verdict_of(VerdictInput{study, out, &fits, pointer(calibration), pointer(comparison), pointer(diagnosis),

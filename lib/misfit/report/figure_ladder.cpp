@@ -45,6 +45,12 @@ void add_box(Series& series, double x, double value, double width) {
 /// Series are handed out by reference while others are added: room for all of them from the start.
 constexpr std::size_t max_series = 16;
 
+struct SeriesLook {
+  std::string key, legend;
+  Style style;
+  std::string colour;
+};
+
 Panel& panel_for(std::vector<Panel>& panels, const std::string& label, const std::string& unit) {
   for (Panel& panel : panels) {
     if (panel.y_label == label && panel.y_unit == unit) return panel;
@@ -54,11 +60,12 @@ Panel& panel_for(std::vector<Panel>& panels, const std::string& label, const std
   return panels.back();
 }
 
-Series& series_for(Panel& panel, const std::string& key, const std::string& legend, Style style, const std::string& colour) {
+/// The series of the panel that is called so; a new one where there is none.
+Series& series_for(Panel& panel, const SeriesLook& look) {
   for (Series& s : panel.series) {
-    if (s.key == key) return s;
+    if (s.key == look.key) return s;
   }
-  panel.series.push_back({key, legend, style, colour, {}, {}, {}, {}});
+  panel.series.push_back({look.key, look.legend, look.style, look.colour, {}, {}, {}, {}});
   return panel.series.back();
 }
 
@@ -68,7 +75,7 @@ void add_force(const Rung& rung, std::vector<Panel>& panels) {
   const std::string unit = display_unit(e->unit);
   const double factor = convert(1.0, e->unit, unit);
   Series& series =
-      series_for(panel_for(panels, "random force", unit), "force", "remaining random force, ± 1 sigma", Style::error_bars, palette(1));
+      series_for(panel_for(panels, "random force", unit), {"force", "remaining random force, ± 1 sigma", Style::error_bars, palette(1)});
   add_point(series, rung.id, e->value * factor, e->sigma * factor);
 }
 
@@ -78,7 +85,7 @@ void add_drop(const Rung& rung, std::vector<Panel>& panels) {
   if (!rung.predicted_drop && !rung.actual_drop) return;
   Panel& panel = panel_for(panels, "drop", "");
   const auto add = [&](const char* key, const char* legend, const std::string& colour, double side, double drop) {
-    add_box(series_for(panel, key, legend, Style::boxes, colour), rung.id + 0.5 * side * width, drop, 0.9 * width);
+    add_box(series_for(panel, {key, legend, Style::boxes, colour}), rung.id + 0.5 * side * width, drop, 0.9 * width);
   };
   if (rung.predicted_drop) add("predicted_drop", "drop, predicted", grey, -1.0, *rung.predicted_drop);
   if (rung.actual_drop) add("actual_drop", "drop, after refitting", palette(2), 1.0, *rung.actual_drop);
@@ -123,7 +130,7 @@ void add_channel(const Rung& rung, const ChannelError& error, std::vector<Panel>
     Panel& panel = panel_for(panels, error.what, "% of first");
     for (const Style style : {Style::line, Style::markers}) {
       const bool line = style == Style::line;
-      Series& series = series_for(panel, key + (line ? "_line" : ""), line ? "" : error.channel, style, colour);
+      Series& series = series_for(panel, {key + (line ? "_line" : ""), line ? "" : error.channel, style, colour});
       series.x.push_back(rung.id);
       series.y.push_back(100.0 * e.value / first);
     }
@@ -132,7 +139,7 @@ void add_channel(const Rung& rung, const ChannelError& error, std::vector<Panel>
   const std::string unit = display_unit(e.unit);
   constexpr double all = 0.3;
   const double width = all / static_cast<double>(std::max<std::size_t>(rung.rms.size(), 1));
-  Series& series = series_for(panel_for(panels, error.what, unit), key, error.channel, Style::markers, colour);
+  Series& series = series_for(panel_for(panels, error.what, unit), {key, error.channel, Style::markers, colour});
   series.x.push_back(rung.id - 0.5 * all + (static_cast<double>(error.place) + 0.5) * width);
   series.y.push_back(e.value * convert(1.0, e.unit, unit));
 }
@@ -155,7 +162,7 @@ void add_trim(const Rung& rung, std::vector<Panel>& panels) {
   constexpr double two_sided = 1.96;
   const std::string unit = display_unit(rung.trim->unit);
   const double factor = convert(1.0, rung.trim->unit, unit);
-  Series& series = series_for(panel_for(panels, "trim", unit), "trim", "trim, 95 % interval", Style::error_bars, palette(0));
+  Series& series = series_for(panel_for(panels, "trim", unit), {"trim", "trim, 95 % interval", Style::error_bars, palette(0)});
   add_point(series, rung.id, rung.trim->value * factor, two_sided * rung.trim->sigma * factor);
 }
 

@@ -7,6 +7,7 @@
 
 #include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
+#include "misfit/core/lists.h"
 #include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
 #include "misfit/report/figure_units.h"
@@ -190,7 +191,7 @@ Figure motion_figure(const std::string& method, const ChannelPrediction& channel
 Figure autocorrelation_figure(const std::string& method, const ChannelPrediction& channel, std::size_t max_lag) {
   const std::vector<double> r = normalised_residuals(channel);
   const std::vector<double> correlations = autocorrelation(r, static_cast<int>(max_lag));
-  const auto count = static_cast<double>(std::count_if(r.begin(), r.end(), [](double v) { return std::isfinite(v); }));
+  const auto count = static_cast<double>(count_finite(r));
   Figure figure;
   figure.name = "autocorrelation_" + as_key(method) + "_" + file_name_for(channel.experiment) + "_" + file_name_for(channel.channel);
   figure.title = fmt::format("Residuals of {} ({}, {}): autocorrelation", channel.channel, method, channel.experiment);

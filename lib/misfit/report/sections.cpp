@@ -10,8 +10,8 @@
 #include "misfit/report/figures_intervals.h"
 #include "misfit/report/figures_simulated.h"
 #include "misfit/report/figures_uncertainty.h"
+#include "misfit/show/glossary.h"
 #include "misfit/show/results.h"
-#include "misfit/show/words.h"
 
 namespace misfit::report {
 namespace {
@@ -130,7 +130,7 @@ void notes_section(const ReportInput& input, Page& page) {
 
 void words_section(Page& page) {
   TableBlock words{columns("word|meaning")};
-  for (const auto& [word, meaning] : twelve_words()) words.rows.push_back({word, as_sentence(meaning)});
+  for (const auto& [word, meaning] : main_glossary()) words.rows.push_back({word, as_sentence(meaning)});
   Blocks out;
   out.heading("Words");
   out.table(std::move(words));

@@ -80,8 +80,8 @@ void verdict_section(const ReportInput& input, Page& page, Draw& draw) {
 
 void summary_section(const ReportInput& input, Page& page) {
   Blocks out;
-  const bool climbed = input.ladder && input.ladder->rungs.size() > 1;
-  out.heading(std::string(input.verdict ? "Results" : "Summary") + (climbed ? " (rung 0, the study's model)" : ""));
+  const bool effects_added = input.ladder && input.ladder->rungs.size() > 1;
+  out.heading(std::string(input.verdict ? "Results" : "Summary") + (effects_added ? " (rung 0, the study's model)" : ""));
   page.show(out);
   Blocks results;
   if (input.comparison) results.table(method_table(*input.comparison));

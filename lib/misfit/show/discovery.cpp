@@ -133,7 +133,7 @@ class BeforeAndAfter {
   static std::string change_of_force(const Rung& before, const Rung& after) {
     const auto was = force_strength(before.force), is = force_strength(after.force);
     if (!was || !is) return kMissing;
-    return ErrorChange{"random force", *was, *is, ""}.within_sigma() ? "within its sigma" : change(was->value, is->value);
+    return within_sigma(*was, *is) ? "within its sigma" : change(was->value, is->value);
   }
 };
 
@@ -214,7 +214,7 @@ Blocks rung_blocks(const Ladder& ladder, const Rung& rung) {
   constexpr double negligible_drop = 1.0;  // of the drop
   if (rung.actual_drop) {
     out.paragraph(drop_sentence(rung));
-    if (*rung.actual_drop < negligible_drop) out.paragraph("The added effect explains nothing in these data.", Tone::warning);
+    if (*rung.actual_drop < negligible_drop) out.paragraph("The drop of the added effect is not significant.", Tone::warning);
   }
   if (!rung.note.empty()) out.paragraph(as_sentence(rung.note));
   std::vector<std::string> parameters;

@@ -96,7 +96,7 @@ std::string line_of(const Diagnosis& d) {
   if (d.maps.empty()) return "no map could be made";
   const ForceMap& first = d.maps.front();
   if (!first.sentence.empty()) return first.sentence;
-  return fmt::format("the model fails nowhere that stands out ({})", p_equals(first.p_corrected));
+  return fmt::format("no map of the missing force is significant ({})", p_equals(first.p_corrected));
 }
 
 std::string line_of(const Discovery& d) {

@@ -28,7 +28,7 @@ std::string without_sigma(double value, double sigma, const std::string& si) {
 TableBlock perturbed_table(const Uncertainty& u) {
   TableBlock table{columns("perturbed|nominal|sigma|distribution")};
   for (const PerturbedParameter& p : u.perturbed)
-    table.rows.push_back({p.name, in_display_unit(p.value, p.unit), sigma_text(p.sigma, p.unit), p.reading});
+    table.rows.push_back({p.name, in_display_unit(p.value, p.unit), sigma_text(p.sigma, p.unit), p.distribution});
   return table;
 }
 

@@ -40,8 +40,9 @@ const Fit* leading_fit(const std::vector<Fit>& fits) {
 
 std::vector<ErrorChange> errors_of(const Fit& fit) {
   std::vector<ErrorChange> out;
-  for (const auto& [channel, rms] : fit.rms) out.push_back({"RMS error of " + channel, rms, std::nullopt, share_of_motion(fit, channel)});
-  if (const auto force = force_strength(fit.force)) out.push_back({"random force", *force, std::nullopt, ""});
+  for (const auto& [channel, rms] : fit.rms)
+    out.push_back({ErrorKind::rms_error, channel, rms, std::nullopt, share_of_motion(fit, channel)});
+  if (const auto force = force_strength(fit.force)) out.push_back({ErrorKind::random_force, "", *force, std::nullopt, ""});
   return out;
 }
 
@@ -56,7 +57,7 @@ bool is_telling(const ErrorChange& e) {
 void most_telling_first(std::vector<ErrorChange>& errors) {
   const auto rank = [](const ErrorChange& e) {
     const double change = e.within_sigma() ? 0.0 : e.per_cent().value_or(0.0);
-    const bool measured = e.what != "random force" && change <= clear_fall;
+    const bool measured = e.kind == ErrorKind::rms_error && change <= clear_fall;
     return measured ? change - 100.0 : change;
   };
   std::stable_sort(errors.begin(), errors.end(), [&](const ErrorChange& a, const ErrorChange& b) { return rank(a) < rank(b); });
@@ -70,7 +71,7 @@ std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last) {
     const auto rms = first.rms.find(channel);
     if (after == last.k_step.end() || rms == first.rms.end() || steps.size() <= farthest || after->second.size() <= farthest) continue;
     ErrorChange change;
-    change.what = fmt::format("RMS error of {}, {} samples ahead", channel, kLadderSteps[farthest]);
+    change.of = fmt::format("{}, {} samples ahead", channel, kLadderSteps[farthest]);
     change.before.value = steps[farthest];
     change.before.unit = rms->second.unit;
     change.after = change.before;
@@ -78,16 +79,16 @@ std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last) {
     out.push_back(std::move(change));
   }
   const auto before = force_strength(first.force), force = force_strength(last.force);
-  if (before && force) out.push_back({"random force", *before, *force, ""});
+  if (before && force) out.push_back({ErrorKind::random_force, "", *before, *force, ""});
   most_telling_first(out);
   return out;
 }
 
 std::string change_in_words(const ErrorChange& e) {
   if (e.within_sigma())
-    return fmt::format("the {} changes by less than its sigma, from {} to {}", e.what, briefly(e.before), briefly(*e.after));
+    return fmt::format("the {} changes by less than its sigma, from {} to {}", e.what(), briefly(e.before), briefly(*e.after));
   const double change = e.per_cent().value_or(0.0);
-  return fmt::format("the {} {} from {}", e.what, change < 0.0 ? "falls" : "rises", shown(e));
+  return fmt::format("the {} {} from {}", e.what(), change < 0.0 ? "falls" : "rises", shown(e));
 }
 
 std::string values_of(const Estimates& parameters) {
@@ -101,13 +102,13 @@ const Candidate* accepted(const Discovery& d) {
   return found == d.candidates.end() ? nullptr : &*found;
 }
 
-class Judge {
+class VerdictBuilder {
  public:
-  explicit Judge(const VerdictInput& input) : in_(input) {
+  explicit VerdictBuilder(const VerdictInput& input) : in_(input) {
     fit_ = in_.fits == nullptr ? nullptr : leading_fit(*in_.fits);
-    climbed_ = in_.ladder != nullptr && in_.ladder->rungs.size() > 1;
+    effects_added_ = in_.ladder != nullptr && in_.ladder->rungs.size() > 1;
     if (in_.diagnosis != nullptr && !in_.diagnosis->maps.empty()) out_.where = where_it_fails(in_.diagnosis->maps.front());
-    if (climbed_) {
+    if (effects_added_) {
       out_.errors = errors_between(in_.ladder->rungs.front(), in_.ladder->rungs.back());
     } else if (fit_ != nullptr) {
       out_.errors = errors_of(*fit_);
@@ -119,7 +120,7 @@ class Judge {
     if (fit_ == nullptr) {
       no_result();
     } else if (in_.discovery == nullptr) {
-      climbed_ ? added("whether more is missing has not been asked", command("discover")) : not_searched();
+      effects_added_ ? added("whether more is missing has not been asked", command("discover")) : not_searched();
     } else if (!in_.discovery->sweep_asks.empty()) {
       calibration();
     } else if (const Candidate* best = accepted(*in_.discovery)) {
@@ -149,11 +150,11 @@ class Judge {
 
   /// With the 95 % interval of the last one and what the references say.
   void add_trim() {
-    const Rung* last = climbed_ ? &in_.ladder->rungs.back() : nullptr;
+    const Rung* last = effects_added_ ? &in_.ladder->rungs.back() : nullptr;
     const std::optional<Estimate> before = last != nullptr ? in_.ladder->rungs.front().trim : fit_ != nullptr ? fit_->trim : std::nullopt;
     if (!before) return;
     out_.trim.emplace();
-    out_.trim->what = "trim";
+    out_.trim->kind = ErrorKind::trim;
     out_.trim->before = *before;
     if (last != nullptr) out_.trim->after = last->trim;
     const Estimate& best = out_.trim->after ? *out_.trim->after : *before;
@@ -193,9 +194,7 @@ class Judge {
   /// What fits and diagnosis alone say.
   void not_searched() {
     const std::string ask = "; which effect it is has not been asked";
-    const bool coloured = std::any_of(fit_->warnings.begin(), fit_->warnings.end(),
-                                      [](const std::string& w) { return w.find("residuals are not white") != std::string::npos; });
-    if (fit_->force.empty() && (fit_->driven || coloured)) {
+    if (fit_->force.empty() && (fit_->driven || fit_->coloured)) {
       say(VerdictKind::not_searched,
           "something is missing from the model: the residuals of " + fit_->method + " are not white" +
               (fit_->driven ? ", since forces that it does not have drive the motion" : "") + ask,
@@ -211,30 +210,30 @@ class Judge {
     }
   }
   [[nodiscard]] std::string residuals() const {
-    if (!fit_->force.empty()) return "no map of the missing force stands out";
-    return "the residuals of " + fit_->method + " look like noise";
+    if (!fit_->force.empty()) return "no map of the missing force is significant";
+    return "nothing stands out in the residuals of " + fit_->method;
   }
 
   void calibration() {
     const std::vector<std::string>& asks = in_.discovery->sweep_asks;
     const double rms = in_.calibration == nullptr ? 0.0 : in_.calibration->rms_px;
     const std::string residual = rms > 0.0 ? fmt::format(" (its residuals are {} RMS)", briefly({rms, 0.0, "px"})) : "";
-    const bool flight_too = in_.discovery->verdict.starts_with("Sweep and flight disagree");
+    const bool flight_too = in_.discovery->outcome == SearchOutcome::camera_against_flight;
     say(VerdictKind::calibration,
         (flight_too ? "the camera comes first: its" : "it is the camera, not the physics: its") +
             std::string(" calibration sweep asks for ") + join_words(asks) + ", which the camera of this study does not have" + residual,
-        fmt::format("set [camera] take_in = [\"{}\"] in the study, then {}", fmt::join(asks, "\", \""), command("run")));
+        fmt::format("set [camera] free = [\"{}\"] in the study, then {}", fmt::join(asks, "\", \""), command("run")));
   }
 
   void missing(const Candidate& best) {
     const std::string name = effect_at(best.effect, best.roles);
     const std::string values = best.parameters.empty() ? "" : ", with " + values_of(best.parameters);
-    if (!climbed_) with_candidate(best);
+    if (!effects_added_) with_candidate(best);
     std::string sentence = best.group.size() > 1
                                ? "one of " + join_words(best.group) + " is missing, and these data cannot say which: " + name + " fits best"
-                               : (climbed_ ? "still missing: " : "missing: ") + name;
+                               : (effects_added_ ? "still missing: " : "missing: ") + name;
     sentence += values + " (" + p_equals(best.p_value) + ")";
-    if (const std::string change = climbed_ ? change_by_ladder() : ""; !change.empty())
+    if (const std::string change = effects_added_ ? change_by_ladder() : ""; !change.empty())
       sentence += "; with " + names_added() + " " + change;
     say(best.group.size() > 1 ? VerdictKind::several_possible : VerdictKind::missing, sentence, command("add", best.effect));
   }
@@ -242,35 +241,30 @@ class Judge {
   void with_candidate(const Candidate& best) {
     const auto after = force_strength(best.force);
     for (ErrorChange& e : out_.errors) {
-      if (e.what == "random force" && after) e.after = after;
+      if (e.kind == ErrorKind::random_force && after) e.after = after;
     }
     std::stable_partition(out_.errors.begin(), out_.errors.end(), [](const ErrorChange& e) { return e.after.has_value(); });
   }
 
   void nothing_accepted(const Discovery& d) {
-    if (d.verdict.starts_with("Not ")) {  // decided, finished
+    if (d.outcome == SearchOutcome::not_decided || d.outcome == SearchOutcome::not_finished) {
       say(VerdictKind::not_decided, d.verdict, command("discover") + " --round-limit 3600");
     } else if (!d.unexplained_port.empty()) {
       const std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
-                                              climbed_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
+                                              effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const std::string next = !d.unexplained_effects.empty()
                                    ? command("add", d.unexplained_effects.front().effect) + at_place(d.unexplained_effects.front().roles)
                                    : "look at the picture, then write the effect as one line of the study: misfit help study";
-      climbed_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
-    } else if (climbed_ && d.verdict.starts_with("No effect accepted")) {
-      added("whether more is missing is not decided" + best_refused(d), "", VerdictKind::not_decided);
-    } else if (d.verdict.starts_with("No effect")) {  // accepted, or none suits the system
+      effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
+    } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
+      added("whether more is missing is not decided; " + best_rejected(d.candidates.front()), "", VerdictKind::not_decided);
+    } else if (d.outcome == SearchOutcome::best_rejected || d.outcome == SearchOutcome::none_suits) {
       say(VerdictKind::not_decided, d.verdict, "");
-    } else if (climbed_) {
+    } else if (effects_added_) {
       added("nothing more is found missing", "");
     } else {
       nothing_missing(d);
     }
-  }
-  /// "; best candidate …" out of the verdict of a search that accepts nothing.
-  [[nodiscard]] static std::string best_refused(const Discovery& d) {
-    const std::size_t at = d.verdict.find("; ");
-    return at == std::string::npos ? "" : d.verdict.substr(at, d.verdict.find_last_not_of('.') + 1 - at);
   }
   void nothing_missing(const Discovery& d) {
     const std::string tested = fmt::format("no effect is found missing: none of {} that were tested is needed", d.candidates.size());
@@ -312,18 +306,18 @@ class Judge {
 
   const VerdictInput& in_;
   const Fit* fit_ = nullptr;
-  bool climbed_ = false;
+  bool effects_added_ = false;
   Verdict out_;
 };
 
 }  // namespace
 
-Verdict verdict_of(const VerdictInput& input) { return Judge(input).verdict(); }
+Verdict verdict_of(const VerdictInput& input) { return VerdictBuilder(input).verdict(); }
 
 std::string shown(const ErrorChange& e) {
   const std::string remark = e.remark.empty() ? "" : " (" + e.remark + ")";
   if (!e.after) return briefly(e.before) + remark;
-  if (e.what == "trim") return briefly(e.before) + " to " + briefly(*e.after) + remark;
+  if (e.kind == ErrorKind::trim) return briefly(e.before) + " to " + briefly(*e.after) + remark;
   if (e.within_sigma()) return briefly(e.before) + " to " + briefly(*e.after) + " (within its sigma)";
   const auto change = e.per_cent();
   return briefly(e.before) + " to " + briefly(*e.after) +
@@ -336,8 +330,8 @@ Blocks blocks_of(const Verdict& v) {
   out.paragraph(v.sentence, Tone::lead);
   out.paragraph(v.where);
   std::vector<std::string> errors;
-  for (const ErrorChange& e : v.errors) errors.push_back(e.what + ": " + shown(e));
-  if (v.trim) errors.push_back(v.trim->what + ": " + shown(*v.trim));
+  for (const ErrorChange& e : v.errors) errors.push_back(e.what() + ": " + shown(e));
+  if (v.trim) errors.push_back(v.trim->what() + ": " + shown(*v.trim));
   out.list({errors});
   if (!v.next.empty()) out.paragraph("next: " + v.next, Tone::command);
   return out;

@@ -58,12 +58,12 @@ RandomStart random_start(const Model& model, std::mt19937_64& random) {
   return {std::move(values), std::move(noise_factors)};
 }
 
-MultiStarts::MultiStarts(const Fit& fit, const Model& best, double objective, SearchFrom search, const MultiStartOptions& options)
-    : fit_(fit), best_(best), objective_(objective), search_(std::move(search)), options_(options) {
+MultiStarts::MultiStarts(const FoundMaximum& found, SearchFrom search, const MultiStartOptions& options)
+    : fit_(found.fit), best_(found.model), objective_(found.objective), search_(std::move(search)), options_(options) {
   if (options.runs == 0) throw InputError("starts: 0 of them; at least 1 is needed");
-  const std::vector<int> free = best.free_parameters();
+  const std::vector<int> free = best_.free_parameters();
   if (free.empty()) throw RunError("starts: every parameter is fixed, so every start is the same");
-  std::copy_if(free.begin(), free.end(), std::back_inserter(shown_), [&](int i) { return best.parameters[i].curve < 0; });
+  std::copy_if(free.begin(), free.end(), std::back_inserter(shown_), [&](int i) { return best_.parameters[i].curve < 0; });
 }
 
 ChainResult MultiStarts::run(std::size_t k) const {

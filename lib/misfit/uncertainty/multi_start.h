@@ -26,6 +26,13 @@ struct RandomStart {
 /// The search from there, roughness as in the fit; called from several threads at once.
 using SearchFrom = std::function<Maximum(const RandomStart& start)>;
 
+/// What the searches are to find again. Keeps references.
+struct FoundMaximum {
+  const Fit& fit;
+  const Model& model;      ///< at the fit
+  double objective = 0.0;  ///< what the search makes of it
+};
+
 struct MultiStartOptions {
   std::size_t runs = 20;
   unsigned long long seed = 1;
@@ -40,9 +47,8 @@ struct MultiStartOptions {
 /// on the seed and its own number alone.
 class MultiStarts {
  public:
-  /// `best`: the model at the fit; `objective`: what `search` makes of it. Keeps references to `fit` and `best`. InputError: nothing is
-  /// free, or there is no start.
-  MultiStarts(const Fit& fit, const Model& best, double objective, SearchFrom search, const MultiStartOptions& options);
+  /// InputError: there is no start; RunError: nothing is free.
+  MultiStarts(const FoundMaximum& found, SearchFrom search, const MultiStartOptions& options);
 
   [[nodiscard]] std::size_t runs() const { return options_.runs; }
   /// Drop, then the numbers of MultiStart::numbers; none and the reason if the search ended nowhere.

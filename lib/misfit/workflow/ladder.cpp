@@ -71,18 +71,6 @@ bool same_channels(const Model& a, const Model& b) {
                                       [](const OutputSpec& p, const OutputSpec& q) { return p.name == q.name; });
 }
 
-/// The child's penalties with the parent's weights for the curves that both have: the same prior on both sides of a drop.
-std::vector<Penalty> shared_penalties(const FilterEstimate& child, const FilterEstimate& parent) {
-  std::vector<Penalty> penalties = child.penalties;
-  for (auto& own : penalties) {
-    const std::string& name = child.model.curves[own.curve].name;
-    for (const auto& other : parent.penalties) {
-      if (parent.model.curves[other.curve].name == name) own.lambda = other.lambda;
-    }
-  }
-  return penalties;
-}
-
 /// Measurements that both models use and neither has rejected: an effect may read inputs with gaps that the other model does not read.
 std::vector<std::vector<SampleRole>> common_use(const FilterEstimate& a, const FilterEstimate& b) {
   std::vector<std::vector<SampleRole>> use;
@@ -111,7 +99,8 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   options.use = common_use(*parent.estimate, *child.estimate);
   const FilterStart parents{parent.estimate->model, parent.estimate->penalties, parent.estimate->noise};
   const FilterEstimate without = estimate_filter({parents}, parent.prepared.experiments, options);
-  const std::vector<Penalty> penalties = shared_penalties(*child.estimate, *parent.estimate);
+  // The parent's weights for the curves that both have: the same prior on both sides of the drop.
+  const std::vector<Penalty> penalties = with_weights_of(*parent.estimate, child.estimate->model, child.estimate->penalties);
   std::vector<FilterStart> starts = {{child.estimate->model, penalties, child.estimate->noise}};
   const std::vector<FilterStart> off = starts_from(contained_fit(without), child.prepared.model);
   if (!off.empty()) starts.push_back({off.front().model, penalties, off.front().noise});
@@ -294,7 +283,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
     if (from) append_note(rung.note, held_in_words(from->held));
-    const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.hearer("add"));
+    const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.progress_of("add"));
     compare_with_parent(*work, *parent_work, options_.threads, rung);
   }
   append(std::move(rung));

@@ -46,9 +46,8 @@ Candidate without_refit(Candidate candidate) {
 }
 
 std::string in_words(const std::string& name, const Without& without, double families) {
-  return fmt::format(
-      "{} explains nothing any more beside what was added after it (a drop of {}, which may be chance among the {:g} that were tried)",
-      name, format_value(without.drop), families);
+  return fmt::format("{} is no longer significant beside what was added after it (a drop of {}, among {:g} that were tried)", name,
+                     format_value(without.drop), families);
 }
 
 class Extension {

@@ -9,8 +9,8 @@ Verdict verdict_of(Session& session, const std::vector<Fit>& fits) {
   const std::optional<Ladder> ladder = known_ladder(session);
   std::vector<std::string> notes;  // said by the report
   const Findings own = findings_of(session, notes);
-  const bool climbed = ladder && ladder->rungs.size() > 1;
-  const auto above = climbed ? findings_of_last_rung(session, *ladder, notes) : std::nullopt;
+  const bool effects_added = ladder && ladder->rungs.size() > 1;
+  const auto above = effects_added ? findings_of_last_rung(session, *ladder, notes) : std::nullopt;
   const bool of_last_rung = above && above->rung == ladder->rungs.back().id;
   const auto pointer = [](const auto& result) { return result ? &*result : nullptr; };
   VerdictInput input{session.options.study, session.options.out, &fits};
@@ -18,7 +18,7 @@ Verdict verdict_of(Session& session, const std::vector<Fit>& fits) {
   input.calibration = pointer(calibration);
   input.comparison = &comparison;
   input.diagnosis = pointer(own.diagnosis);
-  input.discovery = !climbed ? pointer(own.discovery) : of_last_rung ? pointer(above->findings.discovery) : nullptr;
+  input.discovery = !effects_added ? pointer(own.discovery) : of_last_rung ? pointer(above->findings.discovery) : nullptr;
   if (of_last_rung) input.rung_diagnosis = pointer(above->findings.diagnosis);
   input.ladder = pointer(ladder);
   return verdict_of(input);

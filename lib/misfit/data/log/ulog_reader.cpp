@@ -178,6 +178,7 @@ class UlogReader : public RecordReader {
 
   /// A format laid out: fields, and where the padding at its end begins.
   struct Layout {
+    std::size_t at = 0;  ///< of the message that adds the topic
     std::vector<RecordField> fields;
     std::size_t size = 0, without_padding = 0;
   };
@@ -187,8 +188,8 @@ class UlogReader : public RecordReader {
     if (content.size() <= head) bytes_.fail(m.at, "an instance, a number and a name of a topic are expected");
     const std::string type = content.text(head, content.size() - head, "a name");
     const std::uint64_t instance = content.unsigned_at(0, 1, "");
-    Layout layout;
-    lay_out(m, layout, type, "", 0);
+    Layout layout{m.at};
+    lay_out(layout, type, "", 0);
     RecordTopic topic{instance == 0 ? type : type + "[" + std::to_string(instance) + "]", std::move(layout.fields), 0, 0, 0};
     const auto time = std::find_if(topic.fields.begin(), topic.fields.end(), [](const RecordField& f) { return f.name == "timestamp"; });
     topic.clock = static_cast<std::size_t>(time - topic.fields.begin());
@@ -204,22 +205,23 @@ class UlogReader : public RecordReader {
     topics_.push_back(std::move(topic));
   }
 
-  void lay_out(const Message& m, Layout& layout, const std::string& type, const std::string& prefix, int depth) {
+  void lay_out(Layout& layout, const std::string& type, const std::string& prefix, int depth) {
     const auto format = formats_.find(type);
     constexpr int deepest = 8;
-    if (format == formats_.end() || depth > deepest) bytes_.fail(m.at, "the format of '" + shown(type) + "' is expected before its use");
+    if (format == formats_.end() || depth > deepest)
+      bytes_.fail(layout.at, "the format of '" + shown(type) + "' is expected before its use");
     for (const Declared& d : format->second) {
       for (std::size_t i = 0; i < d.count.value_or(1); ++i) {
         constexpr std::size_t most = 300'000;
-        if (++laid_out_ > most) bytes_.fail(m.at, "topics of fewer than 300000 fields in all are expected");
-        lay_out_one(m, layout, d, prefix + d.name + (d.count ? "[" + std::to_string(i) + "]" : ""), depth);
+        if (++laid_out_ > most) bytes_.fail(layout.at, "topics of fewer than 300000 fields in all are expected");
+        lay_out_one(layout, d, prefix + d.name + (d.count ? "[" + std::to_string(i) + "]" : ""), depth);
       }
     }
   }
 
-  void lay_out_one(const Message& m, Layout& layout, const Declared& d, const std::string& name, int depth) {
+  void lay_out_one(Layout& layout, const Declared& d, const std::string& name, int depth) {
     const auto basic = std::find_if(basic_types.begin(), basic_types.end(), [&](const Basic& b) { return b.name == d.type; });
-    if (basic == basic_types.end()) return lay_out(m, layout, d.type, name + ".", depth + 1);
+    if (basic == basic_types.end()) return lay_out(layout, d.type, name + ".", depth + 1);
     const bool padding = d.name.starts_with("_padding");
     if (!padding && d.type != "char") layout.fields.push_back({name, "", layout.size, basic->type, 1.0});
     layout.size += basic->type.size;

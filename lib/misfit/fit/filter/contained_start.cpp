@@ -23,8 +23,8 @@ SampleRole role_of(char letter) {
   return found == letters.end() ? SampleRole::none : found->first;
 }
 
-/// One of the two may have an effect's name before it.
-bool same_parameter(const std::string& a, const std::string& b) { return a == b || a.ends_with("." + b) || b.ends_with("." + a); }
+/// Of parameters or curves: one of the two may have an effect's name before it.
+bool same_name(const std::string& a, const std::string& b) { return a == b || a.ends_with("." + b) || b.ends_with("." + a); }
 
 }  // namespace
 
@@ -32,7 +32,7 @@ bool contains(const Model& model, const ContainedFit& contained) {
   const bool room = contained.values.size() <= model.parameters.size() && contained.roughness.size() <= model.curves.size();
   return room && contained.noise.size() == place_of_force(with_random_force(model).force_groups(), model.system->spec()) &&
          std::equal(contained.names.begin(), contained.names.end(), model.parameters.begin(),
-                    [](const std::string& name, const Parameter& p) { return same_parameter(name, p.name); });
+                    [](const std::string& name, const Parameter& p) { return same_name(name, p.name); });
 }
 
 ContainedFit contained_fit(const FilterEstimate& estimate) {
@@ -75,6 +75,17 @@ std::vector<FilterStart> starts_from(const ContainedFit& contained, const Model&
     out.push_back(start_at(contained.refit_values, contained.refit_log_noise));
   if (out.size() == 1 && as_given.model.values() != without.model.values()) out.push_back(as_given);
   return out;
+}
+
+std::vector<Penalty> with_weights_of(const FilterEstimate& estimate, const Model& model, std::vector<Penalty> penalties) {
+  for (Penalty& own : penalties) {
+    const std::string& name = model.curves[own.curve].name;
+    for (const Penalty& known : estimate.penalties) {
+      const std::string& there = estimate.model.curves[known.curve].name;
+      if (name == there || (own.curve == known.curve && same_name(name, there))) own.lambda = known.lambda;
+    }
+  }
+  return penalties;
 }
 
 FilterNoise usual_noise_of(const ContainedFit& contained, const Model& model) {

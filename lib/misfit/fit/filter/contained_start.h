@@ -17,6 +17,10 @@ namespace misfit {
 /// with what is its own as it is in `model`, where that differs. Empty: the model does not contain that of the fit.
 [[nodiscard]] std::vector<FilterStart> starts_from(const ContainedFit& contained, const Model& model);
 
+/// The penalties of `model` with the weights that the estimate has for the same curves: those of the same name, before which one of the two
+/// may have the effect's.
+[[nodiscard]] std::vector<Penalty> with_weights_of(const FilterEstimate& estimate, const Model& model, std::vector<Penalty> penalties);
+
 /// FilterOptions::around as of the fit, with what the study of `model` knows of the noise.
 [[nodiscard]] FilterNoise usual_noise_of(const ContainedFit& contained, const Model& model);
 

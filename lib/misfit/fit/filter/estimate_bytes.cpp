@@ -8,8 +8,8 @@ namespace misfit {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<ChannelNoise> auto& data) {
-  auto& [white, jitter, jitter_frequency, jitter_damping, held, no_jitter] = data;
-  bytes(white, jitter, jitter_frequency, jitter_damping, held, no_jitter);
+  auto& [white, coloured, coloured_frequency, coloured_damping, held, no_coloured] = data;
+  bytes(white, coloured, coloured_frequency, coloured_damping, held, no_coloured);
 }
 
 template <class Bytes>

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
@@ -20,6 +21,7 @@
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/record_residuals.h"
 #include "misfit/inference/short_record.h"
+#include "misfit/math/covariance.h"
 #include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
 
@@ -51,7 +53,7 @@ std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
                                          ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q))
                                          : Eigen::MatrixXd(information.inverse());
   std::vector<double> out;
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i) out.push_back(known[i] ? std::sqrt(std::max(covariance(i, i), 0.0)) : 0.0);
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) out.push_back(known[i] ? standard_error(covariance, i) : 0.0);
   return out;
 }
 
@@ -73,18 +75,56 @@ void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
   }
   fit.force["correlation_time"] = as_estimate(1, "s");
   fit.force["correlation_time"].interval = intervals[1];
-  if (!fit.driven) fit.facts["random_force"] = "the estimated random force is 0: the motion is not driven";
+  if (!fit.driven) fit.facts["random_force"] = "no random force is determined by these data: the motion counts as not driven";
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     const std::string& name = spec.outputs[o].name;
     const std::string& unit = spec.outputs[o].unit;
     fit.noise[name] = as_estimate(2 + 4 * o, unit);
     if (!(sigmas[3 + 4 * o] > 0.0)) {
-      fit.facts["jitter of " + name] = "none: the measurement noise is white";
+      fit.facts["coloured noise of " + name] = "not determined by these data: the measurement noise counts as white";
       continue;
     }
-    fit.noise[name + "_jitter"] = as_estimate(3 + 4 * o, unit);
-    fit.noise[name + "_jitter_frequency"] = as_estimate(4 + 4 * o, "Hz");
-    fit.noise[name + "_jitter_damping"] = as_estimate(5 + 4 * o, "-");
+    fit.noise[name + "_coloured"] = as_estimate(3 + 4 * o, unit);
+    fit.noise[name + "_coloured_frequency"] = as_estimate(4 + 4 * o, "Hz");
+    fit.noise[name + "_coloured_damping"] = as_estimate(5 + 4 * o, "-");
+  }
+}
+
+/// A part of the noise model in words, and whether its lower bound means that it is not there, which is said elsewhere.
+struct NoisePart {
+  std::size_t at;  ///< in pack()
+  std::string words, unit;
+  bool absent_at_lower;
+};
+
+std::vector<NoisePart> noise_parts(const FilterEstimate& estimate) {
+  const SystemSpec& spec = estimate.model.system->spec();
+  std::vector<NoisePart> out;
+  for (int group = 0; group < estimate.forced.force_groups(); ++group) {
+    const auto port = std::find(estimate.forced.force_group.begin(), estimate.forced.force_group.end(), group);
+    const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[port - estimate.forced.force_group.begin()]];
+    out.push_back({place_of_force(group, spec), std::string("the random force on ") + named.name, named.unit, true});
+  }
+  for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
+    const std::string of = std::string(" noise of ") + spec.outputs[o].name;
+    out.push_back({2 + 4 * o, "the white" + of, spec.outputs[o].unit, false});
+    out.push_back({3 + 4 * o, "the coloured" + of, spec.outputs[o].unit, true});
+  }
+  return out;
+}
+
+/// The bounds of pack() keep a search away from where nothing is determined: an estimate there is none.
+void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit) {
+  constexpr double nearest = 1e-3;  // of the logarithm
+  const NoiseVector vector = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
+  for (const auto& [at, words, unit, absent_at_lower] : noise_parts(estimate)) {
+    if (vector.upper[at] - vector.lower[at] < nearest) continue;  // held by the study
+    const bool lower = vector.value[at]<vector.lower[at] + nearest, upper = vector.value[at]> vector.upper[at] - nearest;
+    if (!upper && (!lower || absent_at_lower)) continue;
+    fit.warnings.push_back(words + " is at its " + (lower ? "lower" : "upper") + " bound " +
+                           in_display_unit(std::exp(vector.value[at]), unit) +
+                           ": the likelihood still rises beyond it, so that this is no estimate" +
+                           (lower ? ", and sigmas that rest on it may be too small" : ""));
   }
 }
 
@@ -297,8 +337,8 @@ void describe_estimates(const FilterEstimate& estimate, Fit& fit) {
   describe_roughness(estimate.model, roughness_paths(problem, estimate.penalties, 1.0), fit);
 }
 
-/// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a jitter that is not
-/// there) has taken no degree of freedom from its variance.
+/// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a coloured noise that is
+/// not there) has taken no degree of freedom from its variance.
 void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
   const Degrees degrees = degrees_of(estimate);
   if (degrees.left() >= kShortRecord) return;
@@ -327,6 +367,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
   if (estimate.covariance.size() > 0) describe_estimates(estimate, fit);
   add_noise(estimate, threads, fit);
+  warn_of_noise_at_bounds(estimate, fit);
   if (const std::string slow = fit.driven ? warning_of_slow_force(estimate) : ""; !slow.empty()) fit.warnings.push_back(slow);
   add_predictions(estimate, fit);
   report_gaps(estimate, fit);

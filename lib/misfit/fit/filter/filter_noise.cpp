@@ -25,17 +25,17 @@ std::array<double, 3> response(double s, double tau) {
   return {decayed, rate, tau * (s - rate)};
 }
 
-NoiseStep::Jitter jitter_step(const ChannelNoise& noise, double h) {
-  const double omega = 2.0 * std::numbers::pi * noise.jitter_frequency;
-  const double zeta = std::min(noise.jitter_damping, 0.999);
+NoiseStep::Coloured coloured_step(const ChannelNoise& noise, double h) {
+  const double omega = 2.0 * std::numbers::pi * noise.coloured_frequency;
+  const double zeta = std::min(noise.coloured_damping, 0.999);
   const double damped = omega * std::sqrt(1.0 - zeta * zeta);
   const double decay = std::exp(-zeta * omega * h);
   const double c = std::cos(damped * h), s = std::sin(damped * h);
   const double a = zeta * omega / damped, b = omega / damped;
-  NoiseStep::Jitter out;
+  NoiseStep::Coloured out;
   out.phi = {decay * (c + a * s), decay * b * s, -decay * b * s, decay * (c - a * s)};
   const auto& p = out.phi;
-  const double variance = noise.jitter * noise.jitter;
+  const double variance = noise.coloured * noise.coloured;
   out.q = {variance * (1.0 - p[0] * p[0] - p[1] * p[1]), variance * (-p[0] * p[2] - p[1] * p[3]),
            variance * (1.0 - p[2] * p[2] - p[3] * p[3])};
   return out;
@@ -55,9 +55,9 @@ NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterN
     const std::string& name = spec.outputs[o].name;
     const double reach = usual.held ? 1.0 : 1e2;
     push(out, name, channel.white, {usual.white / reach, usual.white * reach});
-    push(out, name + "_jitter", channel.jitter, {1e-3 * usual.white, (usual.held || usual.no_jitter ? 1e-3 : 1e2) * usual.white});
-    push(out, name + "_jitter_frequency", channel.jitter_frequency, {0.5 * usual.jitter_frequency, 3.3 * usual.jitter_frequency});
-    push(out, name + "_jitter_damping", channel.jitter_damping, {0.01, 0.99});
+    push(out, name + "_coloured", channel.coloured, {1e-3 * usual.white, (usual.held || usual.no_coloured ? 1e-3 : 1e2) * usual.white});
+    push(out, name + "_coloured_frequency", channel.coloured_frequency, {0.5 * usual.coloured_frequency, 3.3 * usual.coloured_frequency});
+    push(out, name + "_coloured_damping", channel.coloured_damping, {0.01, 0.99});
   }
   for (std::size_t g = 0; g < noise.further_forces.size(); ++g) {
     const double usual = around.further_forces[g];
@@ -109,7 +109,7 @@ NoiseStep discretise(const FilterNoise& noise, double h) {
   }
   out.variance_ratio = {1.0};
   for (const double further : noise.further_forces) out.variance_ratio.push_back(further * further / (noise.force * noise.force));
-  for (const auto& channel : noise.channels) out.jitter.push_back(jitter_step(channel, h));
+  for (const auto& channel : noise.channels) out.coloured.push_back(coloured_step(channel, h));
   return out;
 }
 
@@ -118,8 +118,8 @@ FilterNoise hardly_forced(FilterNoise noise, const FilterNoise& around) {
   noise.force = nearly_nothing * around.force;
   for (std::size_t g = 0; g < noise.further_forces.size(); ++g) noise.further_forces[g] = nearly_nothing * around.further_forces[g];
   for (ChannelNoise& channel : noise.channels) {
-    channel.white = std::hypot(channel.white, channel.jitter);
-    channel.jitter = nearly_nothing * channel.white;
+    channel.white = std::hypot(channel.white, channel.coloured);
+    channel.coloured = nearly_nothing * channel.white;
   }
   return noise;
 }

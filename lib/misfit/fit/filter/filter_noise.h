@@ -13,14 +13,14 @@
 
 namespace misfit {
 
-/// Noise of one measured channel: white measurement noise and a resonance (AR(2): second-order jitter), stationary.
+/// Noise of one measured channel: white measurement noise and a resonance (coloured noise of second order, AR(2) when sampled), stationary.
 struct ChannelNoise {
-  double white = 1.0;             ///< sigma [unit]
-  double jitter = 0.0;            ///< stationary sigma of the resonance [unit]
-  double jitter_frequency = 1.0;  ///< [Hz]
-  double jitter_damping = 0.3;    ///< of critical
-  bool held = false;              ///< white is known and all there is
-  bool no_jitter = false;         ///< white is all there is
+  double white = 1.0;               ///< sigma [unit]
+  double coloured = 0.0;            ///< stationary sigma of the resonance [unit]
+  double coloured_frequency = 1.0;  ///< [Hz]
+  double coloured_damping = 0.3;    ///< of critical
+  bool held = false;                ///< white is known and all there is
+  bool no_coloured = false;         ///< white is all there is
 };
 
 /// Log-normal: log of a group's strength ~ N(log median, log_sigma²).
@@ -42,19 +42,19 @@ struct FilterNoise {
   [[nodiscard]] double force_of(int group) const { return group == 0 ? force : further_forces[group - 1]; }
 };
 
-/// Logarithms in a fixed order: force, force_time, then per channel white, jitter, jitter_frequency, jitter_damping, then further_forces.
-/// Bounds keep a likelihood that does not depend on one of them from running away.
+/// Logarithms in a fixed order: force, force_time, then per channel white, coloured noise, coloured_frequency, coloured_damping, then
+/// further_forces. Bounds keep a likelihood that does not depend on one of them from running away.
 struct NoiseVector {
   std::vector<double> value, lower, upper;
   ColumnPriors prior;              ///< of the logarithms
-  std::vector<std::string> names;  ///< "force", "force_time", "P_y", "P_y_jitter", …
+  std::vector<std::string> names;  ///< "force", "force_time", "P_y", "P_y_coloured", …
 };
 [[nodiscard]] NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec,
                                const FilterNoise& around);  ///< `around`: bounds and prior
 /// log density of the noise's prior, constants left out.
 [[nodiscard]] double log_prior(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around);
 [[nodiscard]] FilterNoise unpack(const std::vector<double>& logs, const SystemSpec& spec);
-/// With the least random force that the bounds about `around` allow, and white noise alone, as large as it was with its jitter.
+/// With the least random force that the bounds about `around` allow, and white noise alone, as large as it was with its coloured noise.
 [[nodiscard]] FilterNoise hardly_forced(FilterNoise noise, const FilterNoise& around);
 /// Place of a group's strength among them; of the number of groups: how many logarithms there are.
 [[nodiscard]] std::size_t place_of_force(int group, const SystemSpec& spec);
@@ -66,11 +66,11 @@ struct NoiseStep {
   /// (lib/misfit/README.md (29)). [J]
   std::array<std::array<double, 3>, 3> m{};  ///< of a force of the first group
   std::vector<double> variance_ratio;        ///< of each group to the first
-  struct Jitter {
+  struct Coloured {
     std::array<double, 4> phi{};  ///< of (j, j'/ω), row-major
     std::array<double, 3> q{};    ///< covariance: 00, 01, 11
   };
-  std::vector<Jitter> jitter;
+  std::vector<Coloured> coloured;
 };
 [[nodiscard]] NoiseStep discretise(const FilterNoise& noise, double h);
 

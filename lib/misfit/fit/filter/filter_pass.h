@@ -70,7 +70,7 @@ class FilterPass {
     options_.jacobian->r.resize(rows);
     options_.jacobian->index.clear();
     s_model_ = RowMatrix::Zero(n_, columns);
-    s_jitter_ = RowMatrix::Zero(twice(ny_), columns);
+    s_coloured_ = RowMatrix::Zero(twice(ny_), columns);
     s_work_.resize(n_, columns);
     s_row_.resize(columns);
   }
@@ -121,7 +121,7 @@ class FilterPass {
     count(use, -0.5 * (kLogTwoPi + std::log(S) + innovation * innovation / S));
     kalman_.update(innovation, S);
     Eigen::Map<Eigen::VectorXd>(trace_.K.data() + at * N_, n_) = kalman_.gain;
-    Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * ny_, twice(ny_)) = kalman_.gain_jitter;
+    Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * ny_, twice(ny_)) = kalman_.gain_coloured;
     if (options_.jacobian != nullptr) differentiate_update(at, o, use);
     return true;
   }
@@ -158,7 +158,7 @@ class FilterPass {
 
   void differentiate_update(std::size_t at, int o, SampleRole use) {
     s_row_ = a_.transpose().lazyProduct(s_model_);
-    s_row_ += s_jitter_.row(twice(o));
+    s_row_ += s_coloured_.row(twice(o));
     const double* row = outputs_.row(o) + n_;
     for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += row[c];
     if (use == SampleRole::counted) {
@@ -170,7 +170,7 @@ class FilterPass {
       jacobian.index.push_back(at);
     }
     s_model_ -= kalman_.gain.lazyProduct(s_row_);
-    s_jitter_ -= kalman_.gain_jitter.lazyProduct(s_row_);
+    s_coloured_ -= kalman_.gain_coloured.lazyProduct(s_row_);
   }
 
   void correct_state(std::size_t k) {
@@ -196,10 +196,10 @@ class FilterPass {
     }
     s_model_.swap(s_work_);
     for (int o = 0; o < ny_; ++o) {
-      const auto& p = noise_step.jitter[o].phi;
-      s_row_ = s_jitter_.row(twice(o));
-      s_jitter_.row(twice(o)) = p[0] * s_row_ + p[1] * s_jitter_.row(twice(o) + 1);
-      s_jitter_.row(twice(o) + 1) = p[2] * s_row_ + p[3] * s_jitter_.row(twice(o) + 1);
+      const auto& p = noise_step.coloured[o].phi;
+      s_row_ = s_coloured_.row(twice(o));
+      s_coloured_.row(twice(o)) = p[0] * s_row_ + p[1] * s_coloured_.row(twice(o) + 1);
+      s_coloured_.row(twice(o) + 1) = p[2] * s_row_ + p[3] * s_coloured_.row(twice(o) + 1);
     }
     return true;
   }
@@ -222,7 +222,7 @@ class FilterPass {
   Slots slots_;
   std::array<double, kMaxStates> x_{};
   std::array<int, kMaxOutputs> wild_run_{};  // measurements beyond the gate in a row; -1: too many
-  RowMatrix s_model_, s_jitter_, s_work_;    // ∂(state)/∂θ with the gains held
+  RowMatrix s_model_, s_coloured_, s_work_;  // ∂(state)/∂θ with the gains held
   Eigen::RowVectorXd s_row_;
 };
 

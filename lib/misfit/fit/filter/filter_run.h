@@ -51,14 +51,14 @@ struct FilterTrace {
   std::size_t failed_at = 0;
   std::vector<double> Phi;            ///< from sample k (filtered) to k + 1: n × n
   std::vector<double> H;              ///< ∂h/∂x at the predicted state: ny × n
-  std::vector<double> z;              ///< measured − h(predicted state), without jitter; 0 where not used: ny
+  std::vector<double> z;              ///< measured − h(predicted state), without coloured noise; 0 where not used: ny
   std::vector<double> correction;     ///< filtered − predicted state: n
   std::vector<double> predicted;      ///< state one step before: n
   std::vector<double> K;              ///< gains on the model's states: ny × n
-  std::vector<double> Kj;             ///< gains on the jitter states: ny × 2 ny
+  std::vector<double> Kj;             ///< gains on the states of the coloured noise: ny × 2 ny
   std::vector<double> e, S;           ///< innovations and their variances, each given the earlier channels of its sample; S = 0: not used
-  std::vector<double> y, y_variance;  ///< one-step prediction of each channel before any update by the sample (jitter included)
-  std::vector<double> P;              ///< only if asked for: covariance of the predicted state with [states | jitter], n × (n + 2 ny)
+  std::vector<double> y, y_variance;  ///< one-step prediction of each channel before any update by the sample (coloured noise included)
+  std::vector<double> P;  ///< only if asked for: covariance of the predicted state with [states | coloured noise], n × (n + 2 ny)
   double loglik = 0.0, validation_loglik = 0.0;
   std::size_t counted = 0, validated = 0;
 

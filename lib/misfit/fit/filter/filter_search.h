@@ -137,7 +137,7 @@ class FilterSearch {
       for (double& force : out_.noise.further_forces) force *= 2.0;
       for (auto& channel : out_.noise.channels) {
         channel.white *= 1.5;
-        channel.jitter *= 1.5;
+        channel.coloured *= 1.5;
       }
       runs = at_.linearise();
     }
@@ -190,8 +190,8 @@ class FilterSearch {
     return count > 0.0 ? squares / count : 0.0;
   }
 
-  /// The likelihood has a maximum per correlation time at which the random force can stand in for something else (jitter, the motion's own
-  /// memory): the highest is climbed, others nearly as high are named.
+  /// The likelihood has a maximum per correlation time at which the random force can stand in for something else (coloured noise, the
+  /// motion's own memory): the search goes on from the highest, others nearly as high are named.
   void survey_noise() {
     constexpr double clearly_higher = 0.5, nearly = 5.0;  // [log-likelihood]
     const std::vector<NoiseFit> maxima = noise_maxima(at_.runs(), out_.noise, {out_.around, options_.threads});
@@ -245,16 +245,16 @@ class FilterSearch {
   ///   3. `restrict_likelihood`: correction of the noise's gradient and information for the estimated parameters (REML).
   ///   4. `invert_joint`: covariance of parameters and noise with roughness and priors.
   ///   5. `step_jointly`: a Newton step inside the bounds that raises the exact objective.
-  /// Ends when no step rises, not even along the axes of the covariance (climb_along_axes(), where a step promised little, twice at
+  /// Ends when no step rises, not even along the axes of the correlation matrix (step_along_axes(), where a step promised little, twice at
   /// most: each costs about as much as a Newton step), or after a step of less than a sigma.
   void refine_jointly() {
-    constexpr int most_steps = 20, most_climbs = 2;
+    constexpr int most_steps = 20, most_axis_steps = 2;
     constexpr double short_step = 8.0, as_promised = 0.2;  // promised gain: of four sigmas of one parameter; share of it
     constexpr double of_ten_sigmas = 50.0, little = 0.1;   // promised gain; gain, and share of what was promised
     LikelihoodDerivatives exact;
     bool one_sided = false;
     at_kink_ = false;
-    for (int k = 0, climbs = 0; k < most_steps; ++k) {
+    for (int k = 0, axis_steps = 0; k < most_steps; ++k) {
       if (!differentiate(one_sided, exact)) return;
       one_sided = false;
       if (!options_.use && exclude_nonlinear(exact.nonlinear)) {
@@ -267,7 +267,7 @@ class FilterSearch {
       const std::optional<double> gained = step_jointly(exact);
       const double promised = *out_.newton_decrement;
       if (promised >= kDecrementOfOneSigma && gained.value_or(0.0) < std::min(little, little * promised)) {
-        if (promised >= of_ten_sigmas || climbs++ == most_climbs || !climb_along_axes()) return;
+        if (promised >= of_ten_sigmas || axis_steps++ == most_axis_steps || !step_along_axes()) return;
         continue;
       }
       if (!gained) return;
@@ -363,7 +363,7 @@ class FilterSearch {
 
   /// No step that the derivatives propose rises as it promised. False: none along the axes rises by what a sigma is worth either, so that
   /// this is a maximum, at a kink.
-  bool climb_along_axes() {
+  bool step_along_axes() {
     bfgs_ = {};
     const double gained = at_.axis_step(out_.joint_covariance, restricted_.slope).value_or(0.0);
     at_kink_ = gained < kDecrementOfOneSigma;

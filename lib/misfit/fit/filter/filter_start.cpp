@@ -13,13 +13,14 @@
 namespace misfit {
 namespace {
 
+/// RMS of the derivatives of the system's states over a recording.
 struct RateSizes {
-  Eigen::VectorXd rms;  ///< of the derivatives of the system's states
-  std::vector<bool> shown;
+  Eigen::VectorXd rms;
+  std::vector<bool> shown;  ///< by a channel
 };
 
-/// As measured, or else, of a state that no channel shows, as the model has them with the
-/// recorded inputs where the others are read, but at least such that it moves by its typical size in the recording.
+/// Of states that channels show, the derivatives read from these. Of the others those that the model gives at the states read and the
+/// recorded inputs, but at least one by which the state moves by its typical size in the length of the recording.
 RateSizes rate_sizes(const FilterModel& model, const FilterData& data, const ReconstructedStates& states) {
   Evaluator evaluator(model.model);
   const Eigen::Index system = model.model.system_states();
@@ -41,7 +42,8 @@ RateSizes rate_sizes(const FilterModel& model, const FilterData& data, const Rec
   return out;
 }
 
-/// Size of a force of a group that gives the states' derivatives: of those that the channels show, if it acts on one.
+/// Size of a random force that alone would cause the accelerations: the largest RMS of x' over |dx'/dF|, over the states on which a force
+/// of the group acts; of those that channels show, if there are any. 1 where it acts on none.
 double force_size(const FilterModel& model, int group, const FilterData& data, const RateSizes& rates) {
   Evaluator evaluator(model.model);
   const int n = evaluator.states();
@@ -52,7 +54,7 @@ double force_size(const FilterModel& model, int group, const FilterData& data, c
   for (std::size_t force = 0; force < model.force_states.size(); ++force) {
     const int f = model.force_states[force];
     if (model.force_group[force] != group) continue;
-    for (int i = 0; i < model.model.system_states(); ++i) {  // memories of effects say nothing of the force
+    for (int i = 0; i < model.model.system_states(); ++i) {  // not the own states of effects
       const double gain = std::abs(D[i * kRowStride + f]);
       if (model.kind[i] != 1 || !(gain > 0.0)) continue;
       double& size = rates.shown[i] ? shown : hidden;
@@ -62,7 +64,7 @@ double force_size(const FilterModel& model, int group, const FilterData& data, c
   return shown > 0.0 ? shown : hidden > 0.0 ? hidden : 1.0;
 }
 
-/// Means of so many neighbours: missing where one of them is, the inputs' never.
+/// The recording decimated by `count`, each sample the mean of `count` neighbours; a channel is missing where one of its neighbours is.
 Signals averaged(const Signals& signals, std::size_t count) {
   Signals out;
   out.name = signals.name;
@@ -86,7 +88,7 @@ Signals averaged(const Signals& signals, std::size_t count) {
   return out;
 }
 
-/// A recording with its states and the sizes of their rates.
+/// A recording with the states read from it and the sizes of their derivatives.
 struct SizedRecording {
   double step = 0.0;  ///< [s] usual one between its samples
   ReconstructedStates states;
@@ -99,7 +101,7 @@ SizedRecording sized(const FilterModel& model, const FilterData& data) {
   return out;
 }
 
-/// The same recording with the rows of `signals`, of which the first that counts is `first`.
+/// FilterData for `signals`, other samples of the same recording, from the sample `first` on.
 FilterData with_rows(const FilterModel& model, const FilterData& data, const Signals& signals, std::size_t first) {
   FilterData out;
   out.signals = &signals;
@@ -109,17 +111,17 @@ FilterData with_rows(const FilterModel& model, const FilterData& data, const Sig
   return out;
 }
 
-/// Of means of `count` neighbours.
+/// Of the recording decimated by `count`.
 SizedRecording sized_means(const FilterModel& model, const FilterData& data, std::size_t count) {
   const Signals signals = averaged(*data.signals, count);
   return sized(model, with_rows(model, data, signals, data.first / count));
 }
 
-/// Are the shown rates of rates mostly differentiated noise? Then they have no memory beyond the five samples that they are read from, and
-/// fall to less than half where neighbours are averaged.
+/// Are the accelerations read from the channels mostly differentiated measurement noise? It is noise if both hold: they are uncorrelated
+/// at lags beyond the five samples from which each is read, and decimating by two more than halves them.
 bool mostly_noise(const FilterModel& model, const SizedRecording& recording, const SizedRecording& coarser) {
   constexpr double of_motion = 0.5, largest_memory = 0.25;
-  constexpr int first_apart = 6, last = 9;  // samples whose five neighbours are others
+  constexpr int first_apart = 6, last = 9;  // lags at which two accelerations have no sample in common
   for (int i = 0; i < model.model.system_states(); ++i) {
     if (model.kind[static_cast<std::size_t>(i)] != 1 || !recording.rates.shown[static_cast<std::size_t>(i)]) continue;
     if (coarser.rates.rms[i] > of_motion * recording.rates.rms[i]) continue;
@@ -134,9 +136,9 @@ bool mostly_noise(const FilterModel& model, const SizedRecording& recording, con
   return false;
 }
 
-/// With neighbours averaged until accelerations are those of the motion: as it is, unless a noisy recording is sampled much faster than it
-/// moves. There a size read from neighbours would be that of the noise, which grows with the square of the rate of sampling, and the least
-/// random force that is looked for (a thousandth of the usual one) could be larger than any there is.
+/// The recording, decimated by 2, 4, 8, … as long as its accelerations are mostly noise. This matters where a noisy sensor is sampled much
+/// faster than the motion: differentiated noise grows with the square of the sampling rate, so that the usual random force taken from it,
+/// and with that the lower bound of its estimate (a thousandth of the usual one), could exceed any force that acts.
 SizedRecording sized_by_motion(const FilterModel& model, const FilterData& data) {
   if (have_own_clocks(*data.signals)) {
     const DensestRows dense = at_densest(*data.signals);
@@ -167,18 +169,20 @@ void mark_known(const FilterModel& model, FilterNoise& usual) {
   usual.prior = {model.force_group[port - model.force_ports.begin()], known.median, known.sigma / known.median};
 }
 
-/// White noise and jitter as large, well above the motion (circular frequency `motion`), which the model itself must explain; pack() lets
-/// the jitter's frequency down to half of this. A sensor with a clock of its own that shows nothing so fast has none.
-ChannelNoise usual_channel(const Signals& signals, std::size_t o, const KnownNoise& known, const OutputSpec& output, double motion) {
+/// White noise and coloured noise as large, well above the motion (circular frequency `motion`), which the model itself must explain;
+/// pack() lets the coloured noise's frequency down to half of this. A sensor with a clock of its own that shows nothing so fast has none.
+ChannelNoise usual_channel(const Model& model, const Signals& signals, std::size_t o, double motion) {
+  const KnownNoise& known = model.known_noise[o];
+  const OutputSpec& output = model.system->spec().outputs[o];
   constexpr double share_of_rate = 0.15, highest_share = 0.3, above_motion = 3.0;
   const std::vector<double>& values = signals.measured[o].values;
   const double step = own_step(signals, o), least = above_motion * motion / (2.0 * std::numbers::pi);
   ChannelNoise out;
   out.white = known.sigma > 0.0 ? known.sigma : measurement_noise(values);
   if (!(out.white > 0.0)) out.white = output.noise > 0.0 ? output.noise : 1.0;
-  out.jitter_frequency = std::min(std::max(share_of_rate / step, least), highest_share / step);
-  out.no_jitter = out.jitter_frequency < least && have_own_clocks(signals);
-  out.jitter = known.fixed || out.no_jitter ? 1e-3 * out.white : out.white;
+  out.coloured_frequency = std::min(std::max(share_of_rate / step, least), highest_share / step);
+  out.no_coloured = out.coloured_frequency < least && have_own_clocks(signals);
+  out.coloured = known.fixed || out.no_coloured ? 1e-3 * out.white : out.white;
   return out;
 }
 
@@ -196,10 +200,8 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   const auto usual_force = [&](int group) { return share_of_motion * force_size(model, group, data.front(), rates) * of_equal_intensity; };
   out.force = usual_force(0);
   for (int group = 1; group < model.force_groups(); ++group) out.further_forces.push_back(usual_force(group));
-  const auto& outputs = model.model.system->spec().outputs;
   const double motion = motion_frequency(model.model, states);
-  for (std::size_t o = 0; o < outputs.size(); ++o)
-    out.channels.push_back(usual_channel(first, o, model.model.known_noise[o], outputs[o], motion));
+  for (std::size_t o = 0; o < first.measured.size(); ++o) out.channels.push_back(usual_channel(model.model, first, o, motion));
   mark_known(model, out);
   return out;
 }

@@ -30,7 +30,7 @@ class NoiseSteps {
   std::size_t next_ = 0;
 };
 
-/// What is known before the first measurement: states as uncertain as FilterData says, forces and jitter stationary.
+/// What is known before the first measurement: states as uncertain as FilterData says, forces and coloured noise stationary.
 template <int M, int NY>
 void start_covariance(const FilterModel& model, const FilterData& data, const FilterNoise& noise, Kalman<M, NY>& kalman) {
   kalman.P = data.covariance;
@@ -41,7 +41,7 @@ void start_covariance(const FilterModel& model, const FilterData& data, const Fi
   }
   for (std::size_t o = 0; o < noise.channels.size(); ++o) {
     const auto at = static_cast<Eigen::Index>(2 * o);
-    kalman.G(at, at) = kalman.G(at + 1, at + 1) = noise.channels[o].jitter * noise.channels[o].jitter;
+    kalman.G(at, at) = kalman.G(at + 1, at + 1) = noise.channels[o].coloured * noise.channels[o].coloured;
   }
 }
 

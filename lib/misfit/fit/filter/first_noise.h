@@ -9,8 +9,8 @@ namespace misfit {
 
 /// The first noise of a search, from the usual one: after one Gauss–Newton step of the parameters under that, or at the start's parameters,
 /// where the filter diverges after the step or the start is clearly higher (from good parameters the usual noise, much too large, leads
-/// astray). From three start values of the jitter's frequency, since the likelihood has a local maximum at each spectral line of the
-/// measurement noise.
+/// astray). From three start values of the coloured noise's frequency, since the likelihood has a local maximum at each spectral line of
+/// the measurement noise.
 void search_noise(LikelihoodAscent& at, int threads);
 
 }  // namespace misfit

@@ -11,30 +11,30 @@
 
 namespace misfit {
 
-/// Covariance of a linear filter whose state is [model states | two jitter states per channel], with deviations `x` from a reference of the
-/// caller. Channels are taken one after the other [AM]: an innovation is that of its channel given the earlier ones of the same sample. M,
-/// NY: numbers of model states and channels, or Eigen::Dynamic. Products are lazy: the matrices are too small for Eigen's blocked ones,
-/// whose packing would cost more than they do (it takes these from eight rows on).
+/// Covariance of a linear filter whose state is [model states | two states of the coloured noise per channel], with deviations `x` from a
+/// reference of the caller. Channels are taken one after the other [AM]: an innovation is that of its channel given the earlier ones of the
+/// same sample. M, NY: numbers of model states and channels, or Eigen::Dynamic. Products are lazy: the matrices are too small for Eigen's
+/// blocked ones, whose packing would cost more than they do (it takes these from eight rows on).
 template <int M, int NY>
 class Kalman {
  public:
   static constexpr int J = NY == Eigen::Dynamic ? Eigen::Dynamic : 2 * NY;
-  static constexpr int kMaxJitter = 2 * kMaxOutputs;
+  static constexpr int kMaxColoured = 2 * kMaxOutputs;
   static constexpr int MM = M == Eigen::Dynamic ? kMaxStates : M;
-  static constexpr int MJ = J == Eigen::Dynamic ? kMaxJitter : J;
+  static constexpr int MJ = J == Eigen::Dynamic ? kMaxColoured : J;
   using StateMatrix = Eigen::Matrix<double, M, M, Eigen::ColMajor, MM, MM>;
   using CrossMatrix = Eigen::Matrix<double, M, J, Eigen::ColMajor, MM, MJ>;
-  using JitterMatrix = Eigen::Matrix<double, J, J, Eigen::ColMajor, MJ, MJ>;
+  using ColouredMatrix = Eigen::Matrix<double, J, J, Eigen::ColMajor, MJ, MJ>;
   using StateVector = Eigen::Matrix<double, M, 1, Eigen::ColMajor, MM, 1>;
-  using JitterVector = Eigen::Matrix<double, J, 1, Eigen::ColMajor, MJ, 1>;
+  using ColouredVector = Eigen::Matrix<double, J, 1, Eigen::ColMajor, MJ, 1>;
 
   StateMatrix P;     ///< model × model
-  CrossMatrix C;     ///< model × jitter
-  JitterMatrix G;    ///< jitter × jitter
+  CrossMatrix C;     ///< model × coloured noise
+  ColouredMatrix G;  ///< coloured noise × coloured noise
   StateVector x;     ///< deviation from the reference
-  JitterVector j;    ///< jitter
+  ColouredVector j;  ///< coloured noise
   StateVector gain;  ///< of the last update
-  JitterVector gain_jitter;
+  ColouredVector gain_coloured;
 
   Kalman(int states, int channels) {
     P.setZero(states, states);
@@ -43,29 +43,29 @@ class Kalman {
     x.setZero(states);
     j.setZero(2 * channels);
     gain.setZero(states);
-    gain_jitter.setZero(2 * channels);
+    gain_coloured.setZero(2 * channels);
   }
 
   /// Variance of the innovation of channel o with the row `a` of ∂h/∂x; prepares the gain.
   double variance(const StateVector& a, int o, double white) {
     gain = P.lazyProduct(a);
     gain += C.col(2 * o);
-    gain_jitter = C.transpose().lazyProduct(a);
-    gain_jitter += G.col(2 * o);
-    const double S = a.dot(gain) + gain_jitter[2 * o] + white * white;
+    gain_coloured = C.transpose().lazyProduct(a);
+    gain_coloured += G.col(2 * o);
+    const double S = a.dot(gain) + gain_coloured[2 * o] + white * white;
     return S;
   }
   /// Takes the innovation in; after variance().
   void update(double innovation, double S) {
     const StateVector by_variance = gain / S;
-    const JitterVector jitter_by_variance = gain_jitter / S;
+    const ColouredVector coloured_by_variance = gain_coloured / S;
     P -= gain.lazyProduct(by_variance.transpose());
-    C -= gain.lazyProduct(jitter_by_variance.transpose());
-    G -= gain_jitter.lazyProduct(jitter_by_variance.transpose());
+    C -= gain.lazyProduct(coloured_by_variance.transpose());
+    G -= gain_coloured.lazyProduct(coloured_by_variance.transpose());
     gain = by_variance;
-    gain_jitter = jitter_by_variance;
+    gain_coloured = coloured_by_variance;
     x += gain * innovation;
-    j += gain_jitter * innovation;
+    j += gain_coloured * innovation;
   }
   /// Over a step with the model's Φ: P → Φ P Φᵀ + Q. `kind` of each row (NoiseStep). x is left to the caller.
   template <class Phi>
@@ -87,32 +87,32 @@ class Kalman {
       }
     }
     const CrossMatrix crossed = phi.lazyProduct(C);
-    for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
-      const auto& p = noise.jitter[o].phi;
+    for (std::size_t o = 0; o < noise.coloured.size(); ++o) {
+      const auto& p = noise.coloured[o].phi;
       const Eigen::Index at = 2 * o;
       C.col(at) = p[0] * crossed.col(at) + p[1] * crossed.col(at + 1);
       C.col(at + 1) = p[2] * crossed.col(at) + p[3] * crossed.col(at + 1);
     }
-    rotate_jitter(noise);
+    rotate_coloured(noise);
   }
 
  private:
-  void rotate_jitter(const NoiseStep& noise) {
-    for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
-      const auto& p = noise.jitter[o].phi;
+  void rotate_coloured(const NoiseStep& noise) {
+    for (std::size_t o = 0; o < noise.coloured.size(); ++o) {
+      const auto& p = noise.coloured[o].phi;
       const Eigen::Index at = 2 * o;
-      const JitterVector first = G.col(at), second = G.col(at + 1);
+      const ColouredVector first = G.col(at), second = G.col(at + 1);
       G.col(at) = p[0] * first + p[1] * second;
       G.col(at + 1) = p[2] * first + p[3] * second;
       const double old = j[at];
       j[at] = p[0] * old + p[1] * j[at + 1];
       j[at + 1] = p[2] * old + p[3] * j[at + 1];
     }
-    for (std::size_t o = 0; o < noise.jitter.size(); ++o) {
-      const auto& p = noise.jitter[o].phi;
-      const auto& q = noise.jitter[o].q;
+    for (std::size_t o = 0; o < noise.coloured.size(); ++o) {
+      const auto& p = noise.coloured[o].phi;
+      const auto& q = noise.coloured[o].q;
       const Eigen::Index at = 2 * o;
-      const JitterVector first = G.row(at).transpose(), second = G.row(at + 1).transpose();
+      const ColouredVector first = G.row(at).transpose(), second = G.row(at + 1).transpose();
       G.row(at) = (p[0] * first + p[1] * second).transpose();
       G.row(at + 1) = (p[2] * first + p[3] * second).transpose();
       G(at, at) += q[0];

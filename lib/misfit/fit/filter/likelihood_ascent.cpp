@@ -10,22 +10,19 @@
 #include "misfit/fit/filter/filter_start.h"
 #include "misfit/fit/filter/likelihood_derivatives.h"
 #include "misfit/math/bounded.h"
+#include "misfit/math/covariance.h"
 
 namespace misfit {
 namespace {
 
-struct Box {
-  Eigen::VectorXd lower, upper;
-};
-
-Box bounds_of(const Model& model) {
+BoxBounds bounds_of(const Model& model) {
   const std::vector<int> free = model.free_parameters();
-  Box box{Eigen::VectorXd(std::ssize(free)), Eigen::VectorXd(std::ssize(free))};
+  BoxBounds bounds{Eigen::VectorXd(std::ssize(free)), Eigen::VectorXd(std::ssize(free))};
   for (Eigen::Index c = 0; c < std::ssize(free); ++c) {
-    box.lower[c] = model.parameters[free[c]].lower;
-    box.upper[c] = model.parameters[free[c]].upper;
+    bounds.lower[c] = model.parameters[free[c]].lower;
+    bounds.upper[c] = model.parameters[free[c]].upper;
   }
-  return box;
+  return bounds;
 }
 
 Eigen::VectorXd joined(const Eigen::VectorXd& a, const std::vector<double>& b) {
@@ -33,6 +30,8 @@ Eigen::VectorXd joined(const Eigen::VectorXd& a, const std::vector<double>& b) {
   both << a, Eigen::Map<const Eigen::VectorXd>(b.data(), std::ssize(b));
   return both;
 }
+
+constexpr double least_gain = 0.02;  // of the log-likelihood: what is less is left
 
 /// Noise with the standard deviations of outputs, but for those held, and of the random force multiplied.
 FilterNoise multiplied(FilterNoise noise, const std::vector<double>& factors, const Model& model) {
@@ -191,7 +190,7 @@ double LikelihoodAscent::gauss_newton_step() {
 }
 
 void LikelihoodAscent::damped_step(const Eigen::MatrixXd& precision, const Eigen::VectorXd& newton) {
-  constexpr double weakest = 1.0, strongest = 1e4, stronger = 10.0, least_gain = 0.02;
+  constexpr double weakest = 1.0, strongest = 1e4, stronger = 10.0;
   const auto [lower, upper] = bounds_of(out.model);
   const Eigen::VectorXd gradient = precision * newton;
   for (double damping = weakest; damping <= strongest; damping *= stronger) {
@@ -229,6 +228,17 @@ bool LikelihoodAscent::try_noise(const NoiseFit& fit) {
   out.forced.set_force_time(out.noise.force_time);
   linearise();
   return false;
+}
+
+BoxBounds LikelihoodAscent::joint_bounds() const {
+  const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
+  const auto [lower, upper] = bounds_of(out.model);
+  return {joined(lower, noise.lower), joined(upper, noise.upper)};
+}
+
+bool LikelihoodAscent::move_to(const Eigen::VectorXd& joint) {
+  const Eigen::Index n = theta.size();
+  return move_to(joint.head(n), {joint.data() + n, joint.data() + joint.size()});
 }
 
 bool LikelihoodAscent::move_to(const Eigen::VectorXd& there, const std::vector<double>& logs) {
@@ -303,18 +313,14 @@ Eigen::VectorXd LikelihoodAscent::joint() const { return joined(theta, out.noise
 
 std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse,
                                                    const Eigen::VectorXd& slope) {
-  constexpr double least_gain = 0.02;
-  const Eigen::Index n = theta.size();
-  const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
-  const auto [lower, upper] = bounds_of(out.model);
+  const BoxBounds bounds = joint_bounds();
   const Eigen::VectorXd here = joint(), newton = inverse * gradient;
-  const Eigen::VectorXd lowest = joined(lower, noise.lower), highest = joined(upper, noise.upper);
-  const BoundedMaximum there = maximum_inside(here + newton, inverse, lowest, highest);
+  const BoundedMaximum there = maximum_inside(here + newton, inverse, bounds.lower, bounds.upper);
   const Eigen::VectorXd step = there.at - here;
   const double promised = 0.5 * gradient.dot(newton) - there.below;
   out.newton_decrement = promised;
   if (promised < least_gain) return std::nullopt;
-  const auto gain = [&](double share) { return gain_at((here + share * step).cwiseMax(lowest).cwiseMin(highest), slope); };
+  const auto gain = [&](double share) { return gain_at(bounds.nearest(here + share * step), slope); };
   constexpr double shortest = 0.005;  // at a kink of the likelihood only a short step rises
   double share = 1.0, gained = gain(share);
   while (!(gained > 0.0) && share > shortest) gained = gain(share *= 0.5);
@@ -326,8 +332,7 @@ std::optional<double> LikelihoodAscent::joint_step(const Eigen::VectorXd& gradie
     share = longer;
     gained = value;
   }
-  const Eigen::VectorXd at = (here + share * step).cwiseMax(lowest).cwiseMin(highest);
-  return move_to(at.head(n), {at.data() + n, at.data() + at.size()}) ? std::optional(gained) : std::nullopt;
+  return move_to(bounds.nearest(here + share * step)) ? std::optional(gained) : std::nullopt;
 }
 
 double LikelihoodAscent::gain_at(const Eigen::VectorXd& at, const Eigen::VectorXd& slope) const {
@@ -337,27 +342,21 @@ double LikelihoodAscent::gain_at(const Eigen::VectorXd& at, const Eigen::VectorX
 }
 
 std::optional<double> LikelihoodAscent::axis_step(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& slope) {
-  constexpr double least_gain = 0.02;
-  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(sigma.cwiseInverse().asDiagonal() * covariance *
-                                                            sigma.cwiseInverse().asDiagonal());
-  const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
-  const auto [lower, upper] = bounds_of(out.model);
-  const Eigen::VectorXd here = joint(), lowest = joined(lower, noise.lower), highest = joined(upper, noise.upper);
+  const BoxBounds bounds = joint_bounds();
+  const Eigen::VectorXd here = joint();
   Eigen::VectorXd best = here;
   double most = least_gain;
-  for (Eigen::Index a = 0; a < axes.eigenvalues().size(); ++a) {
-    const Eigen::VectorXd axis = std::sqrt(std::max(axes.eigenvalues()[a], 0.0)) * sigma.cwiseProduct(axes.eigenvectors().col(a));
+  const CorrelationAxes axes = correlation_axes(covariance);
+  for (Eigen::Index a = 0; a < axes.along.cols(); ++a) {
     for (const double share : {1.0, -1.0, 0.25, -0.25, 0.05, -0.05}) {
-      const Eigen::VectorXd at = (here + share * axis).cwiseMax(lowest).cwiseMin(highest);
+      const Eigen::VectorXd at = bounds.nearest(here + share * axes.along.col(a));
       const double gain = gain_at(at, slope);
       if (!(gain > most)) continue;
       most = gain;
       best = at;
     }
   }
-  const Eigen::Index n = theta.size();
-  if (best == here || !move_to(best.head(n), {best.data() + n, best.data() + best.size()})) return std::nullopt;
+  if (best == here || !move_to(best)) return std::nullopt;
   return most;
 }
 

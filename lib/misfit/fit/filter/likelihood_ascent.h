@@ -7,6 +7,14 @@ namespace misfit {
 /// Gain of the log-likelihood that a Newton step promises, ½ gᵀ H⁻¹ g, where it moves one parameter by one sigma, by two.
 inline constexpr double kDecrementOfOneSigma = 0.5, kDecrementOfTwoSigmas = 2.0;
 
+/// Of unknowns.
+struct BoxBounds {
+  Eigen::VectorXd lower, upper;
+
+  /// The point inside that is nearest.
+  [[nodiscard]] Eigen::VectorXd nearest(const Eigen::VectorXd& to) const { return to.cwiseMax(lower).cwiseMin(upper); }
+};
+
 /// Where an estimation stands: parameters, noise, the runs and derivatives there; and the steps that raise its objective. Held in `out`,
 /// which is always that of a run that succeeded unless a member says false.
 class LikelihoodAscent {
@@ -35,12 +43,13 @@ class LikelihoodAscent {
   /// their sum rises, lengthened where it gains more than it promised. `out.newton_decrement` is what it promises. What it gained; nullopt:
   /// it promises less than 0.02, or no length of it rises.
   std::optional<double> joint_step(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& slope);
-  /// The highest of the points a sigma, a quarter and a twentieth of one away along the principal axes of `covariance`, of parameters and
-  /// log noise together: the way up where the objective has a kink, of which derivatives say nothing. `slope` as above. What it gained;
-  /// nullopt: less than 0.02, all is as before.
+  /// The highest of the points a sigma, a quarter and a twentieth of one away along the axes of the correlation matrix of `covariance`,
+  /// that of parameters and log noise together: the way up where the objective has a kink, of which derivatives say nothing. `slope` as
+  /// above. What it gained; nullopt: less than 0.02, all is as before.
   std::optional<double> axis_step(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& slope);
   /// Parameters and logarithms of the noise, inside their bounds. False if the model cannot be run there: all is as before.
   bool move_to(const Eigen::VectorXd& there, const std::vector<double>& logs);
+  bool move_to(const Eigen::VectorXd& joint);  ///< as joint() has them
   /// Where a search stands.
   struct Point {
     Eigen::VectorXd theta;
@@ -80,7 +89,8 @@ class LikelihoodAscent {
   [[nodiscard]] double objective_at(const Eigen::VectorXd& there, const FilterNoise& noise) const;
   /// Of the objective and what is linear in the log noise, over the present point.
   [[nodiscard]] double gain_at(const Eigen::VectorXd& at, const Eigen::VectorXd& slope) const;
-  [[nodiscard]] double log_prior() const;  ///< of parameters, roughness and noise, at `theta` and `out.noise`
+  [[nodiscard]] BoxBounds joint_bounds() const;  ///< as joint()
+  [[nodiscard]] double log_prior() const;        ///< of parameters, roughness and noise, at `theta` and `out.noise`
 
   int threads_;
   std::size_t failed_experiment_ = 0;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "misfit/jobs/work_queue.h"
+#include "misfit/math/covariance.h"
 
 namespace misfit {
 namespace {
@@ -60,27 +61,11 @@ struct OneDerivative {
   std::vector<std::vector<std::size_t>> nonlinear;
 };
 
-/// Principal axes of a covariance after scaling to unit sigmas: `along` has one sigma of each as a column, `back` is its inverse.
-struct Axes {
-  Eigen::MatrixXd along, back;
-
-  explicit Axes(const Eigen::MatrixXd& covariance) {
-    if (covariance.size() == 0) return;
-    constexpr double least = 1e-300, smallest = 1e-14;
-    const Eigen::VectorXd sigma = covariance.diagonal().cwiseMax(least).cwiseSqrt();
-    const Eigen::MatrixXd scaled = sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
-    const Eigen::VectorXd root = solver.eigenvalues().cwiseMax(smallest).cwiseSqrt();
-    along = sigma.asDiagonal() * solver.eigenvectors() * root.asDiagonal();
-    back = root.cwiseInverse().asDiagonal() * solver.eigenvectors().transpose() * sigma.cwiseInverse().asDiagonal();
-  }
-};
-
 /// Central differences; each fills its column of the whitened derivatives.
 class Differences {
  public:
   Differences(const FilterEstimate& estimate, const Eigen::VectorXd& theta)
-      : estimate_(estimate), theta_(theta), objective_(estimate), here_(estimate.loglik), axes_(estimate.covariance) {}
+      : estimate_(estimate), theta_(theta), objective_(estimate), here_(estimate.loglik), axes_(correlation_axes(estimate.covariance)) {}
 
   /// Where more than a tenth of all measurements is nonlinear the step is too long, not the run nonlinear: the axis of a combination that
   /// is hardly determined is long, and straight for a part of it only. Then a shorter one, up to five times.
@@ -100,7 +85,7 @@ class Differences {
     return out;
   }
 
-  [[nodiscard]] const Axes& axes() const { return axes_; }
+  [[nodiscard]] const CorrelationAxes& axes() const { return axes_; }
 
   /// To one side; `information`: minus the second derivatives of the log-likelihood over parameters and noise, about.
   OneDerivative upwards(Eigen::Index i, const Eigen::MatrixXd& information, const Eigen::Ref<Eigen::VectorXd>& column) const {
@@ -166,7 +151,7 @@ class Differences {
   const Eigen::VectorXd& theta_;
   ExactObjective objective_;
   double here_;
-  Axes axes_;
+  CorrelationAxes axes_;
 };
 
 std::string failure_of(const std::vector<OneDerivative>& parts) {

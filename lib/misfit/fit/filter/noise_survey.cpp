@@ -17,8 +17,8 @@ FilterNoise with_time(FilterNoise noise, double force_time) {
   return noise;
 }
 
-/// The usual jitter beside white noise as it is.
-FilterNoise with_usual_jitter(FilterNoise noise, const FilterNoise& usual) {
+/// The usual coloured noise beside white noise as it is.
+FilterNoise with_usual_coloured(FilterNoise noise, const FilterNoise& usual) {
   for (std::size_t o = 0; o < noise.channels.size(); ++o) {
     const double white = noise.channels[o].white;
     noise.channels[o] = usual.channels[o];
@@ -45,7 +45,7 @@ std::vector<NoiseFit> noise_maxima(const LinearisedRuns& runs, const FilterNoise
   for (const double share : grid) {
     const FilterNoise there = with_time(start, share * search.around.force_time);
     fits.push_back(fit_noise(runs, there, {search.around, search.threads, first_iterations}));
-    fits.push_back(fit_noise(runs, with_usual_jitter(there, search.around), {search.around, search.threads, first_iterations}));
+    fits.push_back(fit_noise(runs, with_usual_coloured(there, search.around), {search.around, search.threads, first_iterations}));
   }
   sort_by_height(fits);
   fits.resize(std::min(fits.size(), carried_on));

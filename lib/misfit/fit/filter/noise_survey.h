@@ -7,8 +7,9 @@
 namespace misfit {
 
 /// Maxima of the noise's likelihood, the runs' trajectories held: fit_noise() from correlation times of the random force from 0.2 to 20
-/// times the usual one (search.around), with the jitter of `start` and with the usual one; the best of a few iterations each are carried
-/// on. The highest first; of those whose correlation times differ by less than a fifth only the highest. Empty: nothing could be run.
+/// times the usual one (search.around), with the coloured noise of `start` and with the usual one; the best of a few iterations each are
+/// carried on. The highest first; of those whose correlation times differ by less than a fifth only the highest. Empty: nothing could be
+/// run.
 [[nodiscard]] std::vector<NoiseFit> noise_maxima(const LinearisedRuns& runs, const FilterNoise& start, const NoiseSearch& search);
 
 }  // namespace misfit

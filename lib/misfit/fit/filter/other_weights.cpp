@@ -17,7 +17,7 @@ struct End {
   bool settled = true;
 };
 
-double level(const ChannelNoise& noise) { return std::hypot(noise.white, noise.jitter); }
+double level(const ChannelNoise& noise) { return std::hypot(noise.white, noise.coloured); }
 
 End end_of(const LikelihoodAscent& at) {
   End out{at.here(), height_of(at), {}};
@@ -57,7 +57,7 @@ void weigh_outputs_otherwise(LikelihoodAscent& at, const AscentRounds& rounds) {
   search.end_from = [&](const Weighing& weighing, const End& from) -> std::optional<End> {
     FilterNoise noise = from.point.noise;
     noise.channels[weighing.output].white *= weighing.factor;
-    noise.channels[weighing.output].jitter *= weighing.factor;
+    noise.channels[weighing.output].coloured *= weighing.factor;
     if (!at.begin_with(noise) || !leads_away(at, from, rounds.threads)) return std::nullopt;
     at.iterate(rounds.most, rounds.tolerance);
     return end_of(at);

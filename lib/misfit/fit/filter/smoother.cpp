@@ -7,7 +7,7 @@
 namespace misfit {
 namespace {
 
-/// Backward over [model | jitter]: r, what measurements from this sample on say of the predicted state, and V, its covariance [DK].
+/// Backward over [model | coloured noise]: r, what measurements from this sample on say of the predicted state, and V, its covariance [DK].
 class Backward {
  public:
   Backward(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise, bool variances)
@@ -28,7 +28,7 @@ class Backward {
       transition_.topLeftCorner(n_, n_) = trace_.Phi_at(k);
       const NoiseStep& step = steps_.at(data_.signals->t[k + 1] - data_.signals->t[k]);
       for (Eigen::Index o = 0; o < ny_; ++o) {
-        const auto& p = step.jitter[o].phi;
+        const auto& p = step.coloured[o].phi;
         transition_.block(n_ + 2 * o, n_ + 2 * o, 2, 2) << p[0], p[1], p[2], p[3];
       }
       r = (transition_.transpose() * r).eval();

@@ -22,7 +22,8 @@
 namespace misfit {
 namespace {
 
-/// States whose rate is an equation of motion and not just another state.
+/// The states for which there is an equation to regress: shown by a channel, and their rate is not just another state (as that of a
+/// position is its velocity).
 std::vector<int> dynamic_states(const Model& model, const std::vector<bool>& shown) {
   std::vector<int> rows;
   const auto& states = model.system->spec().states;
@@ -33,7 +34,7 @@ std::vector<int> dynamic_states(const Model& model, const std::vector<bool>& sho
   return rows;
 }
 
-/// States of the system that no channel shows, joined; empty if there are none.
+/// "the state x, v": those of the system that no channel shows; empty if there are none.
 std::string hidden_states(const Model& model, const std::vector<bool>& shown) {
   std::string names;
   const auto& states = model.system->spec().states;
@@ -43,30 +44,31 @@ std::string hidden_states(const Model& model, const std::vector<bool>& shown) {
   return names;
 }
 
-/// Samples at which no derivative is taken across a step of an input that is held between its samples: a local polynomial smears the kink
-/// that the state has there: the samples beside it, of sensors with clocks of their own also those within two steps of the fastest. All,
-/// and `smeared`, where more than half would be left out: then the input steps at nearly every sample.
-struct Between {
-  std::vector<bool> steps;
-  bool smeared = false;
+/// Samples that the regression uses. Where a zero-order-hold input steps, the rate of a state jumps, and the polynomial through
+/// neighbouring samples, from which the derivative is read, rounds that jump off. So the samples at a step and beside it are left out (of
+/// sensors with clocks of their own also those within two steps of the fastest). Where that would leave out more than half, since the input
+/// steps at nearly every sample, all are used and the derivatives are said to be smoothed.
+struct UsableSamples {
+  std::vector<bool> usable;
+  bool smoothed = false;
 };
 
-Between between_steps(const Model& model, const Signals& signals) {
+UsableSamples usable_samples(const Model& model, const Signals& signals) {
   const auto& inputs = model.system->spec().inputs;
   const std::size_t n = signals.samples();
-  Between out{std::vector<bool>(n, true)};
+  UsableSamples out{std::vector<bool>(n, true)};
   const double reach = have_own_clocks(signals) ? 2.0 * step_of_measurements(signals) : 0.0;
   for (std::size_t k = 0; k < inputs.size() && k < signals.inputs.size(); ++k) {
     if (inputs[k].hold != Hold::zero_order) continue;
     const std::vector<double>& u = signals.inputs[k].values;
     for (std::size_t i = 1; i < n; ++i) {
       if (u[i] == u[i - 1]) continue;
-      for (std::size_t at = i - 1; at <= std::min(i + 1, n - 1); ++at) out.steps[at] = false;
-      for (std::size_t at = i; at-- > 0 && signals.t[i] - signals.t[at] < reach;) out.steps[at] = false;
-      for (std::size_t at = i + 1; at < n && signals.t[at] - signals.t[i] < reach; ++at) out.steps[at] = false;
+      for (std::size_t at = i - 1; at <= std::min(i + 1, n - 1); ++at) out.usable[at] = false;
+      for (std::size_t at = i; at-- > 0 && signals.t[i] - signals.t[at] < reach;) out.usable[at] = false;
+      for (std::size_t at = i + 1; at < n && signals.t[at] - signals.t[i] < reach; ++at) out.usable[at] = false;
     }
   }
-  const std::size_t left = std::count(out.steps.begin(), out.steps.end(), true);
+  const std::size_t left = std::count(out.usable.begin(), out.usable.end(), true);
   if (2 * left >= n) return out;
   return {std::vector<bool>(n, true), true};
 }
@@ -83,15 +85,15 @@ class Regressor {
     for (const auto& experiment : experiments) {
       states_.push_back(reconstruct_states(model, experiment));
       inputs_.push_back(input_table(experiment, model));
-      between_.push_back(between_steps(model, experiment));
+      usable_.push_back(usable_samples(model, experiment));
     }
     rows_ = dynamic_states(model, states_.front().shown);
   }
   const std::vector<int>& rows() const { return rows_; }
   const std::vector<Signals>& experiments() const { return experiments_; }
   const std::vector<ReconstructedStates>& states() const { return states_; }
-  bool smeared() const {
-    return std::any_of(between_.begin(), between_.end(), [](const Between& b) { return b.smeared; });
+  bool smoothed_at_steps() const {
+    return std::any_of(usable_.begin(), usable_.end(), [](const UsableSamples& u) { return u.smoothed; });
   }
 
   Regression linearise(const Model& at, bool keep_rows = false) const {
@@ -127,7 +129,7 @@ class Regressor {
       std::vector<double> residuals(signals.samples(), std::nan(""));
       for (std::size_t i = signals.exclude; i < signals.samples(); ++i) {
         look_at_watch();
-        if (!states.ok[i] || signals.held_out(i) || !between_[e].steps[i]) continue;
+        if (!states.ok[i] || signals.held_out(i) || !usable_[e].usable[i]) continue;
         slots.clear();
         evaluator.linearise_rates({states.x.row(i).data(), inputs_[e].at(i), signals.t[i]}, slots, dx.data(), D.data());
         const double r = dx[row] - states.dx(i, row);
@@ -153,12 +155,13 @@ class Regressor {
   const std::vector<Signals>& experiments_;
   std::vector<ReconstructedStates> states_;
   std::vector<InputTable> inputs_;
-  std::vector<Between> between_;
+  std::vector<UsableSamples> usable_;
   std::vector<int> rows_;
 };
 
-/// regularised_priors_about() the present point with residuals of the size that the best values would leave, rss - g' N^-1 g over their
-/// number.
+/// Very wide priors (regularised_priors_about() the present point), so that N can be inverted. They are wide compared with the standard
+/// errors, for which the variance of the residuals is needed: that at the minimum of the quadratic about this point,
+/// (rss - g' N^-1 g)/count.
 ColumnPriors very_wide_beside(const NormalEquations& sums, const Model& model, const std::vector<Penalty>& penalties) {
   constexpr double rounding = 1e-12;
   const Eigen::VectorXd information = sums.N.diagonal();
@@ -169,7 +172,8 @@ ColumnPriors very_wide_beside(const NormalEquations& sums, const Model& model, c
   return regularised_priors_about(sums.theta, model, penalties, usable ? Eigen::MatrixXd(sums.N / variance) : sums.N);
 }
 
-/// The regression's answer inside the parameters' bounds; curves are held by their roughness alone.
+/// Maximum of the penalised Gaussian inside the bounds of the parameters. Coefficients of curves have none here: their roughness penalty
+/// keeps them in place.
 Eigen::VectorXd inside_bounds(const Model& model, const std::vector<int>& free, const PenalisedFit& smoothed) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   Eigen::VectorXd lower = Eigen::VectorXd::Constant(smoothed.theta.size(), -infinite), upper = -lower;
@@ -182,8 +186,8 @@ Eigen::VectorXd inside_bounds(const Model& model, const std::vector<int>& free, 
   return maximum_inside(smoothed.theta, smoothed.covariance, lower, upper).at;
 }
 
-/// Rounds of the regression: the first is exact for strengths and curves, the others are for shapes. False, with status and message, where
-/// there is no answer.
+/// Gauss-Newton iterations. The equations are linear in strengths and curves, so that without shapes the first one is the answer; shapes
+/// need the others. False, with status and message, where there is no answer.
 bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed) {
   const std::vector<int> free = out.model.free_parameters();
   constexpr int rounds = 12;
@@ -225,7 +229,8 @@ std::vector<double> difference(std::vector<double> a, const std::vector<double>&
   return a;
 }
 
-/// What the first experiment's first equation of motion leaves.
+/// Is the motion driven? From the residuals of the first equation of motion of the first experiment, beside the acceleration and what
+/// further noise of the measured size adds to them.
 DrivenTest test_first_equation(const Regressor& regressor, const Regression& regression, const Model& model) {
   const Signals& signals = regressor.experiments().front();
   const ReconstructedStates& states = regressor.states().front();
@@ -253,8 +258,8 @@ void test_residuals(const Regressor& regressor, double sigma2, FittedModel& out)
   for (auto r = regression.residuals.begin(); r != regression.residuals.end(); r += rows) out.equation_residuals.emplace_back(r, r + rows);
 }
 
-/// Parameters, curves and trim with a covariance that allows for autocorrelated residuals, and what white ones would give beside it.
-/// Returned: usable samples less the effective number of parameters.
+/// Parameters, curves and trim with a covariance that allows for autocorrelated residuals; as plain sigmas, those for white residuals.
+/// Returned: degrees of freedom, usable samples less the effective number of parameters.
 double describe_estimates(const Regressor& regressor, const Regression& regression, const PenalisedFit& smoothed, FittedModel& out) {
   const double degrees = regression.sums.count - smoothed.edf;
   const ColouredCovariance coloured = residual_covariance(regression.rows, smoothed.covariance, regressor.rows().size(), degrees);
@@ -275,7 +280,7 @@ void add_remarks(const Regressor& regressor, const NormalEquations& sums, Fitted
   const InputTable inputs = input_table(first, out.model);
   const std::size_t known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
   out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(known), first.t[known]);
-  if (regressor.smeared()) {
+  if (regressor.smoothed_at_steps()) {
     out.fit.warnings.emplace_back(
         "an input steps at nearly every sample: the derivatives of this method smear what it does, so that its parameters are biased "
         "by more than their sigmas; methods that run the model are not");

@@ -235,7 +235,8 @@ void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
     fit.warnings.push_back(name + " of this method is not informative, the motion being driven: " + telescopes +
                            ", and by bins it is a third moment of the motion");
   } else if (pass.test.deterministic()) {
-    fit.warnings.push_back(telescopes + ". The motion is deterministic (" + fit.facts["whiteness"] + "), so the bins hold");
+    fit.warnings.push_back(telescopes + ". The equation explains most of the acceleration (" + fit.facts["whiteness"] +
+                           "): the bins are used");
   } else {
     mark_not_informative(form.model, name, "the equation leaves most of the acceleration unexplained", fit);
     fit.warnings.push_back(name + " of this method is not informative: " + telescopes +

@@ -300,7 +300,8 @@ void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit) {
   const bool above_noise = rms > clearly_above_noise * noise, coloured = looks_driven(test) && above_noise;
   fit.driven = above_noise && driven.value_or(coloured);
   if (!coloured || rms < follows * size) {
-    if (clearly_coloured(test)) {
+    fit.coloured = clearly_coloured(test);
+    if (fit.coloured) {
       fit.warnings.push_back(
           "residuals are not white (" + fit.facts["whiteness"] + "; " + fit.facts["explained"] +
           "): something is missing from the model, or the measurement noise is autocorrelated. Sigmas allow for autocorrelated noise (" +

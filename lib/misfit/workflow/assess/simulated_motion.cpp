@@ -76,7 +76,8 @@ StochasticModel stochastic_model(const FilterEstimate& estimate, const Model& mo
     out.intensity[place] = force * std::sqrt(2.0 / estimate.noise.force_time);
     out.start_sigma[place] = force;
   }
-  for (const ChannelNoise& c : estimate.noise.channels) out.noise.push_back({c.white, c.jitter, c.jitter_frequency, c.jitter_damping});
+  for (const ChannelNoise& c : estimate.noise.channels)
+    out.noise.push_back({c.white, c.coloured, c.coloured_frequency, c.coloured_damping});
   return out;
 }
 
@@ -139,8 +140,8 @@ void compare_experiment(const Experiment& e, const std::vector<std::size_t>& mad
   for (std::size_t p = 0; p < e.paths.size(); ++p) {
     std::vector<MotionNumbers> numbers;
     for (const std::size_t run : made) numbers.push_back(e.simulated[run][p]);
-    out.series.push_back(
-        compare_motion(e.measured.name, e.paths[p], e.scales[p], motion_numbers(e.paths[p], e.scales[p]), numbers, distances));
+    out.series.push_back(compare_motion(e.paths[p], e.scales[p], numbers, distances));
+    out.series.back().experiment = e.measured.name;
   }
 }
 

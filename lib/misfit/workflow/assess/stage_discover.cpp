@@ -33,9 +33,9 @@ Discovery search(Session& session, const std::string& only, std::function<bool(c
   constexpr double refits_of_a_round = 20.0;
   options.refit_limit = session.asked_limit().value_or(usual_limit(session.options, work->fit.seconds));
   options.round_limit = session.round_limit().value_or(refits_of_a_round * options.refit_limit);
-  const Watch watch("discover", 0.0, session.options.listener.hearer("discover"));
+  const Watch watch("discover", 0.0, session.options.listener.progress_of("discover"));
   try {
-    return discover(*work->estimate, work->prepared.request, session.registry, work->prepared.experiments, options);
+    return discover({*work->estimate, work->prepared.request, session.registry, work->prepared.experiments}, options);
   } catch (const RunError&) {
     stop_if_interrupted();
     throw;

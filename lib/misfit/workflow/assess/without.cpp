@@ -14,8 +14,8 @@ std::optional<Without> model_without(Session& session, const std::string& effect
   stop_if_interrupted();
   const auto work = filter_work(session);
   if (!work->estimate) return std::nullopt;
-  const Watch watch("the model without " + effect, session.fit_limit(), session.options.listener.hearer("discover"));
-  return without_effect(*work->estimate, work->prepared.request, session.registry, work->prepared.experiments, effect,
+  const Watch watch("the model without " + effect, session.fit_limit(), session.options.listener.progress_of("discover"));
+  return without_effect({*work->estimate, work->prepared.request, session.registry, work->prepared.experiments}, effect,
                         session.options.threads);
 }
 
@@ -34,7 +34,7 @@ std::optional<FreedWidth> width_of(Session& session, const std::string& effect) 
   stop_if_interrupted();
   const auto work = filter_work(session);
   if (!work->estimate) return std::nullopt;
-  const Watch watch("the width of " + effect, session.fit_limit(), session.options.listener.hearer("discover"));
+  const Watch watch("the width of " + effect, session.fit_limit(), session.options.listener.progress_of("discover"));
   return freed_width(*work->estimate, work->prepared.experiments, effect, session.options.threads);
 }
 
@@ -47,7 +47,7 @@ Discovery discover_in(Session& session, const Without& without, DiscoverOptions 
   options.threads = session.options.threads;
   options.calibration = calibration ? &*calibration : nullptr;
   options.refit_limit = session.asked_limit().value_or(usual_limit(session.options, work->fit.seconds));
-  return discover(without.estimate, without.request, session.registry, work->prepared.experiments, options);
+  return discover({without.estimate, without.request, session.registry, work->prepared.experiments}, options);
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::optional<Candidate> in_its_place(Session& session, const Without& without, 
   DiscoverOptions options;
   options.only = other.effect;
   options.refit_best_of = same;
-  const Watch watch(other.effect + " in the place of another", 0.0, session.options.listener.hearer("discover"));
+  const Watch watch(other.effect + " in the place of another", 0.0, session.options.listener.progress_of("discover"));
   const Discovery found = discover_in(session, without, std::move(options));
   const auto candidate = std::find_if(found.candidates.begin(), found.candidates.end(), same);
   return candidate == found.candidates.end() || !candidate->actual_drop ? std::nullopt : std::optional(*candidate);

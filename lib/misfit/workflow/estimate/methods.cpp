@@ -38,7 +38,7 @@ std::optional<ContainedFit> contained_fit_of(const Session& session) {
 }  // namespace
 
 MethodRun Methods::run(const std::string& method) {
-  const Watch watch(method, session_.fit_limit(), session_.options.listener.hearer(method));
+  const Watch watch(method, session_.fit_limit(), session_.options.listener.progress_of(method));
   MethodRun out;
   try {
     out = run_in_time(method);

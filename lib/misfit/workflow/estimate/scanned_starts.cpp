@@ -100,8 +100,8 @@ std::optional<ScannedStudy> scanned_study(Session& session, const Prepared& prep
     const Estimation without = estimator(random_force_estimator().name).run({model, prepared.experiments, {}, {}, session.options.threads});
     if (!without.filter) return std::nullopt;
     const std::optional<Calibration> calibration = calibrate_stage(session);
-    const ScanTask task{*without.filter,        request, session.registry, prepared.experiments, calibration ? &*calibration : nullptr,
-                        session.options.threads};
+    const ScanTask task{
+        {*without.filter, request, session.registry, prepared.experiments}, calibration ? &*calibration : nullptr, session.options.threads};
     ScannedStudy out{prepared.model, std::nullopt, {}};
     const ContainedFit contained = contained_fit(*without.filter);
     if (contains(prepared.model, contained)) out.contained = contained;

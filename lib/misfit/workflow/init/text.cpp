@@ -23,9 +23,16 @@ std::string number(double value) {
 /// Within a factor of 1000.
 std::string positive_bounds(double value) { return fmt::format("bounds = [{}, {}]", number(1e-3 * value), number(1e3 * value)); }
 
-std::string parameter(const std::string& name, const std::string& unit, double value, const std::string& more, const std::string& doc) {
-  return fmt::format("{} = {{ unit = {}, value = {}, free = true{}, doc = {} }}\n", name, toml_string(unit), number(value),
-                     more.empty() ? "" : ", " + more, toml_string(doc));
+struct WrittenParameter {
+  std::string name, unit;
+  double value = 0.0;
+  std::string doc;
+  bool positive = false;
+};
+
+std::string line_of(const WrittenParameter& p) {
+  return fmt::format("{} = {{ unit = {}, value = {}, free = true{}, doc = {} }}\n", p.name, toml_string(p.unit), number(p.value),
+                     p.positive ? ", " + positive_bounds(p.value) : "", toml_string(p.doc));
 }
 
 std::string driven_by(const GuessedOutput& output) {
@@ -37,15 +44,14 @@ std::string driven_by(const GuessedOutput& output) {
 std::string parameters_of(const GuessedOutput& output) {
   const LinearGuess& g = output.guess;
   std::string text = fmt::format("# {}: {}.\n", output.name, g.why);
-  if (!output.stiffness.empty())
-    text += parameter(output.stiffness, "1/s^2", g.stiffness, positive_bounds(g.stiffness), "square of the natural frequency");
+  if (!output.stiffness.empty()) text += line_of({output.stiffness, "1/s^2", g.stiffness, "square of the natural frequency", true});
   if (!output.damping.empty()) {
     const char* doc = g.integrates ? "1/time constant of the rate" : "twice the damping ratio times the natural frequency";
-    text += parameter(output.damping, "1/s", g.damping, positive_bounds(g.damping), doc);
+    text += line_of({output.damping, "1/s", g.damping, doc, true});
   }
-  if (!output.tau.empty()) text += parameter(output.tau, "s", g.tau, positive_bounds(g.tau), "time constant");
-  for (const auto& gain : output.gains) text += parameter(gain.name, gain.unit, gain.value, "", gain.doc);
-  return text + parameter(output.rest, output.rest_unit, g.rest, "", output.rest_doc);
+  if (!output.tau.empty()) text += line_of({output.tau, "s", g.tau, "time constant", true});
+  for (const auto& gain : output.gains) text += line_of({gain.name, gain.unit, gain.value, gain.doc});
+  return text + line_of({output.rest, output.rest_unit, g.rest, output.rest_doc});
 }
 
 std::string equations_of(const GuessedOutput& output) {

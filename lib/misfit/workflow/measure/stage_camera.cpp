@@ -23,7 +23,7 @@ std::string settings_of(const Session& session) {
   std::string text = session.study.camera.model;
   for (double v : {rig.R, rig.R_cp, rig.V, rig.l_b, rig.l_s, rig.l_p, rig.R1, rig.R2, rig.R3}) text += fmt::format(" {}", v);
   for (const auto& name : session.study.camera.offer) text += " offer " + name;
-  for (const auto& name : session.study.camera.take_in) text += " take_in " + name;
+  for (const auto& name : session.study.camera.free) text += " free " + name;
   for (const auto& [name, number] : session.study.camera.given)
     text += fmt::format(" {}={}~{}", name, number.value, number.sigma.value_or(0.0));
   return text;
@@ -36,7 +36,7 @@ Calibration make_calibration(const Session& session, const fs::path& sweep) {
   CalibrateOptions options;
   options.model = model_of(camera);
   options.candidates = camera.offer;
-  options.force = camera.take_in;
+  options.force = camera.free;
   return calibrate(read_sweep(sweep), session.model.rig, options);
 }
 

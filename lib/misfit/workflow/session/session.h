@@ -24,14 +24,16 @@ struct Listener {
   /// Work of this name begins; what is returned is called with (done, total) as it goes on, and destroyed when it has ended.
   std::function<ProgressFn(const std::string& name)> progress;
   /// A fit of this name begins: what is returned listens to the searches in it, and is destroyed when it has ended.
-  std::function<Watch::Hearer(const std::string& name)> searches;
+  std::function<Watch::ProgressCallback(const std::string& name)> searches;
   std::function<void(const Fit&)> fitted = {};  ///< by one of the methods of a study; the others are still to come
 
   void hear(const std::string& line) const;  ///< a note
   /// Work of this name begins: to be called with (done, total) as long as it goes on.
   [[nodiscard]] ProgressFn begin(const std::string& name) const;
   /// A fit of this name begins; empty: nobody listens.
-  [[nodiscard]] Watch::Hearer hearer(const std::string& name) const { return searches ? searches(name) : Watch::Hearer(); }
+  [[nodiscard]] Watch::ProgressCallback progress_of(const std::string& name) const {
+    return searches ? searches(name) : Watch::ProgressCallback();
+  }
 };
 
 /// A study and how to work on it.

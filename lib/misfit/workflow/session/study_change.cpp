@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
@@ -19,17 +18,6 @@ namespace misfit {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Of a message that begins with "FILE:LINE".
-TextFault fault_in(const fs::path& file, const std::string& message) {
-  TextFault fault{message, 0};
-  const std::string place = file.string() + ":";
-  if (!message.starts_with(place)) return fault;
-  const char* end = message.data() + message.size();
-  const auto [after, error] = std::from_chars(message.data() + place.size(), end, fault.line);
-  if (error != std::errc()) return {message, 0};
-  return fault;
-}
 
 TomlPath path_of(const std::string& key) {
   try {
@@ -115,7 +103,7 @@ std::optional<TextFault> fault_of(const fs::path& file, const std::string& text,
     const std::shared_ptr<const Registry> declared = study_registry(study, registry);
     (void)provisional_model(read_model(study, *declared).request, *declared);
   } catch (const InputError& error) {
-    return fault_in(file, error.what());
+    return TextFault{error.what(), error.where().file == file.string() ? error.where().line : 0};
   } catch (const RunError& error) {
     return TextFault{error.what(), 0};
   }

@@ -25,15 +25,15 @@ bool of_sweep(const std::string& name) { return name == "l_p" || name == "R1" ||
 bool any_track(const Study& study) { return std::any_of(study.experiments.begin(), study.experiments.end(), has_track); }
 
 /// Sigmas in one of the numbers of the study.
-double divisor_of(const std::string& reading) {
-  if (reading == "3 sigma") return 3.0;
-  if (reading == "2 sigma") return 2.0;
-  return reading == "uniform" ? std::sqrt(3.0) : 1.0;
+double divisor_of(const std::string& distribution) {
+  if (distribution == "3 sigma") return 3.0;
+  if (distribution == "2 sigma") return 2.0;
+  return distribution == "uniform" ? std::sqrt(3.0) : 1.0;
 }
 
-std::string reading_text(const PerturbStudy& request, const std::string& unit) {
+std::string distribution_text(const PerturbStudy& request, const std::string& unit) {
   const std::string size = in_display_unit(request.number.value, unit);
-  return request.reading == "uniform" ? "uniform within ± " + size : "normal, " + request.reading + " = " + size;
+  return request.distribution == "uniform" ? "uniform within ± " + size : "normal, " + request.distribution + " = " + size;
 }
 
 void move_rig(RigGeometry& geometry, const std::string& name, double error) {
@@ -122,9 +122,9 @@ void Rig::add(const PerturbStudy& request, const Model& model) {
   const auto& [unit, value] = known->second;
   if (!request.number.unit.empty() && !parse_unit(request.number.unit).same_dimension(parse_unit(unit)))
     throw InputError(where, request.name + " needs [" + unit + "], not [" + request.number.unit + "]");
-  const double sigma = request.number.value / divisor_of(request.reading);
-  perturbations_.single.push_back({request.name, unit, sigma, request.reading == "uniform"});
-  described_.push_back({request.name, unit, value, sigma, reading_text(request, unit), ""});
+  const double sigma = request.number.value / divisor_of(request.distribution);
+  perturbations_.single.push_back({request.name, unit, sigma, request.distribution == "uniform"});
+  described_.push_back({request.name, unit, value, sigma, distribution_text(request, unit), ""});
 }
 
 void Rig::add_calibration(const Session& session) {

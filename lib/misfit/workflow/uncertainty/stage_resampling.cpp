@@ -134,7 +134,7 @@ class ResamplingJob {
     const bool possible = attempt(from.method, [&] {
       const Maximisation best = maximise_near(from, experiments);
       if (!best.objective) throw RunError("starts: the refit at the estimate failed: " + best.why);
-      starts.emplace(from.fitted.fit, from.fitted.model, *best.objective, search, options);
+      starts.emplace(FoundMaximum{from.fitted.fit, from.fitted.model, *best.objective}, search, options);
     });
     if (!possible) return;
     const ProgressFn progress = session_.progress(fmt::format("{} random starts of {}", uncertainty_.starts, from.method));

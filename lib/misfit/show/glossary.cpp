@@ -1,10 +1,10 @@
-#include "misfit/show/words.h"
+#include "misfit/show/glossary.h"
 
 #include "misfit/data/estimators.h"
 
 namespace misfit {
 
-Words twelve_words() {
+Glossary main_glossary() {
   return {{"study", "a folder with study.toml and data: one question put to one or more recordings"},
           {"system", "the skeleton of a model: states, inputs, outputs, quantities, ports, constants"},
           {"quantity", "a named function of state and input that effects read, with a unit: alpha_T [rad]"},
@@ -24,11 +24,12 @@ Words twelve_words() {
           {"ladder, rung", "the sequence of models, each with one effect more; a rung is one of them"}};
 }
 
-Words further_words() {
+Glossary further_glossary() {
   return {
       {"curve", "a parameter as a function of a quantity: a cubic spline with a roughness penalty"},
       {"driven", "motion excited by more than the model has: residuals are correlated, or a random force is estimated"},
-      {"jitter", "the coloured part of a channel's measurement noise: a damped resonance with a standard deviation and a frequency"},
+      {"coloured noise",
+       "the part of a channel's measurement noise that is not white: a damped resonance with a standard deviation and a frequency"},
       {"candidate", "an effect, or an unknown curve, that the model may lack"},
       {"cell", "one combination of the shapes at which a candidate is tested; effective: how many independent tests the cells are worth"},
       {"alias",
