@@ -78,7 +78,11 @@ int run_verb(const Options& options, const Registry& registry) {
   ModelLadder ladder(options.session, registry);
   Session& session = ladder.root();
   StageLines lines(options, session.study);
-  show_stage(lines, "track", session.study, track_stage(session));
+  for (const TrackedMarker& marker : track_stage(session)) {
+    const std::string stage =
+        session.study.video.markers.empty() ? stage_of("track", session.study, marker.experiment) : "track " + marker.name;
+    lines.result(stage, marker.name, marker.facts);
+  }
   if (const auto calibration = calibrate_stage(session)) lines.result("calibrate", *calibration);
   show_stage(lines, "attitude", session.study, attitude_stage(session));
   const std::vector<Fit> fits = fits_shown(session, lines, session.methods());

@@ -144,7 +144,7 @@ std::string refusal(const fs::path& study, const Registry& registry) {
 TEST_F(FilmStudy, WrongOnesAreRefusedInWords) {
   const std::string system = std::string(states) + camera_unknown;
   EXPECT_THAT(refusal(study("other", system, "columns = { x_px = \"x_mm\" }\n"), registry_),
-              AllOf(HasSubstr("x_mm"), HasSubstr("x_px and y_px, or x_m and y_m are expected")));
+              AllOf(HasSubstr("x_mm"), HasSubstr("but x_px, y_px, x_m and y_m")));
   EXPECT_THAT(refusal(study("ends", system, "", "[video]\nlength = \"0.5 m\"\n"), registry_), HasSubstr("length_ends"));
   EXPECT_THAT(refusal(study("zero", system, "", "[video]\nlength = \"0 m\"\nlength_ends = [1, 2, 3, 4]\n"), registry_),
               HasSubstr("above 0 m"));
@@ -164,15 +164,86 @@ TEST(FilmTable, PixelsAreColumnsAndRowsAndMetresGoUpwards) {
   facts.width = 640;
   facts.height = 480;
   VideoStudy video;
-  EXPECT_EQ(film_table(track, facts, video).find("x_m"), nullptr);
+  EXPECT_EQ(film_table({{"", track, facts}}, video).find("x_m"), nullptr);
   video.length = KnownLength{{0.0, 0.0}, {30.0, 40.0}, 0.1};  // 2 mm per pixel
   video.origin = PixelPoint{300.0, 250.0};
-  const Table table = film_table(track, facts, video);
+  const Table table = film_table({{"", track, facts}}, video);
   EXPECT_EQ(table.at("x_px").values[0], 350.0);
   EXPECT_EQ(table.at("y_px").values[0], 260.0);
   EXPECT_NEAR(table.at("x_m").values[0], 0.1, 1e-12);
   EXPECT_NEAR(table.at("y_m").values[0], -0.02, 1e-12);
   EXPECT_TRUE(std::isnan(table.at("x_px").values[1]));
+}
+
+/// Two bright spots, each on a spring of its own, in one film.
+void write_two_spots(const fs::path& path, double duration) {
+  constexpr int width = 200, height = 100, across = 4;
+  Writer film(path, width, height, rate);
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 2.0);
+  for (int k = 0; k < static_cast<int>(duration * rate); ++k) {
+    const double t = k / rate;
+    const PixelPoint left{55.0 + 20.0 * std::cos(4.0 * t), 40.0}, right{145.0, 50.0 + 20.0 * std::cos(5.5 * t)};
+    Image image{width, height, {}};
+    for (int at = 0; at < width * height; ++at) {
+      double inside = 0.0;
+      for (int part = 0; part < across * across; ++part) {
+        const double x = at % width + (part % across + 0.5) / across - 0.5, y = at / width + (part / across + 0.5) / across - 0.5;
+        for (const PixelPoint& spot : {left, right}) inside += std::hypot(x - spot.column, y - spot.row) < 6.0 ? 1.0 : 0.0;
+      }
+      image.pixels.push_back(static_cast<std::uint8_t>(std::clamp(40.0 + 170.0 * inside / (across * across) + noise(random), 0.0, 255.0)));
+    }
+    film.add(image);
+  }
+}
+
+constexpr const char* two_springs = R"toml(
+[system]
+doc = "two springs"
+source = "textbook"
+[states]
+a = { unit = "px", scale = 20.0 }
+va = { unit = "px/s", scale = 80.0, rate_of = "a" }
+b = { unit = "px", scale = 20.0 }
+vb = { unit = "px/s", scale = 80.0, rate_of = "b" }
+[parameters]
+wa = { unit = "rad/s", value = 3.8, bounds = [0.1, 100.0], free = true }
+wb = { unit = "rad/s", value = 5.7, bounds = [0.1, 100.0], free = true }
+rest_a = { unit = "px", value = 50.0, free = true }
+rest_b = { unit = "px", value = 45.0, free = true }
+[equations]
+va = "-wa^2*a"
+vb = "-wb^2*b"
+[outputs]
+x_px_left = { unit = "px", formula = "rest_a + a", noise = 0.3 }
+down = { unit = "px", formula = "rest_b + b", noise = 0.3 }
+)toml";
+
+TEST(SeveralMarkers, AreFollowedInOneFilmAndReadByOutputsOfTheirNames) {
+  const TemporaryFolder folder;
+  write_two_spots(folder.path() / "spots.mkv", 6.0);
+  folder.write("system.toml", two_springs);
+  const std::string head =
+      "[study]\nname = \"film\"\nmethods = [\"output_error\"]\n[system]\nfile = \"system.toml\"\n[video]\nmarker = "
+      "\"bright\"\n[video.markers]\nleft = { region = [0, 0, 100, 100] }\n";
+  const std::string tail = "[[experiment]]\nvideo = \"spots.mkv\"\ncolumns = { down = \"y_px_right\" }\n";
+  const fs::path study = folder.write("study.toml", head + "right = { region = [100, 0, 200, 100], start = [145, 70] }\n" + tail);
+  Registry registry;
+  misfit_models_register(registry);
+  const Fit fit = Identification({.study = study.string(), .out = (folder.path() / "out").string()}, registry).fit("output_error");
+  ASSERT_TRUE(fit.usable()) << fit.message;
+  expect_found(fit, "wa", 4.0, 0.005);
+  expect_found(fit, "wb", 5.5, 0.005);
+  EXPECT_NEAR(fit.parameters.at("rest_a").value, 55.0, 0.1);
+  EXPECT_NEAR(fit.parameters.at("rest_b").value, 50.0, 0.1);
+  for (const char* file : {"track-left.csv", "track-right.csv", "track-left.json", "figures/contact_sheet-right.png"})
+    EXPECT_TRUE(fs::exists(folder.path() / "out" / file)) << file;
+
+  const auto refused = [&](const std::string& text) { return refusal(folder.write("other.toml", text), registry); };
+  EXPECT_THAT(refused(head + "[[experiment]]\nvideo = \"spots.mkv\"\ncolumns = { down = \"y_px_right\" }\n"),
+              AllOf(HasSubstr("y_px_right"), HasSubstr("x_px_left, y_px_left, x_m_left and y_m_left")));
+  EXPECT_THAT(refused(head + "\"the right\" = { start = [1, 2] }\n" + tail), HasSubstr("letters, digits and '_'"));
+  EXPECT_THAT(refused(head + "right = { begin = [1, 2] }\n" + tail), HasSubstr("begin"));
 }
 
 }  // namespace

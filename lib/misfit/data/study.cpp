@@ -6,6 +6,13 @@
 #include "misfit/data/study_reader.h"
 
 namespace misfit {
+
+std::vector<std::string> VideoStudy::marker_names() const {
+  std::vector<std::string> out;
+  for (const NamedMarker& marker : markers) out.push_back(marker.name);
+  return out;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -40,6 +40,14 @@ struct KnownLength {
   double metres = 0.0;
 };
 
+/// [video.markers.NAME]: one of several that are followed in a video.
+struct NamedMarker {
+  std::string name;
+  MarkerStudy marker;
+  std::optional<PixelPoint> start;              ///< as in VideoStudy
+  std::optional<std::array<double, 4>> region;  ///< as in VideoStudy
+};
+
 /// [video]: how a video is read and what is followed in it.
 struct VideoStudy {
   std::string fields;        ///< "auto", "progressive", "top_first", "bottom_first"
@@ -49,6 +57,9 @@ struct VideoStudy {
   std::optional<std::array<double, 4>> region;  ///< left, top, right, bottom [px]: where it is looked for
   std::optional<KnownLength> length = {};       ///< for x_m and y_m
   std::optional<PixelPoint> origin = {};        ///< of x_m and y_m; the picture's middle without
+  std::vector<NamedMarker> markers = {};        ///< several, each with channels of its own name; empty: the one above
+
+  [[nodiscard]] std::vector<std::string> marker_names() const;
 };
 
 struct ExperimentStudy {

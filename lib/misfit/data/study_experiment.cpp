@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "misfit/core/shown.h"
+#include "misfit/core/text.h"
 #include "misfit/data/log/log.h"
 #include "misfit/data/study_parts.h"
 
@@ -23,15 +24,16 @@ void read_source(const Section& section, const Study& study, ExperimentStudy& ex
   if (given != 1) section.fail("", "exactly one of track, video and data is needed, " + std::to_string(given) + " are given");
 }
 
-void read_columns(const Section& section, ExperimentStudy& experiment) {
+void read_columns(const Section& section, const Study& study, ExperimentStudy& experiment) {
   const auto columns = section.table("columns");
   if (!columns) return;
   for (const std::string& name : columns->keys()) {
     const bool known = !experiment.track || std::count(track_signals().begin(), track_signals().end(), name) > 0;
     if (!known) columns->fail(name, "a track has no such signal" + suggest(name, track_signals()));
     const std::string channel = columns->text(name).value_or("");
-    if (experiment.video && std::count(film_channels().begin(), film_channels().end(), channel) == 0)
-      columns->fail(name, "a video gives no '" + shown(channel) + "': x_px and y_px, or x_m and y_m are expected");
+    const std::vector<std::string> in_film = film_channels(study.video.marker_names());
+    if (experiment.video && std::count(in_film.begin(), in_film.end(), channel) == 0)
+      columns->fail(name, "the video gives no '" + shown(channel) + "', but " + join_words(in_film) + suggest(channel, in_film));
   }
   for (const std::string& name : columns->keys()) experiment.columns.header_of.emplace_back(name, *columns->text(name));
   columns->finish();
@@ -111,7 +113,7 @@ void read_experiments(const Section& root, Study& study) {
     ExperimentStudy experiment;
     experiment.where = section.where();
     read_source(section, study, experiment);
-    read_columns(section, experiment);
+    read_columns(section, study, experiment);
     read_validation(section, experiment);
     experiment.exclude = *section.integer("exclude");
     read_name(section, study, experiment);

@@ -108,12 +108,9 @@ KeyGroup camera_group() {
   return group;
 }
 
-KeyGroup video_group() {
-  return {"video", "How a video is read and what is followed in it.",
-     {{.name = "fields", .type = Type::choice, .fallback = "\"auto\"", .choices = {"auto", "progressive", "top_first", "bottom_first"},
-       .meaning = "Interlacing: order of the two fields of a frame; auto finds it from the pictures."},
-      {.name = "check_fields", .type = Type::flag, .fallback = "true",
-       .meaning = "false: fields holds even if the pictures contradict it."},
+/// Of [video], and of each of its markers.
+std::vector<Key> followed_keys() {
+  return {
       {.name = "marker", .type = Type::file, .fallback = "\"auto\"", .choices = followed,
        .form = R"("auto", "moving", "ring", "bright", "dark" or a file ending in .png)",
        .meaning = "What is followed: the one object that moves before a ground that stands still, by its outline; a ring; a bright or dark "
@@ -121,13 +118,29 @@ KeyGroup video_group() {
       {.name = "start", .type = Type::numbers, .unit = "px", .otherwise = "searched", .form = "list of 2 numbers",
        .meaning = "About where the marker is in the first frame: column, row."},
       {.name = "region", .type = Type::numbers, .unit = "px", .otherwise = "whole frame", .form = "list of 4 numbers",
-       .meaning = "Where the marker is looked for: left, top, right, bottom."},
+       .meaning = "Where the marker is looked for: left, top, right, bottom."}};
+}
+
+std::vector<KeyGroup> video_groups() {
+  KeyGroup video{"video", "How a video is read and what is followed in it.",
+     {{.name = "fields", .type = Type::choice, .fallback = "\"auto\"", .choices = {"auto", "progressive", "top_first", "bottom_first"},
+       .meaning = "Interlacing: order of the two fields of a frame; auto finds it from the pictures."},
+      {.name = "check_fields", .type = Type::flag, .fallback = "true",
+       .meaning = "false: fields holds even if the pictures contradict it."},
       {.name = "length", .type = Type::number, .unit = "m", .otherwise = "none: no metres",
        .meaning = "A length that is known in the picture, in the plane of the motion: with it a film gives x_m and y_m."},
       {.name = "length_ends", .type = Type::numbers, .unit = "px", .otherwise = "none", .form = "list of 4 numbers",
        .meaning = "Its two ends in the picture: column, row, column, row."},
       {.name = "origin", .type = Type::numbers, .unit = "px", .otherwise = "the picture's middle", .form = "list of 2 numbers",
-       .meaning = "Where x_m and y_m are 0: column, row. x_m goes to the right, y_m upwards."}}};
+       .meaning = "Where x_m and y_m are 0: column, row. x_m goes to the right, y_m upwards."},
+      {.name = "markers", .type = Type::table, .otherwise = "the one above",
+       .meaning = "Several that are followed, each a table [video.markers.NAME]. Outputs read x_px_NAME, y_px_NAME, x_m_NAME and y_m_NAME."}}};
+  const std::vector<Key> followed_alone = followed_keys();
+  video.keys.insert(video.keys.begin() + 2, followed_alone.begin(), followed_alone.end());
+  KeyGroup marker{"video.markers.NAME", "One of several markers.", followed_keys()};
+  marker.keys.front().fallback = "";
+  marker.keys.front().otherwise = "that of [video]";
+  return {video, marker};
 }
 
 KeyGroup experiment_group() {
@@ -329,9 +342,10 @@ std::vector<KeyGroup> simulate_groups() {
 // clang-format on
 
 std::vector<KeyGroup> all_groups() {
-  std::vector<KeyGroup> out{study_group(), system_group(),     geometry_group(), camera_group(),
-                            video_group(), experiment_group(), columns_group()};
+  std::vector<KeyGroup> out{study_group(), system_group(), geometry_group(), camera_group()};
   const auto add = [&](const std::vector<KeyGroup>& groups) { out.insert(out.end(), groups.begin(), groups.end()); };
+  add(video_groups());
+  add({experiment_group(), columns_group()});
   add(effect_groups());
   add({parameters_group(), curves_group()});
   add(initial_groups());

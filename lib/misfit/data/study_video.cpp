@@ -1,5 +1,8 @@
 // [video] of a study, and the pictures of the sweep.
 
+#include <algorithm>
+#include <cctype>
+
 #include "misfit/data/study_parts.h"
 
 namespace misfit::study_parts {
@@ -41,6 +44,36 @@ void read_length(const DescribedSection& video, VideoStudy& v) {
   if (const auto origin = pixels(video, "origin", 2, "[column, row]")) v.origin = PixelPoint{(*origin)[0], (*origin)[1]};
 }
 
+/// What is followed and where it is looked for: of [video], or of one of its markers.
+template <class Followed>
+void read_followed(const DescribedSection& section, const Study& study, Followed& followed) {
+  read_marker(section, "marker", study, followed.marker);
+  if (const auto start = pixels(section, "start", 2, "[column, row]")) followed.start = PixelPoint{(*start)[0], (*start)[1]};
+  if (const auto r = pixels(section, "region", 4, "[left, top, right, bottom]")) {
+    if (!((*r)[0] < (*r)[2]) || !((*r)[1] < (*r)[3])) section.fail("region", "left must be below right, and top below bottom");
+    followed.region = {(*r)[0], (*r)[1], (*r)[2], (*r)[3]};
+  }
+}
+
+void read_markers(const DescribedSection& video, Study& study) {
+  const auto markers = video.table("markers");
+  if (!markers) return;
+  for (const std::string& name : markers->keys()) {
+    const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+    if (!plain || name.empty())
+      markers->fail(name, "the name of a marker has letters, digits and '_': it is part of those of its channels");
+    const DescribedSection section = described(*markers, name, "video.markers.NAME");
+    NamedMarker marker{name, study.video.marker, {}, {}};
+    read_followed(section, study, marker);
+    section.finish();
+    study.video.markers.push_back(std::move(marker));
+  }
+  markers->finish();
+  for (const char* key : {"start", "region"}) {
+    if (video.has(key) && !study.video.markers.empty()) video.fail(key, "with [video.markers] each marker has its own " + std::string(key));
+  }
+}
+
 }  // namespace
 
 void read_video(const Section& root, Study& study) {
@@ -48,12 +81,8 @@ void read_video(const Section& root, Study& study) {
   VideoStudy& v = study.video;
   v.fields = *video.choice("fields");
   v.check_fields = *video.flag("check_fields");
-  read_marker(video, "marker", study, v.marker);
-  if (const auto start = pixels(video, "start", 2, "[column, row]")) v.start = PixelPoint{(*start)[0], (*start)[1]};
-  if (const auto r = pixels(video, "region", 4, "[left, top, right, bottom]")) {
-    if (!((*r)[0] < (*r)[2]) || !((*r)[1] < (*r)[3])) video.fail("region", "left must be below right, and top below bottom");
-    v.region = {(*r)[0], (*r)[1], (*r)[2], (*r)[3]};
-  }
+  read_followed(video, study, v);
+  read_markers(video, study);
   read_length(video, v);
   video.finish();
 }

@@ -84,9 +84,13 @@ class TrackBuilder {
 
 }  // namespace
 
-const std::vector<std::string>& film_channels() {
-  static const std::vector<std::string> names{"x_px", "y_px", "x_m", "y_m"};
-  return names;
+std::vector<std::string> film_channels(const std::vector<std::string>& markers) {
+  const std::vector<std::string> of_one{"x_px", "y_px", "x_m", "y_m"};
+  std::vector<std::string> out;
+  for (const std::string& marker : markers) {
+    for (const std::string& channel : of_one) out.push_back(channel + "_" + marker);
+  }
+  return markers.empty() ? of_one : out;
 }
 
 const std::vector<std::string>& track_signals() {

@@ -23,8 +23,8 @@ struct Track {
 
 /// What a film gives the outputs of any system, by name or through the experiment's `columns`: x_px and y_px, column and row of what is
 /// followed [px], pixel centres at integers, rows counted downwards; with a known length in the picture also x_m and y_m [m], to the right
-/// and upwards from the origin.
-[[nodiscard]] const std::vector<std::string>& film_channels();
+/// and upwards from the origin. Of several markers x_px_NAME, y_px_NAME, x_m_NAME, y_m_NAME, of each.
+[[nodiscard]] std::vector<std::string> film_channels(const std::vector<std::string>& markers = {});
 
 /// Reads `t[s],P_y[px],P_z[px]` and, where present, `sigma[px]` and `ok`. Rows without t are dropped and said; time that does not increase
 /// is an InputError with the line; all samples lost is a RunError; samples farther than 1e5 px from the centre are lost and said.

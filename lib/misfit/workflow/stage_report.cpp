@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include "misfit/core/files.h"
 #include "misfit/core/version.h"
@@ -18,18 +19,24 @@ namespace fs = std::filesystem;
 
 std::vector<report::ExperimentInput> experiments_of(Session& session) {
   std::vector<report::ExperimentInput> out;
-  std::vector<std::optional<TrackFacts>> videos = track_stage(session);
+  const std::vector<TrackedMarker> tracked = track_stage(session);
   std::vector<std::optional<Attitude>> attitudes = attitude_stage(session);
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     const ExperimentStudy& study = session.study.experiments[e];
     report::ExperimentInput input;
     input.name = study.name;
-    if (has_track(study)) input.track = read_track(track_files(session, e).track, study.columns);
-    if (videos[e]) {
-      input.video = std::move(videos[e]);
-      input.contact_sheet = read_file(track_files(session, e).sheet);
-    }
+    if (study.track) input.track = read_track(track_files(session, e).track, study.columns);
     input.attitude = std::move(attitudes[e]);
+    bool first = true;
+    for (const TrackedMarker& marker : tracked) {
+      if (marker.experiment != e) continue;
+      if (!first) out.push_back(std::exchange(input, {}));
+      first = false;
+      input.name = marker.name;
+      input.track = read_track(marker.files.track);
+      input.video = marker.facts;
+      input.contact_sheet = read_file(marker.files.sheet);
+    }
     out.push_back(std::move(input));
   }
   return out;

@@ -37,13 +37,22 @@ double usual_sigma(const Track& track) {
 /// The film as the outputs of a system that says where something is in it.
 Signals film_signals(const Session& session, std::size_t e, const Model& model) {
   const ExperimentStudy& experiment = session.study.experiments[e];
-  const TrackFiles files = track_files(session, e);
-  const Track track = read_track(files.track);
-  const TrackFacts facts = read_track_facts(files.facts);
-  Signals signals = signals_from(film_table(track, facts, session.study.video), model, experiment);
-  const double metres = metres_per_pixel(session.study.video).value_or(0.0);
-  for (auto& channel : signals.measured) channel.sigma = usual_sigma(track) * (channel.unit == "m" ? metres : 1.0);
-  signals.notes.insert(signals.notes.begin(), facts.warnings.begin(), facts.warnings.end());
+  const std::vector<TrackFiles> files = files_of_tracks(session, e);
+  const VideoStudy& video = session.study.video;
+  std::vector<FilmTrack> tracks;
+  for (std::size_t m = 0; m < files.size(); ++m)
+    tracks.push_back({video.markers.empty() ? "" : video.markers[m].name, read_track(files[m].track), read_track_facts(files[m].facts)});
+  Signals signals = signals_from(film_table(tracks, video), model, experiment);
+  const double metres = metres_per_pixel(video).value_or(0.0);
+  for (auto& channel : signals.measured) {
+    const std::string header = channel_of(channel.name, experiment);
+    for (const auto& [name, track, facts] : tracks) {
+      if (name.empty() || header.ends_with("_" + name)) channel.sigma = usual_sigma(track) * (channel.unit == "m" ? metres : 1.0);
+    }
+  }
+  for (const auto& [name, track, facts] : tracks) {
+    for (const std::string& warning : facts.warnings) signals.notes.push_back(name.empty() ? warning : name + ": " + warning);
+  }
   return signals;
 }
 

@@ -22,11 +22,21 @@ struct TrackFiles {
   std::filesystem::path track, facts, sheet;
 };
 [[nodiscard]] TrackFiles track_files(const Session& session, std::size_t experiment);
-/// track.csv, track.json and figures/contact_sheet.png of every experiment that starts from a video (track_NAME… for further ones); nullopt
-/// for others.
-[[nodiscard]] std::vector<std::optional<TrackFacts>> track_stage(Session& session);
-/// The first video of the study with its track drawn on it, to the file `to`. `facts`: what track_stage() gave. WriteError: write_rules().
-void write_check_video(const Session& session, const std::vector<std::optional<TrackFacts>>& facts, const std::filesystem::path& to);
+/// The same, one per marker that is followed in its film, in the order of VideoStudy::markers.
+[[nodiscard]] std::vector<TrackFiles> files_of_tracks(const Session& session, std::size_t experiment);
+
+/// One marker followed through the video of an experiment.
+struct TrackedMarker {
+  std::size_t experiment = 0;
+  std::string name;  ///< of the experiment; of several markers "EXPERIMENT, MARKER"
+  TrackFiles files;
+  TrackFacts facts;
+};
+/// track.csv, track.json and figures/contact_sheet.png of every marker in every experiment that starts from a video: track_EXPERIMENT… for
+/// further experiments, track-MARKER… or track_EXPERIMENT-MARKER… of several markers.
+[[nodiscard]] std::vector<TrackedMarker> track_stage(Session& session);
+/// A video with the track of a marker drawn on it, to the file `to`. WriteError: write_rules().
+void write_check_video(const Session& session, const TrackedMarker& tracked, const std::filesystem::path& to);
 /// Files that are never written over.
 [[nodiscard]] WriteRules write_rules(const Session& session);
 /// The table of the sweep: the study's own, or sweep.csv made from its pictures (with figures/sweep_sheet.png).

@@ -6,6 +6,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
+#include "misfit/core/text.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/measure/measure.h"
 
@@ -82,7 +83,9 @@ std::vector<fs::path> files_of_attitude(const Session& session) {
   if (session.study.has_camera) files.push_back(session.folder.file("camera.json"));
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     const ExperimentStudy& experiment = session.study.experiments[e];
-    if (has_track(experiment)) files.push_back(track_files(session, e).track);
+    if (has_track(experiment)) {
+      for (const TrackFiles& track : files_of_tracks(session, e)) files.push_back(track.track);
+    }
     if (has_attitude(session, experiment)) files.push_back(attitude_file(session, e));
   }
   return files;
@@ -90,7 +93,7 @@ std::vector<fs::path> files_of_attitude(const Session& session) {
 
 std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
   std::vector<std::optional<Attitude>> out;
-  const auto videos = track_stage(session);
+  const std::vector<TrackedMarker> tracked = track_stage(session);
   const std::optional<Calibration> calibration = calibrate_stage(session);
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
     stop_if_interrupted();
@@ -102,7 +105,10 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
     if (!calibration) {
       throw InputError(experiment.where,
                        "experiment '" + experiment.name + "' is a track in pixels: the study needs [camera] (sweep = \"…\", or h_c and K)" +
-                           std::string(experiment.video ? ", or the system outputs called x_px, y_px (column and row in the film)" : ""));
+                           std::string(!experiment.video ? ""
+                                                         : ", or the system outputs called " +
+                                                               join_words(film_channels(session.study.video.marker_names())) +
+                                                               " (column and row in the film, or metres)"));
     }
     require_rig(session.study, session.model.rig, false);
     const fs::path file = attitude_file(session, e), notes = fs::path(file).replace_extension(".notes.txt");
@@ -113,7 +119,10 @@ std::vector<std::optional<Attitude>> attitude_stage(Session& session) {
     session.do_stage("attitude/" + experiment.name, inputs, {angles_name, notes_name}, [&](const fs::path& dir) {
       const Track track = read_track(track_files(session, e).track, experiment.columns);
       Attitude result = attitude(track, *calibration, session.model.rig);
-      if (videos[e]) result.notes.insert(result.notes.begin(), videos[e]->warnings.begin(), videos[e]->warnings.end());
+      for (const TrackedMarker& marker : tracked) {
+        const std::vector<std::string>& warnings = marker.facts.warnings;
+        if (marker.experiment == e) result.notes.insert(result.notes.begin(), warnings.begin(), warnings.end());
+      }
       result.notes.insert(result.notes.begin(), track.notes.begin(), track.notes.end());
       write_attitude(dir / angles_name, result);
       write_notes(dir / notes_name, result.notes);

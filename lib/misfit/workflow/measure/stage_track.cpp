@@ -21,8 +21,8 @@ std::string settings_of(const VideoStudy& video) {
   return text;
 }
 
-void make_track(Session& session, std::size_t e, const TrackFiles& files) {
-  const VideoTrack result = track_video(*session.study.experiments[e].video, session.study.video, session.progress("track"));
+void make_track(Session& session, const fs::path& film, const VideoStudy& video, const TrackFiles& files) {
+  const VideoTrack result = track_video(film, video, session.progress("track"));
   write_track(files.track, result.track);
   write_track_facts(files.facts, result.facts);
   make_writable_folder(files.sheet.parent_path());
@@ -34,6 +34,44 @@ TrackFiles made_files(const fs::path& dir, const std::string& end) {
   return {dir / ("track" + end + ".csv"), dir / ("track" + end + ".json"), dir / ("figures/contact_sheet" + end + ".png")};
 }
 
+/// Behind the stem of a file: of the experiment, then of the marker.
+std::vector<std::string> ends_of(const Session& session, std::size_t e) {
+  const std::string experiment = file_suffix(e, session.study.experiments[e].name);
+  std::vector<std::string> out;
+  for (const NamedMarker& marker : session.study.video.markers) out.push_back(experiment + "-" + marker.name);
+  if (out.empty()) out.push_back(experiment);
+  return out;
+}
+
+/// [video] as if the marker were the only one.
+VideoStudy video_of(const VideoStudy& video, std::size_t marker) {
+  VideoStudy out = video;
+  if (video.markers.empty()) return out;
+  const NamedMarker& one = video.markers[marker];
+  out.marker = one.marker;
+  out.start = one.start;
+  out.region = one.region;
+  out.markers.clear();
+  return out;
+}
+
+TrackedMarker track_marker(Session& session, std::size_t e, std::size_t marker) {
+  const ExperimentStudy& experiment = session.study.experiments[e];
+  const VideoStudy video = video_of(session.study.video, marker);
+  const std::vector<NamedMarker>& several = session.study.video.markers;
+  std::vector<fs::path> read{*experiment.video};
+  if (video.marker.picture) read.push_back(*video.marker.picture);
+  const auto inputs = session.inputs(settings_of(video), read);
+  const std::string stage = "track/" + experiment.name + (several.empty() ? "" : "/" + several[marker].name);
+  if (!session.folder.up_to_date(stage, inputs) && !session.copied_from_parent(stage, inputs)) {
+    const std::string end = ends_of(session, e)[marker];
+    session.do_stage(stage, inputs, {"track" + end + ".csv", "track" + end + ".json"},
+                     [&](const fs::path& dir) { make_track(session, *experiment.video, video, made_files(dir, end)); });
+  }
+  const TrackFiles files = files_of_tracks(session, e)[marker];
+  return {e, experiment.name + (several.empty() ? "" : ", " + several[marker].name), files, read_track_facts(files.facts)};
+}
+
 }  // namespace
 
 bool has_track(const ExperimentStudy& experiment) { return experiment.track || experiment.video; }
@@ -42,46 +80,37 @@ bool has_attitude(const Session& session, const ExperimentStudy& experiment) {
   return has_track(experiment) && !reads_film(session, experiment);
 }
 
-TrackFiles track_files(const Session& session, std::size_t e) {
+std::vector<TrackFiles> files_of_tracks(const Session& session, std::size_t e) {
   const ExperimentStudy& experiment = session.study.experiments[e];
-  if (experiment.track) return {*experiment.track, {}, {}};
-  return made_files(session.folder.path(), file_suffix(e, session.study.experiments[e].name));
+  if (experiment.track) return {{*experiment.track, {}, {}}};
+  std::vector<TrackFiles> out;
+  for (const std::string& end : ends_of(session, e)) out.push_back(made_files(session.folder.path(), end));
+  return out;
 }
 
-std::vector<std::optional<TrackFacts>> track_stage(Session& session) {
-  std::vector<std::optional<TrackFacts>> out;
+TrackFiles track_files(const Session& session, std::size_t e) { return files_of_tracks(session, e).front(); }
+
+std::vector<TrackedMarker> track_stage(Session& session) {
+  std::vector<TrackedMarker> out;
   for (std::size_t e = 0; e < session.study.experiments.size(); ++e) {
-    const ExperimentStudy& experiment = session.study.experiments[e];
-    if (!experiment.video) {
-      out.emplace_back();
-      continue;
+    if (!session.study.experiments[e].video) continue;
+    const std::size_t markers = std::max<std::size_t>(session.study.video.markers.size(), 1);
+    for (std::size_t marker = 0; marker < markers; ++marker) {
+      stop_if_interrupted();
+      out.push_back(track_marker(session, e, marker));
     }
-    stop_if_interrupted();
-    const TrackFiles files = track_files(session, e);
-    std::vector<fs::path> read{*experiment.video};
-    if (session.study.video.marker.picture) read.push_back(*session.study.video.marker.picture);
-    const auto inputs = session.inputs(settings_of(session.study.video), read);
-    const std::string stage = "track/" + experiment.name;
-    if (!session.folder.up_to_date(stage, inputs) && !session.copied_from_parent(stage, inputs)) {
-      const std::string end = file_suffix(e, session.study.experiments[e].name);
-      session.do_stage(stage, inputs, {"track" + end + ".csv", "track" + end + ".json"},
-                       [&](const fs::path& dir) { make_track(session, e, made_files(dir, end)); });
-    }
-    out.emplace_back(read_track_facts(files.facts));
   }
   return out;
 }
 
 WriteRules write_rules(const Session& session) { return {files_of_study(session.study), session.options.force}; }
 
-void write_check_video(const Session& session, const std::vector<std::optional<TrackFacts>>& facts, const fs::path& to) {
-  const auto tracked = std::find_if(facts.begin(), facts.end(), [](const auto& f) { return f.has_value(); });
-  const std::size_t e = tracked - facts.begin();
-  const TrackFacts& f = **tracked;
-  const Track track = read_track(track_files(session, e).track);
+void write_check_video(const Session& session, const TrackedMarker& tracked, const fs::path& to) {
+  const TrackFacts& f = tracked.facts;
+  const Track track = read_track(tracked.files.track);
   write_files(to.has_parent_path() ? to.parent_path() : ".", write_rules(session), {to.filename().string()}, [&](const fs::path& dir) {
     const FieldsOfFrame fields{f.fields == "progressive" ? 1 : 2, f.fields == "bottom_first" ? 1 : 0};
-    write_check_video({*session.study.experiments[e].video, track, fields, std::max(f.outer, 8.0)}, dir / to.filename(),
+    write_check_video({*session.study.experiments[tracked.experiment].video, track, fields, std::max(f.outer, 8.0)}, dir / to.filename(),
                       session.progress("check video"));
   });
 }

@@ -113,6 +113,7 @@ std::vector<fs::path> files_of_study(const Study& study) {
   add(study.camera.sweep_images);
   add(study.camera.sweep_marker.picture);
   add(study.video.marker.picture);
+  for (const NamedMarker& marker : study.video.markers) add(marker.marker.picture);
   add_sweep_pictures(study, files);
   for (const ExperimentStudy& e : study.experiments) {
     add(e.track);
