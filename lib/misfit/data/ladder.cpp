@@ -1,5 +1,8 @@
 #include "misfit/data/ladder.h"
 
+#include <algorithm>
+
+#include "misfit/data/candidates.h"
 #include "misfit/data/json_fields.h"
 
 namespace misfit {
@@ -19,6 +22,7 @@ struct RungId {
 template <class Archive>
 void fields(Archive& json, MaybeConst<Rung> auto& r) {
   json("id", r.id), json("parent", RungId(r.parent)), json("study", r.study), json("added", r.added);
+  json.if_there("roles", r.roles);
   json("predicted_drop", r.predicted_drop), json("actual_drop", r.actual_drop);
   json("held_out_gain", r.held_out_gain), json("force", r.force), json("rms", r.rms);
   json("validation_rms", r.validation_rms), json("system", r.system), json("method", r.method);
@@ -27,6 +31,12 @@ void fields(Archive& json, MaybeConst<Rung> auto& r) {
   json("k_step", r.k_step);
   json("trim_deg", Formed(r.trim, [](auto& object, auto& trim) { trim_fields(object, trim); }));
   json("parameters", r.parameters), json("note", r.note);
+}
+
+std::string added_in_words(const Rung& rung, const Ladder& ladder) {
+  const auto of_kind = std::count_if(ladder.rungs.begin(), ladder.rungs.end(), [&](const Rung& r) { return r.added == rung.added; });
+  const bool unknown_form = rung.roles && rung.roles->contains("of");
+  return of_kind > 1 || unknown_form ? effect_at(rung.added, rung.roles.value_or(std::map<std::string, std::string>{})) : rung.added;
 }
 
 void write_ladder(const std::filesystem::path& path, const Ladder& ladder) { write_json(path, ladder.rungs); }

@@ -12,10 +12,11 @@ namespace misfit {
 
 /// One rung: a model, how well it does, and what made it from its parent.
 struct Rung {
-  int id = 0, parent = -1;  ///< parent −1: the first
-  std::string study;        ///< path of its study, relative to the run folder
-  std::string added;        ///< effect, "system:KIND" for a change of system, "" for the first
-  std::string system;       ///< kind
+  int id = 0, parent = -1;                                  ///< parent −1: the first
+  std::string study;                                        ///< path of its study, relative to the run folder
+  std::string added;                                        ///< effect, "system:KIND" for a change of system, "" for the first
+  std::optional<std::map<std::string, std::string>> roles;  ///< where the effect acts, as far as it was said
+  std::string system;                                       ///< kind
   std::string method;
   std::optional<double> predicted_drop, actual_drop, held_out_gain;  ///< against the parent; missing across a change of system or channels
   double loglik = 0.0;
@@ -33,6 +34,9 @@ inline constexpr int kLadderSteps[] = {1, 2, 4, 8, 16, 32};
 struct Ladder {
   std::vector<Rung> rungs;
 };
+
+/// What was added, in words: its key, and its place where the key alone does not say it: a force of unknown form, one of several of a kind.
+[[nodiscard]] std::string added_in_words(const Rung& rung, const Ladder& ladder);
 
 /// ladder.json: an array.
 void write_ladder(const std::filesystem::path& path, const Ladder& ladder);

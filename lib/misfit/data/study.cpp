@@ -9,7 +9,7 @@ namespace misfit {
 
 std::vector<std::string> VideoStudy::marker_names() const {
   std::vector<std::string> out;
-  for (const NamedMarker& marker : markers) out.push_back(marker.name);
+  for (const NamedMarker& one : markers) out.push_back(one.name);
   return out;
 }
 

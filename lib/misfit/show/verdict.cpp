@@ -291,7 +291,7 @@ class VerdictBuilder {
   [[nodiscard]] std::string names_added() const {
     std::vector<std::string> names;
     for (const Rung& rung : in_.ladder->rungs) {
-      if (!rung.added.empty()) names.push_back(rung.added);
+      if (!rung.added.empty()) names.push_back(added_in_words(rung, *in_.ladder));
     }
     return join_words(names);
   }
