@@ -7,6 +7,7 @@
 
 #include "apps/verbs.h"
 #include "misfit/core/text.h"
+#include "misfit/show/verdict.h"
 
 namespace misfit {
 namespace {
@@ -76,7 +77,7 @@ int init_verb(const Options& options, const Registry& /*registry*/) {
   std::cout << fmt::format(
       "\nwritten: {0}, model.toml, the data as {1}.csv{2}, figures/\nnext: misfit run {3} --auto   (fit, where it fails, which effect is "
       "missing, verdict; a column read wrongly: --input, --output)\n",
-      made.study.string(), made.parts.front(), made.parts.size() > 1 ? " …" : "", made.study.parent_path().string());
+      made.study.string(), made.parts.front(), made.parts.size() > 1 ? " …" : "", shell_word(made.study.parent_path().string()));
   return 0;
 }
 

@@ -43,8 +43,38 @@ bool is_unit(const std::string& text) {
   }
 }
 
-/// Letters, digits and '_', beginning with a letter; umlauts and the like become '_'.
-std::string as_name(std::string_view text) {
+/// Letters with marks as people write them without: "Außen" → "Aussen".
+std::string without_marks(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 18> letters = {{{"ß", "ss"},
+                                                                                             {"ä", "ae"},
+                                                                                             {"ö", "oe"},
+                                                                                             {"ü", "ue"},
+                                                                                             {"Ä", "Ae"},
+                                                                                             {"Ö", "Oe"},
+                                                                                             {"Ü", "Ue"},
+                                                                                             {"é", "e"},
+                                                                                             {"è", "e"},
+                                                                                             {"ê", "e"},
+                                                                                             {"à", "a"},
+                                                                                             {"â", "a"},
+                                                                                             {"ç", "c"},
+                                                                                             {"ñ", "n"},
+                                                                                             {"å", "aa"},
+                                                                                             {"ø", "oe"},
+                                                                                             {"æ", "ae"},
+                                                                                             {"ó", "o"}}};
+  std::string out;
+  while (!text.empty()) {
+    const auto letter = std::find_if(letters.begin(), letters.end(), [&](const auto& l) { return text.starts_with(l.first); });
+    out += letter == letters.end() ? text.substr(0, 1) : letter->second;
+    text.remove_prefix(letter == letters.end() ? 1 : letter->first.size());
+  }
+  return out;
+}
+
+/// Letters, digits and '_', beginning with a letter; any other sign becomes '_'.
+std::string as_name(std::string_view header) {
+  const std::string text = without_marks(header);
   std::string out;
   for (const char c : text) {
     const bool plain = (std::isalnum(static_cast<unsigned char>(c)) != 0) && static_cast<unsigned char>(c) < 128;
@@ -66,6 +96,8 @@ NameAndUnit read_header(const std::string& header) {
     const auto spelt = std::find_if(spellings.begin(), spellings.end(), [&](const Spelling& s) { return s.written == inside; });
     if (is_unit(inside)) {
       out.unit = inside;
+    } else if (inside == "C") {  // degrees: nobody logs coulombs
+      out.unit = "degC";
     } else if (spelt != spellings.end()) {
       out.unit = spelt->unit;
     } else {

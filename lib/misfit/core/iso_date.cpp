@@ -66,12 +66,23 @@ std::optional<IsoDate> read_iso_date(std::string_view text) {
   constexpr std::size_t longest = 40;
   if (text.size() > longest) return std::nullopt;
   Cursor in(text);
-  const int y = in.number(4, 1, 9999);
-  if (!in.take_any("-/")) return std::nullopt;
-  const char between = in.last();
-  const int m = in.number(2, 1, 12);
-  if (!in.take_any({&between, 1})) return std::nullopt;
-  const year_month_day day{year(y), month(static_cast<unsigned>(m)), std::chrono::day(static_cast<unsigned>(in.number(2, 1, 31)))};
+  const bool day_first = text.size() > 2 && text[2] == '.';
+  int y = 0, m = 0, d = 0;
+  if (day_first) {
+    d = in.number(2, 1, 31);
+    if (!in.take_any(".")) return std::nullopt;
+    m = in.number(2, 1, 12);
+    if (!in.take_any(".")) return std::nullopt;
+    y = in.number(4, 1, 9999);
+  } else {
+    y = in.number(4, 1, 9999);
+    if (!in.take_any("-/")) return std::nullopt;
+    const char between = in.last();
+    m = in.number(2, 1, 12);
+    if (!in.take_any({&between, 1})) return std::nullopt;
+    d = in.number(2, 1, 31);
+  }
+  const year_month_day day{year(y), month(static_cast<unsigned>(m)), std::chrono::day(static_cast<unsigned>(d))};
   if (!in.ok() || !day.ok() || !in.take_any("Tt ")) return std::nullopt;
   const int h = in.number(2, 0, 23);
   if (!in.take_any(":")) return std::nullopt;

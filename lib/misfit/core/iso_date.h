@@ -13,7 +13,8 @@ struct IsoDate {
 };
 
 /// "2026-01-02T03:04:05.678Z", "2026-01-02 03:04:05,678+01:00", "2026-01-02 03:04", "2026/01/02 03:04:05" (ISO 8601, and a blank for its
-/// T). nullopt where the text is no such date, or names a day or an hour that is none.
+/// T); with points the day comes first: "01.03.2024 00:10" (DIN 5008). nullopt where the text is no such date, or names a day or an hour
+/// that is none.
 [[nodiscard]] std::optional<IsoDate> read_iso_date(std::string_view text);
 
 [[nodiscard]] double seconds_between(const IsoDate& from, const IsoDate& to);

@@ -48,7 +48,7 @@ Reason against_file(const fs::path& file, const WriteRules& rules, bool ours) {
   if (fs::is_symlink(status)) return link(file);
   if (fs::is_directory(status)) return file.string() + ": is a folder where misfit writes a file: move it away, or use --out DIR";
   if (!ours && !rules.force)
-    return file.string() + " is there already, and misfit did not make it: --force writes over it, --out DIR writes elsewhere";
+    return file.string() + " is there already, and may be yours: --force writes over it, --out DIR writes elsewhere";
   return std::nullopt;
 }
 

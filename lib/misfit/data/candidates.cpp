@@ -42,6 +42,7 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
   json("rank", c.rank), json("effect", c.effect), json("ports", c.ports), json("score", c.score);
   json("predicted_drop", c.predicted_drop), json("actual_drop", c.actual_drop);
   json("held_out_gain", c.held_out_gain), json("p_value", c.p_value), json("group", c.group);
+  json.if_there("also", c.also);
   json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters),
       json("family", NameOf(c.family, candidate_family_names));
   json("roles", c.roles), json("dof", c.dof), json("described", c.described), json("force", c.force);
@@ -87,6 +88,16 @@ std::vector<std::string> words_of_place(const std::map<std::string, std::string>
   std::vector<std::string> out;
   for (const auto& [role, name] : roles) out.push_back(role + "=" + name);
   return out.empty() ? std::vector<std::string>{"default"} : out;
+}
+
+std::string parameters_in_words(const Candidate& candidate) {
+  std::vector<std::string> out;
+  for (const auto& [name, e] : candidate.parameters) {
+    const bool held = std::any_of(candidate.fixed.begin(), candidate.fixed.end(),
+                                  [&, own = name](const std::string& fixed) { return own == fixed || own.ends_with("." + fixed); });
+    out.push_back(name + " = " + in_display_unit(e.value, e.unit, e.sigma) + (held ? " (held)" : ""));
+  }
+  return join_words(out);
 }
 
 std::string best_rejected(const Candidate& candidate) {

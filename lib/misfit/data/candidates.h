@@ -36,6 +36,7 @@ struct Candidate {
   double predicted_drop = 0.0;
   std::optional<double> actual_drop;    ///< after refitting; missing: not refitted
   std::optional<double> held_out_gain;  ///< of the held-out log-likelihood
+  std::optional<std::string> also;      ///< other values that explain hardly less, in words
   double p_value = 1.0;                 ///< corrected for cells scanned and families
   std::vector<std::string> group;       ///< effects that these data cannot distinguish from this one, itself included; empty: alone
   bool described = false;               ///< the model already has a column like it (1 − R² < 0.01)
@@ -63,6 +64,9 @@ struct EffectPlace {
 /// The same as words of a command: {"level=x1", "port=dx1/dt"}; {"default"} where all roles are the defaults.
 [[nodiscard]] std::vector<std::string> words_of_place(const std::map<std::string, std::string>& roles);
 [[nodiscard]] inline std::vector<std::string> words_of_place(const Candidate& candidate) { return words_of_place(candidate.roles); }
+
+/// "input_tau = 0.060 ± 0.002 s, lagged_gain = 1 (held)".
+[[nodiscard]] std::string parameters_in_words(const Candidate& candidate);
 
 /// "best candidate lag (drop 50, family-wise p = 1e-9), rejected: its strength is not determined".
 [[nodiscard]] std::string best_rejected(const Candidate& candidate);

@@ -21,12 +21,14 @@ struct Rung {
   std::optional<double> predicted_drop, actual_drop, held_out_gain;  ///< against the parent; missing across a change of system or channels
   double loglik = 0.0;
   std::optional<double> validation_loglik;
-  std::map<std::string, Estimate> force;                ///< strength of the random force
-  std::map<std::string, Estimate> rms, validation_rms;  ///< per channel, one step ahead
-  std::map<std::string, std::vector<double>> k_step;    ///< channel → RMS at 1, 2, 4, 8, 16, 32 steps ahead [unit of rms]
-  std::optional<Estimate> trim;                         ///< [rad]
-  std::map<std::string, Estimate> parameters;           ///< of the added effect
-  std::string note;                                     ///< in words
+  std::map<std::string, Estimate> force;                      ///< strength of the random force
+  std::map<std::string, Estimate> rms, validation_rms;        ///< per channel, one step ahead
+  std::map<std::string, std::vector<double>> k_step;          ///< channel → RMS at 1, 2, 4, 8, 16, 32 steps ahead [unit of rms]
+  std::optional<Estimate> trim;                               ///< [rad]
+  std::map<std::string, Estimate> parameters;                 ///< of the added effect
+  std::optional<std::map<std::string, Estimate>> estimates;   ///< of all parameters of its model that are no coefficients of curves
+  std::optional<std::vector<std::string>> gained_too_little;  ///< curves of unknown form that were tried beside this model: effect_at()
+  std::string note;                                           ///< in words
 };
 /// Steps of Rung::k_step.
 inline constexpr int kLadderSteps[] = {1, 2, 4, 8, 16, 32};

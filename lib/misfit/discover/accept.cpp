@@ -61,6 +61,7 @@ std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& 
   if (const auto unknown =
           undetermined_strengths(e.refit->estimate.model, e.refit->estimate.covariance, e.screening->candidate_model->strengths))
     return *unknown;
+  if (const auto collinear = no_longer_determined(e.refit->estimate, context.estimate)) return *collinear;
   if (memory) return *memory;
   if (uneven) return *uneven;
   if (no_edge) return *no_edge;

@@ -41,7 +41,8 @@ inline constexpr double least_of_score = 0.5;
 /// options say otherwise; numbers and formulas: lib/misfit/README.md, 6.5.
 ///
 /// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, only a part of an effect
-///    is found that exists as a whole (whole_strength.h), one of its strengths ends at a bound, all are smaller than two sigmas, it
+///    is found that exists as a whole (whole_strength.h), one of its strengths ends at a bound, all are smaller than two sigmas, a
+///    parameter that was known to 5 % is not known to 50 % beside it, it
 ///    remembers for longer than half of the recording or has not one period in it, it has an edge where nothing was, or the held-out
 ///    log-likelihood rises by less than 1/2 for each of its parameters. The first reason that holds is noted.
 /// 2. The others come by what they gain, on the estimation's measurements and the held-out ones together (`gain_of`); those within 3 of

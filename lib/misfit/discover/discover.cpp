@@ -355,6 +355,8 @@ class Search {
     e.log_p = log_score_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
     c.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families_);
     c.parameters = e.refit->parameters;
+    if (e.refit->moved) c.roles = *e.refit->moved;
+    if (!e.refit->also.empty()) c.also = e.refit->also;
     c.free = e.refit->free;
     c.fixed = e.refit->fixed;
     const FilterEstimate& there = e.refit->estimate;

@@ -9,6 +9,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
 #include "misfit/discover/drift.h"
+#include "misfit/discover/exchanged_poles.h"
 #include "misfit/discover/whole_strength.h"
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/inference/standard_error.h"
@@ -125,20 +126,54 @@ bool several_values_scanned(const CandidateModel& candidate_model, std::size_t i
          std::any_of(cells.begin(), cells.end(), [&](const auto& cell) { return cell[i] != cells.front()[i]; });
 }
 
+/// A start with the whole effect, and what it was assembled from.
+struct WholeStart {
+  Model model;
+  ModelRequest request;
+  std::optional<Roles> moved;
+};
+
+/// On the input itself where that is possible: on_its_input().
+WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vector<WholeStrength>& whole) {
+  WholeStart out{start_of_whole(refit.estimate.model, whole), refit.request, {}};
+  const std::optional<ModelRequest> request = on_its_input(refit.estimate.model, refit.request);
+  if (!request) return out;
+  try {
+    Model there = assemble(*request, work.registry);
+    for (std::size_t i = 0; i < there.parameters.size(); ++i) {  // the same ones in the same order: names and units may be others
+      Parameter& p = there.parameters[i];
+      const Parameter& known = out.model.parameters[i];
+      p.value = known.value;
+      p.free = known.free;
+      if (p.unit == known.unit) p.lower = known.lower;
+    }
+    const BoundEffect& bound = there.effects.back();
+    for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
+      const double of_input = bound.effect->spec().coefficients[c].whole;
+      if (of_input != 0.0 && bound.coefficients[c].parameter >= 0) there.parameters[bound.coefficients[c].parameter].value = of_input;
+    }
+    out = {std::move(there), *request, request->effects.back().roles};
+  } catch (const InputError&) {  // it cannot act there: its strength is held at a number
+  }
+  return out;
+}
+
 /// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood allows it.
 /// False: there was no time to try, so that a part that was found says nothing.
 bool fix_whole_strengths(const RefitWork& work, Refit& out) {
   constexpr double allowed = 2.0;  // of the log-likelihood
   const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
   if (whole.empty()) return true;
-  const Model start = start_of_whole(out.estimate.model, whole);
+  const WholeStart start = whole_start(work, out, whole);
   FilterOptions options = options_like(work.without, work.threads);
   options.noise = out.estimate.noise;
   try {
-    FilterEstimate held = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
+    FilterEstimate held = estimate_filter(start.model, penalties_as_of(work.without, start.model), work.experiments, options);
     if (held.out_of_time) return false;
     if (held.converged && held.objective > out.estimate.objective - allowed) {
       out.estimate = std::move(held);
+      out.request = start.request;
+      out.moved = start.moved;
       return true;
     }
   } catch (const TimeSpent&) {
@@ -146,6 +181,37 @@ bool fix_whole_strengths(const RefitWork& work, Refit& out) {
   } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
   }
   out.partial = part_of_effect(out.estimate, whole);
+  return true;
+}
+
+/// Where the effect's time constant and one of the system's may have changed places: the other order, if it is better; that one in words
+/// where these data hardly tell the two apart. False: there was no time to try.
+bool try_exchanged_poles(const RefitWork& work, Refit& out) {
+  constexpr double hardly = 5.0;  // of the log-likelihood: a drop of 10
+  const int time = time_constant_of(out.estimate.model);
+  if (time < 0 || !out.estimate.converged) return true;
+  for (const double other : time_constants_of_system(out.estimate)) {
+    Model start = out.estimate.model;
+    for (std::size_t i = 0; i < work.without.model.parameters.size(); ++i)
+      start.parameters[i].value = work.without.model.parameters[i].value;
+    Parameter& tau = start.parameters[time];
+    constexpr double alike = 1.25;
+    if (other < tau.lower || other > tau.upper || (other < alike * tau.value && tau.value < alike * other)) continue;
+    tau.value = other;
+    FilterOptions options = options_like(work.without, work.threads);
+    options.noise = out.estimate.noise;
+    try {
+      FilterEstimate there = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
+      if (there.out_of_time) return false;
+      const double found = there.model.parameters[time].value, known = out.estimate.model.parameters[time].value;
+      if (!there.converged || (found < alike * known && known < alike * found)) continue;
+      if (there.objective > out.estimate.objective) std::swap(there, out.estimate);
+      if (out.estimate.objective - there.objective < hardly) out.also = exchange_in_words(out.estimate, there, time);
+    } catch (const TimeSpent&) {
+      return false;
+    } catch (const RunError&) {  // it cannot be run in that order
+    }
+  }
   return true;
 }
 
@@ -339,7 +405,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const bool in_time = !no_maximum() || !watch.spent();
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
-  if (!in_time || !fix_whole_strengths(work, out) || !free_drifts(work, out))
+  if (!in_time || !fix_whole_strengths(work, out) || !try_exchanged_poles(work, out) || !free_drifts(work, out))
     return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
   note_changes(screening, work.registry, out);
   out.drop = drop_of(out.estimate, without, screening);

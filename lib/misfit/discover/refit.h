@@ -17,6 +17,8 @@ struct Refit {
   std::map<std::string, Estimate> parameters;  ///< of the effect
   std::vector<std::string> free, fixed;        ///< its coefficients that are estimated or held unlike the effect's file says
   std::string partial;                         ///< why it is no whole effect (whole_strength.h); empty: it is, or may be
+  std::optional<Roles> moved;                  ///< its roles, where it acts on its input itself now (whole_strength.h)
+  std::string also;                            ///< another maximum that these data hardly tell from this one, in words; empty: none found
 };
 
 /// What refits have in common.
@@ -59,7 +61,8 @@ struct OneStep {
 /// and without it: from the estimate with the effect added to it, which an effect that the other parameters must make room for can throw
 /// out of the finite numbers; where that, too, reaches none, or one below the estimate: from the estimate with the effect in it but off,
 /// below which the search does not end. A strength at which the effect would be whole (whole_strength.h) is then held there if that costs
-/// the log-likelihood at most 2. Last, a shape that may drift (CoefficientSpec::drift_of) does if the data ask for it.
+/// the log-likelihood at most 2. A lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried.
+/// Last, a shape that may drift (CoefficientSpec::drift_of) does if the data ask for it.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// The refit of an effect for which no time was left: `drop` is how far it had come.

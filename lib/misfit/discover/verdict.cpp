@@ -14,14 +14,6 @@
 namespace misfit {
 namespace {
 
-std::string numbers(const Candidate& c) {
-  std::string out;
-  for (const auto& [name, estimate] : c.parameters) {
-    out += (out.empty() ? "" : ", ") + name + " = " + in_display_unit(estimate.value, estimate.unit, estimate.sigma);
-  }
-  return out;
-}
-
 bool is_sensor(const Discovery& discovery, const std::string& effect) {
   return std::any_of(discovery.candidates.begin(), discovery.candidates.end(),
                      [&](const Candidate& c) { return effect_at(c.effect, c.roles) == effect && c.family == CandidateFamily::sensor; });
@@ -101,7 +93,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     out.outcome = SearchOutcome::accepted;
     out.verdict = "Missing: " + effect_at(best.effect, best.roles) + " (drop " +
                   format_value(best.actual_drop.value_or(best.predicted_drop)) + ", family-wise " + p_equals(best.p_value) +
-                  "): " + numbers(best) + ".";
+                  "): " + parameters_in_words(best) + (best.also ? "; " + *best.also : "") + ".";
     suggest_experiment(best, camera, out);
     note_larger_drops(best, out);
     return;
@@ -249,6 +241,20 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
         "Sweep and flight disagree: " + disagreement + ", and the flight gives evidence of " + flight +
         ". Recalibrate with them enabled, then rerun discover: the error of a wrong camera model can be described by a physical effect.";
   }
+}
+
+std::optional<std::string> no_longer_determined(const FilterEstimate& with, const FilterEstimate& without) {
+  constexpr double known = 0.05, unknown = 0.5;  // of the value without it
+  for (const int i : without.model.free_parameters()) {
+    const Parameter& before = without.model.parameters[i];
+    const Parameter& after = with.model.parameters[i];
+    const auto sigma = standard_error_of(without.model, without.covariance, i), wider = standard_error_of(with.model, with.covariance, i);
+    if (before.curve >= 0 || !sigma || !wider || !(*sigma < known * std::abs(before.value)) || !(*wider > unknown * std::abs(before.value)))
+      continue;
+    return "with it in the model " + after.name + " is no longer determined: " + in_display_unit(after.value, after.unit, *wider) +
+           ", without it " + in_display_unit(before.value, before.unit, *sigma) + ": these data cannot tell the two apart";
+  }
+  return std::nullopt;
 }
 
 }  // namespace misfit

@@ -22,6 +22,11 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// scale of a bound other than 0; nullopt if none does. A strength at 0 is an effect that is off, and its drop says so.
 [[nodiscard]] std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths);
 
+/// "with it in the model gain is no longer determined: 594 ± 268 V, without it 20.00 ± 0.06 V: …" for the first parameter whose sigma is
+/// below 5 % of its value without the effect and above 50 % of that value with it: the effect does what that parameter does. nullopt: none
+/// is. `with` has the parameters of `without` first.
+[[nodiscard]] std::optional<std::string> no_longer_determined(const FilterEstimate& with, const FilterEstimate& without);
+
 /// "its strength is not determined: lag_stiffness = 140 ± 920 N m/rad" where every one of these parameters is smaller than two sigmas: a
 /// drop that no strength shows by itself, but only something like their ratio to a shape (a lag of a time constant beyond the record is an
 /// integral), so that the effect is not what its name says. nullopt: it is determined, or `covariance` (of the free parameters) is not

@@ -93,4 +93,23 @@ std::vector<WholeStrength> whole_strengths(const FilterEstimate& estimate) {
   return out;
 }
 
+std::optional<ModelRequest> on_its_input(const Model& model, const ModelRequest& request) {
+  const BoundEffect& bound = model.effects.back();
+  const EffectSpec& spec = bound.effect->spec();
+  const SystemSpec& system = model.system->spec();
+  const auto of_input = std::find_if(spec.coefficients.begin(), spec.coefficients.end(),
+                                     [](const CoefficientSpec& c) { return c.whole != 0.0 && c.whole_of[0] != '\0'; });
+  if (of_input == spec.coefficients.end() || spec.ports.size() != 1 || bound.kind != PortKind::dynamic) return std::nullopt;
+  const auto role = std::find_if(spec.quantities.begin(), spec.quantities.end(),
+                                 [&](const Role& r) { return std::string_view(of_input->whole_of) == r.name; });
+  const int quantity = role == spec.quantities.end() ? -1 : bound.quantities[role - spec.quantities.begin()];
+  if (quantity < 0 || quantity >= int_size(system.quantities)) return std::nullopt;
+  const std::string& input = system.quantities[quantity].name;
+  if (index_of(system.inputs, input) < 0 || index_of(system.quantity_ports, input) < 0) return std::nullopt;
+  ModelRequest out = request;
+  out.effects.back().roles[role->name] = input;
+  out.effects.back().roles[spec.ports.front().name] = input;
+  return out;
+}
+
 }  // namespace misfit

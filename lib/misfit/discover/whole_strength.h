@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/model/request.h"
 
 namespace misfit {
 
@@ -15,5 +17,10 @@ struct WholeStrength {
 /// Of the model's last effect, at an estimate of it: a share of an output, or of the gain by which the rest of the model lets an input act
 /// on the effect's first port. Left out: strengths that have none, and inputs that do not act there.
 [[nodiscard]] std::vector<WholeStrength> whole_strengths(const FilterEstimate& estimate);
+
+/// The request with its last effect on the input itself, where its strength is a share of what the input is, whatever the gain by which it
+/// acts: held at 1, nothing is said of that gain, which a strength held at a number would fix. nullopt: it has no such strength, the system
+/// has no port of the input's name, or it acts there already.
+[[nodiscard]] std::optional<ModelRequest> on_its_input(const Model& model, const ModelRequest& request);
 
 }  // namespace misfit

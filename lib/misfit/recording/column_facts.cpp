@@ -35,6 +35,21 @@ constexpr std::array<std::string_view, 38> input_words = {
 constexpr std::array<std::string_view, 8> last_words = {"cmd", "command", "setpoint", "demand", "pwm", "duty", "voltage", "input"};
 constexpr std::array<std::string_view, 7> segment_words = {"segment", "seg", "trial", "run", "episode", "block", "id"};
 
+/// One of the words of the name begins so: "outdoor_temperature", "Aussentemperatur".
+constexpr std::array<std::string_view, 8> weather = {"outdoor", "outside", "ambient", "exterior", "aussen", "weather", "solar", "irradia"};
+constexpr std::array<std::string_view, 6> weather_names = {"t_out", "tout", "t_amb", "tamb", "t_ext", "temp_out"};
+
+bool is_weather(const std::string& name) {
+  const std::string all = lower_case(name);
+  if (std::find(weather_names.begin(), weather_names.end(), all) != weather_names.end()) return true;
+  for (std::size_t at = 0; at < all.size(); at = all.find('_', at)) {
+    at += all[at] == '_' ? 1 : 0;
+    const std::string_view word = std::string_view(all).substr(at);
+    if (std::any_of(weather.begin(), weather.end(), [&](std::string_view w) { return word.starts_with(w); })) return true;
+  }
+  return false;
+}
+
 /// How many samples in a row stand at one value: the longest stand at `value`, and the longest at any other.
 struct Stands {
   std::size_t at = 0, elsewhere = 0;
@@ -104,7 +119,8 @@ std::vector<std::string> limit_remarks(const std::string& header, const std::vec
 bool is_called_time(const std::string& name) { return is_called(name, time_words); }
 bool is_called_input(const std::string& name) {
   const auto before = name.rfind('_');
-  return is_called(name, input_words) || (before != std::string::npos && is_called(name.substr(before + 1), last_words));
+  return is_called(name, input_words) || is_weather(name) ||
+         (before != std::string::npos && is_called(name.substr(before + 1), last_words));
 }
 bool is_called_segment(const std::string& name) { return is_called(name, segment_words); }
 

@@ -131,10 +131,14 @@ class ColumnClassifier {
   std::size_t column_named(const std::string& name, const std::string& option) const {
     std::vector<std::string> names;
     const std::string last = name.substr(name.find_last_of("./") + 1);
+    const auto without_unit = [](const std::string& header) {
+      const std::string bare = header.substr(0, header.find_last_of("[("));
+      return bare.substr(0, bare.find_last_not_of(' ') + 1);
+    };
     for (const std::string& wanted : {name, last}) {
       for (std::size_t i = 0; i < out_.columns.size(); ++i) {
         const std::string& header = table_.columns[i].header;
-        if (header == wanted || out_.columns[i].name == wanted || header.substr(0, header.rfind('[')) == wanted) return i;
+        if (header == wanted || out_.columns[i].name == wanted || without_unit(header) == wanted) return i;
       }
     }
     for (const auto& column : out_.columns) names.push_back(column.name);
@@ -159,8 +163,9 @@ class ColumnClassifier {
       }
     }
     if (time_ == none)
-      fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, and increases") +
-                  (counter.empty() ? "" : " ('" + counter + "' counts rows, but over which interval?)") + "; write one as t[s]");
+      fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, or holds dates, and increases") +
+                  (counter.empty() ? "" : " ('" + counter + "' counts rows, but over which interval?)") +
+                  "; write one as t[s], or dates as 2024-03-01 00:10:00 or 01.03.2024 00:10");
     ColumnSurvey& c = out_.columns[time_];
     c.use = ColumnUse::time;
     c.resolution = 0.0;

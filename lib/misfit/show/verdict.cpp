@@ -97,6 +97,21 @@ std::string values_of(const Estimates& parameters) {
   return join_words(out);
 }
 
+/// "quadratic_drag: drag = 0.5010 ± 0.0004 1/m": of what was added, as the last model has it.
+std::vector<std::string> added_with_estimates(const Ladder& ladder) {
+  std::vector<std::string> out;
+  const Rung& last = ladder.rungs.back();
+  for (const Rung& rung : ladder.rungs) {
+    if (rung.added.empty() || rung.parameters.empty()) continue;
+    Estimates now = rung.parameters;
+    for (auto& [name, estimate] : now) {
+      if (last.estimates && last.estimates->contains(name)) estimate = last.estimates->at(name);
+    }
+    out.push_back(added_in_words(rung, ladder) + ": " + values_of(now));
+  }
+  return out;
+}
+
 const Candidate* accepted(const Discovery& d) {
   const auto found = std::find_if(d.candidates.begin(), d.candidates.end(), [](const Candidate& c) { return c.accepted; });
   return found == d.candidates.end() ? nullptr : &*found;
@@ -110,6 +125,7 @@ class VerdictBuilder {
     if (in_.diagnosis != nullptr && !in_.diagnosis->maps.empty()) out_.where = where_it_fails(in_.diagnosis->maps.front());
     if (effects_added_) {
       out_.errors = errors_between(in_.ladder->rungs.front(), in_.ladder->rungs.back());
+      out_.added = added_with_estimates(*in_.ladder);
     } else if (fit_ != nullptr) {
       out_.errors = errors_of(*fit_);
     }
@@ -227,12 +243,13 @@ class VerdictBuilder {
 
   void missing(const Candidate& best) {
     const std::string name = effect_at(best.effect, best.roles);
-    const std::string values = best.parameters.empty() ? "" : ", with " + values_of(best.parameters);
+    const std::string values = best.parameters.empty() ? "" : ", with " + parameters_in_words(best);
     if (!effects_added_) with_candidate(best);
     std::string sentence = best.group.size() > 1
                                ? "one of " + join_words(best.group) + " is missing, and these data cannot say which: " + name + " fits best"
                                : (effects_added_ ? "still missing: " : "missing: ") + name;
     sentence += values + " (" + p_equals(best.p_value) + ")";
+    if (best.also) sentence += "; " + *best.also;
     if (const std::string change = effects_added_ ? change_by_ladder() : ""; !change.empty())
       sentence += "; with " + names_added() + " " + change;
     say(best.group.size() > 1 ? VerdictKind::several_possible : VerdictKind::missing, sentence, command("add", best.effect));
@@ -246,15 +263,31 @@ class VerdictBuilder {
     std::stable_partition(out_.errors.begin(), out_.errors.end(), [](const ErrorChange& e) { return e.after.has_value(); });
   }
 
+  /// The first curve that `discover --auto` has not tried beside the last model; nullptr: there is none.
+  [[nodiscard]] const EffectPlace* untried(const std::vector<EffectPlace>& curves) const {
+    const Rung* last = in_.ladder != nullptr && !in_.ladder->rungs.empty() ? &in_.ladder->rungs.back() : nullptr;
+    for (const EffectPlace& curve : curves) {
+      const bool tried =
+          last != nullptr && last->gained_too_little &&
+          std::count(last->gained_too_little->begin(), last->gained_too_little->end(), effect_at(curve.effect, curve.roles)) > 0;
+      if (!tried) return &curve;
+    }
+    return nullptr;
+  }
+
   void nothing_accepted(const Discovery& d) {
     if (d.outcome == SearchOutcome::not_decided || d.outcome == SearchOutcome::not_finished) {
       say(VerdictKind::not_decided, d.verdict, command("discover") + " --round-limit 3600");
     } else if (!d.unexplained_port.empty()) {
-      const std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
-                                              effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
-      const std::string next = !d.unexplained_effects.empty()
-                                   ? command("add", d.unexplained_effects.front().effect) + at_place(d.unexplained_effects.front().roles)
-                                   : "look at the picture, then write the effect as one line of the study: misfit help study";
+      std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
+                                        effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
+      const EffectPlace* curve = untried(d.unexplained_effects);
+      const bool in_vain = curve == nullptr && !d.unexplained_effects.empty();
+      if (in_vain) unknown += "; as a curve it explains too little for its coefficients";
+      const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles)
+                               : in_vain
+                                   ? ""
+                                   : "look where it fails (misfit open), then write the effect as one line of the study: misfit help study";
       effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       added("whether more is missing is not decided; " + best_rejected(d.candidates.front()), "", VerdictKind::not_decided);
@@ -329,7 +362,7 @@ Blocks blocks_of(const Verdict& v) {
   out.heading("Verdict");
   out.paragraph(v.sentence, Tone::lead);
   out.paragraph(v.where);
-  std::vector<std::string> errors;
+  std::vector<std::string> errors = v.added;
   for (const ErrorChange& e : v.errors) errors.push_back(e.what() + ": " + shown(e));
   if (v.trim) errors.push_back(v.trim->what() + ": " + shown(*v.trim));
   out.list({errors});

@@ -52,6 +52,10 @@ Rung rung_of(const Session& session, const FilterWork& work) {
   rung.k_step = std::move(free_runs.rms);
   rung.note = std::move(free_runs.words);
   rung.trim = work.fit.trim;
+  rung.estimates.emplace();
+  for (const auto& [name, estimate] : work.fit.parameters) {
+    if (!is_curve_coefficient(name)) rung.estimates->emplace(name, estimate);
+  }
   return rung;
 }
 
@@ -89,8 +93,8 @@ struct Gain {
 };
 
 /// 2 [log L(with) − log L(without)] on the same measurements and with the same weights of roughness, each at its own maximum, priors
-/// counted. The child's is looked for from its fit and from the parent's with what is new off, so that it is never below that. The held-out gain
-/// is that of discovery, with the parameters uncertain.
+/// counted. The child's is looked for from its fit and from the parent's with what is new off, so that it is never below that. The held-out
+/// gain is that of discovery, with the parameters uncertain.
 Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   FilterOptions options;
   options.threads = threads;
@@ -224,6 +228,14 @@ const Fit& ModelLadder::last_fit() { return filter_work(last())->fit; }
 std::string ModelLadder::relative_study(const Session& session) const {
   const fs::path from = fs::absolute(root_.folder.path()).lexically_normal();
   return fs::absolute(session.study.file).lexically_normal().lexically_relative(from).generic_string();
+}
+
+void ModelLadder::gained_too_little(const std::string& effect) {
+  if (ladder_.rungs.empty()) return;
+  std::optional<std::vector<std::string>>& known = ladder_.rungs.back().gained_too_little;
+  if (!known) known.emplace();
+  known->push_back(effect);
+  store();
 }
 
 void ModelLadder::append(Rung rung) {

@@ -108,7 +108,10 @@ class Extension {
     if (!curve || has_left(*curve)) return false;
     const std::vector<std::string> before = filter_work(ladder_.last())->fit.names;
     try {
-      if (!add(*curve, {})) return false;
+      if (!add(*curve, {})) {
+        ladder_.gained_too_little(effect_at(effect, roles));
+        return false;
+      }
     } catch (const InputError& error) {  // what it is a curve of hardly moves in the fit that comes first
       ladder_.root().note(fmt::format("{} cannot be fitted: {}", effect_at(effect, roles), error.what()));
       return false;
@@ -126,6 +129,7 @@ class Extension {
                                     effect_at(effect, roles), more, rung.actual_drop ? format_value(*rung.actual_drop) : "unknown",
                                     rung.held_out_gain ? format_value(*rung.held_out_gain) : "unknown"));
     ladder_.remove(std::to_string(rung.id));
+    ladder_.gained_too_little(effect_at(effect, roles));
     added_.pop_back();
     return false;
   }
@@ -166,18 +170,18 @@ class Extension {
     return false;
   }
 
-  /// The first whose width was held at what the filter could resolve before the later ones were there, and which has another one now, gets
-  /// that: held at the wrong one, an effect makes room for others that are not there. False: there is none.
+  /// The first whose width was held at what the filter could resolve before it, and the later ones, were there, and which has another one
+  /// now, gets that: held at the wrong one, an effect makes room for others that are not there. False: there is none.
   bool one_is_sharper() {
-    for (std::size_t k = 0; k + 1 < added_.size(); ++k) {
+    for (std::size_t k = 0; k < added_.size(); ++k) {
       if (added_[k].width_freed) continue;
       const auto width = width_of(ladder_.last(), added_[k].name);
       if (!width || may_be_chance(width->drop, 1, families_)) continue;
       const auto known = added_[k].from.parameters.find(width->coefficient);
       if (known == added_[k].from.parameters.end()) continue;
-      ladder_.root().note(fmt::format("beside what was added after it, {} of {} is {} (drop {}): estimated from here on",
-                                      width->coefficient, added_[k].name, in_display_unit(width->value, known->second.unit),
-                                      format_value(width->drop)));
+      ladder_.root().note(fmt::format("{}, {} of {} is {} (drop {}): estimated from here on",
+                                      k + 1 < added_.size() ? "beside what was added after it" : "with it in the model", width->coefficient,
+                                      added_[k].name, in_display_unit(width->value, known->second.unit), format_value(width->drop)));
       Candidate again = added_[k].from;
       again.parameters[width->coefficient].value = width->value;
       std::erase(again.fixed, width->coefficient);

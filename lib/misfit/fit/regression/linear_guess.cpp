@@ -271,8 +271,10 @@ double percent_lower(const WindowSearch& search, const Found& a, const Found& b)
 }
 
 std::string compared(double percent) {
-  return percent < 1.0 ? std::string("does not lower the held-out error")
-                       : fmt::format("lowers the held-out error by only {:.0f} %", percent);
+  constexpr double clearly = 30.0;  // per cent: then it is overdamped, or it would have been taken
+  if (percent < 1.0) return "does not lower the held-out error";
+  if (percent < clearly) return fmt::format("lowers the held-out error by only {:.0f} %", percent);
+  return fmt::format("lowers the held-out error by {:.0f} % and does not swing: what that is, the search will say", percent);
 }
 
 /// With or without a pull back to rest: without, if the error is hardly higher.

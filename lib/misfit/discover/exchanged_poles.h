@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "misfit/fit/filter/filter_estimate.h"
+
+namespace misfit {
+
+// A lag in series with a first-order system is the same transfer function in either order: 1/((1 + s tau)(1 + s T)). Which of the two time
+// constants is the lag's is told, if at all, by where the random force and the noise enter, and by the start of the motion; a search ends
+// at the order in whose basin it begins.
+
+/// The parameter that is the time constant [s] of the model's last effect, an effect with own states and just one such; -1: it has none, or
+/// it is held.
+[[nodiscard]] int time_constant_of(const Model& model);
+
+/// Of the system's equations, linearised in the middle of the first recording: -1/pole of its real, stable poles that the recording can
+/// show, from half of its usual interval to half of its length [s].
+[[nodiscard]] std::vector<double> time_constants_of_system(const FilterEstimate& estimate);
+
+/// "input_tau = 0.06 s with damping = 2.5 1/s explains hardly less (a drop lower by 7.8)": the parameters of `other` that differ most from
+/// those of the estimate.
+[[nodiscard]] std::string exchange_in_words(const FilterEstimate& estimate, const FilterEstimate& other, int time);
+
+}  // namespace misfit
