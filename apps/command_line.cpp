@@ -65,11 +65,14 @@ std::string help_on(const std::vector<std::string>& words, const Registry& regis
   if (words.size() > 1) throw InputError("misfit help takes one verb or topic");
   const std::string& topic = words.front();
   std::vector<std::string> names = verb_names();
-  if (std::find(names.begin(), names.end(), topic) != names.end()) return verb_help(manual_of(text_of(topic)));
   for (const auto& [name, doc] : help_topics()) {
     if (name == topic) return help_text(topic, registry);
-    names.push_back(name);
   }
+  if (std::find(names.begin(), names.end(), topic) != names.end()) return verb_help(manual_of(text_of(topic)));
+  const std::vector<std::string> effects = registry.effect_keys();
+  if (std::find(effects.begin(), effects.end(), topic) != effects.end())
+    return topic + " is an effect; misfit effects " + topic + " prints it in full\n";
+  for (const auto& [name, doc] : help_topics()) names.push_back(name);
   throw InputError("misfit help knows no '" + shown(topic) + "'" + suggest(topic, names));
 }
 

@@ -121,6 +121,28 @@ TEST(Recording, ColumnsAreWhatTheUserChooses) {
                {"column 'a'", "--input and by --output"});
 }
 
+TEST(Recording, TheWeatherIsNoOutputOfTheHeatingAndHeadersAreTakenAsTheyStand) {
+  const std::string house = rows("Zeit;Außentemperatur (°C);heating power [kW];T_in (C)", 300, [](int k) {
+    return fmt::format("{:02}.03.2024 {:02}:{:02};{},5;{};{},{}", 1 + k / 144, k / 6 % 24, k % 6 * 10, k % 17, k / 30 % 2, 20 + k % 3,
+                       k % 10);
+  });
+  const RecordingSurvey s = survey(house);
+  EXPECT_EQ(column(s, "Aussentemperatur").use, ColumnUse::input);
+  EXPECT_EQ(column(s, "heating_power").use, ColumnUse::input);
+  EXPECT_EQ(column(s, "T_in").use, ColumnUse::output);
+  EXPECT_EQ(column(s, "T_in").unit, "degC");
+  EXPECT_DOUBLE_EQ(s.step, 600.0);
+  const TemporaryFolder folder;
+  const RecordingSurvey chosen =
+      survey_recording(folder.write("x.csv", house), {}, {.inputs = {"heating power", "Außentemperatur"}, .outputs = {"T_in"}});
+  EXPECT_EQ(column(chosen, "heating_power").use, ColumnUse::input);
+  for (const char* name : {"outdoor_temperature", "T_out", "ambient_K", "solar_gain"}) {
+    const RecordingSurvey named = survey(rows(fmt::format("t[s],{},T_in", name), 200,
+                                              [](int k) { return fmt::format("{},{},{}", k, std::sin(0.1 * k), std::cos(0.07 * k)); }));
+    EXPECT_EQ(named.columns[1].use, ColumnUse::input) << name;
+  }
+}
+
 /// Of an unknown unit one thing is said: what its numbers are taken as.
 TEST(Recording, AnUnknownUnitIsSaidOnceWithWhatItIsTakenAs) {
   const RecordingSurvey s = survey(rows("t[s],theta[rad],omega[foo],level[blob]", 300, [](int k) {

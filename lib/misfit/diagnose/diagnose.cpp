@@ -26,7 +26,7 @@ std::string place(double value, double width, const std::string& unit) {
   return with_display_unit(format_value(std::round(display_value(value, unit) / step) * step), unit);
 }
 
-/// A sentence on the most significant run of neighbouring hats of one sign.
+/// A sentence on the most significant run of neighbouring hats of one sign; where none is significant by itself, of the whole.
 std::string where_it_fails(const ForceMap& map) {
   std::size_t best_from = 0, best_to = 0;
   double best = 0.0;
@@ -44,7 +44,9 @@ std::string where_it_fails(const ForceMap& map) {
       }
     }
   }
-  if (!(best > 0.0)) return "";
+  if (!(best > 0.0))
+    return "the model's " + map.port + " depends otherwise on " + map.quantity +
+           " than the data say, though no range of it stands out: the values of the map are correlated";
   double weight = 0.0, sum = 0.0;
   for (std::size_t i = best_from; i <= best_to; ++i) {
     weight += 1.0 / (map.sigma[i] * map.sigma[i]);

@@ -130,7 +130,7 @@ bool several_values_scanned(const CandidateModel& candidate_model, std::size_t i
 struct WholeStart {
   Model model;
   ModelRequest request;
-  std::optional<Roles> moved;
+  std::optional<std::map<std::string, std::string>> moved;
 };
 
 /// On the input itself where that is possible: on_its_input().
@@ -139,14 +139,7 @@ WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vec
   const std::optional<ModelRequest> request = on_its_input(refit.estimate.model, refit.request);
   if (!request) return out;
   try {
-    Model there = assemble(*request, work.registry);
-    for (std::size_t i = 0; i < there.parameters.size(); ++i) {  // the same ones in the same order: names and units may be others
-      Parameter& p = there.parameters[i];
-      const Parameter& known = out.model.parameters[i];
-      p.value = known.value;
-      p.free = known.free;
-      if (p.unit == known.unit) p.lower = known.lower;
-    }
+    Model there = with_the_same_values(assemble(*request, work.registry), out.model);
     const BoundEffect& bound = there.effects.back();
     for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
       const double of_input = bound.effect->spec().coefficients[c].whole;
@@ -310,6 +303,17 @@ ScreeningResult as_refitted(const ScreeningResult& screening, const Model& refit
     out.cell[i] = refitted.parameters[shape].value;
   }
   return out;
+}
+
+Model with_the_same_values(Model moved, const Model& from) {
+  for (std::size_t i = 0; i < moved.parameters.size(); ++i) {
+    Parameter& p = moved.parameters[i];
+    const Parameter& known = from.parameters[i];
+    p.value = known.value;
+    p.free = known.free;
+    if (p.unit == known.unit) p.lower = known.lower;
+  }
+  return moved;
 }
 
 /// The estimate with the effect in it, off: a start below which no search ends.

@@ -14,11 +14,11 @@ struct Refit {
   double drop = 0.0;  ///< 2 [objective(with) − objective(without)], priors on both sides; with what exact derivatives leave where converged
   FilterEstimate estimate;
   ModelRequest request;
-  std::map<std::string, Estimate> parameters;  ///< of the effect
-  std::vector<std::string> free, fixed;        ///< its coefficients that are estimated or held unlike the effect's file says
-  std::string partial;                         ///< why it is no whole effect (whole_strength.h); empty: it is, or may be
-  std::optional<Roles> moved;                  ///< its roles, where it acts on its input itself now (whole_strength.h)
-  std::string also;                            ///< another maximum that these data hardly tell from this one, in words; empty: none found
+  std::map<std::string, Estimate> parameters;               ///< of the effect
+  std::vector<std::string> free, fixed;                     ///< its coefficients that are estimated or held unlike the effect's file says
+  std::string partial;                                      ///< why it is no whole effect (whole_strength.h); empty: it is, or may be
+  std::optional<std::map<std::string, std::string>> moved;  ///< its roles, where it acts on its input itself now (whole_strength.h)
+  std::string also;  ///< another maximum that these data hardly tell from this one, in words; empty: none found
 };
 
 /// What refits have in common.
@@ -41,6 +41,10 @@ struct RefitWork {
 
 /// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
 [[nodiscard]] Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry);
+
+/// A model whose last effect has another place than that of `from`: its parameters are the same ones in the same order, though their names
+/// and units may be others. Values, what is free, and lower bounds are those of `from`.
+[[nodiscard]] Model with_the_same_values(Model moved, const Model& from);
 
 /// The effect as refitted, for a start: its values as a cell and amplitudes.
 [[nodiscard]] ScreeningResult as_refitted(const ScreeningResult& screening, const Model& refitted);

@@ -236,12 +236,14 @@ Blocks blocks_of(const Ladder& ladder) {
   Blocks out;
   out.heading("Model ladder");
   out.figures("ladder");
-  TableBlock table{columns(">rung|added|system|>predicted drop|>actual drop|>held-out gain|random force|trim")};
+  const bool trims = std::any_of(ladder.rungs.begin(), ladder.rungs.end(), [](const Rung& r) { return r.trim.has_value(); });
+  TableBlock table{
+      columns(std::string(">rung|added|system|>predicted drop|>actual drop|>held-out gain|random force") + (trims ? "|trim" : ""))};
   std::vector<std::string> remarks;
   for (const Rung& r : ladder.rungs) {
     table.rows.push_back({std::to_string(r.id), r.added.empty() ? "(the study)" : added_in_words(r, ladder), r.system,
-                          shown_drop(r.predicted_drop), shown_drop(r.actual_drop), shown_gain(r.held_out_gain), force_text(r.force),
-                          shown(r.trim)});
+                          shown_drop(r.predicted_drop), shown_drop(r.actual_drop), shown_gain(r.held_out_gain), force_text(r.force)});
+    if (trims) table.rows.back().push_back(shown(r.trim));
     if (!r.parameters.empty())
       remarks.push_back(fmt::format("Rung {}, {}: {}.", r.id, added_in_words(r, ladder), values_text(r.parameters)));
     if (!r.note.empty()) remarks.push_back(as_sentence(fmt::format("Rung {}: {}", r.id, r.note)));

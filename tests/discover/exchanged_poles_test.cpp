@@ -1,0 +1,125 @@
+// A lag in front of a first-order system: which of the two time constants is whose, how well are they known, and what cannot be told apart
+// from what is in the model already.
+#include "misfit/discover/exchanged_poles.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "misfit/discover/discover.h"
+#include "misfit/discover/verdict.h"
+#include "tests/model/declared_texts.h"
+
+namespace misfit {
+namespace {
+
+using namespace testing_models;
+using testing::HasSubstr;
+
+const std::string motor_text = R"toml(
+[states]
+w = { unit = "rad/s" }
+[inputs]
+u = { unit = "V", hold = "zero_order" }
+[parameters]
+gain = { unit = "rad/s^2/V", value = 40.0, free = true }
+damping = { unit = "1/s", value = 2.0, bounds = [0.0, 1000.0], free = true }
+[equations]
+w = "gain*u - damping*w"
+[outputs]
+w = { unit = "rad/s", noise = 0.1 }
+)toml";
+
+constexpr double gain = 60.0, damping = 2.5, lag = 0.06, noise = 0.1;
+
+/// 30 s at 100 Hz: a voltage held at random for 0.2 s through a lag onto a motor, both first order, in closed form; two weak pushes a
+/// second on the motor itself.
+Signals record_of_motor(unsigned seed, double tau, double pushes) {
+  constexpr int samples = 3000, held = 20;
+  constexpr double step = 0.01;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Signals s;
+  s.name = "motor";
+  s.inputs = {{"u", "V", {}, 0.0}};
+  s.measured = {{"w", "rad/s", {}, 0.0}};
+  double w = 0.0, z = 0.0, u = 0.0;
+  for (int i = 0; i < samples; ++i) {
+    if (i % held == 0) u = 2.0 * normal(random);
+    s.t.push_back(step * i);
+    s.inputs[0].values.push_back(u);
+    s.measured[0].values.push_back(w + noise * normal(random));
+    const double fast = std::exp(-step / tau), slow = std::exp(-damping * step), rest = gain * u / damping;
+    const double of_lag = gain * (z - u) / (damping - 1.0 / tau);  // w' + damping w = gain (u + (z - u) exp(-t/tau))
+    w = rest + of_lag * fast + (w - rest - of_lag) * slow + pushes * normal(random);
+    z = u + (z - u) * fast;
+  }
+  return s;
+}
+
+FilterEstimate estimate_of(const ModelRequest& request, const Registry& known, const std::vector<Signals>& signals) {
+  return estimate_filter(assemble(request, known), {}, signals);
+}
+
+/// The lag acts on the input itself, where it is a share of 1: held there, it says nothing of the gain. (Held at a number, the gain was
+/// known twenty times too well.)
+TEST(ExchangedPoles, TheLagOfAnInputIsNotTakenForTheMotorsOwn) {
+  const auto known = registry_with(motor_text);
+  const ModelRequest model = request_of("text");
+  const std::vector<Signals> signals = {record_of_motor(3, lag, 0.02)};
+  const Discovery found = discover(estimate_of(model, *known, signals), model, *known, signals);
+  ASSERT_FALSE(found.candidates.empty());
+  const Candidate& first = found.candidates.front();
+  ASSERT_EQ(first.effect, "input_lag") << found.verdict;
+  EXPECT_TRUE(first.accepted) << first.why;
+  const Estimate& tau = first.parameters.at("input_tau");
+  EXPECT_NEAR(tau.value, lag, 4.0 * tau.sigma) << found.verdict;
+  EXPECT_LT(tau.sigma, 0.1 * lag);
+  EXPECT_EQ(first.roles.at("port"), "u");
+  EXPECT_EQ(first.parameters.at("lagged_gain").value, 1.0);
+
+  ModelRequest with = model;
+  with.effects.push_back(effect("input_lag", first.roles));
+  with.parameters["lagged_gain"] = {.value = 1.0, .free = false};
+  with.parameters["input_tau"].value = tau.value;
+  const FilterEstimate again = estimate_of(with, *known, signals);
+  const std::vector<int> free = again.model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = again.model.parameters[static_cast<std::size_t>(free[c])];
+    const double truth = p.name == "gain" ? gain : p.name == "damping" ? damping : lag;
+    const auto at = static_cast<Eigen::Index>(c);
+    EXPECT_NEAR(p.value, truth, 4.0 * std::sqrt(again.covariance(at, at))) << p.name;
+  }
+}
+
+TEST(ExchangedPoles, AreThoseOfTheEquations) {
+  const auto known = registry_with(motor_text);
+  ModelRequest model = request_of("text", {effect("input_lag", {{"input", "u"}, {"port", "u"}})});
+  model.parameters["lagged_gain"] = {.value = 1.0, .free = false};
+  model.parameters["input_tau"].value = lag;
+  const FilterEstimate estimate = estimate_of(model, *known, {record_of_motor(4, lag, 0.02)});
+  const std::vector<double> constants = time_constants_of_system(estimate);
+  ASSERT_EQ(constants.size(), 1U) << "the lag's own is none of the system's";
+  EXPECT_NEAR(constants.front(), 1.0 / estimate.model.parameters[1].value, 1e-6);
+  EXPECT_EQ(estimate.model.parameters[static_cast<std::size_t>(time_constant_of(estimate.model))].name, "input_tau");
+  EXPECT_EQ(time_constant_of(assemble(request_of("text", {effect("delay", {{"input", "u"}, {"port", "u"}})}), *known)), -1)
+      << "a delay has no pole";
+}
+
+TEST(NoLongerDetermined, NamesTheGainOfALinearMotorBesideTheScaleOfItsSensor) {
+  const auto known = registry_with(motor_text);
+  const std::vector<Signals> signals = {record_of_motor(5, 1e-4, 0.05)};
+  const FilterEstimate without = estimate_of(request_of("text"), *known, signals);
+  const FilterEstimate scaled = estimate_of(request_of("text", {effect("sensor_scale")}), *known, signals);
+  const auto why = no_longer_determined(scaled, without);
+  ASSERT_TRUE(why);
+  EXPECT_THAT(*why, HasSubstr("gain is no longer determined"));
+  const FilterEstimate rubbed =
+      estimate_of(request_of("text", {effect("quadratic_drag", {{"rate", "w"}, {"port", "dw/dt"}})}), *known, signals);
+  EXPECT_FALSE(no_longer_determined(rubbed, without)) << "drag and damping are told apart by large speeds";
+}
+
+}  // namespace
+}  // namespace misfit
