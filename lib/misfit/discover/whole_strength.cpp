@@ -50,7 +50,7 @@ class InputGain {
 double gain_of_input(const FilterEstimate& estimate, const Model& model, int quantity, int port) {
   const SystemSpec& system = model.system->spec();
   if (quantity < 0 || quantity >= int_size(system.quantities) || port < 0) return 0.0;
-  const int input = index_of(system.inputs, system.quantities[quantity].name);
+  const int input = model.input_of_quantity(quantity);
   if (input < 0) return 0.0;
   std::vector<double> gains;
   InputGain gain(model, {input, port});
@@ -64,6 +64,17 @@ double gain_of_input(const FilterEstimate& estimate, const Model& model, int qua
   }
   std::erase_if(gains, [](double g) { return !std::isfinite(g); });
   return gains.empty() ? 0.0 : median(gains);
+}
+
+/// The gain of which a strength is a share: by which the input acts on the effect's port; 1 where that is the input itself.
+double gain_at_port(const FilterEstimate& estimate, const Model& others, const BoundEffect& bound, int quantity) {
+  const int port = bound.ports.front();
+  if (bound.kind == PortKind::dynamic) return gain_of_input(estimate, others, quantity, port);
+  const SystemSpec& system = others.system->spec();
+  const int input = others.input_of_quantity(quantity);
+  const bool itself =
+      bound.kind == PortKind::quantity && port >= 0 && input >= 0 && system.quantity_ports[port].name == system.inputs[input].name;
+  return itself ? 1.0 : 0.0;
 }
 
 }  // namespace
@@ -84,9 +95,8 @@ std::vector<WholeStrength> whole_strengths(const FilterEstimate& estimate) {
     const std::string_view of = spec.coefficients[c].whole_of;
     const auto input = std::find_if(spec.quantities.begin(), spec.quantities.end(), [&](const Role& role) { return of == role.name; });
     if (!of.empty()) {
-      value *= input == spec.quantities.end()
-                   ? 0.0
-                   : gain_of_input(estimate, others, bound.quantities[input - spec.quantities.begin()], bound.ports.front());
+      value *=
+          input == spec.quantities.end() ? 0.0 : gain_at_port(estimate, others, bound, bound.quantities[input - spec.quantities.begin()]);
     }
     if (value != 0.0) out.push_back({parameter, value});
   }
@@ -104,8 +114,9 @@ std::optional<ModelRequest> on_its_input(const Model& model, const ModelRequest&
                                  [&](const Role& r) { return std::string_view(of_input->whole_of) == r.name; });
   const int quantity = role == spec.quantities.end() ? -1 : bound.quantities[role - spec.quantities.begin()];
   if (quantity < 0 || quantity >= int_size(system.quantities)) return std::nullopt;
-  const std::string& input = system.quantities[quantity].name;
-  if (index_of(system.inputs, input) < 0 || index_of(system.quantity_ports, input) < 0) return std::nullopt;
+  const int number = model.input_of_quantity(quantity);
+  if (number < 0 || index_of(system.quantity_ports, system.inputs[number].name) < 0) return std::nullopt;
+  const std::string& input = system.inputs[number].name;
   ModelRequest out = request;
   out.effects.back().roles[role->name] = input;
   out.effects.back().roles[spec.ports.front().name] = input;

@@ -94,7 +94,10 @@ void Assembler::check_unit(const EffectRequest& request, const Role& role, const
 int Assembler::bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const {
   if (is_left_out(request, role)) return -1;
   const std::string target = target_of(request, role, [&](const std::string& name) { return find_quantity(name) >= 0; });
-  const int index = find_quantity(target);
+  int index = find_quantity(target);
+  if (kind == PortKind::quantity && index >= system().base_quantities && index_of(system().inputs, target) >= 0) {
+    if (const int recorded = find_quantity(as_recorded(target)); recorded >= 0) index = recorded;  // what such effects change
+  }
   if (index < 0) {
     if (role.optional && !request.roles.contains(role.name)) return -1;
     throw InputError(request.where, "effect '" + shown(request.name) + "': system '" + system().key + "' has no quantity '" +
@@ -108,7 +111,7 @@ int Assembler::bind_quantity(const EffectRequest& request, const Role& role, Por
 
 /// Only of inputs is the past known.
 void Assembler::check_input(const EffectRequest& request, const std::string& target) const {
-  if (index_of(system().inputs, target) >= 0) return;
+  if (model_.input_of_quantity(find_quantity(target)) >= 0) return;
   std::vector<std::string> inputs;
   for (const auto& input : system().inputs) inputs.push_back(input.name);
   throw InputError(request.where, "effect '" + shown(request.name) + "' reads the past of an input, '" + shown(target) +

@@ -229,7 +229,7 @@ class Compiler {
     }
     for (int i = 0; i < n.nu; ++i) {
       const InputSpec& input = spec().inputs[i];
-      add_quantity({input.name + "_given", input.unit, "input as recorded", {input.name}, true, false}, g().leaf(n.u(i)), all);
+      add_quantity({as_recorded(input.name), input.unit, "input as recorded", {input.name}, true, false}, g().leaf(n.u(i)), all);
     }
     spec().base_quantities = int_size(all);
     for (int i = 0; i < n.nu; ++i) {

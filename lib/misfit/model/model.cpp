@@ -1,5 +1,6 @@
 #include "misfit/model/model.h"
 
+#include <algorithm>
 #include <set>
 
 #include "misfit/core/lists.h"
@@ -13,7 +14,11 @@ std::string roughness_unit(const Curve& curve) {
 
 int Model::input_of_quantity(int quantity) const {
   const SystemSpec& spec = system->spec();
-  return quantity < 0 || quantity >= int_size(spec.quantities) ? -1 : index_of(spec.inputs, spec.quantities[quantity].name);
+  if (quantity < 0 || quantity >= int_size(spec.quantities)) return -1;
+  const std::string& name = spec.quantities[quantity].name;
+  const auto input = std::find_if(spec.inputs.begin(), spec.inputs.end(),
+                                  [&](const InputSpec& i) { return i.name == name || as_recorded(i.name) == name; });
+  return input == spec.inputs.end() ? -1 : static_cast<int>(input - spec.inputs.begin());
 }
 
 std::vector<LateInputUse> Model::late_inputs() const {

@@ -99,6 +99,9 @@ struct ComparedQuantity {
   bool distribution_only = false;  ///< without its autocorrelation and spectrum: an unbounded rate, say
 };
 
+/// The quantity that is an input as it was recorded, before effects on the port of its name change it.
+[[nodiscard]] inline std::string as_recorded(const std::string& input) { return input + "_given"; }
+
 struct SystemSpec {
   std::string key, doc, formula, source;
   bool angles_in_radians = false;  ///< angles and their rates are shown in radians: their units are in_radians()
