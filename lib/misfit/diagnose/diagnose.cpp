@@ -155,7 +155,7 @@ void conclude(Diagnosis& out) {
   }
   if (said == 0) {
     const std::string best = out.maps.empty() ? ""
-                                              : ": the most significant map, " + out.maps.front().port + " over " +
+                                              : ": the most significant map over one quantity, " + out.maps.front().port + " over " +
                                                     out.maps.front().quantity + ", has " + p_equals(out.maps.front().p_corrected);
     out.sentences.push_back("no map of the missing force differs significantly from zero" + best);
   }

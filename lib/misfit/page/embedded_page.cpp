@@ -78,10 +78,10 @@ std::string state_of(const EmbeddedPage& page) {
   std::vector<std::string> warnings;
   for (const std::string& warning : page.warnings) warnings.push_back(json_string(warning));
   return fmt::format(
-      R"({{"version":"","study":{{"name":{},"question":{},"fault":null}},"models":{},"outdated":{},"verdict":{},"effects":[],"settable":null,"films":[],)"
+      R"({{"version":"","study":{{"name":{},"question":{},"fault":null}},"models":{},"outdated":{},"verdict":{},"effects":[],"settable":null,"films":[],"camera":{},)"
       R"("job":{{"state":"none","number":0}}}})",
       json_string(page.study), json_words(page.question), models_view(page.places), json_list(warnings),
-      page.verdict != nullptr ? json_of(blocks_of(*page.verdict)) : "null");
+      page.verdict != nullptr ? json_of(blocks_of(*page.verdict)) : "null", calibration_of(page.places.front()).has_value());
 }
 
 std::string study_of(const Place& place) {
@@ -141,7 +141,7 @@ AllAnswers all_answers(const EmbeddedPage& page) {
   out.push_back({"state?", state_of(page), true});
   for (std::size_t model = page.places.size(); model-- > 0;) add_first_views(page, model, out);
   for (std::size_t model = page.places.size(); model-- > 0;) add_other_views(page, model, out);
-  out.push_back({"ladder?", ladder_view(page.places.front().folder)});
+  out.push_back({"ladder?", ladder_view(page.places)});
   out.push_back({"calibration?", calibration_view(page.places.front())});
   add_pointed_at(page, out);
   return out;

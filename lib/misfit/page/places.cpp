@@ -29,9 +29,9 @@ std::optional<Ladder> ladder_in(const fs::path& folder) {
   return read_if(file, [&] { return read_ladder(file); });
 }
 
-std::vector<Place> places_of(const fs::path& study, const fs::path& folder) {
+std::vector<Place> places_of(const fs::path& study, const fs::path& folder, bool with_rungs) {
   std::vector<Place> out{{study, folder, 0, ""}};
-  const std::optional<Ladder> known = ladder_in(folder);
+  const std::optional<Ladder> known = with_rungs ? ladder_in(folder) : std::nullopt;
   for (const Rung& rung : known ? known->rungs : std::vector<Rung>{}) {
     if (rung.parent < 0 || !is_inside(rung.study)) continue;
     const fs::path its_study = folder / rung.study;

@@ -200,8 +200,19 @@ std::string calibration_view(const Place& place) {
                      json_of(report::calibration_residual_figure(*c)));
 }
 
-std::string ladder_view(const std::filesystem::path& folder) {
-  const std::optional<Ladder> ladder = ladder_in(folder);
+namespace {
+
+/// That of these models; nullopt where it is of the study as it was.
+std::optional<Ladder> ladder_of(const std::vector<Place>& places) {
+  std::optional<Ladder> ladder = ladder_in(places.front().folder);
+  if (ladder && ladder->rungs.size() > 1 && places.size() == 1) return std::nullopt;
+  return ladder;
+}
+
+}  // namespace
+
+std::string ladder_view(const std::vector<Place>& places) {
+  const std::optional<Ladder> ladder = ladder_of(places);
   if (!ladder || ladder->rungs.empty()) return "null";
   const auto rung = [&](const Rung& r) {
     return fmt::format(R"({{"id":{},"added":{},"system":{},"blocks":{}}})", r.id, json_string(r.added), json_string(r.system),
@@ -218,7 +229,7 @@ std::string models_view(const std::vector<Place>& places) {
 std::string verdict_view(const std::vector<Place>& places, const std::string& study, const std::string& out) {
   const std::vector<Fit> fits = fits_of(places.front());
   if (fits.empty()) return "null";
-  const std::optional<Ladder> ladder = ladder_in(places.front().folder);
+  const std::optional<Ladder> ladder = ladder_of(places);
   const bool effects_added = places.size() > 1;
   const std::optional<Calibration> calibration = calibration_of(places.front());
   const std::optional<Comparison> comparison = comparison_of(places.front());

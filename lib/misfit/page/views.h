@@ -29,7 +29,7 @@ namespace misfit::page {
 /// Of places[model] by every method; dotted: of the models below it by the last method that has the curve.
 [[nodiscard]] std::string curves_view(const std::vector<Place>& places, std::size_t model, const std::vector<Reference>& references);
 [[nodiscard]] std::string calibration_view(const Place& place);
-[[nodiscard]] std::string ladder_view(const std::filesystem::path& folder);
+[[nodiscard]] std::string ladder_view(const std::vector<Place>& places);
 /// {"id", "added"} of every model.
 [[nodiscard]] std::string models_view(const std::vector<Place>& places);
 /// What the study has come to, as the report begins. `study`, `out`: as commands name them (VerdictInput).

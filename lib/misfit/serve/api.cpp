@@ -16,6 +16,7 @@
 #include "misfit/page/views.h"
 #include "misfit/workflow/ladder.h"
 #include "misfit/workflow/session/study_change.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit::serve {
 namespace {
@@ -194,7 +195,7 @@ Answer Api::get(const Ask& ask) {
   if (ask.path == "/api/frame") return {200, frame(ask)};
   if (ask.path == "/api/curves") return {200, curves(ask)};
   if (ask.path == "/api/calibration") return {200, page::calibration_view(results_.places().front())};
-  if (ask.path == "/api/ladder") return {200, page::ladder_view(results_.folder())};
+  if (ask.path == "/api/ladder") return {200, page::ladder_view(results_.places())};
   if (ask.path == "/api/study") return study(place(ask));
   if (ask.path == "/api/session") return {200, fmt::format(R"({{"text":{}}})", json_string(script_.text()))};
   return failure(404, "there is no such page");
@@ -223,6 +224,7 @@ void Api::open_study(Known& known) const {
       const Session session(options_, registry_, RunFolder::Access::read);
       name = session.study.name;
       question = session.study.question;
+      results_.know_ladder(known_ladder(session).has_value());
       known.outdated = outdated(session);
       known.references = references(session);
       known.settable = settable_of(session);
@@ -261,9 +263,9 @@ std::shared_ptr<const Api::Known> Api::known() {
 std::string Api::state() {
   const auto all = known();
   return fmt::format(
-      R"({{"version":"{}","study":{},"models":{},"outdated":{},"verdict":{},"effects":{},"settable":{},"films":{},"job":{}}})",
+      R"({{"version":"{}","study":{},"models":{},"outdated":{},"verdict":{},"effects":{},"settable":{},"films":{},"camera":{},"job":{}}})",
       all->version, all->study, all->models, strings(all->outdated), all->verdict, json_of(all->effects), json_of(all->settable),
-      films_of(all->films), json_of(jobs_.report()));
+      films_of(all->films), std::filesystem::exists(results_.folder() / "camera.json"), json_of(jobs_.report()));
 }
 
 Answer Api::study(const Place& place) const {
@@ -294,6 +296,11 @@ std::vector<std::string> Api::words_of_add(const JobRequest& request) const {
   for (const Candidate& candidate : discovery ? discovery->candidates : std::vector<Candidate>{}) {
     if (candidate.effect != *effect || words_of_place(candidate) != request.at) continue;
     for (const std::string& word : words_of_place(candidate)) words.push_back("--at=" + word);
+    return words;
+  }
+  for (const EffectPlace& place : discovery ? discovery->unexplained_effects : std::vector<EffectPlace>{}) {
+    if (place.effect != *effect || words_of_place(place.roles) != request.at) continue;
+    for (const std::string& word : words_of_place(place.roles)) words.push_back("--at=" + word);
     return words;
   }
   throw InputError("at: a place of the effect in the list of candidates is expected");

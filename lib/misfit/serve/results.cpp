@@ -8,6 +8,8 @@
 #include "misfit/page/read_if.h"
 #include "misfit/workflow/assess/assess.h"
 #include "misfit/workflow/estimate/estimate.h"
+#include "misfit/workflow/ladder.h"
+#include "misfit/workflow/stages.h"
 
 namespace misfit::serve {
 namespace {
@@ -45,8 +47,13 @@ std::vector<std::string> outdated(const Session& session) {
   }
   look("diagnosis.json", "the diagnosis", [&] { return known_diagnosis(session).has_value(); });
   look("discovery.json", "the candidates", [&] { return known_discovery(session).has_value(); });
-  if (old.empty()) return {};
-  return {"The study, its data or this program have changed since these were made: " + join_words(old) + ". Run makes them again."};
+  std::vector<std::string> out;
+  if (!old.empty())
+    out.push_back("The study, its data or this program have changed since these were made: " + join_words(old) + ". Run makes them again.");
+  const std::optional<Ladder> rungs = known_ladder(session) ? std::nullopt : page::ladder_in(session.folder.path());
+  if (rungs && rungs->rungs.size() > 1)
+    out.emplace_back("The ladder that was made is of the study as it was before, and is not shown: Add begins a new one.");
+  return out;
 }
 
 }  // namespace misfit::serve

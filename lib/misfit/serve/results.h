@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -18,10 +19,14 @@ class Results {
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// Another text whenever a file of the study or of its ladder may have changed.
   [[nodiscard]] std::string version() const;
-  [[nodiscard]] std::vector<page::Place> places() const { return page::places_of(study_, folder_); }
+  /// The models: those of the ladder where it is that of the study as it is now.
+  [[nodiscard]] std::vector<page::Place> places() const { return page::places_of(study_, folder_, ladder_is_current_); }
+  /// Whether the ladder in the run folder is, as known_ladder() says of an opened session.
+  void know_ladder(bool current) const { ladder_is_current_ = current; }
 
  private:
   std::filesystem::path study_, folder_;
+  mutable std::atomic<bool> ladder_is_current_ = true;
 };
 
 /// What of the results does not belong to the study as it is now, in sentences. `session`: opened to read.

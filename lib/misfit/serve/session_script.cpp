@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string head() {
-  return "#!/bin/sh\n# What was done in the page of `misfit open`, as commands: sh session.sh does it again, in the same folder of "
-         "results.\n"
+  return "#!/bin/sh\n# What was done in the page of `misfit open`, as commands. On the study as it was at first, and without its folder of "
+         "results,\n# sh session.sh gives the same again.\n"
          "set -e\ncd -- " +
          shell_word(fs::current_path().string()) + "\n";
 }

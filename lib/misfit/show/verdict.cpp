@@ -107,7 +107,8 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     for (auto& [name, estimate] : now) {
       if (last.estimates && last.estimates->contains(name)) estimate = last.estimates->at(name);
     }
-    out.push_back(added_in_words(rung, ladder) + ": " + values_of(now));
+    const std::string gain = rung.held_out_gain ? fmt::format("; held-out gain {:.1f}", *rung.held_out_gain) : "";
+    out.push_back(added_in_words(rung, ladder) + ": " + values_of(now) + gain);
   }
   return out;
 }

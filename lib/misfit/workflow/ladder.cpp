@@ -130,6 +130,17 @@ void compare_with_parent(const FilterWork& child, const FilterWork& parent, int 
 }
 
 /// "c is held at 0.5 1/s: the curve takes it over"
+/// Values that discovery found and the study of the rung holds: they stand in no table of estimates.
+std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
+  std::vector<std::string> out;
+  for (const auto& [name, e] : from.parameters) {
+    const bool estimated = std::any_of(fit.parameters.begin(), fit.parameters.end(),
+                                       [&, own = name](const auto& p) { return p.first == own || p.first.ends_with("." + own); });
+    if (!estimated) out.push_back(name + " is held at " + in_display_unit(e.value, e.unit));
+  }
+  return join_words(out);
+}
+
 std::string held_in_words(const std::map<std::string, Estimate>& held) {
   std::string out;
   for (const auto& [name, e] : held)
@@ -296,6 +307,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
     if (from) append_note(rung.note, held_in_words(from->held));
     if (from) rung.roles = from->roles;
+    if (from) append_note(rung.note, not_estimated_in_words(*from, work->fit));
     const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.progress_of("add"));
     compare_with_parent(*work, *parent_work, options_.threads, rung);
   }

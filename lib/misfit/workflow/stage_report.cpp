@@ -84,7 +84,7 @@ void add_findings(const Session& session, report::ReportInput& input, std::vecto
 
 /// The study's own model and its rungs; what the document omits of them is omitted here, too.
 std::vector<page::Place> shown_places(const Session& session, const std::vector<Fit>& fits, const report::ReportInput& input) {
-  std::vector<page::Place> places = page::places_of(session.study.file, session.folder.path());
+  std::vector<page::Place> places = page::places_of(session.study.file, session.folder.path(), known_ladder(session).has_value());
   for (const Fit& fit : fits) places.front().methods.push_back(fit.method);
   places.front().diagnosed = input.diagnosis.has_value();
   places.front().asked = input.discovery.has_value();

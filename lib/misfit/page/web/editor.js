@@ -64,6 +64,7 @@ export function editor({ get, post, look }) {
       number();
       verdict();
       await look();
+      if (document.activeElement === document.body) document.querySelector('#view textarea')?.focus({ preventScroll: true }); // it may have been made anew
     } catch (error) {
       faults = error.answer?.faults ?? faults;
       number();

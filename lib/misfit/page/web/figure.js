@@ -54,6 +54,8 @@ export class TimeGroup {
     this.window = null; // [from, to] of the zoom; null: all
     this.marks = []; // intervals of time [s]
     this.onmark = () => {};
+    this.onbegun = () => {};
+    this.begun = undefined;
     this.sync = uPlot.sync('time');
   }
   zoom(window) {
@@ -66,6 +68,13 @@ export class TimeGroup {
   }
   point(t) {
     for (const plot of this.plots) plot.pointAt(t);
+  }
+  /** A mark by keys: from one cursor to the next. */
+  markFrom(t) {
+    const from = this.begun;
+    this.begun = from === undefined || from === t ? t : undefined;
+    if (this.begun === undefined) this.onmark([[Math.min(from, t), Math.max(from, t)]]);
+    else this.onbegun(t);
   }
 }
 
@@ -168,6 +177,10 @@ class Plot {
         swatch.style.borderRadius = '50%';
       }
       if (['line', 'dashed', 'dotted', 'steps'].includes(s.style)) swatch.style.height = '3px';
+      if (s.style === 'dashed' || s.style === 'dotted') {
+        const [dash, gap] = s.style === 'dashed' ? [5, 3] : [2, 2];
+        swatch.style.background = `repeating-linear-gradient(90deg, ${colour(s.colour, s.style)} 0 ${dash}px, transparent ${dash}px ${dash + gap}px)`;
+      }
       out.append(element('span', {}, swatch, words(s.legend)));
       if (s.sorted && s.y && s.style !== 'bars') this.values.push({ s, name: plain(s.legend).split(', ±')[0], sigma: this.sigmaOf(s) });
       else if (s.style === 'band' && s.sorted && plain(s.legend).startsWith('±')) this.values.push({ s, name: '', sigma: { band: s } });
@@ -252,7 +265,7 @@ class Plot {
       scales: { x: { time: false, auto: false, range: (u, a, b) => [a, b] }, y: { auto: false, range: (u, a, b) => [a, b] } },
       axes: this.axes(), series: [{}, { points: { show: false } }],
       cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, ...(group ? { sync: { key: 'time', setSeries: false } } : {}),
-        bind: { mousedown: (u, target, handler) => (event) => { this.shift = event.shiftKey; handler(event); }, dblclick: () => () => this.all() } },
+        bind: { mousedown: (u, target, handler) => (event) => { this.pressed = true; this.shift = event.shiftKey; handler(event); }, dblclick: () => () => this.all() } },
       hooks: { draw: [() => this.paint()], setCursor: [() => this.read()], setSelect: [() => this.selected()] },
     };
     this.u = new uPlot(options, [this.xRange, [null, null]], this.host);
@@ -287,9 +300,15 @@ class Plot {
   all() {
     this.zoom(null);
   }
+  /** The plots that are synchronised get the same selection: it is taken once, by the one that was dragged. */
   selected() {
-    const { left, width } = this.u.select;
+    const { left, width } = this.u.select, own = this.pressed;
+    this.pressed = false;
     if (width < 4) return;
+    if (!own) {
+      this.u.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+      return;
+    }
     this.dragged = true;
     const window = [this.u.posToVal(left, 'x'), this.u.posToVal(left + width, 'x')];
     this.u.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
@@ -334,7 +353,8 @@ class Plot {
       if (this.view.group) this.view.group.point(x);
       else this.pointAt(x);
       this.view.options.onkeypoint?.(this, x);
-    } else if (event.key === 'Enter') this.view.options.onpick?.(this, at, null);
+    } else if (event.key === 'm' && this.view.group) this.view.group.markFrom(at);
+    else if (event.key === 'Enter') this.view.options.onpick?.(this, at, null);
     else return;
     event.preventDefault();
   }

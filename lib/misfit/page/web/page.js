@@ -6,7 +6,7 @@ import { editor } from '/editor.js';
 
 const at = (id) => document.getElementById(id);
 const time = new TimeGroup();
-const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves'], ['calibration', 'Calibration'],
+const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves, parameters'], ['calibration', 'Calibration'],
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
 /** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
@@ -82,6 +82,7 @@ function showHead() {
   alerts.replaceChildren();
   if (study.fault) alerts.append(element('p', { class: 'warning', id: 'fault' }, `The study has an error: ${study.fault.message} `,
     element('button', { onclick: () => correct() }, 'Correct it')));
+  at('tabs').querySelector('[data-view=calibration]').hidden = !here.state.camera && here.tab !== 'calibration';
   for (const sentence of outdated) alerts.append(element('p', { class: 'warning' }, sentence));
   if (!verdict) alerts.append(element('p', {}, 'There are no results yet: Run makes them.'));
   at('verdict').replaceChildren(blocks(verdict));
@@ -112,7 +113,7 @@ function showJob(job) {
   at('stop').textContent = job.stopping ? 'Stop at once' : 'Stop';
   began.follow(job);
   if (focused !== document.body && (focused.disabled || focused.hidden)) began.takeFocus(running);
-  at('command').hidden = box.hidden = job.state === 'none';
+  at('command').hidden = box.hidden = job.state === 'none' || (!running && here.closed === job.number);
   if (job.state === 'none') return;
   at('command').textContent = job.command;
   box.className = job.state;
@@ -124,6 +125,7 @@ function showJob(job) {
   const head = element('p', {}, element('b', {}, end[job.state]), ` · ${shown(job.seconds, 3)} s`);
   if (running && job.work) head.append(` · ${job.work} `, job.part === null ? '' : element('progress', { value: job.part, max: 1 }),
     job.left === null ? '' : ` at most ${shown(job.left, 2)} s left`);
+  if (!running) head.append(' ', element('button', { class: 'closes', title: 'Hide what the command said; it stays in session.sh', onclick: () => { box.hidden = at('command').hidden = true; here.closed = job.number; } }, 'Close'));
   const open = box.querySelector('details')?.open ?? false;
   const parts = [head, costs(job.costs)];
   if (!running && job.state === 'failed') parts.push(element('pre', { class: 'warning' }, job.notes.slice(-5).join('\n')));
@@ -156,6 +158,7 @@ function sparkline(values) {
 class Began {
   key = null;
   number = null;
+  at = -Infinity; // when it was asked for
   constructor() {
     this.words = element('span', { 'aria-live': 'polite' });
     this.clock = element('span', { 'aria-hidden': true });
@@ -185,6 +188,7 @@ class Began {
   }
   asked(key) {
     this.key = key;
+    this.at = performance.now();
     this.number = null;
     this.node.remove();
     this.place();
@@ -212,6 +216,7 @@ class Began {
 const began = new Began();
 
 async function stop() {
+  if (performance.now() - began.at < 800) return; // the Enter that began it, pressed twice
   try {
     await post('stop');
     await look();
@@ -260,7 +265,7 @@ function drawTime() {
   const force = missing();
   const height = channels.length > 1 ? 0.45 : 0.7;
   film.show(channels);
-  channels.forEach((c, k) => here.timeFigures.push(new Figure(at('motion'), c.figure, { ...options, height, xLabel: !force && k === channels.length - 1,
+  channels.forEach((c, k) => here.timeFigures.push(new Figure(at('motion'), c.figure, { ...options, height, xLabel: k === channels.length - 1,
     oncursor: k === 0 ? (t) => film.point(t) : null })));
   if (channels.length === 0) at('motion').append(element('p', { class: 'soft' },
     here.motion.methods.length === 0 ? 'Nothing is fitted yet.' : 'This method does not predict the motion.'), blocks(here.motion.blocks));
@@ -277,7 +282,7 @@ function drawForce(added) {
   here.added = added;
   here.force = null;
   if (missing()) {
-    at('force').append(element('h3', {}, added ? `Force that is missing, ± 1 sigma, and (black) what ${added.name} adds` : 'Force that is missing, ± 1 sigma'));
+    at('force').append(element('h3', {}, added ? `Force that is missing, ± 1 sigma, and (thick) what ${added.name} adds` : 'Force that is missing, ± 1 sigma'));
     here.force = new Figure(at('force'), added?.figure ?? missing().figure, { group: time, title: false, caption: false, height: 0.5 });
     here.timeFigures.push(here.force);
   }
@@ -373,6 +378,7 @@ function unmark() {
   }
   mark([], '', true);
 }
+time.onbegun = (t) => { at('marked').textContent = `Marked from ${shown(t, 5)} s: m again where it ends`; };
 time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${shown(from, 5)} s to ${shown(to, 5)} s`, true);
 
 /** The samples of the marked times, in the view of force against a quantity. */
@@ -770,10 +776,11 @@ function begin() {
   at('work').hidden = !live;
   at('tabs').replaceChildren(...tabs.map(([name, text]) => element('button', { role: 'tab', 'data-view': name, 'aria-controls': 'view', onclick: () => showTab(name) }, text)));
   at('tabs').addEventListener('keydown', (event) => {
-    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (!step) return;
-    const k = tabs.findIndex(([name]) => name === here.tab);
-    showTab(tabs[(k + step + tabs.length) % tabs.length][0], true);
+    const there = tabs.filter(([name]) => !at('tabs').querySelector(`[data-view=${name}]`).hidden), n = there.length;
+    const k = there.findIndex(([name]) => name === here.tab);
+    const next = { ArrowRight: (k + 1) % n, ArrowLeft: (k + n - 1) % n, Home: 0, End: n - 1 }[event.key];
+    if (next === undefined) return;
+    showTab(there[next][0], true);
     event.preventDefault();
   });
   for (const verb of ['run', 'fit', 'discover']) at(verb).addEventListener('click', () => start(verb, verb));
