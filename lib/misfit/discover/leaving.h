@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/discover/discover.h"
 #include "misfit/fit/filter/filter_estimate.h"
 #include "misfit/model/registry.h"
 

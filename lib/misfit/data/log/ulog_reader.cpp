@@ -188,7 +188,8 @@ class UlogReader : public RecordReader {
     if (content.size() <= head) bytes_.fail(m.at, "an instance, a number and a name of a topic are expected");
     const std::string type = content.text(head, content.size() - head, "a name");
     const std::uint64_t instance = content.unsigned_at(0, 1, "");
-    Layout layout{m.at};
+    Layout layout;
+    layout.at = m.at;
     lay_out(layout, type, "", 0);
     RecordTopic topic{instance == 0 ? type : type + "[" + std::to_string(instance) + "]", std::move(layout.fields), 0, 0, 0};
     const auto time = std::find_if(topic.fields.begin(), topic.fields.end(), [](const RecordField& f) { return f.name == "timestamp"; });

@@ -97,7 +97,8 @@ struct NoisePart {
   bool absent_at_lower;
 };
 
-std::vector<NoisePart> noise_parts(const FilterEstimate& estimate) {
+/// Those that the fit has found; `fit`: with noise and force.
+std::vector<NoisePart> noise_parts(const FilterEstimate& estimate, const Fit& fit) {
   const SystemSpec& spec = estimate.model.system->spec();
   std::vector<NoisePart> out;
   for (int group = 0; group < estimate.forced.force_groups(); ++group) {
@@ -105,10 +106,14 @@ std::vector<NoisePart> noise_parts(const FilterEstimate& estimate) {
     const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[port - estimate.forced.force_group.begin()]];
     out.push_back({place_of_force(group, spec), std::string("the random force on ") + named.name, named.unit, true});
   }
+  if (fit.driven) out.push_back({1, "the correlation time of the random force", "s", false});
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     const std::string of = std::string(" noise of ") + spec.outputs[o].name;
     out.push_back({2 + 4 * o, "the white" + of, spec.outputs[o].unit, false});
     out.push_back({3 + 4 * o, "the coloured" + of, spec.outputs[o].unit, true});
+    if (!fit.noise.contains(spec.outputs[o].name + "_coloured")) continue;
+    out.push_back({4 + 4 * o, "the frequency of the coloured" + of, "Hz", false});
+    out.push_back({5 + 4 * o, "the damping of the coloured" + of, "-", false});
   }
   return out;
 }
@@ -117,9 +122,9 @@ std::vector<NoisePart> noise_parts(const FilterEstimate& estimate) {
 void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit) {
   constexpr double nearest = 1e-3;  // of the logarithm
   const NoiseVector vector = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
-  for (const auto& [at, words, unit, absent_at_lower] : noise_parts(estimate)) {
+  for (const auto& [at, words, unit, absent_at_lower] : noise_parts(estimate, fit)) {
     if (vector.upper[at] - vector.lower[at] < nearest) continue;  // held by the study
-    const bool lower = vector.value[at]<vector.lower[at] + nearest, upper = vector.value[at]> vector.upper[at] - nearest;
+    const bool lower = vector.value[at] - vector.lower[at] < nearest, upper = vector.upper[at] - vector.value[at] < nearest;
     if (!upper && (!lower || absent_at_lower)) continue;
     fit.warnings.push_back(words + " is at its " + (lower ? "lower" : "upper") + " bound " +
                            in_display_unit(std::exp(vector.value[at]), unit) +
