@@ -48,6 +48,7 @@ MotionSeries compared(const MotionPath& measured, unsigned first_seed, std::size
     simulated.push_back(motion_numbers(random_motion(first_seed + static_cast<unsigned>(k), 1.0, measured.values.size()), scales));
   MotionDistances distances;
   MotionSeries out = compare_motion(measured, scales, simulated, distances);
+  out.experiment = "flight";
   if (overall != nullptr) *overall = overall_p_value(distances);
   return out;
 }

@@ -255,7 +255,7 @@ TEST_F(StudyFolder, ThePerturbationsAreChecked) {
 TEST_F(StudyFolder, AKeyThatHadAnotherNameIsRefusedWithTheNewOne) {
   expect_parts(error_with("[uncertainty]\nreadings = \"sigma\"\n"),
                {"study.toml:4", "uncertainty.readings: this key is called distribution now"});
-  expect_parts(error_with("[camera]\nsweep = \"sweep.csv\"\ntake_in = [\"camera_roll\"]\n"),
+  expect_parts(error_with("[camera]\nsweep = \"static_sweep.csv\"\ntake_in = [\"camera_roll\"]\n"),
                {"study.toml:5", "camera.take_in: this key is called free now"});
 }
 

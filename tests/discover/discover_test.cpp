@@ -22,7 +22,7 @@ struct Flight {
   ModelRequest request;
   FilterEstimate estimate;
   explicit Flight(const Signals& flight) : signals{flight}, request(request_for(signals)), estimate(fitted(request, signals)) {}
-  [[nodiscard]] Discovery discover() const { return misfit::discover(estimate, request, registry(), signals); }
+  [[nodiscard]] Discovery discover() const { return misfit::discover({estimate, request, registry(), signals}); }
 };
 
 TEST(Discover, IsSilentWhereNothingIsMissing) {
@@ -50,7 +50,7 @@ TEST(Discover, OnlyOneEffectIsPredictedAsInTheWholeSearch) {
   const Discovery whole = flight.discover();
   DiscoverOptions options;
   options.only = "coulomb_friction";
-  const Discovery one = misfit::discover(flight.estimate, flight.request, registry(), flight.signals, options);
+  const Discovery one = misfit::discover({flight.estimate, flight.request, registry(), flight.signals}, options);
   ASSERT_EQ(one.candidates.size(), 1U);
   const auto same =
       std::find_if(whole.candidates.begin(), whole.candidates.end(), [](const Candidate& c) { return c.effect == "coulomb_friction"; });
@@ -60,10 +60,10 @@ TEST(Discover, OnlyOneEffectIsPredictedAsInTheWholeSearch) {
   EXPECT_FALSE(one.candidates[0].actual_drop.has_value());
   EXPECT_LT(one.candidates[0].p_value, 0.01);
   options.refit_best_of = [](const Candidate&) { return true; };
-  const Discovery refitted = misfit::discover(flight.estimate, flight.request, registry(), flight.signals, options);
+  const Discovery refitted = misfit::discover({flight.estimate, flight.request, registry(), flight.signals}, options);
   EXPECT_NEAR(refitted.candidates.at(0).actual_drop.value_or(0.0), same->actual_drop.value_or(1e9), 1e-6 * *same->actual_drop);
   options.only = "coning";  // in the spherical system already
-  EXPECT_TRUE(misfit::discover(flight.estimate, flight.request, registry(), flight.signals, options).candidates.empty());
+  EXPECT_TRUE(misfit::discover({flight.estimate, flight.request, registry(), flight.signals}, options).candidates.empty());
 }
 
 TEST(Verdict, AStrengthAtItsBoundIsNamedAndOneAtZeroIsNot) {
@@ -153,7 +153,7 @@ TEST(Discover, DoesNotAcceptWhatEndsAtItsBound) {
   const Flight flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}, {"width", 0.02}}));
   ModelRequest request = flight.request;
   request.parameters["friction"].upper = 10.0;
-  const Discovery found = misfit::discover(flight.estimate, request, registry(), flight.signals);
+  const Discovery found = misfit::discover({flight.estimate, request, registry(), flight.signals});
   const auto friction =
       std::find_if(found.candidates.begin(), found.candidates.end(), [](const Candidate& c) { return c.effect == "coulomb_friction"; });
   ASSERT_NE(friction, found.candidates.end());

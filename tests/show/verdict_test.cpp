@@ -131,7 +131,7 @@ TEST(Verdict, AnAcceptedEffectIsNamedWithItsValuesTheForceThatItLeavesAndTheComm
   c.discovery = searched({candidate("coulomb_friction", 1e-60, true)}, SearchOutcome::accepted, "Missing: coulomb_friction");
   const Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::missing);
-  EXPECT_EQ(v.sentence, SearchOutcome::accepted, "Missing: coulomb_friction, with friction = 5.00 ± 0.50 V/s (p = 1e-60).");
+  EXPECT_EQ(v.sentence, "Missing: coulomb_friction, with friction = 5.00 ± 0.50 V/s (p = 1e-60).");
   EXPECT_EQ(v.next, "misfit add configs/motor coulomb_friction");
   ASSERT_EQ(v.errors.size(), 2U);
   EXPECT_EQ(shown(v.errors[0]), "20.0 ± 1.0 V/s to 5.00 ± 0.40 V/s (-75 %)");

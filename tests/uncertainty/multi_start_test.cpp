@@ -88,8 +88,8 @@ TEST(MultiStarts, AHairsBreadthIsTheSameMaximum) {
 
 TEST(MultiStarts, DependOnSeedAndNumberAlone) {
   const Fitted f;
-  const MultiStarts a(f.fit, f.model, 100.0, two_maxima(f, 1.0), {40, 5}), b(f.fit, f.model, 100.0, two_maxima(f, 1.0), {3, 5}),
-      other(f.fit, f.model, 100.0, two_maxima(f, 1.0), {3, 6});
+  const MultiStarts a({f.fit, f.model, 100.0}, two_maxima(f, 1.0), {40, 5}), b({f.fit, f.model, 100.0}, two_maxima(f, 1.0), {3, 5}),
+      other({f.fit, f.model, 100.0}, two_maxima(f, 1.0), {3, 6});
   EXPECT_EQ(a.run(2).numbers, b.run(2).numbers);
   EXPECT_NE(a.run(2).numbers, a.run(1).numbers);
   EXPECT_NE(a.run(2).numbers, other.run(2).numbers);
@@ -98,11 +98,11 @@ TEST(MultiStarts, DependOnSeedAndNumberAlone) {
 TEST(MultiStarts, ThatAllFailOrCannotDifferAreRefused) {
   Fitted f;
   const SearchFrom nowhere = [](const RandomStart&) { return Maximum{std::nullopt, "it cannot be run", {}}; };
-  const MultiStarts starts(f.fit, f.model, 0.0, nowhere, {2, 1});
+  const MultiStarts starts({f.fit, f.model, 0.0}, nowhere, {2, 1});
   EXPECT_THROW(static_cast<void>(starts.summary({starts.run(0), starts.run(1)})), RunError);
-  EXPECT_THROW(MultiStarts(f.fit, f.model, 0.0, nowhere, {0, 1}), InputError);
+  EXPECT_THROW(MultiStarts({f.fit, f.model, 0.0}, nowhere, {0, 1}), InputError);
   for (auto& p : f.model.parameters) p.free = false;
-  EXPECT_THROW(MultiStarts(f.fit, f.model, 0.0, nowhere, {2, 1}), RunError);
+  EXPECT_THROW(MultiStarts({f.fit, f.model, 0.0}, nowhere, {2, 1}), RunError);
 }
 
 TEST(RandomStart, ScattersByTypicalSizesAndPriorsInsideTheBounds) {

@@ -124,7 +124,7 @@ void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit) {
   const NoiseVector vector = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
   for (const auto& [at, words, unit, absent_at_lower] : noise_parts(estimate, fit)) {
     if (vector.upper[at] - vector.lower[at] < nearest) continue;  // held by the study
-    const bool lower = vector.value[at]<vector.lower[at] + nearest, upper = vector.value[at]> vector.upper[at] - nearest;
+    const bool lower = vector.value[at] - vector.lower[at] < nearest, upper = vector.upper[at] - vector.value[at] < nearest;
     if (!upper && (!lower || absent_at_lower)) continue;
     fit.warnings.push_back(words + " is at its " + (lower ? "lower" : "upper") + " bound " +
                            in_display_unit(std::exp(vector.value[at]), unit) +
