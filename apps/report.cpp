@@ -1,6 +1,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "apps/print.h"
 #include "apps/verbs.h"
 #include "misfit/workflow/stages.h"
 
@@ -8,8 +9,13 @@ namespace misfit {
 
 int report_verb(const Options& options, const Registry& registry) {
   Session session(options.session, registry);
-  const std::string page = report_stage(session, fit_stage(session)).string();
-  std::cout << (options.json ? nlohmann::json{{"report", page}}.dump(1) : page) << '\n';
+  const std::vector<Fit> fits = fit_stage(session);
+  const std::string page = report_stage(session, fits).string();
+  if (options.json) {
+    std::cout << nlohmann::json{{"report", page}}.dump(1) << '\n';
+  } else {
+    print_verdict(verdict_of(session, fits), page);
+  }
   return 0;
 }
 
