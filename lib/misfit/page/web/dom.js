@@ -107,6 +107,12 @@ export function shown(value, digits = 4) {
   return text.replace('-', '−');
 }
 
+/** Beside an axis, as short as it goes: "20", "0.125", "1e6", "−2.5e−9". */
+export function tick(value) {
+  const size = Math.abs(value), text = Number(value.toPrecision(6));
+  return (size !== 0 && (size >= 1e6 || size < 1e-3) ? text.toExponential().replace('e+', 'e') : String(text)).replaceAll('-', '−');
+}
+
 /** "12.3 ± 4.5": the sigma with two digits, the value with as many places. */
 export function shownWithSigma(value, sigma) {
   if (!(sigma > 0) || !Number.isFinite(value)) return shown(value);

@@ -1,7 +1,7 @@
 // Draws a figure of the report (lib/misfit/report/figure.h) with uPlot: axes, zoom and cursor are uPlot's, the series are painted here, thinned
 // to what the screen has pixels for (least and largest value of each column).
 import uPlot from '/uPlot.esm.js';
-import { element, plain, shown, shownWithSigma, words } from '/dom.js';
+import { element, plain, shown, shownWithSigma, tick, words } from '/dom.js';
 
 const darkScreen = matchMedia('(prefers-color-scheme: dark)');
 const onDark = { '#000000': '#e4e7ea', '#8a8a8a': '#8f989f', '#0072b2': '#5fb4ea', '#d55e00': '#ff8c42', '#009e73': '#37c79b', '#cc79a7': '#e39cc4',
@@ -233,12 +233,12 @@ class Plot {
   axes() {
     const ink = style('--soft'), line = style('--line'), font = '12px "Segoe UI", Helvetica, Arial, "DejaVu Sans", sans-serif';
     const axis = { stroke: ink, font, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1, size: 4 }, gap: 4 };
-    const values = (u, splits) => splits.map((v) => (v === null ? '' : shown(v, 6)));
+    const values = (u, splits) => splits.map((v) => (v === null ? '' : tick(v)));
     const marked = (marks) => ({ splits: () => marks.map(([at]) => at), values: () => marks.map(([, text]) => plain(text)) });
     const x = { ...axis, values, show: true, size: this.last || this.panel.beside ? 26 : 8 };
     if (this.figure.xMarks.length > 0 && !this.panel.beside) Object.assign(x, marked(this.figure.xMarks));
     if (!this.last && !this.panel.beside) x.values = (u, splits) => splits.map(() => '');
-    const y = { ...axis, values, size: 54, space: 20 };
+    const y = { ...axis, values, size: 60, space: 20 };
     const marks = this.panel.beside ? this.view.marks : this.panel.marks;
     if (marks.length > 0) {
       const longest = Math.max(...marks.map(([, text]) => plain(text).length)), size = Math.min(7 * longest + 14, 0.5 * this.width());
