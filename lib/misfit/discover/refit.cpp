@@ -191,8 +191,7 @@ bool try_exchanged_poles(const RefitWork& work, Refit& out) {
     constexpr double alike = 1.25;
     if (other < tau.lower || other > tau.upper || (other < alike * tau.value && tau.value < alike * other)) continue;
     tau.value = other;
-    FilterOptions options = options_like(work.without, work.threads);
-    options.noise = out.estimate.noise;
+    const FilterOptions options = options_like(work.without, work.threads);  // with its noise: the way from its values is long
     try {
       FilterEstimate there = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
       if (there.out_of_time) return false;

@@ -11,6 +11,7 @@
 #include "misfit/core/file_name.h"
 #include "misfit/core/files.h"
 #include "misfit/core/shown.h"
+#include "misfit/core/text.h"
 #include "misfit/data/contained_fit.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/data/estimators.h"
