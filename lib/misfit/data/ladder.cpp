@@ -32,6 +32,7 @@ void fields(Archive& json, MaybeConst<Rung> auto& r) {
   json("trim_deg", Formed(r.trim, [](auto& object, auto& trim) { trim_fields(object, trim); }));
   json("parameters", r.parameters), json("note", r.note);
   json.if_there("estimates", r.estimates), json.if_there("gained_too_little", r.gained_too_little);
+  json.if_there("also", r.also);
 }
 
 std::string added_in_words(const Rung& rung, const Ladder& ladder) {

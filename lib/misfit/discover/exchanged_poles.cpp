@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
+#include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/evaluator.h"
 
@@ -14,8 +16,7 @@ namespace misfit {
 namespace {
 
 /// d(rates)/d(states) of the system's own states.
-Eigen::MatrixXd linearised_system(const FilterEstimate& estimate) {
-  const Model& model = estimate.model;
+Eigen::MatrixXd linearised_system(const Model& model, const FilterEstimate& estimate) {
   const FilterTrace& trace = estimate.traces.front();
   const FilterData& data = estimate.data.front();
   const std::size_t middle = (data.first + trace.samples) / 2;
@@ -28,6 +29,29 @@ Eigen::MatrixXd linearised_system(const FilterEstimate& estimate) {
   Eigen::MatrixXd out(own, own);
   for (Eigen::Index i = 0; i < own; ++i) {
     for (Eigen::Index j = 0; j < own; ++j) out(i, j) = D[i * kRowStride + j];
+  }
+  return out;
+}
+
+/// -1/pole of the real, stable poles [s].
+std::vector<double> real_time_constants(const Model& model, const FilterEstimate& estimate) {
+  const Eigen::MatrixXd A = linearised_system(model, estimate);
+  if (!A.allFinite()) return {};
+  std::vector<double> out;
+  const Eigen::VectorXcd poles = Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues();
+  for (Eigen::Index i = 0; i < poles.size(); ++i) {
+    constexpr double rounding = 1e-9;  // of the pole
+    const std::complex<double> pole = poles[i];
+    if (std::abs(pole.imag()) <= rounding * std::abs(pole) && pole.real() < 0.0) out.push_back(-1.0 / pole.real());
+  }
+  return out;
+}
+
+/// NaN where there is none.
+double nearest_constant(const std::vector<double>& all, double to) {
+  double out = std::nan("");
+  for (const double constant : all) {
+    if (!std::isfinite(out) || std::abs(std::log(constant / to)) < std::abs(std::log(out / to))) out = constant;
   }
   return out;
 }
@@ -52,18 +76,42 @@ std::vector<double> time_constants_of_system(const FilterEstimate& estimate) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
   const double least = 0.5 * median(std::move(steps)), most = 0.5 * (t.back() - t.front());
-  const Eigen::MatrixXd A = linearised_system(estimate);
-  if (!A.allFinite()) return {};
-  std::vector<double> out;
-  const Eigen::VectorXcd poles = Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues();
-  for (Eigen::Index i = 0; i < poles.size(); ++i) {
-    const std::complex<double> pole = poles[i];
-    constexpr double rounding = 1e-9;  // of the pole
-    if (std::abs(pole.imag()) > rounding * std::abs(pole) || !(pole.real() < 0.0)) continue;
-    const double constant = -1.0 / pole.real();
-    if (constant >= least && constant <= most) out.push_back(constant);
-  }
+  std::vector<double> out = real_time_constants(estimate.model, estimate);
+  std::erase_if(out, [&](double constant) { return constant < least || constant > most; });
   return out;
+}
+
+std::optional<MovedPole> moved_pole(const FilterEstimate& estimate, double constant, double wanted) {
+  constexpr double small = 0.01, least_exponent = 0.2, close = 1e-3;  // of a logarithm
+  Model model = estimate.model;
+  const auto constant_with = [&](int parameter, double value) {
+    const double before = std::exchange(model.parameters[parameter].value, value);
+    const double out = nearest_constant(real_time_constants(model, estimate), constant);
+    model.parameters[parameter].value = before;
+    return out;
+  };
+  MovedPole out;
+  double exponent = 0.0;  // of the constant as a power of the parameter
+  const int own = model.effects.back().coefficients.empty() ? -1 : time_constant_of(model);
+  for (const int i : model.free_parameters()) {
+    const double value = model.parameters[i].value;
+    if (i == own || model.parameters[i].curve >= 0 || value == 0.0) continue;
+    const double there = std::log(constant_with(i, value * (1.0 + small)) / constant) / std::log1p(small);
+    if (std::isfinite(there) && std::abs(there) > std::abs(exponent)) {
+      exponent = there;
+      out = {i, value};
+    }
+  }
+  if (!(std::abs(exponent) > least_exponent)) return std::nullopt;
+  const Parameter& p = model.parameters[out.parameter];
+  for (int step = 0; step < 20; ++step) {
+    const double at = constant_with(out.parameter, out.value), off = std::log(wanted / at);
+    if (std::abs(off) < close) return out;
+    constexpr double longest = 1.0;  // of the logarithm
+    out.value = std::clamp(out.value * std::exp(std::clamp(off / exponent, -longest, longest)), p.lower, p.upper);
+    constant = at;
+  }
+  return std::nullopt;
 }
 
 std::string exchange_in_words(const FilterEstimate& estimate, const FilterEstimate& other, int time) {
@@ -72,7 +120,9 @@ std::string exchange_in_words(const FilterEstimate& estimate, const FilterEstima
   double largest = 0.0;
   for (const int i : estimate.model.free_parameters()) {
     const double change = std::abs(there[i].value - here[i].value) / std::max(std::abs(here[i].value), std::abs(there[i].value));
-    if (i == time || here[i].curve >= 0 || !(change > largest)) continue;
+    const auto sigma = standard_error_of(estimate.model, estimate.covariance, i);
+    constexpr double known = 5.0;  // sigmas: the relative change of what may be 0 says nothing
+    if (i == time || here[i].curve >= 0 || !(change > largest) || !sigma || std::abs(here[i].value) < known * *sigma) continue;
     largest = change;
     most = i;
   }

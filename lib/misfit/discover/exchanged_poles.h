@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,14 @@ namespace misfit {
 /// Of the system's equations, linearised in the middle of the first recording: -1/pole of its real, stable poles that the recording can
 /// show, from half of its usual interval to half of its length [s].
 [[nodiscard]] std::vector<double> time_constants_of_system(const FilterEstimate& estimate);
+
+/// The parameter of the system that moves the time constant `constant` most, and the value at which it is `wanted` instead; nullopt where
+/// none moves it so far.
+struct MovedPole {
+  int parameter = -1;
+  double value = 0.0;
+};
+[[nodiscard]] std::optional<MovedPole> moved_pole(const FilterEstimate& estimate, double constant, double wanted);
 
 /// "input_tau = 0.06 s with damping = 2.5 1/s explains hardly less (a drop lower by 7.8)": the parameters of `other` that differ most from
 /// those of the estimate.

@@ -177,6 +177,26 @@ bool fix_whole_strengths(const RefitWork& work, Refit& out) {
   return true;
 }
 
+/// The estimate from where the effect has a time constant of the system, and the system, by the parameter that moves it, the effect's. The
+/// others are fitted first with these two held: a gain is far off then.
+FilterEstimate with_exchanged_poles(const RefitWork& work, const FilterEstimate& estimate, const MovedPole& effect) {
+  const FilterOptions options = options_like(work.without, work.threads);  // with its noise: the way is long
+  const auto from = [&](const Model& start) {
+    return estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
+  };
+  Model start = estimate.model;
+  Parameter& tau = start.parameters[effect.parameter];
+  const auto moved = moved_pole(estimate, effect.value, tau.value);
+  tau.value = effect.value;
+  if (!moved) return from(start);
+  Parameter& of_system = start.parameters[moved->parameter];
+  of_system.value = moved->value;
+  tau.free = of_system.free = false;
+  start = from(start).model;
+  start.parameters[effect.parameter].free = start.parameters[moved->parameter].free = true;
+  return from(start);
+}
+
 /// Where the effect's time constant and one of the system's may have changed places: the other order, if it is better; that one in words
 /// where these data hardly tell the two apart. False: there was no time to try.
 bool try_exchanged_poles(const RefitWork& work, Refit& out) {
@@ -184,18 +204,14 @@ bool try_exchanged_poles(const RefitWork& work, Refit& out) {
   const int time = time_constant_of(out.estimate.model);
   if (time < 0 || !out.estimate.converged) return true;
   for (const double other : time_constants_of_system(out.estimate)) {
-    Model start = out.estimate.model;
-    for (std::size_t i = 0; i < work.without.model.parameters.size(); ++i)
-      start.parameters[i].value = work.without.model.parameters[i].value;
-    Parameter& tau = start.parameters[time];
+    const double known = out.estimate.model.parameters[time].value;
+    const Parameter& tau = out.estimate.model.parameters[time];
     constexpr double alike = 1.25;
-    if (other < tau.lower || other > tau.upper || (other < alike * tau.value && tau.value < alike * other)) continue;
-    tau.value = other;
-    const FilterOptions options = options_like(work.without, work.threads);  // with its noise: the way from its values is long
+    if (other < tau.lower || other > tau.upper || (other < alike * known && known < alike * other)) continue;
     try {
-      FilterEstimate there = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
+      FilterEstimate there = with_exchanged_poles(work, out.estimate, {time, other});
       if (there.out_of_time) return false;
-      const double found = there.model.parameters[time].value, known = out.estimate.model.parameters[time].value;
+      const double found = there.model.parameters[time].value;
       if (!there.converged || (found < alike * known && known < alike * found)) continue;
       if (there.objective > out.estimate.objective) std::swap(there, out.estimate);
       if (out.estimate.objective - there.objective < hardly) out.also = exchange_in_words(out.estimate, there, time);

@@ -108,7 +108,7 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
       if (last.estimates && last.estimates->contains(name)) estimate = last.estimates->at(name);
     }
     const std::string gain = rung.held_out_gain ? fmt::format("; held-out gain {:.1f}", *rung.held_out_gain) : "";
-    out.push_back(added_in_words(rung, ladder) + ": " + values_of(now) + gain);
+    out.push_back(added_in_words(rung, ladder) + ": " + values_of(now) + gain + (rung.also ? "; " + *rung.also : ""));
   }
   return out;
 }

@@ -308,6 +308,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
     if (from) append_note(rung.note, held_in_words(from->held));
     if (from) rung.roles = from->roles;
+    if (from) rung.also = from->also;
     if (from) append_note(rung.note, not_estimated_in_words(*from, work->fit));
     const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.progress_of("add"));
     compare_with_parent(*work, *parent_work, options_.threads, rung);
