@@ -140,17 +140,17 @@ TEST(ProfileObjective, RefitsOfTheSameDataStayWhereTheFitWas) {
   EXPECT_LT(again.linearisations, f.fit.linearisations);
 }
 
-TEST(OutputErrorSigmas, AllowForColouredReadings) {
+TEST(OutputErrorSigmas, AllowForColouredResiduals) {
   const Fitted f = fitted(true);
   ASSERT_EQ(f.fit.status, FitStatus::converged) << f.fit.message;
   // A first-order process of 0.7 at 60 Hz is flat up to a few Hz: (1 + 0.7)/(1 − 0.7) times the variance of white noise of its size.
   const double ratio = f.fit.parameters.at("cosine").sigma / f.fit.plain_sigmas.at("cosine");
   EXPECT_NEAR(ratio, std::sqrt(1.7 / 0.3), 0.5);
-  EXPECT_THAT(f.fit.facts.at("covariance"), testing::HasSubstr("memory"));
+  EXPECT_THAT(f.fit.facts.at("covariance"), testing::HasSubstr("autocorrelated residuals"));
   EXPECT_GT(f.fit.trim->sigma, 1.2 * f.fit.plain_sigmas.at("trim"));
 }
 
-TEST(OutputErrorSigmas, OfWhiteReadingsAreNearlyThePlainOnes) {
+TEST(OutputErrorSigmas, OfWhiteResidualsAreNearlyThePlainOnes) {
   const Fitted f = fitted(false);
   for (const auto& [name, plain] : f.fit.plain_sigmas) {
     if (name == "trim" || !(plain > 0.0)) continue;

@@ -128,8 +128,7 @@ void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit) {
     if (!upper && (!lower || absent_at_lower)) continue;
     fit.warnings.push_back(words + " is at its " + (lower ? "lower" : "upper") + " bound " +
                            in_display_unit(std::exp(vector.value[at]), unit) +
-                           ": the likelihood still rises beyond it, so that this is no estimate" +
-                           (lower ? ", and sigmas that rest on it may be too small" : ""));
+                           ": the likelihood still rises beyond it, so that this is no estimate");
   }
 }
 
