@@ -59,6 +59,11 @@ Signals record_of_motor(unsigned seed, double tau, double pushes) {
   return s;
 }
 
+void hold(ModelRequest& request, const std::string& name, double value) {
+  request.parameters[name].value = value;
+  request.parameters[name].free = false;
+}
+
 FilterEstimate estimate_of(const ModelRequest& request, const Registry& known, const std::vector<Signals>& signals) {
   return estimate_filter(assemble(request, known), {}, signals);
 }
@@ -69,7 +74,8 @@ TEST(ExchangedPoles, TheLagOfAnInputIsNotTakenForTheMotorsOwn) {
   const auto known = registry_with(motor_text);
   const ModelRequest model = request_of("text");
   const std::vector<Signals> signals = {record_of_motor(3, lag, 0.02)};
-  const Discovery found = discover(estimate_of(model, *known, signals), model, *known, signals);
+  const FilterEstimate estimate = estimate_of(model, *known, signals);
+  const Discovery found = discover({estimate, model, *known, signals});
   ASSERT_FALSE(found.candidates.empty());
   const Candidate& first = found.candidates.front();
   ASSERT_EQ(first.effect, "input_lag") << found.verdict;
@@ -82,7 +88,7 @@ TEST(ExchangedPoles, TheLagOfAnInputIsNotTakenForTheMotorsOwn) {
 
   ModelRequest with = model;
   with.effects.push_back(effect("input_lag", first.roles));
-  with.parameters["lagged_gain"] = {.value = 1.0, .free = false};
+  hold(with, "lagged_gain", 1.0);
   with.parameters["input_tau"].value = tau.value;
   const FilterEstimate again = estimate_of(with, *known, signals);
   const std::vector<int> free = again.model.free_parameters();
@@ -97,7 +103,7 @@ TEST(ExchangedPoles, TheLagOfAnInputIsNotTakenForTheMotorsOwn) {
 TEST(ExchangedPoles, AreThoseOfTheEquations) {
   const auto known = registry_with(motor_text);
   ModelRequest model = request_of("text", {effect("input_lag", {{"input", "u"}, {"port", "u"}})});
-  model.parameters["lagged_gain"] = {.value = 1.0, .free = false};
+  hold(model, "lagged_gain", 1.0);
   model.parameters["input_tau"].value = lag;
   const FilterEstimate estimate = estimate_of(model, *known, {record_of_motor(4, lag, 0.02)});
   const std::vector<double> constants = time_constants_of_system(estimate);

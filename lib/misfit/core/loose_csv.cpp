@@ -126,8 +126,12 @@ class LooseReader {
       table_.delimiter = candidate;
     }
     if (table_.delimiter == ',') return;
-    const std::string_view row = lines_.back().text;
-    table_.decimal_comma = row.find(',') != std::string_view::npos && row.find('.') == std::string_view::npos;
+    const std::vector<std::string_view> row = cells_of(lines_.back().text, table_.delimiter);
+    const auto any_with = [&](char sign) {  // dates have points of their own
+      return std::any_of(row.begin(), row.end(),
+                         [&](std::string_view c) { return c.find(sign) != std::string_view::npos && !read_iso_date(c); });
+    };
+    table_.decimal_comma = any_with(',') && !any_with('.');
   }
 
   [[nodiscard]] bool all_numbers(const std::vector<std::string_view>& cells) const {
