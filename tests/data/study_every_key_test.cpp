@@ -65,7 +65,14 @@ region = [10, 20, 300, 200]
   EXPECT_EQ(study.video.marker.picture->filename(), "template.png");
   EXPECT_TRUE(study.video.start.has_value());
   EXPECT_EQ(study.video.region, (std::array<double, 4>{10.0, 20.0, 300.0, 200.0}));
-  const Study plain = read_with(experiment + "[camera]\nsweep_images = \"other.csv\"\n[video]\nmarker = \"dark\"\n");
+  const Study plain = read_with(experiment +
+                                "[camera]\nsweep_images = \"other.csv\"\n[video]\nmarker = \"dark\"\n"
+                                "markers = { upper = { marker = \"bright\", start = [5, 6], region = [1, 2, 30, 40] }, lower = {} }\n");
+  EXPECT_EQ(plain.video.marker_names(), (std::vector<std::string>{"upper", "lower"}));
+  EXPECT_EQ(plain.video.markers[0].marker.kind, "bright");
+  EXPECT_EQ(plain.video.markers[0].start->column, 5.0);
+  EXPECT_EQ(plain.video.markers[0].region, (std::array<double, 4>{1.0, 2.0, 30.0, 40.0}));
+  EXPECT_EQ(plain.video.markers[1].marker.kind, "dark") << "that of [video]";
   EXPECT_TRUE(plain.video.check_fields);
   EXPECT_EQ(plain.camera.sweep_marker.kind, "dark") << "that of [video]";
 }

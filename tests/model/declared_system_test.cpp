@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "misfit/core/units.h"
 #include "misfit/model/evaluator.h"
 #include "tests/model/declared_texts.h"
 

@@ -253,7 +253,7 @@ TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
   c.discovery->unexplained_quantity = "w";
   EXPECT_EQ(c.verdict().kind, VerdictKind::unknown_form);
   EXPECT_THAT(c.verdict().sentence, HasSubstr("depends on w: a force on dw/dt that no effect of the library explains"));
-  EXPECT_THAT(c.verdict().next, testing::StartsWith("look at the picture"));
+  EXPECT_THAT(c.verdict().next, testing::StartsWith("look where it fails"));
   c.discovery->unexplained_effects = {{"unknown_force", {{"of", "w"}, {"port", "dw/dt"}}}};
   EXPECT_THAT(c.verdict().next,
               AllOf(testing::StartsWith("misfit add "), HasSubstr(" unknown_force"), testing::EndsWith("--at 'of=w' --at 'port=dw/dt'")));

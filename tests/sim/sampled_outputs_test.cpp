@@ -12,8 +12,8 @@ namespace {
 
 using namespace testing_models;
 
-constexpr double mass = 2.0, stiffness = 30.0, step = 0.05, fine = 1e-3;
-constexpr int samples = 80, finer = 50;
+constexpr double mass = 2.0, stiffness = 30.0, step = 0.02, fine = 1e-3;
+constexpr int samples = 100, finer = 20;
 
 /// The cart without damping under a force held over each step, in closed form: about its rest it turns by omega t.
 struct Motion {
@@ -57,7 +57,7 @@ TEST_P(CartWithAClock, ReadsOneOutputAtItsOwnTimeAndTheOtherNot) {
   }
   for (const OutputSpec& o : model.system->spec().outputs) signals.measured.push_back({o.name, o.unit, std::vector<double>(samples, 0.0)});
   const Motion start{0.2, -0.4};
-  constexpr int before = 4;
+  constexpr int before = 6;
   const std::vector<Motion> truth = motion_of(signals.inputs[0].values, start, before);
   const InputTable inputs = input_table(signals, model);
   Stepper stepper(model);

@@ -1,6 +1,7 @@
 #include "misfit/sim/sampled_outputs.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace misfit {
 namespace {
@@ -34,9 +35,12 @@ bool along(const Simulation& run, std::size_t i, double shift, Reached& reached,
   for (std::size_t k = i; reached.t != end;) {
     const bool forward = end > reached.t;
     if (forward ? k + 1 >= signals.samples() : k == 0) {
-      const Interval beyond{reached.t, end, inputs.at(k), inputs.at(k)};
-      reached.t = end;
-      return step(beyond);
+      const std::size_t beside = forward ? k - 1 : k;  // the interval whose length its pieces have
+      const double length = signals.samples() > 1 ? signals.t[beside + 1] - signals.t[beside] : std::abs(shift);
+      const double to = std::abs(end - reached.t) <= length ? end : reached.t + std::copysign(length, shift);
+      if (!step({reached.t, to, inputs.at(k), inputs.at(k)})) return false;
+      reached.t = to;
+      continue;
     }
     const std::size_t of = forward ? k : k - 1;
     const double to = forward ? std::min(end, signals.t[of + 1]) : std::max(end, signals.t[of]);
