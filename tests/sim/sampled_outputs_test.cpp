@@ -57,7 +57,7 @@ TEST_P(CartWithAClock, ReadsOneOutputAtItsOwnTimeAndTheOtherNot) {
   }
   for (const OutputSpec& o : model.system->spec().outputs) signals.measured.push_back({o.name, o.unit, std::vector<double>(samples, 0.0)});
   const Motion start{0.2, -0.4};
-  constexpr int before = 6;
+  constexpr int before = 10;
   const std::vector<Motion> truth = motion_of(signals.inputs[0].values, start, before);
   const InputTable inputs = input_table(signals, model);
   Stepper stepper(model);
