@@ -222,6 +222,26 @@ def remove_asks_first(page):
     assert page.one("#job").get_attribute("data-number") == number, "nothing was removed"
 
 
+def zoom_by_dragging(page):
+    """A drag over twice the width shows twice the time: it is one zoom, though several plots are synchronised. Keys mark a time."""
+    over = page.one("#motion .u-over")
+    page.js("arguments[0].scrollIntoView({block: 'center'})", over)
+    shown = []
+    for width in (60, 120):
+        ActionChains(page.driver).move_to_element(over).click_and_hold().move_by_offset(width, 0).release().perform()
+        low, high = (float(end) for end in page.wait(lambda: page.js("return document.querySelector('#time').dataset.window"), "the zoom").split())
+        shown.append(high - low)
+        page.one("#motion .plot").send_keys("0")
+        page.wait(lambda: page.js("return document.querySelector('#time').dataset.window") == "", "the whole record")
+    assert abs(shown[1] / shown[0] - 2.0) < 0.1, shown
+    plot = page.one("#motion .plot")
+    plot.send_keys(Keys.ARROW_RIGHT, "m")
+    page.wait(lambda: "m again where it ends" in page.text("#marked"), "a mark is begun")
+    plot.send_keys(Keys.SHIFT + Keys.ARROW_RIGHT, "m")
+    page.wait(lambda: page.text("#marked").startswith("Marked: "), "a time is marked by keys")
+    page.click("#unmark")
+
+
 def nothing_is_cut_off(page, where):
     page.js("for (const more of document.querySelectorAll('#view details')) more.open = true")
     cut = "return [...document.querySelectorAll('#view .wide, #view p, #view td')].filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent)"
@@ -244,6 +264,7 @@ def find_and_add():
     ps = page.js("return [...document.querySelectorAll('#view .list small')].map((s) => Number(s.textContent.replace('p = ', '').replace('−', '-')))")
     assert len(ps) > 3 and ps == sorted(ps), ps
     point_at_the_worst_place(page)
+    zoom_by_dragging(page)
     # The time cursor by keys, in all plots.
     plot = page.one("#motion .plot")
     plot.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)

@@ -55,12 +55,14 @@ export class TimeGroup {
     this.marks = []; // intervals of time [s]
     this.onmark = () => {};
     this.onbegun = () => {};
+    this.onzoom = () => {};
     this.begun = undefined;
     this.sync = uPlot.sync('time');
   }
   zoom(window) {
     this.window = window;
     for (const plot of this.plots) plot.showX(window);
+    this.onzoom(window);
   }
   setMarks(marks) {
     this.marks = marks;

@@ -162,7 +162,7 @@ class Began {
   constructor() {
     this.words = element('span', { 'aria-live': 'polite' });
     this.clock = element('span', { 'aria-hidden': true });
-    this.stop = element('button', { class: 'stops', hidden: true, onclick: () => stop() });
+    this.stop = element('button', { class: 'stops', hidden: true, onclick: stop });
     this.node = element('span', { class: 'began' }, this.words, this.clock, this.stop);
   }
   button() {
@@ -215,8 +215,8 @@ class Began {
 }
 const began = new Began();
 
-async function stop() {
-  if (performance.now() - began.at < 800) return; // the Enter that began it, pressed twice
+async function stop(event) {
+  if (event.detail === 0 && performance.now() - began.at < 800) return; // by a key: the Enter that began it, pressed twice
   try {
     await post('stop');
     await look();
@@ -378,6 +378,7 @@ function unmark() {
   }
   mark([], '', true);
 }
+time.onzoom = (window) => { at('time').dataset.window = window === null ? '' : window.join(' '); };
 time.onbegun = (t) => { at('marked').textContent = `Marked from ${shown(t, 5)} s: m again where it ends`; };
 time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${shown(from, 5)} s to ${shown(to, 5)} s`, true);
 
