@@ -60,7 +60,10 @@ double nearest_constant(const std::vector<double>& all, double to) {
 
 int time_constant_of(const Model& model) {
   const BoundEffect& bound = model.effects.back();
-  if (bound.effect->spec().states.empty()) return -1;
+  const EffectSpec& spec = bound.effect->spec();
+  const bool in_series =
+      std::any_of(spec.coefficients.begin(), spec.coefficients.end(), [](const CoefficientSpec& k) { return k.whole != 0.0; });
+  if (spec.states.empty() || !in_series) return -1;
   int out = -1;
   for (const BoundCoefficient& c : bound.coefficients) {
     if (c.parameter < 0 || model.parameters[c.parameter].unit != "s") continue;
@@ -129,7 +132,9 @@ std::string exchange_in_words(const FilterEstimate& estimate, const FilterEstima
   std::string out = there[time].name + " = " + in_display_unit(there[time].value, there[time].unit);
   constexpr double same = 0.05;
   if (most >= 0 && largest > same) out += " with " + there[most].name + " = " + in_display_unit(there[most].value, there[most].unit);
-  return out + " explains hardly less (a drop lower by " + format_value(2.0 * (estimate.objective - other.objective)) + ")";
+  return out + " explains " + (other.objective > estimate.objective ? "hardly more" : "hardly less") + " (a drop " +
+         (other.objective > estimate.objective ? "higher" : "lower") + " by " +
+         format_value(2.0 * std::abs(estimate.objective - other.objective)) + ")";
 }
 
 }  // namespace misfit

@@ -197,8 +197,8 @@ FilterEstimate with_exchanged_poles(const RefitWork& work, const FilterEstimate&
   return from(start);
 }
 
-/// Where the effect's time constant and one of the system's may have changed places: the other order, if it is better; that one in words
-/// where these data hardly tell the two apart. False: there was no time to try.
+/// Where the effect's time constant and one of the system's may have changed places: the better order. Where these data hardly tell the two
+/// apart, the one in which the effect is the faster, as actuators and sensors are, and the other in words. False: there was no time to try.
 bool try_exchanged_poles(const RefitWork& work, Refit& out) {
   constexpr double hardly = 5.0;  // of the log-likelihood: a drop of 10
   const int time = time_constant_of(out.estimate.model);
@@ -213,8 +213,9 @@ bool try_exchanged_poles(const RefitWork& work, Refit& out) {
       if (there.out_of_time) return false;
       const double found = there.model.parameters[time].value;
       if (!there.converged || (found < alike * known && known < alike * found)) continue;
-      if (there.objective > out.estimate.objective) std::swap(there, out.estimate);
-      if (out.estimate.objective - there.objective < hardly) out.also = exchange_in_words(out.estimate, there, time);
+      const double gain = there.objective - out.estimate.objective;
+      if (std::abs(gain) < hardly ? found < known : gain > 0.0) std::swap(there, out.estimate);
+      if (std::abs(gain) < hardly) out.also = exchange_in_words(out.estimate, there, time);
     } catch (const TimeSpent&) {
       return false;
     } catch (const RunError&) {  // it cannot be run in that order
