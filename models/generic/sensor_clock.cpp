@@ -26,15 +26,7 @@ struct SensorClock {
        .scale = 0.01,
        .doc = "how much later than its stamp a measurement is",
        .lower_as_candidate = 0.0},
-      {.name = "clock_rate",
-       .kind = CoefficientKind::shape,
-       .unit = "-",
-       .lower = -0.1,
-       .upper = 0.1,
-       .scale = 1e-4,
-       .doc = "growth of the offset with time",
-       .fixed = true,
-       .drift_of = "sensor_offset"},
+      {.name = "clock_rate", .unit = "-", .lower = -0.1, .upper = 0.1, .scale = 1e-4, .doc = "growth of the offset with time"},
   };
 
   template <class T, class K>

@@ -170,14 +170,13 @@ TEST(ALogOfSeveralClocks, IsFittedWithMeasurementsAtTheirOwnTimes) {
   expect(recording(6, 1.2), "filter_error", 0.2);
 }
 
-/// The second position is stamped 30 ms before it was measured, and its clock runs 0.4 % slow: by the truth's other three parameters nothing
-/// moves.
+/// The second position is stamped 30 ms before it was measured, and its clock runs 0.4 % slow: by the truth's other three parameters
+/// nothing moves.
 TEST(ALogOfSeveralClocks, WithAnEarlyClockGivesItsOffsetAndRate) {
   Topics log = recording(7, 4.0);
   constexpr double offset = 0.03, rate = 0.004;
   for (Sample& s : log.at("x2")) s.t = (s.t - offset) / (1.0 + rate);
-  const Fit fit = fitted(two_masses, log, "output_error",
-                         "[effects]\nsensor_clock = { time_of_output = \"sample_time_x2\" }\n[parameters]\nclock_rate = { free = true }\n");
+  const Fit fit = fitted(two_masses, log, "output_error", "[effects]\nsensor_clock = { time_of_output = \"sample_time_x2\" }\n");
   expect_right(fit, {{"k1", k1}, {"k2", k2}, {"c1", c1}, {"c2", c2}, {"sensor_offset", offset}, {"clock_rate", rate}}, "output_error");
   EXPECT_LT(fit.parameters.at("sensor_offset").sigma, 1e-3);
   EXPECT_LT(fit.parameters.at("clock_rate").sigma, 1e-3);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -237,7 +238,10 @@ std::optional<long> Section::integer(std::string_view key, long least, long most
   const toml::node* node = state_->take(key);
   if (!node) return std::nullopt;
   const bool fits = node->is_integer() && node->as_integer()->get() >= least && node->as_integer()->get() <= most;
-  if (!fits) state_->fail(key, *node, "a whole number from " + std::to_string(least) + " to " + std::to_string(most) + " is expected");
+  const bool limited = most < std::numeric_limits<long>::max();
+  const std::string range =
+      limited ? "from " + std::to_string(least) + " to " + std::to_string(most) : "of at least " + std::to_string(least);
+  if (!fits) state_->fail(key, *node, "a whole number " + range + " is expected");
   return static_cast<long>(node->as_integer()->get());
 }
 

@@ -447,34 +447,6 @@ int estimated_parameters(const Refit& refit) {
 
 double least_held_out_gain(int parameters) { return 0.5 * parameters; }
 
-double predictive_loglik(const FilterEstimate& estimate) {
-  const Eigen::Index n = estimate.covariance.rows();
-  FilterRunner runner(estimate.forced, true);
-  runner.set_parameters(estimate.forced.model.values());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
-  double loglik = 0.0;
-  FilterTrace trace;
-  FilterJacobian jacobian;
-  for (const FilterData& known : estimate.data) {
-    FilterData data = known;
-    for (SampleRole& role : data.use) {
-      if (role == SampleRole::counted) role = SampleRole::update;
-      if (role == SampleRole::validation) role = SampleRole::counted;
-    }
-    if (!runner.run(data, estimate.noise, trace, {&jacobian}) || jacobian.J.cols() != n) return estimate.validation_loglik;
-    loglik += trace.loglik;
-    information += jacobian.J.transpose() * jacobian.J;
-    slope += jacobian.J.transpose() * jacobian.r;
-  }
-  if (n == 0) return loglik;
-  const Eigen::MatrixXd spread = Eigen::MatrixXd::Identity(n, n) + estimate.covariance * information;
-  const Eigen::PartialPivLU<Eigen::MatrixXd> solver(spread);
-  const double determinant = solver.determinant(), explained = slope.dot(solver.solve(estimate.covariance * slope));
-  if (!(determinant > 0.0) || !std::isfinite(explained)) return loglik;
-  return loglik + 0.5 * explained - 0.5 * std::log(determinant);
-}
-
 double HeldOut::loglik(const FilterEstimate& estimate) const {
   const bool held_out = std::any_of(without_.traces.begin(), without_.traces.end(), [](const FilterTrace& t) { return t.validated > 0; });
   if (held_out) return predictive_loglik(estimate);

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "misfit/discover/screen.h"
+#include "misfit/fit/filter/predictive_loglik.h"
 
 namespace misfit {
 
@@ -77,14 +78,6 @@ struct OneStep {
 
 /// Held-out gains up to this, half for each parameter, are chance.
 [[nodiscard]] double least_held_out_gain(int parameters);
-
-/// Log predictive density of the held-out measurements, the parameters being uncertain by their covariance C: to first order, with the
-/// whitened residuals r and their derivatives J there,
-///   log L_held-out(estimate) + bᵀ (C⁻¹ + JᵀJ)⁻¹ b/2 − log det(1 + C JᵀJ)/2,   b = Jᵀ r.
-/// With the estimates as if they were exact, an effect that leaves the random force nothing to do would be refused wherever the held-out
-/// motion goes beyond what the estimation has seen: the random force makes up for errors of parameters, too. (Gelman et al., Bayesian Data
-/// Analysis, 7.1: predictive density.)
-[[nodiscard]] double predictive_loglik(const FilterEstimate& estimate);
 
 /// Gain of the held-out predictive density over an estimate. Where the study holds nothing out, both models are fitted again without the
 /// last quarter of every experiment, and judged on it; the first once for all.

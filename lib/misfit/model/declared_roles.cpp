@@ -28,6 +28,7 @@ class Roles {
                                                               : s.states.front().name;
     set_motion(by_default, quantities);
     s.roles["output"] = s.roles["signal"] = role("output", outputs.front(), outputs);
+    s.roles["time_of_output"] = sample_time_of(s.roles["output"]);
     set_other_output();
     if (!s.inputs.empty()) s.roles["input"] = role("input", s.inputs.front().name, quantities);
     if (s.inputs.empty() && d_.roles->text("input")) throw InputError(d_.roles->where("input"), "[roles] input: the system has no inputs");

@@ -9,6 +9,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
+#include "misfit/math/statistics.h"
 #include "misfit/show/rows.h"
 
 namespace misfit {
@@ -111,6 +112,13 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     out.push_back(added_in_words(rung, ladder) + ": " + values_of(now) + gain + (rung.also ? "; " + *rung.also : ""));
   }
   return out;
+}
+
+/// The rung's drop is no more than chance gives for so many parameters.
+bool may_be_chance(const Rung& rung) {
+  constexpr double rare = 0.01;
+  const double parameters = std::max<double>(1.0, static_cast<double>(rung.parameters.size()));
+  return rung.actual_drop && chi_square_tail(*rung.actual_drop, parameters) > rare;
 }
 
 const Candidate* accepted(const Discovery& d) {
@@ -322,20 +330,25 @@ class VerdictBuilder {
                          p_equals(after->p_corrected));
     return out_.errors.empty() ? "" : change_in_words(out_.errors.front());
   }
-  [[nodiscard]] std::string names_added() const {
+  /// What was added and explains more than chance does, or, false, no more than that.
+  [[nodiscard]] std::string names_added(bool significant = true) const {
     std::vector<std::string> names;
     for (const Rung& rung : in_.ladder->rungs) {
-      if (!rung.added.empty()) names.push_back(added_in_words(rung, *in_.ladder));
+      if (!rung.added.empty() && significant != may_be_chance(rung)) names.push_back(added_in_words(rung, *in_.ladder));
     }
     return join_words(names);
   }
   void added(const std::string& rest, const std::string& next, VerdictKind kind = VerdictKind::effect_added) {
-    const std::string names = names_added();
+    const std::string names = names_added(), in_vain = names_added(false);
     const bool one = in_.ladder->rungs.size() == 2;
     std::string change = change_by_ladder();
     if (!change.empty()) change = (one ? "with it " : "with them ") + change + "; ";
-    say(kind, names + (one ? " was" : " were") + " missing: " + change + rest, next);
-    out_.sentence.replace(0, names.size(), names);  // names of effects keep their small letters
+    std::string sentence = names.empty() ? "" : names + (one ? " was" : " were") + " missing: " + change;
+    if (!in_vain.empty())
+      sentence += in_vain + (names.empty() ? " was added and" : ", added too,") + " explains no more than chance does; ";
+    say(kind, sentence + rest, next);
+    const std::string& first = names.empty() ? in_vain : names;
+    out_.sentence.replace(0, first.size(), first);  // names of effects keep their small letters
   }
 
   const VerdictInput& in_;

@@ -15,10 +15,10 @@
 #include "misfit/data/contained_fit.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/data/estimators.h"
-#include "misfit/discover/refit.h"
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/filter/k_step.h"
+#include "misfit/fit/filter/predictive_loglik.h"
 
 namespace misfit {
 namespace {
