@@ -184,14 +184,15 @@ void write_two_spots(const fs::path& path, double duration) {
   for (int k = 0; k < static_cast<int>(duration * rate); ++k) {
     const double t = k / rate;
     const PixelPoint left{55.0 + 20.0 * std::cos(4.0 * t), 40.0}, right{145.0, 50.0 + 20.0 * std::cos(5.5 * t)};
-    Image image{width, height, {}};
+    Image image(width, height);
     for (int at = 0; at < width * height; ++at) {
       double inside = 0.0;
       for (int part = 0; part < across * across; ++part) {
         const double x = at % width + (part % across + 0.5) / across - 0.5, y = at / width + (part / across + 0.5) / across - 0.5;
-        for (const PixelPoint& spot : {left, right}) inside += std::hypot(x - spot.column, y - spot.row) < 6.0 ? 1.0 : 0.0;
+        for (const PixelPoint& spot : {left, right}) inside += std::hypot(x - spot.column, y - spot.row) < 8.0 ? 1.0 : 0.0;
       }
-      image.pixels.push_back(static_cast<std::uint8_t>(std::clamp(40.0 + 170.0 * inside / (across * across) + noise(random), 0.0, 255.0)));
+      image.pixels[static_cast<std::size_t>(at)] =
+          static_cast<std::uint8_t>(std::clamp(40.0 + 170.0 * inside / (across * across) + noise(random), 0.0, 255.0));
     }
     film.add(image);
   }
@@ -227,7 +228,7 @@ TEST(SeveralMarkers, AreFollowedInOneFilmAndReadByOutputsOfTheirNames) {
       "[study]\nname = \"film\"\nmethods = [\"output_error\"]\n[system]\nfile = \"system.toml\"\n[video]\nmarker = "
       "\"bright\"\n[video.markers]\nleft = { region = [0, 0, 100, 100] }\n";
   const std::string tail = "[[experiment]]\nvideo = \"spots.mkv\"\ncolumns = { down = \"y_px_right\" }\n";
-  const fs::path study = folder.write("study.toml", head + "right = { region = [100, 0, 200, 100], start = [145, 70] }\n" + tail);
+  const fs::path study = folder.write("study.toml", head + "right = { region = [100, 0, 200, 100] }\n" + tail);
   Registry registry;
   misfit_models_register(registry);
   const Fit fit = Identification({.study = study.string(), .out = (folder.path() / "out").string()}, registry).fit("output_error");

@@ -57,6 +57,7 @@ export class TimeGroup {
     this.onbegun = () => {};
     this.onzoom = () => {};
     this.begun = undefined;
+    this.pressed = null; // the plot in which the mouse went down
     this.sync = uPlot.sync('time');
   }
   zoom(window) {
@@ -267,7 +268,7 @@ class Plot {
       scales: { x: { time: false, auto: false, range: (u, a, b) => [a, b] }, y: { auto: false, range: (u, a, b) => [a, b] } },
       axes: this.axes(), series: [{}, { points: { show: false } }],
       cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, ...(group ? { sync: { key: 'time', setSeries: false } } : {}),
-        bind: { mousedown: (u, target, handler) => (event) => { this.pressed = true; this.shift = event.shiftKey; handler(event); }, dblclick: () => () => this.all() } },
+        bind: { mousedown: (u, target, handler) => (event) => { if (group) group.pressed = this; this.shift = event.shiftKey; handler(event); }, dblclick: () => () => this.all() } },
       hooks: { draw: [() => this.paint()], setCursor: [() => this.read()], setSelect: [() => this.selected()] },
     };
     this.u = new uPlot(options, [this.xRange, [null, null]], this.host);
@@ -304,10 +305,9 @@ class Plot {
   }
   /** The plots that are synchronised get the same selection: it is taken once, by the one that was dragged. */
   selected() {
-    const { left, width } = this.u.select, own = this.pressed;
-    this.pressed = false;
+    const { left, width } = this.u.select, { group } = this.view;
     if (width < 4) return;
-    if (!own) {
+    if (group && group.pressed !== this) {
       this.u.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
       return;
     }
@@ -355,7 +355,7 @@ class Plot {
       if (this.view.group) this.view.group.point(x);
       else this.pointAt(x);
       this.view.options.onkeypoint?.(this, x);
-    } else if (event.key === 'm' && this.view.group) this.view.group.markFrom(at);
+    } else if ((event.key === 'm' || event.key === 'M') && this.view.group) this.view.group.markFrom(at);
     else if (event.key === 'Enter') this.view.options.onpick?.(this, at, null);
     else return;
     event.preventDefault();
