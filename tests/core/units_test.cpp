@@ -151,8 +151,13 @@ TEST(UnitText, WritesFactorsAsTheyAreRead) {
 }
 
 TEST(InRadians, IsTheUnitOfAnAngleThatIsShownInRadians) {
-  for (const auto& [si, own] : std::vector<std::pair<std::string, std::string>>{
-           {"rad", "radian"}, {"rad/s", "radian/s"}, {"rad/s^2", "radian/s^2"}, {"radian/s", "radian/s"}, {"rad/s^3", "rad/s^3"}, {"V", "V"}, {"V/rad", "V/rad"}}) {
+  for (const auto& [si, own] : std::vector<std::pair<std::string, std::string>>{{"rad", "radian"},
+                                                                                {"rad/s", "radian/s"},
+                                                                                {"rad/s^2", "radian/s^2"},
+                                                                                {"radian/s", "radian/s"},
+                                                                                {"rad/s^3", "rad/s^3"},
+                                                                                {"V", "V"},
+                                                                                {"V/rad", "V/rad"}}) {
     EXPECT_EQ(in_radians(si), own);
     EXPECT_DOUBLE_EQ(parse_unit(own).to_si, 1.0) << own;
   }

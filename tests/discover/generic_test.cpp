@@ -84,8 +84,8 @@ TEST(DiscoverGeneric, NamesTheClockOfASensorThatIsEarly) {
 }
 
 TEST(DiscoverGeneric, CallsASensorThatIsLateLate) {
-  expect_first(discovered(cart({effect("viscous_friction")}), {"stiffness"}, with_shifted_position(-1)), "sensor_delay", "sensor_delay", 0.05,
-               0.05);
+  expect_first(discovered(cart({effect("viscous_friction")}), {"stiffness"}, with_shifted_position(-1)), "sensor_delay", "sensor_delay",
+               0.05, 0.05);
 }
 
 TEST(DiscoverGeneric, NamesNothingWhereNothingIsHidden) {

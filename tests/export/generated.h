@@ -25,7 +25,7 @@ using Row = std::vector<double>;
 struct Questions {
   int states = 0, inputs = 0, outputs = 0;
   std::vector<std::string> sample_times;  ///< functions of x, u, t
-  std::vector<std::string> curves;  ///< functions of the first state
+  std::vector<std::string> curves;        ///< functions of the first state
   std::vector<Row> points;
 };
 

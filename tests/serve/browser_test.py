@@ -444,6 +444,7 @@ def stop_and_kill():
     page.click("#run")
     page.job("running", 1)
     page.wait(lambda: focused(page) == "Stop", "the focus is where the next key is wanted")
+    time.sleep(0.6)  # an Enter within half a second is the one that began it, pressed twice
     page.driver.switch_to.active_element.send_keys(Keys.ENTER)
     page.job("stopped", 1)
     page.wait(lambda: focused(page) == "Run", "and goes back to what began it")

@@ -240,7 +240,7 @@ std::optional<long> Section::integer(std::string_view key, long least, long most
   const bool fits = node->is_integer() && node->as_integer()->get() >= least && node->as_integer()->get() <= most;
   const bool limited = most < std::numeric_limits<long>::max();
   const std::string range =
-      limited ? "from " + std::to_string(least) + " to " + std::to_string(most) : "of at least " + std::to_string(least);
+      limited ? "from " + std::to_string(least) + " to " + std::to_string(most) : "from " + std::to_string(least) + " on";
   if (!fits) state_->fail(key, *node, "a whole number " + range + " is expected");
   return static_cast<long>(node->as_integer()->get());
 }

@@ -17,7 +17,8 @@ constinit thread_local unsigned looks = 0;
 
 std::atomic<bool>& interrupted() { return flag; }
 
-Interrupted::Interrupted() : Stopped("interrupted; finished work is in the run folder: misfit report shows it, and the same command continues from there") {}
+Interrupted::Interrupted()
+    : Stopped("interrupted; finished work is in the run folder: misfit report shows it, and the same command continues from there") {}
 
 namespace {
 

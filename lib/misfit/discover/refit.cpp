@@ -292,6 +292,7 @@ Model start_model(const FilterEstimate& without, const ScreeningResult& screenin
   for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i) {
     Parameter& p = model.parameters[candidate_model.strengths[i]];
     const Eigen::Index k = i;
+    p.lower = candidate_model.model.parameters[candidate_model.strengths[i]].lower;
     p.value = std::clamp(screening.result.amplitude[k], p.lower, p.upper);
     p.free = true;
     if (candidate_model.priors.precision[k] > 0.0) {

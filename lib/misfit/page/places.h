@@ -28,7 +28,8 @@ struct Place {
 // writing them.
 
 [[nodiscard]] std::optional<Ladder> ladder_in(const std::filesystem::path& folder);
-/// The study's own, then the rungs of the ladder in its run folder; false: that ladder is of the study as it was, and none of them is shown.
+/// The study's own, then the rungs of the ladder in its run folder; false: that ladder is of the study as it was, and none of them is
+/// shown.
 [[nodiscard]] std::vector<Place> places_of(const std::filesystem::path& study, const std::filesystem::path& folder, bool with_rungs = true);
 
 [[nodiscard]] std::vector<Fit> fits_of(const Place& place);

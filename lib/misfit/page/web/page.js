@@ -216,7 +216,7 @@ class Began {
 const began = new Began();
 
 async function stop(event) {
-  if (event.detail === 0 && performance.now() - began.at < 800) return; // by a key: the Enter that began it, pressed twice
+  if (event.detail === 0 && performance.now() - began.at < 500) return; // by a key: the Enter that began it, pressed twice
   try {
     await post('stop');
     await look();
