@@ -39,9 +39,8 @@ std::vector<double> real_time_constants(const Model& model, const FilterEstimate
   if (!A.allFinite()) return {};
   std::vector<double> out;
   const Eigen::VectorXcd poles = Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues();
-  for (Eigen::Index i = 0; i < poles.size(); ++i) {
+  for (const std::complex<double>& pole : poles) {
     constexpr double rounding = 1e-9;  // of the pole
-    const std::complex<double> pole = poles[i];
     if (std::abs(pole.imag()) <= rounding * std::abs(pole) && pole.real() < 0.0) out.push_back(-1.0 / pole.real());
   }
   return out;
