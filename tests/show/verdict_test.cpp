@@ -170,6 +170,25 @@ TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCen
   EXPECT_EQ(v.next, "misfit discover configs/motor");
 }
 
+/// By hand, say: its drop is what chance gives.
+TEST(Verdict, AnAddedEffectThatExplainsNothingIsNotCalledMissing) {
+  Case c;
+  c.add_effect();
+  c.fail_at_rest();
+  c.rung_diagnosis = c.diagnosis;
+  Rung& rung = c.ladder->rungs.back();
+  rung.actual_drop = 0.3;
+  rung.held_out_gain = -3.4;
+  rung.parameters = {{"friction", {0.1, 0.2, "V/s"}}};
+  rung.estimates = {{"friction", {0.2, 0.3, "V/s"}}};
+  const Verdict v = c.verdict();
+  EXPECT_THAT(v.sentence, testing::StartsWith("coulomb_friction was added and explains no more than chance does; "));
+  EXPECT_THAT(v.sentence, testing::Not(HasSubstr("was missing")));
+  EXPECT_THAT(v.where, HasSubstr("with coulomb_friction: p = "));
+  EXPECT_THAT(v.added, testing::ElementsAre("coulomb_friction: friction = 0.20 ± 0.30 V/s; held-out gain -3.4"))
+      << "as the last model has it";
+}
+
 TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
   Case c;
   c.add_effect();

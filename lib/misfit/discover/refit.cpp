@@ -9,8 +9,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
 #include "misfit/discover/drift.h"
-#include "misfit/discover/exchanged_poles.h"
-#include "misfit/discover/whole_strength.h"
+#include "misfit/discover/refit_forms.h"
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/inference/standard_error.h"
 
@@ -21,10 +20,6 @@ std::vector<std::vector<SampleRole>> uses_of(const FilterEstimate& estimate) {
   std::vector<std::vector<SampleRole>> out;
   for (const auto& data : estimate.data) out.push_back(data.use);
   return out;
-}
-
-std::vector<Penalty> penalties_as_of(const FilterEstimate& from, const Model& model) {
-  return with_weights_of(from, model, curve_penalties(model));
 }
 
 /// log prior density at all strengths 0 (effect off).
@@ -52,11 +47,6 @@ std::vector<std::vector<SampleRole>> without_last_quarter(const FilterEstimate& 
   return out;
 }
 
-/// Standard error of a parameter; 0 where it is fixed or no covariance is known.
-double sigma_of(const FilterEstimate& estimate, int parameter) {
-  return standard_error_of(estimate.model, estimate.covariance, parameter).value_or(0.0);
-}
-
 /// Of the effect, which is the model's last.
 std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estimate, const ScreeningResult& screening) {
   std::map<std::string, Estimate> out;
@@ -68,7 +58,7 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
     if (at < 0 || bound.effect->spec().coefficients[c].shared || place_of(idle, at) >= 0) continue;
     const int strength = place_of(candidate_model.strengths, at);
     const Parameter& p = estimate.model.parameters[at];
-    double sigma = sigma_of(estimate, at);
+    double sigma = standard_error_of(estimate.model, estimate.covariance, at).value_or(0.0);
     // With Kalman gains held the covariance of a sensor effect is too small (sensitivity_columns); screening uses whole runs.
     const bool screened = strength >= 0 && strength < screening.result.sigma.size();
     if (candidate_model.family == CandidateFamily::sensor && screened && p.free) sigma = screening.result.sigma[strength];
@@ -77,173 +67,12 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
   return out;
 }
 
-/// Where a part of the effect is found, the whole with a memory so much shorter looks nearly the same.
-Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole) {
-  Model start = part;
-  for (const WholeStrength& w : whole) {
-    Parameter& p = start.parameters[w.parameter];
-    const double share = std::abs(p.value / w.value);
-    p.value = w.value;
-    p.free = false;
-    for (const BoundCoefficient& c : part.effects.back().coefficients) {
-      if (c.parameter < 0 || start.parameters[c.parameter].unit != "s") continue;
-      Parameter& time = start.parameters[c.parameter];
-      time.value = std::clamp(share * time.value, std::max(time.lower, 1e-3 * time.value), time.upper);
-    }
-  }
-  return start;
-}
-
-/// What the effect leaves in steps may have had noise before: of a sawtooth of the prediction that leaves the mean over that noise, a part
-/// (its first harmonic is exp(-2 pi^2 sigma^2/step^2) as large). The steps themselves are looked for in the measurements
-/// (off_whole_steps()).
-bool rounds(const BoundEffect& effect) {
-  const auto& coefficients = effect.effect->spec().coefficients;
-  return std::any_of(coefficients.begin(), coefficients.end(),
-                     [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
-}
-
-/// "late_share = 0.12 ± 0.01, where the whole effect would have 1.00"; empty where the strengths are about whole.
-std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
-  constexpr double more = 0.2;  // of the whole: formulas idealise, which takes away rather than adds
-  const double less = rounds(estimate.model.effects.back()) ? 0.9 : 0.3;
-  for (const WholeStrength& w : whole) {
-    const Parameter& p = estimate.model.parameters[w.parameter];
-    const double sigma = sigma_of(estimate, w.parameter);
-    const double share = p.value / w.value, of_sigma = 2.0 * sigma / std::abs(w.value);
-    if (share >= 1.0 - std::max(less, of_sigma) && share <= 1.0 + std::max(more, of_sigma)) continue;
-    return p.name + " = " + in_display_unit(p.value, p.unit, sigma) + ", where the whole effect would have " +
-           in_display_unit(w.value, p.unit);
-  }
-  return {};
-}
-
 /// A shape that a study keeps fixed but discovery looked for: the strength's interval holds for that value alone, so it is fitted too.
 /// `i`: of the candidate model's shapes.
 bool several_values_scanned(const CandidateModel& candidate_model, std::size_t i) {
   const auto& cells = candidate_model.cells;
   return i < candidate_model.shapes.size() &&
          std::any_of(cells.begin(), cells.end(), [&](const auto& cell) { return cell[i] != cells.front()[i]; });
-}
-
-/// A start with the whole effect, and what it was assembled from.
-struct WholeStart {
-  Model model;
-  ModelRequest request;
-  std::optional<std::map<std::string, std::string>> moved;
-};
-
-/// On the input itself where that is possible: on_its_input().
-WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vector<WholeStrength>& whole) {
-  WholeStart out{start_of_whole(refit.estimate.model, whole), refit.request, {}};
-  const std::optional<ModelRequest> request = on_its_input(refit.estimate.model, refit.request);
-  if (!request) return out;
-  try {
-    Model there = with_the_same_values(assemble(*request, work.registry), out.model);
-    const BoundEffect& bound = there.effects.back();
-    for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
-      const double of_input = bound.effect->spec().coefficients[c].whole;
-      if (of_input != 0.0 && bound.coefficients[c].parameter >= 0) there.parameters[bound.coefficients[c].parameter].value = of_input;
-    }
-    out = {std::move(there), *request, request->effects.back().roles};
-  } catch (const InputError&) {  // it cannot act there: its strength is held at a number
-  }
-  return out;
-}
-
-/// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood allows it.
-/// False: there was no time to try, so that a part that was found says nothing.
-bool fix_whole_strengths(const RefitWork& work, Refit& out) {
-  constexpr double allowed = 2.0;  // of the log-likelihood
-  const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
-  if (whole.empty()) return true;
-  const WholeStart start = whole_start(work, out, whole);
-  FilterOptions options = options_like(work.without, work.threads);
-  options.noise = out.estimate.noise;
-  try {
-    FilterEstimate held = estimate_filter(start.model, penalties_as_of(work.without, start.model), work.experiments, options);
-    if (held.out_of_time) return false;
-    if (held.converged && held.objective > out.estimate.objective - allowed) {
-      out.estimate = std::move(held);
-      out.request = start.request;
-      out.moved = start.moved;
-      return true;
-    }
-  } catch (const TimeSpent&) {
-    return false;
-  } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
-  }
-  out.partial = part_of_effect(out.estimate, whole);
-  return true;
-}
-
-/// The estimate from where the effect has a time constant of the system, and the system, by the parameter that moves it, the effect's. The
-/// others are fitted first with these two held: a gain is far off then.
-FilterEstimate with_exchanged_poles(const RefitWork& work, const FilterEstimate& estimate, const MovedPole& effect) {
-  const FilterOptions options = options_like(work.without, work.threads);  // with its noise: the way is long
-  const auto from = [&](const Model& start) {
-    return estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
-  };
-  Model start = estimate.model;
-  Parameter& tau = start.parameters[effect.parameter];
-  const auto moved = moved_pole(estimate, effect.value, tau.value);
-  tau.value = effect.value;
-  if (!moved) return from(start);
-  Parameter& of_system = start.parameters[moved->parameter];
-  of_system.value = moved->value;
-  tau.free = of_system.free = false;
-  start = from(start).model;
-  start.parameters[effect.parameter].free = start.parameters[moved->parameter].free = true;
-  return from(start);
-}
-
-/// Where the effect's time constant and one of the system's may have changed places: the better order. Where these data hardly tell the two
-/// apart, the one in which the effect is the faster, as actuators and sensors are, and the other in words. False: there was no time to try.
-bool try_exchanged_poles(const RefitWork& work, Refit& out) {
-  constexpr double hardly = 5.0;  // of the log-likelihood: a drop of 10
-  const int time = time_constant_of(out.estimate.model);
-  if (time < 0 || !out.estimate.converged) return true;
-  for (const double other : time_constants_of_system(out.estimate)) {
-    const double known = out.estimate.model.parameters[time].value;
-    const Parameter& tau = out.estimate.model.parameters[time];
-    constexpr double alike = 1.25;
-    if (other < tau.lower || other > tau.upper || (other < alike * known && known < alike * other)) continue;
-    try {
-      FilterEstimate there = with_exchanged_poles(work, out.estimate, {time, other});
-      if (there.out_of_time) return false;
-      const double found = there.model.parameters[time].value;
-      if (!there.converged || (found < alike * known && known < alike * found)) continue;
-      const double gain = there.objective - out.estimate.objective;
-      if (std::abs(gain) < hardly ? found < known : gain > 0.0) std::swap(there, out.estimate);
-      if (std::abs(gain) < hardly) out.also = exchange_in_words(out.estimate, there, time);
-    } catch (const TimeSpent&) {
-      return false;
-    } catch (const RunError&) {  // it cannot be run in that order
-    }
-  }
-  return true;
-}
-
-/// Frees the drifts of its shapes (CoefficientSpec::drift_of), if that gains what chance would once in a thousand times. False: there was
-/// no time to try.
-bool free_drifts(const RefitWork& work, Refit& out) {
-  constexpr double least = 5.4;  // of the log-likelihood: 10.8 in chi², 1 degree of freedom
-  Model start = out.estimate.model;
-  const std::vector<int> drifts = held_drifts(start);
-  if (drifts.empty()) return true;
-  for (const int drift : drifts) start.parameters[drift].free = true;
-  FilterOptions options = options_like(work.without, work.threads);
-  options.noise = out.estimate.noise;
-  try {
-    FilterEstimate drifting = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
-    if (drifting.out_of_time) return false;
-    const double needed = least * static_cast<double>(drifts.size());
-    if (drifting.converged && drifting.objective > out.estimate.objective + needed) out.estimate = std::move(drifting);
-  } catch (const TimeSpent&) {
-    return false;
-  } catch (const RunError&) {  // it cannot be run with a drift: it stays without
-  }
-  return true;
 }
 
 /// Names of the effect's coefficients, as its file has them, that are free or fixed unlike there. A smoothing that ends at what the filter
@@ -269,6 +98,10 @@ double drop_of(const FilterEstimate& with, const FilterEstimate& without, const 
 }
 
 }  // namespace
+
+std::vector<Penalty> penalties_as_of(const FilterEstimate& from, const Model& model) {
+  return with_weights_of(from, model, curve_penalties(model));
+}
 
 FilterOptions options_like(const FilterEstimate& estimate, int threads) {
   FilterOptions options;
@@ -426,8 +259,9 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const bool in_time = !no_maximum() || !watch.spent();
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
-  if (!in_time || !fix_whole_strengths(work, out) || !try_exchanged_poles(work, out) || !free_drifts(work, out))
-    return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
+  const bool whole_tried = in_time && fix_whole_strengths(work, out);
+  if (whole_tried) try_exchanged_poles(work, out);
+  if (!whole_tried || !free_drifts(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
   note_changes(screening, work.registry, out);
   out.drop = drop_of(out.estimate, without, screening);
   out.parameters = parameters_of_effect(out.estimate, screening);

@@ -39,6 +39,8 @@ struct RefitWork {
 /// For another model beside an estimate: its measurements and their uses, its noise to begin with, its steps of integration; roughness as
 /// handed over.
 [[nodiscard]] FilterOptions options_like(const FilterEstimate& estimate, int threads);
+/// Of that model, with the weights of roughness of the estimate; the effect's own curves follow behind.
+[[nodiscard]] std::vector<Penalty> penalties_as_of(const FilterEstimate& from, const Model& model);
 
 /// The model free as the estimate's, and the effect's own coefficients free but for those its file keeps fixed.
 [[nodiscard]] Model start_model(const FilterEstimate& without, const ScreeningResult& screening, const Registry& registry);

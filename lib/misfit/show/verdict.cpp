@@ -330,16 +330,18 @@ class VerdictBuilder {
                          p_equals(after->p_corrected));
     return out_.errors.empty() ? "" : change_in_words(out_.errors.front());
   }
-  /// What was added and explains more than chance does, or, false, no more than that.
-  [[nodiscard]] std::string names_added(bool significant = true) const {
+  enum class Which { all, needed, in_vain };
+  /// What was added: all of it, what explains more than chance does, or what does not.
+  [[nodiscard]] std::string names_added(Which which = Which::all) const {
     std::vector<std::string> names;
     for (const Rung& rung : in_.ladder->rungs) {
-      if (!rung.added.empty() && significant != may_be_chance(rung)) names.push_back(added_in_words(rung, *in_.ladder));
+      const bool asked = which == Which::all || (which == Which::in_vain) == may_be_chance(rung);
+      if (!rung.added.empty() && asked) names.push_back(added_in_words(rung, *in_.ladder));
     }
     return join_words(names);
   }
   void added(const std::string& rest, const std::string& next, VerdictKind kind = VerdictKind::effect_added) {
-    const std::string names = names_added(), in_vain = names_added(false);
+    const std::string names = names_added(Which::needed), in_vain = names_added(Which::in_vain);
     const bool one = in_.ladder->rungs.size() == 2;
     std::string change = change_by_ladder();
     if (!change.empty()) change = (one ? "with it " : "with them ") + change + "; ";

@@ -180,7 +180,9 @@ std::string not_predicted(const Effect& effect, const std::optional<Candidate>& 
                                     [](const CoefficientSpec& c) { return c.kind == CoefficientKind::strength && !c.shared; });
   const std::string name = effect.spec().key;
   if (!strength) return "no drop is predicted for " + name + ": it has no coefficient that switches it off, so no score test exists";
-  if (!from) return "no drop is predicted for " + name + ": it is driven by noise, or a more specific effect replaces it";
+  if (!from)
+    return "no drop is predicted for " + name +
+           ": it is driven by noise, a more specific effect replaces it, or it is no candidate at that place";
   return "no drop is predicted for " + name + ": " + (from->why.empty() ? "its score is 0" : from->why);
 }
 

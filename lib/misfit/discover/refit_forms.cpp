@@ -1,0 +1,177 @@
+#include "misfit/discover/refit_forms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "misfit/core/display.h"
+#include "misfit/core/error.h"
+#include "misfit/core/watch.h"
+#include "misfit/discover/drift.h"
+#include "misfit/discover/exchanged_poles.h"
+#include "misfit/discover/whole_strength.h"
+#include "misfit/inference/standard_error.h"
+
+namespace misfit {
+namespace {
+
+/// Where a part of the effect is found, the whole with a memory so much shorter looks nearly the same.
+Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole) {
+  Model start = part;
+  for (const WholeStrength& w : whole) {
+    Parameter& p = start.parameters[w.parameter];
+    const double share = std::abs(p.value / w.value);
+    p.value = w.value;
+    p.free = false;
+    for (const BoundCoefficient& c : part.effects.back().coefficients) {
+      if (c.parameter < 0 || start.parameters[c.parameter].unit != "s") continue;
+      Parameter& time = start.parameters[c.parameter];
+      time.value = std::clamp(share * time.value, std::max(time.lower, 1e-3 * time.value), time.upper);
+    }
+  }
+  return start;
+}
+
+/// What the effect leaves in steps may have had noise before: of a sawtooth of the prediction that leaves the mean over that noise, a part
+/// (its first harmonic is exp(-2 pi^2 sigma^2/step^2) as large). The steps themselves are looked for in the measurements
+/// (off_whole_steps()).
+bool rounds(const BoundEffect& effect) {
+  const auto& coefficients = effect.effect->spec().coefficients;
+  return std::any_of(coefficients.begin(), coefficients.end(),
+                     [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
+}
+
+/// "late_share = 0.12 ± 0.01, where the whole effect would have 1.00"; empty where the strengths are about whole.
+std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
+  constexpr double more = 0.2;  // of the whole: formulas idealise, which takes away rather than adds
+  const double less = rounds(estimate.model.effects.back()) ? 0.9 : 0.3;
+  for (const WholeStrength& w : whole) {
+    const Parameter& p = estimate.model.parameters[w.parameter];
+    const double sigma = standard_error_of(estimate.model, estimate.covariance, w.parameter).value_or(0.0);
+    const double share = p.value / w.value, of_sigma = 2.0 * sigma / std::abs(w.value);
+    if (share >= 1.0 - std::max(less, of_sigma) && share <= 1.0 + std::max(more, of_sigma)) continue;
+    return p.name + " = " + in_display_unit(p.value, p.unit, sigma) + ", where the whole effect would have " +
+           in_display_unit(w.value, p.unit);
+  }
+  return {};
+}
+
+/// A start with the whole effect, and what it was assembled from.
+struct WholeStart {
+  Model model;
+  ModelRequest request;
+  std::optional<std::map<std::string, std::string>> moved;
+};
+
+/// On the input itself where that is possible: on_its_input().
+WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vector<WholeStrength>& whole) {
+  WholeStart out{start_of_whole(refit.estimate.model, whole), refit.request, {}};
+  const std::optional<ModelRequest> request = on_its_input(refit.estimate.model, refit.request);
+  if (!request) return out;
+  try {
+    Model there = with_the_same_values(assemble(*request, work.registry), out.model);
+    const BoundEffect& bound = there.effects.back();
+    for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
+      const double of_input = bound.effect->spec().coefficients[c].whole;
+      if (of_input != 0.0 && bound.coefficients[c].parameter >= 0) there.parameters[bound.coefficients[c].parameter].value = of_input;
+    }
+    out = {std::move(there), *request, request->effects.back().roles};
+  } catch (const InputError&) {  // it cannot act there: its strength is held at a number
+  }
+  return out;
+}
+
+/// The estimate from where the effect has a time constant of the system, and the system, by the parameter that moves it, the effect's. The
+/// others are fitted first with these two held: a gain is far off then.
+FilterEstimate with_exchanged_poles(const RefitWork& work, const FilterEstimate& estimate, const MovedPole& effect) {
+  const FilterOptions options = options_like(work.without, work.threads);  // with its noise: the way is long
+  const auto from = [&](const Model& start) {
+    return estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
+  };
+  Model start = estimate.model;
+  Parameter& tau = start.parameters[effect.parameter];
+  const auto moved = moved_pole(estimate, effect.value, tau.value);
+  tau.value = effect.value;
+  if (!moved) return from(start);
+  Parameter& of_system = start.parameters[moved->parameter];
+  of_system.value = moved->value;
+  tau.free = of_system.free = false;
+  start = from(start).model;
+  start.parameters[effect.parameter].free = start.parameters[moved->parameter].free = true;
+  return from(start);
+}
+
+bool alike(double a, double b) {
+  constexpr double factor = 1.25;  // of time constants
+  return a < factor * b && b < factor * a;
+}
+
+}  // namespace
+
+bool fix_whole_strengths(const RefitWork& work, Refit& out) {
+  constexpr double allowed = 2.0;  // of the log-likelihood
+  const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
+  if (whole.empty()) return true;
+  const WholeStart start = whole_start(work, out, whole);
+  FilterOptions options = options_like(work.without, work.threads);
+  options.noise = out.estimate.noise;
+  try {
+    FilterEstimate held = estimate_filter(start.model, penalties_as_of(work.without, start.model), work.experiments, options);
+    if (held.out_of_time) return false;
+    if (held.converged && held.objective > out.estimate.objective - allowed) {
+      out.estimate = std::move(held);
+      out.request = start.request;
+      out.moved = start.moved;
+      return true;
+    }
+  } catch (const TimeSpent&) {
+    return false;
+  } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
+  }
+  out.partial = part_of_effect(out.estimate, whole);
+  return true;
+}
+
+void try_exchanged_poles(const RefitWork& work, Refit& out) {
+  constexpr double hardly = 5.0;  // of the log-likelihood: a drop of 10
+  const int time = time_constant_of(out.estimate.model);
+  if (time < 0 || !out.estimate.converged) return;
+  for (const double other : time_constants_of_system(out.estimate)) {
+    const Parameter& tau = out.estimate.model.parameters[time];
+    const double known = tau.value;
+    if (other < tau.lower || other > tau.upper || alike(other, known)) continue;
+    try {
+      FilterEstimate there = with_exchanged_poles(work, out.estimate, {time, other});
+      const double found = there.model.parameters[time].value;
+      if (there.out_of_time || !there.converged || alike(found, known)) continue;
+      const double gain = there.objective - out.estimate.objective;
+      if (std::abs(gain) < hardly ? found < known : gain > 0.0) std::swap(there, out.estimate);
+      if (std::abs(gain) < hardly) out.also = exchange_in_words(out.estimate, there, time);
+    } catch (const TimeSpent&) {  // the order that was found stays
+      return;
+    } catch (const RunError&) {  // it cannot be run in that order
+    }
+  }
+}
+
+bool free_drifts(const RefitWork& work, Refit& out) {
+  constexpr double least = 5.4;  // of the log-likelihood: 10.8 in chi², 1 degree of freedom
+  Model start = out.estimate.model;
+  const std::vector<int> drifts = held_drifts(start);
+  if (drifts.empty()) return true;
+  for (const int drift : drifts) start.parameters[drift].free = true;
+  FilterOptions options = options_like(work.without, work.threads);
+  options.noise = out.estimate.noise;
+  try {
+    FilterEstimate drifting = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
+    if (drifting.out_of_time) return false;
+    const double needed = least * static_cast<double>(drifts.size());
+    if (drifting.converged && drifting.objective > out.estimate.objective + needed) out.estimate = std::move(drifting);
+  } catch (const TimeSpent&) {
+    return false;
+  } catch (const RunError&) {  // it cannot be run with a drift: it stays without
+  }
+  return true;
+}
+
+}  // namespace misfit

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "misfit/discover/refit.h"
+
+namespace misfit {
+
+// What a refit that has found its maximum tries beside it: the whole effect, the other order of two poles, shapes that drift.
+
+/// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood allows it.
+/// False: there was no time to try, so that a part that was found says nothing.
+[[nodiscard]] bool fix_whole_strengths(const RefitWork& work, Refit& out);
+
+/// Where the effect's time constant and one of the system's may have changed places: the better order. Where these data hardly tell the two
+/// apart, the one in which the effect is the faster, as actuators and sensors are, and the other in words. Without time the order that was
+/// found stays.
+void try_exchanged_poles(const RefitWork& work, Refit& out);
+
+/// Frees the drifts of its shapes (CoefficientSpec::drift_of), if that gains what chance would once in a thousand times. False: there was
+/// no time to try.
+[[nodiscard]] bool free_drifts(const RefitWork& work, Refit& out);
+
+}  // namespace misfit
