@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace misfit {
 namespace {
@@ -63,10 +64,11 @@ bool predict_at(const Simulation& simulation, std::size_t i, const double* x, do
   if (!evaluator.shifts_time()) return true;
   std::array<double, kMaxSensorPorts> there{};
   std::array<double, kMaxStates> moved{};
+  double reached_shift = 0.0;
   for (int o = 0; o < evaluator.outputs(); ++o) {
     const double shift = evaluator.time_shift(y, o);
     if (shift == 0.0) continue;
-    if (o == 0 || evaluator.shifts_apart()) {
+    if (shift != std::exchange(reached_shift, shift)) {
       Reached reached;
       std::copy_n(x, stepper.states(), moved.begin());
       if (!along(simulation, i, shift, reached, [&](const Interval& piece) { return stepper.step(moved.data(), piece); })) return false;
@@ -150,7 +152,7 @@ bool SampledOutputs::linearise(const Simulation& run, std::size_t i, const doubl
   slots.clear();
   for (int c = 0; c < evaluator_.columns(); ++c) static_cast<void>(slots.slot(c));
   for (int o = 0; o < ny_; ++o) {
-    if ((o == 0 || evaluator_.shifts_apart()) && !carry(run, i, shift[o], x)) return false;
+    if ((o == 0 || shift[o] != shift[o - 1]) && !carry(run, i, shift[o], x)) return false;
     y_[o] = moved_y_[o];
     write_row(o, slots);
   }

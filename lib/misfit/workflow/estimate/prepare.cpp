@@ -47,7 +47,9 @@ Signals film_signals(const Session& session, std::size_t e, const Model& model) 
   for (auto& channel : signals.measured) {
     const std::string header = channel_of(channel.name, experiment);
     for (const auto& [name, track, facts] : tracks) {
-      if (name.empty() || header.ends_with("_" + name)) channel.sigma = usual_sigma(track) * (channel.unit == "m" ? metres : 1.0);
+      const std::vector<std::string> own = film_channels({name});
+      if (name.empty() || std::count(own.begin(), own.end(), header) > 0)
+        channel.sigma = usual_sigma(track) * (channel.unit == "m" ? metres : 1.0);
     }
   }
   for (const auto& [name, track, facts] : tracks) {
