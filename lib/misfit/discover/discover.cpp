@@ -58,6 +58,7 @@ class Search {
       if (options_.refits && !ranks().first()) return {};
       const SearchContext context{estimate_, registry_, experiments_, options_, families_};
       unexplained = accept_best(ranked_, unknown_, context);
+      if (none_accepted() && refit_the_other_nominated()) unexplained = accept_best(ranked_, unknown_, context);
       if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context);
       if (none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context);
     } catch (const TimeSpent& limit) {
@@ -96,6 +97,8 @@ class Search {
  private:
   /// Approximate shares of a search's time, measured on 79 s of flight.
   static constexpr double end_of_screen = 0.45, end_of_curves = 0.5, end_of_refits = 0.9;
+  /// What a force must explain of the squares of the free run to be refitted for that, and what its refit must.
+  static constexpr double least_share_of_free_run = 0.2;
 
   void refit_the_best_asked_for() {
     const auto wanted = [&](const RankedCandidate& e) { return options_.refit_best_of && options_.refit_best_of(e.candidate); };
@@ -191,50 +194,61 @@ class Search {
         {.begin = [this](const RankedCandidate& e) { return significant(e) && has_shapes(e) ? e.screening : nullptr; }, .name = "_shapes"});
   }
 
-  /// The forces that explain most of the free run, each at least a fifth of it, begun from there.
+  /// The forces that explain most of the free run, each at least a fifth of it, begun from there: down to the first that one step ahead has
+  /// found already (under mpirun all of them, as in refit_the_best()).
   void refit_what_the_free_run_shows() {
-    constexpr double least_share = 0.2;
     constexpr std::size_t most = 3;
     calm_ = free_run(estimate_);
     if (!calm_) return;
-    const ScoreTest score(*calm_);
+    calm_score_.emplace(*calm_);
     const ForceSensitivity force(*calm_);
-    calm_screening_ = screen({*calm_, score, force, options_.threads}, candidate_models_);
+    calm_screening_ = screen({*calm_, *calm_score_, force, options_.threads}, candidate_models_);
     double counted = 0.0;
     for (const FilterTrace& trace : calm_->traces) counted += static_cast<double>(trace.counted);
-    std::vector<const ScreeningResult*> best;
     for (const ScreeningResult& s : calm_screening_) {
       const bool a_force = s.candidate_model->family != CandidateFamily::sensor;  // the random force takes over nothing else
-      if (a_force && s.runs && s.result.dof > 0 && s.result.chi2 > least_share * counted) best.push_back(&s);
+      if (a_force && s.runs && s.result.dof > 0 && s.result.chi2 > least_share_of_free_run * counted) nominated_.push_back(&s);
     }
-    std::stable_sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });
-    best.resize(std::min(best.size(), most));
-    refit_wave({.begin =
-                    [&](const RankedCandidate& e) {
-                      const auto found = std::find_if(best.begin(), best.end(), [&](const auto* s) {
-                        return s->candidate_model == e.screening->candidate_model && !e.candidate.described;
-                      });
-                      return found == best.end() ? nullptr : *found;
-                    },
-                .name = "_free_run",
-                .screened = &*calm_,
-                .score = &score});
+    std::stable_sort(nominated_.begin(), nominated_.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });
+    nominated_.resize(std::min(nominated_.size(), most));
+    const auto known = std::find_if(nominated_.begin(), nominated_.end(), [this](const ScreeningResult* s) {
+      return std::any_of(ranked_.begin(), ranked_.end(), [&](const RankedCandidate& e) {
+        return e.screening->candidate_model == s->candidate_model && e.refit && significant(e);
+      });
+    });
+    refit_nominated({nominated_.begin(), ranks().size() > 1 ? nominated_.end() : known}, "_free_run");
+  }
+
+  /// False: there is none.
+  bool refit_the_other_nominated() {
+    if (!calm_ || ranks().size() > 1) return false;
+    return refit_nominated(nominated_, "_free_run_others");
+  }
+
+  bool refit_nominated(const std::vector<const ScreeningResult*>& nominated, const char* name) {
+    const auto begin = [&](const RankedCandidate& e) -> const ScreeningResult* {
+      const auto found = std::find_if(nominated.begin(), nominated.end(), [&](const auto* s) {
+        return s->candidate_model == e.screening->candidate_model && !e.candidate.described;
+      });
+      return found == nominated.end() ? nullptr : *found;
+    };
+    if (!refit_wave({.begin = begin, .name = name, .screened = &*calm_, .score = &*calm_score_})) return false;
     for (RankedCandidate& e : ranked_) {
-      const bool nominated =
-          std::any_of(best.begin(), best.end(), [&](const auto* s) { return s->candidate_model == e.screening->candidate_model; });
-      if (nominated && e.refit && !significant_in_screening(e)) require_of_free_run(e, least_share);
+      e.candidate.group.clear();
+      if (begin(e) != nullptr && e.refit && !significant_in_screening(e)) require_of_free_run(e);
     }
     sort_ranked();
+    return true;
   }
 
   /// What the free run alone nominated must explain there what it promised: else its refit went elsewhere, and is not counted.
-  void require_of_free_run(RankedCandidate& e, double share) {
+  void require_of_free_run(RankedCandidate& e) {
     const std::optional<FilterEstimate> after = free_run(e.refit->estimate);
     if (!after) return;  // nothing is left to the random force
     double log_ratio = 0.0;
     for (std::size_t o = 0; o < after->noise.channels.size(); ++o)
       log_ratio += std::log(after->noise.channels[o].white / calm_->noise.channels[o].white);
-    if (std::exp(2.0 * log_ratio / static_cast<double>(after->noise.channels.size())) < 1.0 - share) return;
+    if (std::exp(2.0 * log_ratio / static_cast<double>(after->noise.channels.size())) < 1.0 - least_share_of_free_run) return;
     e.refit.reset();
     e.log_p = e.screening->log_p;
     e.candidate = named_candidate(*e.screening, families_);
@@ -399,8 +413,10 @@ class Search {
   ScoreTest score_;
   ForceSensitivity force_;
   std::vector<ScreeningResult> screening_;
-  std::optional<FilterEstimate> calm_;           ///< free_run()
-  std::vector<ScreeningResult> calm_screening_;  ///< there
+  std::optional<FilterEstimate> calm_;             ///< free_run()
+  std::optional<ScoreTest> calm_score_;            ///< there
+  std::vector<ScreeningResult> calm_screening_;    ///< there
+  std::vector<const ScreeningResult*> nominated_;  ///< of these, the best first
   std::vector<UnknownCurve> unknown_;
   std::vector<RankedCandidate> ranked_;
   std::vector<std::string> unfinished_;  ///< effects whose refits were cut off

@@ -27,7 +27,6 @@ Evaluator::Evaluator(const Model& model) : model_(&model), system_(model.system.
   q_rows_.assign(size(nq_ + ny_, kRowStride), 0.0);
   P_rows_.assign(size(np_, kRowStride), 0.0);
   F_rows_.assign(size(nf_ + sensor_ports(), kRowStride), 0.0);
-  scratch_.assign(size(std::max({np_, nf_, sensor_ports(), n_}), kRowStride), 0.0);
   force_x_.assign(size(nf_ + n_ - nx_, n_), 0.0);
   q_x_.assign(size(nq_, nx_), 0.0);
   q_P_.assign(size(nq_, np_), 0.0);

@@ -131,8 +131,8 @@ class Evaluator {
     std::array<double, std::size_t{kMaxWidth} * kMaxWidth> J;
     std::array<CurvePoint, kMaxWidth> points;
   };
-  struct Targets {  // to which an effect adds: ports, and the drifts of its own states, with rows of kRowStride
-    double *ports, *rows, *drifts, *drift_rows;
+  struct Targets {  // to which an effect adds: ports, and the drifts of its own states, with rows of kRowStride; nullptr: nobody reads them
+    double *ports = nullptr, *rows = nullptr, *drifts = nullptr, *drift_rows = nullptr;
   };
   [[nodiscard]] Point point(const Instant& at) {
     inputs_ = at.u;
@@ -142,7 +142,7 @@ class Evaluator {
   void add_value(const Use& use, const Point& at, double* targets, double* drifts);
   void linearise_effect(const Use& use, const Point& at, Linearisation& l) const;
   void chain_effect(const Use& use, const Linearisation& l, int output, Slots& slots, double* row) const;
-  void add_linear(const Use& use, const Point& at, Slots& slots, const Targets& to) const;
+  void add_linear(const Use& use, const Point& at, Slots& slots, const Targets& to);
   // The common case, nothing on quantity ports: quantities depend on the state and on free constants alone, and derivatives by parameters
   // are kept as a short list of entries instead of rows.
   struct Link {
@@ -218,7 +218,7 @@ class Evaluator {
   std::vector<CurveEntry> curve_entries_;
   std::vector<double> force_x_;  // (dynamic ports + own states) × states
   bool own_elsewhere_ = false;   // an effect on a quantity or sensor port has memory
-  std::vector<double> scratch_;  // rows of ports that nobody reads
+  Linearisation linearisation_;  // of the effect at hand
   std::vector<double> q_x_, q_P_, q_k_, r_x_, r_P_, r_F_, r_k_, y_x_, y_k_;
 };
 

@@ -87,16 +87,16 @@ void Evaluator::chain_effect(const Use& use, const Linearisation& l, int output,
 
 /// Adds an effect's outputs to the ports with derivative rows rows[port·kRowStride + …], and sets its own states' drifts and rows. Rows
 /// are kept zero beyond the slots in use: a slot that is met for the first time needs no clearing.
-void Evaluator::add_linear(const Use& use, const Point& at, Slots& slots, const Targets& to) const {
-  Linearisation l;
+void Evaluator::add_linear(const Use& use, const Point& at, Slots& slots, const Targets& to) {
+  Linearisation& l = linearisation_;
   linearise_effect(use, at, l);
-  for (int o = 0; o < use.ports; ++o) {
+  for (int o = 0; o < use.ports && to.rows != nullptr; ++o) {
     const int port = use.port[o];
     if (port < 0) continue;
     to.ports[port] += l.out[o];
     chain_effect(use, l, o, slots, to.rows + port * kRowStride);
   }
-  for (int o = use.ports; o < use.outputs; ++o) {
+  for (int o = use.ports; o < use.outputs && to.drift_rows != nullptr; ++o) {
     const int state = use.first_state + o - use.ports;
     to.drifts[state] = l.out[o];
     chain_effect(use, l, o, slots, to.drift_rows + state * kRowStride);
@@ -129,9 +129,7 @@ void Evaluator::base_and_derived_linear(const Point& at, Slots& slots) {
   rows_from_blocks(false);
   if (!quantity_effects_) return;
   for (int P = 0; P < np_; ++P) std::fill_n(row_of(P_rows_, P), width, 0.0);
-  std::array<double, kMaxStates> drifts{};
-  scratch_.assign(scratch_.size(), 0.0);
-  for (const auto& use : quantity_) add_linear(use, at, slots, {P_.data(), P_rows_.data(), drifts.data(), scratch_.data()});
+  for (const auto& use : quantity_) add_linear(use, at, slots, {.ports = P_.data(), .rows = P_rows_.data()});
   system_->linearise_quantities(at, needed_, q_.data(), {q_x_.data(), q_P_.data(), k});
   rows_from_blocks(true);
 }
@@ -185,11 +183,7 @@ void Evaluator::clear_new_slot(int slot, int rows, double* D) const {
 }
 
 void Evaluator::own_drifts_linear(const Point& at, Slots& slots, double* drifts, double* own_rows) {
-  std::array<double, kMaxPorts + kMaxSensorPorts> unused{};
-  const auto drift = [&](const Use& use) {
-    std::fill(scratch_.begin(), scratch_.end(), 0.0);
-    add_linear(use, at, slots, {unused.data(), scratch_.data(), drifts, own_rows});
-  };
+  const auto drift = [&](const Use& use) { add_linear(use, at, slots, {.drifts = drifts, .drift_rows = own_rows}); };
   for (const auto& use : quantity_) {
     if (use.nz > 0) drift(use);
   }
@@ -244,11 +238,7 @@ void Evaluator::linearise_outputs(const Instant& instant, Slots& slots, double* 
     y[i] = 0.0;
     std::fill_n(D + i * kRowStride, width, 0.0);
   }
-  std::array<double, kMaxStates> drifts{};
-  for (const auto& use : sensor_) {
-    std::fill(scratch_.begin(), scratch_.end(), 0.0);
-    add_linear(use, at, slots, {y, D, drifts.data(), scratch_.data()});
-  }
+  for (const auto& use : sensor_) add_linear(use, at, slots, {.ports = y, .rows = D});
 }
 
 }  // namespace misfit

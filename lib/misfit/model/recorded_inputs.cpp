@@ -19,15 +19,11 @@ class InputInTime {
       : record_(record), input_(input), held_(record.hold[static_cast<std::size_t>(input)] == Hold::zero_order) {}
 
   /// Last sample not after `time`, the first one before the record.
-  [[nodiscard]] std::size_t sample_at(double time) const {
-    const auto& t = record_.t;
-    const auto after = std::upper_bound(t.begin(), t.end(), time);
-    return after == t.begin() ? 0 : static_cast<std::size_t>(after - t.begin()) - 1;
-  }
+  [[nodiscard]] std::size_t sample_at(double time) const { return std::max<std::size_t>(samples_until(time), 1) - 1; }
 
   [[nodiscard]] double next_sample_after(double time) const {
-    const auto after = std::upper_bound(record_.t.begin(), record_.t.end(), time);
-    return after == record_.t.end() ? std::numeric_limits<double>::infinity() : *after;
+    const std::size_t next = samples_until(time);
+    return next == record_.t.size() ? std::numeric_limits<double>::infinity() : record_.t[next];
   }
 
   /// Value and slope between samples k and k + 1, as a straight line or held.
@@ -59,6 +55,19 @@ class InputInTime {
   }
 
  private:
+  /// How many samples are not after `time`. In an evenly sampled record they are known by their number.
+  [[nodiscard]] std::size_t samples_until(double time) const {
+    const auto& t = record_.t;
+    if (t.empty() || !(time >= t.front())) return 0;
+    if (time >= t.back()) return t.size();
+    const double even = (time - t.front()) / (t.back() - t.front()) * static_cast<double>(t.size() - 1);
+    const auto guess = static_cast<std::size_t>(even);
+    for (std::size_t k = std::max<std::size_t>(guess, 1) - 1; k < guess + 2 && k + 1 < t.size(); ++k) {
+      if (t[k] <= time && time < t[k + 1]) return k + 1;
+    }
+    return static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), time) - t.begin());
+  }
+
   const RecordedInputs& record_;
   int input_;
   bool held_;
