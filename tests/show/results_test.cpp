@@ -45,6 +45,9 @@ TEST(ShownDiscovery, SaysTheVerdictFirstAndNamesOnlyOtherEffectsAsIndistinguisha
   EXPECT_LT(text.find("Missing: strut_wake."), text.find("rank"));
   expect_parts(text, {"275.0", "< 1e-300", "coning", "strut_wake: it is", "2 in discovery.json"});
   EXPECT_EQ(text.find("strut_wake, coning"), std::string::npos);
+  EXPECT_EQ(text.find("Estimates of a candidate"), std::string::npos) << "none is accepted";
+  d.candidates.front().accepted = true;
+  expect_parts(as_text(blocks_of(d)), {"Missing: strut_wake.", "Estimates of a candidate are those of the search"});
 }
 
 TEST(ShownUncertainty, HasTheBandOfThreeSigmasAndFourNumbersPerTableOfShares) {
