@@ -193,7 +193,7 @@ def move_the_roughness(page):
     slider = page.wait(lambda: page.one(".slider input"), "the slider of a roughness")
     page.wait(lambda: page.one("#view canvas"), "the curve")
     before = page.still(drawn, "the curve")
-    assert re.search(r"λ = [\d.]+\S* .* as fitted", page.text(".slider output")), page.text(".slider output")
+    assert re.search(r"λ = [\d.]+\S* .* as fitted, .*; [\d.]+ effective degrees of freedom", page.text(".slider output")), page.text(".slider output")
     assert page.text(".slider").startswith("Smoothness of ") and page.text(".slider .soft:last-of-type") == "smooth", "larger to the right, as its name says"
     page.js("arguments[0].value = arguments[0].max; arguments[0].dispatchEvent(new Event('input'))", slider)
     page.wait(lambda: "(log marginal likelihood)" in page.text(".slider output"), "what the likelihood says")

@@ -640,9 +640,9 @@ function roughnessOf(paths, figures, parent) {
       figures[c.figure]?.overlay.push({ x: c.x, y, sorted: true, style: 'line', width: 2.5, colour: '#000000' });
     }
     for (const figure of figures) figure.redraw();
-    const support = between(path.support, mixed);
+    const support = between(path.support, mixed), freedom = path.freedom && `; ${path.freedom} effective degrees of freedom`;
     said.replaceChildren(asFitted ? '' : 'Black: ', `roughness λ = ${shown(value(), 3)} `, words(path.unit), asFitted
-      ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}`
+      ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}${freedom}`
       : `, ${shown(value() / path.used, 2)} times as fitted; ${support < 0 ? 'less' : 'more'} likely by ${
         shown(Math.abs(support), 2)} (log marginal likelihood). All other unknowns follow (linearised).`);
     back.disabled = asFitted;
