@@ -11,7 +11,7 @@ const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
 /** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
-const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false };
+const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false, late: false };
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
@@ -44,6 +44,10 @@ async function look() {
     if (grown || here.model >= state.models.length) here.model = state.models.length - 1;
     showHead();
     await showAll();
+  }
+  if (here.late && here.tab !== 'study' && !inHand()) {
+    here.late = false;
+    await showView();
   }
   jobNumber = job.number;
   return job.state === 'running';
@@ -749,6 +753,9 @@ function focusAgain(old) {
   (same && !same.disabled ? same : at('view')).focus({ preventScroll: true });
 }
 
+/** Somebody types, or is asked something: the view is not drawn anew under their hands. */
+const inHand = () => (here.tab === 'study' && study.changed()) || at('view').querySelector('.asking .yes') !== null;
+
 async function showAll() {
   again = true;
   if (busy) return; // who is at it does it again
@@ -760,7 +767,8 @@ async function showAll() {
       here.where = where;
       await showMotion(motion);
       mark([], '', true);
-      if (here.tab !== 'study' || !study.changed()) await showView(); // not under the hands of somebody who types
+      here.late = inHand();
+      if (!here.late) await showView();
     }
   } finally {
     busy = false;
@@ -768,6 +776,7 @@ async function showAll() {
 }
 
 function choose(model) {
+  for (const question of at('view').querySelectorAll('.asking')) question.remove(); // it was about another one
   here.model = model;
   at('model').value = model;
   showAll().catch(say);
