@@ -384,6 +384,7 @@ def report_without_server(page, verdict):
     page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False})
     cut = "return [...document.querySelectorAll('body > main .drawing')].filter((e) => e.scrollWidth > e.clientWidth + 1).length"
     assert page.js("return document.querySelectorAll('body > main .drawing').length") > 3 and page.js(cut) == 0, "no figure is cut on narrow paper"
+    page.wait(lambda: page.js("return document.documentElement.scrollWidth") <= 400, "no table is wider than narrow paper", 10)
     page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
     page.click("button.read")
     assert page.one("body > main").is_displayed() and not page.one("#page").is_displayed()
