@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "misfit/inference/curve_freedom.h"
 #include "misfit/inference/roughness.h"
 #include "misfit/math/bspline.h"
 
@@ -159,6 +160,32 @@ TEST(RoughnessPaths, AreTheFitsThatAnotherRoughnessGives) {
   }
   EXPECT_EQ(paths[0].theta[12], smoothed.theta);
   EXPECT_GT((paths[0].theta.front() - smoothed.theta).norm(), 0.05 * smoothed.theta.norm()) << "the test sees a difference";
+}
+
+/// Against the trace over all columns by estimate_smoothing(), of which two curves side by side have their shares.
+TEST(CurveFreedom, IsTheShareOfTheCurveInTheEffectiveParameters) {
+  const CurveMeasurements r = measurements();
+  const Eigen::Index n = r.A.cols();
+  Eigen::VectorXd y(r.A.rows());
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = 4.0 * std::sin(0.05 * static_cast<double>(i));
+  const NormalEquations one = problem_of(r, y);
+  for (const double lambda : {1e-6, 1.0, 1e6, 1e18}) {
+    std::vector<Penalty> penalties{penalty_of(r, lambda, false)};
+    const double edf = estimate_smoothing(one, penalties, 1.0).edf;
+    ASSERT_EQ(curve_freedom(one, penalties, 1.0).size(), 1U);
+    EXPECT_NEAR(curve_freedom(one, penalties, 1.0).front(), edf, 1e-6 * edf) << lambda;
+  }
+  NormalEquations two = one;
+  two.N = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  two.N.topLeftCorner(n, n) = two.N.bottomRightCorner(n, n) = one.N;
+  two.prior = ColumnPriors{}.padded(2 * n);
+  std::vector<Penalty> both{penalty_of(r, 1e-6, false), penalty_of(r, 1e12, false)};
+  both[1].first = static_cast<int>(n);
+  const std::vector<double> freedom = curve_freedom(two, both, 1.0);
+  ASSERT_EQ(freedom.size(), 2U);
+  EXPECT_NEAR(freedom[0], curve_freedom(one, {both[0]}, 1.0).front(), 1e-6);
+  EXPECT_NEAR(freedom[1], 2.0, 1e-3) << "a straight line";
+  EXPECT_GT(freedom[0], 2.5);
 }
 
 TEST(RoughnessPaths, AreNoneWhereTheRoughnessIsZero) {

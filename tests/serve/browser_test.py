@@ -193,7 +193,7 @@ def move_the_roughness(page):
     slider = page.wait(lambda: page.one(".slider input"), "the slider of a roughness")
     page.wait(lambda: page.one("#view canvas"), "the curve")
     before = page.still(drawn, "the curve")
-    assert "as fitted" in page.text(".slider output")
+    assert re.search(r"λ = [\d.]+\S* .* as fitted, .*; [\d.]+ effective degrees of freedom", page.text(".slider output")), page.text(".slider output")
     assert page.text(".slider").startswith("Smoothness of ") and page.text(".slider .soft:last-of-type") == "smooth", "larger to the right, as its name says"
     page.js("arguments[0].value = arguments[0].max; arguments[0].dispatchEvent(new Event('input'))", slider)
     page.wait(lambda: "(log marginal likelihood)" in page.text(".slider output"), "what the likelihood says")
@@ -207,17 +207,27 @@ def focused(page):
     return page.js("return document.activeElement.textContent")
 
 
+def press(page, key):
+    """On what has the focus; once more where that was drawn anew meanwhile."""
+    page.wait(lambda: page.driver.switch_to.active_element.send_keys(key) is None, "the key is taken")
+
+
 def remove_asks_first(page):
     """Once, where it stands; a doubt leads back, and the keys stay where they were."""
     number = page.one("#job").get_attribute("data-number")
     page.click("button.removes")
     page.wait(lambda: "Take this rung off the ladder?" in page.text(".asking"), "the question")
     assert focused(page) == "Keep", focused(page)
-    page.driver.switch_to.active_element.send_keys(Keys.ESCAPE)
+    os.utime(os.path.join(FOLDER, "out", "run.json"))  # what is shown has changed
+    time.sleep(5)
+    assert focused(page) == "Keep", "the view is not drawn anew under somebody who is asked"
+    page.js("document.querySelector('#view > div').dataset.seen = 'before'")
+    press(page, Keys.ESCAPE)
+    page.wait(lambda: page.js("return document.querySelector('#view > div').dataset.seen !== 'before'"), "but then")
     page.wait(lambda: focused(page) == "Remove this rung", "back at the button")
-    page.driver.switch_to.active_element.send_keys(Keys.ENTER)
+    press(page, Keys.ENTER)
     page.wait(lambda: focused(page) == "Keep", "asked by a key")
-    page.driver.switch_to.active_element.send_keys(Keys.ENTER)
+    press(page, Keys.ENTER)
     page.wait(lambda: focused(page) == "Remove this rung", "kept")
     assert page.one("#job").get_attribute("data-number") == number, "nothing was removed"
 
@@ -240,6 +250,34 @@ def zoom_by_dragging(page):
     plot.send_keys(Keys.SHIFT + Keys.ARROW_RIGHT, "m")
     page.wait(lambda: page.text("#marked").startswith("Marked: "), "a time is marked by keys")
     page.click("#unmark")
+
+
+def plots_stand_still_and_are_seen_at_once(page, address):
+    """The first plot is on the first screen, the views are chosen above it where they stand below; a long text of what is marked moves nothing."""
+    places = "return [...document.querySelectorAll('#motion .u-over')].map((o) => o.getBoundingClientRect().top + scrollY)"
+    for width, height in ((1280, 900), (400, 800)):
+        page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+        page.driver.get("about:blank")
+        page.open(address + "#view=where&model=0")
+        top = page.wait(lambda: page.js(places), "the motion")[0]
+        assert top < height - 60, (width, top)
+        assert width > 400 or page.js("return document.querySelector('#tabs').getBoundingClientRect().top + scrollY") < top, "the views above it"
+        page.js("[...document.querySelectorAll('[data-map]')].find((b) => b.textContent.includes(' and ')).click()")
+        over = page.wait(lambda: page.one("#view figure[data-figure*=_and_] .u-over"), "a map over two quantities")
+        page.js("arguments[0].scrollIntoView({block: 'center'})", over)
+        before, words = page.js(places), set()
+        for k in range(1, 12):
+            ActionChains(page.driver).move_to_element_with_offset(over, int(over.size["width"] * (k / 12 - 0.5)), 0).perform()
+            page.frames()
+            words.add(page.text("#marked"))
+            assert page.js(places) == before, f"at {width} pixels a plot moves with {page.text('#marked')}"
+        assert len(words) > 3, words
+    assert page.js("return !document.querySelector('#verdict details').open"), "on a phone the rest of the verdict is folded"
+    page.click("#verdict summary")
+    page.wait(lambda: "random force: " in page.text("#verdict"), "opened")
+    page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    page.driver.get("about:blank")
+    page.open(address)
 
 
 def nothing_is_cut_off(page, where):
@@ -308,6 +346,7 @@ def find_and_add():
         page.view(view)
         time.sleep(0.3)
         assert not page.driver.find_elements(By.CSS_SELECTOR, "#view > div > p.warning"), page.text("#view")
+    plots_stand_still_and_are_seen_at_once(page, server.address)
     for width in (1280, 800, 400):
         page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
         page.wait(lambda: page.js("return document.documentElement.scrollWidth") <= width, f"nothing is wider than {width} pixels", 30)
@@ -342,6 +381,10 @@ def report_without_server(page, verdict):
     assert page.js("return performance.getEntriesByType('resource').length") == 0, "nothing was asked of anybody"
     page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
     assert not page.one("#page").is_displayed() and page.one("body > main").is_displayed(), "on paper it is the document"
+    page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False})
+    cut = "return [...document.querySelectorAll('body > main .drawing')].filter((e) => e.scrollWidth > e.clientWidth + 1).length"
+    assert page.js("return document.querySelectorAll('body > main .drawing').length") > 3 and page.js(cut) == 0, "no figure is cut on narrow paper"
+    page.wait(lambda: page.js("return document.documentElement.scrollWidth") <= 400, "no table is wider than narrow paper", 10)
     page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
     page.click("button.read")
     assert page.one("body > main").is_displayed() and not page.one("#page").is_displayed()

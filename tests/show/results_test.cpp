@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "misfit/data/curve_coefficient.h"
 #include "tests/core/temporary_folder.h"
 
 namespace misfit {
@@ -45,6 +46,9 @@ TEST(ShownDiscovery, SaysTheVerdictFirstAndNamesOnlyOtherEffectsAsIndistinguisha
   EXPECT_LT(text.find("Missing: strut_wake."), text.find("rank"));
   expect_parts(text, {"275.0", "< 1e-300", "coning", "strut_wake: it is", "2 in discovery.json"});
   EXPECT_EQ(text.find("strut_wake, coning"), std::string::npos);
+  EXPECT_EQ(text.find("Estimates of a candidate"), std::string::npos) << "none is accepted";
+  d.candidates.front().accepted = true;
+  expect_parts(as_text(blocks_of(d)), {"Missing: strut_wake.", "Estimates of a candidate are those of the search"});
 }
 
 TEST(ShownUncertainty, HasTheBandOfThreeSigmasAndFourNumbersPerTableOfShares) {
@@ -60,6 +64,19 @@ TEST(ShownUncertainty, HasTheBandOfThreeSigmasAndFourNumbersPerTableOfShares) {
   expect_parts(text, {"12.00 ± 0.10 deg", "12.0 deg", "9.0 to 15.0 deg", "90.0 ± 1.0 %", "+0.5 deg", "interactions",
                       "1 of 100 runs gave no result"});
   EXPECT_NE(text.find("share of the variance"), text.rfind("share of the variance"));
+}
+
+TEST(ShownFit, ASmoothedCurveHasItsEffectiveDegreesOfFreedomBesideItsRange) {
+  Fit fit;
+  fit.method = "equation_error";
+  fit.curves.resize(2);
+  fit.curves[0].name = "C_m", fit.curves[1].name = "C_mq";
+  for (CurveEstimate& curve : fit.curves)
+    curve.informative = true, curve.of = "alpha_T", curve.of_unit = "rad", curve.x = {0.1}, curve.count = {9.0};
+  fit.facts[freedom_fact("C_m")] = "4.2";
+  const std::string text = as_text(blocks_of(std::vector{fit}));
+  expect_parts(text, {"from 5.7 to 5.7 deg of alpha_T; 4.2 effective degrees of freedom", "curve C_mq"});
+  EXPECT_EQ(text.find("effective degrees"), text.rfind("effective degrees"));
 }
 
 TEST(ShownResampling, NothingAskedForIsNothingShown) { EXPECT_TRUE(blocks_of(Resampling{}).all().empty()); }

@@ -170,6 +170,39 @@ TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCen
   EXPECT_EQ(v.next, "misfit discover configs/motor");
 }
 
+TEST(Verdict, EveryPortThatFailsIsNamedWithItsMostSignificantPlace) {
+  Case c;
+  c.fail_at_rest();
+  ForceMap same = c.diagnosis->maps.front(), other = same, whole = same;
+  same.quantity = "V", same.sentence = "the model's dw/dt is too high at another place";
+  other.port = "dT/dt", other.p_corrected = 0.0004, other.sentence = "the model's dT/dt is 2.0 ± 0.4 K/s too high";
+  whole.port = "di/dt", whole.p_corrected = 0.6, whole.sentence = "";
+  c.diagnosis->maps.insert(c.diagnosis->maps.end(), {same, other, whole});
+  EXPECT_EQ(c.verdict().where,
+            "The model's dw/dt is 5.0 ± 0.5 V/s too low where w is between 0 V and 1 V (p = 1e-20). The model's dT/dt is 2.0 ± 0.4 K/s "
+            "too high (p = 0.0004).");
+  c.add_effect();
+  c.rung_diagnosis = c.diagnosis;
+  for (ForceMap& map : c.rung_diagnosis->maps) map.p_corrected = 0.8;
+  EXPECT_THAT(c.verdict().where, AllOf(HasSubstr("(p = 1e-20); with coulomb_friction: p = 0.8. The model's dT/dt"),
+                                       EndsWith("(p = 0.0004); with coulomb_friction: p = 0.8.")));
+}
+
+TEST(Verdict, AnEstimateThatLaterRungsHaveMovedIsGivenOfBothModels) {
+  Case c;
+  c.add_effect();
+  Rung& first = c.ladder->rungs.back();
+  first.parameters = {{"friction", {20.6, 1.2, "V/s"}}};
+  Rung second = first;
+  second.id = 2, second.parent = 1, second.added = "time_offset";
+  second.parameters = {{"clock_offset", {0.011, 0.002, "s"}}};
+  second.estimates = {{"friction", {21.8, 1.3, "V/s"}}, {"clock_offset", {0.011, 0.002, "s"}}};
+  c.ladder->rungs.push_back(second);
+  EXPECT_THAT(c.verdict().added,
+              testing::ElementsAre("coulomb_friction: friction = 21.8 ± 1.3 V/s in the last model (friction = 20.6 ± 1.2 V/s in model 1)",
+                                   "time_offset: clock_offset = 0.0110 ± 0.0020 s"));
+}
+
 /// By hand, say: its drop is what chance gives.
 TEST(Verdict, AnAddedEffectThatExplainsNothingIsNotCalledMissing) {
   Case c;

@@ -161,7 +161,7 @@ void conclude(Diagnosis& out) {
   }
   const auto time = std::find_if(out.maps.begin(), out.maps.end(), [](const ForceMap& map) { return map.quantity == "time"; });
   if (said > 0 && time != out.maps.end() && time->p_corrected > significant)
-    out.sentences.push_back("no significant dependence on time: the map over time has " + p_equals(time->p_corrected));
+    out.sentences.push_back("no dependence on time is found: the map over time has " + p_equals(time->p_corrected));
   for (const auto& report : out.whiteness) {
     const double count = 3.0 * static_cast<double>(out.whiteness.size());
     if (sidak(report.peak_p, count) < significant) {

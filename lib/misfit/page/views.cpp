@@ -11,6 +11,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/units.h"
+#include "misfit/data/curve_coefficient.h"
 #include "misfit/page/json_text.h"
 #include "misfit/report/figures.h"
 #include "misfit/report/figures_discovery.h"
@@ -62,10 +63,12 @@ std::string roughness_of(const Fit& fit, const RoughnessPath& path, const std::v
     return fmt::format(R"({{"figure":{},"x":{},"values":{}}})", figure - drawn.begin(), json_numbers(display_values(c.x, c.of_unit)),
                        list_of(c.values, [&](const std::vector<double>& values) { return json_numbers(display_values(values, c.unit)); }));
   };
-  return fmt::format(R"({{"curve":{},"label":{},"method":{},"unit":{},"used":{},"chosen":{},"roughness":{},"support":{},"curves":{}}})",
-                     json_string(path.curve), json_words(path.curve), json_string(fit.method), json_words(path.unit),
-                     json_number(path.used), path.chosen, json_numbers(path.roughness), json_numbers(path.log_likelihood, 4),
-                     list_of(path.curves, curve));
+  const auto freedom = fit.facts.find(freedom_fact(path.curve));
+  return fmt::format(
+      R"({{"curve":{},"label":{},"method":{},"unit":{},"used":{},"chosen":{},"roughness":{},"support":{},"freedom":{},"curves":{}}})",
+      json_string(path.curve), json_words(path.curve), json_string(fit.method), json_words(path.unit), json_number(path.used), path.chosen,
+      json_numbers(path.roughness), json_numbers(path.log_likelihood, 4), json_string(freedom == fit.facts.end() ? "" : freedom->second),
+      list_of(path.curves, curve));
 }
 
 /// Places of candidates, what is most significant first: the accepted one, then by p, then by the drop.

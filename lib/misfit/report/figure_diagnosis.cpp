@@ -82,7 +82,7 @@ Figure figure_of_map(const ForceMap& map) {
   figure.x_label = map.quantity;
   figure.x_unit = display_unit(map.quantity_unit);
   Panel panel{map.port, display_unit(map.port_unit), {}, std::nullopt, 0.0, 230.0, true, {}};
-  Panel counts{"samples", "-", {}, std::nullopt, 0.0, 80.0, false, {}};
+  Panel counts{"samples, weighted", "-", {}, std::nullopt, 0.0, 80.0, false, {}};
   const std::vector<double> x = display_values(map.x, map.quantity_unit);
   Series samples{"samples", "", Style::boxes, grey, x, map.count, {}, {}};
   set_edges(half_steps(x), 0.9, samples);

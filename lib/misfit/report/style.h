@@ -17,7 +17,7 @@ body { margin: 0 auto; max-width: 66rem; padding: 1rem 1.25rem 4rem; color: var(
 h1 { margin: .1rem 0 .4rem; font-size: 1.7rem; line-height: 1.2; font-weight: 600; overflow-wrap: anywhere; }
 h2 { margin: 1.6rem 0 .5rem; padding-bottom: .25rem; border-bottom: 1px solid var(--line); font-size: 1.25rem; font-weight: 600; }
 h3 { margin: 1.4rem 0 .4rem; font-size: 1.05rem; font-weight: 600; }
-p { margin: .5rem 0; max-width: 50rem; }
+p { margin: .5rem 0; max-width: 50rem; } p, li, figcaption, summary { overflow-wrap: anywhere; }
 nav { position: sticky; top: 0; z-index: 1; padding: .4rem 0; background: var(--paper); border-bottom: 2px solid var(--ink); }
 nav ul { list-style: none; display: flex; flex-wrap: wrap; gap: .1rem 1.1rem; padding: 0; margin: 0; font-size: .85rem; }
 a { color: var(--accent); text-decoration: none; }
@@ -52,11 +52,12 @@ figcaption .note { display: block; color: var(--bad); }
 figcaption .files { white-space: nowrap; font-size: .8rem; }
 code { font: .85rem "DejaVu Sans Mono", Consolas, monospace; overflow-wrap: anywhere; }
 @media (max-width: 44rem) { body { padding: .8rem .8rem 3rem; font-size: 15px; } h1 { font-size: 1.35rem; } .answer { font-size: 1.05rem; }
-  nav { position: static; } html { scroll-padding-top: 0; } section:first-child { padding: .1rem .8rem .4rem; }
-  .drawing svg { width: 42rem; } }
+  nav { position: static; } html { scroll-padding-top: 0; } section:first-child { padding: .1rem .8rem .4rem; } }
+@media screen and (max-width: 44rem) { .drawing { cursor: zoom-in; } .drawing:focus { cursor: auto; } .drawing:focus svg { width: 42rem; }
+  .drawing:not(:focus)::after { content: "Larger: tap it"; display: block; text-align: right; font-size: .8rem; color: var(--soft); } }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } nav { display: none; } a { color: inherit; } h2 { margin-top: 1rem; }
   figure, tr, .warnings li { break-inside: avoid; } h2, h3, summary { break-after: avoid; } .wide { overflow: visible; }
-  table { font-size: 8.5pt; } td.number { white-space: normal; } summary { list-style: none; } figcaption .files { display: none; }
+  table { font-size: 8.5pt; } th, td { overflow-wrap: anywhere; padding-right: .6rem; } td.number { white-space: normal; } summary { list-style: none; } figcaption .files { display: none; }
   details::details-content { content-visibility: visible; height: auto; } details:not([open])::details-content { display: block; } }
 )css";
 

@@ -50,7 +50,11 @@ Blocks blocks_of(const Fit& fit) {
   }
   const TableBlock parameters = parameter_table(fit);
   table.rows.insert(table.rows.end(), parameters.rows.begin(), parameters.rows.end());
-  for (const CurveEstimate& curve : fit.curves) table.rows.push_back({"curve " + curve.name, range_of(curve)});
+  for (const CurveEstimate& curve : fit.curves) {
+    const auto freedom = fit.facts.find(freedom_fact(curve.name));
+    const std::string more = freedom == fit.facts.end() ? "" : "; " + freedom->second + " effective degrees of freedom";
+    table.rows.push_back({"curve " + curve.name, range_of(curve) + more});
+  }
   out.table(std::move(table));
   out.warnings(fit.warnings);
   return out;

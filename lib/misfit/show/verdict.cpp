@@ -98,7 +98,8 @@ std::string values_of(const Estimates& parameters) {
   return join_words(out);
 }
 
-/// "quadratic_drag: drag = 0.5010 ± 0.0004 1/m": of what was added, as the last model has it.
+/// "quadratic_drag: drag = 0.5010 ± 0.0004 1/m": of what was added, as the last model has it; where that differs, also as its own rung has
+/// it.
 std::vector<std::string> added_with_estimates(const Ladder& ladder) {
   std::vector<std::string> out;
   const Rung& last = ladder.rungs.back();
@@ -108,8 +109,11 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     for (auto& [name, estimate] : now) {
       if (last.estimates && last.estimates->contains(name)) estimate = last.estimates->at(name);
     }
-    const std::string gain = rung.held_out_gain ? fmt::format("; held-out gain {:.1f}", *rung.held_out_gain) : "";
-    out.push_back(added_in_words(rung, ladder) + ": " + values_of(now) + gain + (rung.also ? "; " + *rung.also : ""));
+    std::string line = added_in_words(rung, ladder) + ": " + values_of(now);
+    if (&rung != &last && values_of(now) != values_of(rung.parameters))
+      line += fmt::format(" in the last model ({} in model {})", values_of(rung.parameters), rung.id);
+    if (rung.held_out_gain) line += fmt::format("; held-out gain {:.1f}", *rung.held_out_gain);
+    out.push_back(line + (rung.also ? "; " + *rung.also : ""));
   }
   return out;
 }
@@ -131,7 +135,7 @@ class VerdictBuilder {
   explicit VerdictBuilder(const VerdictInput& input) : in_(input) {
     fit_ = in_.fits == nullptr ? nullptr : leading_fit(*in_.fits);
     effects_added_ = in_.ladder != nullptr && in_.ladder->rungs.size() > 1;
-    if (in_.diagnosis != nullptr && !in_.diagnosis->maps.empty()) out_.where = where_it_fails(in_.diagnosis->maps.front());
+    if (in_.diagnosis != nullptr) out_.where = where_it_fails(in_.diagnosis->maps);
     if (effects_added_) {
       out_.errors = errors_between(in_.ladder->rungs.front(), in_.ladder->rungs.back());
       out_.added = added_with_estimates(*in_.ladder);
@@ -199,12 +203,24 @@ class VerdictBuilder {
     return in_.rung_diagnosis == nullptr ? nullptr : find_map(*in_.rung_diagnosis, map.port, map.quantity);
   }
   /// Of the study's own model, and what the ladder has left of it.
-  [[nodiscard]] std::string where_it_fails(const ForceMap& map) const {
-    if (map.sentence.empty()) return "";
+  [[nodiscard]] std::string place_where_it_fails(const ForceMap& map) const {
     const ForceMap* after = map_after(map);
     if (after == nullptr) return as_sentence(map.sentence + " (" + p_equals(map.p_corrected) + ")");
     return as_sentence(
         fmt::format("{} ({}); with {}: {}", map.sentence, p_equals(map.p_corrected), names_added(), p_equals(after->p_corrected)));
+  }
+  /// The most significant place of each port that has one; empty: the most significant map has none.
+  [[nodiscard]] std::string where_it_fails(const std::vector<ForceMap>& maps) const {
+    if (maps.empty() || maps.front().sentence.empty()) return "";
+    constexpr std::size_t most = 3;
+    std::vector<std::string> ports, places;
+    for (const ForceMap& map : maps) {
+      const bool named = std::find(ports.begin(), ports.end(), map.port) != ports.end();
+      if (map.sentence.empty() || named || places.size() == most) continue;
+      ports.push_back(map.port);
+      places.push_back(place_where_it_fails(map));
+    }
+    return fmt::format("{}", fmt::join(places, " "));
   }
 
   void no_result() {

@@ -17,6 +17,7 @@
 #include "misfit/fit/filter/noise_interval.h"
 #include "misfit/fit/filter/settled.h"
 #include "misfit/fit/filter/slow_force.h"
+#include "misfit/inference/curve_freedom.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/record_residuals.h"
@@ -339,6 +340,7 @@ void describe_estimates(const FilterEstimate& estimate, Fit& fit) {
   const NormalEquations problem = linearised(estimate);
   describe(estimate.model, short_record_factor(estimate) * covariance_of(estimate, problem), visited_by_filter(estimate), fit);
   describe_roughness(estimate.model, roughness_paths(problem, estimate.penalties, 1.0), fit);
+  describe_freedom(estimate.model, problem, estimate.penalties, 1.0, fit);
 }
 
 /// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a coloured noise that is

@@ -12,6 +12,7 @@
 #include "misfit/core/watch.h"
 #include "misfit/data/estimators.h"
 #include "misfit/inference/coloured.h"
+#include "misfit/inference/curve_freedom.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/driven.h"
 #include "misfit/inference/identifiable.h"
@@ -269,6 +270,7 @@ double describe_estimates(const Regressor& regressor, const Regression& regressi
   keep_plain_sigmas(out.fit);
   describe(out.model, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess), visited, out.fit);
   describe_roughness(out.model, roughness_paths(regression.sums, out.penalties, smoothed.sigma2), out.fit);
+  describe_freedom(out.model, regression.sums, out.penalties, smoothed.sigma2, out.fit);
   if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
   return degrees;

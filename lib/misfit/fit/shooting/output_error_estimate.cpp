@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/inference/curve_freedom.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/short_record.h"
 
@@ -35,6 +36,7 @@ Eigen::MatrixXd describe_estimates(const Ending& end, const EndOfSearch& search,
   keep_plain_sigmas(out.fit);
   describe(out.model, covariance.topLeftCorner(columns, columns), visited, out.fit);
   describe_roughness(out.model, roughness_paths(end.linearised, with.penalties, 1.0), out.fit);
+  describe_freedom(out.model, end.linearised, with.penalties, 1.0, out.fit);
   if (degrees < kShortRecord && !out.model.noise_held()) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
   const auto& outputs = out.model.system->spec().outputs;

@@ -239,7 +239,9 @@ class Plot {
     const values = (u, splits) => splits.map((v) => (v === null ? '' : tick(v)));
     const marked = (marks) => ({ splits: () => marks.map(([at]) => at), values: () => marks.map(([, text]) => plain(text)) });
     const x = { ...axis, values, show: true, size: this.last || this.panel.beside ? 26 : 8 };
-    if (this.figure.xMarks.length > 0 && !this.panel.beside) Object.assign(x, marked(this.figure.xMarks));
+    const names = this.figure.xMarks;
+    if (names.length > 0 && !this.panel.beside)
+      Object.assign(x, marked(names), { values: () => names.map(([, text]) => shortened(plain(text), Math.max(Math.floor((this.width() - 70) / names.length / 7.4), 5))) });
     if (!this.last && !this.panel.beside) x.values = (u, splits) => splits.map(() => '');
     const y = { ...axis, values, size: 60, space: 20 };
     const marks = this.panel.beside ? this.view.marks : this.panel.marks;

@@ -6,11 +6,12 @@ import { editor } from '/editor.js';
 
 const at = (id) => document.getElementById(id);
 const time = new TimeGroup();
+const oneColumn = matchMedia('(max-width: 62rem)'), phone = matchMedia('(max-width: 34rem)'); // as in page.css
 const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves, parameters'], ['calibration', 'Calibration'],
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
 /** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
-const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false };
+const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false, late: false };
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
@@ -43,6 +44,10 @@ async function look() {
     if (grown || here.model >= state.models.length) here.model = state.models.length - 1;
     showHead();
     await showAll();
+  }
+  if (here.late && here.tab !== 'study' && !inHand()) {
+    here.late = false;
+    await showView();
   }
   jobNumber = job.number;
   return job.state === 'running';
@@ -85,7 +90,7 @@ function showHead() {
   at('tabs').querySelector('[data-view=calibration]').hidden = !here.state.camera && here.tab !== 'calibration';
   for (const sentence of outdated) alerts.append(element('p', { class: 'warning' }, sentence));
   if (!verdict) alerts.append(element('p', {}, 'There are no results yet: Run makes them.'));
-  at('verdict').replaceChildren(blocks(verdict));
+  showVerdict(verdict ?? []);
   at('model').replaceChildren(...models.map((m, k) => element('option', { value: k }, m.added === '' ? "0: the study's own" : `${m.id}: + ${m.added}`)));
   at('model').value = here.model;
   const chosen = at('effect').value;
@@ -96,6 +101,15 @@ function showHead() {
       ...refused.map(({ effect, refused: why }) => element('option', { value: effect, disabled: true, title: why }, `${effect}: ${reason(why)}`))));
   if (chosen) at('effect').value = chosen;
 }
+
+/** On a phone the sentence and what is next; the rest opens. */
+function showVerdict(all) {
+  const first = all.filter((b) => b.tone === 'lead' || b.tone === 'command'), rest = all.filter((b) => b.kind !== 'heading' && !first.includes(b));
+  const open = at('verdict').querySelector('details')?.open ?? !phone.matches;
+  const more = element('details', { open }, element('summary', {}, 'Where it fails, estimates, errors'), element('div', { class: 'facts' }, blocks(rest)));
+  at('verdict').replaceChildren(blocks(first.filter((b) => b.tone === 'lead')), rest.length > 0 ? more : '', blocks(first.filter((b) => b.tone !== 'lead')));
+}
+phone.addEventListener('change', () => { if (!phone.matches) at('verdict').querySelector('details')?.setAttribute('open', ''); });
 
 /** What misfit says against an effect, without its name again; the whole sentence is the title. */
 function reason(why) {
@@ -127,17 +141,18 @@ function showJob(job) {
     job.left === null ? '' : ` at most ${shown(job.left, 2)} s left`);
   if (!running) head.append(' ', element('button', { class: 'closes', title: 'Hide what the command said; it stays in session.sh', onclick: () => { box.hidden = at('command').hidden = true; here.closed = job.number; } }, 'Close'));
   const open = box.querySelector('details')?.open ?? false;
-  const parts = [head, costs(job.costs)];
+  const parts = [head];
   if (!running && job.state === 'failed') parts.push(element('pre', { class: 'warning' }, job.notes.slice(-5).join('\n')));
   if (job.notes.length > 0 || job.output !== '')
-    parts.push(element('details', { open }, element('summary', {}, 'What it says'), element('pre', {}, [...job.notes, job.output].join('\n'))));
+    parts.push(element('details', { open }, element('summary', {}, 'What it says'), running ? '' : costs(job.costs), element('pre', {}, [...job.notes, job.output].join('\n'))));
+  if (running) parts.push(costs(job.costs));
   box.replaceChildren(...parts);
 }
 
-/** How the searches of a command go on: the last three. */
+/** How the searches of a command go on: the last two, in one line. */
 function costs(traces) {
   const out = element('div', { class: 'costs' });
-  for (const trace of traces.slice(-3)) {
+  for (const trace of traces.slice(-2)) {
     if (trace.points.length < 2) continue;
     out.append(element('figure', {}, sparkline(trace.points.map(([, value]) => value)),
       element('figcaption', {}, `${trace.work}: ${trace.what} ${shown(trace.points[0][1], 6)} → ${shown(trace.points.at(-1)[1], 6)} in ${trace.points.length} iterations`)));
@@ -364,7 +379,7 @@ function mark(intervals, text, fixed) {
   if (fixed) Object.assign(here, { fixed: intervals, marked: text });
   const shownNow = intervals.length > 0 || fixed ? intervals : here.fixed;
   time.setMarks(shownNow);
-  at('marked').textContent = intervals.length > 0 ? text : here.marked;
+  at('marked').textContent = at('marked').title = intervals.length > 0 ? text : here.marked;
   at('unmark').hidden = here.fixed.length === 0;
   at('holdout').hidden = !live || here.fixed.length !== 1 || here.model !== 0 || !here.state.settable.experiments.includes(here.name);
   at('time').dataset.marks = shownNow.length;
@@ -521,7 +536,8 @@ async function showCandidates(view) {
   const found = await get('candidates', { model: here.model });
   if (!found) return nothing(view, 'Nobody has asked yet which effect is missing: Discover ranks them.');
   const last = here.model === here.state.models.length - 1;
-  const lead = found.blocks.filter((b) => b.kind === 'paragraph' && b.tone === 'lead');
+  const begin = found.blocks.findIndex((b) => b.kind !== 'heading' && b.kind !== 'paragraph');
+  const lead = found.blocks.slice(0, begin).filter((b) => b.kind === 'paragraph');
   const table = found.blocks.find((b) => b.kind === 'table');
   view.append(blocks(lead));
   if (!last) nothing(view, 'Effects are added to the last model of the ladder; these are the candidates of an earlier one.');
@@ -628,11 +644,11 @@ function roughnessOf(paths, figures, parent) {
       figures[c.figure]?.overlay.push({ x: c.x, y, sorted: true, style: 'line', width: 2.5, colour: '#000000' });
     }
     for (const figure of figures) figure.redraw();
-    const support = between(path.support, mixed);
-    said.replaceChildren(asFitted ? '' : 'Black: ', `roughness = ${shown(value(), 3)} `, words(path.unit), asFitted
-      ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}`
-      : `, ${shown(value() / path.used, 2)} times as fitted, all other unknowns following (linearised); ${support < 0 ? 'less' : 'more'} likely by ${
-        shown(Math.abs(support), 2)} (log marginal likelihood)`);
+    const support = between(path.support, mixed), freedom = path.freedom && `; ${path.freedom} effective degrees of freedom`;
+    said.replaceChildren(asFitted ? '' : 'Black: ', `roughness λ = ${shown(value(), 3)} `, words(path.unit), asFitted
+      ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}${freedom}`
+      : `, ${shown(value() / path.used, 2)} times as fitted; ${support < 0 ? 'less' : 'more'} likely by ${
+        shown(Math.abs(support), 2)} (log marginal likelihood). All other unknowns follow (linearised).`);
     back.disabled = asFitted;
   }
   function begin() {
@@ -706,6 +722,7 @@ async function showView() {
     const on = tab.dataset.view === here.tab;
     tab.setAttribute('aria-selected', on);
     tab.tabIndex = on ? 0 : -1;
+    if (on) at('tabs').scrollLeft = tab.offsetLeft - 0.5 * (at('tabs').clientWidth - tab.offsetWidth); // where they do not all find room
   }
   const view = element('div');
   const old = here.figures;
@@ -736,6 +753,9 @@ function focusAgain(old) {
   (same && !same.disabled ? same : at('view')).focus({ preventScroll: true });
 }
 
+/** Somebody types, or is asked something: the view is not drawn anew under their hands. */
+const inHand = () => (here.tab === 'study' && study.changed()) || at('view').querySelector('.asking .yes') !== null;
+
 async function showAll() {
   again = true;
   if (busy) return; // who is at it does it again
@@ -747,7 +767,8 @@ async function showAll() {
       here.where = where;
       await showMotion(motion);
       mark([], '', true);
-      if (here.tab !== 'study' || !study.changed()) await showView(); // not under the hands of somebody who types
+      here.late = inHand();
+      if (!here.late) await showView();
     }
   } finally {
     busy = false;
@@ -755,6 +776,7 @@ async function showAll() {
 }
 
 function choose(model) {
+  for (const question of at('view').querySelectorAll('.asking')) question.remove(); // it was about another one
   here.model = model;
   at('model').value = model;
   showAll().catch(say);
@@ -766,9 +788,10 @@ function correct() {
   choose(0);
 }
 
+/** In one column the view lies below the motion: it is scrolled to. */
 function showTab(name, focus = false) {
   here.tab = name;
-  showView().catch(say);
+  showView().then(() => { if (oneColumn.matches && here.tab === name) at('view').scrollIntoView(); }).catch(say);
   if (focus) at('tabs').querySelector('[aria-selected=true]').focus();
 }
 
