@@ -43,17 +43,17 @@ Signals film_signals(const Session& session, std::size_t e, const Model& model) 
   for (std::size_t m = 0; m < files.size(); ++m)
     tracks.push_back({video.markers.empty() ? "" : video.markers[m].name, read_track(files[m].track), read_track_facts(files[m].facts)});
   Signals signals = signals_from(film_table(tracks, video), model, experiment);
-  const double metres = metres_per_pixel(video).value_or(0.0);
   for (auto& channel : signals.measured) {
     const std::string header = channel_of(channel.name, experiment);
-    for (const auto& [name, track, facts] : tracks) {
-      const std::vector<std::string> own = film_channels({name});
-      if (name.empty() || std::count(own.begin(), own.end(), header) > 0)
-        channel.sigma = usual_sigma(track) * (channel.unit == "m" ? metres : 1.0);
+    for (const FilmTrack& followed : tracks) {
+      const std::vector<std::string> own = film_channels({followed.name});
+      if (followed.name.empty() || std::count(own.begin(), own.end(), header) > 0) channel.sigma = film_sigma(followed, header, video);
     }
   }
   for (const auto& [name, track, facts] : tracks) {
-    for (const std::string& warning : facts.warnings) signals.notes.push_back(name.empty() ? warning : name + ": " + warning);
+    std::vector<std::string> warnings = facts.warnings;
+    if (facts.plane) warnings.insert(warnings.end(), facts.plane->warnings.begin(), facts.plane->warnings.end());
+    for (const std::string& warning : warnings) signals.notes.push_back(name.empty() ? warning : name + ": " + warning);
   }
   return signals;
 }
