@@ -91,11 +91,12 @@ void read_markers(const DescribedSection& video, Study& study) {
 void read_chessboard(const DescribedSection& video, VideoStudy& v) {
   if (!video.has("chessboard")) return;
   const DescribedSection board = described(video, "chessboard", "video.chessboard");
+  const auto columns = board.integer("columns"), rows = board.integer("rows");
+  const auto square = board.value("square");
   for (const char* key : {"columns", "rows", "square"}) {
     if (!board.has(key)) board.fail(key, "it is needed: columns and rows of squares, and the square's side, as square = \"30 mm\"");
   }
-  v.chessboard =
-      ChessboardStudy{static_cast<int>(*board.integer("columns")), static_cast<int>(*board.integer("rows")), *board.value("square")};
+  v.chessboard = ChessboardStudy{static_cast<int>(*columns), static_cast<int>(*rows), *square};
   board.finish();
 }
 
@@ -103,8 +104,8 @@ KnownPoint known_point(const DescribedSection& section, const std::string& name)
   KnownPoint out{name, std::nullopt, std::nullopt, 0.0, 0.0};
   if (const auto at = pixels(section, "pixel", 2, "[column, row]")) out.at = PixelPoint{(*at)[0], (*at)[1]};
   if (const auto tag = section.integer("tag")) out.tag = static_cast<int>(*tag);
-  if (out.at.has_value() == out.tag.has_value()) section.fail("pixel", "either pixel = [column, row] or tag = ID is expected");
   const auto place = section.numbers("place");
+  if (out.at.has_value() == out.tag.has_value()) section.fail("pixel", "either pixel = [column, row] or tag = ID is expected");
   if (!place || place->size() != 2) section.fail("place", "[x, y] is expected, in metres, as [\"0 m\", \"250 mm\"]");
   out.x = (*place)[0];
   out.y = (*place)[1];

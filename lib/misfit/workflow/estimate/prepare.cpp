@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -34,6 +36,19 @@ double usual_sigma(const Track& track) {
   return known.empty() ? 0.0 : median(known);
 }
 
+/// What a user must know of a marker's track, and of the map that made metres of it.
+std::vector<std::string> notes_of(const TrackFacts& facts, bool in_metres) {
+  std::vector<std::string> out = facts.warnings;
+  if (!facts.plane) return out;
+  out.insert(out.end(), facts.plane->warnings.begin(), facts.plane->warnings.end());
+  if (in_metres && facts.plane->sigma > 0.0)
+    out.push_back(fmt::format(
+        "the map from pixels to metres is known to {:.2g} m where the track is; that is common to all samples, and no sigma of a fit "
+        "contains it",
+        facts.plane->sigma));
+  return out;
+}
+
 /// The film as the outputs of a system that says where something is in it.
 Signals film_signals(const Session& session, std::size_t e, const Model& model) {
   const ExperimentStudy& experiment = session.study.experiments[e];
@@ -50,10 +65,9 @@ Signals film_signals(const Session& session, std::size_t e, const Model& model) 
       if (followed.name.empty() || std::count(own.begin(), own.end(), header) > 0) channel.sigma = film_sigma(followed, header, video);
     }
   }
+  const bool in_metres = std::any_of(signals.measured.begin(), signals.measured.end(), [](const auto& c) { return c.unit == "m"; });
   for (const auto& [name, track, facts] : tracks) {
-    std::vector<std::string> warnings = facts.warnings;
-    if (facts.plane) warnings.insert(warnings.end(), facts.plane->warnings.begin(), facts.plane->warnings.end());
-    for (const std::string& warning : warnings) signals.notes.push_back(name.empty() ? warning : name + ": " + warning);
+    for (const std::string& warning : notes_of(facts, in_metres)) signals.notes.push_back(name.empty() ? warning : name + ": " + warning);
   }
   return signals;
 }
