@@ -227,6 +227,43 @@ TEST(FilmWithAHiddenBoard, IsDeclinedInWords) {
               AllOf(HasSubstr("just 8 x 6 squares is seen whole"), HasSubstr("hidden")));
 }
 
+TEST(FilmThroughALens, HasItsDistortionFromTheChessboard) {
+  const TemporaryFolder folder;
+  Camera camera;
+  camera.k1 = -0.12;
+  camera.yaw = 0.4;
+  const oblique::View view(camera);
+  {
+    Writer writer(folder.path() / "lens.mkv", camera.width, camera.height, rate);
+    for (unsigned k = 0; k < 4; ++k) writer.add(view.picture({oblique::chessboard(12, 9, 0.05, {-0.25, -0.18})}, k));
+  }
+  Track track;
+  std::vector<Place> places;
+  for (int k = 0; k < 20; ++k) {
+    places.push_back({0.25 * std::cos(0.9 * k), 0.18 * std::sin(1.3 * k)});
+    const PixelPoint at = camera.pixel(places.back());
+    track.t.push_back(0.1 * k);
+    track.P_y.push_back(0.5 * camera.width - at.column);
+    track.P_z.push_back(at.row - 0.5 * camera.height);
+    track.ok.push_back(true);
+  }
+  VideoStudy video;
+  video.chessboard = ChessboardStudy{12, 9, 0.05};
+  const auto plane = calibrate_plane(folder.path() / "lens.mkv", video, track);
+  ASSERT_TRUE(plane);
+  EXPECT_NEAR(plane->k1, camera.k1, 0.01);
+  const PlaneMap map = map_of(*plane);
+  double worst = 0.0;
+  for (const Place& p : places) {
+    const PixelPoint at = camera.pixel(p);
+    const auto found = map.place({at.column, at.row});
+    ASSERT_TRUE(found);
+    worst = std::max(worst, std::hypot(found->x() - p.x - 0.25, found->y() - p.y - 0.18));
+  }
+  std::printf("    k1 %.4f, worst %.3f mm, known to %.3f mm, %.3f px RMS\n", plane->k1, 1e3 * worst, 1e3 * plane->sigma, plane->rms);
+  EXPECT_LT(worst, 4.0 * plane->sigma);
+}
+
 /// A tag that goes to the right, 9 mm in a frame; frame 12 shows it where frame 11 does, and a second one stands below it.
 TEST(FilmOfTags, LosesAFrameShownTwiceAndAsksWhichOfTwoOfOneId) {
   const TemporaryFolder folder;
