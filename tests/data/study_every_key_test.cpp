@@ -77,6 +77,61 @@ region = [10, 20, 300, 200]
   EXPECT_EQ(plain.camera.sweep_marker.kind, "dark") << "that of [video]";
 }
 
+TEST_F(EveryKey, OfAPlaneInAFilmIsRead) {
+  const std::string film = "[[experiment]]\nvideo = \"flight.mkv\"\n[camera]\nsweep = \"static_sweep.csv\"\n[video]\n";
+  const VideoStudy board = read_with(film + "chessboard = { columns = 8, rows = 6, square = \"30 mm\" }\n").video;
+  EXPECT_EQ(board.chessboard->columns, 8);
+  EXPECT_EQ(board.chessboard->rows, 6);
+  EXPECT_DOUBLE_EQ(board.chessboard->square, 0.03);
+  EXPECT_TRUE(board.has_plane());
+  const VideoStudy tag = read_with(film + R"(marker = "aruco"
+id = 7
+aruco = { dictionary = "5x5", plane = 3, side = "5 cm" }
+markers = { left = {}, right = { id = 8 } }
+)")
+                             .video;
+  EXPECT_EQ(tag.markers[0].marker.id, 7) << "that of [video]";
+  EXPECT_EQ(tag.markers[1].marker.id, 8);
+  EXPECT_EQ(tag.aruco.dictionary, "5x5");
+  EXPECT_EQ(tag.aruco.plane, 3);
+  EXPECT_DOUBLE_EQ(tag.aruco.side.value_or(0.0), 0.05);
+  const VideoStudy points = read_with(film + R"([video.points]
+a = { pixel = [10, 200], place = [0, 0] }
+b = { pixel = [300, 210], place = ["50 cm", 0] }
+c = { pixel = [290, 20], place = [0.5, "300 mm"] }
+d = { tag = 4, place = [0, 0.3] }
+)")
+                                .video;
+  ASSERT_EQ(points.points.size(), 4U);
+  EXPECT_EQ(points.points[1].at->column, 300.0);
+  EXPECT_DOUBLE_EQ(points.points[2].y, 0.3);
+  EXPECT_EQ(points.points[3].tag, 4);
+  EXPECT_FALSE(points.points[3].at);
+}
+
+TEST_F(EveryKey, OfAPlaneInAFilmIsRefusedInWords) {
+  const auto refused = [&](const std::string& video) {
+    return error_with("[[experiment]]\nvideo = \"flight.mkv\"\n[camera]\nsweep = \"static_sweep.csv\"\n[video]\n" + video);
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refused("chessboard = { columns = 8, rows = 6 }\n"), HasSubstr("square = \"30 mm\""));
+  EXPECT_THAT(refused("chessboard = { columns = 8, rows = 6, square = \"30 mm\", squares = 4 }\n"), HasSubstr("squares"));
+  EXPECT_THAT(refused("chessboard = { columns = 8, rows = 2, square = \"30 mm\" }\n"), HasSubstr("rows"));
+  const std::string board = "chessboard = { columns = 8, rows = 6, square = \"30 mm\" }\n";
+  EXPECT_THAT(refused(board + "aruco = { plane = 3, side = \"5 cm\" }\n"), HasSubstr("one of length, chessboard, points and aruco.plane"));
+  EXPECT_THAT(refused("aruco = { plane = 3 }\n"), HasSubstr("side"));
+  EXPECT_THAT(refused("aruco = { dictionary = \"4x5\" }\n"), HasSubstr("4x4"));
+  EXPECT_THAT(refused("marker = \"aruco\"\n"), HasSubstr("id = 7"));
+  EXPECT_THAT(refused("marker = \"ring\"\nid = 7\n"), HasSubstr("only marker = \"aruco\""));
+  EXPECT_THAT(refused("marker = \"aruco\"\nid = 7\nfields = \"top_first\"\n"), HasSubstr("whole frames"));
+  EXPECT_THAT(refused("[video.points]\na = { pixel = [1, 2], place = [0, 0] }\n"), HasSubstr("four points"));
+  EXPECT_THAT(refused("[video.points]\na = { place = [0, 0] }\n"), HasSubstr("either pixel"));
+  std::string line = "[video.points]\n";
+  for (const char* k : {"1", "2", "3", "5"})
+    line += std::string("p") + k + " = { pixel = [" + k + "0, " + k + "5], place = [" + k + ", 2" + k + "] }\n";
+  EXPECT_THAT(refused(line), HasSubstr("on one line"));
+}
+
 TEST_F(EveryKey, OfForceLimitsAndResamplingIsRead) {
   const Study study = read_with(R"([force]
 correlation_time = "20 ms"

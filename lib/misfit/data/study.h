@@ -14,10 +14,11 @@
 
 namespace misfit {
 
-/// What is followed in pictures: "auto", "moving", "ring", "bright", "dark", or a picture cut from a frame.
+/// What is followed in pictures: "auto", "moving", "ring", "bright", "dark", "aruco", or a picture cut from a frame.
 struct MarkerStudy {
   std::string kind;  ///< one of these; "picture" if `picture` is given
-  std::optional<std::filesystem::path> picture;
+  std::optional<std::filesystem::path> picture = {};
+  std::optional<int> id = {};  ///< of "aruco", and of it alone: which tag
 };
 
 /// [camera]: calibrated from a static sweep, or given as numbers.
@@ -40,6 +41,27 @@ struct KnownLength {
   double metres = 0.0;
 };
 
+/// [video.chessboard]: a board that stands still in the plane in which what is followed moves.
+struct ChessboardStudy {
+  int columns = 0, rows = 0;  ///< squares
+  double square = 0.0;        ///< [m] side of one
+};
+
+/// [video.points.NAME]: a place of that plane that is known, and where it is in the picture.
+struct KnownPoint {
+  std::string name;
+  std::optional<PixelPoint> at;  ///< [px], or …
+  std::optional<int> tag;        ///< … at the centre of the ArUco tag of this id
+  double x = 0.0, y = 0.0;       ///< [m]
+};
+
+/// [video.aruco]: which tags are in the picture.
+struct ArucoStudy {
+  std::string dictionary;        ///< "4x4", …
+  std::optional<int> plane;      ///< id of the tag that stands still in that plane …
+  std::optional<double> side{};  ///< … and the side of its black square [m]
+};
+
 /// [video.markers.NAME]: one of several that are followed in a video.
 struct NamedMarker {
   std::string name;
@@ -53,12 +75,17 @@ struct VideoStudy {
   std::string fields;        ///< "auto", "progressive", "top_first", "bottom_first"
   bool check_fields = true;  ///< false: `fields` holds even if the pictures contradict it
   MarkerStudy marker;
-  std::optional<PixelPoint> start;              ///< about where the marker is in the first frame [px]
-  std::optional<std::array<double, 4>> region;  ///< left, top, right, bottom [px]: where it is looked for
-  std::optional<KnownLength> length = {};       ///< for x_m and y_m
-  std::optional<PixelPoint> origin = {};        ///< of x_m and y_m; the picture's middle without
-  std::vector<NamedMarker> markers = {};        ///< several, each with channels of its own name; empty: the one above
+  std::optional<PixelPoint> start;                 ///< about where the marker is in the first frame [px]
+  std::optional<std::array<double, 4>> region;     ///< left, top, right, bottom [px]: where it is looked for
+  std::optional<KnownLength> length = {};          ///< for x_m and y_m
+  std::optional<PixelPoint> origin = {};           ///< of x_m and y_m; the picture's middle without
+  std::vector<NamedMarker> markers = {};           ///< several, each with channels of its own name; empty: the one above
+  std::optional<ChessboardStudy> chessboard = {};  ///< one of these at most, or `length`: what x_m and y_m are known by
+  std::vector<KnownPoint> points = {};             ///< four or more, or none
+  ArucoStudy aruco = {};
 
+  /// Do pixels become metres by a map of the plane (data/track_facts.h), and not by one scale?
+  [[nodiscard]] bool has_plane() const { return chessboard || !points.empty() || aruco.plane; }
   [[nodiscard]] std::vector<std::string> marker_names() const;
 };
 

@@ -15,7 +15,7 @@ using Type = config::KeyType;
 constexpr double max_runs = 100'000'000, max_block = 10'000'000, max_excluded = 1'000'000'000;
 
 const std::vector<std::string> markers{"ring", "bright", "dark"};
-const std::vector<std::string> followed{"auto", "moving", "ring", "bright", "dark"};
+const std::vector<std::string> followed{"auto", "moving", "ring", "bright", "dark", "aruco"};
 
 // A key is a line of attributes and a line of meaning.
 // clang-format off
@@ -112,13 +112,48 @@ KeyGroup camera_group() {
 std::vector<Key> followed_keys() {
   return {
       {.name = "marker", .type = Type::file, .fallback = "\"auto\"", .choices = followed,
-       .form = R"("auto", "moving", "ring", "bright", "dark" or a file ending in .png)",
+       .form = R"("auto", "moving", "ring", "bright", "dark", "aruco" or a file ending in .png)",
        .meaning = "What is followed: the one object that moves before a ground that stands still, by its outline; a ring; a bright or dark "
-                  "spot; or a picture cut from a frame. auto: a ring where the first frames show one, else moving."},
+                  "spot; the ArUco tag `id`; or a picture cut from a frame. auto: a ring where the first frames show one, else moving."},
+      {.name = "id", .type = Type::integer, .otherwise = "required for aruco", .least = 0, .most = 99,
+       .meaning = "Which tag of [video.aruco] dictionary is followed, by its centre."},
       {.name = "start", .type = Type::numbers, .unit = "px", .otherwise = "searched", .form = "list of 2 numbers",
        .meaning = "About where the marker is in the first frame: column, row."},
       {.name = "region", .type = Type::numbers, .unit = "px", .otherwise = "whole frame", .form = "list of 4 numbers",
        .meaning = "Where the marker is looked for: left, top, right, bottom."}};
+}
+
+KeyGroup chessboard_group() {
+  return {"video.chessboard",
+     "A chessboard in the plane of the motion, seen whole in some frames at least. x_m goes along its rows or columns, whichever is nearer to the "
+     "right of the picture; x_m and y_m are 0 at its lower left inner corner, or at [video] origin.",
+     {{.name = "columns", .type = Type::integer, .otherwise = "required", .least = 4, .most = 100, .meaning = "Squares side by side."},
+      {.name = "rows", .type = Type::integer, .otherwise = "required", .least = 4, .most = 100, .meaning = "Squares one above the other."},
+      {.name = "square", .type = Type::number, .unit = "m", .otherwise = "required", .least = 0.0, .above = true,
+       .meaning = "Side of one square."}}};
+}
+
+KeyGroup point_group() {
+  return {"video.points.NAME",
+     "A place in the plane of the motion that is known. Four or more, not on one line; from twelve on the distortion of the lens is estimated too, "
+     "where it is significant.",
+     {{.name = "pixel", .type = Type::numbers, .unit = "px", .otherwise = "that of tag", .form = "list of 2 numbers",
+       .meaning = "Where it is in the picture: column, row."},
+      {.name = "tag", .type = Type::integer, .otherwise = "none", .least = 0, .most = 99,
+       .meaning = "Instead of pixel: it is the centre of this ArUco tag."},
+      {.name = "place", .type = Type::numbers, .unit = "m", .otherwise = "required", .form = "list of 2 numbers",
+       .meaning = "Its x_m and y_m."}}};
+}
+
+KeyGroup aruco_group() {
+  return {"video.aruco", "ArUco tags: what they are, and which one gives places in metres.",
+     {{.name = "dictionary", .type = Type::choice, .fallback = "\"4x4\"", .choices = {"4x4", "5x5", "6x6", "7x7"},
+       .meaning = "Cells of a tag inside its black border: OpenCV's DICT_4X4_50, _100, … (ids 0 to 99, which are the same in all of a size)."},
+      {.name = "plane", .type = Type::integer, .otherwise = "none", .least = 0, .most = 99, .needs = {"side"},
+       .meaning = "Id of a tag that stands still in the plane of the motion; x_m goes along its lower edge, and x_m and y_m are 0 at its centre, or "
+                  "at [video] origin."},
+      {.name = "side", .type = Type::number, .unit = "m", .otherwise = "none", .least = 0.0, .above = true, .needs = {"plane"},
+       .meaning = "Side of the tag's black square."}}};
 }
 
 std::vector<KeyGroup> video_groups() {
@@ -131,8 +166,13 @@ std::vector<KeyGroup> video_groups() {
        .meaning = "A length that is known in the picture, in the plane of the motion: with it a film gives x_m and y_m."},
       {.name = "length_ends", .type = Type::numbers, .unit = "px", .otherwise = "none", .form = "list of 4 numbers",
        .meaning = "Its two ends in the picture: column, row, column, row."},
-      {.name = "origin", .type = Type::numbers, .unit = "px", .otherwise = "the picture's middle", .form = "list of 2 numbers",
-       .meaning = "Where x_m and y_m are 0: column, row. x_m goes to the right, y_m upwards."},
+      {.name = "origin", .type = Type::numbers, .unit = "px", .otherwise = "the picture's middle; of a chessboard or tag as it says", .form = "list of 2 numbers",
+       .meaning = "Where x_m and y_m are 0: column, row. x_m goes to the right, y_m upwards. Not with points, which say it."},
+      {.name = "chessboard", .type = Type::table, .otherwise = "none",
+       .meaning = "A chessboard that stands still in the plane of the motion: places in metres, also of a camera that looks obliquely."},
+      {.name = "points", .type = Type::table, .otherwise = "none",
+       .meaning = "The same by four or more places that are known, each a table [video.points.NAME]."},
+      {.name = "aruco", .type = Type::table, .otherwise = "none", .meaning = "ArUco tags in the picture; the same by one of them."},
       {.name = "markers", .type = Type::table, .otherwise = "the one above",
        .meaning = "Several that are followed, each a table [video.markers.NAME]. Outputs read x_px_NAME, y_px_NAME, x_m_NAME and y_m_NAME."}}};
   const std::vector<Key> followed_alone = followed_keys();
@@ -140,7 +180,7 @@ std::vector<KeyGroup> video_groups() {
   KeyGroup marker{"video.markers.NAME", "One of several markers.", followed_keys()};
   marker.keys.front().fallback = "";
   marker.keys.front().otherwise = "that of [video]";
-  return {video, marker};
+  return {video, marker, chessboard_group(), point_group(), aruco_group()};
 }
 
 KeyGroup experiment_group() {

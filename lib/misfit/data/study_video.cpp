@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "misfit/data/study_parts.h"
+#include "misfit/math/homography.h"
 
 namespace misfit::study_parts {
 namespace {
@@ -48,11 +49,23 @@ void read_length(const DescribedSection& video, VideoStudy& v) {
 template <class Followed>
 void read_followed(const DescribedSection& section, const Study& study, Followed& followed) {
   read_marker(section, "marker", study, followed.marker);
+  if (const auto id = section.integer("id")) followed.marker.id = static_cast<int>(*id);
   if (const auto start = pixels(section, "start", 2, "[column, row]")) followed.start = PixelPoint{(*start)[0], (*start)[1]};
   if (const auto r = pixels(section, "region", 4, "[left, top, right, bottom]")) {
     if (!((*r)[0] < (*r)[2]) || !((*r)[1] < (*r)[3])) section.fail("region", "left must be below right, and top below bottom");
     followed.region = {(*r)[0], (*r)[1], (*r)[2], (*r)[3]};
   }
+}
+
+/// What a tag needs, known when all of [video] has been read: of several markers it may stand in the table above.
+void check_tag(const DescribedSection& section, const VideoStudy& video, const MarkerStudy& marker) {
+  if (marker.kind != "aruco") {
+    if (section.has("id")) section.fail("id", "only marker = \"aruco\" has an id");
+    return;
+  }
+  if (!marker.id) section.fail("marker", "which tag? id = 7 says it");
+  if (video.fields == "top_first" || video.fields == "bottom_first")
+    section.fail("marker", "a tag is read from whole frames: fields = \"" + video.fields + "\" is not possible with it");
 }
 
 void read_markers(const DescribedSection& video, Study& study) {
@@ -65,6 +78,7 @@ void read_markers(const DescribedSection& video, Study& study) {
     const DescribedSection section = described(*markers, name, "video.markers.NAME");
     NamedMarker marker{name, study.video.marker, {}, {}};
     read_followed(section, study, marker);
+    check_tag(section, study.video, marker.marker);
     section.finish();
     study.video.markers.push_back(std::move(marker));
   }
@@ -72,6 +86,67 @@ void read_markers(const DescribedSection& video, Study& study) {
   for (const char* key : {"start", "region"}) {
     if (video.has(key) && !study.video.markers.empty()) video.fail(key, "with [video.markers] each marker has its own " + std::string(key));
   }
+}
+
+void read_chessboard(const DescribedSection& video, VideoStudy& v) {
+  if (!video.has("chessboard")) return;
+  const DescribedSection board = described(video, "chessboard", "video.chessboard");
+  const auto columns = board.integer("columns"), rows = board.integer("rows");
+  const auto square = board.value("square");
+  for (const char* key : {"columns", "rows", "square"}) {
+    if (!board.has(key)) board.fail(key, "it is needed: columns and rows of squares, and the square's side, as square = \"30 mm\"");
+  }
+  v.chessboard = ChessboardStudy{static_cast<int>(*columns), static_cast<int>(*rows), *square};
+  board.finish();
+}
+
+KnownPoint known_point(const DescribedSection& section, const std::string& name) {
+  KnownPoint out{name, std::nullopt, std::nullopt, 0.0, 0.0};
+  if (const auto at = pixels(section, "pixel", 2, "[column, row]")) out.at = PixelPoint{(*at)[0], (*at)[1]};
+  if (const auto tag = section.integer("tag")) out.tag = static_cast<int>(*tag);
+  const auto place = section.numbers("place");
+  if (out.at.has_value() == out.tag.has_value()) section.fail("pixel", "either pixel = [column, row] or tag = ID is expected");
+  if (!place || place->size() != 2) section.fail("place", "[x, y] is expected, in metres, as [\"0 m\", \"250 mm\"]");
+  out.x = (*place)[0];
+  out.y = (*place)[1];
+  section.finish();
+  return out;
+}
+
+void read_points(const DescribedSection& video, VideoStudy& v) {
+  const auto points = video.table("points");
+  if (!points) return;
+  for (const std::string& name : points->keys()) v.points.push_back(known_point(described(*points, name, "video.points.NAME"), name));
+  points->finish();
+  constexpr std::size_t least = 4;
+  if (v.points.size() < least) video.fail("points", "four points at least are needed to know a plane");
+  std::vector<PlanePoint> given;
+  for (const KnownPoint& p : v.points) {
+    if (p.at) given.push_back({{p.x, p.y}, {p.at->column, p.at->row}});
+  }
+  if (given.size() == v.points.size() && on_one_line(given))
+    video.fail("points", "all of the points, or all but one, lie on one line, and no map of a plane is known by these");
+}
+
+void read_aruco(const DescribedSection& video, VideoStudy& v) {
+  const DescribedSection aruco = described(video, "aruco", "video.aruco");
+  v.aruco.dictionary = *aruco.choice("dictionary");
+  if (const auto plane = aruco.integer("plane")) v.aruco.plane = static_cast<int>(*plane);
+  v.aruco.side = aruco.value("side");
+  aruco.finish();
+}
+
+/// Places in metres have one source.
+void check_sources(const DescribedSection& video, const VideoStudy& v) {
+  std::vector<std::string> sources;
+  if (v.length) sources.emplace_back("length");
+  if (v.chessboard) sources.emplace_back("chessboard");
+  if (!v.points.empty()) sources.emplace_back("points");
+  if (v.aruco.plane) sources.emplace_back("aruco");
+  if (sources.size() > 1)
+    video.fail(sources.back(),
+               "places in metres come from one of length, chessboard, points and aruco.plane; here also from " + sources.front());
+  if (v.origin && !v.points.empty()) video.fail("origin", "the points say where x_m and y_m are 0");
 }
 
 }  // namespace
@@ -84,6 +159,11 @@ void read_video(const Section& root, Study& study) {
   read_followed(video, study, v);
   read_markers(video, study);
   read_length(video, v);
+  read_chessboard(video, v);
+  read_points(video, v);
+  read_aruco(video, v);
+  check_sources(video, v);
+  if (v.markers.empty()) check_tag(video, v, v.marker);
   video.finish();
 }
 

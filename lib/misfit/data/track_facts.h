@@ -2,10 +2,24 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace misfit {
+
+/// How the picture's places became places of the plane of motion: a homography H from metres to pixels without lens distortion, then
+/// p = middle + (q − middle)(1 + k1 |q − middle|²/radius²). lib/misfit/README.md, 4.10.
+struct PlaneFacts {
+  std::string from;                    ///< "chessboard", "points", "aruco"
+  std::size_t points = 0, frames = 0;  ///< places that were compared; frames that they are the mean of (0: given by the study)
+  double rms = 0.0;                    ///< [px] of their distances from where the map has them
+  std::vector<double> homography;      ///< nine, by rows
+  double k1 = 0.0, column = 0.0, row = 0.0, radius = 1.0;  ///< lens; middle and half diagonal of the picture [px]
+  double scale = 0.0;                                      ///< [m/px] where the track is, in the mean of both directions
+  double sigma = 0.0;                                      ///< [m] of a place of the track, as the map is uncertain: largest; 0: not known
+  std::vector<std::string> warnings;                       ///< what a user must know of it
+};
 
 /// How a track came out of a video: what the file holds, how its frames were read, what was followed and what was lost.
 struct TrackFacts {
@@ -25,6 +39,7 @@ struct TrackFacts {
   std::map<std::string, std::size_t> lost;  ///< why → samples
   double sigma = 0.0;                       ///< median of the samples' sigma [px]
   std::vector<std::string> warnings;        ///< what a user must know, in sentences
+  std::optional<PlaneFacts> plane = {};     ///< where x_m and y_m are known by more than a length
 };
 
 /// track.json. Reading throws InputError for what is no such file.

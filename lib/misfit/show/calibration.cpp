@@ -67,6 +67,7 @@ Blocks blocks_of(const std::string& experiment, const TrackFacts& facts) {
   Blocks out;
   out.subheading("Track of " + experiment);
   out.warnings(facts.warnings);
+  if (facts.plane) out.warnings(facts.plane->warnings);
   out.list({sentences(facts)});
   return out;
 }

@@ -45,7 +45,8 @@ std::vector<std::string> scalars(const Fit& fit) {
 
 std::string line_of(const TrackFacts& facts) {
   const std::vector<std::string> all = sentences(facts);
-  return all.empty() ? "" : all.back();
+  const std::string metres = facts.plane ? fmt::format("; metres from {}, {:.3f} px RMS", facts.plane->from, facts.plane->rms) : "";
+  return all.empty() ? "" : all.back() + metres;
 }
 
 std::string line_of(const Calibration& c) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -11,7 +12,7 @@
 namespace misfit::video_module {
 
 /// Changes whenever anything in this file does: a module of another build is refused.
-inline constexpr int interface_version = 3;
+inline constexpr int interface_version = 4;
 
 /// An open video. Frames come in order, in 8-bit grey and, where asked for, in colour.
 class VideoStream {
@@ -55,6 +56,17 @@ struct Mark {
   std::string text = {};
 };
 
+/// A place in a picture [px], centres of pixels at integers.
+struct Place {
+  double x = 0.0, y = 0.0;
+};
+
+/// Squares of a chessboard, and its inner corners, row by row, from one of the four that is not said.
+struct Chessboard {
+  int columns = 0, rows = 0;
+  std::vector<Place> corners = {};
+};
+
 class Backend {
  public:
   Backend() = default;
@@ -67,6 +79,10 @@ class Backend {
   virtual std::vector<std::uint8_t> read_image(const std::string& path, int& width, int& height, std::string& why) = 0;
   /// The file of a picture in colour; empty with `why`.
   virtual std::vector<std::uint8_t> encoded(const std::uint8_t* bgr, int width, int height, PictureFormat format, std::string& why) = 0;
+  /// A chessboard of so many squares that is seen whole, or (0 x 0) the largest part of any; no corners: none is seen.
+  virtual Chessboard chessboard(const std::uint8_t* grey, int width, int height, int columns, int rows) = 0;
+  /// Corners, clockwise in the picture and good to about a pixel, of what is dark, convex and has four sides of `least_side` [px] or more.
+  virtual std::vector<std::array<Place, 4>> dark_quadrilaterals(const std::uint8_t* grey, int width, int height, double least_side) = 0;
   virtual void draw(std::uint8_t* bgr, int width, int height, const std::vector<Mark>& marks) = 0;
 };
 

@@ -10,6 +10,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "misfit/video/backend.h"
+#include "misfit/video/opencv/patterns.h"
 
 namespace misfit::video_module {
 namespace {
@@ -114,6 +115,10 @@ void draw_mark(cv::Mat& picture, const Mark& mark) {
   }
 }
 
+cv::Mat grey_picture(const std::uint8_t* grey, int width, int height) {
+  return {height, width, CV_8UC1, const_cast<std::uint8_t*>(grey)};  // NOLINT: only read
+}
+
 class OpencvBackend : public Backend {
  public:
   OpencvBackend() {
@@ -175,6 +180,12 @@ class OpencvBackend : public Backend {
       why = error.err;
     }
     return bytes;
+  }
+  Chessboard chessboard(const std::uint8_t* grey, int width, int height, int columns, int rows) override {
+    return chessboard_in(grey_picture(grey, width, height), columns, rows);
+  }
+  std::vector<std::array<Place, 4>> dark_quadrilaterals(const std::uint8_t* grey, int width, int height, double least_side) override {
+    return dark_quadrilaterals_in(grey_picture(grey, width, height), least_side);
   }
   void draw(std::uint8_t* bgr, int width, int height, const std::vector<Mark>& marks) override {
     cv::Mat picture(height, width, CV_8UC3, bgr);

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -34,6 +36,19 @@ double usual_sigma(const Track& track) {
   return known.empty() ? 0.0 : median(known);
 }
 
+/// What a user must know of a marker's track, and of the map that made metres of it.
+std::vector<std::string> notes_of(const TrackFacts& facts, bool in_metres) {
+  std::vector<std::string> out = facts.warnings;
+  if (!facts.plane) return out;
+  out.insert(out.end(), facts.plane->warnings.begin(), facts.plane->warnings.end());
+  if (in_metres && facts.plane->sigma > 0.0)
+    out.push_back(fmt::format(
+        "the map from pixels to metres is known to {:.2g} m where the track is; that is common to all samples, and no sigma of a fit "
+        "contains it",
+        facts.plane->sigma));
+  return out;
+}
+
 /// The film as the outputs of a system that says where something is in it.
 Signals film_signals(const Session& session, std::size_t e, const Model& model) {
   const ExperimentStudy& experiment = session.study.experiments[e];
@@ -43,17 +58,16 @@ Signals film_signals(const Session& session, std::size_t e, const Model& model) 
   for (std::size_t m = 0; m < files.size(); ++m)
     tracks.push_back({video.markers.empty() ? "" : video.markers[m].name, read_track(files[m].track), read_track_facts(files[m].facts)});
   Signals signals = signals_from(film_table(tracks, video), model, experiment);
-  const double metres = metres_per_pixel(video).value_or(0.0);
   for (auto& channel : signals.measured) {
     const std::string header = channel_of(channel.name, experiment);
-    for (const auto& [name, track, facts] : tracks) {
-      const std::vector<std::string> own = film_channels({name});
-      if (name.empty() || std::count(own.begin(), own.end(), header) > 0)
-        channel.sigma = usual_sigma(track) * (channel.unit == "m" ? metres : 1.0);
+    for (const FilmTrack& followed : tracks) {
+      const std::vector<std::string> own = film_channels({followed.name});
+      if (followed.name.empty() || std::count(own.begin(), own.end(), header) > 0) channel.sigma = film_sigma(followed, header, video);
     }
   }
+  const bool in_metres = std::any_of(signals.measured.begin(), signals.measured.end(), [](const auto& c) { return c.unit == "m"; });
   for (const auto& [name, track, facts] : tracks) {
-    for (const std::string& warning : facts.warnings) signals.notes.push_back(name.empty() ? warning : name + ": " + warning);
+    for (const std::string& warning : notes_of(facts, in_metres)) signals.notes.push_back(name.empty() ? warning : name + ": " + warning);
   }
   return signals;
 }

@@ -26,6 +26,10 @@ struct FilmTrack {
 /// The tracks of one film as a recording with these channels; empty where a marker is lost. RunError: tracks of different times.
 [[nodiscard]] Table film_table(const std::vector<FilmTrack>& tracks, const VideoStudy& video);
 
+/// Of a channel of the film, whose unit is px or m: median of the sigmas of what was found, carried to metres where it was found; 0: not
+/// known.
+[[nodiscard]] double film_sigma(const FilmTrack& track, const std::string& channel, const VideoStudy& video);
+
 /// Metres per pixel where the study knows a length in the picture.
 [[nodiscard]] std::optional<double> metres_per_pixel(const VideoStudy& video);
 

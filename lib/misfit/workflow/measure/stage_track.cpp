@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "misfit/core/file_name.h"
@@ -6,6 +8,7 @@
 #include "misfit/video/check_video.h"
 #include "misfit/workflow/measure/film_channels.h"
 #include "misfit/workflow/measure/measure.h"
+#include "misfit/workflow/measure/plane_calibration.h"
 #include "misfit/workflow/measure/track_video.h"
 
 namespace misfit {
@@ -13,16 +16,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Of the map from pixels to metres that track.json holds.
+std::string settings_of_plane(const VideoStudy& video) {
+  if (!video.has_plane()) return "";
+  std::string text = " plane " + video.aruco.dictionary;
+  if (video.chessboard) text += fmt::format(" board {} {} {}", video.chessboard->columns, video.chessboard->rows, video.chessboard->square);
+  if (video.aruco.plane) text += fmt::format(" tag {} {}", *video.aruco.plane, video.aruco.side.value_or(0.0));
+  if (video.origin) text += fmt::format(" origin {} {}", video.origin->column, video.origin->row);
+  for (const KnownPoint& p : video.points) {
+    text += fmt::format(" point {} {} {}", p.name, p.x, p.y);
+    text += p.tag ? fmt::format(" tag {}", *p.tag) : fmt::format(" at {} {}", p.at->column, p.at->row);
+  }
+  return text;
+}
+
 std::string settings_of(const VideoStudy& video) {
   std::string text = video.fields + (video.check_fields ? " checked " : " insisted ") + video.marker.kind;
   if (video.start) text += " start " + std::to_string(video.start->column) + " " + std::to_string(video.start->row);
   if (video.region)
     for (double v : *video.region) text += " " + std::to_string(v);
-  return text;
+  if (video.marker.id) text += fmt::format(" id {} of {}", *video.marker.id, video.aruco.dictionary);
+  return text + settings_of_plane(video);
 }
 
 void make_track(Session& session, const fs::path& film, const VideoStudy& video, const TrackFiles& files) {
-  const VideoTrack result = track_video(film, video, session.progress("track"));
+  VideoTrack result = track_video(film, video, session.progress("track"));
+  result.facts.plane = calibrate_plane(film, video, result.track);
   write_track(files.track, result.track);
   write_track_facts(files.facts, result.facts);
   make_writable_folder(files.sheet.parent_path());

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "misfit/core/error.h"
 #include "misfit/jobs/interrupt.h"
@@ -13,15 +12,14 @@
 #include "misfit/track/tracker.h"
 #include "misfit/video/video.h"
 #include "misfit/workflow/measure/moving_object.h"
+#include "misfit/workflow/measure/samples.h"
+#include "misfit/workflow/measure/shots.h"
+#include "misfit/workflow/measure/track_tag.h"
 
 namespace misfit {
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double max_doubled_share = 0.15;
-constexpr long regular_shots = 15;
-constexpr std::size_t lost_shots = 5, trail_length = 40;
-
 constexpr double outline_error = 0.15;     // [px] an assumption: as large as found in rendered films, where the ground has a texture
 constexpr long frames_for_a_ring = 12;     // searched before it is said that there is none
 constexpr double least_ring_share = 0.75;  // of them, in which a ring must be found
@@ -118,70 +116,6 @@ MarkerSurvey learn(const std::filesystem::path& path, const VideoStudy& study) {
   return out;
 }
 
-/// Collects what the contact sheet will show.
-class Shots {
- public:
-  explicit Shots(long declared) : every_(declared / regular_shots + 1) {}
-
-  void offer(const Frame& frame, const Field& field, std::size_t sample, const TrackedSample& found) {
-    const bool lost = found.loss != Loss::none;
-    const bool begins = lost && !was_lost_ && lost_ < lost_shots;
-    was_lost_ = lost;
-    const bool due = frame.number >= next_ && field_before_ != frame.number;
-    field_before_ = frame.number;
-    if (!due && !begins) return;
-    if (due) next_ = frame.number - frame.number % every_ + every_;
-    if (begins && !due) ++lost_;
-    shots_.push_back({field, 0.0, {}, {}, 0.0, {}, {}, {}});
-    samples_.push_back(sample);
-    if (std::ssize(shots_) > 4 * regular_shots) halve();  // the container did not declare how many there are
-  }
-
-  std::vector<Shot> finish(const std::vector<TrackedSample>& track, const std::vector<double>& times, double radius) {
-    while (!samples_.empty() && samples_.back() >= times.size()) {
-      samples_.pop_back();
-      shots_.pop_back();
-    }
-    for (std::size_t k = 0; k < shots_.size(); ++k) {
-      shots_[k].t = times[samples_[k]];
-      shots_[k].radius = radius;
-      complete(shots_[k], track, samples_[k]);
-    }
-    return std::move(shots_);
-  }
-
- private:
-  void halve() {
-    every_ *= 2;
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < shots_.size(); k += 2, ++kept) {
-      shots_[kept] = std::move(shots_[k]);
-      samples_[kept] = samples_[k];
-    }
-    shots_.resize(kept);
-    samples_.resize(kept);
-  }
-
-  static void complete(Shot& shot, const std::vector<TrackedSample>& track, std::size_t sample) {
-    shot.label = fmt::format("{:.2f} s", shot.t);
-    for (std::size_t k = sample > trail_length ? sample - trail_length : 0; k <= sample; ++k) {
-      if (track[k].loss == Loss::none) shot.trail.push_back(track[k].at);
-    }
-    if (!shot.trail.empty()) shot.zoom_at = shot.trail.back();
-    if (track[sample].loss == Loss::none) {
-      shot.at = {track[sample].at};
-    } else {
-      shot.lost = "lost: " + words(track[sample].loss);
-    }
-  }
-
-  long every_, next_ = 0, field_before_ = -1;
-  std::size_t lost_ = 0;
-  bool was_lost_ = false;
-  std::vector<Shot> shots_;
-  std::vector<std::size_t> samples_;
-};
-
 /// Feeds the fields of all frames, in the order of time.
 class Run {
  public:
@@ -267,68 +201,17 @@ class Run {
   std::vector<std::optional<double>> times_;  ///< one per sample
 };
 
-/// Of the samples [s]: on the grid of the rate, or as the file has them. Samples between two with a time lie evenly between them; those
-/// after the last are left out.
-std::vector<double> sample_times(const std::vector<std::optional<double>>& read, const VideoFacts& facts, std::size_t fields) {
-  std::vector<double> out;
-  if (!facts.variable) {
-    for (std::size_t k = 0; k < read.size(); ++k) out.push_back(static_cast<double>(k) / (facts.rate * static_cast<double>(fields)));
-    return out;
-  }
-  for (const auto& t : read) {
-    if (!t) continue;
-    const std::size_t last = out.size(), k = static_cast<std::size_t>(&t - read.data());
-    const double from = last > 0 ? out.back() : *t;
-    for (std::size_t i = last; i <= k; ++i)
-      out.push_back(*t - (*t - from) * static_cast<double>(k - i) / static_cast<double>(k - last + 1));
-  }
-  return out;
-}
-
-Track track_of(const std::vector<TrackedSample>& samples, const VideoFacts& facts, const std::vector<double>& times) {
-  Track track;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    const TrackedSample& s = samples[k];
-    const bool ok = s.loss == Loss::none;
-    track.t.push_back(times[k]);
-    track.P_y.push_back(ok ? 0.5 * facts.width - s.at.column : missing);
-    track.P_z.push_back(ok ? s.at.row - 0.5 * facts.height : missing);
-    track.sigma.push_back(ok ? s.sigma : missing);
-    track.ok.push_back(ok);
-  }
-  return track;
-}
-
 TrackFacts facts_of(const MarkerSurvey& survey, const VideoFacts& video, FieldOrder order, const std::vector<TrackedSample>& samples) {
-  TrackFacts f;
-  f.video = video.file;
-  f.width = video.width;
-  f.height = video.height;
-  f.rate = video.rate;
-  f.declared = video.declared;
-  f.decoded = video.decoded;
-  f.missing = video.missing;
-  f.repeated = video.repeated;
+  TrackFacts f = facts_of(video, samples);
   f.fields = words(order);
   f.fields_shown = words(survey.evidence.order);
   f.fields_evidence = survey.evidence.text();
   const Marker& marker = survey.look.marker;
   f.marker = survey.moving ? "moving" : name_of(marker.kind);
   f.chosen = survey.chosen;
-  f.variable = video.variable;
   if (marker.kind != MarkerKind::picture) f.outer = marker.outer;
   if (survey.moving) f.outer = survey.radius();
   if (marker.kind == MarkerKind::ring) f.inner = marker.inner;
-  f.samples = samples.size();
-  for (const TrackedSample& s : samples) {
-    if (s.loss == Loss::none) {
-      ++f.ok;
-    } else {
-      ++f.lost[words(s.loss)];
-    }
-  }
-  const auto notes = notes_of(video);
-  f.warnings.insert(f.warnings.end(), notes.begin(), notes.end());
   return f;
 }
 
@@ -383,6 +266,7 @@ FieldOrder choose_fields(const VideoStudy& study, const FieldEvidence& evidence,
 
 VideoTrack track_video(const std::filesystem::path& path, const VideoStudy& study,
                        const std::function<void(std::size_t, std::size_t)>& progress) {
+  if (study.marker.kind == "aruco") return track_tag(path, study, progress);
   const MarkerSurvey survey = learn(path, study);
   std::vector<std::string> warnings;
   const FieldOrder order = choose_fields(study, survey.evidence, warnings);
@@ -395,9 +279,7 @@ VideoTrack track_video(const std::filesystem::path& path, const VideoStudy& stud
     if (progress) progress(number, std::max(video.facts().declared, 1L));
   }
   std::vector<TrackedSample> samples = run.finish();
-  const std::vector<double> times = sample_times(run.times(), video.facts(), run.fields());
-  if (times.size() < samples.size())
-    warnings.push_back(fmt::format("{} frames at the end have no time of their own and are left out", samples.size() - times.size()));
+  const std::vector<double> times = sample_times(run.times(), video.facts(), run.fields(), warnings);
   samples.resize(times.size());
   VideoTrack out;
   out.track = track_of(samples, video.facts(), times);
