@@ -36,6 +36,10 @@ TEST(ColumnHeader, NameAndUnitAreSeparated) {
   expect("speed_kmh", "speed", "km/h");
   expect("P [kW]", "P", "kW");
   expect("t [sec]", "t", "s");
+  expect("ms", "ms", "ms");
+  expect("rpm", "rpm", "rpm");
+  expect("seconds", "seconds", "s");
+  expect("min", "min", "");  // the least, more often than a time
   expect("x1", "x1", "");
   expect("a_b", "a_b", "");
   EXPECT_EQ(read_header("Flow [gal/min]").not_understood, "gal/min");

@@ -78,6 +78,11 @@ TEST(Bindings, SensorsAndInputsAreTriedWhereTheSystemHasADefaultForThem) {
   EXPECT_THAT(bindings("quadratic_drag", "parachute_spherical"), ElementsAre(Roles{})) << "its own default stays the only one";
 }
 
+TEST(Bindings, AClockIsOffOnlyBesideAnotherOne) {
+  EXPECT_THAT(bindings("time_offset", "test_tanks"), ElementsAre(Roles{})) << "its input has a clock";
+  EXPECT_THAT(bindings("time_offset", "parachute_spherical"), testing::IsEmpty()) << "a motion at another time is as likely";
+}
+
 TEST(Bindings, AChannelMayShowPartOfEachOtherOfItsUnitAndEachPairMayBeTurned) {
   EXPECT_THAT(bindings("cross_talk", "test_tanks"),
               ElementsAre(Roles{}, Roles{{"other_signal", "y2"}, {"output", "y1"}}, Roles{{"other_signal", "y1"}, {"output", "y2"}}));

@@ -34,6 +34,10 @@ constexpr std::array<Spelling, 86> spellings = {
      {"percent", "%"},   {"uT", "uT"},       {"L", "l"},         {"mL", "ml"},        {"litre", "l"},
      {"liter", "l"}}};
 
+/// Units that are no usual name of anything else: a header may be just one of them.
+constexpr std::array<std::string_view, 18> units_as_names = {"sec", "secs",  "seconds", "ms",  "msec", "us",    "usec", "ns",   "minutes",
+                                                             "hr",  "hours", "days",    "rpm", "RPM",  "volts", "amps", "degC", "celsius"};
+
 bool is_unit(const std::string& text) {
   try {
     static_cast<void>(parse_unit(text));
@@ -114,6 +118,8 @@ NameAndUnit read_header(const std::string& header) {
     best = tail.size();
     out = {name.substr(0, name.size() - tail.size()), std::string(s.unit), ""};
   }
+  if (std::find(units_as_names.begin(), units_as_names.end(), name) != units_as_names.end())
+    out.unit = std::find_if(spellings.begin(), spellings.end(), [&](const Spelling& s) { return s.written == name; })->unit;
   return out;
 }
 

@@ -5,7 +5,7 @@
 namespace misfit {
 
 /// "omega1_radps" → {"omega1", "rad/s"}; "theta[deg]" → {"theta", "deg"}; "Flow (gal/min)" → {"Flow", ""} as gallons are not known; "T
-/// (°C)" → {"T", "degC"}.
+/// (°C)" → {"T", "degC"}; "ms" → {"ms", "ms"}, "rpm" → {"rpm", "rpm"}: a header may be nothing but a unit that is no usual name.
 struct NameAndUnit {
   std::string name, unit;      ///< unit empty if the header names none that is known
   std::string not_understood;  ///< a unit in brackets that is not known

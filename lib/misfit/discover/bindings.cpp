@@ -224,6 +224,7 @@ bool is_generic(const EffectSpec& effect) {
 
 std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system) {
   std::vector<Roles> out = {{}};
+  if (has_role(effect.ports, all_sample_times) && system.inputs.empty()) return {};
   if (has_role(effect.ports, "time_of_output")) return times_of_outputs(system);
   if (!is_generic(effect)) return out;
   std::vector<Roles> places = {{}};

@@ -116,8 +116,20 @@ std::optional<FilterStart> free_start(const Model& start, const EstimationTask& 
   }
 }
 
+/// Has a parameter of the system, a number, the opposite sign of what the study gives? Noise of differentiated channels takes away from
+/// what a regression finds, and what the model lacks may take away more than there was: a maximum beyond 0 is then nearer than the right
+/// one.
+bool sign_has_changed(const Model& given, const Model& found) {
+  for (std::size_t k = 0; k < given.system->spec().constants.size(); ++k) {
+    const Parameter& p = given.parameters[k];
+    if (p.free && p.curve < 0 && p.value * found.parameters[k].value < 0.0) return true;
+  }
+  return false;
+}
+
 /// From the contained fit with what is new off, and as the study has it; then by regression with the effects as the study has them where
-/// it says so, with the effects off, and with what the regression makes of them, in a free run too.
+/// it says so, with the effects off, and with what the regression makes of them, in a free run too; from the study's own values where the
+/// regression has changed a sign.
 std::vector<FilterStart> filter_starts(const EstimationTask& task) {
   std::vector<FilterStart> out = task.contained ? starts_from(*task.contained, task.model) : std::vector<FilterStart>{};
   const auto add = [&](const Model& model) { out.push_back({model, curve_penalties(model)}); };
@@ -126,7 +138,9 @@ std::vector<FilterStart> filter_starts(const EstimationTask& task) {
   if (const auto held = trajectory_start_as_given(off.model, task.experiments)) add(held->from.model);
   add(trajectory_start(task.model, task.experiments, task.regression).from.model);
   if (task.contained && !task.contained->refit_values.empty()) return out;
+  const bool changed = sign_has_changed(task.model, out.back().model);
   if (auto freely = free_start(out.back().model, task, true)) out.push_back(std::move(*freely));
+  if (changed) add(off.model);
   return out;
 }
 
