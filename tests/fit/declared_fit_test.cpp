@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "misfit/fit/methods.h"
 #include "misfit/fit/regression/equation_error.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "tests/model/declared_texts.h"
@@ -193,6 +194,73 @@ TEST(DeclaredModels, AParameterThatTheDataDoNotTouchIsNamed) {
   const FittedModel fitted = fit(assemble(request, *known), {oscillation(false)});
   EXPECT_EQ(fitted.fit.status, FitStatus::failed);
   EXPECT_THAT(fitted.fit.message, HasSubstr("nothing in these data depends on gain"));
+}
+
+const std::string cylinder_text = R"toml(
+[states]
+x = { unit = "m", scale = 0.1 }
+v = { unit = "m/s", rate_of = "x", scale = 0.2 }
+p = { unit = "Pa", scale = 1e6 }
+[inputs]
+u = { unit = "-", hold = "first_order" }
+[parameters]
+m = { unit = "kg", value = 44.0 }
+A = { unit = "m^2", value = 1.13e-3 }
+k = { unit = "N/m", value = 16000, free = true }
+b = { unit = "N s/m", value = 640, free = true }
+C = { unit = "Pa/m^3", value = 2.3e11, free = true }
+Kq = { unit = "m^3/s", value = 3.9e-4, free = true }
+Kc = { unit = "m^3/s/Pa", value = 1.3e-10, free = true }
+[equations]
+v = "(A*p - k*x - b*v)/m"
+p = "C*(Kq*u - A*v - Kc*p)"
+[outputs]
+x = { unit = "m", noise = 0.001 }
+p = { unit = "Pa", noise = 1e4 }
+)toml";
+
+/// A valve-controlled cylinder against a spring, whose valve is not where the model has its zero. Euler steps of 0.1 ms.
+Signals cylinder(double valve_offset, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Signals s;
+  s.name = "cylinder";
+  s.measured = {{"x", "m", {}, 0.0}, {"p", "Pa", {}, 0.0}};
+  s.inputs = {{"u", "-", {}, 0.0}};
+  const auto valve = [](double t) { return 0.4 * std::sin(0.9 * t) + 0.35 * std::sin(2.1 * t + 1.0) + 0.2 * std::sin(3.7 * t); };
+  double x = 0.0, v = 0.0, p = 0.0;
+  constexpr double step = 0.011, h = 1e-4;
+  constexpr int parts = 110;
+  for (std::size_t i = 0; i < 1400; ++i) {
+    const double t = step * static_cast<double>(i);
+    s.t.push_back(t);
+    s.inputs[0].values.push_back(valve(t));
+    s.measured[0].values.push_back(x + 4e-4 * normal(random));
+    s.measured[1].values.push_back(p + 5e3 * normal(random));
+    for (int k = 0; k < parts; ++k) {
+      const double force = (1.13e-3 * p - 10500.0 * x - 570.0 * v) / 44.0;
+      const double flow = 2.82e-4 * (valve(t + h * k) + valve_offset) - 1.13e-3 * v - 1.25e-10 * p;
+      x += h * v;
+      v += h * force;
+      p += h * 2e11 * flow;
+    }
+  }
+  return s;
+}
+
+/// What the regression makes of a noisy pressure and a model without the offset is a compressibility below 0.
+TEST(FilterErrorOfADeclaredSystem, BeginsAtTheStudysValuesTooWhereTheRegressionChangesASign) {
+  const auto known = registry_with(cylinder_text);
+  const Model model = assemble(request_of("text"), *known);
+  const std::vector<Signals> experiments = {cylinder(-0.026, 1)};
+  const int C = model.find_parameter("C");
+  const FittedModel regressed = equation_error(model, experiments);
+  ASSERT_LT(regressed.model.parameters[C].value, 0.0) << "another recording is needed";
+  const Estimation found = estimator("filter_error").run({.model = model, .experiments = experiments});
+  ASSERT_TRUE(found.filter);
+  const Parameter& compressibility = found.filter->model.parameters[C];
+  EXPECT_GT(compressibility.value, 1e11);
+  EXPECT_LT(compressibility.value, 4e11);
 }
 
 }  // namespace
