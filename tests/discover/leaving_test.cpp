@@ -43,6 +43,18 @@ TEST(WithoutAnEffect, WhatIsNotThereMayGo) {
   EXPECT_NEAR(without->p_value, chi_square_tail(std::max(without->drop, 0.0), without->parameters), 1e-12);
 }
 
+/// `start = { ... }` of an effect's line names its coefficients behind its own name.
+TEST(WithoutAnEffect, WhatItsLineSaysGoesWithIt) {
+  WithNeedlessFriction started = fitted();
+  started.request.parameters["coulomb_friction.friction"].value = 0.01;
+  started.request.parameters["viscous_friction.viscosity"].value = 0.1;
+  static_cast<void>(assemble(started.request, registry()));
+  const auto without = started.without("coulomb_friction");
+  ASSERT_TRUE(without);
+  EXPECT_EQ(without->request.parameters.count("coulomb_friction.friction"), 0U);
+  EXPECT_EQ(without->request.parameters.count("viscous_friction.viscosity"), 1U);
+}
+
 TEST(WithoutAnEffect, WhatIsNeededStays) {
   EXPECT_FALSE(may_leave(fitted().estimate, "viscous_friction"));
   const auto without = fitted().without("viscous_friction");

@@ -50,6 +50,9 @@ ModelRequest request_without(const ModelRequest& request, const Model& model, co
     if (coefficient.curve >= 0) out.curves.erase(model.curves[coefficient.curve].name);
     if (coefficient.parameter >= 0) out.parameters.erase(model.parameters[coefficient.parameter].name);
   }
+  const auto of_effect = [&](const auto& named) { return named.first.starts_with(effect.name + "."); };  // as its line in a study has them
+  std::erase_if(out.parameters, of_effect);
+  std::erase_if(out.curves, of_effect);
   return out;
 }
 
