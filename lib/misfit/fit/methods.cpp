@@ -116,31 +116,38 @@ std::optional<FilterStart> free_start(const Model& start, const EstimationTask& 
   }
 }
 
-/// Has a parameter of the system, a number, the opposite sign of what the study gives? Noise of differentiated channels takes away from
-/// what a regression finds, and what the model lacks may take away more than there was: a maximum beyond 0 is then nearer than the right
-/// one.
-bool sign_has_changed(const Model& given, const Model& found) {
+/// The first parameter of the system, a number, that has the opposite sign of what the study gives; empty: none. Noise of differentiated
+/// channels takes away from what a regression finds, and what the model lacks may take away more than there was: a maximum beyond 0 is then
+/// nearer than the right one.
+std::string changed_sign(const Model& given, const Model& found) {
   for (std::size_t k = 0; k < given.system->spec().constants.size(); ++k) {
     const Parameter& p = given.parameters[k];
-    if (p.free && p.curve < 0 && p.value * found.parameters[k].value < 0.0) return true;
+    if (p.free && p.curve < 0 && p.value * found.parameters[k].value < 0.0) return p.name;
   }
-  return false;
+  return {};
 }
+
+struct FilterStarts {
+  std::vector<FilterStart> list;
+  std::string warning = {};
+};
 
 /// From the contained fit with what is new off, and as the study has it; then by regression with the effects as the study has them where
 /// it says so, with the effects off, and with what the regression makes of them, in a free run too; from the study's own values where the
 /// regression has changed a sign.
-std::vector<FilterStart> filter_starts(const EstimationTask& task) {
-  std::vector<FilterStart> out = task.contained ? starts_from(*task.contained, task.model) : std::vector<FilterStart>{};
-  const auto add = [&](const Model& model) { out.push_back({model, curve_penalties(model)}); };
+FilterStarts filter_starts(const EstimationTask& task) {
+  FilterStarts out{task.contained ? starts_from(*task.contained, task.model) : std::vector<FilterStart>{}};
+  const auto add = [&](const Model& model) { out.list.push_back({model, curve_penalties(model)}); };
   const RunnableStart off = with_strengths_off(task.model);
   if (!off.words.empty()) add(trajectory_start_as_given(task.model, task.experiments)->from.model);
   if (const auto held = trajectory_start_as_given(off.model, task.experiments)) add(held->from.model);
   add(trajectory_start(task.model, task.experiments, task.regression).from.model);
   if (task.contained && !task.contained->refit_values.empty()) return out;
-  const bool changed = sign_has_changed(task.model, out.back().model);
-  if (auto freely = free_start(out.back().model, task, true)) out.push_back(std::move(*freely));
-  if (changed) add(off.model);
+  const std::string changed = changed_sign(task.model, out.list.back().model);
+  if (auto freely = free_start(out.list.back().model, task, true)) out.list.push_back(std::move(*freely));
+  if (changed.empty()) return out;
+  add(off.model);
+  out.warning = "the regression changes the sign of " + changed + ": the search began at the study's own values, too";
   return out;
 }
 
@@ -151,7 +158,9 @@ Estimation run_filter_error(const EstimationTask& task) {
     options.around = usual_noise_of(*task.contained, task.model);
     options.use = same_use(*task.contained, task.experiments);
   }
-  FilterError result = filter_error(filter_starts(task), task.experiments, options);
+  const FilterStarts starts = filter_starts(task);
+  FilterError result = filter_error(starts.list, task.experiments, options);
+  if (result.estimate && !starts.warning.empty()) result.fit.warnings.push_back(starts.warning);
   if (!result.estimate) {
     std::vector<FilterStart> own = {{task.model, curve_penalties(task.model)}};
     if (auto freely = free_start(task.model, task, false)) own.push_back(std::move(*freely));
