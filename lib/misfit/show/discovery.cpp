@@ -188,10 +188,11 @@ Blocks blocks_of(const Discovery& d) {
   out.heading("Candidate effects");
   out.paragraph(as_sentence(d.verdict), Tone::lead);
   const bool accepted = std::any_of(d.candidates.begin(), d.candidates.end(), [](const Candidate& c) { return c.accepted; });
-  if (accepted)
+  if (accepted) {
     out.paragraph(
         "Estimates of a candidate are those of the search, which refits this model with it; the rung that adds it is fitted by itself, "
         "and its estimates may differ.");
+  }
   out.list({as_sentences(d.sentences)});
   out.figures("candidates");
   out.table(candidate_table(d));

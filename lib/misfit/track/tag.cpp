@@ -52,7 +52,7 @@ std::optional<double> edge_at(const Image& image, const Vector2d& from, const Ve
   const double middle = 0.5 * (black + white);
   std::optional<double> found;
   for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
-    if (!(levels[k] < middle && levels[k + 1] >= middle)) continue;
+    if (levels[k] >= middle || levels[k + 1] < middle) continue;
     if (found) return std::nullopt;  // it does so twice
     found = step * (static_cast<double>(k) - steps + (middle - levels[k]) / (levels[k + 1] - levels[k]));
   }
@@ -140,9 +140,11 @@ std::optional<std::vector<double>> cell_levels(const Image& image, const std::ar
   const Eigen::Matrix3d map = homography_of_square(corners);
   std::vector<double> out;
   for (int cell = 0; cell < across * across; ++cell) {
+    const int column = cell % across, row = cell / across;
     double sum = 0.0;
     for (int k = 0; k < points * points; ++k) {
-      const double x = cell % across + 0.5 + inside * (k % points - 1), y = cell / across + 0.5 + inside * (k / points - 1);
+      const int right = k % points - 1, down = k / points - 1;
+      const double x = column + 0.5 + inside * right, y = row + 0.5 + inside * down;
       const Eigen::Vector3d at = map * Eigen::Vector3d(x / across, y / across, 1.0);
       const auto grey = grey_at(image, at.hnormalized());
       if (!grey) return std::nullopt;

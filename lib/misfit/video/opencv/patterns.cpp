@@ -73,7 +73,8 @@ void refine(const cv::Mat& grey, std::vector<cv::Point2f>& corners, double spaci
   grey.convertTo(smooth, CV_32F);
   cv::GaussianBlur(smooth, smooth, cv::Size(), blur);
   for (int k = 0; k < side * side; ++k) {
-    const double x = k % side - half, y = k / side - half;
+    const int right = k % side - half, down = k / side - half;
+    const double x = right, y = down;
     const std::array<double, 6> row{x * x, x * y, y * y, x, y, 1.0};
     std::copy(row.begin(), row.end(), terms.ptr<double>(k));
   }

@@ -41,11 +41,12 @@ std::vector<std::string> notes_of(const TrackFacts& facts, bool in_metres) {
   std::vector<std::string> out = facts.warnings;
   if (!facts.plane) return out;
   out.insert(out.end(), facts.plane->warnings.begin(), facts.plane->warnings.end());
-  if (in_metres && facts.plane->sigma > 0.0)
+  if (in_metres && facts.plane->sigma > 0.0) {
     out.push_back(fmt::format(
         "the map from pixels to metres is known to {:.2g} m where the track is; that is common to all samples, and no sigma of a fit "
         "contains it",
         facts.plane->sigma));
+  }
   return out;
 }
 

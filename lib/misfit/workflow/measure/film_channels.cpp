@@ -67,10 +67,11 @@ Table film_table(const std::vector<FilmTrack>& tracks, const VideoStudy& video) 
   table.add("t", "s", tracks.front().track.t);
   for (const FilmTrack& followed : tracks) {
     const Track& track = followed.track;
-    if (track.t != tracks.front().track.t)
+    if (track.t != tracks.front().track.t) {
       throw RunError("video " + shown(followed.facts.video) + ": the frames are read otherwise for marker '" + followed.name +
                      "' than for '" + tracks.front().name +
                      "'; fields = \"progressive\", \"top_first\" or \"bottom_first\" in [video] says how");
+    }
     const std::optional<PlaneMap> metres = metres_of(followed.facts, video);
     std::array<std::vector<double>, 4> values;
     for (std::size_t k = 0; k < track.t.size(); ++k) {

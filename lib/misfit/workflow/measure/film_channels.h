@@ -28,7 +28,7 @@ struct FilmTrack {
 
 /// Of a channel of the film, whose unit is px or m: median of the sigmas of what was found, carried to metres where it was found; 0: not
 /// known.
-[[nodiscard]] double film_sigma(const FilmTrack& track, const std::string& channel, const VideoStudy& video);
+[[nodiscard]] double film_sigma(const FilmTrack& followed, const std::string& channel, const VideoStudy& video);
 
 /// Metres per pixel where the study knows a length in the picture.
 [[nodiscard]] std::optional<double> metres_per_pixel(const VideoStudy& video);
