@@ -113,13 +113,12 @@ NameAndUnit read_header(const std::string& header) {
   std::size_t best = 0;
   NameAndUnit out{name, "", ""};
   for (const Spelling& s : spellings) {
+    if (name == s.written && std::find(units_as_names.begin(), units_as_names.end(), name) != units_as_names.end()) out.unit = s.unit;
     const std::string tail = "_" + std::string(s.written);
     if (name.size() <= tail.size() || !name.ends_with(tail) || tail.size() <= best) continue;
     best = tail.size();
     out = {name.substr(0, name.size() - tail.size()), std::string(s.unit), ""};
   }
-  if (std::find(units_as_names.begin(), units_as_names.end(), name) != units_as_names.end())
-    out.unit = std::find_if(spellings.begin(), spellings.end(), [&](const Spelling& s) { return s.written == name; })->unit;
   return out;
 }
 
