@@ -117,6 +117,30 @@ TEST(LinearGuess, AnOverdampedAnswerIsOfFirstOrder) {
   EXPECT_EQ(guess.order, 1) << guess.why;
 }
 
+/// An integral follows the drift as well as the drift itself does.
+TEST(LinearGuess, ADriftOfTheRestMakesNoIntegral) {
+  World world{.step = 0.2, .noise = 0.01, .hold = 40};
+  double t = 0.0;
+  constexpr int steps = 50;  // of the integration, per sample
+  const LinearGuess guess = guess_linear(world.run([&](double y, double, double u) {
+    t += world.step / steps;
+    return (2.0 * u + 1.0 + 0.02 * t - y) / 8.0;
+  }));
+  ASSERT_EQ(guess.order, 1) << guess.why;
+  EXPECT_FALSE(guess.integrates);
+  EXPECT_NEAR(guess.tau, 8.0, 1.0) << guess.why;
+  EXPECT_NEAR(guess.gain[0], 2.0, 0.2);
+}
+
+/// The position of a motor, whose rate is not measured.
+TEST(LinearGuess, APositionThatADriveIntegratesIsOfSecondOrder) {
+  World world{.step = 0.02, .noise = 0.002, .hold = 30};
+  const LinearGuess guess = guess_linear(world.run([](double, double v, double u) { return 3.0 * u - 1.5 * v; }, true));
+  ASSERT_EQ(guess.order, 2) << guess.why;
+  EXPECT_TRUE(guess.integrates);
+  EXPECT_NEAR(guess.damping, 1.5, 0.3);
+}
+
 TEST(LinearGuess, AMeasuredRateMakesSecondOrderWithoutAPullBackWhereThereIsNone) {
   World world{.step = 0.01, .noise = 0.002};
   GuessData data = world.run([](double, double v, double u) { return 3.0 * u - 1.5 * v + 0.2; }, true);

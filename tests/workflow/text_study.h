@@ -20,12 +20,14 @@ class TextStudy {
   }
 
   /// With these lines under [effects].
-  [[nodiscard]] Fit fit(const std::string& method, const std::string& effects) {
-    folder_.write("study.toml",
-                  "[study]\nname = \"text\"\nquestion = \"What is missing?\"\nmethods = [\"" + method +
-                      "\"]\nseed = 1\n[system]\nfile = \"m.toml\"\n[[experiment]]\nname = \"one\"\ndata = \"d.csv\"\n[effects]\n" +
-                      effects + "\n");
-    return Identification({.study = path("study.toml"), .out = path("out"), .methods = {method}}, registry_).fit(method);
+  [[nodiscard]] Fit fit(const std::string& method, const std::string& effects) { return identification(method, effects).fit(method); }
+
+  /// And these under [[experiment]].
+  [[nodiscard]] Identification identification(const std::string& method, const std::string& effects, const std::string& experiment = "") {
+    folder_.write("study.toml", "[study]\nname = \"text\"\nquestion = \"What is missing?\"\nmethods = [\"" + method +
+                                    "\"]\nseed = 1\n[system]\nfile = \"m.toml\"\n[[experiment]]\nname = \"one\"\ndata = \"d.csv\"\n" +
+                                    experiment + "[effects]\n" + effects + "\n");
+    return {{.study = path("study.toml"), .out = path("out"), .methods = {method}}, registry_};
   }
 
  private:

@@ -76,6 +76,7 @@ Signals averaged(const Signals& signals, std::size_t count) {
   const auto average = [&](const std::vector<Signal>& from, std::vector<Signal>& to) {
     for (const Signal& signal : from) {
       to.push_back({signal.name, signal.unit, {}, signal.sigma / std::sqrt(static_cast<double>(count))});
+      if (signal.values.empty()) continue;  // an input that the model does not need
       for (std::size_t at = 0; at + count <= signals.samples(); at += count) {
         double sum = 0.0;
         for (std::size_t k = at; k < at + count; ++k) sum += signal.values[k];

@@ -346,6 +346,28 @@ LinearGuess second_order(const GuessData& data, const WindowSearch& search, cons
   return out;
 }
 
+/// A first order whose rest drifts in time, if it leaves no more than `excess`: a second order without a pull back to rest follows a drift,
+/// too, with gains that mean nothing, and a first order takes it for a time constant longer than the record. The model is the one without
+/// the drift, which is for the search to name.
+std::optional<LinearGuess> drifting_first_order(const GuessData& data, double excess) {
+  std::vector<GuessDriver> drivers = data.drivers;
+  drivers.push_back({data.t, true, false});
+  const WindowSearch search(data.t, data.y, drivers);
+  const Found found = search.best(1, true);
+  if (!(found.poles.damping > 0.0) || search.excess(found.mean_square) > excess) return std::nullopt;
+  LinearGuess out;
+  out.gain = search.coefficients(found);
+  out.rest = out.gain.back() + out.gain[data.drivers.size()] * spread_of(data.t).mean;
+  out.gain.resize(data.drivers.size());
+  out.tau = 1.0 / found.poles.damping;
+  divide(found.poles.damping, out);
+  out.why = fmt::format(
+      "first order, time constant about {:.3g} s: with a drift in time beside it, it fits better than without and no worse than a second "
+      "order; what drifts, the search will say",
+      out.tau);
+  return out;
+}
+
 }  // namespace
 
 LinearGuess guess_linear(const GuessData& data) {
@@ -359,6 +381,11 @@ LinearGuess guess_linear(const GuessData& data) {
   constexpr double half = 0.5, most_damped = 0.9;  // of the mean square; damping ratio
   const bool swings = second.poles.damping < 2.0 * most_damped * std::sqrt(second.poles.stiffness) || second.poles.stiffness == 0.0;
   const bool oscillates = swings && search.excess(second.mean_square) < half * search.excess(first.mean_square);
+  const bool driven = std::any_of(data.drivers.begin(), data.drivers.end(), [](const GuessDriver& d) { return !d.output; });
+  if (driven && (!oscillates || second.poles.stiffness == 0.0)) {
+    const double least = oscillates ? search.excess(second.mean_square) : half * search.excess(first.mean_square);
+    if (const auto drifting = drifting_first_order(data, least)) return *drifting;
+  }
   const LinearGuess out = oscillates ? second_order(data, search, second, lower) : first_order(search, first, lower);
   const bool numbers = std::isfinite(out.rest + out.tau + out.damping + out.stiffness) &&
                        std::all_of(out.gain.begin(), out.gain.end(), [](double g) { return std::isfinite(g); });

@@ -28,7 +28,9 @@ Signals as_filtered(const FilterData& data) {
     }
     values.erase(values.begin(), values.begin() + first);
   }
-  for (auto& input : out.inputs) input.values.erase(input.values.begin(), input.values.begin() + first);
+  for (auto& input : out.inputs) {
+    if (!input.values.empty()) input.values.erase(input.values.begin(), input.values.begin() + first);  // empty: not needed
+  }
   out.t.erase(out.t.begin(), out.t.begin() + first);
   return out;
 }
@@ -97,6 +99,22 @@ void note_gaps(const Signals& signals, SimulatedMotion& out) {
   }
 }
 
+/// The state at the first sample as all measurements give it: the channels alone show it with their noise, and a motion that is hardly
+/// damped would carry that error to its end. Random forces are drawn anew.
+std::vector<double> smoothed_start(const FilterEstimate& estimate, const FilterData& data) {
+  const FilterModel& forced = estimate.forced;
+  std::vector<double> out(data.start.begin(), data.start.end());
+  out.resize(static_cast<std::size_t>(forced.model.states()), 0.0);
+  FilterRunner runner(forced, false);
+  runner.set_parameters(forced.model.values());
+  FilterTrace trace;
+  if (!runner.run(data, estimate.noise, trace, {.keep_P = true})) return out;
+  const Eigen::VectorXd x = smooth_states(trace, data, estimate.noise).x.row(static_cast<Eigen::Index>(data.first));
+  std::copy(x.begin(), x.end(), out.begin());
+  for (const int force : forced.force_states) out[static_cast<std::size_t>(force)] = 0.0;
+  return out;
+}
+
 struct Experiment {
   Signals measured;
   std::vector<double> start;
@@ -108,8 +126,7 @@ struct Experiment {
 Experiment experiment_of(const FilterWork& work, const FilterData& data) {
   Experiment e;
   e.measured = as_filtered(data);
-  e.start.assign(data.start.data(), data.start.data() + data.start.size());
-  e.start.resize(work.estimate->forced.model.states(), 0.0);
+  e.start = smoothed_start(*work.estimate, data);
   e.paths = paths_of(work.estimate->model, e.measured);
   for (const auto& path : e.paths) e.scales.push_back(scales_of(path, usual_step(e.measured.t)));
   e.simulated.resize(runs);
@@ -185,7 +202,7 @@ SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int
   for (const auto& e : experiments) note_gaps(e.measured, out);
   compare_all(experiments, out);
   conclude_motion(out);
-  out.notes.emplace_back("the bands do not include the uncertainty of the parameters, which are fixed at their estimates");
+  out.notes.emplace_back("the bands do not include the uncertainty of parameters and initial states, which are fixed at their estimates");
   out.seconds = clock.seconds();
   return out;
 }
