@@ -11,6 +11,8 @@
 #include <csignal>
 
 #include "misfit/core/error.h"
+#include "misfit/core/mapped_file.h"
+#include "misfit/core/new_file.h"
 #include "tests/core/temporary_folder.h"
 
 namespace misfit {
@@ -43,6 +45,36 @@ TEST(WriteAtomically, ReplacesTheWholeFileAndLeavesNothingElse) {
   write_atomically(file, "new");
   EXPECT_EQ(read_file(file), "new");
   EXPECT_EQ(folder.entries(), 1U);
+}
+
+TEST(ANewFile, IsThereOnlyOncePublished) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("x", "old");
+  {
+    NewFile given_up(file);
+    given_up.add("half of ");
+    EXPECT_EQ(read_file(file), "old");
+  }
+  EXPECT_EQ(read_file(file), "old");
+  EXPECT_EQ(folder.entries(), 1U) << "the temporary is removed";
+  NewFile whole(file);
+  whole.add("in two ");
+  whole.add("pieces");
+  whole.publish();
+  EXPECT_EQ(read_file(file), "in two pieces");
+  EXPECT_EQ(folder.entries(), 1U);
+}
+
+/// Large files are mapped into memory, others read.
+TEST(TheTextOfAFile, IsTheSameOfALargeOne) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(FileText(folder.write("small", "t,y\n")).text(), "t,y\n");
+  EXPECT_EQ(FileText(folder.write("empty", "")).text(), "");
+  std::string large(70'000'000, 'x');
+  large += "end";
+  const FileText text(folder.write("large", large));
+  EXPECT_TRUE(text.text() == large);
+  expect_parts(message_of<InputError>([&] { (void)FileText(folder.path() / "lage"); }), {"no such file", "'large'"});
 }
 
 TEST(WriteAtomically, BelowARegularFileNamesFileAndReason) {

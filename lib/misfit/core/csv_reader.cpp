@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "misfit/core/error.h"
-#include "misfit/core/files.h"
+#include "misfit/core/mapped_file.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/table.h"
 
@@ -52,12 +52,12 @@ Column parse_header(std::string_view text) {
 class CsvReader {
  public:
   CsvReader(const std::filesystem::path& path, const std::vector<std::string>& ignore_text_of)
-      : content_(read_file(path)), ignore_text_of_(ignore_text_of) {
+      : content_(path), ignore_text_of_(ignore_text_of) {
     table_.source = path.string();
   }
 
   Table read() {
-    std::string_view rest = content_;
+    std::string_view rest = content_.text();
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     for (int number = 1; !rest.empty(); ++number) {
       const std::size_t end = std::min(rest.find('\n'), rest.size());
@@ -157,7 +157,7 @@ class CsvReader {
     table_.line.push_back(number);
   }
 
-  std::string content_;
+  FileText content_;
   const std::vector<std::string>& ignore_text_of_;
   std::vector<bool> text_allowed_;
   std::vector<std::string_view> fields_;

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "misfit/core/new_file.h"
+
 namespace misfit {
 namespace {
 
@@ -84,13 +86,18 @@ int write_all(int descriptor, std::string_view content) {
   return 0;
 }
 
+/// A new file, to be written; its number, or below 0 with errno.
+int open_new_file(const fs::path& path) { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); }
+
+/// To the device; 0 or errno. Pipes and some network folders cannot flush (EINVAL): that is no loss of data.
+int flush(int descriptor) { return ::fsync(descriptor) != 0 && errno != EINVAL ? errno : 0; }
+
 /// Writes `content` to the new file `path` and flushes it to the device; 0 or errno.
 int write_new_file(const fs::path& path, std::string_view content) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  Descriptor file(open_new_file(path));
   if (file.number() < 0) return errno;
   if (const int error = write_all(file.number(), content)) return error;
-  // Pipes and some network folders cannot flush (EINVAL): that is no loss of data.
-  if (::fsync(file.number()) != 0 && errno != EINVAL) return errno;
+  if (const int error = flush(file.number())) return error;
   return file.close();
 }
 
@@ -146,15 +153,40 @@ std::string read_file(const fs::path& path) {
   return content;
 }
 
-void write_atomically(const fs::path& path, std::string_view content) {
+NewFile::NewFile(const fs::path& path) : path_(path), temporary_(temporary_name(path)) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw WriteError(path.string() + ": cannot be written: it is a folder");
-  const fs::path temporary = temporary_name(path);
-  int error = write_new_file(temporary, content);
-  if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
+  descriptor_ = open_new_file(temporary_);
+  if (descriptor_ < 0) fail(errno);
+}
+
+NewFile::~NewFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void NewFile::add(std::string_view piece) {
+  if (const int error = write_all(descriptor_, piece)) fail(error);
+}
+
+void NewFile::publish() {
+  int error = flush(descriptor_);
+  if (::close(std::exchange(descriptor_, -1)) != 0 && error == 0) error = errno;
+  if (error == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) error = errno;
   if (error == 0) return;
-  fs::remove(temporary, ignored);
-  throw WriteError(path.string() + ": cannot be written: " + system_message(error));
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+  fail(error);
+}
+
+void NewFile::fail(int code) const { throw WriteError(path_.string() + ": cannot be written: " + system_message(code)); }
+
+void write_atomically(const fs::path& path, std::string_view content) {
+  NewFile file(path);
+  file.add(content);
+  file.publish();
 }
 
 void make_writable_folder(const fs::path& dir) {

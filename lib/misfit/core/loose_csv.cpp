@@ -9,8 +9,8 @@
 #include <unordered_set>
 
 #include "misfit/core/error.h"
-#include "misfit/core/files.h"
 #include "misfit/core/iso_date.h"
+#include "misfit/core/mapped_file.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 
@@ -72,7 +72,7 @@ struct Line {
 
 class LooseReader {
  public:
-  LooseReader(const std::filesystem::path& path, const std::vector<std::string>& names) : content_(read_file(path)), given_(names) {
+  LooseReader(const std::filesystem::path& path, const std::vector<std::string>& names) : content_(path), given_(names) {
     table_.source = path.string();
   }
 
@@ -85,6 +85,8 @@ class LooseReader {
       fail(lines_.front().number,
            "one column alone ('" + shown(table_.columns.front().header) + "') is no recording: a time and what was measured are needed");
     if (first_row_ >= lines_.size()) fail(0, "no rows below the header");
+    for (LooseColumn& column : table_.columns) column.values.reserve(lines_.size() - first_row_);
+    table_.line.reserve(lines_.size() - first_row_);
     for (std::size_t i = first_row_; i < lines_.size(); ++i) read_row(lines_[i]);
     for (std::size_t j = 0; j < table_.columns.size(); ++j) read_dates(j);
     return std::move(table_);
@@ -94,7 +96,7 @@ class LooseReader {
   [[noreturn]] void fail(int line, const std::string& message) const { throw InputError({table_.source, line, 0}, message); }
 
   void split_lines() {
-    std::string_view rest = content_;
+    std::string_view rest = content_.text();
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     for (int number = 1; !rest.empty(); ++number) {
       const auto end = std::min(rest.find('\n'), rest.size());
@@ -208,7 +210,7 @@ class LooseReader {
     table_.line.push_back(line.number);
   }
 
-  std::string content_;
+  FileText content_;
   const std::vector<std::string>& given_;
   std::string_view last_comment_;
   std::vector<Line> lines_;

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "misfit/core/error.h"
-#include "misfit/core/files.h"
+#include "misfit/core/new_file.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 
@@ -76,16 +76,23 @@ void write_csv(const std::filesystem::path& path, const Table& table, int digits
     out += quoted(table.columns[j].header());
   }
   out += '\n';
+  NewFile file(path);
   const bool single = table.columns.size() == 1;
+  constexpr std::size_t piece = 1 << 20;
   for (std::size_t i = 0; i < table.rows(); ++i) {
+    const std::size_t begin = out.size();
     for (std::size_t j = 0; j < table.columns.size(); ++j) {
       if (j > 0) out += ',';
       append_number(out, table.columns[j].values[i], digits);
     }
-    if (single && out.back() == '\n') out += "\"\"";  // an empty line would be passed over when read
+    if (single && out.size() == begin) out += "\"\"";  // an empty line would be passed over when read
     out += '\n';
+    if (out.size() < piece) continue;
+    file.add(out);
+    out.clear();
   }
-  write_atomically(path, out);
+  file.add(out);
+  file.publish();
 }
 
 }  // namespace misfit

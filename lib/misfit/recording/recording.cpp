@@ -348,7 +348,12 @@ class ColumnClassifier {
     return sum / static_cast<double>(to - from);
   }
 
+  /// Columns that nobody uses are given back first: of a long recording only those that are used are held twice.
   void fill_parts() {
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      const ColumnUse use = out_.columns[i].use;
+      if (use != ColumnUse::input && use != ColumnUse::output && use != ColumnUse::rate) table_.columns[i].values = {};
+    }
     for (const auto& piece : pieces_) {
       Table part;
       part.source = table_.source;
@@ -359,6 +364,7 @@ class ColumnClassifier {
         for (std::size_t i = 0; i < out_.columns.size(); ++i) {
           if (out_.columns[i].use != use) continue;
           std::vector<double> kept;
+          kept.reserve(piece.size());
           for (const std::size_t row : piece) kept.push_back(values(i)[row]);
           part.add(out_.columns[i].name, out_.columns[i].unit, std::move(kept));
         }

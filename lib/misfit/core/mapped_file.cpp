@@ -1,10 +1,11 @@
-#include "misfit/data/log/mapped_file.h"
+#include "misfit/core/mapped_file.h"
 
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <string>
+#include <system_error>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
@@ -24,6 +25,21 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
 
 MappedFile::~MappedFile() {
   if (size_ > 0) ::munmap(start_, size_);
+}
+
+FileText::FileText(const std::filesystem::path& path) {
+  constexpr std::uintmax_t large = 64U << 20U;
+  std::error_code none;
+  if (std::filesystem::is_regular_file(path, none) && std::filesystem::file_size(path, none) > large && !none) {
+    mapped_.emplace(path);
+  } else {
+    read_ = read_file(path);
+  }
+}
+
+std::string_view FileText::text() const {
+  if (!mapped_) return read_;
+  return {reinterpret_cast<const char*>(mapped_->bytes().data()), mapped_->bytes().size()};
 }
 
 }  // namespace misfit

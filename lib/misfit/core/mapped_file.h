@@ -2,7 +2,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
 namespace misfit {
 
@@ -20,6 +23,19 @@ class MappedFile {
  private:
   void* start_ = nullptr;
   std::size_t size_ = 0;
+};
+
+/// A whole text: read where it is small or no regular file (so that it may be shortened meanwhile), mapped where it is large.
+class FileText {
+ public:
+  /// Throws as read_file().
+  explicit FileText(const std::filesystem::path& path);
+
+  [[nodiscard]] std::string_view text() const;
+
+ private:
+  std::optional<MappedFile> mapped_;
+  std::string read_;
 };
 
 }  // namespace misfit
