@@ -230,9 +230,10 @@ TEST(InitOfManyColumns, KeepsTheFirstOnesWithinTheLimitsAndNamesTheOthers) {
   EXPECT_EQ(model.inputs.front(), "u0");
   ASSERT_FALSE(model.outputs.empty());
   EXPECT_EQ(model.outputs.front().name, "y0");
-  ASSERT_EQ(model.remarks.size(), 2U);
+  ASSERT_EQ(model.remarks.size(), 3U);
   expect_parts(model.remarks[0], {"not in the model: inputs u8, u9", "at most"});
   expect_parts(model.remarks[1], {"not in the model: outputs", "more", "parameters"});
+  expect_parts(model.remarks[2], {"in no equation of the first model: u", "input_gain"});
   study_is_built(data, folder.path());
 }
 
