@@ -261,6 +261,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   if (!out.ok) return out;
   const bool whole_tried = in_time && fix_whole_strengths(work, out);
   if (whole_tried) try_exchanged_poles(work, out);
+  note_half_a_sample(out);
   if (!whole_tried || !free_drifts(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
   note_changes(screening, work.registry, out);
   out.drop = drop_of(out.estimate, without, screening);

@@ -1,7 +1,10 @@
 #include "misfit/discover/refit_forms.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "misfit/core/display.h"
@@ -11,6 +14,7 @@
 #include "misfit/discover/exchanged_poles.h"
 #include "misfit/discover/whole_strength.h"
 #include "misfit/inference/standard_error.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
@@ -151,6 +155,47 @@ void try_exchanged_poles(const RefitWork& work, Refit& out) {
       return;
     } catch (const RunError&) {  // it cannot be run in that order
     }
+  }
+}
+
+namespace {
+
+/// A parameter of the model's last effect by which an input acts late: a delay of the input, or a clock of the outputs that is behind.
+struct Lateness {
+  int input = 0, parameter = 0;
+  double sign = 1.0;  ///< of the parameter, where the input is late
+};
+
+std::vector<Lateness> lateness_of_last(const Model& model) {
+  std::vector<Lateness> out;
+  for (const LateInputUse& late : model.late_inputs()) {
+    if (late.effect + 1 == std::ssize(model.effects)) out.push_back({late.input, late.delay});
+  }
+  const BoundEffect& last = model.effects.back();
+  if (last.effect->spec().ports.front().name != std::string_view(all_sample_times)) return out;
+  for (int input = 0; input < std::ssize(model.system->spec().inputs); ++input)
+    out.push_back({input, last.coefficients.front().parameter, -1.0});
+  return out;
+}
+
+}  // namespace
+
+void note_half_a_sample(Refit& out) {
+  constexpr double sigmas = 3.0, sharp = 0.3, close = 0.1;  // of half an interval
+  const Model& model = out.estimate.model;
+  const double half = 0.5 * usual_step(out.estimate.data.front().signals->t);
+  for (const Lateness& late : lateness_of_last(model)) {
+    const InputSpec& input = model.system->spec().inputs[static_cast<std::size_t>(late.input)];
+    const auto sigma = standard_error_of(model, out.estimate.covariance, late.parameter);
+    const double seconds = late.sign * model.parameters[late.parameter].value;
+    const bool straight = input.hold == Hold::first_order;  // and should be held, which makes it late
+    if (!sigma || *sigma > sharp * half) continue;
+    if (std::abs(seconds - (straight ? half : -half)) > std::max(sigmas * *sigma, close * half)) continue;
+    out.also = fmt::format(
+        "that is half a sampling interval ({:.4g} s), by which an input seems {} that is {} between its samples: if {} is one, write hold "
+        "= "
+        "\"{}\" at it instead",
+        half, straight ? "late" : "early", straight ? "held" : "straight", input.name, straight ? "zero_order" : "first_order");
   }
 }
 

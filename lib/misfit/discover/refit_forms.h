@@ -19,4 +19,8 @@ void try_exchanged_poles(const RefitWork& work, Refit& out);
 /// no time to try.
 [[nodiscard]] bool free_drifts(const RefitWork& work, Refit& out);
 
+/// A delay of half a sampling interval, or a clock that is as much behind or ahead: what an input looks like that is held between its
+/// samples where the model has it straight, or the other way round. In words, in Refit::also.
+void note_half_a_sample(Refit& out);
+
 }  // namespace misfit
