@@ -78,7 +78,7 @@ TEST_F(Embedded, ShowsNoPathOfTheMachine) { EXPECT_THAT(embedded_answers(page, r
 
 TEST_F(Embedded, TakesNamesAsText) {
   const json answers = all()["answers"];
-  EXPECT_EQ(answers["state?"]["study"]["name"], hostile);
+  EXPECT_EQ(answers["state?"]["study"]["name"].get<std::string>(), hostile);
   EXPECT_THAT(answers["study?model=0"]["text"].get<std::string>(), HasSubstr("</script>"));
   EXPECT_THAT(embedded_page(page, room), Not(HasSubstr("alert('x')")));
 }
@@ -119,7 +119,8 @@ TEST_F(Embedded, ListsCandidatesByTheirSignificanceThoseOfUnknownFormIncluded) {
   std::vector<std::string> effects;
   for (const json& row : view["rows"]) {
     effects.push_back(row["effect"]);
-    EXPECT_EQ(d.candidates[row["candidate"].get<std::size_t>()].effect, row["effect"]) << "by which its force is asked for";
+    EXPECT_EQ(d.candidates[row["candidate"].get<std::size_t>()].effect, row["effect"].get<std::string>())
+        << "by which its force is asked for";
   }
   EXPECT_THAT(effects, testing::ElementsAre("friction", "unknown:F(x)", "drag", "lag"));
   for (const json& block : view["blocks"]) {
