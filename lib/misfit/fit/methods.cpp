@@ -105,6 +105,7 @@ Maximisation maximise_output_error(const FittedMethod& from, const Experiments& 
 std::optional<FilterStart> free_start(const Model& start, const EstimationTask& task, bool from_regression) {
   try {
     if (!follows_freely(start, task.experiments)) return std::nullopt;
+    if (start.free_parameters().empty()) return FilterStart{start, curve_penalties(start), {}, true};
     OutputErrorStart options;
     options.coloured = false;
     options.from_regression = from_regression;

@@ -22,14 +22,15 @@ Eigen::MatrixXd reduced(const NormalEquations& problem, const std::vector<Column
   const Eigen::Index states = problem.N.rows() - free;
   const Eigen::VectorXd scale = problem.N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd all = scale.asDiagonal() * problem.N * scale.asDiagonal();
-  Eigen::MatrixXd N(n, n), C(n, states);
+  Eigen::MatrixXd N(n, n);
   for (Eigen::Index a = 0; a < n; ++a) {
     const Eigen::Index row = columns[a].at;
     for (Eigen::Index b = 0; b < n; ++b) N(a, b) = all(row, columns[b].at);
-    C.row(a) = all.row(row).tail(states);
     if (problem.prior.precision.size() > row) N(a, a) += problem.prior.precision[row] * scale[row] * scale[row];
   }
   if (states == 0) return N;
+  Eigen::MatrixXd C(n, states);
+  for (Eigen::Index a = 0; a < n; ++a) C.row(a) = all.row(columns[a].at).tail(states);
   return N - C * all.bottomRightCorner(states, states).completeOrthogonalDecomposition().solve(C.transpose());
 }
 

@@ -54,7 +54,8 @@ std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
                                          ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q))
                                          : Eigen::MatrixXd(information.inverse());
   std::vector<double> out;
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i) out.push_back(known[i] ? standard_error(covariance, i) : 0.0);
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
+    out.push_back(known[i] && !pinned(covariance(i, i)) ? standard_error(covariance, i) : 0.0);
   return out;
 }
 

@@ -172,8 +172,14 @@ Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<
   return Scoring(runs, vector, threads).information(logs);
 }
 
+namespace {
+
+constexpr double pin = 1e12;
+
+}  // namespace
+
 std::vector<bool> pin_unknown(const NoiseFit& fit, Eigen::MatrixXd& information) {
-  constexpr double determined = 1.0, pin = 1e12;
+  constexpr double determined = 1.0;
   const Eigen::Index first = information.rows() - fit.at_bound.size();
   std::vector<bool> known;
   for (std::size_t i = 0; i < fit.at_bound.size(); ++i) {
@@ -183,5 +189,7 @@ std::vector<bool> pin_unknown(const NoiseFit& fit, Eigen::MatrixXd& information)
   }
   return known;
 }
+
+bool pinned(double variance) { return variance < 100.0 / pin; }
 
 }  // namespace misfit

@@ -39,5 +39,7 @@ struct NoiseSearch {
 /// Pins, in an information whose last rows are those of `fit`'s logarithms, what is at its bound or so unknown that the data do not even
 /// know the logarithm to one unit (the shape of something that is not there). Returned: which logarithms are known.
 std::vector<bool> pin_unknown(const NoiseFit& fit, Eigen::MatrixXd& information);
+/// Of a variance from such an information: is it that of a pin, which says nothing of how well the logarithm is known?
+[[nodiscard]] bool pinned(double variance);
 
 }  // namespace misfit

@@ -21,7 +21,7 @@ class Paths {
 
   [[nodiscard]] bool known(Eigen::Index j) const {
     constexpr double most = 1.0;  // sigma of the logarithm
-    return !estimate_.noise_fit.at_bound[j] && joint_(j, j) > 0.0 && joint_(j, j) < most;
+    return !estimate_.noise_fit.at_bound[j] && !pinned(joint_(j, j)) && joint_(j, j) < most;
   }
 
   [[nodiscard]] double end(Eigen::Index j, double z) const {
