@@ -274,6 +274,14 @@ TEST(Verdict, AChangeWithinItsSigmaIsCalledSoAndTheMapWhereTheModelFailedLeads) 
   EXPECT_THAT(c.verdict().sentence, HasSubstr("the random force changes by less than its sigma, from 20.0 ± 1.0 V/s to 19.40 ± 0.90 V/s"));
 }
 
+TEST(Verdict, SaysWhichHeldParameterExplainsAsMuch) {
+  Case c;
+  c.discovery = searched({}, SearchOutcome::none_missing, "nothing");
+  c.discovery->held = {{"k is held at 39 1/s^2, and these data want 40 1/s^2: free it", "m is held"}};
+  EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("No effect is found missing"),
+                                          testing::EndsWith(" But k is held at 39 1/s^2, and these data want 40 1/s^2: free it.")));
+}
+
 TEST(Verdict, ACalibrationThatItsSweepContradictsComesBeforeEveryEffect) {
   Case c;
   c.calibration.emplace().rms_px = 4.58;

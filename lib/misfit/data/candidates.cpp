@@ -71,8 +71,8 @@ void fields(Archive& json, MaybeConst<StoredDiscovery> auto& stored) {
   json("outcome", NameOf(d.outcome, search_outcome_names));
   json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("force", d.force);
   json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
-  json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error), json("sweep_asks", d.sweep_asks),
-      json("added_force", stored.added);
+  json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error), json("held", d.held),
+      json("sweep_asks", d.sweep_asks), json("added_force", stored.added);
   json("seconds", d.seconds);
 }
 

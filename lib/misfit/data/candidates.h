@@ -100,7 +100,10 @@ struct Discovery {
   /// Effects that would add it to the model as a curve of one quantity: of the one that explains most alone first. Empty: nothing is
   /// unexplained, or it is not of that kind.
   std::vector<EffectPlace> unexplained_effects;
-  bool unexplained_error = false;       ///< not a force: an error of the output unexplained_port
+  bool unexplained_error = false;  ///< not a force: an error of the output unexplained_port
+  /// Numbers of the system that the study holds and that, freed, would explain about as much as the best effect does, in words: the most
+  /// significant first; missing: none.
+  std::optional<std::vector<std::string>> held;
   std::vector<std::string> sweep_asks;  ///< camera parameters that the calibration sweep asks for and the camera of the study does not have
   double seconds = 0.0;
 };

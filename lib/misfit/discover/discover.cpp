@@ -15,6 +15,7 @@
 #include "misfit/discover/alias.h"
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/free_run.h"
+#include "misfit/discover/held_parameters.h"
 #include "misfit/discover/refit_jobs.h"
 #include "misfit/discover/unfinished.h"
 #include "misfit/discover/unknown_form.h"
@@ -61,6 +62,7 @@ class Search {
       if (none_accepted() && refit_the_other_nominated()) unexplained = accept_best(ranked_, unknown_, context);
       if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context);
       if (none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context);
+      look_at_held_parameters();
     } catch (const TimeSpent& limit) {
       spent = limit.what();
     }
@@ -403,6 +405,21 @@ class Search {
     write_verdict(out_, unexplained, options_.p_accept, options_.calibration != nullptr);
     report_sensor_aliases(screening_, score_, out_);
     add_camera_remarks(options_.calibration, options_.p_accept, out_);
+  }
+
+  /// Held parameters of the system whose score promises about as much as that of the best effect does, or, where none is significant, that
+  /// are so themselves; the first of them is freed.
+  void look_at_held_parameters() {
+    constexpr double about_as_much = 0.8;
+    const auto best = std::find_if(ranked_.begin(), ranked_.end(), [this](const RankedCandidate& e) { return significant(e); });
+    const double needed = best == ranked_.end() ? 0.0 : about_as_much * best->screening->result.chi2;
+    std::vector<HeldParameter> held = held_parameters(estimate_, score_);
+    const double tests = families_ + static_cast<double>(held.size());
+    std::erase_if(held, [&](const HeldParameter& h) { return sidak(h.p_value, tests) >= options_.p_accept || h.predicted_drop < needed; });
+    if (held.empty()) return;
+    free_and_refit(refit_work(), held.front());
+    out_.held.emplace();
+    for (const HeldParameter& h : held) out_.held->push_back(held_in_words(h, sidak(h.p_value, tests)));
   }
 
   const FilterEstimate& estimate_;

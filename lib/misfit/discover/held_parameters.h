@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "misfit/diagnose/score.h"
+#include "misfit/discover/refit.h"
+
+namespace misfit {
+
+/// A parameter of the system that the study holds, and what these data say of it.
+struct HeldParameter {
+  std::string name, unit;
+  double value = 0.0;                ///< as held [unit]
+  double wanted = 0.0, sigma = 0.0;  ///< after one Gauss–Newton step, or freed [unit]
+  double predicted_drop = 0.0;
+  double p_value = 1.0;  ///< of its own test, or of the drop
+  std::optional<double> actual_drop = {};
+};
+
+/// The score test of every number of the system that is held, alone (score.h): a model can lack nothing and have a wrong constant. Without
+/// those that act on outputs alone (with the gains held their information is overestimated, candidate_model.cpp) and those that the free
+/// parameters describe already. The most significant first.
+[[nodiscard]] std::vector<HeldParameter> held_parameters(const FilterEstimate& estimate, const ScoreTest& score);
+
+/// Frees it and estimates again: `wanted`, `sigma`, `actual_drop` and `p_value`, unless no maximum is reached. TimeSpent.
+void free_and_refit(const RefitWork& work, HeldParameter& held);
+
+/// "k is held at 39 1/s^2, and these data want 40.00 ± 0.05 1/s^2 (drop 380, family-wise p = 1e-83): free it …". `p_value`: family-wise.
+[[nodiscard]] std::string held_in_words(const HeldParameter& held, double p_value);
+
+}  // namespace misfit
