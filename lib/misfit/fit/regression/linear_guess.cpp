@@ -349,7 +349,8 @@ LinearGuess second_order(const GuessData& data, const WindowSearch& search, cons
 /// A first order whose rest drifts in time, if it leaves no more than `excess`: a second order without a pull back to rest follows a drift,
 /// too, with gains that mean nothing, and a first order takes it for a time constant longer than the record. The model is the one without
 /// the drift, which is for the search to name.
-std::optional<LinearGuess> drifting_first_order(const GuessData& data, double excess) {
+/// `instead`: of what, in words.
+std::optional<LinearGuess> drifting_first_order(const GuessData& data, double excess, const std::string& instead) {
   std::vector<GuessDriver> drivers = data.drivers;
   drivers.push_back({data.t, true, false});
   const WindowSearch search(data.t, data.y, drivers);
@@ -361,10 +362,8 @@ std::optional<LinearGuess> drifting_first_order(const GuessData& data, double ex
   out.gain.resize(data.drivers.size());
   out.tau = 1.0 / found.poles.damping;
   divide(found.poles.damping, out);
-  out.why = fmt::format(
-      "first order, time constant about {:.3g} s: with a drift in time beside it, it fits better than without and no worse than a second "
-      "order; what drifts, the search will say",
-      out.tau);
+  out.why = fmt::format("first order, time constant about {:.3g} s: with a drift in time beside it, {}; what drifts, the search will say",
+                        out.tau, instead);
   return out;
 }
 
@@ -384,7 +383,9 @@ LinearGuess guess_linear(const GuessData& data) {
   const bool driven = std::any_of(data.drivers.begin(), data.drivers.end(), [](const GuessDriver& d) { return !d.output; });
   if (driven && (!oscillates || second.poles.stiffness == 0.0)) {
     const double least = oscillates ? search.excess(second.mean_square) : half * search.excess(first.mean_square);
-    if (const auto drifting = drifting_first_order(data, least)) return *drifting;
+    const char* instead =
+        oscillates ? "it fits no worse than a second order without a pull back to a rest" : "its held-out error is less than half";
+    if (const auto drifting = drifting_first_order(data, least, instead)) return *drifting;
   }
   const LinearGuess out = oscillates ? second_order(data, search, second, lower) : first_order(search, first, lower);
   const bool numbers = std::isfinite(out.rest + out.tau + out.damping + out.stiffness) &&
