@@ -100,6 +100,18 @@ TEST(ExchangedPoles, TheLagOfAnInputIsNotTakenForTheMotorsOwn) {
   }
 }
 
+/// In a linear motor that nothing pushes, a lag of the input and one of the sensor are the same: moved to the input, it is still compared.
+TEST(ExchangedPoles, ALagOfTheInputAndOneOfTheSensorAreSaidToBeOne) {
+  const auto known = registry_with(motor_text);
+  const ModelRequest model = request_of("text");
+  const std::vector<Signals> signals = {record_of_motor(7, lag, 0.0)};
+  const FilterEstimate estimate = estimate_of(model, *known, signals);
+  const Candidate first = discover({estimate, model, *known, signals}).candidates.at(0);
+  ASSERT_EQ(first.effect, "input_lag") << first.why;
+  EXPECT_EQ(first.roles.at("port"), "u");
+  EXPECT_THAT(first.group, testing::AllOf(testing::Contains(HasSubstr("input_lag")), testing::Contains(HasSubstr("sensor_lag"))));
+}
+
 TEST(ExchangedPoles, AreThoseOfTheEquations) {
   const auto known = registry_with(motor_text);
   ModelRequest model = request_of("text", {effect("input_lag", {{"input", "u"}, {"port", "u"}})});

@@ -34,10 +34,11 @@ std::optional<ScreeningResult> ConditionalScores::best_score(const RankedCandida
   return best;
 }
 
+/// At the place where it was screened: its refit may have moved it to the input itself (Refit::moved), which is no place of the list.
 const CandidateModel* ConditionalScores::in_list(const RankedCandidate& other) const {
-  const auto found = std::find_if(list_.begin(), list_.end(), [&](const CandidateModel& s) {
-    return s.effect == other.candidate.effect && s.roles == other.candidate.roles;
-  });
+  const CandidateModel& screened = *other.screening->candidate_model;
+  const auto found = std::find_if(list_.begin(), list_.end(),
+                                  [&](const CandidateModel& s) { return s.effect == screened.effect && s.roles == screened.roles; });
   return found == list_.end() ? nullptr : &*found;
 }
 
