@@ -15,12 +15,19 @@ json read(const fs::path& file) {
   return in ? json::parse(in, nullptr, false) : json();
 }
 
+/// An effect of an input that acts on the input itself, wherever that goes.
+bool acts_on_its_input(const json& candidate) {
+  const json& roles = candidate["roles"];
+  return roles.contains("port") && roles.contains("input") && roles["port"] == roles["input"];
+}
+
 /// "key@port;role=value" against a candidate of candidates.json.
 bool is_right(const std::string& answer, const json& candidate) {
   const std::size_t at = answer.find('@'), role = std::min(answer.find(';'), answer.size());
   if (answer.substr(0, std::min(at, role)) != candidate["effect"].get<std::string>()) return false;
   const json& ports = candidate["ports"];
-  if (at != std::string::npos && (ports.empty() || !ports[0].get<std::string>().starts_with(answer.substr(at + 1, role - at - 1))))
+  if (at != std::string::npos && !acts_on_its_input(candidate) &&
+      (ports.empty() || !ports[0].get<std::string>().starts_with(answer.substr(at + 1, role - at - 1))))
     return false;
   if (role == answer.size()) return true;
   const std::size_t equals = answer.find('=', role);
