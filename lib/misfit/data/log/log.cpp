@@ -8,10 +8,10 @@
 #include <set>
 
 #include "misfit/core/error.h"
+#include "misfit/core/mapped_file.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/data/log/csv_log.h"
-#include "misfit/core/mapped_file.h"
 #include "misfit/data/log/readers.h"
 #include "misfit/data/log/zip.h"
 
