@@ -415,7 +415,11 @@ TEST(Accept, TheAcceptedOneIsGroupedWithIndistinguishableOnes) {
 TEST(Accept, AnEffectThatCannotBeTestedBesideTheOtherIsNotGroupedWithIt) {
   const World world = with_friction(0.2);
   std::vector<RankedCandidate> ranked = {world.entry("coulomb_friction"), world.entry("hasty_friction")};
-  ranked[1].candidate.effect = "offered_nowhere";
+  CandidateModel elsewhere = *ranked[1].screening->candidate_model;
+  elsewhere.effect = ranked[1].candidate.effect = "offered_nowhere";
+  ScreeningResult screened = *ranked[1].screening;
+  screened.candidate_model = &elsewhere;
+  ranked[1].screening = &screened;
   EXPECT_FALSE(world.accept(ranked).has_value());
   EXPECT_TRUE(ranked.front().candidate.accepted);
   EXPECT_THAT(ranked.front().candidate.group, testing::IsEmpty());
