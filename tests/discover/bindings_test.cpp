@@ -56,6 +56,20 @@ TEST(Bindings, LevelsOfOneUnitMayExchange) {
   EXPECT_THAT(enumerate_bindings(registry().effect("exchange").spec(), of_two_kinds), ElementsAre(Roles{}));
 }
 
+/// A force elsewhere would not show in that output.
+TEST(Bindings, AnInputThatAnOutputsFormulaReadsIsAPlaceOfItsOwn) {
+  SystemSpec tanks = registry().system("test_tanks").make({})->spec();
+  const std::string input = tanks.inputs.front().name;
+  const Roles itself = {{"input", input}, {"port", input}};
+  for (const char* effect : {"input_gain", "input_offset", "input_lag", "delay", "saturation"}) {
+    tanks.ports_in_outputs.clear();
+    EXPECT_THAT(enumerate_bindings(registry().effect(effect).spec(), tanks), testing::Not(Contains(itself))) << effect;
+    tanks.ports_in_outputs = {input};
+    EXPECT_THAT(enumerate_bindings(registry().effect(effect).spec(), tanks), Contains(itself)) << effect;
+  }
+  EXPECT_THAT(enumerate_bindings(registry().effect("leak").spec(), tanks), testing::Not(Contains(itself)));
+}
+
 TEST(Bindings, AQuantityThatAPortCallsItsRateHasNoLevelToExchange) {
   SystemSpec twisted = registry().system("test_oscillator").make({})->spec();
   twisted.quantities.push_back({.name = "twist", .unit = "rad/s", .doc = "of two ends"});

@@ -98,6 +98,73 @@ TEST(DeclaredDuffing, SaysWhatMisfitWantsToKnow) {
   EXPECT_NEAR(spec.fastest_rate, std::sqrt(30.0 + 150.0 * 0.01), 1e-12);
 }
 
+/// A cell: its voltage is a formula of the current that charges the capacitor, too.
+const std::string cell_text = R"toml(
+[states]
+v = { unit = "V" }
+[inputs]
+i = { unit = "A" }
+[parameters]
+R0 = { unit = "V/A", value = 0.02, free = true }
+C = { unit = "A*s/V", value = 40.0 }
+E = { unit = "V", value = 4.0 }
+[quantities]
+drop = { unit = "V", formula = "R0*i" }
+[equations]
+v = "i/C"
+[outputs]
+U = { unit = "V", formula = "E - drop - v" }
+)toml";
+
+struct OutputOfACell {
+  double value = 0.0;
+  std::vector<double> by;  ///< v, own states, then R0 and what the effect has
+};
+
+OutputOfACell output_of_a_cell(const EffectRequest& effect, const std::map<std::string, double>& values, std::vector<double> x) {
+  const auto known = registry_with(cell_text);
+  Model model = assemble(request_of("text", {effect}), *known);
+  for (const auto& [name, value] : values) set(model, name, value);
+  Evaluator evaluator(model);
+  const double current[] = {3.0};
+  OutputOfACell out;
+  std::vector<double> y(evaluator.sensor_ports());
+  evaluator.predict(x.data(), current, 0.0, y.data());
+  out.value = y[0];
+  std::vector<double> rows(y.size() * kRowStride);
+  Slots slots;
+  evaluator.linearise_outputs({x.data(), current, 0.0}, slots, y.data(), rows.data());
+  EXPECT_DOUBLE_EQ(y[0], out.value);
+  out.by.assign(rows.begin(), rows.begin() + evaluator.states());
+  for (int column = 0; column < evaluator.columns(); ++column) {
+    double by = 0.0;
+    for (int s = 0; s < slots.count(); ++s) by += slots.column(s) == column ? rows[evaluator.states() + s] : 0.0;
+    out.by.push_back(by);
+  }
+  return out;
+}
+
+/// A current that is measured 0.5 A too small charges the cell, and it drops its voltage as well.
+TEST(AnEffectOnAnInput, ReachesOutputsThatAreFormulasOfIt) {
+  const OutputOfACell out = output_of_a_cell(effect("bias", {{"output", "i"}}), {{"offset", 0.5}}, {0.3});
+  EXPECT_DOUBLE_EQ(out.value, 4.0 - 0.02 * 3.5 - 0.3);
+  EXPECT_THAT(out.by, testing::Pointwise(testing::DoubleNear(1e-14), {-1.0, -3.5, -0.02}));
+}
+
+TEST(AnEffectOnAnInput, ReachesOutputsThroughItsMemory) {
+  const OutputOfACell out =
+      output_of_a_cell(effect("input_lag", {{"input", "i"}, {"port", "i"}}), {{"lagged_gain", 1.0}, {"input_tau", 0.5}}, {0.3, 2.0});
+  EXPECT_DOUBLE_EQ(out.value, 4.0 - 0.02 * 2.0 - 0.3);
+  EXPECT_THAT(out.by, testing::Pointwise(testing::DoubleNear(1e-14), {-1.0, -0.02, -2.0, 0.02, 0.0}));
+}
+
+/// A quantity means the same in an output as in an equation.
+TEST(AnEffectOnAQuantity, ReachesOutputsThatAreFormulasOfIt) {
+  const OutputOfACell out = output_of_a_cell(effect("bias", {{"output", "drop"}}), {{"offset", 0.1}}, {0.3});
+  EXPECT_DOUBLE_EQ(out.value, 4.0 - 0.02 * 3.0 - 0.1 - 0.3);
+  EXPECT_THAT(out.by, testing::Pointwise(testing::DoubleNear(1e-14), {-1.0, -3.0, -1.0}));
+}
+
 const std::string turntable_text = R"toml(
 [display]
 angle = "rad"

@@ -160,6 +160,16 @@ std::vector<Roles> times_of_outputs(const SystemSpec& system) {
   return out;
 }
 
+/// The places, and every input that an output's formula reads as a place of its own: a force elsewhere does not show in that output.
+std::vector<Roles> with_inputs_in_outputs(std::vector<Roles> places, const SystemSpec& system) {
+  for (const InputSpec& input : system.inputs) {
+    const bool read =
+        std::find(system.ports_in_outputs.begin(), system.ports_in_outputs.end(), input.name) != system.ports_in_outputs.end();
+    if (read) places.push_back({{"input", input.name}, {"port", input.name}});
+  }
+  return places;
+}
+
 template <class List>
 std::vector<std::string> names_of(const List& list) {
   std::vector<std::string> names;
@@ -236,8 +246,10 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
     places = times(places, "to_port", ports);
   }
   if (has_role(effect.quantities, "other")) places = times_other_states(places, system);
-  if (has_role(effect.quantities, "input"))
+  if (has_role(effect.quantities, "input")) {
     places = times(places, "input", system.roles.contains("input") ? names_of(system.inputs) : std::vector<std::string>{});
+    if (has_role(effect.ports, "port")) places = with_inputs_in_outputs(std::move(places), system);
+  }
   if (has_role(effect.ports, "output"))
     places = times(places, "output", suggests_places(system) ? names_of(system.outputs) : std::vector<std::string>{});
   if (has_role(effect.quantities, "other_signal")) places = times_other_outputs(places, system, has_role(effect.ports, "other_output"));

@@ -169,16 +169,21 @@ class Compiler {
     return names;
   }
 
+  /// What an output observes is said of the system without effects.
   void build_outputs() {
-    const Leaves& n = out_->leaves;
     for (int o = 0; o < int_size(d_.outputs); ++o) {
-      int node = build(d_.outputs[o], false);
-      for (int i = 0; i < n.np; ++i) node = g().substitute(node, n.P(i), g().constant(0.0));
-      if (const int same = place_of(state_nodes_, node); same >= 0) spec().outputs[o].observes = same;
+      const int node = build(d_.outputs[o], false), plain = without_quantity_ports(node);
+      if (const int same = place_of(state_nodes_, plain); same >= 0) spec().outputs[o].observes = same;
       output_nodes_.push_back(node);
-      note_inputs(node);
-      note_readable(o, node);
+      note_inputs(plain);
+      note_readable(o, plain);
     }
+  }
+
+  int without_quantity_ports(int node) {
+    const Leaves& n = out_->leaves;
+    for (int i = 0; i < n.np; ++i) node = g().substitute(node, n.P(i), g().constant(0.0));
+    return node;
   }
 
   /// An output that is a straight line of one state, as theta + offset: the state can be read from it.
@@ -244,9 +249,16 @@ class Compiler {
       add_quantity(q, quantity_nodes_[i], all);
     }
     spec().quantities = std::move(all);
+    note_ports_in_outputs();
     if (int_size(spec().quantities) + int_size(spec().outputs) > kMaxQuantities)
       throw InputError(d_.where, "states, inputs, quantities and outputs are together too many");
     set_roles(d_, own_ports_);
+  }
+  void note_ports_in_outputs() {
+    for (int i = 0; i < int_size(spec().quantity_ports); ++i) {
+      if (std::any_of(output_nodes_.begin(), output_nodes_.end(), [&](int node) { return uses(node, out_->leaves.P(i)); }))
+        spec().ports_in_outputs.push_back(spec().quantity_ports[i].name);
+    }
   }
   void add_quantity(QuantitySpec q, int node, std::vector<QuantitySpec>& all) {
     all.push_back(std::move(q));

@@ -70,18 +70,19 @@ class DeclaredSystem final : public System {
 
   void outputs(const Point& at, double* y) const override {
     Registers r;
-    run(c_->outputs, without_ports(at), no_forces.data(), r);
+    run(c_->outputs, with_ports(at), no_forces.data(), r);
     write(c_->outputs.value, r, y);
   }
 
-  void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const override {
-    const Tape& tape = y_k != nullptr ? c_->outputs_k : c_->outputs_x;
+  void linearise_outputs(const Point& at, double* y, const OutputDerivatives& d) const override {
+    const Tape& tape = d.P != nullptr ? c_->outputs_all : d.k != nullptr ? c_->outputs_k : c_->outputs_x;
     const std::size_t rows = spec_.outputs.size();
     Registers r;
-    run(tape, without_ports(at), no_forces.data(), r);
+    run(tape, with_ports(at), no_forces.data(), r);
     write(tape.value, r, y);
-    block(tape.by_x, r, rows * spec_.states.size(), y_x);
-    block(tape.by_k, r, rows * spec_.constants.size(), y_k);
+    block(tape.by_x, r, rows * spec_.states.size(), d.x);
+    block(tape.by_P, r, rows * spec_.quantity_ports.size(), d.P);
+    block(tape.by_k, r, rows * spec_.constants.size(), d.k);
   }
 
   [[nodiscard]] bool traceable() const override { return true; }
@@ -95,7 +96,7 @@ class DeclaredSystem final : public System {
     const std::array<double, kMaxStates> zero{};
     std::array<double, kMaxOutputs> y0{};
     std::array<double, std::size_t{kMaxOutputs} * kMaxStates> slope{};
-    linearise_outputs({zero.data(), zero.data(), 0.0, k}, y0.data(), slope.data(), nullptr);
+    linearise_outputs({zero.data(), zero.data(), 0.0, k}, y0.data(), {.x = slope.data()});
     bool known = true;
     for (const auto& [output, state] : c_->readable) {
       const double by = slope[output * spec_.states.size() + state];
@@ -148,6 +149,7 @@ class DeclaredSystem final : public System {
 
  private:
   static Point without_ports(const Point& at) { return {at.x, at.u, at.t, at.k, no_forces.data()}; }
+  static Point with_ports(const Point& at) { return at.P == nullptr ? without_ports(at) : at; }
   void run(const Tape& tape, const Point& at, const double* F, Registers& r) const {
     const Leaves& n = c_->leaves;
     double* to = r.data();

@@ -45,7 +45,7 @@ struct Compiled {
   // Values alone; with derivatives by x (and F); by constants too; by quantity ports as well.
   Tape rates, rates_x, rates_k, rates_all, rates_steep;
   Tape quantities, quantities_x, quantities_k, quantities_all;
-  Tape outputs, outputs_x, outputs_k;
+  Tape outputs, outputs_x, outputs_k, outputs_all;
 };
 
 /// Default roles and force ports, and what [roles] says instead; the first `own_ports` dynamic ports are those of [ports].

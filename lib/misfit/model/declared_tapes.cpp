@@ -66,6 +66,7 @@ void make_tapes(Compiled& c, const std::vector<int>& quantities, const std::vect
   c.outputs = tapes.one(outputs, 0U);
   c.outputs_x = tapes.one(outputs, Tapes::by_x);
   c.outputs_k = tapes.one(outputs, Tapes::by_x | Tapes::by_k);
+  c.outputs_all = tapes.one(outputs, Tapes::by_x | Tapes::by_k | Tapes::by_P);
 }
 
 }  // namespace misfit::declared

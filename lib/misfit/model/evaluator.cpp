@@ -36,6 +36,7 @@ Evaluator::Evaluator(const Model& model) : model_(&model), system_(model.system.
   r_F_.assign(size(nx_, nf_), 0.0);
   r_k_.assign(size(nx_, nk_), 0.0);
   y_x_.assign(size(ny_, nx_), 0.0);
+  y_P_.assign(size(ny_, np_), 0.0);
   y_k_.assign(size(ny_, nk_), 0.0);
 }
 
@@ -47,6 +48,7 @@ void Evaluator::flatten() {
   for (int k = 0; k < nk_; ++k) free_constants_ = free_constants_ || column_of_[k] >= 0;
   for (const auto& bound : model_->effects) flatten_effect(bound);
   quantity_effects_ = !quantity_.empty();
+  outputs_read_ports_ = quantity_effects_ && !system_->spec().ports_in_outputs.empty();
   general_ = quantity_effects_ || free_constants_;
   general_rates_ = quantity_effects_;
   constants_in_rates_ = rates_move_with_constants();
@@ -59,7 +61,7 @@ void Evaluator::flatten() {
   fill_numbers();
   const auto& outputs = system_->spec().outputs;
   const bool observed = std::all_of(outputs.begin(), outputs.end(), [](const OutputSpec& output) { return output.observes >= 0; });
-  if (!observed || !sensor_.empty()) return;
+  if (!observed || !sensor_.empty() || outputs_read_ports_) return;
   for (const auto& output : outputs) observed_.push_back(output.observes);
 }
 
@@ -242,10 +244,10 @@ void Evaluator::own_drifts(const Point& at, double* drifts) {
 
 void Evaluator::predict(const double* x, const InputsAt& u, double t, double* y) {
   const Point at = point({x, u, t});
+  if (outputs_read_ports_ || !sensor_.empty()) base_and_derived(at);
   system_->outputs(at, y);
   std::fill(y + ny_, y + sensor_ports(), 0.0);
   if (sensor_.empty()) return;
-  base_and_derived(at);
   std::copy(y, y + ny_, q_.begin() + nq_);
   std::array<double, kMaxStates> drifts{};
   for (const auto& use : sensor_) add_value(use, at, y, drifts.data());

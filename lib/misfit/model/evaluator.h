@@ -200,6 +200,7 @@ class Evaluator {
   std::uint64_t needed_ = 0;
   InputsAt inputs_;  // of the last point()
   bool shifts_time_ = false, shifts_apart_ = false, quantity_effects_ = false, free_constants_ = false, general_ = false;
+  bool outputs_read_ports_ = false;            // and some effect adds to a quantity port
   bool general_rates_ = false;                 // as general_, of the rates: constants of the sensor may be free
   bool constants_in_rates_ = false;            // some free constant acts on the rates
   std::vector<Link> free_constants_in_rates_;  // constant → column
@@ -219,7 +220,7 @@ class Evaluator {
   std::vector<double> force_x_;  // (dynamic ports + own states) × states
   bool own_elsewhere_ = false;   // an effect on a quantity or sensor port has memory
   Linearisation linearisation_;  // of the effect at hand
-  std::vector<double> q_x_, q_P_, q_k_, r_x_, r_P_, r_F_, r_k_, y_x_, y_k_;
+  std::vector<double> q_x_, q_P_, q_k_, r_x_, r_P_, r_F_, r_k_, y_x_, y_P_, y_k_;
 };
 
 }  // namespace misfit

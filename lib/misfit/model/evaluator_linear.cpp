@@ -197,11 +197,16 @@ void Evaluator::own_drifts_linear(const Point& at, Slots& slots, double* drifts,
 
 /// Predicted outputs before sensor effects, as quantities nq … nq + ny − 1 with rows.
 void Evaluator::outputs_as_quantities(const Point& at, Slots& slots) {
-  system_->linearise_outputs(at, q_.data() + nq_, y_x_.data(), free_constants_ ? y_k_.data() : nullptr);
+  const OutputDerivatives d{y_x_.data(), outputs_read_ports_ ? y_P_.data() : nullptr, free_constants_ ? y_k_.data() : nullptr};
+  system_->linearise_outputs(at, q_.data() + nq_, d);
   for (int i = 0; i < ny_; ++i) {
     double* row = row_of(q_rows_, nq_ + i);
     std::fill_n(row, n_ + columns_, 0.0);
     std::copy_n(y_x_.data() + static_cast<std::ptrdiff_t>(i) * nx_, nx_, row);
+    for (int P = 0; outputs_read_ports_ && P < np_; ++P) {
+      const double weight = y_P_[i * np_ + P];
+      if (weight != 0.0) add_scaled(weight, row_of(P_rows_, P), n_ + slots.count(), row);
+    }
     for (int k = 0; free_constants_ && k < nk_; ++k) {
       const int column = column_of_[k];
       const double weight = y_k_[i * nk_ + k];
@@ -210,9 +215,9 @@ void Evaluator::outputs_as_quantities(const Point& at, Slots& slots) {
   }
 }
 
-/// No effect on a sensor and no free constant: outputs depend on the state alone.
+/// No effect on a sensor, none on what an output is a formula of, and no free constant: outputs depend on the state alone.
 void Evaluator::linearise_outputs_simply(const Point& at, const Slots& slots, double* y, double* D) {
-  system_->linearise_outputs(at, y, y_x_.data(), nullptr);
+  system_->linearise_outputs(at, y, {.x = y_x_.data()});
   for (int i = 0; i <= ny_; ++i) {
     double* row = D + i * kRowStride;
     for (int x = 0; x < n_; ++x) row[x] = i < ny_ && x < nx_ ? y_x_[i * nx_ + x] : 0.0;
@@ -223,11 +228,11 @@ void Evaluator::linearise_outputs_simply(const Point& at, const Slots& slots, do
 
 void Evaluator::linearise_outputs(const Instant& instant, Slots& slots, double* y, double* D) {
   const Point at = point(instant);
-  if (sensor_.empty() && !free_constants_) {
+  if (sensor_.empty() && !free_constants_ && !outputs_read_ports_) {
     linearise_outputs_simply(at, slots, y, D);
     return;
   }
-  if (!sensor_.empty()) base_and_derived_linear(at, slots);
+  if (!sensor_.empty() || outputs_read_ports_) base_and_derived_linear(at, slots);
   outputs_as_quantities(at, slots);
   const int width = n_ + columns_;
   for (int i = 0; i < ny_; ++i) {

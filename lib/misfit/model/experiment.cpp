@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
@@ -93,6 +94,7 @@ class Reader {
       out_.inputs.push_back({input.name, input.unit, wanted ? read_input(input) : std::vector<double>{}, 0.0});
     }
     split();
+    note_still_inputs();
     count_missing();
     out_.name = study_.name;
     return std::move(out_);
@@ -180,6 +182,20 @@ class Reader {
     if (out_.exclude >= out_.samples())
       throw InputError(study_.where,
                        "exclude = " + std::to_string(study_.exclude) + " leaves no sample of " + std::to_string(out_.samples()));
+  }
+
+  /// Such an input is a constant to the estimation.
+  void note_still_inputs() {
+    for (const Signal& input : out_.inputs) {
+      std::set<double> counted, held_out;
+      for (std::size_t i = out_.exclude; i < input.values.size(); ++i) {
+        std::set<double>& part = out_.held_out(i) ? held_out : counted;
+        if (part.size() < 2) part.insert(input.values[i]);
+      }
+      if (counted.size() == 1 && (held_out.size() > 1 || (held_out.size() == 1 && held_out != counted)))
+        out_.notes.push_back("input " + input.name +
+                             " changes in the part that is held out alone: what it does cannot be estimated, hold " + "out another part");
+    }
   }
 
   void count_missing() {

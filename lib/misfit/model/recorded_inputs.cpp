@@ -15,8 +15,7 @@ struct Line {
 /// One input of a record as a function of time.
 class InputInTime {
  public:
-  InputInTime(const RecordedInputs& record, int input)
-      : record_(record), input_(input), held_(record.hold[static_cast<std::size_t>(input)] == Hold::zero_order) {}
+  InputInTime(const RecordedInputs& record, int input) : record_(record), input_(input), held_(record.hold[input] == Hold::zero_order) {}
 
   /// Last sample not after `time`, the first one before the record.
   [[nodiscard]] std::size_t sample_at(double time) const { return std::max<std::size_t>(samples_until(time), 1) - 1; }

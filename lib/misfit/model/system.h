@@ -111,6 +111,8 @@ struct SystemSpec {
   std::vector<QuantitySpec> quantities;
   int base_quantities = 0;
   std::vector<PortSpec> quantity_ports, dynamic_ports;
+  std::vector<std::string>
+      ports_in_outputs;  ///< quantity ports that some output's formula reads: direct feedthrough of an input, a quantity
   std::vector<ConstantSpec> constants;
   std::vector<OutputSpec> outputs;                       ///< each is also a sensor port of the same name; then their times
   std::map<std::string, std::string> roles;              ///< default quantity or port of generic roles: "rate", "level", "port", "output"
@@ -138,6 +140,11 @@ struct RateDerivatives {
   double* F = nullptr;  ///< states × dynamic ports: B of x' = f0 + B F
   double* k = nullptr;  ///< states × constants
 };
+struct OutputDerivatives {
+  double* x = nullptr;  ///< outputs × states
+  double* P = nullptr;  ///< outputs × quantity ports; asked for only where there are SystemSpec::ports_in_outputs
+  double* k = nullptr;  ///< outputs × constants
+};
 
 /// Where a system is evaluated. T, K: double, or Jets where derivatives by states and ports, by constants, are taken; all three symbols
 /// where its formulas are read.
@@ -147,7 +154,7 @@ struct PointOf {
   const U* u;            ///< inputs
   U t;                   ///< [s]
   const K* k;            ///< constants
-  const T* P = nullptr;  ///< what effects add on the quantity ports; outputs do not depend on it
+  const T* P = nullptr;  ///< what effects add on the quantity ports; null: nothing, for outputs
 };
 using Point = PointOf<double, double>;
 using SymbolPoint = PointOf<formula::Symbol, formula::Symbol, formula::Symbol>;
@@ -169,8 +176,7 @@ class System {
   virtual void rates(const Point& at, const double* F, double* dx) const = 0;
   virtual void linearise_rates(const Point& at, const double* F, double* dx, const RateDerivatives& d) const = 0;
   virtual void outputs(const Point& at, double* y) const = 0;
-  /// y, ∂y/∂x (outputs × states), and, if not null, ∂y/∂k (outputs × constants).
-  virtual void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const = 0;
+  virtual void linearise_outputs(const Point& at, double* y, const OutputDerivatives& d) const = 0;
   /// Fastest rate of the system without effects, at this state [1/s].
   [[nodiscard]] virtual double fastest_rate(const Point& /*at*/) const { return spec().fastest_rate; }
   /// Why rates() is not finite here, in words: the part of the formula, the states and parameters in it. Empty if it is finite or not

@@ -27,7 +27,7 @@ namespace misfit {
 /// Turns a struct with templated formulas into a System. `S` has static NX, NU, NP (quantity ports), NF (dynamic ports), NQ, NK, NY and
 ///   template <class T, class K> void quantities(const PointOf<T, K>& at, uint64_t needed, T* q) const
 ///   template <class T, class K> void rates(const PointOf<T, K>& at, const T* F, T* dx) const
-///   template <class T, class K> void outputs(const PointOf<T, K>& at, T* y) const
+///   template <class T, class K> void outputs(const PointOf<T, K>& at, T* y) const   (of x, u, t and k; P is null there)
 ///   SystemSpec spec() const;   std::vector<DerivedCurve> derived_curves(const double* k) const
 /// A system whose formulas take inputs and time as a third type, template <class T, class K, class U> … (const PointOf<T, K, U>& at, …),
 /// is called with symbols, too, so that it can be exported; `bool traceable() const` may refuse that for some options. All first
@@ -59,11 +59,11 @@ class SystemOf final : public System {
     differentiate_rates<S::NX + S::NF>(at, F, dx, d);
   }
   void outputs(const Point& at, double* y) const override { system_.template outputs<double, double>(at, y); }
-  void linearise_outputs(const Point& at, double* y, double* y_x, double* y_k) const override {
-    if (y_k != nullptr) {
-      differentiate_outputs<S::NX + S::NK>(at, y, y_x, y_k);
+  void linearise_outputs(const Point& at, double* y, const OutputDerivatives& d) const override {
+    if (d.k != nullptr) {
+      differentiate_outputs<S::NX + S::NK>(at, y, d);
     } else {
-      differentiate_outputs<S::NX>(at, y, y_x, y_k);
+      differentiate_outputs<S::NX>(at, y, d);
     }
   }
   [[nodiscard]] bool traceable() const override {
@@ -177,7 +177,7 @@ class SystemOf final : public System {
   }
 
   template <int W>
-  MISFIT_FLATTEN void differentiate_outputs(const Point& at, double* y, double* y_x, double* y_k) const {
+  MISFIT_FLATTEN void differentiate_outputs(const Point& at, double* y, const OutputDerivatives& d) const {
     using T = Jet<W>;
     std::array<T, at_least_one(S::NX)> x;
     seed(x.data(), at.x, S::NX, 0);
@@ -192,8 +192,8 @@ class SystemOf final : public System {
     for (int i = 0; i < S::NY; ++i) {
       const T& jet = out[i];
       y[i] = jet.a;
-      block(jet, 0, S::NX, y_x + i * S::NX);
-      if constexpr (W > S::NX) block(jet, S::NX, S::NK, y_k + i * S::NK);
+      block(jet, 0, S::NX, d.x + i * S::NX);
+      if constexpr (W > S::NX) block(jet, S::NX, S::NK, d.k + i * S::NK);
     }
   }
 
