@@ -66,19 +66,37 @@ TEST(SignalsFrom, AnInputIsUnwrappedAndMissingValuesAreBridgedButNotUsed) {
   EXPECT_TRUE(s.inputs[1].values.empty());  // phi_rate: nobody needs it
 }
 
-TEST(SignalsFrom, AnInputWithADelayIsSeenLater) {
-  const auto seen = [](const std::string& keys) {
-    const auto registry = testing_models::registry_with("[states]\nx = { unit = \"m\" }\n[inputs]\nu = { unit = \"m/s\", " + keys +
-                                                        " }\n[parameters]\nk = { unit = \"1/s\", value = 1.0, free = true }\n"
-                                                        "[equations]\nx = \"u - k*x\"\n[outputs]\nx = { unit = \"m\", noise = 0.1 }\n");
-    const Model model = assemble(testing_models::request_of("text"), *registry);
-    Table table;
-    table.source = "made.csv";
-    table.add("t", "s", {0.0, 1.0, 2.0, 3.0, 4.0});
-    table.add("u", "m/s", {5.0, 7.0, 11.0, 13.0, 17.0});
-    table.add("x", "m", {0.0, 0.0, 0.0, 0.0, 0.0});
-    return signals_from(table, model, plain());
+/// Five seconds of a first-order system with the input `u`, declared with these keys.
+Signals with_input(const std::vector<double>& u, const std::string& keys, const ExperimentStudy& study) {
+  const auto registry = testing_models::registry_with("[states]\nx = { unit = \"m\" }\n[inputs]\nu = { unit = \"m/s\", " + keys +
+                                                      " }\n[parameters]\nk = { unit = \"1/s\", value = 1.0, free = true }\n"
+                                                      "[equations]\nx = \"u - k*x\"\n[outputs]\nx = { unit = \"m\", noise = 0.1 }\n");
+  const Model model = assemble(testing_models::request_of("text"), *registry);
+  Table table;
+  table.source = "made.csv";
+  table.add("t", "s", {0.0, 1.0, 2.0, 3.0, 4.0});
+  table.add("u", "m/s", u);
+  table.add("x", "m", {0.0, 0.0, 0.0, 0.0, 0.0});
+  return signals_from(table, model, study);
+}
+
+TEST(SignalsFrom, AnInputThatChangesOnlyWhereItIsHeldOutIsSaid) {
+  ExperimentStudy study = plain();
+  study.validation = ExperimentStudy::Validation::last_fraction;
+  study.fraction = 0.3;
+  const auto said = [&](const std::vector<double>& u) {
+    const Signals s = with_input(u, "hold = \"zero_order\"", study);
+    return std::any_of(s.notes.begin(), s.notes.end(),
+                       [](const std::string& note) { return note.find("changes in the part that is held out alone") != note.npos; });
   };
+  EXPECT_TRUE(said({5.0, 5.0, 5.0, 5.0, 6.0}));
+  EXPECT_TRUE(said({5.0, 5.0, 5.0, 6.0, 6.0}));
+  EXPECT_FALSE(said({5.0, 5.0, 6.0, 6.0, 6.0}));
+  EXPECT_FALSE(said({5.0, 5.0, 5.0, 5.0, 5.0})) << "a constant";
+}
+
+TEST(SignalsFrom, AnInputWithADelayIsSeenLater) {
+  const auto seen = [](const std::string& keys) { return with_input({5.0, 7.0, 11.0, 13.0, 17.0}, keys, plain()); };
   using Values = std::vector<double>;
   EXPECT_EQ(seen("delay = \"2 s\"").inputs[0].values, (Values{5.0, 5.0, 5.0, 7.0, 11.0}));
   EXPECT_EQ(seen("delay = \"500 ms\"").inputs[0].values, (Values{5.0, 6.0, 9.0, 12.0, 15.0})) << "between samples";

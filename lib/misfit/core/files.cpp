@@ -92,15 +92,6 @@ int open_new_file(const fs::path& path) { return ::open(path.c_str(), O_WRONLY |
 /// To the device; 0 or errno. Pipes and some network folders cannot flush (EINVAL): that is no loss of data.
 int flush(int descriptor) { return ::fsync(descriptor) != 0 && errno != EINVAL ? errno : 0; }
 
-/// Writes `content` to the new file `path` and flushes it to the device; 0 or errno.
-int write_new_file(const fs::path& path, std::string_view content) {
-  Descriptor file(open_new_file(path));
-  if (file.number() < 0) return errno;
-  if (const int error = write_all(file.number(), content)) return error;
-  if (const int error = flush(file.number())) return error;
-  return file.close();
-}
-
 /// Unique among threads and processes of this machine, hidden, in the same folder (so that rename cannot cross devices).
 fs::path temporary_name(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
@@ -115,7 +106,8 @@ int try_writing(const fs::path& dir) {
   if (nameless.number() >= 0) return 0;
   if (errno != EOPNOTSUPP && errno != EISDIR && errno != ENOENT) return errno;
   const fs::path probe = temporary_name(dir / "probe");
-  const int failure = write_new_file(probe, "");
+  Descriptor file(open_new_file(probe));
+  const int failure = file.number() < 0 ? errno : file.close();
   std::error_code ignored;
   fs::remove(probe, ignored);
   return failure;

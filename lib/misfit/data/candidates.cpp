@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "misfit/core/display.h"
+#include "misfit/core/enum_name.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/table.h"
 #include "misfit/core/text.h"
@@ -76,7 +77,7 @@ void fields(Archive& json, MaybeConst<StoredDiscovery> auto& stored) {
   json("seconds", d.seconds);
 }
 
-std::string to_string(CandidateFamily family) { return candidate_family_names.at(static_cast<std::size_t>(family)); }
+std::string to_string(CandidateFamily family) { return enum_name(candidate_family_names, family); }
 
 std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles) {
   std::string bindings;

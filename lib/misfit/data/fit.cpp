@@ -1,5 +1,6 @@
 #include "misfit/data/fit.h"
 
+#include "misfit/core/enum_name.h"
 #include "misfit/data/fit_tables.h"
 #include "misfit/data/json_fields.h"
 
@@ -125,7 +126,7 @@ void fields(Archive& json, MaybeConst<RoughnessPaths> auto& paths) {
   json("roughness", paths.all);
 }
 
-std::string to_string(FitStatus status) { return fit_status_names.at(static_cast<std::size_t>(status)); }
+std::string to_string(FitStatus status) { return enum_name(fit_status_names, status); }
 
 void write_fit(const std::filesystem::path& dir, const Fit& fit) {
   make_writable_folder(dir);

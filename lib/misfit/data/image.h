@@ -13,12 +13,9 @@ struct Image {
   std::vector<std::uint8_t> pixels;
 
   Image() = default;
-  Image(int w, int h, std::uint8_t grey = 0)
-      : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), grey) {}
+  Image(int w, int h, std::uint8_t grey = 0) : width(w), height(h), pixels(std::size_t{1} * w * h, grey) {}
   [[nodiscard]] bool empty() const { return pixels.empty(); }
-  [[nodiscard]] std::size_t at(int column, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
-  }
+  [[nodiscard]] std::size_t at(int column, int row) const { return std::size_t{1} * row * width + column; }
   [[nodiscard]] std::uint8_t operator()(int column, int row) const { return pixels[at(column, row)]; }
   std::uint8_t& operator()(int column, int row) { return pixels[at(column, row)]; }
   bool operator==(const Image&) const = default;
@@ -30,11 +27,9 @@ struct ColourImage {
   std::vector<std::uint8_t> bgr;
 
   ColourImage() = default;
-  ColourImage(int w, int h) : width(w), height(h), bgr(std::size_t{3} * static_cast<std::size_t>(w) * static_cast<std::size_t>(h), 0) {}
+  ColourImage(int w, int h) : width(w), height(h), bgr(std::size_t{3} * w * h, 0) {}
   [[nodiscard]] bool empty() const { return bgr.empty(); }
-  [[nodiscard]] std::size_t at(int column, int row) const {
-    return std::size_t{3} * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column));
-  }
+  [[nodiscard]] std::size_t at(int column, int row) const { return std::size_t{3} * (std::size_t{1} * row * width + column); }
 };
 
 /// The lines of a frame that were exposed together. Row r of `image` lies at row `first_row + row_step * r` of the full frame: a

@@ -29,6 +29,7 @@
 #include <utility>
 #include <vector>
 
+#include "misfit/core/enum_name.h"
 #include "misfit/core/error.h"
 #include "misfit/core/fields.h"
 #include "misfit/core/files.h"
@@ -79,7 +80,7 @@ struct DisplayUnit {
 template <class Enum, std::size_t N>
 struct NameOf {
   NameOf(Enum& value_, const std::array<const char*, N>& names_) : value(value_), names(names_) {}
-  [[nodiscard]] Json stored() const { return names.at(static_cast<std::size_t>(value)); }
+  [[nodiscard]] Json stored() const { return enum_name(names, value); }
   void restore(const Json& json) const {
     const std::string name = json.get<std::string>();
     const auto found = std::find(names.begin(), names.end(), name);

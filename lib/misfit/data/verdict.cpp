@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/enum_name.h"
 #include "misfit/data/json_fields.h"
 
 namespace misfit {
@@ -17,7 +18,7 @@ bool within_sigma(const Estimate& before, const Estimate& after) {
 }
 
 std::string ErrorChange::what() const {
-  const std::string name = error_kind_names.at(static_cast<std::size_t>(kind));
+  const std::string name = enum_name(error_kind_names, kind);
   return of.empty() ? name : name + " of " + of;
 }
 

@@ -57,7 +57,7 @@ AddedForce at_samples(const FilterModel& forced, const FilterData& data, const R
     const double t = data.signals->t[k];
     const Eigen::VectorXd force = models.difference({smoothed.row(static_cast<Eigen::Index>(k)).data(), data.inputs.at(k), t});
     out.t.push_back(t);
-    for (std::size_t p = 0; p < out.force.size(); ++p) out.force[p].push_back(force[static_cast<Eigen::Index>(p)]);
+    for (std::size_t p = 0; p < out.force.size(); ++p) out.force[p].push_back(force[p]);
   }
   return out;
 }

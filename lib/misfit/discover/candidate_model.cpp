@@ -178,22 +178,6 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
   out.lags = has_linear_memory(*bound.effect) || reads_the_past(effect.spec());
 }
 
-Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
-  FilterRunner runner(forced, true);
-  runner.set_parameters(forced.model.values());
-  Eigen::MatrixXd out(counted_rows(estimate), candidate_model.strengths.size());
-  Eigen::Index at = 0;
-  FilterTrace trace;
-  FilterJacobian jacobian;
-  for (const auto& known : estimate.data) {
-    const FilterData data = filter_data_like(forced, known);
-    if (!runner.run(data, estimate.noise, trace, {&jacobian})) return {};
-    out.middleRows(at, jacobian.r.size()) = jacobian.J;
-    at += jacobian.r.size();
-  }
-  return out;
-}
-
 /// A sensor effect changes what the states mean, and with them the Kalman gains: with gains held the information is overestimated (sigma of
 /// a camera roll nine times too small, of lens distortion three times). Hence differences of whole filter runs, gains included.
 Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
@@ -302,6 +286,22 @@ std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, cons
   return out;
 }
 
+Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const FilterModel& forced) {
+  FilterRunner runner(forced, true);
+  runner.set_parameters(forced.model.values());
+  Eigen::MatrixXd out(counted_rows(estimate), std::ssize(forced.model.free_parameters()));
+  Eigen::Index at = 0;
+  FilterTrace trace;
+  FilterJacobian jacobian;
+  for (const auto& known : estimate.data) {
+    const FilterData data = filter_data_like(forced, known);
+    if (!runner.run(data, estimate.noise, trace, {&jacobian})) return {};
+    out.middleRows(at, jacobian.r.size()) = jacobian.J;
+    at += jacobian.r.size();
+  }
+  return out;
+}
+
 Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const CandidateModel& candidate_model,
                                     const std::vector<double>& cell) {
   FilterModel forced = with_random_force(candidate_model.model);
@@ -309,7 +309,7 @@ Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const Candid
   for (std::size_t i = 0; i < candidate_model.shapes.size(); ++i) forced.model.parameters[candidate_model.shapes[i]].value = cell[i];
   if (cell.size() > candidate_model.shapes.size()) forced.model.parameters[candidate_model.frequency].value = cell.back();
   return candidate_model.family == CandidateFamily::sensor ? columns_of_whole_runs(estimate, candidate_model, forced)
-                                                           : columns_with_gains_held(estimate, candidate_model, forced);
+                                                           : columns_with_gains_held(estimate, forced);
 }
 
 }  // namespace misfit

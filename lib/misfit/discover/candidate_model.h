@@ -47,6 +47,10 @@ inline constexpr int kTime = -1;
 /// Ports that an effect writes, by name.
 [[nodiscard]] std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEffect& effect);
 
+/// ∂(predicted − measured)/√S by the free parameters of a model with the random force, with the gains of the estimate's noise held: rows of
+/// the estimate × free parameters. Empty where the filter cannot be run.
+[[nodiscard]] Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const FilterModel& forced);
+
 /// Columns of a candidate model's strengths at a cell: rows of the estimate × strengths. Empty where the model cannot be run so.
 [[nodiscard]] Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const CandidateModel& candidate_model,
                                                   const std::vector<double>& cell);

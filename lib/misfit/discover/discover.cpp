@@ -407,19 +407,11 @@ class Search {
     add_camera_remarks(options_.calibration, options_.p_accept, out_);
   }
 
-  /// Held parameters of the system whose score promises about as much as that of the best effect does, or, where none is significant, that
-  /// are so themselves; the first of them is freed.
   void look_at_held_parameters() {
-    constexpr double about_as_much = 0.8;
     const auto best = std::find_if(ranked_.begin(), ranked_.end(), [this](const RankedCandidate& e) { return significant(e); });
-    const double needed = best == ranked_.end() ? 0.0 : about_as_much * best->screening->result.chi2;
-    std::vector<HeldParameter> held = held_parameters(estimate_, score_);
-    const double tests = families_ + static_cast<double>(held.size());
-    std::erase_if(held, [&](const HeldParameter& h) { return sidak(h.p_value, tests) >= options_.p_accept || h.predicted_drop < needed; });
-    if (held.empty()) return;
-    free_and_refit(refit_work(), held.front());
-    out_.held.emplace();
-    for (const HeldParameter& h : held) out_.held->push_back(held_in_words(h, sidak(h.p_value, tests)));
+    const double predicted = best == ranked_.end() ? 0.0 : best->screening->result.chi2;
+    if (auto held = held_in_words(refit_work(), score_, {predicted, families_, options_.p_accept}); !held.empty())
+      out_.held = std::move(held);
   }
 
   const FilterEstimate& estimate_;

@@ -7,54 +7,43 @@
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
+#include "misfit/discover/candidate_model.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
 
-/// Places of the system's numbers that are held, in the model with the random force.
-std::vector<int> held_places(const FilterModel& forced) {
-  const std::vector<ConstantSpec>& constants = forced.model.system->spec().constants;
-  std::vector<int> out;
-  for (const ConstantSpec& constant : constants) {
-    const int place = forced.model.find_parameter(constant.name);
-    if (place >= 0 && !forced.model.parameters[place].free && !constant.of_sensor) out.push_back(place);
+/// The model with the random force in which the system's numbers that are held are free, and nothing else.
+FilterModel with_held_ones_free(const FilterEstimate& estimate) {
+  FilterModel out = estimate.forced;
+  for (Parameter& p : out.model.parameters) p.free = false;
+  for (const ConstantSpec& constant : out.model.system->spec().constants) {
+    const int place = out.model.find_parameter(constant.name);
+    if (place >= 0 && !constant.of_sensor) out.model.parameters[place].free = !estimate.forced.model.parameters[place].free;
   }
   return out;
 }
 
-/// ∂(predicted − measured)/√S by these parameters, gains held; empty where the filter cannot be run.
-Eigen::MatrixXd columns_of(const FilterEstimate& estimate, const std::vector<int>& places) {
-  FilterModel forced = estimate.forced;
-  for (Parameter& p : forced.model.parameters) p.free = false;
-  for (const int place : places) forced.model.parameters[place].free = true;
-  FilterRunner runner(forced, true);
-  runner.set_parameters(forced.model.values());
-  Eigen::MatrixXd out(counted_rows(estimate), std::ssize(places));
-  Eigen::Index at = 0;
-  FilterTrace trace;
-  FilterJacobian jacobian;
-  for (const FilterData& data : estimate.data) {
-    if (!runner.run(data, estimate.noise, trace, {&jacobian})) return {};
-    out.middleRows(at, jacobian.r.size()) = jacobian.J;
-    at += jacobian.r.size();
-  }
-  return out;
+std::string in_words(const HeldParameter& held, double p_value) {
+  return fmt::format("{} is held at {}, and these data want {} ({}drop {}, family-wise {}): free it, unless it is known that well",
+                     held.name, in_display_unit(held.value, held.unit), in_display_unit(held.wanted, held.unit, held.sigma),
+                     held.actual_drop ? "" : "predicted ", format_value(held.actual_drop.value_or(held.predicted_drop)), p_equals(p_value));
 }
 
 }  // namespace
 
 std::vector<HeldParameter> held_parameters(const FilterEstimate& estimate, const ScoreTest& score) {
   std::vector<HeldParameter> out;
-  const std::vector<int> places = held_places(estimate.forced);
+  const FilterModel forced = with_held_ones_free(estimate);
+  const std::vector<int> places = forced.model.free_parameters();
   if (places.empty()) return out;
-  const Eigen::MatrixXd columns = columns_of(estimate, places);
+  const Eigen::MatrixXd columns = columns_with_gains_held(estimate, forced);
   constexpr double described = 0.01;
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
     const ScoreResult result = score.test(columns.col(c));
     if (result.dof == 0 || result.independent < described) continue;
-    const Parameter& p = estimate.forced.model.parameters[places[static_cast<std::size_t>(c)]];
+    const Parameter& p = forced.model.parameters[places[c]];
     out.push_back(
         {p.name, p.unit, p.value, p.value + result.amplitude[0], result.sigma[0], result.chi2, chi_square_tail(result.chi2, 1.0)});
   }
@@ -81,10 +70,17 @@ void free_and_refit(const RefitWork& work, HeldParameter& held) {
   }
 }
 
-std::string held_in_words(const HeldParameter& held, double p_value) {
-  return fmt::format("{} is held at {}, and these data want {} ({}drop {}, family-wise {}): free it, unless it is known that well",
-                     held.name, in_display_unit(held.value, held.unit), in_display_unit(held.wanted, held.unit, held.sigma),
-                     held.actual_drop ? "" : "predicted ", format_value(held.actual_drop.value_or(held.predicted_drop)), p_equals(p_value));
+std::vector<std::string> held_in_words(const RefitWork& work, const ScoreTest& score, const HeldSearch& search) {
+  constexpr double about_as_much = 0.8;
+  std::vector<HeldParameter> held = held_parameters(work.without, score);
+  const double tests = search.families + static_cast<double>(held.size());
+  std::erase_if(held, [&](const HeldParameter& h) {
+    return sidak(h.p_value, tests) >= search.p_accept || h.predicted_drop < about_as_much * search.best_predicted;
+  });
+  if (!held.empty()) free_and_refit(work, held.front());
+  std::vector<std::string> out;
+  for (const HeldParameter& h : held) out.push_back(in_words(h, sidak(h.p_value, tests)));
+  return out;
 }
 
 }  // namespace misfit

@@ -27,7 +27,15 @@ struct HeldParameter {
 /// Frees it and estimates again: `wanted`, `sigma`, `actual_drop` and `p_value`, unless no maximum is reached. TimeSpent.
 void free_and_refit(const RefitWork& work, HeldParameter& held);
 
-/// "k is held at 39 1/s^2, and these data want 40.00 ± 0.05 1/s^2 (drop 380, family-wise p = 1e-83): free it …". `p_value`: family-wise.
-[[nodiscard]] std::string held_in_words(const HeldParameter& held, double p_value);
+/// The search for effects beside which they are looked at.
+struct HeldSearch {
+  double best_predicted = 0.0;  ///< what the score promises of the best effect; 0: none is significant
+  double families = 1.0, p_accept = 0.01;
+};
+
+/// "k is held at 39 1/s^2, and these data want 40.00 ± 0.05 1/s^2 (drop 380, family-wise p = 1e-83): free it …": of those whose score
+/// promises about as much as that of the best effect (at least 0.8 of it), or, where none is significant, that are so themselves. The first
+/// of them is freed and estimated again. TimeSpent.
+[[nodiscard]] std::vector<std::string> held_in_words(const RefitWork& work, const ScoreTest& score, const HeldSearch& search);
 
 }  // namespace misfit

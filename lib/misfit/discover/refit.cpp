@@ -147,7 +147,7 @@ ScreeningResult as_refitted(const ScreeningResult& screening, const Model& refit
   ScreeningResult out = screening;
   const CandidateModel& candidate_model = *screening.candidate_model;
   for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i)
-    out.result.amplitude[static_cast<Eigen::Index>(i)] = refitted.parameters[candidate_model.strengths[i]].value;
+    out.result.amplitude[i] = refitted.parameters[candidate_model.strengths[i]].value;
   for (std::size_t i = 0; i < out.cell.size(); ++i) {
     const int shape = i < candidate_model.shapes.size() ? candidate_model.shapes[i] : candidate_model.frequency;
     out.cell[i] = refitted.parameters[shape].value;

@@ -172,7 +172,7 @@ std::vector<Lateness> lateness_of_last(const Model& model) {
     if (late.effect + 1 == std::ssize(model.effects)) out.push_back({late.input, late.delay});
   }
   const BoundEffect& last = model.effects.back();
-  if (last.effect->spec().ports.front().name != std::string_view(all_sample_times)) return out;
+  if (last.ports.empty() || last.effect->spec().ports.front().name != std::string_view(all_sample_times)) return out;
   for (int input = 0; input < std::ssize(model.system->spec().inputs); ++input)
     out.push_back({input, last.coefficients.front().parameter, -1.0});
   return out;
@@ -185,16 +185,15 @@ void note_half_a_sample(Refit& out) {
   const Model& model = out.estimate.model;
   const double half = 0.5 * usual_step(out.estimate.data.front().signals->t);
   for (const Lateness& late : lateness_of_last(model)) {
-    const InputSpec& input = model.system->spec().inputs[static_cast<std::size_t>(late.input)];
+    const InputSpec& input = model.system->spec().inputs[late.input];
     const auto sigma = standard_error_of(model, out.estimate.covariance, late.parameter);
     const double seconds = late.sign * model.parameters[late.parameter].value;
     const bool straight = input.hold == Hold::first_order;  // and should be held, which makes it late
     if (!sigma || *sigma > sharp * half) continue;
     if (std::abs(seconds - (straight ? half : -half)) > std::max(sigmas * *sigma, close * half)) continue;
     out.also = fmt::format(
-        "that is half a sampling interval ({:.4g} s), by which an input seems {} that is {} between its samples: if {} is one, write hold "
-        "= "
-        "\"{}\" at it instead",
+        "that is half a sampling interval ({:.4g} s), by which an input seems {} that is {} between its samples: if {} is one, write "
+        "hold = \"{}\" at it instead",
         half, straight ? "late" : "early", straight ? "held" : "straight", input.name, straight ? "zero_order" : "first_order");
   }
 }

@@ -32,7 +32,7 @@ class InputGain {
     const Eigen::Index states = spec.states.size();
     const std::vector<double> no_ports(spec.quantity_ports.size() + spec.dynamic_ports.size() + 1, 0.0);
     std::vector<double> dx(spec.states.size()), by_x(spec.states.size() * spec.states.size());
-    RowMatrix by_force(states, static_cast<Eigen::Index>(spec.dynamic_ports.size()));
+    RowMatrix by_force(states, std::ssize(spec.dynamic_ports));
     system_.linearise_rates({x.data(), u, t, values_.data(), no_ports.data()}, no_ports.data(), dx.data(),
                             {by_x.data(), nullptr, by_force.data(), nullptr});
     const Eigen::VectorXd b = by_force.col(place_.port);

@@ -21,7 +21,7 @@ std::vector<double> curve_freedom(const NormalEquations& problem, const std::vec
 void describe_freedom(const Model& model, const NormalEquations& problem, const std::vector<Penalty>& penalties, double sigma2, Fit& fit) {
   const std::vector<double> freedom = curve_freedom(problem, penalties, sigma2);
   for (std::size_t k = 0; k < freedom.size(); ++k)
-    fit.facts[freedom_fact(model.curves[static_cast<std::size_t>(penalties[k].curve)].name)] = fmt::format("{:.1f}", freedom[k]);
+    fit.facts[freedom_fact(model.curves[penalties[k].curve].name)] = fmt::format("{:.1f}", freedom[k]);
 }
 
 }  // namespace misfit

@@ -221,7 +221,7 @@ void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMa
 namespace {
 
 RoughnessPath path_of(const Model& model, const RoughnessPoints& points) {
-  const Curve& own = model.curves[static_cast<std::size_t>(points.curve)];
+  const Curve& own = model.curves[points.curve];
   RoughnessPath out{own.name, roughness_unit(own), points.used, points.chosen, points.lambda, points.log_likelihood, {}};
   for (const Combination& c : combinations_of(model)) {
     const Curve& lead = *model.find_curve(c.terms.front().curve);

@@ -18,7 +18,7 @@ struct Column {
 
 /// Schur complement of the initial states in N (scaled to unit diagonal), for these columns.
 Eigen::MatrixXd reduced(const NormalEquations& problem, const std::vector<Column>& columns, Eigen::Index free) {
-  const auto n = static_cast<Eigen::Index>(columns.size());
+  const auto n = std::ssize(columns);
   const Eigen::Index states = problem.N.rows() - free;
   const Eigen::VectorXd scale = problem.N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd all = scale.asDiagonal() * problem.N * scale.asDiagonal();

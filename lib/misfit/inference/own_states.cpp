@@ -51,7 +51,7 @@ class Along {
     own_ = at_.tail(at_.size() - system);
     for (const BoundEffect& effect : model_.effects) {
       const EffectSpec& spec = effect.effect->spec();
-      const auto size = static_cast<Eigen::Index>(spec.states.size());
+      const auto size = std::ssize(spec.states);
       if (size > 0 && !spec.quantities.empty())  // what reads nothing (a random force) remembers nothing of the motion
         memories_.push_back({system + effect.first_state, Eigen::MatrixXd::Zero(size, size), RowMatrix::Zero(states_.x.rows(), size), {}});
     }
@@ -156,7 +156,7 @@ Eigen::VectorXd regressors(const Recording& recording, Eigen::Index sample) {
   }
   const double* u = inputs.at(sample).values;
   out.insert(out.end(), u, u + model.inputs());
-  return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
+  return Eigen::Map<const Eigen::VectorXd>(out.data(), std::ssize(out));
 }
 
 /// The departure that the motion of `sample` goes with, by what it goes with at the others; none if these are too few.
@@ -205,7 +205,7 @@ void fill(const Memory& memory, const Recording& recording, OwnStates& out) {
 }  // namespace
 
 OwnStates own_states_along(const Model& model, const Signals& signals, const ReconstructedStates& states) {
-  const auto own = static_cast<Eigen::Index>(model.own_states.size());
+  const auto own = std::ssize(model.own_states);
   OwnStates out{RowMatrix::Zero(states.x.rows(), own), Eigen::VectorXd::Zero(own), Eigen::VectorXd::Zero(own),
                 Eigen::MatrixXd::Zero(own, model.system_states())};
   if (own == 0 || states.x.rows() == 0) return out;

@@ -67,7 +67,7 @@ class OutputSolver {
   [[nodiscard]] Linear linearise(std::size_t i, const States& x) const {
     std::array<double, kMaxOutputs> y{};
     std::array<double, std::size_t{kMaxOutputs} * kMaxStates> slope{};
-    model_.system->linearise_outputs({x.data(), inputs_.at(i).values, signals_.t[i], constants_.data()}, y.data(), slope.data(), nullptr);
+    model_.system->linearise_outputs({x.data(), inputs_.at(i).values, signals_.t[i], constants_.data()}, y.data(), {.x = slope.data()});
     Linear out{Eigen::VectorXd(spec_.outputs.size()), Eigen::MatrixXd(spec_.outputs.size(), unknown_.size())};
     for (Eigen::Index o = 0; o < out.residual.size(); ++o) {
       out.residual[o] = weight_[o] * (signals_.measured[o].values[i] - y[o]);
@@ -83,7 +83,7 @@ class OutputSolver {
     for (const double beside : {0.0, 0.5, -0.5}) {
       States x = start_;
       for (std::size_t j = 0; j < spec_.states.size(); ++j) x[j] += beside * spec_.states[j].scale;
-      model_.system->linearise_outputs({x.data(), inputs_.at(0).values, signals_.t[0], constants_.data()}, y.data(), slope.data(), nullptr);
+      model_.system->linearise_outputs({x.data(), inputs_.at(0).values, signals_.t[0], constants_.data()}, y.data(), {.x = slope.data()});
       for (std::size_t o = 0; o < spec_.outputs.size(); ++o) {
         const double by = slope[o * spec_.states.size() + state];
         if (std::isfinite(by) && by != 0.0) return true;
@@ -104,7 +104,7 @@ class OutputSolver {
       const Eigen::VectorXd d = N.ldlt().solve(here.jacobian.transpose() * here.residual);
       if (!d.allFinite()) return std::nullopt;
       States next = x;
-      for (std::size_t u = 0; u < unknown_.size(); ++u) next[unknown_[u]] += d[static_cast<Eigen::Index>(u)];
+      for (std::size_t u = 0; u < unknown_.size(); ++u) next[unknown_[u]] += d[u];
       Linear there = linearise(i, next);
       if (!there.residual.allFinite() || there.residual.squaredNorm() > here.residual.squaredNorm()) {
         constexpr double hopeless = 1e8;

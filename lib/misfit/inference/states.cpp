@@ -166,7 +166,7 @@ ReconstructedStates reconstruct_states(const Model& model, const Signals& signal
 
 void add_own_states(const Model& model, const Signals& signals, ReconstructedStates& states) {
   if (model.own_states.empty() || states.x.rows() == 0) return;
-  states.x.rightCols(static_cast<Eigen::Index>(model.own_states.size())) = own_states_along(model, signals, states).z;
+  states.x.rightCols(std::ssize(model.own_states)) = own_states_along(model, signals, states).z;
 }
 
 void set_own_states_at_rest(const Model& model, const InputsAt& u, double t, Eigen::Ref<Eigen::VectorXd> at) {

@@ -75,10 +75,10 @@ struct Task {
 
 /// The linear solution; H(2, 2) = 1.
 std::optional<Matrix3d> linear(const Task& task) {
-  const auto n = static_cast<Eigen::Index>(task.points.size());
+  const auto n = std::ssize(task.points);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * n, 9);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const PlanePoint& p = task.points[static_cast<std::size_t>(i)];
+    const PlanePoint& p = task.points[i];
     const Vector3d u = task.place(p.place).homogeneous();
     const Vector2d q = task.pixel(p.pixel);
     rows.row(2 * i).head<3>() = u;
@@ -164,10 +164,10 @@ PlaneMap map_of(const Task& task, const Solution& s) {
 
 /// Of the eight of H and of k1 where it is free, by the degrees of freedom that are left.
 Eigen::MatrixXd covariance_of(const Task& task, const Solution& s, Eigen::Index unknowns, double sigma) {
-  const auto n = static_cast<Eigen::Index>(task.points.size());
+  const auto n = std::ssize(task.points);
   Eigen::MatrixXd rows(2 * n, unknowns);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto found = projected(task, s.h.data(), s.k1, task.points[static_cast<std::size_t>(i)].place);
+    const auto found = projected(task, s.h.data(), s.k1, task.points[i].place);
     rows.middleRows(2 * i, 2) = found->slope.leftCols(unknowns);
   }
   return sigma * sigma * (rows.transpose() * rows).ldlt().solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
@@ -176,7 +176,7 @@ Eigen::MatrixXd covariance_of(const Task& task, const Solution& s, Eigen::Index 
 PlaneFit fit_of(const Task& task, const Solution& s, bool lens, double pixel_sigma) {
   PlaneFit fit{map_of(task, s), {}, 0.0, 0.0, {}};
   for (const PlanePoint& p : task.points) fit.distances.push_back((projected(task, s.h.data(), s.k1, p.place)->pixel - p.pixel).norm());
-  const auto n = static_cast<Eigen::Index>(task.points.size());
+  const auto n = std::ssize(task.points);
   const Eigen::Index unknowns = shape + (lens ? 1 : 0), left = 2 * n - unknowns;
   fit.rms = std::sqrt(s.rss / static_cast<double>(n));
   fit.sigma = left > 0 ? std::sqrt(s.rss / static_cast<double>(left)) : pixel_sigma;
@@ -234,9 +234,9 @@ Matrix3d homography_of_square(const std::array<Vector2d, 4>& corners) {
   Eigen::Matrix<double, 8, 8> rows = Eigen::Matrix<double, 8, 8>::Zero();
   Eigen::Matrix<double, 8, 1> right;
   for (Eigen::Index k = 0; k < 4; ++k) {
-    const Vector3d u = square[static_cast<std::size_t>(k)].homogeneous();
+    const Vector3d u = square[k].homogeneous();
     for (Eigen::Index i = 0; i < 2; ++i) {
-      const double q = corners[static_cast<std::size_t>(k)](i);
+      const double q = corners[k](i);
       rows.row(2 * k + i).segment<3>(3 * i) = u;
       rows.row(2 * k + i).tail<2>() = -q * u.head<2>();
       right(2 * k + i) = q;

@@ -61,7 +61,7 @@ struct Polynomial {
 };
 
 Polynomial fit_polynomial(const WeightedPoints& points, Eigen::Index order, double origin, bool sigmas_known) {
-  const auto n = static_cast<Eigen::Index>(points.x.size());
+  const auto n = std::ssize(points.x);
   Polynomial p{Eigen::VectorXd::Zero(order), {}, origin};
   Eigen::MatrixXd A(n, order);
   Eigen::VectorXd b(n);

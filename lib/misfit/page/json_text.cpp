@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "misfit/core/enum_name.h"
 #include "misfit/report/symbols.h"
 
 namespace misfit::page {
@@ -62,7 +63,7 @@ std::string marks(const std::vector<report::Mark>& marks) {
 std::string json_of(const Series& s, SharedX& shared) {
   std::string out =
       fmt::format(R"({{"key":{},"legend":{},"style":"{}","colour":{},"width":{},"x":{})", json_string(s.key), json_words(s.legend),
-                  style_names.at(static_cast<std::size_t>(s.style)), json_string(s.colour), json_number(s.width), shared.place(s.x));
+                  enum_name(style_names, s.style), json_string(s.colour), json_number(s.width), shared.place(s.x));
   for (const auto& [name, values] : {std::pair{"y", &s.y}, {"lo", &s.lo}, {"hi", &s.hi}, {"z", &s.z}}) {
     if (!values->empty()) out += fmt::format(R"(,"{}":{})", name, json_numbers(*values));
   }
@@ -107,7 +108,7 @@ struct BlockWriter {
   }
   static std::string tone(Tone tone) {
     constexpr std::array names = {"plain", "lead", "warning", "command"};
-    return json_string(names.at(static_cast<std::size_t>(tone)));
+    return json_string(enum_name(names, tone));
   }
 };
 

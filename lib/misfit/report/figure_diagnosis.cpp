@@ -290,16 +290,15 @@ Figure added_force_figure(const MissingForce& missing, const Candidate& candidat
     for (std::size_t p = 0; p < added.ports.size(); ++p) {
       const auto port = std::find(missing.ports.begin(), missing.ports.end(), added.ports[p]);
       if (port == missing.ports.end()) continue;
-      figure.panels[static_cast<std::size_t>(port - missing.ports.begin())].series.push_back(
-          {as_key(added.ports[p]) + "_added",
-           effect,
-           Style::line,
-           black,
-           cut(added.t),
-           display_values(cut(added.force[p]), added.port_units[p]),
-           {},
-           {},
-           1.2});
+      figure.panels[port - missing.ports.begin()].series.push_back({as_key(added.ports[p]) + "_added",
+                                                                    effect,
+                                                                    Style::line,
+                                                                    black,
+                                                                    cut(added.t),
+                                                                    display_values(cut(added.force[p]), added.port_units[p]),
+                                                                    {},
+                                                                    {},
+                                                                    1.2});
     }
   }
   return figure;

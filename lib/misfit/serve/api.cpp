@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "misfit/core/base64.h"
+#include "misfit/core/enum_name.h"
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/data/study_reader.h"
@@ -84,9 +85,8 @@ std::string json_of(const JobReport& job) {
   return fmt::format(
       R"({{"number":{},"command":{},"state":"{}","stopping":{},"status":{},"seconds":{},"work":{},"part":{},"left":{},"costs":{},)"
       R"("notes":{},"output":{}}})",
-      job.number, json_string(job.command), states.at(static_cast<std::size_t>(job.state)), job.stopping, job.status,
-      json_number(job.seconds), json_string(job.work), optional(job.part), optional(job.left), json_list(costs), strings(job.notes),
-      json_string(job.output));
+      job.number, json_string(job.command), enum_name(states, job.state), job.stopping, job.status, json_number(job.seconds),
+      json_string(job.work), optional(job.part), optional(job.left), json_list(costs), strings(job.notes), json_string(job.output));
 }
 
 std::string films_of(const std::vector<std::pair<std::string, std::filesystem::path>>& films) {

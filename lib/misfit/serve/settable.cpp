@@ -59,7 +59,7 @@ Settable settable_of(const Session& session) {
     if (p.curve < 0) out.parameters.push_back({p.name, p.unit, p.free});
   }
   for (const misfit::Curve& c : model.curves) {
-    out.parameters.push_back({c.name, c.unit, model.parameters[static_cast<std::size_t>(c.first)].free});
+    out.parameters.push_back({c.name, c.unit, model.parameters[c.first].free});
     out.curves.push_back({c.name, roughness_unit(c), c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
   }
   for (const ExperimentStudy& experiment : session.study.experiments) out.experiments.push_back(experiment.name);

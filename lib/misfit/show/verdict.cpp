@@ -157,7 +157,7 @@ class VerdictBuilder {
     } else {
       nothing_accepted(*in_.discovery);
     }
-    if (fit_ != nullptr && in_.discovery != nullptr && in_.discovery->held)
+    if (fit_ != nullptr && in_.discovery != nullptr && in_.discovery->held && out_.kind != VerdictKind::calibration)
       out_.sentence += " " + as_sentence("but " + in_.discovery->held->front());
     return out_;
   }

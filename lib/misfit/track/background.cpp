@@ -163,12 +163,12 @@ void Background::learn_noise(const std::vector<ColourImage>& samples) {
   for (std::size_t p = 0; p < raw.size(); ++p) {
     for (std::size_t k = 0; k < all.size(); ++k) values[k] = all[k][p];
     std::nth_element(values.begin(), values.begin() + place, values.end());
-    raw[p] = values[static_cast<std::size_t>(place)];
+    raw[p] = values[place];
   }
   noise_.assign(raw.size(), least_noise);
   for (int r = 0; r < height_; ++r) {  // the largest mean of two neighbouring pixels: a single one of few samples says little
     for (int c = 0; c + 1 < width_; ++c) {
-      const std::size_t p = std::size_t{1} * static_cast<std::size_t>(r) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(c);
+      const std::size_t p = std::size_t{1} * r * width_ + c;
       const float mean = 0.5F * (raw[p] + raw[p + 1]);
       noise_[p] = std::max(noise_[p], mean);
       noise_[p + 1] = std::max(noise_[p + 1], mean);
@@ -201,14 +201,14 @@ std::vector<float> Background::differences(const ColourImage& frame) const { ret
 
 std::vector<float> Background::differences(const ColourImage& frame, const std::array<LightGain, 3>& light) const {
   const auto width = static_cast<std::size_t>(width_);
-  std::vector<float> out(width * static_cast<std::size_t>(height_)), x(width);
-  for (int i = 0; i < width_; ++i) x[static_cast<std::size_t>(i)] = static_cast<float>(relative(i, width_));
+  std::vector<float> out(width * height_), x(width);
+  for (int i = 0; i < width_; ++i) x[i] = static_cast<float>(relative(i, width_));
   for (int r = 0; r < height_; ++r) {
     std::array<std::array<float, 3>, 3> q{};
     for (std::size_t c = 0; c < 3; ++c) q[c] = along_row(light[c], relative(r, height_));
     const std::uint8_t* pixel = frame.bgr.data() + frame.at(0, r);
     const float* base = base_.data() + frame.at(0, r);
-    float* to = out.data() + static_cast<std::size_t>(r) * width;
+    float* to = out.data() + r * width;
     for (std::size_t i = 0; i < width; ++i) {
       float sum = 0.0F;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -224,20 +224,20 @@ std::vector<float> Background::differences(const ColourImage& frame, const std::
 Image Background::foreground(const ColourImage& frame, int shrink) const {
   const std::vector<float> all = differences(frame);
   Image out(width_ / shrink, height_ / shrink);
-  std::vector<float> line(static_cast<std::size_t>(width_)), sums(static_cast<std::size_t>(out.width));
+  std::vector<float> line(width_), sums(out.width);
   const float share = 1.0F / static_cast<float>(shrink * shrink);
   for (int r = 0; r < out.height; ++r) {
     std::fill(sums.begin(), sums.end(), 0.5F);
     for (int k = 0; k < shrink; ++k) {
-      const std::size_t from = static_cast<std::size_t>(r * shrink + k) * static_cast<std::size_t>(width_);
+      const std::size_t from = std::size_t{1} * (r * shrink + k) * width_;
       for (std::size_t i = 0; i < line.size(); ++i) {
         const float value = scale_[from + i] * (all[from + i] - low_[from + i]);
         line[i] = share * std::min(255.0F, std::max(0.0F, value));
       }
-      for (std::size_t i = 0, k0 = 0; i < sums.size(); ++i, k0 += static_cast<std::size_t>(shrink))
+      for (std::size_t i = 0, k0 = 0; i < sums.size(); ++i, k0 += shrink)
         for (std::size_t m = 0; m < static_cast<std::size_t>(shrink); ++m) sums[i] += line[k0 + m];
     }
-    for (int i = 0; i < out.width; ++i) out(i, r) = static_cast<std::uint8_t>(sums[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < out.width; ++i) out(i, r) = static_cast<std::uint8_t>(sums[i]);
   }
   return out;
 }

@@ -61,12 +61,12 @@ std::optional<double> edge_at(const Image& image, const Vector2d& from, const Ve
 
 /// offset and tilt by least squares, and their sigmas.
 void fit_line(const std::vector<Vector2d>& places, Side& side) {
-  const auto n = static_cast<Eigen::Index>(places.size());
+  const auto n = std::ssize(places);
   Eigen::MatrixXd rows(n, 2);
   Eigen::VectorXd offsets(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    rows.row(i) << 1.0, places[static_cast<std::size_t>(i)].x();
-    offsets(i) = places[static_cast<std::size_t>(i)].y();
+    rows.row(i) << 1.0, places[i].x();
+    offsets(i) = places[i].y();
   }
   const Eigen::Matrix2d inverse = (rows.transpose() * rows).inverse();
   const Vector2d line = inverse * (rows.transpose() * offsets);
@@ -164,7 +164,7 @@ std::optional<std::uint64_t> code_in(const std::vector<double>& levels, int cell
   const int across = cells + 2;
   std::uint64_t code = 0;
   for (int cell = 0; cell < across * across; ++cell) {
-    const double level = levels[static_cast<std::size_t>(cell)];
+    const double level = levels[cell];
     if (std::abs(level - middle) < doubtful * contrast) return std::nullopt;
     const int r = cell / across, c = cell % across;
     if (r > 0 && c > 0 && r <= cells && c <= cells) {

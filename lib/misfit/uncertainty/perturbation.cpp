@@ -61,7 +61,7 @@ Draw Sampler::draw(std::size_t run) const {
   }
   for (std::size_t g = 0; g < roots_.size(); ++g) {
     const auto& names = perturbations_.groups[g].names;
-    Eigen::VectorXd z(static_cast<Eigen::Index>(names.size()));
+    Eigen::VectorXd z(std::ssize(names));
     for (Eigen::Index i = 0; i < z.size(); ++i) z[i] = random_normal(seed_, run, address_of(names[i]));
     const Eigen::VectorXd errors = roots_[g] * z;
     out.factors.insert(out.factors.end(), z.begin(), z.end());

@@ -8,9 +8,7 @@
 namespace misfit {
 
 ShareRegression::ShareRegression(const Sampler& sampler)
-    : term_of_factor_(sampler.term_of_factor()),
-      terms_(sampler.term_names().size()),
-      factors_(static_cast<Eigen::Index>(term_of_factor_.size())) {
+    : term_of_factor_(sampler.term_of_factor()), terms_(sampler.term_names().size()), factors_(std::ssize(term_of_factor_)) {
   for (std::size_t i = 0; i < term_of_factor_.size(); ++i) uniform_.push_back(sampler.is_uniform(i));
   const Eigen::Index unknowns = 1 + 2 * factors_;
   N_ = Eigen::MatrixXd::Zero(unknowns, unknowns);

@@ -197,7 +197,7 @@ class UlogReader : public RecordReader {
     if (time != topic.fields.end()) time->unit = "us";
     subscriptions_.push_back(topics_.size());
     const auto known = std::find_if(topics_.begin(), topics_.end(), [&](const RecordTopic& t) { return t.name == topic.name; });
-    if (known != topics_.end() && least_[static_cast<std::size_t>(known - topics_.begin())] == layout.without_padding) {
+    if (known != topics_.end() && least_[known - topics_.begin()] == layout.without_padding) {
       subscriptions_.back() = static_cast<std::size_t>(known - topics_.begin());
       return;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "misfit/core/error.h"
+#include "misfit/core/lists.h"
 #include "misfit/core/units.h"
 
 namespace misfit {
@@ -59,7 +60,7 @@ FilterModel with_random_force(const Model& model) {
   FilterModel out;
   out.model = model;
   const SystemSpec& spec = model.system->spec();
-  out.time_parameter = static_cast<int>(out.model.parameters.size());
+  out.time_parameter = int_size(out.model.parameters);
   Parameter time{"force_time", "s", "correlation time of the random force", 0.1, 1e-6, 1e6, 0.1};
   out.model.parameters.push_back(time);
   for (int port : ports_of(spec)) {
@@ -69,7 +70,7 @@ FilterModel with_random_force(const Model& model) {
     bound.kind = PortKind::dynamic;
     bound.ports = {port};
     bound.coefficients = {{out.time_parameter, -1}};
-    bound.first_state = static_cast<int>(out.model.own_states.size());
+    bound.first_state = int_size(out.model.own_states);
     out.force_states.push_back(out.model.states());
     out.force_ports.push_back(port);
     out.force_group.push_back(group_of(spec, out));

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "misfit/core/error.h"
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_estimate.h"
@@ -219,7 +220,7 @@ class FilterSearch {
       runner.set_parameters(at_.values());
       for (std::size_t e = 0; e < all.size(); ++e) {
         if (!runner.run_gated(all[e], out_.noise, trace, now[e])) return;
-        out_.outliers += static_cast<int>(now[e].size());
+        out_.outliers += int_size(now[e]);
       }
       if (now == before) return;
       for (std::size_t e = 0; e < all.size(); ++e) {

@@ -124,14 +124,14 @@ bool mostly_noise(const FilterModel& model, const SizedRecording& recording, con
   constexpr double of_motion = 0.5, largest_memory = 0.25;
   constexpr int first_apart = 6, last = 9;  // lags at which two accelerations have no sample in common
   for (int i = 0; i < model.model.system_states(); ++i) {
-    if (model.kind[static_cast<std::size_t>(i)] != 1 || !recording.rates.shown[static_cast<std::size_t>(i)]) continue;
+    if (model.kind[i] != 1 || !recording.rates.shown[i]) continue;
     if (coarser.rates.rms[i] > of_motion * recording.rates.rms[i]) continue;
     std::vector<double> rates;
     for (Eigen::Index k = 0; k < recording.states.dx.rows(); ++k)
-      rates.push_back(recording.states.ok[static_cast<std::size_t>(k)] ? recording.states.dx(k, i) : std::nan(""));
+      rates.push_back(recording.states.ok[k] ? recording.states.dx(k, i) : std::nan(""));
     const std::vector<double> rho = autocorrelation(rates, last);
     bool memory = false;
-    for (int lag = first_apart; lag <= last; ++lag) memory = memory || !(std::abs(rho[static_cast<std::size_t>(lag)]) < largest_memory);
+    for (int lag = first_apart; lag <= last; ++lag) memory = memory || !(std::abs(rho[lag]) < largest_memory);
     if (!memory) return true;
   }
   return false;

@@ -42,7 +42,7 @@ std::vector<Spread> spreads_of(const FilterEstimate& estimate) {
     for (std::size_t k = data.first; k < estimate.traces[e].samples; ++k) {
       const Eigen::VectorXd x = estimate.traces[e].filtered(k);
       evaluator.rates(x.data(), data.inputs.at(k), data.signals->t[k], rates.data());
-      for (std::size_t j = 0; j < states; ++j) out[j].add(x[static_cast<Eigen::Index>(j)], rates[j]);
+      for (std::size_t j = 0; j < states; ++j) out[j].add(x[j], rates[j]);
     }
   }
   return out;

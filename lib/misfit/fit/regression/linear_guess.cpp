@@ -46,7 +46,7 @@ Eigen::VectorXd known_everywhere(std::vector<double> values, bool smooth) {
   double last = 0.0;
   for (double& v : values) last = v = std::isfinite(v) ? v : last;
   for (std::size_t k = 0; smooth && k + 1 < values.size(); ++k) values[k] = 0.5 * (values[k] + values[k + 1]);
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
 }
 
 /// Means over `count` rows each.
@@ -103,7 +103,7 @@ WindowSearch::WindowSearch(const std::vector<double>& t, const std::vector<doubl
   const std::size_t together = window_length(standard(y, target_)) / longest + 1;
   record_.t = thinned(t, together);
   record_.y = thinned(standard(y, target_), together);
-  record_.drivers.resize(static_cast<Eigen::Index>(record_.t.size()), static_cast<Eigen::Index>(drivers_.size()));
+  record_.drivers.resize(std::ssize(record_.t), std::ssize(drivers_));
   for (std::size_t i = 0; i < drivers_.size(); ++i) {
     Spread spread = spread_of(drivers_[i].values);
     if (!(spread.sigma > 0.0)) spread.sigma = 1.0;
@@ -191,7 +191,7 @@ void WindowSearch::drop_drivers(const Fits& fits, Found& found) const {
     std::vector<Eigen::Index> terms = found.terms;
     terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(i));
     const Found without = best_of(fits, terms);
-    const bool output = drivers_[static_cast<std::size_t>(found.terms[i])].output;
+    const bool output = drivers_[found.terms[i]].output;
     if (excess(found.mean_square) < (output ? enough_of_output : enough) * excess(without.mean_square)) {
       ++i;
     } else {
@@ -216,7 +216,7 @@ void WindowSearch::refine(Found& found) const {
 
 Found WindowSearch::best(int order, bool pulled) const {
   const Fits fits = on_grid(order, pulled);
-  Found found = best_of(fits, {static_cast<Eigen::Index>(drivers_.size())});
+  Found found = best_of(fits, {std::ssize(drivers_)});
   add_drivers(fits, false, found);
   add_drivers(fits, true, found);
   drop_drivers(fits, found);
@@ -232,7 +232,7 @@ std::vector<double> WindowSearch::coefficients(const Found& found) const {
   const double pull = found.poles.order == 1 ? found.poles.damping : found.poles.stiffness;
   out.back() = target_.sigma * solved[solved.size() - 1] + pull * target_.mean;
   for (std::size_t i = 0; i < drivers_.size(); ++i) {
-    out[i] = solved[static_cast<Eigen::Index>(i)] * target_.sigma / spreads_[i].sigma;
+    out[i] = solved[i] * target_.sigma / spreads_[i].sigma;
     out.back() -= out[i] * spreads_[i].mean;
   }
   return out;
@@ -348,22 +348,18 @@ LinearGuess second_order(const GuessData& data, const WindowSearch& search, cons
 
 /// A first order whose rest drifts in time, if it leaves no more than `excess`: a second order without a pull back to rest follows a drift,
 /// too, with gains that mean nothing, and a first order takes it for a time constant longer than the record. The model is the one without
-/// the drift, which is for the search to name.
-/// `instead`: of what, in words.
-std::optional<LinearGuess> drifting_first_order(const GuessData& data, double excess, const std::string& instead) {
+/// the drift, which is for the search to name. `fits`: what is said of it with the drift.
+std::optional<LinearGuess> drifting_first_order(const GuessData& data, double excess, const char* fits) {
   std::vector<GuessDriver> drivers = data.drivers;
   drivers.push_back({data.t, true, false});
   const WindowSearch search(data.t, data.y, drivers);
   const Found found = search.best(1, true);
   if (!(found.poles.damping > 0.0) || search.excess(found.mean_square) > excess) return std::nullopt;
-  LinearGuess out;
-  out.gain = search.coefficients(found);
-  out.rest = out.gain.back() + out.gain[data.drivers.size()] * spread_of(data.t).mean;
-  out.gain.resize(data.drivers.size());
-  out.tau = 1.0 / found.poles.damping;
-  divide(found.poles.damping, out);
+  LinearGuess out = first_order(search, found, 0.0);
+  out.rest += out.gain.back() * spread_of(data.t).mean;
+  out.gain.pop_back();
   out.why = fmt::format("first order, time constant about {:.3g} s: with a drift in time beside it, {}; what drifts, the search will say",
-                        out.tau, instead);
+                        out.tau, fits);
   return out;
 }
 
@@ -380,14 +376,14 @@ LinearGuess guess_linear(const GuessData& data) {
   constexpr double half = 0.5, most_damped = 0.9;  // of the mean square; damping ratio
   const bool swings = second.poles.damping < 2.0 * most_damped * std::sqrt(second.poles.stiffness) || second.poles.stiffness == 0.0;
   const bool oscillates = swings && search.excess(second.mean_square) < half * search.excess(first.mean_square);
+  LinearGuess out = oscillates ? second_order(data, search, second, lower) : first_order(search, first, lower);
   const bool driven = std::any_of(data.drivers.begin(), data.drivers.end(), [](const GuessDriver& d) { return !d.output; });
   if (driven && (!oscillates || second.poles.stiffness == 0.0)) {
     const double least = oscillates ? search.excess(second.mean_square) : half * search.excess(first.mean_square);
-    const char* instead =
+    const char* fits =
         oscillates ? "it fits no worse than a second order without a pull back to a rest" : "its held-out error is less than half";
-    if (const auto drifting = drifting_first_order(data, least, instead)) return *drifting;
+    if (const auto drifting = drifting_first_order(data, least, fits)) out = *drifting;
   }
-  const LinearGuess out = oscillates ? second_order(data, search, second, lower) : first_order(search, first, lower);
   const bool numbers = std::isfinite(out.rest + out.tau + out.damping + out.stiffness) &&
                        std::all_of(out.gain.begin(), out.gain.end(), [](double g) { return std::isfinite(g); });
   return numbers ? out : none_found(data);

@@ -104,16 +104,16 @@ SquaresForm& SquaresForm::operator+=(const SquaresForm& other) {
 }
 
 Eigen::VectorXd SquaresForm::solve(const std::vector<Eigen::Index>& terms) const {
-  const auto n = static_cast<Eigen::Index>(terms.size());
+  const auto n = std::ssize(terms);
   Eigen::MatrixXd part(n, n);
   Eigen::VectorXd of(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    of[i] = right[terms[static_cast<std::size_t>(i)]];
-    for (Eigen::Index j = 0; j < n; ++j) part(i, j) = matrix(terms[static_cast<std::size_t>(i)], terms[static_cast<std::size_t>(j)]);
+    of[i] = right[terms[i]];
+    for (Eigen::Index j = 0; j < n; ++j) part(i, j) = matrix(terms[i], terms[j]);
   }
   const Eigen::VectorXd solved = part.completeOrthogonalDecomposition().solve(of);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(right.size());
-  for (Eigen::Index i = 0; i < n; ++i) out[terms[static_cast<std::size_t>(i)]] = solved[i];
+  for (Eigen::Index i = 0; i < n; ++i) out[terms[i]] = solved[i];
   return out;
 }
 

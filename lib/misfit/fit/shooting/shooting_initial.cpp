@@ -57,7 +57,7 @@ void Shooting::add_initial(LeastSquares& problem, const std::vector<Piece>& piec
 }
 
 void Shooting::hold_initial(NormalEquations& out) const {
-  const auto columns = static_cast<Eigen::Index>(free_.size());
+  const auto columns = std::ssize(free_);
   const Eigen::Index n = model_.states();
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {

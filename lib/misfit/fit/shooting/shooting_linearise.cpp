@@ -24,7 +24,7 @@ double Shooting::counted(const Piece& piece) const {
 }
 
 bool Shooting::linearise_segments(std::size_t length, NormalEquations& out) {
-  const auto columns = static_cast<Eigen::Index>(free_.size());
+  const auto columns = std::ssize(free_);
   const Eigen::Index n = model_.states();
   out = empty_sums(columns);
   set_theta(out.theta.data());
@@ -86,7 +86,7 @@ void keep(const Segment& part, std::size_t samples, Segment& whole) {
 }  // namespace
 
 bool Shooting::linearise(NormalEquations& out, std::vector<Segment>* runs) {
-  const auto columns = static_cast<Eigen::Index>(free_.size());
+  const auto columns = std::ssize(free_);
   const Eigen::Index n = model_.states();
   const Eigen::Index all = columns + n * experiments_.size();
   ++linearisations_;

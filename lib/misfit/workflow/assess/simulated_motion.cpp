@@ -111,7 +111,7 @@ std::vector<double> smoothed_start(const FilterEstimate& estimate, const FilterD
   if (!runner.run(data, estimate.noise, trace, {.keep_P = true})) return out;
   const Eigen::VectorXd x = smooth_states(trace, data, estimate.noise).x.row(static_cast<Eigen::Index>(data.first));
   std::copy(x.begin(), x.end(), out.begin());
-  for (const int force : forced.force_states) out[static_cast<std::size_t>(force)] = 0.0;
+  for (const int force : forced.force_states) out[force] = 0.0;
   return out;
 }
 

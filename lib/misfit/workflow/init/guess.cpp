@@ -7,6 +7,7 @@
 #include <set>
 
 #include "misfit/core/error.h"
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/core/unique_name.h"
 #include "misfit/core/units.h"
@@ -49,7 +50,7 @@ struct Room {
   bool take(const GuessedOutput& output) {
     const bool oscillatory = output.guess.order == 2;
     const int of_states = oscillatory ? 2 : 1, of_outputs = oscillatory && !output.rate.empty() ? 2 : 1;
-    const int of_parameters = (oscillatory ? 3 : 2) + static_cast<int>(output.gains.size());
+    const int of_parameters = (oscillatory ? 3 : 2) + int_size(output.gains);
     if (of_states > states || of_outputs > outputs || of_parameters > parameters) return false;
     states -= of_states;
     outputs -= of_outputs;
@@ -165,18 +166,16 @@ GuessData with_drivers(GuessData data, const std::vector<Candidate>& drivers) {
   return data;
 }
 
-}  // namespace
-
-std::string si_unit(const std::string& unit) { return unit_in_si(unit); }
-
-const ColumnSurvey& column_called(const RecordingSurvey& survey, const std::string& name) {
-  return *std::find_if(survey.columns.begin(), survey.columns.end(), [&](const ColumnSurvey& c) { return c.name == name; });
+/// Whether it is the same until the part that the study holds out begins (text.cpp: the last quarter).
+bool is_still_until_held_out(const Table& table, const std::string& column) {
+  const std::vector<double>& values = table.at(column).values;
+  const auto fitted = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 3 / 4);
+  return std::all_of(values.begin(), fitted, [&](double v) { return v == values.front(); }) &&
+         std::any_of(fitted, values.end(), [&](double v) { return v != values.front(); });
 }
 
-namespace {
-
 /// Inputs that the data want in no equation: a user who knows better is to see it.
-void note_unneeded_inputs(GuessedModel& model) {
+void note_unneeded_inputs(const Table& table, GuessedModel& model) {
   std::vector<std::string> unneeded;
   for (const std::string& input : model.inputs) {
     const bool needed = std::any_of(model.outputs.begin(), model.outputs.end(), [&](const GuessedOutput& output) {
@@ -189,9 +188,20 @@ void note_unneeded_inputs(GuessedModel& model) {
       fmt::format("in no equation of the first model: {}; with it, the held-out error falls by less than 20 % "
                   "(input_gain would add it)",
                   fmt::join(unneeded, ", ")));
+  for (const std::string& input : unneeded) {
+    if (is_still_until_held_out(table, input))
+      model.remarks.push_back(fmt::format(
+          "{} changes in the last quarter alone, which is held out: what it does cannot be found, hold out another part", input));
+  }
 }
 
 }  // namespace
+
+std::string si_unit(const std::string& unit) { return unit_in_si(unit); }
+
+const ColumnSurvey& column_called(const RecordingSurvey& survey, const std::string& name) {
+  return *std::find_if(survey.columns.begin(), survey.columns.end(), [&](const ColumnSurvey& c) { return c.name == name; });
+}
 
 std::vector<std::string> names_of_formulas() { return formula::reserved_names(); }
 
@@ -226,7 +236,7 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
                 fmt::format("a first model has at most {} outputs, {} states and {} parameters", most_guessed.outputs, most_guessed.states,
                             most_guessed.parameters),
                 model.remarks);
-  note_unneeded_inputs(model);
+  note_unneeded_inputs(*longest, model);
   return model;
 }
 

@@ -26,8 +26,8 @@ std::vector<std::string> doubts(const KnownPlaces& known, const PlaneFit& fit) {
   const std::string off = fmt::format("places known in metres lie {:.1f} px (RMS) from where a camera sees a plane", fit.rms);
   if (known.names.empty()) return {off + ": is the pattern flat, are its squares as large as said, does the camera stand still?"};
   const auto worst = std::max_element(fit.distances.begin(), fit.distances.end()) - fit.distances.begin();
-  return {fmt::format("{}; the farthest is '{}' of [video.points], {:.1f} px: is its pixel or its place wrong?", off,
-                      known.names[static_cast<std::size_t>(worst)], fit.distances[static_cast<std::size_t>(worst)])};
+  return {fmt::format("{}; the farthest is '{}' of [video.points], {:.1f} px: is its pixel or its place wrong?", off, known.names[worst],
+                      fit.distances[worst])};
 }
 
 /// Scale and uncertainty of the map where the track is.
@@ -79,7 +79,7 @@ std::optional<PlaneFacts> calibrate_plane(const std::filesystem::path& path, con
 PlaneMap map_of(const PlaneFacts& facts) {
   PlaneMap map;
   if (facts.homography.size() != 9) throw InputError("plane.homography: nine numbers are expected");
-  for (int k = 0; k < 9; ++k) map.homography(k / 3, k % 3) = facts.homography[static_cast<std::size_t>(k)];
+  for (int k = 0; k < 9; ++k) map.homography(k / 3, k % 3) = facts.homography[k];
   map.k1 = facts.k1;
   map.middle = {facts.column, facts.row};
   map.radius = facts.radius;
