@@ -67,6 +67,8 @@ TEST(Bindings, AnInputThatAnOutputsFormulaReadsIsAPlaceOfItsOwn) {
     tanks.ports_in_outputs = {input};
     EXPECT_THAT(enumerate_bindings(registry().effect(effect).spec(), tanks), Contains(itself)) << effect;
   }
+  EXPECT_THAT(enumerate_bindings(registry().effect("delay").spec(), tanks), ElementsAre(itself)) << "of the input itself, there only";
+  EXPECT_THAT(enumerate_bindings(registry().effect("input_offset").spec(), tanks), testing::SizeIs(4)) << "or a force on either level";
   EXPECT_THAT(enumerate_bindings(registry().effect("leak").spec(), tanks), testing::Not(Contains(itself)));
 }
 

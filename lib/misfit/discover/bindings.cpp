@@ -160,12 +160,23 @@ std::vector<Roles> times_of_outputs(const SystemSpec& system) {
   return out;
 }
 
-/// The places, and every input that an output's formula reads as a place of its own: a force elsewhere does not show in that output.
-std::vector<Roles> with_inputs_in_outputs(std::vector<Roles> places, const SystemSpec& system) {
+bool is_in_outputs(const SystemSpec& system, const std::string& port) {
+  return std::find(system.ports_in_outputs.begin(), system.ports_in_outputs.end(), port) != system.ports_in_outputs.end();
+}
+
+/// A whole one has the gain that the model has for its input: its refit belongs to the input itself (on_its_input()).
+bool is_of_its_input(const EffectSpec& effect) {
+  return std::any_of(effect.coefficients.begin(), effect.coefficients.end(),
+                     [](const CoefficientSpec& c) { return std::string_view(c.whole_of) == "input"; });
+}
+
+/// The places, and every input that an output's formula reads as a place of its own: a force elsewhere does not show in that output. An
+/// effect of the input itself is there only.
+std::vector<Roles> with_inputs_in_outputs(std::vector<Roles> places, const EffectSpec& effect, const SystemSpec& system) {
   for (const InputSpec& input : system.inputs) {
-    const bool read =
-        std::find(system.ports_in_outputs.begin(), system.ports_in_outputs.end(), input.name) != system.ports_in_outputs.end();
-    if (read) places.push_back({{"input", input.name}, {"port", input.name}});
+    if (!is_in_outputs(system, input.name)) continue;
+    if (is_of_its_input(effect)) std::erase_if(places, [&](const Roles& place) { return place.at("input") == input.name; });
+    places.push_back({{"input", input.name}, {"port", input.name}});
   }
   return places;
 }
@@ -248,7 +259,10 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   if (has_role(effect.quantities, "other")) places = times_other_states(places, system);
   if (has_role(effect.quantities, "input")) {
     places = times(places, "input", system.roles.contains("input") ? names_of(system.inputs) : std::vector<std::string>{});
-    if (has_role(effect.ports, "port")) places = with_inputs_in_outputs(std::move(places), system);
+    if (has_role(effect.ports, "port")) {
+      places = with_inputs_in_outputs(std::move(places), effect, system);
+      if (is_of_its_input(effect) && is_in_outputs(system, system.roles.contains("input") ? system.roles.at("input") : "")) out.clear();
+    }
   }
   if (has_role(effect.ports, "output"))
     places = times(places, "output", suggests_places(system) ? names_of(system.outputs) : std::vector<std::string>{});
