@@ -15,7 +15,6 @@
 #include "misfit/data/estimators.h"
 #include "misfit/data/ladder.h"
 #include "misfit/fit/filter/noise_interval.h"
-#include "misfit/fit/filter/outliers_at_jumps.h"
 #include "misfit/fit/filter/settled.h"
 #include "misfit/fit/filter/slow_force.h"
 #include "misfit/inference/curve_freedom.h"
@@ -397,7 +396,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   }
   if (estimate.outliers > 0)
     fit.warnings.push_back(std::to_string(estimate.outliers) +
-                           " measurements more than 5 sigma from their prediction are rejected as outliers" + outliers_at_jumps(estimate));
+                           " measurements more than 5 sigma from their prediction are rejected as outliers");
   const FilterData& first = estimate.data.front();
   const std::vector<std::string> scales =
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);

@@ -18,6 +18,7 @@
 #include "misfit/fit/filter/likelihood_derivatives.h"
 #include "misfit/fit/filter/noise_survey.h"
 #include "misfit/fit/filter/other_weights.h"
+#include "misfit/fit/filter/outliers_at_jumps.h"
 #include "misfit/fit/filter/restricted_likelihood.h"
 #include "misfit/fit/filter/runnable_start.h"
 #include "misfit/math/bfgs.h"
@@ -208,21 +209,26 @@ class FilterSearch {
   }
 
   /// Gates the measurements and estimates again until the rejected set no longer changes: outliers in the data bias the first estimates, by
-  /// which good measurements may have been rejected too.
+  /// which good measurements may have been rejected too. Those at the jumps of an input are kept.
   void reject_outliers() {
     constexpr int most_rounds = 4;
     const std::vector<FilterData> all = out_.data;
     std::vector<std::vector<std::size_t>> before(all.size()), now(all.size());
+    std::optional<OutliersAtJumps> kept;
     FilterRunner runner(out_.forced, false);
     for (int round = 0; round < most_rounds; ++round) {
       FilterTrace trace;
-      out_.outliers = 0;
       runner.set_parameters(at_.values());
       for (std::size_t e = 0; e < all.size(); ++e) {
         if (!runner.run_gated(all[e], out_.noise, trace, now[e])) return;
+      }
+      if (const auto at_jumps = outliers_at_jumps(out_.model.system->spec(), all, now)) kept = at_jumps;
+      out_.outliers = 0;
+      for (std::size_t e = 0; e < all.size(); ++e) {
+        if (kept) now[e] = without_those_at_jumps(all[e], kept->input, std::move(now[e]));
         out_.outliers += int_size(now[e]);
       }
-      if (now == before) return;
+      if (now == before) break;
       for (std::size_t e = 0; e < all.size(); ++e) {
         out_.data[e].use = all[e].use;
         for (std::size_t at : now[e]) out_.data[e].use[at] = SampleRole::none;
@@ -230,6 +236,7 @@ class FilterSearch {
       before = now;
       iterate_again();
     }
+    if (kept) out_.notes.push_back(in_words(*kept, out_.model.system->spec()));
   }
 
   /// After a change of which measurements count.
