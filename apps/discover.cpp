@@ -39,7 +39,9 @@ LadderListener ladder_listener(ModelLadder& ladder, const Options& options) {
     listener.added = [&](const Rung& rung) { print(ladder.ladder(), rung, ladder.last_fit()); };
   } else {
     listener.discovered = [](const Discovery& discovery) { print_stage("discover", line_of(discovery)); };
-    listener.added = [](const Rung& rung) { print_stage("add", rung.added + ": " + line_of(rung)); };
+    listener.added = [](const Rung& rung) {
+      print_stage("add", rung.added + ": " + line_of(rung) + "; as this model has it, the search goes on");
+    };
   }
   return listener;
 }

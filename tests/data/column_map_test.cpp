@@ -53,6 +53,20 @@ TEST(MappedColumn, WithoutAUnitOfTheSignalIsTakenAsItIsAndSaid) {
   }
 }
 
+TEST(AColumnOfTheSignalsName, WithoutAUnitIsTakenInSIAndSaidWhereOthersHaveOne) {
+  Table table;
+  table.add("t", "s", {0.0});
+  table.add("T_in", "", {20.0});
+  std::vector<std::string> notes;
+  EXPECT_EQ(ColumnMap{}.values(table, "T_in", "K", notes).front(), 20.0);
+  EXPECT_THAT(notes, ElementsAre("column 'T_in' has no unit, though others have: its values are taken as K"));
+  notes.clear();
+  static_cast<void>(ColumnMap{}.values(table, "T_in", "-", notes));
+  table.columns.front().unit.clear();
+  static_cast<void>(ColumnMap{}.values(table, "T_in", "K", notes));
+  EXPECT_THAT(notes, IsEmpty()) << "a pure number; a file without units";
+}
+
 TEST(MappedColumn, NothingIsSaidWhereNothingIsConverted) {
   EXPECT_THAT(angle_from("theta_rad", "").notes, IsEmpty());
   EXPECT_THAT(angle_from("ratio", "", "-").notes, IsEmpty());

@@ -150,9 +150,9 @@ TEST(Recording, AnUnknownUnitIsSaidOnceWithWhatItIsTakenAs) {
     return fmt::format("{},{},{},{}", t, std::sin(3.0 * t), 3.0 * std::cos(3.0 * t), std::cos(7.0 * t));
   }));
   EXPECT_EQ(column(s, "omega").unit, "rad/s");
-  EXPECT_THAT(s.remarks,
-              testing::UnorderedElementsAre("column 'omega[foo]': the unit 'foo' is not known: taken as rad/s",
-                                            "column 'level[blob]': the unit 'blob' is not known, its numbers are taken as they are"));
+  EXPECT_THAT(s.remarks, testing::UnorderedElementsAre(
+                             "column 'omega[foo]': the unit 'foo' is not known: taken as rad/s",
+                             "column 'level[blob]': unknown unit 'blob' — did you mean 'lb'? Now its numbers are taken as they are"));
 }
 
 RecordingSurvey survey_with(const std::string& content, const RecordingChoice& choice) {

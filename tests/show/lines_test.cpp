@@ -22,6 +22,20 @@ TEST(LineOfAFit, GivesTheRandomForceOrWithoutOneTheResiduals) {
   EXPECT_EQ(line_of(fit), "gain 2.00 ± 0.10 V; random force 20.0 ± 1.0 V/s");
 }
 
+TEST(LineOfAFit, SaysWhatItLeavesOut) {
+  Fit fit = filter();
+  for (const char* name : {"a", "b", "c", "d", "e"}) fit.parameters[name] = {1.0, 0.1, "V"};
+  fit.force = {{"dw/dt", {0.02, 0.0, "V/s"}}};
+  fit.warnings = {"a ends at its bound, 1 V: the best value may lie beyond",
+                  "the innovations of w in 'bench' are not white (Ljung-Box p = 0)",
+                  "b and c are collinear: a combination of them is known much better", "and so on"};
+  EXPECT_EQ(line_of(fit),
+            "a 1.00 ± 0.10 V, b 1.00 ± 0.10 V, c 1.00 ± 0.10 V, d 1.00 ± 0.10 V, and 2 more; random force not distinguishable from 0; "
+            "! a ends at its bound, 1 V; the innovations of w in 'bench' are not white; and 2 more");
+  fit.driven = true;
+  EXPECT_THAT(line_of(fit), testing::HasSubstr("random force 0.02 V/s"));
+}
+
 TEST(LineOfAFit, ThatDeclinedGivesTheReasonWithoutItsConsequence) {
   Fit fit = filter();
   fit.status = FitStatus::declined;

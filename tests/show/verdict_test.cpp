@@ -148,6 +148,26 @@ TEST(Verdict, EffectsThatTheDataCannotDistinguishAreAllNamed) {
   EXPECT_THAT(v.sentence, HasSubstr("One of camera_roll and image_centre is missing, and these data cannot say which"));
 }
 
+TEST(Verdict, TheHorizonOfAnErrorHasItsTimeAndTheLastModelItsOtherNumbers) {
+  Case c;
+  EXPECT_EQ(c.verdict().errors.front().what(), "RMS error of w, one sample ahead") << "of a filter";
+  c.fits.front().predictions.push_back({"bench", "w", "V", {0.0, 0.02, 0.04, 0.06}, {}, {}, {}, {}});
+  c.add_effect();
+  c.ladder->rungs.back().parameters = {{"friction", {5.0, 0.5, "V/s"}}};
+  c.ladder->rungs.back().estimates = {{"friction", {5.0, 0.5, "V/s"}}, {"gain", {2.0, 0.1, "1/s"}}};
+  const Verdict v = c.verdict();
+  EXPECT_EQ(v.errors.front().what(), "RMS error of w, 32 samples (0.64 s) ahead");
+  EXPECT_THAT(v.added,
+              testing::ElementsAre(testing::StartsWith("coulomb_friction: friction = 5.0"), "beside them: gain = 2.00 ± 0.10 1/s"));
+}
+
+TEST(Verdict, AForceThatIsNotSeenIsSaidNotToBe) {
+  Case c;
+  c.fits.front().driven = false;
+  c.fits.front().force = {{"dw/dt", {0.181, 0.0, "V/s"}}};
+  EXPECT_EQ(shown(c.verdict().errors.back()), "0.181 V/s (not distinguishable from 0)");
+}
+
 TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCent) {
   Case c;
   c.add_effect();

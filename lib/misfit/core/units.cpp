@@ -257,8 +257,8 @@ bool Unit::same_dimension(const Unit& other) const {
 }
 
 std::string plain_unit(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 7> signs = {
-      {{"°", "deg"}, {"℃", "degC"}, {"℉", "degF"}, {"µ", "u"}, {"μ", "u"}, {"Ω", "Ohm"}, {"²", "^2"}}};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> signs = {
+      {{"°", "deg"}, {"℃", "degC"}, {"℉", "degF"}, {"µ", "u"}, {"μ", "u"}, {"Ω", "Ohm"}, {"²", "^2"}, {"U/min", "rpm"}}};
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 3> latin = {{{"\xB0", "deg"}, {"\xB5", "u"}, {"\xB2", "^2"}}};
   std::string out;
   const auto take = [&](const auto& table) {

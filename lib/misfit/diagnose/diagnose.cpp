@@ -26,6 +26,17 @@ std::string place(double value, double width, const std::string& unit) {
   return with_display_unit(format_value(std::round(display_value(value, unit) / step) * step), unit);
 }
 
+/// A force that is the same at all hours is none that depends on the hour: what is said is beside the median.
+ForceMap beside_other_hours(ForceMap map) {
+  std::vector<double> known;
+  for (std::size_t i = 0; i < map.x.size(); ++i) {
+    if (map.sigma[i] > 0.0) known.push_back(map.amplitude[i]);
+  }
+  const double usual = known.empty() ? 0.0 : median(known);
+  for (double& amplitude : map.amplitude) amplitude -= usual;
+  return map;
+}
+
 /// A sentence on the most significant run of neighbouring hats of one sign; where none is significant by itself, of the whole.
 std::string where_it_fails(const ForceMap& map) {
   std::size_t best_from = 0, best_to = 0;
@@ -93,7 +104,7 @@ std::vector<ForceMap> all_maps(const Search& search, const DiagnoseOptions& opti
       [&](std::size_t k) { maps[k] = map_of(search, search.features[k / ports], static_cast<int>(k % ports)); }, options.progress);
   for (auto& map : maps) {
     map.p_corrected = sidak(map.p_value, static_cast<double>(maps.size()));
-    if (map.p_corrected < significant) map.sentence = where_it_fails(map);
+    if (map.p_corrected < significant) map.sentence = where_it_fails(map.quantity == time_of_day ? beside_other_hours(map) : map);
   }
   std::stable_sort(maps.begin(), maps.end(), [](const ForceMap& a, const ForceMap& b) { return a.p_value < b.p_value; });
   return maps;

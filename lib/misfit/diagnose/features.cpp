@@ -31,7 +31,7 @@ void add_hats(double value, const std::vector<double>& centre, Eigen::Index row,
   f(row, left + 1) += share;
 }
 
-constexpr double fewest_samples_of_hat = 25.0;
+constexpr double fewest_samples_of_hat = 25.0, seconds_of_a_day = 86400.0;
 
 /// Drops hats that hardly any sample touches.
 void drop_empty(Features& features) {
@@ -111,6 +111,16 @@ void add_if_visited(Features features, std::vector<Features>& out) {
 
 }  // namespace
 
+bool lasts_days(const std::vector<double>& t) {
+  constexpr double least = 3.0 * seconds_of_a_day;
+  return !t.empty() && *std::max_element(t.begin(), t.end()) - *std::min_element(t.begin(), t.end()) >= least;
+}
+
+double hour_of_day(double t) {
+  constexpr double hour = 3600.0;
+  return (t - seconds_of_a_day * std::floor(t / seconds_of_a_day)) / hour;
+}
+
 std::string past_of(const std::string& quantity) { return "the past of " + quantity; }
 
 std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most) {
@@ -126,6 +136,12 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSen
     add_if_visited(hats(course, force.used(), most), out);
   }
   add_if_visited(hats({"time", "s", -1, force.times(), force.times()}, force.used(), most), out);
+  if (!lasts_days(force.times())) return out;
+  constexpr int every_two_hours = 13;
+  Course day{time_of_day, "h"};
+  for (const double t : force.times()) day.values.push_back(hour_of_day(t));
+  day.ahead = day.values;
+  add_if_visited(hats(day, force.used(), std::max(most, every_two_hours)), out);
   return out;
 }
 

@@ -16,8 +16,15 @@ struct Features {
   Eigen::MatrixXd f, ahead;    ///< all samples × hats: at the filtered state, and as predicted for the end of the step
 };
 
-/// Quantities that maps are drawn over: those of the system that `explains` and vary, then time. `most` hats each, equally spaced over 0.5
-/// % to 99.5 % of the visited values (ends extended); hats with fewer than 25 samples under them are left out.
+/// Of recordings of three days and more, whatever they are of: what people do and the sun does recurs every 24 h, and a model without it
+/// blames an input that follows.
+inline constexpr const char* time_of_day = "time of day";
+[[nodiscard]] bool lasts_days(const std::vector<double>& t);
+/// [h] From t = 0 on: 0 to 24.
+[[nodiscard]] double hour_of_day(double t);
+
+/// Quantities that maps are drawn over: those of the system that `explains` and vary, then time and time_of_day. `most` hats each, equally
+/// spaced over 0.5 % to 99.5 % of the visited values (ends extended); hats with fewer than 25 samples under them are left out.
 [[nodiscard]] std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most = 10);
 
 /// How a memory of a quantity is called: "the past of u".

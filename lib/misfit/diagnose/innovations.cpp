@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "misfit/core/lists.h"
+#include "misfit/diagnose/features.h"
 #include "misfit/inference/states.h"
 #include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
@@ -165,6 +166,12 @@ std::vector<MissingForce> missing_force_of(const FilterEstimate& estimate) {
       }
       evaluator.quantities(smoothed.x.row(row).data(), data.inputs.at(k), data.signals->t[k], q.data());
       for (std::size_t i = 0; i < q.size(); ++i) force.values[i].push_back(q[i]);
+    }
+    if (lasts_days(force.t)) {
+      force.quantities.emplace_back(time_of_day);
+      force.quantity_units.emplace_back("h");
+      force.values.emplace_back();
+      for (const double t : force.t) force.values.back().push_back(hour_of_day(t));
     }
     out.push_back(std::move(force));
   }

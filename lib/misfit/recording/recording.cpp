@@ -307,9 +307,20 @@ class ColumnClassifier {
   void name_unknown_units() {
     for (std::size_t i = 0; i < not_understood_.size(); ++i) {
       if (not_understood_[i].empty()) continue;
-      out_.remarks.push_back(fmt::format("column '{}': the unit '{}' is not known, its numbers are taken as they are",
-                                         out_.columns[i].header, not_understood_[i]));
+      out_.remarks.push_back(
+          fmt::format("column '{}': {}its numbers are taken as they are", out_.columns[i].header, not_known(not_understood_[i])));
     }
+  }
+
+  /// With the unit that may be meant.
+  static std::string not_known(const std::string& unit) {
+    try {
+      static_cast<void>(parse_unit(unit));
+    } catch (const InputError& error) {
+      const std::string words = error.what();
+      if (const std::size_t end = words.find("? Valid:"); end != std::string::npos) return words.substr(0, end) + "? Now ";
+    }
+    return "the unit '" + unit + "' is not known, ";
   }
 
   /// With differences over 1, 2, 4 … samples: noise hides the derivative of what is sampled quickly.

@@ -30,6 +30,18 @@ Glossary further_glossary() {
       {"driven", "motion excited by more than the model has: residuals are correlated, or a random force is estimated"},
       {"coloured noise",
        "the part of a channel's measurement noise that is not white: a damped resonance with a standard deviation and a frequency"},
+      {"trim", "the angle, or other level, at which the static force of a curve is 0 and pulls back on both sides"},
+      {"samples ahead",
+       "a prediction from a state that was corrected by the measurements so far, so many samples into the future; the error of one sample "
+       "says little of what acts slowly, that of 32 much more"},
+      {"innovation", "a measurement less its prediction from all before it; of a right model these are white noise"},
+      {"unknown form, unknown curve",
+       "a force, or an error of an output, that follows a quantity in a way that no effect of the library has. What it follows need not be "
+       "its "
+       "cause"},
+      {"past of u", "what has not yet become of the last changes of u: a delay, a lag or another memory shows in it"},
+      {"time of day", "t modulo 24 h, from t = 0 of the recording on; looked at in recordings of three days and more"},
+      {"lack of fit", "what is still significant beside an effect, as a curve of what it reads: the effect is there in another form"},
       {"candidate", "an effect, or an unknown curve, that the model may lack"},
       {"cell", "one combination of the shapes at which a candidate is tested; effective: how many independent tests the cells are worth"},
       {"alias",

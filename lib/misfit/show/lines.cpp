@@ -33,12 +33,34 @@ std::vector<std::string> residuals(const Fit& fit) {
   return out;
 }
 
+/// The first `most`, and how many more there are.
+std::vector<std::string> first_of(std::vector<std::string> all, std::size_t most) {
+  if (all.size() <= most) return all;
+  const std::size_t more = all.size() - most;
+  all.resize(most);
+  all.push_back(fmt::format("and {} more", more));
+  return all;
+}
+
 std::vector<std::string> scalars(const Fit& fit) {
   std::vector<std::string> out;
   for (const auto& [name, e] : fit.parameters) {
-    if (!is_curve_coefficient(name) && out.size() < most_named) out.push_back(name + " " + shown(e));
+    if (!is_curve_coefficient(name)) out.push_back(name + " " + shown(e));
   }
-  return out;
+  return first_of(std::move(out), most_named);
+}
+
+/// What fit prints in full, without the numbers and consequences behind it.
+std::vector<std::string> warnings(const Fit& fit) {
+  constexpr std::size_t most = 2;
+  std::vector<std::string> out;
+  for (const std::string& warning : fit.warnings) out.push_back(warning.substr(0, std::min(warning.find(": "), warning.find(" ("))));
+  return first_of(std::move(out), most);
+}
+
+std::string force_in_words(const Fit& fit, const Estimate& force) {
+  const bool seen = fit.driven || force.sigma > 0.0;
+  return seen ? "random force " + shown(force) : "random force not distinguishable from 0";
 }
 
 }  // namespace
@@ -80,11 +102,13 @@ std::string line_of(const Fit& fit) {
   const std::vector<std::string> errors = residuals(fit);
   const auto force = force_strength(fit.force);
   if (!errors.empty() && !force) parts.push_back("RMS error of " + joined(errors, ", of "));
-  if (force) parts.push_back("random force " + shown(*force));
+  if (force) parts.push_back(force_in_words(fit, *force));
   if (fit.status == FitStatus::not_converged) parts.push_back("not converged: " + fit.message);
   std::erase(parts, "");
   const auto silent = std::count_if(fit.curves.begin(), fit.curves.end(), [](const CurveEstimate& curve) { return !curve.informative; });
   if (silent > 0) parts.emplace_back("damping not informative, the motion being driven");
+  const std::vector<std::string> warned = warnings(fit);
+  if (!warned.empty()) parts.push_back("! " + joined(warned, "; "));
   return joined(parts, "; ");
 }
 

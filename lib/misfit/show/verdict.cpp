@@ -39,12 +39,22 @@ const Fit* leading_fit(const std::vector<Fit>& fits) {
   return last;
 }
 
+/// With a random force the model is corrected at each measurement: the error is that of the next one.
 std::vector<ErrorChange> errors_of(const Fit& fit) {
   std::vector<ErrorChange> out;
+  const auto force = force_strength(fit.force);
   for (const auto& [channel, rms] : fit.rms)
-    out.push_back({ErrorKind::rms_error, channel, rms, std::nullopt, share_of_motion(fit, channel)});
-  if (const auto force = force_strength(fit.force)) out.push_back({ErrorKind::random_force, "", *force, std::nullopt, ""});
+    out.push_back({ErrorKind::rms_error, channel + (force ? ", one sample ahead" : ""), rms, std::nullopt, share_of_motion(fit, channel)});
+  const bool seen = fit.driven || (force && force->sigma > 0.0);
+  if (force) out.push_back({ErrorKind::random_force, "", *force, std::nullopt, seen ? "" : "not distinguishable from 0"});
   return out;
+}
+
+/// ", 32 samples (0.64 s) ahead"; without the time where the fit has no predictions.
+std::string ahead(int samples, const Fit* fit) {
+  const std::vector<double>* t = fit == nullptr || fit->predictions.empty() ? nullptr : &fit->predictions.front().t;
+  const std::string time = t == nullptr || t->size() < 2 ? "" : " (" + in_display_unit(samples * usual_step(*t), "s") + ")";
+  return fmt::format(", {} samples{} ahead", samples, time);
 }
 
 constexpr double clear_fall = -20.0;  // [%]
@@ -64,7 +74,7 @@ void most_telling_first(std::vector<ErrorChange>& errors) {
   std::stable_sort(errors.begin(), errors.end(), [&](const ErrorChange& a, const ErrorChange& b) { return rank(a) < rank(b); });
 }
 
-std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last) {
+std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last, const Fit* fit) {
   std::vector<ErrorChange> out;
   constexpr std::size_t farthest = std::size(kLadderSteps) - 1;
   for (const auto& [channel, steps] : first.k_step) {
@@ -72,7 +82,7 @@ std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last) {
     const auto rms = first.rms.find(channel);
     if (after == last.k_step.end() || rms == first.rms.end() || steps.size() <= farthest || after->second.size() <= farthest) continue;
     ErrorChange change;
-    change.of = fmt::format("{}, {} samples ahead", channel, kLadderSteps[farthest]);
+    change.of = channel + ahead(kLadderSteps[farthest], fit);
     change.before.value = steps[farthest];
     change.before.unit = rms->second.unit;
     change.after = change.before;
@@ -98,6 +108,18 @@ std::string values_of(const Estimates& parameters) {
   return join_words(out);
 }
 
+/// What the last model estimates beside what was added, numbers alone; empty where it is more than a line says.
+Estimates others_of_last(const Ladder& ladder) {
+  constexpr std::size_t most = 6;
+  const Rung& last = ladder.rungs.back();
+  Estimates out = last.estimates.value_or(Estimates{});
+  for (const Rung& rung : ladder.rungs) {
+    if (rung.added.empty()) continue;
+    for (const auto& [name, estimate] : rung.parameters) out.erase(name);
+  }
+  return out.size() > most ? Estimates{} : out;
+}
+
 /// "quadratic_drag: drag = 0.5010 ± 0.0004 1/m": of what was added, as the last model has it; where that differs, also as its own rung has
 /// it.
 std::vector<std::string> added_with_estimates(const Ladder& ladder) {
@@ -115,6 +137,7 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     if (rung.held_out_gain) line += fmt::format("; held-out gain {:.1f}", *rung.held_out_gain);
     out.push_back(line + (rung.also ? "; " + *rung.also : ""));
   }
+  if (const Estimates rest = others_of_last(ladder); !rest.empty() && !out.empty()) out.push_back("beside them: " + values_of(rest));
   return out;
 }
 
@@ -137,7 +160,7 @@ class VerdictBuilder {
     effects_added_ = in_.ladder != nullptr && in_.ladder->rungs.size() > 1;
     if (in_.diagnosis != nullptr) out_.where = where_it_fails(in_.diagnosis->maps);
     if (effects_added_) {
-      out_.errors = errors_between(in_.ladder->rungs.front(), in_.ladder->rungs.back());
+      out_.errors = errors_between(in_.ladder->rungs.front(), in_.ladder->rungs.back(), fit_);
       out_.added = added_with_estimates(*in_.ladder);
     } else if (fit_ != nullptr) {
       out_.errors = errors_of(*fit_);
@@ -311,10 +334,11 @@ class VerdictBuilder {
       const EffectPlace* curve = untried(d.unexplained_effects);
       const bool in_vain = curve == nullptr && !d.unexplained_effects.empty();
       if (in_vain) unknown += "; as a curve it explains too little for its coefficients";
-      const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles)
-                               : in_vain
-                                   ? ""
-                                   : "look where it fails (misfit open), then write the effect as one line of the study: misfit help study";
+      const std::string next =
+          curve != nullptr ? command("add", curve->effect) + at_place(curve->roles)
+          : in_vain        ? ""
+                           : "look where it fails (misfit open), then write the effect as one line of the study: misfit help study, and "
+                             "for its formula misfit help system";
       effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       added("whether more is missing is not decided; " + best_rejected(d.candidates.front()), "", VerdictKind::not_decided);
@@ -331,7 +355,7 @@ class VerdictBuilder {
     const auto force = fit_->driven ? force_strength(fit_->force) : std::nullopt;
     constexpr double sigmas = 2.0;
     if (force && force->value > sigmas * force->sigma) {
-      say(VerdictKind::random_force, tested + ", and what drives the motion is a random force of " + shown(*force), "");
+      say(VerdictKind::random_force, tested + ", and what is left is a random force of " + shown(*force), "");
     } else {
       say(VerdictKind::nothing_missing, tested, "");
     }

@@ -174,8 +174,16 @@ bool is_still_until_held_out(const Table& table, const std::string& column) {
          std::any_of(fitted, values.end(), [&](double v) { return v != values.front(); });
 }
 
+void note_still_inputs(const Table& table, GuessedModel& model) {
+  for (const std::string& input : model.inputs) {
+    if (is_still_until_held_out(table, input))
+      model.remarks.push_back(fmt::format(
+          "{} changes in the last quarter alone, which is held out: what it does cannot be found, hold out another part", input));
+  }
+}
+
 /// Inputs that the data want in no equation: a user who knows better is to see it.
-void note_unneeded_inputs(const Table& table, GuessedModel& model) {
+void note_unneeded_inputs(GuessedModel& model) {
   std::vector<std::string> unneeded;
   for (const std::string& input : model.inputs) {
     const bool needed = std::any_of(model.outputs.begin(), model.outputs.end(), [&](const GuessedOutput& output) {
@@ -188,11 +196,6 @@ void note_unneeded_inputs(const Table& table, GuessedModel& model) {
       fmt::format("in no equation of the first model: {}; with it, the held-out error falls by less than 20 % "
                   "(input_gain would add it)",
                   fmt::join(unneeded, ", ")));
-  for (const std::string& input : unneeded) {
-    if (is_still_until_held_out(table, input))
-      model.remarks.push_back(fmt::format(
-          "{} changes in the last quarter alone, which is held out: what it does cannot be found, hold out another part", input));
-  }
 }
 
 }  // namespace
@@ -236,7 +239,8 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
                 fmt::format("a first model has at most {} outputs, {} states and {} parameters", most_guessed.outputs, most_guessed.states,
                             most_guessed.parameters),
                 model.remarks);
-  note_unneeded_inputs(*longest, model);
+  note_unneeded_inputs(model);
+  note_still_inputs(*longest, model);
   return model;
 }
 
