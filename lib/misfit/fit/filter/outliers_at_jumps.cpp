@@ -66,8 +66,7 @@ std::string in_words(const OutliersAtJumps& found, const SystemSpec& system) {
   const std::string& input = system.inputs[found.input].name;
   return fmt::format(
       "{:.0f} of {:.0f} measurements more than 5 sigma from their prediction come within two samples of a jump of {}, as {:.2g} % of all "
-      "do: "
-      "they are kept. The time of {} or of a sensor may be off, or the model lacks something that shows at once",
+      "do: they are kept. The time of {} or of a sensor may be off, or the model lacks something that shows at once",
       found.at_jumps, found.beyond, input, 100.0 * found.of_all, input);
 }
 
