@@ -85,7 +85,6 @@ struct FilterEstimate {
 ///   3. `LikelihoodAscent::iterate`: in turn, until neither gains, the parameters by Gauss–Newton on innovations with the gains held per
 ///      iteration [MI], roughness by marginal likelihood (estimate_smoothing), and the noise by Fisher scoring about the runs (fit_noise).
 ///   4. `reject_outliers` (no use given): measurements beyond the gate are set aside and 3. is repeated, until their set stays; those at
-///   the
 ///      jumps of an input stay where that is what most of them have in common (outliers_at_jumps.h).
 ///   5. `refine_jointly` (if verified): Newton steps over parameters and noise together by derivatives of the exact likelihood
 ///      (lib/misfit/README.md, 5.7); its own steps are listed there.
