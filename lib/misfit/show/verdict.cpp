@@ -50,10 +50,20 @@ std::vector<ErrorChange> errors_of(const Fit& fit) {
   return out;
 }
 
+/// "0.64 s", "5.33 h".
+std::string duration_in_words(double seconds) {
+  constexpr double minute = 60.0, hour = 3600.0, day = 86400.0;
+  const auto [unit, name] = seconds < 2.0 * minute ? std::pair(1.0, "s")
+                            : seconds < 2.0 * hour ? std::pair(minute, "min")
+                            : seconds < 2.0 * day  ? std::pair(hour, "h")
+                                                   : std::pair(day, "d");
+  return fmt::format("{:.3g} {}", seconds / unit, name);
+}
+
 /// ", 32 samples (0.64 s) ahead"; without the time where the fit has no predictions.
 std::string ahead(int samples, const Fit* fit) {
   const std::vector<double>* t = fit == nullptr || fit->predictions.empty() ? nullptr : &fit->predictions.front().t;
-  const std::string time = t == nullptr || t->size() < 2 ? "" : " (" + in_display_unit(samples * usual_step(*t), "s") + ")";
+  const std::string time = t == nullptr || t->size() < 2 ? "" : " (" + duration_in_words(samples * usual_step(*t)) + ")";
   return fmt::format(", {} samples{} ahead", samples, time);
 }
 
