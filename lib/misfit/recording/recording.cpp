@@ -162,10 +162,11 @@ class ColumnClassifier {
         if (time_ == none && counter.empty() && forward(i) == 1.0 && is_integer(finite(values(i)))) counter = c.header;
       }
     }
-    if (time_ == none)
+    if (time_ == none) {
       fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, or holds dates, and increases") +
                   (counter.empty() ? "" : " ('" + counter + "' counts rows, but over which interval?)") +
                   "; write one as t[s], or dates as 2024-03-01 00:10:00 or 01.03.2024 00:10");
+    }
     ColumnSurvey& c = out_.columns[time_];
     c.use = ColumnUse::time;
     c.resolution = 0.0;
