@@ -117,7 +117,8 @@ TEST(ExchangedPoles, AreThoseOfTheEquations) {
   ModelRequest model = request_of("text", {effect("input_lag", {{"input", "u"}, {"port", "u"}})});
   hold(model, "lagged_gain", 1.0);
   model.parameters["input_tau"].value = lag;
-  const FilterEstimate estimate = estimate_of(model, *known, {record_of_motor(4, lag, 0.02)});
+  const std::vector<Signals> signals = {record_of_motor(4, lag, 0.02)};
+  const FilterEstimate estimate = estimate_of(model, *known, signals);
   const std::vector<double> constants = time_constants_of_system(estimate);
   ASSERT_EQ(constants.size(), 1U) << "the lag's own is none of the system's";
   EXPECT_NEAR(constants.front(), 1.0 / estimate.model.parameters[1].value, 1e-6);

@@ -80,7 +80,8 @@ U = { unit = "V", formula = "v + R0*I", noise = 0.01 }
     U_before = v + 0.2 * I;
     v = 0.5 * I + (v - 0.5 * I) * std::exp(-0.1 / 2.0);
   }
-  const FilterEstimate found = estimate_filter(assemble(testing_models::request_of("text"), *registry), {}, {signals});
+  const std::vector<Signals> experiments = {signals};
+  const FilterEstimate found = estimate_filter(assemble(testing_models::request_of("text"), *registry), {}, experiments);
   EXPECT_THAT(found.notes, testing::Contains(testing::HasSubstr("come within two samples of a jump of I")));
   EXPECT_EQ(found.outliers, 1);
   EXPECT_EQ(found.data.front().use[310], SampleRole::none);
