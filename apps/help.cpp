@@ -55,9 +55,10 @@ std::string system_text() {
              "b), saturate(x, low, high); if(condition, a, b); smooth_step(x, w) = (1 + tanh(x/w))/2. abs, sign, min, max "
              "and saturate take a width w as a last argument, in the unit of x, over which the kink or the jump is rounded: "
              "what jumps has no derivative by a level inside it, so that a level that is to be estimated needs a width. A "
-             "bare number has no unit: declare others as parameters. What recurs every day between two hours, with day = { "
-             "unit = \"s\", value = 86400 }, noon the middle of the window [s] and edge = 0.98 for 1.5 h, 0.92 for 3 h, 0.71 "
-             "for 6 h: if(cos(2*pi*(t - noon)/day) > edge, x - y, 0*x).") +
+             "bare number has no unit: declare others as parameters. What recurs every day between two hours is "
+             "if(cos(2*pi*(t - noon)/day) > edge, x - y, 0*x), with parameters that are not free: day = { unit = \"s\", "
+             "value = 86400, free = false }, noon the middle of the window [s], and edge 0.98 for 1.5 h, 0.92 for 3 h, 0.71 "
+             "for 6 h.") +
          paragraph(fmt::format("Names that formulas reserve: {}.", fmt::join(formula::reserved_names(), ", ")));
 }
 

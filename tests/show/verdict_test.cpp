@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "misfit/core/files.h"
+#include "misfit/show/error_changes.h"
 #include "tests/core/temporary_folder.h"
 
 namespace misfit {

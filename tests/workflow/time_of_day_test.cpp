@@ -12,6 +12,8 @@
 namespace {
 
 using namespace misfit;
+using testing::Contains;
+using testing::HasSubstr;
 using testing_text_study::TextStudy;
 
 constexpr const char* house = R"toml([system]
@@ -69,6 +71,28 @@ TEST(TimeOfDay, ShowsTheWindowThatIsOpenEveryMorning) {
   const Discovery found = identification.discover();
   EXPECT_EQ(found.outcome, SearchOutcome::unknown_form) << found.verdict;
   EXPECT_EQ(found.unexplained_quantity, "time of day");
+}
+
+/// As `misfit help system` writes what recurs every day.
+std::string window(const std::string& held) {
+  return "window = { port = \"dT/dt\", formula = \"g*if(cos(2*pi*(t - noon)/day) > edge, out - T, 0*T)\", parameters = { "
+         "g = { unit = \"1/s\", value = 1e-6, free = true }, noon = { unit = \"s\", value = 27900.0" +
+         held + " }, day = { unit = \"s\", value = 86400.0" + held + " }, edge = { unit = \"-\", value = 0.98" + held + " } } }\n";
+}
+
+TEST(TimeOfDay, TheFormulaOfTheHelpFindsHowWideTheWindowStands) {
+  TextStudy study(house, recording(8, true));
+  const Fit fit = study.fit("filter_error", window(", free = false"));
+  ASSERT_TRUE(fit.usable()) << fit.message;
+  const Estimate g = fit.parameters.at("g");
+  EXPECT_NEAR(g.value, 3e-5, 0.03 * 3e-5) << "noon is 7:45, and edge that of 1.53 h, which is 2 % too long";
+  EXPECT_LT(g.sigma, 3e-7);
+}
+
+TEST(TimeOfDay, WhatJumpsHasNoDerivativeByItsHoursAndTheFilterSaysSo) {
+  TextStudy study(house, recording(8, true));
+  const Fit fit = study.fit("filter_error", window(""));
+  EXPECT_THAT(fit.warnings, Contains(HasSubstr("nothing in these data depends on noon, day and edge; fix them")));
 }
 
 TEST(TimeOfDay, IsNothingWhereNothingRecursAndIsNotLookedAtInADayOrTwo) {

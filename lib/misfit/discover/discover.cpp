@@ -99,8 +99,6 @@ class Search {
  private:
   /// Approximate shares of a search's time, measured on 79 s of flight.
   static constexpr double end_of_screen = 0.45, end_of_curves = 0.5, end_of_refits = 0.9;
-  /// What a force must explain of the squares of the free run to be refitted for that, and what its refit must.
-  static constexpr double least_share_of_free_run = 0.2;
 
   void refit_the_best_asked_for() {
     const auto wanted = [&](const RankedCandidate& e) { return options_.refit_best_of && options_.refit_best_of(e.candidate); };
@@ -199,20 +197,12 @@ class Search {
   /// The forces that explain most of the free run, each at least a fifth of it, begun from there: down to the first that one step ahead has
   /// found already (under mpirun all of them, as in refit_the_best()).
   void refit_what_the_free_run_shows() {
-    constexpr std::size_t most = 3;
     calm_ = free_run(estimate_);
     if (!calm_) return;
     calm_score_.emplace(*calm_);
     const ForceSensitivity force(*calm_);
     calm_screening_ = screen({*calm_, *calm_score_, force, options_.threads}, candidate_models_);
-    double counted = 0.0;
-    for (const FilterTrace& trace : calm_->traces) counted += static_cast<double>(trace.counted);
-    for (const ScreeningResult& s : calm_screening_) {
-      const bool a_force = s.candidate_model->family != CandidateFamily::sensor;  // the random force takes over nothing else
-      if (a_force && s.runs && s.result.dof > 0 && s.result.chi2 > least_share_of_free_run * counted) nominated_.push_back(&s);
-    }
-    std::stable_sort(nominated_.begin(), nominated_.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });
-    nominated_.resize(std::min(nominated_.size(), most));
+    nominated_ = forces_shown_by(*calm_, calm_screening_);
     const auto known = std::find_if(nominated_.begin(), nominated_.end(), [this](const ScreeningResult* s) {
       return std::any_of(ranked_.begin(), ranked_.end(), [&](const RankedCandidate& e) {
         return e.screening->candidate_model == s->candidate_model && e.refit && significant(e);
@@ -246,11 +236,7 @@ class Search {
   /// What the free run alone nominated must explain there what it promised: else its refit went elsewhere, and is not counted.
   void require_of_free_run(RankedCandidate& e) {
     const std::optional<FilterEstimate> after = free_run(e.refit->estimate);
-    if (!after) return;  // nothing is left to the random force
-    double log_ratio = 0.0;
-    for (std::size_t o = 0; o < after->noise.channels.size(); ++o)
-      log_ratio += std::log(after->noise.channels[o].white / calm_->noise.channels[o].white);
-    if (std::exp(2.0 * log_ratio / static_cast<double>(after->noise.channels.size())) < 1.0 - least_share_of_free_run) return;
+    if (!after || is_explained(*calm_, *after)) return;  // none: nothing is left to the random force
     e.refit.reset();
     e.log_p = e.screening->log_p;
     e.candidate = named_candidate(*e.screening, families_);

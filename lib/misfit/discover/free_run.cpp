@@ -6,6 +6,9 @@
 namespace misfit {
 namespace {
 
+/// Of the squares of the free run that a force explains.
+constexpr double least_share = 0.2;
+
 /// Usual size of the counted innovations of every output, and how many times larger than expected they are: medians of their sizes, so that
 /// the first samples, which are far from a start that nobody knows, do not count.
 struct Sizes {
@@ -66,6 +69,27 @@ std::optional<FilterEstimate> free_run(const FilterEstimate& estimate) {
   }
   out.objective = out.loglik + out.prior().log_density(out.model.theta());
   return out;
+}
+
+std::vector<const ScreeningResult*> forces_shown_by(const FilterEstimate& calm, const std::vector<ScreeningResult>& screened) {
+  constexpr std::size_t most = 3;
+  double counted = 0.0;
+  for (const FilterTrace& trace : calm.traces) counted += static_cast<double>(trace.counted);
+  std::vector<const ScreeningResult*> out;
+  for (const ScreeningResult& s : screened) {
+    const bool a_force = s.candidate_model->family != CandidateFamily::sensor;  // the random force takes over nothing else
+    if (a_force && s.runs && s.result.dof > 0 && s.result.chi2 > least_share * counted) out.push_back(&s);
+  }
+  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });
+  out.resize(std::min(out.size(), most));
+  return out;
+}
+
+bool is_explained(const FilterEstimate& calm, const FilterEstimate& after) {
+  double log_ratio = 0.0;
+  for (std::size_t o = 0; o < after.noise.channels.size(); ++o)
+    log_ratio += std::log(after.noise.channels[o].white / calm.noise.channels[o].white);
+  return std::exp(2.0 * log_ratio / static_cast<double>(after.noise.channels.size())) < 1.0 - least_share;
 }
 
 }  // namespace misfit

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
-#include "misfit/fit/filter/filter_estimate.h"
+#include "misfit/discover/screen.h"
 
 namespace misfit {
 
@@ -12,5 +13,11 @@ namespace misfit {
 /// Residuals are correlated here, so that likelihoods mean nothing: only shares of what is left do. nullopt: the random force does little,
 /// the free run's residuals being usually less than 1.2 times those of one step in every output, or the model cannot be run so.
 [[nodiscard]] std::optional<FilterEstimate> free_run(const FilterEstimate& estimate);
+
+/// Of candidates screened at the free run the three forces that explain most of it, each at least a fifth; the largest first.
+[[nodiscard]] std::vector<const ScreeningResult*> forces_shown_by(const FilterEstimate& calm, const std::vector<ScreeningResult>& screened);
+
+/// Whether of the squares of a free run a fifth is gone in another: geometric mean over the outputs.
+[[nodiscard]] bool is_explained(const FilterEstimate& calm, const FilterEstimate& after);
 
 }  // namespace misfit

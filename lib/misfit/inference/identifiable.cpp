@@ -16,6 +16,20 @@ struct Column {
   Eigen::Index at;
 };
 
+/// Free parameters that belong to no curve.
+std::vector<Column> columns_of(const Model& model) {
+  const std::vector<int> free = model.free_parameters();
+  std::vector<Column> out;
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    if (model.parameters[free[c]].curve < 0) out.push_back({&model.parameters[free[c]], static_cast<Eigen::Index>(c)});
+  }
+  return out;
+}
+
+bool acts(const NormalEquations& problem, Eigen::Index at) {
+  return problem.N(at, at) > 0.0 || (problem.prior.precision.size() > at && problem.prior.precision[at] > 0.0);
+}
+
 /// Schur complement of the initial states in N (scaled to unit diagonal), for these columns.
 Eigen::MatrixXd reduced(const NormalEquations& problem, const std::vector<Column>& columns, Eigen::Index free) {
   const auto n = std::ssize(columns);
@@ -52,21 +66,21 @@ std::string in_words(const std::vector<std::string>& names, const std::vector<do
 
 }  // namespace
 
-std::string undetermined(const Model& model, const NormalEquations& problem) {
-  const std::vector<int> free = model.free_parameters();
-  std::vector<Column> columns;
+std::string without_effect(const Model& model, const NormalEquations& problem) {
   std::vector<std::string> idle;
-  for (std::size_t c = 0; c < free.size(); ++c) {
-    const Parameter& p = model.parameters[free[c]];
-    const Eigen::Index at = c;
-    if (p.curve >= 0) continue;
-    const bool acts = problem.N(at, at) > 0.0 || (problem.prior.precision.size() > at && problem.prior.precision[at] > 0.0);
-    if (acts) columns.push_back({&p, at});
-    if (!acts) idle.push_back(p.name);
+  for (const Column& column : columns_of(model)) {
+    if (!acts(problem, column.at)) idle.push_back(column.parameter->name);
   }
-  if (!idle.empty()) return "nothing in these data depends on " + join_words(idle) + "; fix it, or remove it from the model";
+  if (idle.empty()) return {};
+  return "nothing in these data depends on " + join_words(idle) +
+         (idle.size() > 1 ? "; fix them, or remove them" : "; fix it, or remove it") + " from the model";
+}
+
+std::string undetermined(const Model& model, const NormalEquations& problem) {
+  if (const std::string idle = without_effect(model, problem); !idle.empty()) return idle;
+  const std::vector<Column> columns = columns_of(model);
   if (columns.size() < 2) return {};
-  const Eigen::MatrixXd N = reduced(problem, columns, free.size());
+  const Eigen::MatrixXd N = reduced(problem, columns, model.free_parameters().size());
   Eigen::VectorXd size(N.rows());
   for (Eigen::Index a = 0; a < N.rows(); ++a) size[a] = 1.0 / std::sqrt(problem.N(columns[a].at, columns[a].at));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(N);

@@ -8,6 +8,9 @@
 
 namespace misfit {
 
+/// The free parameters that neither a residual nor a prior depends on, as a sentence; empty if there is none.
+[[nodiscard]] std::string without_effect(const Model& model, const NormalEquations& problem);
+
 /// Which free parameters these data do not determine, as a sentence: a parameter that no residual depends on, or several of which only a
 /// combination acts — named as product or ratio where it is one. From the eigenvectors of the normal matrix N (columns scaled to unit
 /// diagonal, priors included, curves held by their roughness left out; further columns of N, initial states, are projected out) with

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/held_out_change.h"
 #include "misfit/data/log/log.h"
 #include "misfit/data/log/time_base.h"
 #include "misfit/math/angle.h"
@@ -187,12 +187,7 @@ class Reader {
   /// Such an input is a constant to the estimation.
   void note_still_inputs() {
     for (const Signal& input : out_.inputs) {
-      std::set<double> counted, held_out;
-      for (std::size_t i = out_.exclude; i < input.values.size(); ++i) {
-        std::set<double>& part = out_.held_out(i) ? held_out : counted;
-        if (part.size() < 2) part.insert(input.values[i]);
-      }
-      if (counted.size() == 1 && (held_out.size() > 1 || (held_out.size() == 1 && held_out != counted)))
+      if (changes_held_out_alone(input.values, out_.exclude, [this](std::size_t i) { return out_.held_out(i); }))
         out_.notes.push_back("input " + input.name +
                              " changes in the part that is held out alone: what it does cannot be estimated, hold " + "out another part");
     }

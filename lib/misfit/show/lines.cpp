@@ -59,8 +59,7 @@ std::vector<std::string> warnings(const Fit& fit) {
 }
 
 std::string force_in_words(const Fit& fit, const Estimate& force) {
-  const bool seen = fit.driven || force.sigma > 0.0;
-  return seen ? "random force " + shown(force) : "random force not distinguishable from 0";
+  return is_seen(fit, force) ? "random force " + shown(force) : "random force not distinguishable from 0";
 }
 
 }  // namespace

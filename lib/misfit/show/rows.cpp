@@ -62,6 +62,8 @@ std::optional<Estimate> force_strength(const std::map<std::string, Estimate>& fo
   return found == force.end() ? std::nullopt : std::optional(found->second);
 }
 
+bool is_seen(const Fit& fit, const Estimate& force) { return fit.driven || force.sigma > 0.0; }
+
 std::string shown_drop(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.1f}", *value) : kMissing;
 }

@@ -52,6 +52,8 @@ inline constexpr const char* kMissing = "–";
 [[nodiscard]] std::string shown(const std::optional<Estimate>& e);
 /// The strength of a random force, the first in the order of its ports: without correlation times. nullopt: there is none.
 [[nodiscard]] std::optional<Estimate> force_strength(const std::map<std::string, Estimate>& force);
+/// Whether the random force of a fit can be distinguished from 0.
+[[nodiscard]] bool is_seen(const Fit& fit, const Estimate& force);
 /// With one decimal and, for a change, its sign.
 [[nodiscard]] std::string shown_drop(const std::optional<double>& value);
 [[nodiscard]] std::string shown_gain(const std::optional<double>& value);

@@ -10,23 +10,13 @@
 #include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
 #include "misfit/math/statistics.h"
+#include "misfit/show/error_changes.h"
 #include "misfit/show/rows.h"
 
 namespace misfit {
 namespace {
 
 using Estimates = std::map<std::string, Estimate>;
-
-/// "1.1 % of the motion" out of what a fit says of the residuals of a channel.
-std::string share_of_motion(const Fit& fit, const std::string& channel) {
-  const std::string begin = "residuals of " + channel + " in ";
-  for (const auto& [name, words] : fit.facts) {
-    const std::string fitted = words.substr(0, words.find("; held out"));
-    const std::size_t comma = fitted.rfind(", ");
-    if (name.starts_with(begin) && comma != std::string::npos && !fitted.starts_with("held out")) return fitted.substr(comma + 2);
-  }
-  return "";
-}
 
 /// The fit that the verdict is about: of the method with a random force where that was used, else the last one that has residuals.
 const Fit* leading_fit(const std::vector<Fit>& fits) {
@@ -37,79 +27,6 @@ const Fit* leading_fit(const std::vector<Fit>& fits) {
     if (last == nullptr || !fit.rms.empty()) last = &fit;
   }
   return last;
-}
-
-/// With a random force the model is corrected at each measurement: the error is that of the next one.
-std::vector<ErrorChange> errors_of(const Fit& fit) {
-  std::vector<ErrorChange> out;
-  const auto force = force_strength(fit.force);
-  for (const auto& [channel, rms] : fit.rms)
-    out.push_back({ErrorKind::rms_error, channel + (force ? ", one sample ahead" : ""), rms, std::nullopt, share_of_motion(fit, channel)});
-  const bool seen = fit.driven || (force && force->sigma > 0.0);
-  if (force) out.push_back({ErrorKind::random_force, "", *force, std::nullopt, seen ? "" : "not distinguishable from 0"});
-  return out;
-}
-
-/// "0.64 s", "5.33 h".
-std::string duration_in_words(double seconds) {
-  constexpr double minute = 60.0, hour = 3600.0, day = 86400.0;
-  const auto [unit, name] = seconds < 2.0 * minute ? std::pair(1.0, "s")
-                            : seconds < 2.0 * hour ? std::pair(minute, "min")
-                            : seconds < 2.0 * day  ? std::pair(hour, "h")
-                                                   : std::pair(day, "d");
-  return fmt::format("{:.3g} {}", seconds / unit, name);
-}
-
-/// ", 32 samples (0.64 s) ahead"; without the time where the fit has no predictions.
-std::string ahead(int samples, const Fit* fit) {
-  const std::vector<double>* t = fit == nullptr || fit->predictions.empty() ? nullptr : &fit->predictions.front().t;
-  const std::string time = t == nullptr || t->size() < 2 ? "" : " (" + duration_in_words(samples * usual_step(*t)) + ")";
-  return fmt::format(", {} samples{} ahead", samples, time);
-}
-
-constexpr double clear_fall = -20.0;  // [%]
-
-/// A change that stands for itself: beyond its sigma, or a clear fall where no sigma is known.
-bool is_telling(const ErrorChange& e) {
-  return std::max(e.before.sigma, e.after ? e.after->sigma : 0.0) > 0.0 ? !e.within_sigma() : e.per_cent().value_or(0.0) <= clear_fall;
-}
-
-/// A fall of the error in what was measured says more than one of the random force, unless it is small beside that.
-void most_telling_first(std::vector<ErrorChange>& errors) {
-  const auto rank = [](const ErrorChange& e) {
-    const double change = e.within_sigma() ? 0.0 : e.per_cent().value_or(0.0);
-    const bool measured = e.kind == ErrorKind::rms_error && change <= clear_fall;
-    return measured ? change - 100.0 : change;
-  };
-  std::stable_sort(errors.begin(), errors.end(), [&](const ErrorChange& a, const ErrorChange& b) { return rank(a) < rank(b); });
-}
-
-std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last, const Fit* fit) {
-  std::vector<ErrorChange> out;
-  constexpr std::size_t farthest = std::size(kLadderSteps) - 1;
-  for (const auto& [channel, steps] : first.k_step) {
-    const auto after = last.k_step.find(channel);
-    const auto rms = first.rms.find(channel);
-    if (after == last.k_step.end() || rms == first.rms.end() || steps.size() <= farthest || after->second.size() <= farthest) continue;
-    ErrorChange change;
-    change.of = channel + ahead(kLadderSteps[farthest], fit);
-    change.before.value = steps[farthest];
-    change.before.unit = rms->second.unit;
-    change.after = change.before;
-    change.after->value = after->second[farthest];
-    out.push_back(std::move(change));
-  }
-  const auto before = force_strength(first.force), force = force_strength(last.force);
-  if (before && force) out.push_back({ErrorKind::random_force, "", *before, *force, ""});
-  most_telling_first(out);
-  return out;
-}
-
-std::string change_in_words(const ErrorChange& e) {
-  if (e.within_sigma())
-    return fmt::format("the {} changes by less than its sigma, from {} to {}", e.what(), briefly(e.before), briefly(*e.after));
-  const double change = e.per_cent().value_or(0.0);
-  return fmt::format("the {} {} from {}", e.what(), change < 0.0 ? "falls" : "rises", shown(e));
 }
 
 std::string values_of(const Estimates& parameters) {
@@ -414,16 +331,6 @@ class VerdictBuilder {
 }  // namespace
 
 Verdict verdict_of(const VerdictInput& input) { return VerdictBuilder(input).verdict(); }
-
-std::string shown(const ErrorChange& e) {
-  const std::string remark = e.remark.empty() ? "" : " (" + e.remark + ")";
-  if (!e.after) return briefly(e.before) + remark;
-  if (e.kind == ErrorKind::trim) return briefly(e.before) + " to " + briefly(*e.after) + remark;
-  if (e.within_sigma()) return briefly(e.before) + " to " + briefly(*e.after) + " (within its sigma)";
-  const auto change = e.per_cent();
-  return briefly(e.before) + " to " + briefly(*e.after) +
-         (change ? fmt::format(" ({:+.{}f} %)", *change, std::abs(*change) < 10.0 || std::abs(*change) > 99.0 ? 1 : 0) : "");
-}
 
 Blocks blocks_of(const Verdict& v) {
   Blocks out;

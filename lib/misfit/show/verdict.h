@@ -34,9 +34,6 @@ struct VerdictInput {
 /// The box at the end of what a terminal shows and at the beginning of a report: sentence, errors, next command.
 [[nodiscard]] Blocks blocks_of(const Verdict& verdict);
 
-/// "31.2 ± 1.2 N m to 27.56 ± 0.90 N m (−12 %)": of a change, or the value alone; its remark.
-[[nodiscard]] std::string shown(const ErrorChange& change);
-
 /// A word of a shell: in quotation marks where it has characters other than letters, digits and ./-_:
 [[nodiscard]] std::string shell_word(const std::string& text);
 

@@ -344,6 +344,16 @@ void describe_estimates(const FilterEstimate& estimate, Fit& fit) {
   describe_freedom(estimate.model, problem, estimate.penalties, 1.0, fit);
 }
 
+/// A search with the weak priors that keep it regular ends with such parameters where it began, or where chance took them.
+void warn_without_effect(const FilterEstimate& estimate, Fit& fit) {
+  const Eigen::Index columns = estimate.covariance.rows();
+  NormalEquations problem;
+  problem.prior = parameter_priors(estimate.model);
+  problem.N = Eigen::MatrixXd::Zero(columns, columns);
+  for (const auto& jacobian : estimate.jacobians) problem.N += jacobian.J.transpose() * jacobian.J;
+  if (const std::string idle = without_effect(estimate.model, problem); !idle.empty()) fit.warnings.push_back(idle);
+}
+
 /// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a coloured noise that is
 /// not there) has taken no degree of freedom from its variance.
 void allow_for_length(const FilterEstimate& estimate, Fit& fit) {
@@ -372,7 +382,10 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   std::size_t validated = 0;
   for (const auto& trace : estimate.traces) validated += trace.validated;
   if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
-  if (estimate.covariance.size() > 0) describe_estimates(estimate, fit);
+  if (estimate.covariance.size() > 0) {
+    describe_estimates(estimate, fit);
+    warn_without_effect(estimate, fit);
+  }
   add_noise(estimate, threads, fit);
   warn_of_noise_at_bounds(estimate, fit);
   if (const std::string slow = fit.driven ? warning_of_slow_force(estimate) : ""; !slow.empty()) fit.warnings.push_back(slow);

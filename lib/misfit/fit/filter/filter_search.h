@@ -219,9 +219,9 @@ class FilterSearch {
     for (int round = 0; round < most_rounds; ++round) {
       FilterTrace trace;
       runner.set_parameters(at_.values());
-      for (std::size_t e = 0; e < all.size(); ++e) {
-        if (!runner.run_gated(all[e], out_.noise, trace, now[e])) return;
-      }
+      bool runs = true;
+      for (std::size_t e = 0; e < all.size(); ++e) runs = runs && runner.run_gated(all[e], out_.noise, trace, now[e]);
+      if (!runs) break;
       if (const auto at_jumps = outliers_at_jumps(out_.model.system->spec(), all, now)) kept = at_jumps;
       out_.outliers = 0;
       for (std::size_t e = 0; e < all.size(); ++e) {

@@ -22,14 +22,21 @@ std::vector<bool> near_jumps(const std::vector<double>& input) {
   return jumps * least_apart > input.size() ? std::vector<bool>{} : out;
 }
 
-/// Adds an experiment's measurements that count: how many there are, and how many of them are at jumps.
-void count(const FilterData& data, const std::vector<bool>& near, double& all, double& at_jumps) {
+/// Numbers of measurements.
+struct Counts {
+  double counted = 0.0, near = 0.0, beyond = 0.0, beyond_near = 0.0;
+};
+
+void add(const FilterData& data, const std::vector<bool>& near, const std::vector<std::size_t>& gated, Counts& out) {
   const std::size_t channels = data.signals->measured.size();
+  const auto is_near = [&](std::size_t at) { return !near.empty() && near[at / channels]; };
   for (std::size_t at = data.first * channels; at < data.use.size(); ++at) {
     if (data.use[at] != SampleRole::counted) continue;
-    all += 1.0;
-    if (!near.empty() && near[at / channels]) at_jumps += 1.0;
+    out.counted += 1.0;
+    if (is_near(at)) out.near += 1.0;
   }
+  out.beyond += static_cast<double>(gated.size());
+  out.beyond_near += static_cast<double>(std::count_if(gated.begin(), gated.end(), is_near));
 }
 
 }  // namespace
@@ -38,19 +45,14 @@ std::optional<OutliersAtJumps> outliers_at_jumps(const SystemSpec& system, const
                                                  const std::vector<std::vector<std::size_t>>& gated) {
   constexpr double fewest = 3.0, least_share = 0.5, by_chance = 5.0;
   std::optional<OutliersAtJumps> out;
-  for (int input = 0; input < int_size(system.inputs); ++input) {
+  const bool none = std::all_of(gated.begin(), gated.end(), [](const auto& places) { return places.empty(); });
+  for (int input = 0; input < int_size(system.inputs) && !none; ++input) {
     if (system.inputs[input].hold != Hold::zero_order) continue;
-    OutliersAtJumps found{input};
-    double measurements = 0.0, at_jumps = 0.0;
-    for (std::size_t e = 0; e < all.size(); ++e) {
-      count(all[e], near_jumps(all[e].signals->inputs[input].values), measurements, at_jumps);
-      found.beyond += static_cast<double>(gated[e].size());
-      found.at_jumps += static_cast<double>(gated[e].size() - without_those_at_jumps(all[e], input, gated[e]).size());
-    }
-    found.of_all = measurements > 0.0 ? at_jumps / measurements : 1.0;
-    const double share = found.beyond > 0.0 ? found.at_jumps / found.beyond : 0.0;
-    const bool significant = found.at_jumps >= fewest && share >= least_share && share >= by_chance * found.of_all;
-    if (significant && (!out || found.at_jumps > out->at_jumps)) out = found;
+    Counts n;
+    for (std::size_t e = 0; e < all.size(); ++e) add(all[e], near_jumps(all[e].signals->inputs[input].values), gated[e], n);
+    const double of_all = n.counted > 0.0 ? n.near / n.counted : 1.0, share = n.beyond_near / n.beyond;
+    const bool significant = n.beyond_near >= fewest && share >= least_share && share >= by_chance * of_all;
+    if (significant && (!out || n.beyond_near > out->at_jumps)) out = OutliersAtJumps{input, n.beyond, n.beyond_near, of_all};
   }
   return out;
 }

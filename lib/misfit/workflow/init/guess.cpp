@@ -11,6 +11,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/unique_name.h"
 #include "misfit/core/units.h"
+#include "misfit/data/held_out_change.h"
 #include "misfit/formula/syntax.h"
 #include "misfit/inference/states.h"
 #include "misfit/model/role_units.h"
@@ -166,17 +167,11 @@ GuessData with_drivers(GuessData data, const std::vector<Candidate>& drivers) {
   return data;
 }
 
-/// Whether it is the same until the part that the study holds out begins (text.cpp: the last quarter).
-bool is_still_until_held_out(const Table& table, const std::string& column) {
-  const std::vector<double>& values = table.at(column).values;
-  const auto fitted = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 3 / 4);
-  return std::all_of(values.begin(), fitted, [&](double v) { return v == values.front(); }) &&
-         std::any_of(fitted, values.end(), [&](double v) { return v != values.front(); });
-}
-
+/// The last quarter: what text.cpp holds out.
 void note_still_inputs(const Table& table, GuessedModel& model) {
   for (const std::string& input : model.inputs) {
-    if (is_still_until_held_out(table, input))
+    const std::vector<double>& values = table.at(input).values;
+    if (changes_held_out_alone(values, 0, [&](std::size_t i) { return i >= values.size() * 3 / 4; }))
       model.remarks.push_back(fmt::format(
           "{} changes in the last quarter alone, which is held out: what it does cannot be found, hold out another part", input));
   }
