@@ -101,16 +101,7 @@ struct ParachutePlanar {
     s.force_ports = {"pitching_moment"};
     s.inputs = {{.name = "phi", .unit = "rad", .doc = "clock angle of the axis, unwrapped", .hold = Hold::first_order},
                 {.name = "phi_rate", .unit = "rad/s", .doc = "its rate", .hold = Hold::first_order}};
-    s.quantities = {{.name = "eta", .unit = "rad", .doc = "geometric tilt of the axis"},
-                    {.name = "pitch_rate", .unit = "rad/s", .doc = "rotation rate in the plane of the tilt"},
-                    {.name = "phi", .unit = "rad", .doc = "clock angle", .inputs = {"phi"}},
-                    {.name = "phi_rate", .unit = "rad/s", .doc = "rate of the clock angle", .inputs = {"phi_rate"}},
-                    {.name = "gravity_direction", .unit = "-", .doc = "cos(phi) cos(eta)", .inputs = {"phi"}, .explains = false},
-                    {.name = "dynamic_pressure", .unit = "Pa", .doc = "free-stream dynamic pressure", .explains = false},
-                    {.name = "wind_speed", .unit = "m/s", .doc = "free-stream speed", .explains = false},
-                    {.name = "inertia", .unit = "kg m^2", .doc = "(m + m_a) R_cp^2", .explains = false},
-                    {.name = "alpha_T", .unit = "rad", .doc = "total angle of attack"},
-                    {.name = "wind_cross_axis", .unit = "-", .doc = "in-plane component of (wind direction x axis)"}};
+    s.quantities = quantity_specs();
     s.base_quantities = dynamic_pressure;
     if (induced) {
       s.quantities[alpha_T].inputs = s.quantities[wind_cross_axis].inputs = {"phi_rate"};
@@ -121,14 +112,7 @@ struct ParachutePlanar {
                         {.name = "inertia", .unit = "kg m^2", .doc = "adds to I", .conjugate = "inertia"}};
     s.dynamic_ports = {
         {.name = "pitching_moment", .unit = "N m", .doc = "moment in the plane of the tilt, positive opens it", .conjugate = "pitch_rate"}};
-    constexpr double huge = 1e6;
-    s.constants = {{.name = "D", .unit = "m", .doc = "reference diameter", .lower = 1e-6, .upper = huge},
-                   {.name = "S", .unit = "m^2", .doc = "reference area", .lower = 1e-6, .upper = huge},
-                   {.name = "R_cp", .unit = "m", .doc = "swivel to centre of pressure", .lower = 1e-6, .upper = huge},
-                   {.name = "m", .unit = "kg", .doc = "mass of the parachute", .lower = 1e-9, .upper = huge},
-                   {.name = "m_a", .unit = "kg", .doc = "apparent mass", .lower = 0.0, .upper = huge},
-                   {.name = "qbar", .unit = "Pa", .doc = "dynamic pressure", .lower = 1e-6, .upper = 1e9},
-                   {.name = "V", .unit = "m/s", .doc = "free-stream speed", .lower = 1e-6, .upper = 1e5}};
+    s.constants = constant_specs();
     constexpr double typical_noise = 2e-3;
     s.outputs = {{.name = induced ? "eta" : "alpha_T", .unit = "rad", .observes = tilt, .noise = typical_noise}};
     s.roles = {{"rate", "pitch_rate"}, {"level", "eta"}, {"port", "pitching_moment"}, {"output", s.outputs.front().name}};
@@ -141,6 +125,30 @@ struct ParachutePlanar {
     constexpr double typical_rate = 15.0;
     s.fastest_rate = typical_rate;
     return s;
+  }
+
+  [[nodiscard]] static std::vector<QuantitySpec> quantity_specs() {
+    return {{.name = "eta", .unit = "rad", .doc = "geometric tilt of the axis"},
+            {.name = "pitch_rate", .unit = "rad/s", .doc = "rotation rate in the plane of the tilt"},
+            {.name = "phi", .unit = "rad", .doc = "clock angle", .inputs = {"phi"}},
+            {.name = "phi_rate", .unit = "rad/s", .doc = "rate of the clock angle", .inputs = {"phi_rate"}},
+            {.name = "gravity_direction", .unit = "-", .doc = "cos(phi) cos(eta)", .inputs = {"phi"}, .explains = false},
+            {.name = "dynamic_pressure", .unit = "Pa", .doc = "free-stream dynamic pressure", .explains = false},
+            {.name = "wind_speed", .unit = "m/s", .doc = "free-stream speed", .explains = false},
+            {.name = "inertia", .unit = "kg m^2", .doc = "(m + m_a) R_cp^2", .explains = false},
+            {.name = "alpha_T", .unit = "rad", .doc = "total angle of attack"},
+            {.name = "wind_cross_axis", .unit = "-", .doc = "in-plane component of (wind direction x axis)"}};
+  }
+
+  [[nodiscard]] static std::vector<ConstantSpec> constant_specs() {
+    constexpr double huge = 1e6;
+    return {{.name = "D", .unit = "m", .doc = "reference diameter", .lower = 1e-6, .upper = huge},
+            {.name = "S", .unit = "m^2", .doc = "reference area", .lower = 1e-6, .upper = huge},
+            {.name = "R_cp", .unit = "m", .doc = "swivel to centre of pressure", .lower = 1e-6, .upper = huge},
+            {.name = "m", .unit = "kg", .doc = "mass of the parachute", .lower = 1e-9, .upper = huge},
+            {.name = "m_a", .unit = "kg", .doc = "apparent mass", .lower = 0.0, .upper = huge},
+            {.name = "qbar", .unit = "Pa", .doc = "dynamic pressure", .lower = 1e-6, .upper = 1e9},
+            {.name = "V", .unit = "m/s", .doc = "free-stream speed", .lower = 1e-6, .upper = 1e5}};
   }
 
   /// C_m_alphadot = C_mq + (2 R_cp/D) C_m_alpha cos(alpha_T), lib/misfit/README.md (11): the induced angle damps as well.

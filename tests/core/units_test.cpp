@@ -1,9 +1,10 @@
 #include "misfit/core/units.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <numbers>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "tests/core/temporary_folder.h"
 
@@ -169,9 +170,57 @@ TEST(InRadians, IsTheUnitOfAnAngleThatIsShownInRadians) {
   EXPECT_EQ(rate_unit("radian"), "radian/s");
   EXPECT_EQ(rate_unit("radian/s"), "radian/s^2");
   EXPECT_EQ(unit_text({{"V", 1.0}, {"radian", -1.0}}), "V/rad");
-  EXPECT_TRUE(shown_in_degrees("rad"));
-  EXPECT_FALSE(shown_in_degrees("radian"));
-  EXPECT_FALSE(shown_in_degrees("m"));
+}
+
+struct Shown {
+  std::string unit, inside, si, rate;
+};
+
+TEST(ShownIn, IsTheInsideUnitOfWhatIsShownInAnother) {
+  for (const auto& [unit, inside, si, rate] : std::vector<Shown>{{"kW", "W (in kW)", "W", "W/s (in kW/s)"},
+                                                                 {"rpm", "radian/s (in rpm)", "rad/s", "radian/s^2 (in rpm/s)"},
+                                                                 {"U/min", "radian/s (in rpm)", "rad/s", "radian/s^2 (in rpm/s)"},
+                                                                 {"km/h", "m/s (in km/h)", "m/s", "m/s^2 (in km/h/s)"},
+                                                                 {"mg/l", "kg/m^3 (in mg/l)", "kg/m^3", "kg/m^3/s (in mg/l/s)"},
+                                                                 {"N", "N", "N", "N/s"},
+                                                                 {"rad/s", "radian/s", "rad/s", "radian/s^2"}}) {
+    EXPECT_EQ(shown_in(unit), inside);
+    EXPECT_EQ(plain_si(inside), si);
+    EXPECT_EQ(rate_unit(inside), rate);
+    EXPECT_EQ(display_unit(inside), plain_unit(unit));
+    EXPECT_EQ(display_level_unit(inside), plain_unit(unit));
+    EXPECT_EQ(si_unit(stored_unit(inside)), inside) << "a file that was written is read back";
+    EXPECT_EQ(si_unit(stored_unit(rate)), rate);
+    EXPECT_DOUBLE_EQ(convert(3.0, unit, inside), convert(3.0, unit, si));
+    EXPECT_TRUE(parse_unit(rate).same_dimension(parse_unit(display_unit(rate))));
+  }
+  EXPECT_EQ(display_unit("W (in kW)/K"), "W/K") << "of several factors";
+  EXPECT_EQ(unit_symbols("W (in kW)/K"), unit_symbols("W/K"));
+  EXPECT_EQ(si_unit("dB"), "dB");
+  EXPECT_EQ(si_unit("%"), "%") << "a share is none of another unit";
+}
+
+TEST(ShownIn, ATemperatureIsShownInDegreesAndItsDifferencesInKelvin) {
+  const std::string inside = shown_in("°C");
+  EXPECT_EQ(inside, "K (in degC)");
+  EXPECT_EQ(display_level_unit(inside), "degC");
+  EXPECT_EQ(display_unit(inside), "K");
+  EXPECT_EQ(rate_unit(inside), "K/s");
+  EXPECT_EQ(si_unit(stored_unit(inside)), inside);
+  EXPECT_DOUBLE_EQ(display_level(293.15, inside), 20.0);
+  EXPECT_DOUBLE_EQ(display_value(0.05, inside), 0.05);
+  EXPECT_EQ(in_display_unit(0.05, inside), "0.05 K");
+  EXPECT_EQ(in_level_unit(293.15, inside), "20 degC");
+  EXPECT_THAT(display_levels({273.15, 283.15}, inside), testing::Pointwise(testing::DoubleNear(1e-12), {0.0, 10.0}));
+}
+
+TEST(ShownIn, PerCentIsStoredInFull) {
+  const std::string inside = shown_in("%");
+  EXPECT_EQ(inside, "- (in %)");
+  EXPECT_EQ(display_unit(inside), "%");
+  EXPECT_DOUBLE_EQ(display_value(0.42, inside), 42.0);
+  EXPECT_EQ(si_unit(stored_unit(inside)), inside);
+  EXPECT_EQ(rate_unit(inside), "1/s (in %/s)");
 }
 
 }  // namespace

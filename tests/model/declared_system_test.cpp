@@ -197,6 +197,45 @@ TEST(DeclaredDisplay, InRadiansShowsAnglesTheirRatesAndWhatEffectsAddInRadians) 
   EXPECT_EQ(shown_units.at("viscosity"), "1/s");
 }
 
+/// Knots and bounds have units of their own.
+TEST(DeclaredDisplay, InUnitsOfTheRecordingShowsWhatIsMeasuredInThemAndWhatEffectsAdd) {
+  std::string text = turntable_text;
+  text.replace(text.find("angle = \"rad\"\n"), 14, "units = [\"rpm\", \"kV\"]\n");
+  const auto known = registry_with(text);
+  const Model model = assemble(request_of("text", {effect("coulomb_friction"), effect("viscous_friction")}), *known);
+  const SystemSpec& spec = model.system->spec();
+  EXPECT_EQ(display_unit(spec.states[0].unit), "deg");
+  EXPECT_EQ(display_unit(spec.states[1].unit), "rpm");
+  EXPECT_EQ(display_unit(spec.inputs[0].unit), "kV");
+  std::map<std::string, std::string> shown_units;
+  for (const Parameter& p : model.parameters) shown_units[p.name] = display_unit(p.unit);
+  EXPECT_EQ(shown_units.at("gain"), "rad/s^2/V");
+  EXPECT_EQ(shown_units.at("friction"), "rpm/s");
+  EXPECT_EQ(shown_units.at("width"), "rpm");
+  EXPECT_EQ(shown_units.at("viscosity"), "1/s");
+}
+
+struct WrongUnits {
+  std::string units, said;
+};
+
+TEST(DeclaredDisplay, RefusesUnitsThatAreNoneAndSecondOnesInWords) {
+  for (const auto& [units, said] : std::vector<WrongUnits>{{R"(["rmp"])", "unknown unit 'rmp' — did you mean 'rpm'"},
+                                                           {R"(["kW", "MW"])", "MW is a second unit for what is W"},
+                                                           {R"(["min"])", "times are shown in s, not in min"},
+                                                           {R"(["mrad"])", "angles and their rates are shown as angle ="},
+                                                           {R"(["deg/s"])", "angles and their rates are shown as angle ="}}) {
+    std::string text = turntable_text;
+    text.replace(text.find("angle = \"rad\"\n"), 14, "units = " + units + "\n");
+    try {
+      static_cast<void>(registry_with(text));
+      ADD_FAILURE() << units;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("text.toml:3"), HasSubstr(said)));
+    }
+  }
+}
+
 TEST(DeclaredDisplay, TakesDegreesOrRadiansAlone) {
   std::string text = turntable_text;
   text.replace(text.find("\"rad\""), 5, "\"radians\"");

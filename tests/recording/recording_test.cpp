@@ -180,6 +180,14 @@ TEST(Recording, DatesAreATimeInSeconds) {
   EXPECT_THAT(s.remarks, Contains(HasSubstr("column 'when' holds dates: read as seconds since 2026-01-02T03:04:00.5Z")));
 }
 
+/// Then t modulo 24 h is what the clock shows.
+TEST(Recording, DatesOverDaysCountFromMidnight) {
+  const RecordingSurvey s = survey(rows(
+      "when,T[K]", 90, [](int k) { return fmt::format("2026-01-{:02} {:02}:30+02:00,{}", 2 + k / 24, k % 24, 20.0 + std::sin(0.3 * k)); }));
+  EXPECT_EQ(s.parts[0].columns[0].values.front(), 1800.0);
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("read as seconds since the midnight before 2026-01-02 00:30+02:00")));
+}
+
 TEST(Recording, AnIdSplitsAndIsNoInputAlsoWhereRowsAlternate) {
   const auto row = [](int k) {
     const int step = k / 2;

@@ -247,6 +247,31 @@ TEST(InitOfAnInput, ThatChangesInTheHeldOutPartAloneSaysSo) {
   expect_parts(model.remarks[0], {"u changes in the last quarter alone", "hold out another part"});
 }
 
+struct RecordedUnits {
+  std::string header, display;
+};
+
+/// Not where columns of one kind disagree, nor where they are SI or degrees.
+TEST(InitOfUnits, ShowsResultsInThoseOfTheRecording) {
+  for (const auto& [header, display] : std::vector<RecordedUnits>{{"t[s],u[kW],y[degC]", "units = [\"degC\", \"kW\"]"},
+                                                                  {"t[s],u[V],y[rpm]", "angle = \"rad\""},
+                                                                  {"t[s],u[V],y[rpm]", "units = [\"rpm\"]"},
+                                                                  {"t[s],u[%],y[U/min]", "units = [\"%\", \"rpm\"]"},
+                                                                  {"t[s],u[degC],y[K]", ""},
+                                                                  {"t[s],u[V],y[deg]", ""},
+                                                                  {"t[s],u[N],y[m]", ""}}) {
+    const TemporaryFolder folder;
+    std::string text = header + "\n";
+    for (int k = 0; k < 200; ++k) text += fmt::format("{:.1f},{},{:.5f}\n", 0.1 * k, k / 7 % 5, 300.0 + std::sin(0.13 * k));
+    const fs::path data = folder.write("x.csv", text);
+    const RecordingSurvey survey = survey_recording(data, names_of_formulas());
+    const std::string model = model_text(guess_model(survey), survey);
+    EXPECT_EQ(model.find("[display]") != std::string::npos, !display.empty()) << model;
+    EXPECT_NE(model.find(display), std::string::npos) << header << "\n" << model;
+    study_is_built(data, folder.path());
+  }
+}
+
 TEST(InitOfManyColumns, OfWhichAllFitHasAllAndNoRemark) {
   const TemporaryFolder folder;
   const GuessedModel model = guess_model(survey_recording(folder.write("x.csv", waves(4, 2)), names_of_formulas()));

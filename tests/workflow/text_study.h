@@ -20,10 +20,11 @@ class TextStudy {
   }
 
   /// With these lines under [effects].
-  [[nodiscard]] Fit fit(const std::string& method, const std::string& effects) { return identification(method, effects).fit(method); }
+  [[nodiscard]] Fit fit(const std::string& method, const std::string& effects) const { return identification(method, effects).fit(method); }
 
   /// And these under [[experiment]].
-  [[nodiscard]] Identification identification(const std::string& method, const std::string& effects, const std::string& experiment = "") {
+  [[nodiscard]] Identification identification(const std::string& method, const std::string& effects,
+                                              const std::string& experiment = "") const {
     folder_.write("study.toml", "[study]\nname = \"text\"\nquestion = \"What is missing?\"\nmethods = [\"" + method +
                                     "\"]\nseed = 1\n[system]\nfile = \"m.toml\"\n[[experiment]]\nname = \"one\"\ndata = \"d.csv\"\n" +
                                     experiment + "[effects]\n" + effects + "\n");

@@ -167,8 +167,10 @@ std::string worst_of(const MotionGroup& group) {
   std::string name = "its " + worst->name;
   if (worst->name == "lag") name = fmt::format("at a lag of {:.2g} s it", worst->at);
   if (worst->name == "power") name = fmt::format("the power at {:.2g} Hz", worst->at);
-  return name + " is " + in_display_unit(worst->measured, group.unit) + ", simulated between " + in_display_unit(worst->low, group.unit) +
-         " and " + in_display_unit(worst->high, group.unit);
+  const auto shown = [&](double value) {
+    return is_level(group, *worst) ? in_level_unit(value, group.unit) : in_display_unit(value, group.unit);
+  };
+  return name + " is " + shown(worst->measured) + ", simulated between " + shown(worst->low) + " and " + shown(worst->high);
 }
 
 }  // namespace

@@ -92,7 +92,8 @@ std::optional<IsoDate> read_iso_date(std::string_view text) {
   const int offset = zone(in);
   if (!in.ok() || !in.done()) return std::nullopt;
   const std::int64_t days = sys_days(day).time_since_epoch().count();
-  return IsoDate{86400 * days + std::int64_t{3600} * h + std::int64_t{60} * minute + second - offset, part};
+  const int since_midnight = 3600 * h + 60 * minute + second;
+  return IsoDate{86400 * days + since_midnight - offset, part, since_midnight};
 }
 
 double seconds_between(const IsoDate& from, const IsoDate& to) {

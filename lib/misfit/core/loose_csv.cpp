@@ -160,6 +160,11 @@ class LooseReader {
       }
       seconds.push_back(date ? seconds_between(*first, *date) : std::numeric_limits<double>::quiet_NaN());
     }
+    constexpr double days = 3.0 * 86400.0;
+    column.from_midnight = std::any_of(seconds.begin(), seconds.end(), [](double t) { return t >= days; });
+    if (column.from_midnight) {
+      for (double& t : seconds) t += first->since_midnight + first->part;
+    }
     column.values = std::move(seconds);
     column.dates = true;
     column.text = 0;

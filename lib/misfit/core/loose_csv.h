@@ -14,8 +14,9 @@ struct LooseColumn {
   std::size_t text = 0;        ///< cells that are no number
   int text_line = 0;           ///< line of the first of them
   std::string first_text;
-  bool dates = false;  ///< dates and times of day: values are seconds since `first_date`
+  bool dates = false;  ///< dates and times of day: values are seconds since `first_date`, or since the midnight before it
   std::string first_date;
+  bool from_midnight = false;  ///< where they last for three days and more, so that a time of day is that of the clock
 };
 
 struct LooseTable {

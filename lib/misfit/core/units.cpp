@@ -278,13 +278,38 @@ std::string plain_unit(std::string_view text) {
   return out;
 }
 
+namespace {
+
+constexpr std::string_view shown_begin = " (in ", shown_end = ")";
+
+/// "W (in kW)" as "W" and "kW"; the second is empty where nothing is said of it, or of a part only.
+std::pair<std::string_view, std::string_view> inside_and_shown(std::string_view unit) {
+  const std::size_t at = unit.find(shown_begin);
+  if (at == std::string_view::npos || !unit.ends_with(shown_end) || unit.find(shown_end, at) != unit.size() - 1) return {unit, {}};
+  const std::size_t from = at + shown_begin.size();
+  return {unit.substr(0, at), unit.substr(from, unit.size() - shown_end.size() - from)};
+}
+
+/// "W (in kW)/K" → "W/K".
+std::string without_shown(std::string_view unit) {
+  std::string out(unit);
+  for (std::size_t at = out.find(shown_begin); at != std::string::npos; at = out.find(shown_begin, at)) {
+    const std::size_t end = out.find(shown_end, at);
+    if (end == std::string::npos) break;
+    out.erase(at, end + shown_end.size() - at);
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<std::pair<std::string, double>> unit_symbols(std::string_view text) {
-  const std::string plain = plain_unit(trim(text));
+  const std::string plain = plain_unit(trim(without_shown(text)));
   return UnitReader(plain).symbols();
 }
 
 Unit parse_unit(std::string_view text) {
-  const std::string plain = plain_unit(trim(text));
+  const std::string plain = plain_unit(trim(without_shown(text)));
   return UnitReader(plain).read();
 }
 
@@ -331,7 +356,8 @@ std::pair<Unit, Unit> convertible(std::string_view from, std::string_view to) {
   const Unit source = parse_unit(from);
   const Unit target = parse_unit(to);
   if (!source.same_dimension(target)) {
-    throw InputError("unit '" + shown(from) + "' cannot be converted to '" + shown(to) + "': they measure different things");
+    throw InputError("unit '" + shown(plain_si(from)) + "' cannot be converted to '" + shown(plain_si(to)) +
+                     "': they measure different things");
   }
   return {source, target};
 }
@@ -377,23 +403,62 @@ std::string in_radians(std::string_view si) {
   return with_one_radian("radian" + std::string(si.substr(3)));
 }
 
-bool shown_in_degrees(std::string_view si) { return si != "radian" && parse_unit(si).angle; }
+std::string shown_in(std::string_view unit) {
+  const Unit shown = parse_unit(unit);
+  const std::string inside = in_radians(unit_in_si(unit));
+  if (shown.to_si == 1.0 && shown.offset == 0.0) return inside;
+  return fmt::format("{}{}{}{}", inside, shown_begin, plain_unit(unit), shown_end);
+}
+
+std::string plain_si(std::string_view si) {
+  std::string out = without_shown(si);
+  constexpr std::string_view word = "radian";
+  for (std::size_t at = out.find(word); at != std::string::npos; at = out.find(word, at)) out.replace(at, word.size(), "rad");
+  return out;
+}
+
+std::string display_level_unit(std::string_view si) {
+  const auto [inside, shown] = inside_and_shown(si);
+  if (!shown.empty()) return std::string(shown);
+  const std::string plain = without_shown(si);
+  for (const auto& [own, known] : displayed) {
+    if (plain == own) return std::string(known);
+  }
+  return plain;
+}
 
 std::string display_unit(std::string_view si) {
-  for (const auto& [own, shown] : displayed) {
-    if (si == own) return std::string(shown);
-  }
-  return std::string(si);
+  const auto [inside, shown] = inside_and_shown(si);
+  return !shown.empty() && parse_unit(shown).offset != 0.0 ? display_level_unit(inside) : display_level_unit(si);
+}
+
+std::string stored_unit(std::string_view si) {
+  const auto [inside, shown] = inside_and_shown(si);
+  if (shown.empty()) return display_unit(si);
+  const bool tells = parse_unit(shown).offset == 0.0 && !unit_symbols(inside).empty();  // by itself
+  return tells ? std::string(shown) : std::string(si);
 }
 
 std::string si_unit(std::string_view display) {
   for (const auto& [own, shown] : displayed) {
     if (display == shown) return std::string(own);
   }
+  if (display.find(shown_begin) != std::string_view::npos) return std::string(display);
+  try {
+    const auto symbols = unit_symbols(display);
+    const bool in_degrees = std::any_of(symbols.begin(), symbols.end(), [](const auto& symbol) { return symbol.first == "deg"; });
+    if (!in_degrees && !unit_symbols(unit_in_si(display)).empty() && parse_unit(display).to_si != 1.0) return shown_in(display);
+  } catch (const InputError&) {
+    return std::string(display);
+  }
   return std::string(display);
 }
 
 std::string rate_unit(std::string_view unit) {
+  if (const auto [inside, shown] = inside_and_shown(unit); !shown.empty()) {
+    const std::string rate = rate_unit(inside);
+    return parse_unit(shown).offset != 0.0 ? rate : fmt::format("{}{}{}{}", rate, shown_begin, rate_unit(shown), shown_end);
+  }
   if (unit.empty() || unit == "-") return "1/s";
   std::string out(unit);
   out += unit.ends_with("/s") ? "^2" : "/s";

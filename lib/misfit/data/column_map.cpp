@@ -23,11 +23,11 @@ std::vector<double> ColumnMap::values(const Table& table, const std::string& nam
   const bool own_name = header(name) == name, own_unit = !column.unit.empty() || own_name;
   const bool others_have_units = std::any_of(table.columns.begin(), table.columns.end(), [](const Column& c) { return !c.unit.empty(); });
   if (own_name && column.unit.empty() && column_unit.empty() && others_have_units && !unit_symbols(unit).empty())
-    notes.push_back(fmt::format("column '{}' has no unit, though others have: its values are taken as {}", shown(name), unit));
+    notes.push_back(fmt::format("column '{}' has no unit, though others have: its values are taken as {}", shown(name), plain_si(unit)));
   if (own_unit || column_unit == unit) return table.values(header(name), unit);
   if (column_unit.empty() || !parse_unit(column_unit).same_dimension(parse_unit(unit))) {
     if (!unit_symbols(unit).empty())
-      notes.push_back(fmt::format("column '{}' has no unit for {}: its values are taken as {}", shown(column.name), name, unit));
+      notes.push_back(fmt::format("column '{}' has no unit for {}: its values are taken as {}", shown(column.name), name, plain_si(unit)));
     return column.values;
   }
   std::vector<double> out = column.values;

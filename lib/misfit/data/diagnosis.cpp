@@ -94,7 +94,8 @@ void write_missing(const fs::path& path, const MissingForce& m) {
     add(m.ports[p], m.port_units[p], m.force[p]);
     add(m.ports[p] + "_sigma", m.port_units[p], m.sigma[p]);
   }
-  for (std::size_t q = 0; q < m.quantities.size(); ++q) add(m.quantities[q], m.quantity_units[q], m.values[q]);
+  for (std::size_t q = 0; q < m.quantities.size(); ++q)
+    table.add(m.quantities[q], display_level_unit(m.quantity_units[q]), display_levels(m.values[q], m.quantity_units[q]));
   write_csv(path, table);
 }
 

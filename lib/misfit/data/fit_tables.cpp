@@ -55,11 +55,6 @@ CurveEstimate& curve_named(std::vector<CurveEstimate>& curves, const CurveFile& 
   throw InputError(where, "curve '" + name + "' is not one of fit.json" + suggest(name, valid));
 }
 
-std::vector<double> in_unit(std::vector<double> values, const std::string& from, const std::string& to) {
-  for (double& value : values) value = convert(value, from, to);
-  return values;
-}
-
 bool same_times(const ChannelPrediction& a, const ChannelPrediction& b) { return a.t == b.t && a.held_out == b.held_out; }
 
 }  // namespace
@@ -149,10 +144,10 @@ void write_predictions(const std::filesystem::path& path, const std::vector<Chan
     if (!same_times(first, channel)) {
       throw RunError(fmt::format("{}: channels {} and {} are not on one time base", path.string(), first.channel, channel.channel));
     }
-    const std::string unit = display_unit(channel.unit);
-    table.add(channel.channel + "_measured", unit, in_unit(channel.measured, channel.unit, unit));
-    table.add(channel.channel + "_predicted", unit, in_unit(channel.predicted, channel.unit, unit));
-    table.add(channel.channel + "_sigma", unit, in_unit(channel.sigma, channel.unit, unit));
+    const std::string unit = display_level_unit(channel.unit);
+    table.add(channel.channel + "_measured", unit, display_levels(channel.measured, channel.unit));
+    table.add(channel.channel + "_predicted", unit, display_levels(channel.predicted, channel.unit));
+    table.add(channel.channel + "_sigma", display_unit(channel.unit), display_values(channel.sigma, channel.unit));
   }
   table.add("held_out", "", std::vector<double>(first.held_out.begin(), first.held_out.end()));
   write_csv(path, table);

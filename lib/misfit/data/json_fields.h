@@ -71,7 +71,7 @@ struct Sigma {
 template <class Text>
 struct DisplayUnit {
   explicit DisplayUnit(Text& si_) : si(si_) {}
-  [[nodiscard]] Json stored() const { return display_unit(si); }
+  [[nodiscard]] Json stored() const { return stored_unit(si); }
   void restore(const Json& json) const { si = si_unit(json.get<std::string>()); }
   Text& si;
 };
@@ -146,7 +146,7 @@ class JsonWriter {
   /// (dB) are none to the program either: 1.
   [[nodiscard]] double factor(const std::string& key, const std::string& si) const {
     static_cast<void>(key);
-    return conversion(si, display_unit(si));
+    return conversion(si, stored_unit(si));
   }
 
   [[nodiscard]] static double conversion(const std::string& from, const std::string& to) {

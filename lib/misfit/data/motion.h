@@ -24,6 +24,11 @@ struct MotionGroup {
                          ///< for scales and parameters, which come from the measured motion
 };
 
+/// A value on the scale of the channel (a mean, a quantile of the motion), and no difference: a temperature in degC.
+[[nodiscard]] inline bool is_level(const MotionGroup& group, const MotionNumber& number) {
+  return group.name == "distribution" && number.name != "standard deviation";
+}
+
 /// One channel or quantity of one experiment.
 struct MotionSeries {
   std::string experiment, name, unit;  ///< SI

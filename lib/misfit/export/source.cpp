@@ -8,12 +8,13 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/unique_name.h"
+#include "misfit/core/units.h"
 #include "misfit/data/estimators.h"
 
 namespace misfit {
 namespace {
 
-std::string in_unit(const std::string& name, const std::string& unit) { return fmt::format("{} [{}]", shown(name), shown(unit)); }
+std::string in_unit(const std::string& name, const std::string& unit) { return fmt::format("{} [{}]", shown(name), shown(plain_si(unit))); }
 
 std::string held(const InputSpec& input) {
   std::string out = input.hold == Hold::zero_order ? "; held between samples" : "; straight between samples";

@@ -302,8 +302,8 @@ std::vector<std::string> scale_uncertainties(const Model& model, const double* x
     const double share = std::abs(nominal / moved - 1.0);  // for the same motion the curve goes with the reciprocal
     if (!(nominal > 0.0) || !(moved > 0.0) || share < min_share) continue;
     out.push_back("the band of " + curve->name + " does not include the uncertainty of its scale: " + p.name + " = " +
-                  format_value(p.value, *p.prior_sigma) + " " + p.unit + ", which is fixed, makes every " + curve->name + " uncertain by " +
-                  format_value(std::round(1000.0 * share) / 10.0) + " % (1 sigma)");
+                  format_value(p.value, *p.prior_sigma) + " " + plain_si(p.unit) + ", which is fixed, makes every " + curve->name +
+                  " uncertain by " + format_value(std::round(1000.0 * share) / 10.0) + " % (1 sigma)");
   }
   return out;
 }

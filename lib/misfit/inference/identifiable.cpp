@@ -77,7 +77,7 @@ std::string without_effect(const Model& model, const NormalEquations& problem) {
 }
 
 std::string undetermined(const Model& model, const NormalEquations& problem) {
-  if (const std::string idle = without_effect(model, problem); !idle.empty()) return idle;
+  if (std::string idle = without_effect(model, problem); !idle.empty()) return idle;
   const std::vector<Column> columns = columns_of(model);
   if (columns.size() < 2) return {};
   const Eigen::MatrixXd N = reduced(problem, columns, model.free_parameters().size());

@@ -3,13 +3,14 @@
 
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
+#include "misfit/core/units.h"
 #include "misfit/model/assembler.h"
 #include "misfit/model/role_units.h"
 
 namespace misfit {
 namespace {
 
-std::string with_unit(double value, const std::string& unit) { return format_value(value) + (unit == "-" ? "" : " " + unit); }
+std::string with_unit(double value, const std::string& unit) { return format_value(value) + (unit == "-" ? "" : " " + plain_si(unit)); }
 
 }  // namespace
 
@@ -111,7 +112,8 @@ void Assembler::add_constants() {
     const auto asked = request_.parameters.find(constant.name);
     const bool valued = asked != request_.parameters.end() && asked->second.value;
     if (given == request_.constants.end() && constant.required && !valued) {
-      throw InputError(request_.system_where, "[geometry] " + constant.name + " is missing: " + constant.doc + " [" + constant.unit + "]");
+      throw InputError(request_.system_where,
+                       "[geometry] " + constant.name + " is missing: " + constant.doc + " [" + plain_si(constant.unit) + "]");
     }
     Parameter p{constant.name, constant.unit, constant.doc};
     p.value = given == request_.constants.end() ? constant.value : given->second;
@@ -171,10 +173,11 @@ void Assembler::check_everything_used() const {
   }
   for (const auto& [name, request] : request_.curves) {
     if (used_curves_.contains(name)) continue;
-    if (index_of(system().constants, name) >= 0)
+    if (index_of(system().constants, name) >= 0) {
       throw InputError(request.where, "[curves]: '" + shown(name) +
                                           "' is a parameter of the system; only coefficients of effects can be curves" +
                                           (curves.empty() ? ", and the model has none" : ": " + join_words(curves)));
+    }
     throw InputError(request.where, "[curves]: the model has no coefficient '" + shown(name) + "'" + suggest(name, curves));
   }
 }

@@ -30,7 +30,10 @@ KeyGroup system_group() {
 KeyGroup display_group() {
   return {"display", "How results are shown; what is read has units of its own.",
      {{.name = "angle", .type = Type::choice, .fallback = "\"deg\"", .choices = {"deg", "rad"},
-       .meaning = "Angles and their rates: deg, deg/s, deg/s^2, or rad, rad/s, rad/s^2; knots without a unit are in it, too."}}};
+       .meaning = "Angles and their rates: deg, deg/s, deg/s^2, or rad, rad/s, rad/s^2; knots without a unit are in it, too."},
+      {.name = "units", .type = Type::texts, .otherwise = "SI",
+       .meaning = "Units in which states, inputs, outputs, quantities and parameters of their kind are shown, as [\"rpm\", \"degC\", \"kW\"]; "
+                  "errors and differences of temperatures in K. What is [1] is shown in % only if it is no parameter."}}};
 }
 
 std::vector<KeyGroup> state_groups() {

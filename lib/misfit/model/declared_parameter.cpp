@@ -1,5 +1,7 @@
 #include "misfit/model/declared_parameter.h"
 
+#include <algorithm>
+
 #include "misfit/core/units.h"
 
 namespace misfit::declared {
@@ -15,7 +17,17 @@ std::string read_unit(const config::Section& section) {
   return *text;
 }
 
-std::string shown_unit(const std::string& unit, const SystemSpec& system) { return system.angles_in_radians ? in_radians(unit) : unit; }
+std::string shown_unit(const std::string& unit, const SystemSpec& system) {
+  if (unit_symbols(unit).empty()) return unit;
+  return shown_unit_of_channel(unit, system);
+}
+
+std::string shown_unit_of_channel(const std::string& unit, const SystemSpec& system) {
+  const auto same = [&](const std::string& inside) { return plain_si(inside) == unit; };
+  const auto known = std::find_if(system.shown_units.begin(), system.shown_units.end(), same);
+  if (known != system.shown_units.end()) return *known;
+  return system.angles_in_radians ? in_radians(unit) : unit;
+}
 
 ParameterText read_parameter(const config::DescribedSection& section) {
   ParameterText p;

@@ -8,6 +8,7 @@
 
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
+#include "misfit/core/units.h"
 #include "misfit/model/declared.h"
 #include "misfit/model/limits.h"
 
@@ -278,7 +279,7 @@ class DeclaredSystem final : public System {
     std::sort(leaves.begin(), leaves.end());
     std::string out;
     const auto say = [&](const std::string& name, const char* is, double value, const std::string& unit) {
-      out += (out.empty() ? "" : ", ") + name + is + format_value(value) + (unit == "-" ? "" : " " + unit);
+      out += (out.empty() ? "" : ", ") + name + is + format_value(value) + (unit == "-" ? "" : " " + plain_si(unit));
     };
     for (int leaf : leaves) {
       if (!constants && leaf < n.u(0)) {

@@ -55,10 +55,33 @@ class Reader {
   void read_display() {
     const DescribedSection display = described(root_, "display", "display");
     out_.spec.angles_in_radians = *display.choice("angle") == "rad";
+    for (const std::string& unit : display.texts("units").value_or(std::vector<std::string>{})) read_display_unit(display, unit);
     display.finish();
   }
 
-  [[nodiscard]] std::string unit_of(const DescribedSection& section) const { return shown_unit(read_unit(section), out_.spec); }
+  /// The inside unit of what is shown in `unit`.
+  static std::string shown_in_or_fail(const DescribedSection& display, const std::string& unit) {
+    try {
+      return shown_in(unit);
+    } catch (const InputError& error) {
+      display.fail("units", error.what());
+    }
+  }
+
+  void read_display_unit(const DescribedSection& display, const std::string& unit) {
+    const std::string inside = shown_in_or_fail(display, unit);
+    const auto symbols = unit_symbols(unit);
+    const bool in_degrees = std::any_of(symbols.begin(), symbols.end(), [](const auto& symbol) { return symbol.first == "deg"; });
+    if (in_degrees || plain_si(inside) == "rad")
+      display.fail("units", "angles and their rates are shown as angle = \"deg\" or \"rad\" says");
+    if (plain_si(inside) == "s") display.fail("units", "times are shown in s, not in " + shown(unit));
+    const auto same = [&](const std::string& other) { return plain_si(other) == plain_si(inside); };
+    if (std::any_of(out_.spec.shown_units.begin(), out_.spec.shown_units.end(), same))
+      display.fail("units", shown(unit) + " is a second unit for what is " + plain_si(inside));
+    out_.spec.shown_units.push_back(inside);
+  }
+
+  [[nodiscard]] std::string unit_of(const DescribedSection& section) const { return shown_unit_of_channel(read_unit(section), out_.spec); }
 
   template <class Read>
   void each(const char* section_name, bool needed, const Read& read) {
@@ -176,7 +199,7 @@ class Reader {
       const auto wanted = formula::measure_of(rate_unit(states[of].unit));
       if (!formula::measure_of(states[j].unit).fits(wanted))
         throw InputError(rate_of_where_[j],
-                         "the rate of '" + states[of].name + "' has [" + wanted.text() + "], not [" + states[j].unit + "]");
+                         "the rate of '" + states[of].name + "' has [" + wanted.text() + "], not [" + plain_si(states[j].unit) + "]");
       states[j].rate_of = of;
     }
   }

@@ -142,7 +142,7 @@ class Reader {
     const std::string base = level_of(input.name);
     if (!base.empty() && table_.find(header(input.name)) == nullptr) {
       if (table_.find(header(base)) == nullptr) static_cast<void>(table_.at(header(input.name)));  // throws, naming the nearest
-      const std::string base_unit = input.unit.ends_with("/s") ? input.unit.substr(0, input.unit.size() - 2) : input.unit;
+      const std::string unit = plain_si(input.unit), base_unit = unit.ends_with("/s") ? unit.substr(0, unit.size() - 2) : unit;
       std::vector<double> level = kept(values_of(base, base_unit));
       if (parse_unit(base_unit).angle) level = unwrapped(level);
       values = central_rate(out_.t, level);

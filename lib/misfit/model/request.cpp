@@ -64,7 +64,7 @@ void read_starts(const Study& study, const std::map<std::string, std::string>& u
       const std::string& name = units.contains(prefixed) ? prefixed : own;
       const auto unit = units.find(name);
       if (unit != units.end() && !number.unit.empty() && !parse_unit(number.unit).same_dimension(parse_unit(unit->second)))
-        throw InputError(number.where, name + " needs [" + unit->second + "], not [" + number.unit + "]");
+        throw InputError(number.where, name + " needs [" + plain_si(unit->second) + "], not [" + number.unit + "]");
       ParameterRequest& parameter = request.parameters[name];
       if (parameter.where.file.empty()) parameter.where = number.where;
       if (!parameter.value) parameter.value = number.value;
@@ -94,7 +94,8 @@ void read_initial(const Study& study, const SystemSpec& spec, ModelRequest& requ
     for (const auto& state : spec.states) {
       const bool unlike =
           state.name == name && !initial.value->unit.empty() && !parse_unit(initial.value->unit).same_dimension(parse_unit(state.unit));
-      if (unlike) throw InputError(initial.where, "[initial] " + name + " needs [" + state.unit + "], not [" + initial.value->unit + "]");
+      if (unlike)
+        throw InputError(initial.where, "[initial] " + name + " needs [" + plain_si(state.unit) + "], not [" + initial.value->unit + "]");
     }
   }
 }
@@ -106,7 +107,7 @@ std::vector<std::string> force_units(const SystemSpec& spec) {
     const auto& named = spec.force_ports;
     const bool forced = named.empty() || std::find(named.begin(), named.end(), port.name) != named.end();
     const auto alike = [&](const std::string& unit) { return parse_unit(unit).same_dimension(parse_unit(port.unit)); };
-    if (forced && std::none_of(out.begin(), out.end(), alike)) out.push_back(port.unit);
+    if (forced && std::none_of(out.begin(), out.end(), alike)) out.push_back(plain_si(port.unit));
   }
   return out;
 }
@@ -131,7 +132,8 @@ void read_noise(const Study& study, const SystemSpec& spec, ModelRequest& reques
     for (const auto& output : spec.outputs) {
       const bool unlike =
           output.name == name && !noise.sigma.unit.empty() && !parse_unit(noise.sigma.unit).same_dimension(parse_unit(output.unit));
-      if (unlike) throw InputError(noise.where, "[noise] " + name + " needs [" + output.unit + "], not [" + noise.sigma.unit + "]");
+      if (unlike)
+        throw InputError(noise.where, "[noise] " + name + " needs [" + plain_si(output.unit) + "], not [" + noise.sigma.unit + "]");
     }
   }
 }
@@ -152,10 +154,10 @@ void read_curves(const Study& study, const SystemSpec& spec, ModelRequest& reque
   for (const auto& [name, curve] : study.curves) {
     CurveRequest out{curve.of, {}, curve.roughness, curve.where};
     const std::string unit = unit_of(spec, curve.of);
-    const double bare = !unit.empty() && shown_in_degrees(unit) ? kDegree : 1.0;
+    const double bare = unit.empty() ? 1.0 : convert_difference(1.0, display_unit(unit), unit);
     for (const config::Number& knot : curve.knots.value_or(std::vector<config::Number>{})) {
       if (!unit.empty() && !knot.unit.empty() && !parse_unit(knot.unit).same_dimension(parse_unit(unit)))
-        throw InputError(knot.where, "[curves] " + name + ": knots need [" + unit + "], not [" + knot.unit + "]");
+        throw InputError(knot.where, "[curves] " + name + ": knots need [" + plain_si(unit) + "], not [" + knot.unit + "]");
       out.knots.push_back(knot.unit.empty() ? bare * knot.value : knot.value);
     }
     request.curves[name] = out;

@@ -55,10 +55,18 @@ void multiply_unit(Factors& factors, std::string_view unit, const std::map<std::
   }
 }
 
+using Roles = std::map<std::string, std::string>;
+
+/// The role whose own unit it is, "{port}", with how it is shown.
+Roles::const_iterator alone(const std::string& unit, const Roles& units) {
+  return unit.find('}') == unit.size() - 1 ? units.find(unit.substr(1, unit.size() - 2)) : units.end();
+}
+
 }  // namespace
 
 std::string bind_unit(const std::string& unit, const std::map<std::string, std::string>& units) {
   if (unit.find('{') == std::string::npos) return unit;
+  if (const auto role = alone(unit, units); role != units.end()) return role->second;
   Factors factors;
   multiply_unit(factors, unit, units);
   return unit_text(factors);

@@ -104,7 +104,8 @@ struct ComparedQuantity {
 
 struct SystemSpec {
   std::string key, doc, formula, source;
-  bool angles_in_radians = false;  ///< angles and their rates are shown in radians: their units are in_radians()
+  std::vector<std::string> shown_units;  ///< inside units of what is shown in others: shown_in(), at most one of every SI unit
+  bool angles_in_radians = false;        ///< angles and their rates are shown in radians: their units are in_radians()
   std::vector<StateSpec> states;
   std::vector<InputSpec> inputs;
   std::vector<std::string> equation_inputs;  ///< inputs that the system's own equations need

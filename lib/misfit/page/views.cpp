@@ -32,7 +32,7 @@ std::string quantities_of(const MissingForce& missing) {
   std::vector<std::string> out;
   for (std::size_t q = 0; q < missing.quantities.size(); ++q) {
     out.push_back(fmt::format(R"({{"name":{},"label":{},"unit":{}}})", json_string(missing.quantities[q]),
-                              json_words(missing.quantities[q]), json_words(display_unit(missing.quantity_units[q]))));
+                              json_words(missing.quantities[q]), json_words(display_level_unit(missing.quantity_units[q]))));
   }
   return json_list(out);
 }
@@ -151,7 +151,7 @@ std::string samples_view(const Diagnosis& diagnosis, std::size_t experiment, std
   const MissingForce& missing = diagnosis.missing[experiment];
   if (quantity >= missing.quantities.size()) throw InputError("there is no such quantity");
   return fmt::format(R"({{"t":{},"values":{},"figure":{}}})", json_numbers(missing.t, 9),
-                     json_numbers(display_values(missing.values[quantity], missing.quantity_units[quantity])),
+                     json_numbers(display_levels(missing.values[quantity], missing.quantity_units[quantity])),
                      json_of(report::missing_force_by_figure(missing, missing.quantities[quantity])));
 }
 

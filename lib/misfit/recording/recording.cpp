@@ -70,7 +70,8 @@ class ColumnClassifier {
     s.name = header.name;
     s.unit = column.dates ? "s" : header.unit.empty() ? "-" : header.unit;
     if (column.dates)
-      out_.remarks.push_back(fmt::format("column '{}' holds dates: read as seconds since {}", s.header, shown(column.first_date)));
+      out_.remarks.push_back(fmt::format("column '{}' holds dates: read as seconds since {}{}", s.header,
+                                         column.from_midnight ? "the midnight before " : "", shown(column.first_date)));
     not_understood_.push_back(shown(header.not_understood, longest_header));
     const std::vector<double> known = finite(column.values);
     s.missing = column.values.size() - known.size() - column.text;

@@ -48,7 +48,7 @@ struct MapLook {
 /// Grey where a map has no estimate although samples lie there: held out, or too few.
 Series gaps_of(const ForceMap& map, double low, double high) {
   Series gaps{"no_estimate", "no estimate: held out, or too few samples", Style::band, grey, {}, {}, {}, {}};
-  const std::vector<double> x = display_values(map.x, map.quantity_unit), half = half_steps(x);
+  const std::vector<double> x = display_levels(map.x, map.quantity_unit), half = half_steps(x);
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (map.sigma[i] > 0.0) continue;
     gaps.x.insert(gaps.x.end(), {x[i] - half[i], x[i] + half[i], nan});
@@ -60,7 +60,7 @@ Series gaps_of(const ForceMap& map, double low, double high) {
 
 /// Amplitudes ± 1 sigma where there is an estimate.
 void add_map(const ForceMap& map, const MapLook& look, Panel& panel) {
-  const std::vector<double> x = display_values(map.x, map.quantity_unit), sigma = display_values(map.sigma, map.port_unit);
+  const std::vector<double> x = display_levels(map.x, map.quantity_unit), sigma = display_values(map.sigma, map.port_unit);
   Series amplitude{
       look.key + "amplitude", look.legend, Style::error_bars, look.colour, x, display_values(map.amplitude, map.port_unit), {}, {}};
   double low = 0.0, high = 0.0;
@@ -80,10 +80,10 @@ void add_map(const ForceMap& map, const MapLook& look, Panel& panel) {
 Figure figure_of_map(const ForceMap& map) {
   Figure figure;
   figure.x_label = map.quantity;
-  figure.x_unit = display_unit(map.quantity_unit);
+  figure.x_unit = display_level_unit(map.quantity_unit);
   Panel panel{map.port, display_unit(map.port_unit), {}, std::nullopt, 0.0, 230.0, true, {}};
   Panel counts{"samples, weighted", "-", {}, std::nullopt, 0.0, 80.0, false, {}};
-  const std::vector<double> x = display_values(map.x, map.quantity_unit);
+  const std::vector<double> x = display_levels(map.x, map.quantity_unit);
   Series samples{"samples", "", Style::boxes, grey, x, map.count, {}, {}};
   set_edges(half_steps(x), 0.9, samples);
   for (const double count : map.count) counts.y_step = std::max(counts.y_step, round_step(count));
@@ -134,12 +134,12 @@ Figure pair_figure(const PairMap& map) {
   figure.title = fmt::format("Missing {} against {} and {} ({})", map.port, map.quantity_x, map.quantity_y, p_equals(map.p_corrected));
   figure.caption = "Estimated unmodelled force in units of its sigma: beyond 3 is unlikely by chance. Grey: too few samples.";
   figure.x_label = map.quantity_x;
-  figure.x_unit = display_unit(map.unit_x);
+  figure.x_unit = display_level_unit(map.unit_x);
   figure.z_label = "force over its sigma";
   figure.z_unit = std::string("-");
-  Panel panel{map.quantity_y, display_unit(map.unit_y), {}, std::nullopt, 0.0, 380.0, false, {}};
+  Panel panel{map.quantity_y, display_level_unit(map.unit_y), {}, std::nullopt, 0.0, 380.0, false, {}};
   Series cells{"force", "", Style::cells, black, {}, {}, {}, {}};
-  const std::vector<double> x = display_values(map.x, map.unit_x), y = display_values(map.y, map.unit_y);
+  const std::vector<double> x = display_levels(map.x, map.unit_x), y = display_levels(map.y, map.unit_y);
   const std::vector<double> half_x = half_steps(x), half_y = half_steps(y);
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (std::size_t j = 0; j < y.size(); ++j) {
@@ -314,9 +314,9 @@ Figure missing_force_by_figure(const MissingForce& missing, const std::string& q
   const std::size_t q = quantity_index(missing, quantity);
   figure.x_label = quantity;
   const std::string unit = q < missing.quantities.size() ? missing.quantity_units[q] : "-";
-  figure.x_unit = display_unit(unit);
+  figure.x_unit = display_level_unit(unit);
   const std::vector<double> x =
-      q < missing.quantities.size() ? display_values(missing.values[q], unit) : std::vector<double>(missing.t.size(), nan);
+      q < missing.quantities.size() ? display_levels(missing.values[q], unit) : std::vector<double>(missing.t.size(), nan);
   for (std::size_t p = 0; p < missing.ports.size(); ++p) {
     Panel panel{missing.ports[p], display_unit(missing.port_units[p]), {}, std::nullopt, 0.0, 200.0, true, {}};
     panel.series = {

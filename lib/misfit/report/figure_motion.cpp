@@ -64,21 +64,21 @@ std::vector<double> normalised_residuals(const ChannelPrediction& c) {
   return r;
 }
 
-Panel motion_panel(const ChannelPrediction& c, const std::string& unit) {
-  Panel panel{c.channel, unit, {}, std::nullopt, 0.0, 270.0, false};
+Panel motion_panel(const ChannelPrediction& c) {
+  Panel panel{c.channel, display_level_unit(c.unit), {}, std::nullopt, 0.0, 270.0, false};
   std::vector<bool> estimation = c.held_out;
   estimation.flip();
   panel.series.push_back(
-      {"measured", "measured", Style::points, black, c.t, masked(display_values(c.measured, c.unit), estimation), {}, {}});
+      {"measured", "measured", Style::points, black, c.t, masked(display_levels(c.measured, c.unit), estimation), {}, {}});
   panel.series.push_back(
-      {"predicted", "predicted", Style::line, palette(0), c.t, masked(display_values(c.predicted, c.unit), estimation), {}, {}, 1.4});
+      {"predicted", "predicted", Style::line, palette(0), c.t, masked(display_levels(c.predicted, c.unit), estimation), {}, {}, 1.4});
   if (std::find(c.held_out.begin(), c.held_out.end(), true) != c.held_out.end()) {
     panel.series.push_back({"measured_held_out",
                             "measured, held out",
                             Style::points,
                             grey,
                             c.t,
-                            masked(display_values(c.measured, c.unit), c.held_out),
+                            masked(display_levels(c.measured, c.unit), c.held_out),
                             {},
                             {}});
     panel.series.push_back({"predicted_held_out",
@@ -86,7 +86,7 @@ Panel motion_panel(const ChannelPrediction& c, const std::string& unit) {
                             Style::line,
                             palette(1),
                             c.t,
-                            masked(display_values(c.predicted, c.unit), c.held_out),
+                            masked(display_levels(c.predicted, c.unit), c.held_out),
                             {},
                             {},
                             1.4});
@@ -115,9 +115,9 @@ std::optional<std::array<double, 2>> range_of_settled(const std::vector<double>&
   return std::array{-margin * extent, margin * extent};
 }
 
-Panel residual_panel(const ChannelPrediction& c, const std::string& unit) {
+Panel residual_panel(const ChannelPrediction& c) {
   const std::vector<double> sigma = display_values(c.sigma, c.unit);
-  Panel panel{"residual", unit, {}, range_of_settled(display_values(residuals(c), c.unit), sigma), 0.0, 130.0, true};
+  Panel panel{"residual", display_unit(c.unit), {}, range_of_settled(display_values(residuals(c), c.unit), sigma), 0.0, 130.0, true};
   panel.series.push_back({"sigma", "± 1 sigma of the prediction", Style::band, palette(0), c.t, {}, scaled(sigma, -1.0), sigma});
   panel.series.push_back({"residual", "measured − predicted", Style::points, black, c.t, display_values(residuals(c), c.unit), {}, {}});
   return panel;
@@ -173,7 +173,6 @@ Interval typical_interval(const std::vector<double>& t, const std::vector<double
 
 Figure motion_figure(const std::string& method, const ChannelPrediction& channel, const std::optional<Interval>& zoom) {
   const ChannelPrediction c = zoom ? cut(channel, *zoom) : channel;
-  const std::string unit = display_unit(c.unit);
   Figure figure;
   figure.name =
       "motion_" + as_key(method) + "_" + file_name_for(channel.experiment) + "_" + file_name_for(channel.channel) + (zoom ? "_zoom" : "");
@@ -184,7 +183,7 @@ Figure motion_figure(const std::string& method, const ChannelPrediction& channel
     figure.caption += fmt::format(" {} of them, less certain than ten times the usual sigma, may lie beyond the axis.", count);
   figure.x_label = "time";
   figure.x_unit = std::string("s");  // g++ 12 warns wrongly about a one-letter literal assigned
-  figure.panels = {motion_panel(c, unit), residual_panel(c, unit)};
+  figure.panels = {motion_panel(c), residual_panel(c)};
   return figure;
 }
 

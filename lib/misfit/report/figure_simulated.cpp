@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures_simulated.h"
@@ -25,8 +26,8 @@ Series empty(const std::string& key, const std::string& legend, Style style, con
 }
 
 Panel panel_of(const MotionSeries& series, const MotionGroup& group) {
-  const std::string unit = display_unit(group.unit);
-  const double factor = unit == group.unit ? 1.0 : convert(1.0, group.unit, unit);
+  const bool levels = !group.numbers.empty() && is_level(group, group.numbers.back());
+  const auto drawn = [&](double value) { return levels ? display_level(value, group.unit) : display_value(value, group.unit); };
   const std::string key = as_key(series.name);
   Series band = empty(key + "_band", fmt::format("{}: 95 % of the simulated motions", series.name), Style::band, palette(0));
   Series middle = empty(key + "_median", "", Style::line, palette(0));
@@ -35,13 +36,14 @@ Panel panel_of(const MotionSeries& series, const MotionGroup& group) {
   for (const MotionNumber& n : group.numbers) {
     if (!std::isfinite(n.at)) continue;
     for (Series* s : {&band, &middle}) s->x.push_back(n.at);
-    band.lo.push_back(n.low * factor);
-    band.hi.push_back(n.high * factor);
-    middle.y.push_back(n.median * factor);
+    band.lo.push_back(drawn(n.low));
+    band.hi.push_back(drawn(n.high));
+    middle.y.push_back(drawn(n.median));
     Series& points = n.outside ? outside : measured;
     points.x.push_back(n.at);
-    points.y.push_back(n.measured * factor);
+    points.y.push_back(drawn(n.measured));
   }
+  const std::string unit = levels ? display_level_unit(group.unit) : display_unit(group.unit);
   Panel panel{series.name, unit, {std::move(band), std::move(middle), std::move(measured)}, std::nullopt, 0.0, 170.0, false};
   if (!outside.x.empty()) panel.series.push_back(std::move(outside));
   panel.zero_line = group.name == "autocorrelation";

@@ -8,6 +8,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/toml_text.h"
+#include "misfit/core/units.h"
 #include "misfit/model/provisional.h"
 #include "misfit/page/json_text.h"
 
@@ -70,7 +71,7 @@ std::string json_of(const Settable& settable) {
   std::vector<std::string> parameters, curves, experiments;
   for (const auto& p : settable.parameters)
     parameters.push_back(fmt::format(R"({{"name":{},"label":{},"unit":{},"free":{}}})", json_string(p.name), page::json_words(p.name),
-                                     page::json_words(p.unit), p.free));
+                                     page::json_words(plain_si(p.unit)), p.free));
   for (const auto& c : settable.curves)
     curves.push_back(fmt::format(R"({{"name":{},"label":{},"unit":{},"roughness":{}}})", json_string(c.name), page::json_words(c.name),
                                  page::json_words(c.unit), json_string(c.roughness)));

@@ -24,12 +24,10 @@ std::vector<Row> rows_of(const MethodSummary& m) {
 }
 
 /// Three significant digits, without unit.
-std::string short_number(double value, const std::string& si) {
-  return std::isfinite(value) ? fmt::format("{:.3g}", display_value(value, si)) : kMissing;
-}
+std::string short_number(double shown) { return std::isfinite(shown) ? fmt::format("{:.3g}", shown) : kMissing; }
 
 std::string range(double low, double high, const std::string& si) {
-  return with_display_unit(short_number(low, si) + " to " + short_number(high, si), si);
+  return with_display_unit(short_number(display_value(low, si)) + " to " + short_number(display_value(high, si)), si);
 }
 
 /// Quantiles of no interest by themselves only where they are outside; correlations and spectral lines as a count.
@@ -44,9 +42,11 @@ void add_group(const MotionSeries& s, const MotionGroup& g, TableBlock& table) {
   for (const MotionNumber& n : g.numbers) {
     const bool always = n.name == "mean" || n.name == "standard deviation" || n.at == 0.05 || n.at == 0.5 || n.at == 0.95;
     if (!always && !n.outside) continue;
-    table.rows.push_back({name, g.name == "amplitude" ? "amplitude, " + n.name : n.name,
-                          with_display_unit(short_number(n.measured, g.unit), g.unit), range(n.low, n.high, g.unit),
-                          n.outside ? "outside" : "", p});
+    const bool level = is_level(g, n);
+    const auto number = [&](double value) { return short_number(level ? display_level(value, g.unit) : display_value(value, g.unit)); };
+    const auto with_unit = [&](const std::string& text) { return level ? with_level_unit(text, g.unit) : with_display_unit(text, g.unit); };
+    table.rows.push_back({name, g.name == "amplitude" ? "amplitude, " + n.name : n.name, with_unit(number(n.measured)),
+                          with_unit(number(n.low) + " to " + number(n.high)), n.outside ? "outside" : "", p});
     p.clear();
   }
 }
@@ -65,7 +65,7 @@ Blocks curve_difference_blocks(const Comparison& c) {
   TableBlock table{columns("curve|between|>RMS [sigma]|>largest [sigma]|at|difference there|compared range")};
   for (const CurveDifference& d : c.curves) {
     table.rows.push_back({d.curve, d.a + " − " + d.b, fmt::format("{:.2f}", d.rms_sigmas), fmt::format("{:.2f}", d.max_sigmas),
-                          with_display_unit(short_number(d.at, d.of_unit), d.of_unit), shown(d.difference),
+                          with_display_unit(short_number(display_value(d.at, d.of_unit)), d.of_unit), shown(d.difference),
                           range(d.from, d.to, d.of_unit)});
   }
   if (!table.rows.empty()) out.subheading("Differences between curves");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/data/verdict.h"
 #include "misfit/show/results.h"
@@ -22,7 +23,7 @@ std::string largest(const ForceMap& map) {
   }
   if (best == map.x.size()) return kMissing;
   return fmt::format("{} at {}", shown({map.amplitude[best], map.sigma[best], map.port_unit}),
-                     shown({map.x[best], 0.0, map.quantity_unit}));
+                     in_level_unit(map.x[best], map.quantity_unit));
 }
 
 TableBlock map_table(const Diagnosis& d) {

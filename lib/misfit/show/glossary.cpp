@@ -40,7 +40,8 @@ Glossary further_glossary() {
        "its "
        "cause"},
       {"past of u", "what has not yet become of the last changes of u: a delay, a lag or another memory shows in it"},
-      {"time of day", "t modulo 24 h, from t = 0 of the recording on; looked at in recordings of three days and more"},
+      {"time of day",
+       "t modulo 24 h, from t = 0 of the recording on (midnight, where init read dates); looked at in recordings of three days and more"},
       {"lack of fit", "what is still significant beside an effect, as a curve of what it reads: the effect is there in another form"},
       {"candidate", "an effect, or an unknown curve, that the model may lack"},
       {"cell", "one combination of the shapes at which a candidate is tested; effective: how many independent tests the cells are worth"},

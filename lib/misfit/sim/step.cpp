@@ -7,6 +7,7 @@
 
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
+#include "misfit/core/units.h"
 #include "misfit/core/watch.h"
 
 namespace misfit {
@@ -228,8 +229,8 @@ bool Stepper::explain_step(const double* x, const Interval& interval, const Shar
     const std::string why = evaluator_.explain(stage.data(), inputs, t);
     const auto& states = evaluator_.model().state_specs;
     for (std::size_t i = 0; why.empty() && i < states.size(); ++i)
-      failure_ +=
-          (i == 0 ? "" : ", ") + states[i].name + " = " + format_value(stage[i]) + (states[i].unit == "-" ? "" : " " + states[i].unit);
+      failure_ += (i == 0 ? "" : ", ") + states[i].name + " = " + format_value(stage[i]) +
+                  (states[i].unit == "-" ? "" : " " + plain_si(states[i].unit));
     failure_ += why;
     return true;
   }

@@ -132,7 +132,7 @@ Table simulate(const Case& c, const Session& session) {
   table.add("t", "s", c.signals.t);
   for (Eigen::Index o = 0; o < run.y.cols(); ++o) {
     const OutputSpec& output = c.model.system->spec().outputs[o];
-    const std::string unit = display_unit(output.unit);
+    const std::string unit = display_level_unit(output.unit);
     std::vector<double> values, noisy;
     double sigma = 0.0;
     if (session.study.simulate) {

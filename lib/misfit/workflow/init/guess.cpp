@@ -90,7 +90,7 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
       continue;
     }
     model.inputs.push_back(c->name);
-    model.input_units.push_back(si_unit(c->unit));
+    model.input_units.push_back(unit_in_si(c->unit));
     const bool steps = c->held > 0.2;
     model.holds.emplace_back(c->measured ? "first_order" : "zero_order");
     model.hold_reasons.emplace_back(
@@ -129,7 +129,7 @@ void take_gains(const GuessedModel& model, const std::vector<Candidate>& others,
     const bool input = i < model.inputs.size();
     const Candidate* other = input ? nullptr : &others[i - model.inputs.size()];
     const std::string of = input ? model.inputs[i] : other->column->name,
-                      unit = input ? model.input_units[i] : si_unit(other->column->unit);
+                      unit = input ? model.input_units[i] : unit_in_si(other->column->unit);
     const std::string doc = output.guess.integrates ? "what " + of + " adds to the rate of change" : "static gain of " + of;
     output.gains.push_back({"", of, unit_ratio(driven, unit), doc, output.guess.gain[i]});
   }
@@ -140,7 +140,7 @@ GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, co
   GuessedOutput output;
   const ColumnSurvey& c = *of.column;
   output.name = c.name;
-  output.unit = si_unit(c.unit);
+  output.unit = unit_in_si(c.unit);
   data.y = of.values;
   output.noise = noise_of(data.y, c, output.unit);
   for (const ColumnSurvey* r : survey.of_use(ColumnUse::rate)) {
@@ -195,8 +195,6 @@ void note_unneeded_inputs(GuessedModel& model) {
 
 }  // namespace
 
-std::string si_unit(const std::string& unit) { return unit_in_si(unit); }
-
 const ColumnSurvey& column_called(const RecordingSurvey& survey, const std::string& name) {
   return *std::find_if(survey.columns.begin(), survey.columns.end(), [&](const ColumnSurvey& c) { return c.name == name; });
 }
@@ -217,7 +215,7 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
   Room room;
   std::vector<std::string> left_out;
   std::vector<Candidate> outputs;
-  for (const ColumnSurvey* c : survey.of_use(ColumnUse::output)) outputs.push_back({c, longest->values(c->name, si_unit(c->unit))});
+  for (const ColumnSurvey* c : survey.of_use(ColumnUse::output)) outputs.push_back({c, longest->values(c->name, unit_in_si(c->unit))});
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const bool none_fits = room.states == 0 || room.outputs == 0;
     const std::vector<Candidate> drivers = drivers_of(i, outputs, model.inputs.size());

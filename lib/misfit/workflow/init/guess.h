@@ -43,9 +43,6 @@ struct GuessedModel {
 /// Names that no column may have: those of formulas.
 [[nodiscard]] std::vector<std::string> names_of_formulas();
 
-/// The unit of a column in SI: "deg/s" → "rad/s", "kPa" → "Pa", "cm" → "m".
-[[nodiscard]] std::string si_unit(const std::string& unit);
-
 /// Reads a linear model off the survey's longest part, of as many inputs and outputs as a declared system takes, first ones first.
 /// InputError: values whose squares are beyond the numbers of this machine.
 [[nodiscard]] GuessedModel guess_model(const RecordingSurvey& survey);

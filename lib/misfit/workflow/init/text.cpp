@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
+#include "misfit/core/toml_document.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/core/units.h"
 #include "misfit/data/estimators.h"
@@ -71,17 +74,42 @@ std::string remark_on(const ColumnSurvey& column) {
   return toml_comment(column.header.starts_with(column.name) ? column.why : "'" + column.header + "': " + column.why);
 }
 
-/// Angles are shown as they were recorded: in degrees where a column is, else in radians. Empty where no column is an angle or its rate.
-std::string display_of(const RecordingSurvey& survey) {
-  bool angles = false;
+bool in_model(const ColumnSurvey& column) {
+  return column.use == ColumnUse::input || column.use == ColumnUse::output || column.use == ColumnUse::rate;
+}
+
+/// Of every SI unit the one in which all columns of it were recorded, where that is another.
+std::vector<std::string> recorded_units(const RecordingSurvey& survey) {
+  std::map<std::string, std::set<std::string>> recorded;
   for (const ColumnSurvey& column : survey.columns) {
-    if (column.use != ColumnUse::input && column.use != ColumnUse::output && column.use != ColumnUse::rate) continue;
+    if (in_model(column)) recorded[unit_in_si(column.unit)].insert(plain_unit(column.unit));
+  }
+  std::vector<std::string> out;
+  for (const auto& [si, units] : recorded) {
+    if (units.size() > 1 || si == *units.begin() || si == "s" || si == "rad") continue;
+    const auto symbols = unit_symbols(*units.begin());
+    if (std::any_of(symbols.begin(), symbols.end(), [](const auto& symbol) { return symbol.first == "deg"; })) continue;
+    out.push_back(*units.begin());
+  }
+  return out;
+}
+
+/// Results are shown as what was recorded: in degrees where a column is, else in radians, and in units that are not SI. Empty where there
+/// is nothing to say.
+std::string display_of(const RecordingSurvey& survey) {
+  bool angles = false, degrees = false;
+  for (const ColumnSurvey& column : survey.columns) {
+    if (!in_model(column)) continue;
     for (const auto& [symbol, power] : unit_symbols(column.unit)) {
-      if (symbol == "deg") return "";
+      degrees = degrees || symbol == "deg";
       angles = angles || parse_unit(symbol).angle;
     }
   }
-  return angles ? "[display]\nangle = \"rad\"              # as recorded; or \"deg\"\n\n" : "";
+  const std::vector<std::string> units = recorded_units(survey);
+  std::string text;
+  if (angles && !degrees) text += "angle = \"rad\"              # as recorded; or \"deg\"\n";
+  if (!units.empty()) text += fmt::format("units = {}   # as recorded; the formulas below are in SI\n", toml_texts(units));
+  return text.empty() ? "" : "[display]\n" + text + "\n";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
@@ -24,8 +25,8 @@ double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.
 /// The tag's way so far.
 class TagWay {
  public:
-  TagWay(const std::filesystem::path& path, const VideoStudy& study)
-      : path_(path), id_(*study.marker.id), cells_(cells_of(study.aruco)), region_(region_of(study)), last_(study.start) {}
+  TagWay(std::filesystem::path path, const VideoStudy& study)
+      : path_(std::move(path)), id_(*study.marker.id), cells_(cells_of(study.aruco)), region_(region_of(study)), last_(study.start) {}
 
   void add_missing() { samples_.push_back({Loss::no_frame, {}, 0.0, 0.0}); }
 
@@ -59,10 +60,11 @@ class TagWay {
       }
     }
     if (found.empty()) return std::nullopt;
-    if (found.size() > 1 && !last_)
+    if (found.size() > 1 && !last_) {
       throw RunError(fmt::format(
           "{}: two tags of id {} are in the picture; start = [column, row] or region = [left, top, right, bottom] of [video] chooses one",
           path_.string(), id_));
+    }
     if (found.size() == 1) return found.front();
     return *std::min_element(found.begin(), found.end(),
                              [&](const Tag& a, const Tag& b) { return distance(a.centre, *last_) < distance(b.centre, *last_); });
