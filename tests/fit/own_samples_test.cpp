@@ -68,7 +68,10 @@ TEST(OwnClocks, AreThoseOfSensorsThatAreHardlyEverMeasuredTogether) {
 TEST(OwnClocks, HaveTheStepOfTheFastestSensor) {
   EXPECT_NEAR(step_of_measurements(two_sensors(5, 0.0)), 0.001, 1e-9);
   Signals pairs = two_sensors(2, 0.0);  // b, a 50 us behind it, b, a, …
-  for (std::size_t i = 0; i < pairs.samples(); ++i) pairs.t[i] = 0.004 * static_cast<double>(i / 2) + (i % 2 == 1 ? 5e-5 : 0.0);
+  for (std::size_t i = 0; i < pairs.samples(); ++i) {
+    const std::size_t pair = i / 2;
+    pairs.t[i] = 0.004 * static_cast<double>(pair) + (i % 2 == 1 ? 5e-5 : 0.0);
+  }
   EXPECT_NEAR(step_of_measurements(pairs), 0.004, 1e-9);
   EXPECT_NEAR(own_step(pairs, 1), 0.004, 1e-9);
   EXPECT_NEAR(step_of_measurements(two_sensors(5, 1.0)), 0.001, 1e-9);

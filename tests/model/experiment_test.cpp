@@ -86,8 +86,9 @@ TEST(SignalsFrom, AnInputThatChangesOnlyWhereItIsHeldOutIsSaid) {
   study.fraction = 0.3;
   const auto said = [&](const std::vector<double>& u) {
     const Signals s = with_input(u, "hold = \"zero_order\"", study);
-    return std::any_of(s.notes.begin(), s.notes.end(),
-                       [](const std::string& note) { return note.find("changes in the part that is held out alone") != note.npos; });
+    return std::any_of(s.notes.begin(), s.notes.end(), [](const std::string& note) {
+      return note.find("changes in the part that is held out alone") != std::string::npos;
+    });
   };
   EXPECT_TRUE(said({5.0, 5.0, 5.0, 5.0, 6.0}));
   EXPECT_TRUE(said({5.0, 5.0, 5.0, 6.0, 6.0}));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
+#include "misfit/core/duration.h"
 #include "misfit/core/lists.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
@@ -177,7 +178,8 @@ void conclude(Diagnosis& out) {
     const double count = 3.0 * static_cast<double>(out.whiteness.size());
     if (sidak(report.peak_p, count) < significant) {
       out.sentences.push_back("the innovations of " + report.channel + " have a spectral line at " + format_value(report.peak_frequency) +
-                              " Hz (" + format_value(report.peak_power) + " times the power of white noise)");
+                              " Hz, a period of " + duration_in_words(1.0 / report.peak_frequency) + " (" +
+                              format_value(report.peak_power) + " times the power of white noise)");
     }
     if (sidak(std::min(report.ljung_box_p, report.periodogram_p), count) < significant) {
       out.sentences.push_back("the innovations of " + report.channel + " are not white: Ljung-Box " + p_equals(report.ljung_box_p) +

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/duration.h"
 #include "misfit/core/text.h"
 #include "misfit/math/statistics.h"
 #include "misfit/show/rows.h"
@@ -23,16 +24,6 @@ std::string share_of_motion(const Fit& fit, const std::string& channel) {
     if (name.starts_with(begin) && comma != std::string::npos && !fitted.starts_with("held out")) return fitted.substr(comma + 2);
   }
   return "";
-}
-
-/// "0.64 s", "5.33 h".
-std::string duration_in_words(double seconds) {
-  constexpr double minute = 60.0, hour = 3600.0, day = 86400.0;
-  const auto [unit, name] = seconds < 2.0 * minute ? std::pair(1.0, "s")
-                            : seconds < 2.0 * hour ? std::pair(minute, "min")
-                            : seconds < 2.0 * day  ? std::pair(hour, "h")
-                                                   : std::pair(day, "d");
-  return fmt::format("{:.3g} {}", seconds / unit, name);
 }
 
 /// ", 32 samples (0.64 s) ahead"; without the time where the fit has no predictions.
