@@ -69,7 +69,7 @@ TEST_P(CartWithAClock, ReadsOneOutputAtItsOwnTimeAndTheOtherNot) {
   EXPECT_LE((run.y - linear.y).lpNorm<Eigen::Infinity>(), 1e-12);
   const int shifted = static_cast<int>(std::lround(offset / fine));
   for (int k = 0; k < samples; ++k) {
-    const std::size_t at = (k + before) * finer;
+    const std::size_t at = static_cast<std::size_t>(k + before) * static_cast<std::size_t>(finer);
     EXPECT_NEAR(run.y(k, 0), truth[at].x, 1e-5) << k;
     EXPECT_NEAR(run.y(k, 1), truth[at + shifted].v, 1e-4) << k;  // of some 3 m/s
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -95,8 +96,10 @@ class View {
     for (int r = 0; r < height_; ++r) {
       for (int c = 0; c < width_; ++c) {
         double sum = 0.0;
-        for (int k = 0; k < across * across; ++k)
-          sum += grey(paints, inside(c, r, (k % across + 0.5) / across, (k / across + 0.5) / across)) / (across * across);
+        for (int down = 0; down < across; ++down) {
+          for (int along = 0; along < across; ++along)
+            sum += grey(paints, inside(c, r, (along + 0.5) / across, (down + 0.5) / across)) / (across * across);
+        }
         image(c, r) = static_cast<std::uint8_t>(std::lround(std::min(255.0, std::max(0.0, sum + noise(random)))));
       }
     }
@@ -111,8 +114,8 @@ class View {
     return {a.x + u * (b.x - a.x) + v * (d.x - a.x), a.y + u * (b.y - a.y) + v * (d.y - a.y)};
   }
   static double grey(const std::vector<Paint>& paints, const Place& p) {
-    for (auto paint = paints.rbegin(); paint != paints.rend(); ++paint) {
-      const double over = (*paint)(p);
+    for (const Paint& paint : paints | std::views::reverse) {
+      const double over = paint(p);
       if (over >= 0.0) return over;
     }
     return 130.0;
