@@ -177,13 +177,14 @@ struct Shown {
 };
 
 TEST(ShownIn, IsTheInsideUnitOfWhatIsShownInAnother) {
-  for (const auto& [unit, inside, si, rate] : std::vector<Shown>{{"kW", "W (in kW)", "W", "W/s (in kW/s)"},
-                                                                 {"rpm", "radian/s (in rpm)", "rad/s", "radian/s^2 (in rpm/s)"},
-                                                                 {"U/min", "radian/s (in rpm)", "rad/s", "radian/s^2 (in rpm/s)"},
-                                                                 {"km/h", "m/s (in km/h)", "m/s", "m/s^2 (in km/h/s)"},
-                                                                 {"mg/l", "kg/m^3 (in mg/l)", "kg/m^3", "kg/m^3/s (in mg/l/s)"},
-                                                                 {"N", "N", "N", "N/s"},
-                                                                 {"rad/s", "radian/s", "rad/s", "radian/s^2"}}) {
+  for (const auto& [unit, inside, si, rate] :
+       std::vector<Shown>{{"kW", "W (shown in kW)", "W", "W/s (shown in kW/s)"},
+                          {"rpm", "radian/s (shown in rpm)", "rad/s", "radian/s^2 (shown in rpm/s)"},
+                          {"U/min", "radian/s (shown in rpm)", "rad/s", "radian/s^2 (shown in rpm/s)"},
+                          {"km/h", "m/s (shown in km/h)", "m/s", "m/s^2 (shown in km/h/s)"},
+                          {"mg/l", "kg/m^3 (shown in mg/l)", "kg/m^3", "kg/m^3/s (shown in mg/l/s)"},
+                          {"N", "N", "N", "N/s"},
+                          {"rad/s", "radian/s", "rad/s", "radian/s^2"}}) {
     EXPECT_EQ(shown_in(unit), inside);
     EXPECT_EQ(plain_si(inside), si);
     EXPECT_EQ(rate_unit(inside), rate);
@@ -194,15 +195,15 @@ TEST(ShownIn, IsTheInsideUnitOfWhatIsShownInAnother) {
     EXPECT_DOUBLE_EQ(convert(3.0, unit, inside), convert(3.0, unit, si));
     EXPECT_TRUE(parse_unit(rate).same_dimension(parse_unit(display_unit(rate))));
   }
-  EXPECT_EQ(display_unit("W (in kW)/K"), "W/K") << "of several factors";
-  EXPECT_EQ(unit_symbols("W (in kW)/K"), unit_symbols("W/K"));
+  EXPECT_EQ(display_unit("W (shown in kW)/K"), "W/K") << "of several factors";
+  EXPECT_EQ(unit_symbols("W (shown in kW)/K"), unit_symbols("W/K"));
   EXPECT_EQ(si_unit("dB"), "dB");
   EXPECT_EQ(si_unit("%"), "%") << "a share is none of another unit";
 }
 
 TEST(ShownIn, ATemperatureIsShownInDegreesAndItsDifferencesInKelvin) {
   const std::string inside = shown_in("°C");
-  EXPECT_EQ(inside, "K (in degC)");
+  EXPECT_EQ(inside, "K (shown in degC)");
   EXPECT_EQ(display_level_unit(inside), "degC");
   EXPECT_EQ(display_unit(inside), "K");
   EXPECT_EQ(rate_unit(inside), "K/s");
@@ -216,11 +217,11 @@ TEST(ShownIn, ATemperatureIsShownInDegreesAndItsDifferencesInKelvin) {
 
 TEST(ShownIn, PerCentIsStoredInFull) {
   const std::string inside = shown_in("%");
-  EXPECT_EQ(inside, "- (in %)");
+  EXPECT_EQ(inside, "- (shown in %)");
   EXPECT_EQ(display_unit(inside), "%");
   EXPECT_DOUBLE_EQ(display_value(0.42, inside), 42.0);
   EXPECT_EQ(si_unit(stored_unit(inside)), inside);
-  EXPECT_EQ(rate_unit(inside), "1/s (in %/s)");
+  EXPECT_EQ(rate_unit(inside), "1/s (shown in %/s)");
 }
 
 }  // namespace

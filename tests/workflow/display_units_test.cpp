@@ -7,6 +7,7 @@
 #include <random>
 
 #include "misfit/core/units.h"
+#include "misfit/export/exported.h"
 #include "misfit/show/rows.h"
 #include "misfit/workflow/assess/assess.h"
 #include "tests/workflow/text_study.h"
@@ -71,8 +72,8 @@ TEST(DisplayUnits, AreThoseOfNumbersAndOfStoredResultsAndSurviveBeingReadBack) {
     EXPECT_THAT(shown(fit.parameters.at("idle")), HasSubstr(" kW"));
     EXPECT_NEAR(fit.parameters.at("idle").value, 50.0, 4.0 * fit.parameters.at("idle").sigma);
     EXPECT_THAT(shown(fit.noise.at("T")), HasSubstr(" K")) << "an error is a difference";
-    EXPECT_EQ(fit.predictions.front().unit, "K (in degC)");
-    EXPECT_EQ(fit.parameters.at("idle").unit, "W (in kW)");
+    EXPECT_EQ(fit.predictions.front().unit, "K (shown in degC)");
+    EXPECT_EQ(fit.parameters.at("idle").unit, "W (shown in kW)");
     EXPECT_THAT(fit.facts.at("residuals of T in 'one'"), HasSubstr(" K, "));
   }
   const auto read_back = testing::Pointwise(testing::NanSensitiveDoubleNear(1e-9), first.predictions.front().predicted);
@@ -80,6 +81,16 @@ TEST(DisplayUnits, AreThoseOfNumbersAndOfStoredResultsAndSurviveBeingReadBack) {
   EXPECT_THAT(again.predictions.front().measured,
               testing::Pointwise(testing::NanSensitiveDoubleNear(1e-9), first.predictions.front().measured));
   EXPECT_THAT(again.predictions.front().sigma, testing::Pointwise(testing::NanSensitiveDoubleNear(1e-9), first.predictions.front().sigma));
+}
+
+TEST(DisplayUnits, AreNotThoseOfWhatIsExported) {
+  const TextStudy study("[display]\nunits = [\"degC\", \"kW\"]\n" + room, recording(false, 0.0));
+  Exported exported;
+  exported.fit = fitted(study);
+  use_plain_units(exported);
+  const std::string text = json_text(exported);
+  EXPECT_THAT(text, HasSubstr("\"unit\": \"W\""));
+  EXPECT_THAT(text, testing::Not(HasSubstr("shown in")));
 }
 
 TEST(DisplayUnits, ArePlacesOfWhereAModelFails) {

@@ -280,9 +280,9 @@ std::string plain_unit(std::string_view text) {
 
 namespace {
 
-constexpr std::string_view shown_begin = " (in ", shown_end = ")";
+constexpr std::string_view shown_begin = " (shown in ", shown_end = ")";
 
-/// "W (in kW)" as "W" and "kW"; the second is empty where nothing is said of it, or of a part only.
+/// "W (shown in kW)" as "W" and "kW"; the second is empty where nothing is said of it, or of a part only.
 std::pair<std::string_view, std::string_view> inside_and_shown(std::string_view unit) {
   const std::size_t at = unit.find(shown_begin);
   if (at == std::string_view::npos || !unit.ends_with(shown_end) || unit.find(shown_end, at) != unit.size() - 1) return {unit, {}};
@@ -290,7 +290,7 @@ std::pair<std::string_view, std::string_view> inside_and_shown(std::string_view 
   return {unit.substr(0, at), unit.substr(from, unit.size() - shown_end.size() - from)};
 }
 
-/// "W (in kW)/K" → "W/K".
+/// "W (shown in kW)/K" → "W/K".
 std::string without_shown(std::string_view unit) {
   std::string out(unit);
   for (std::size_t at = out.find(shown_begin); at != std::string::npos; at = out.find(shown_begin, at)) {

@@ -57,25 +57,25 @@ void convert(std::span<double> values, std::string_view from, std::string_view t
 /// The same for a difference of two values, a sigma or a step: one degC is one K.
 [[nodiscard]] double convert_difference(double value, std::string_view from, std::string_view to);
 
-/// The unit of a time derivative: "rad/s" → "rad/s^2", "V" → "V/s", "-" → "1/s", "W (in kW)" → "W/s (in kW/s)", "K (in degC)" → "K/s".
+/// The unit of a time derivative: "rad/s" → "rad/s^2", "V" → "V/s", "-" → "1/s"; of what is shown_in() another, shown in the rate of that.
 [[nodiscard]] std::string rate_unit(std::string_view unit);
 
-/// The inside unit of what is shown in `unit`: "rpm" → "radian/s (in rpm)", "kW" → "W (in kW)", "degC" → "K (in degC)"; what is SI already
-/// is itself. Every function here reads such a unit as the one before the parenthesis; a unit that is made of several ("W (in kW)/K") is
-/// shown in SI. Throws as parse_unit().
+/// The inside unit of what is shown in `unit`: "rpm" → "radian/s (shown in rpm)", "kW" → "W (shown in kW)", "degC" → "K (shown in degC)";
+/// what is SI already is itself. Every function here reads such a unit as the one before the parenthesis; a unit that is made of several
+/// ("W (shown in kW)/K") is shown in SI. Throws as parse_unit().
 [[nodiscard]] std::string shown_in(std::string_view unit);
-/// The SI unit alone: "radian/s (in rpm)" → "rad/s", "radian" → "rad".
+/// The SI unit alone: "radian/s (shown in rpm)" → "rad/s", "radian" → "rad".
 [[nodiscard]] std::string plain_si(std::string_view si);
 
 /// The unit people like to read for a quantity whose inside unit is `si`: rad → deg, rad/s → deg/s, rad/s^2 → deg/s^2, and of what is
-/// shown in radians radian → rad, radian/s → rad/s, radian/s^2 → rad/s^2; "W (in kW)" → "kW"; else itself. Of temperatures it is that of
-/// their differences and sigmas, K: display_level_unit() is that of their values.
+/// shown in radians radian → rad, radian/s → rad/s, radian/s^2 → rad/s^2; "W (shown in kW)" → "kW"; else itself. Of temperatures it is that
+/// of their differences and sigmas, K: display_level_unit() is that of their values.
 [[nodiscard]] std::string display_unit(std::string_view si);
-/// The same for a value on its scale, where "K (in degC)" is degC.
+/// The same for a value on its scale, where "K (shown in degC)" is degC.
 [[nodiscard]] std::string display_level_unit(std::string_view si);
-/// The other way: deg → rad, rad → radian, and their rates; kW → "W (in kW)"; else itself, as what is no unit (dB).
+/// The other way: deg → rad, rad → radian, and their rates; kW → "W (shown in kW)"; else itself, as what is no unit (dB).
 [[nodiscard]] std::string si_unit(std::string_view display);
-/// As which an inside unit is stored beside numbers: display_unit(), but what that does not tell apart in full: "K (in degC)", "- (in %)".
+/// As which an inside unit is stored beside numbers: display_unit(), but in full where that does not tell: of temperatures and of %.
 [[nodiscard]] std::string stored_unit(std::string_view si);
 /// rad → radian, rad/s → radian/s, rad/s^2 → radian/s^2: the inside unit of an angle, or of its rate, that is shown in radians; else
 /// itself.

@@ -4,7 +4,6 @@
 
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
-#include "misfit/core/units.h"
 #include "misfit/export/source.h"
 
 namespace misfit {
@@ -75,8 +74,8 @@ std::string array(const std::string& name, const std::vector<double>& values) {
 }
 
 std::string curve_text(const ExportedCurve& curve, const std::string& name) {
-  std::string out = "\n" + comment({fmt::format("{} [{}] of {} [{}]", shown(curve.name), shown(plain_si(curve.unit)), shown(curve.of),
-                                                shown(plain_si(curve.of_unit)))});
+  std::string out =
+      "\n" + comment({fmt::format("{} [{}] of {} [{}]", shown(curve.name), shown(curve.unit), shown(curve.of), shown(curve.of_unit))});
   if (curve.has_knots()) {
     out += array(name + "_knots", curve.knots) + array(name + "_values", curve.value) + array(name + "_slopes", curve.slope);
     const auto function = [&](const char* suffix) {
@@ -119,7 +118,7 @@ std::string parameters_text(const SourceParts& parts) {
     const ExportedParameter& p = parts.parameters[i];
     const std::string sigma = p.estimate.sigma > 0.0 ? ", sigma " + number_text(p.estimate.sigma) : p.free ? "" : ", not estimated";
     out += fmt::format("const double p_{} = {};  ", parts.parameter_names[i], number_text(p.estimate.value));
-    out += comment({fmt::format("[{}]{}", shown(plain_si(p.estimate.unit)), sigma)});
+    out += comment({fmt::format("[{}]{}", shown(p.estimate.unit), sigma)});
   }
   return out.empty() ? out : "\n" + comment({"Parameters."}) + out;
 }

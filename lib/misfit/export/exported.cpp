@@ -9,6 +9,7 @@
 #include <set>
 
 #include "misfit/core/shown.h"
+#include "misfit/core/units.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/math/covariance.h"
 
@@ -89,6 +90,23 @@ std::vector<ExportedParameter> parameters_of(const Exported& exported) {
     out.push_back({p.name, p.doc, estimate == estimates.end() ? Estimate{p.value, 0.0, p.unit} : estimate->second, p.free});
   }
   return out;
+}
+
+void use_plain_units(Exported& exported) {
+  Fit& fit = exported.fit;
+  for (auto* estimates : {&fit.parameters, &fit.noise, &fit.force}) {
+    for (auto& [name, estimate] : *estimates) estimate.unit = plain_si(estimate.unit);
+  }
+  for (CurveEstimate& curve : fit.curves) {
+    curve.unit = plain_si(curve.unit);
+    curve.of_unit = plain_si(curve.of_unit);
+  }
+  if (!exported.model) return;
+  for (Parameter& p : exported.model->parameters) p.unit = plain_si(p.unit);
+  for (Curve& curve : exported.model->curves) {
+    curve.unit = plain_si(curve.unit);
+    curve.of_unit = plain_si(curve.of_unit);
+  }
 }
 
 std::string identifier(const std::string& text) {

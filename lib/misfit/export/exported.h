@@ -42,6 +42,9 @@ struct ExportedParameter {
 /// Those of the model in its order (without one: as the fit has them).
 [[nodiscard]] std::vector<ExportedParameter> parameters_of(const Exported& exported);
 
+/// Its units as SI alone, without those in which the study has them shown.
+void use_plain_units(Exported& exported);
+
 /// The C99 file: curves as functions, and the right-hand side and outputs where they can be had (model_formulas()). Needs math.h alone.
 [[nodiscard]] std::string c_source(const Exported& exported);
 /// The same as a module of Python 3; needs math alone.

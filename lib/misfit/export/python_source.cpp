@@ -5,7 +5,6 @@
 
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
-#include "misfit/core/units.h"
 #include "misfit/export/source.h"
 
 namespace misfit {
@@ -109,8 +108,7 @@ std::string list(const std::string& name, const std::vector<double>& values) {
 std::string comment(const std::vector<std::string>& lines) { return lines_text(lines, "# "); }
 
 std::string curve_text(const ExportedCurve& curve, const std::string& name) {
-  const std::string doc =
-      fmt::format("{} [{}] of {} [{}]", shown(curve.name), shown(plain_si(curve.unit)), shown(curve.of), shown(plain_si(curve.of_unit)));
+  const std::string doc = fmt::format("{} [{}] of {} [{}]", shown(curve.name), shown(curve.unit), shown(curve.of), shown(curve.of_unit));
   std::string data, functions;
   const auto define = [&](const std::string& function, const std::string& words, const std::string& value) {
     functions += fmt::format("\n\ndef {}(at):\n  {}\n  return {}\n", function, quoted(words), value);
@@ -152,7 +150,7 @@ std::string parameters_text(const SourceParts& parts) {
   std::string out = "\n# Value, sigma (None: not estimated) and unit; the functions below read the values.\nparameters = {\n";
   for (const ExportedParameter& p : parts.parameters) {
     out += fmt::format("    {}: {{\"value\": {}, \"sigma\": {}, \"unit\": {}}},\n", quoted(p.name), number_text(p.estimate.value),
-                       p.estimate.sigma > 0.0 ? number_text(p.estimate.sigma) : "None", quoted(plain_si(p.estimate.unit)));
+                       p.estimate.sigma > 0.0 ? number_text(p.estimate.sigma) : "None", quoted(p.estimate.unit));
   }
   return out + "}\n";
 }

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "misfit/core/file_name.h"
-#include "misfit/core/units.h"
 #include "misfit/data/json_fields.h"
 #include "misfit/export/exported.h"
 #include "misfit/export/expression.h"
@@ -20,7 +19,7 @@ Json numbers(const std::vector<double>& values) {
 const char* name_of(Parity parity) { return parity == Parity::odd ? "odd" : parity == Parity::even ? "even" : "none"; }
 
 Json json_of(const ExportedCurve& curve) {
-  Json out{{"name", curve.name}, {"of", curve.of}, {"of_unit", plain_si(curve.of_unit)}, {"unit", plain_si(curve.unit)}};
+  Json out{{"name", curve.name}, {"of", curve.of}, {"of_unit", curve.of_unit}, {"unit", curve.unit}};
   if (curve.has_knots()) {
     out["parity"] = name_of(curve.parity);
     out["knots"] = {
@@ -38,7 +37,7 @@ Json covariance_of(const Fit& fit) {
   Json units = Json::array();
   for (const std::string& name : fit.names) {
     const auto found = fit.parameters.find(name);
-    units.push_back(found == fit.parameters.end() ? "" : plain_si(found->second.unit));
+    units.push_back(found == fit.parameters.end() ? "" : found->second.unit);
   }
   return {{"names", fit.names}, {"units", units}, {"matrix", JsonWriter::json_of(fit.covariance)}};
 }
@@ -58,7 +57,7 @@ std::string parameters_csv(const Exported& exported) {
   std::string out = "name,value,sigma,unit,free\n";
   for (const ExportedParameter& p : parameters_of(exported)) {
     const std::string sigma = p.estimate.sigma > 0.0 ? field(p.estimate.sigma) : "";
-    out += fmt::format("{},{},{},{},{}\n", field(p.name), field(p.estimate.value), sigma, field(plain_si(p.estimate.unit)), p.free ? 1 : 0);
+    out += fmt::format("{},{},{},{},{}\n", field(p.name), field(p.estimate.value), sigma, field(p.estimate.unit), p.free ? 1 : 0);
   }
   return out;
 }
@@ -76,7 +75,7 @@ std::string covariance_csv(const Fit& fit) {
 /// Rows of x, value, then the further columns; a sigma of 0 is "not estimated".
 std::string curve_csv(const ExportedCurve& curve, const std::vector<double>& x, const std::vector<double>& value,
                       const std::vector<std::pair<std::string, const std::vector<double>*>>& further) {
-  std::string out = header(curve.of, plain_si(curve.of_unit)) + "," + header("value", plain_si(curve.unit));
+  std::string out = header(curve.of, curve.of_unit) + "," + header("value", curve.unit);
   for (const auto& [name, values] : further) out += "," + name;
   for (std::size_t i = 0; i < x.size(); ++i) {
     out += "\n" + field(x[i]) + "," + field(value[i]);
@@ -113,7 +112,7 @@ std::map<std::string, std::string> csv_texts(const Exported& exported) {
     out["covariance.csv"] = covariance_csv(exported.fit);
   for (const ExportedCurve& curve : curves_of(exported)) {
     const std::string stem = file_name_for(curve.name);
-    const std::string unit = curve.unit.empty() ? "" : "[" + plain_si(curve.unit) + "]";
+    const std::string unit = curve.unit.empty() ? "" : "[" + curve.unit + "]";
     if (curve.has_knots())
       out[stem + "_knots.csv"] =
           curve_csv(curve, curve.knots, curve.value, {{"slope", &curve.slope}, {field("sigma" + unit), &curve.sigma}});

@@ -137,6 +137,7 @@ Opened opened_estimate(const SessionOptions& options, const Registry& registry, 
   out.program = std::string("misfit ") + version() + " (" + commit() + ")";
   out.fit = chosen_fit(*chosen.session, request.method);
   if (!find_estimator(out.fit.method)->regression_form) out.model = model_at(*chosen.session, out.fit);
+  use_plain_units(out);
   return {std::move(chosen.session), std::move(out)};
 }
 
