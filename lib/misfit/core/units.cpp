@@ -405,7 +405,7 @@ std::string in_radians(std::string_view si) {
 
 std::string shown_in(std::string_view unit) {
   const Unit shown = parse_unit(unit);
-  const std::string inside = in_radians(unit_in_si(unit));
+  std::string inside = in_radians(unit_in_si(unit));
   if (shown.to_si == 1.0 && shown.offset == 0.0) return inside;
   return fmt::format("{}{}{}{}", inside, shown_begin, plain_unit(unit), shown_end);
 }
@@ -420,7 +420,7 @@ std::string plain_si(std::string_view si) {
 std::string display_level_unit(std::string_view si) {
   const auto [inside, shown] = inside_and_shown(si);
   if (!shown.empty()) return std::string(shown);
-  const std::string plain = without_shown(si);
+  std::string plain = without_shown(si);
   for (const auto& [own, known] : displayed) {
     if (plain == own) return std::string(known);
   }
@@ -456,8 +456,9 @@ std::string si_unit(std::string_view display) {
 
 std::string rate_unit(std::string_view unit) {
   if (const auto [inside, shown] = inside_and_shown(unit); !shown.empty()) {
-    const std::string rate = rate_unit(inside);
-    return parse_unit(shown).offset != 0.0 ? rate : fmt::format("{}{}{}{}", rate, shown_begin, rate_unit(shown), shown_end);
+    std::string inside_rate = rate_unit(inside);
+    if (parse_unit(shown).offset != 0.0) return inside_rate;
+    return fmt::format("{}{}{}{}", inside_rate, shown_begin, rate_unit(shown), shown_end);
   }
   if (unit.empty() || unit == "-") return "1/s";
   std::string out(unit);
