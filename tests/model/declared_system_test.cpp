@@ -197,7 +197,6 @@ TEST(DeclaredDisplay, InRadiansShowsAnglesTheirRatesAndWhatEffectsAddInRadians) 
   EXPECT_EQ(shown_units.at("viscosity"), "1/s");
 }
 
-/// Knots and bounds have units of their own.
 TEST(DeclaredDisplay, InUnitsOfTheRecordingShowsWhatIsMeasuredInThemAndWhatEffectsAdd) {
   std::string text = turntable_text;
   text.replace(text.find("angle = \"rad\"\n"), 14, "units = [\"rpm\", \"kV\"]\n");

@@ -83,6 +83,16 @@ TEST(DisplayUnits, AreThoseOfNumbersAndOfStoredResultsAndSurviveBeingReadBack) {
   EXPECT_THAT(again.predictions.front().sigma, testing::Pointwise(testing::NanSensitiveDoubleNear(1e-9), first.predictions.front().sigma));
 }
 
+TEST(DisplayUnits, AreThoseOfKnotsThatNameNoneButOfTemperatures) {
+  const TextStudy study("[display]\nunits = [\"degC\", \"kW\"]\n" + room, recording(false, 0.0));
+  const auto knots = [&](const std::string& curve) {
+    Identification identification = study.identification("filter_error", "[effects.bias]\noutput = \"T\"\n[curves]\noffset = " + curve);
+    return identification.session().model.request.curves.at("offset").knots;
+  };
+  EXPECT_THAT(knots("{ of = \"P\", knots = [0.1, 0.3, 0.5] }"), testing::Pointwise(testing::DoubleEq(), {100.0, 300.0, 500.0}));
+  EXPECT_THAT(knots("{ of = \"T\", knots = [290.0, 295.0, 300.0] }"), testing::Pointwise(testing::DoubleEq(), {290.0, 295.0, 300.0}));
+}
+
 TEST(DisplayUnits, AreNotThoseOfWhatIsExported) {
   const TextStudy study("[display]\nunits = [\"degC\", \"kW\"]\n" + room, recording(false, 0.0));
   Exported exported;

@@ -1,6 +1,7 @@
 #include "misfit/inference/identifiable.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -26,8 +27,12 @@ std::vector<Column> columns_of(const Model& model) {
   return out;
 }
 
-bool acts(const NormalEquations& problem, Eigen::Index at) {
-  return problem.N(at, at) > 0.0 || (problem.prior.precision.size() > at && problem.prior.precision[at] > 0.0);
+/// Diagonal of the normal matrix with the priors.
+Eigen::VectorXd information_of(const NormalEquations& problem) {
+  Eigen::VectorXd out = problem.N.diagonal();
+  const Eigen::Index priors = std::min(out.size(), problem.prior.precision.size());
+  out.head(priors) += problem.prior.precision.head(priors);
+  return out;
 }
 
 /// Schur complement of the initial states in N (scaled to unit diagonal), for these columns.
@@ -66,10 +71,10 @@ std::string in_words(const std::vector<std::string>& names, const std::vector<do
 
 }  // namespace
 
-std::string without_effect(const Model& model, const NormalEquations& problem) {
+std::string without_effect(const Model& model, const Eigen::VectorXd& information) {
   std::vector<std::string> idle;
   for (const Column& column : columns_of(model)) {
-    if (!acts(problem, column.at)) idle.push_back(column.parameter->name);
+    if (!(information[column.at] > 0.0)) idle.push_back(column.parameter->name);
   }
   if (idle.empty()) return {};
   return "nothing in these data depends on " + join_words(idle) +
@@ -77,7 +82,7 @@ std::string without_effect(const Model& model, const NormalEquations& problem) {
 }
 
 std::string undetermined(const Model& model, const NormalEquations& problem) {
-  if (std::string idle = without_effect(model, problem); !idle.empty()) return idle;
+  if (std::string idle = without_effect(model, information_of(problem)); !idle.empty()) return idle;
   const std::vector<Column> columns = columns_of(model);
   if (columns.size() < 2) return {};
   const Eigen::MatrixXd N = reduced(problem, columns, model.free_parameters().size());

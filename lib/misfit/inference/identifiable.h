@@ -8,8 +8,9 @@
 
 namespace misfit {
 
-/// The free parameters that neither a residual nor a prior depends on, as a sentence; empty if there is none.
-[[nodiscard]] std::string without_effect(const Model& model, const NormalEquations& problem);
+/// The free parameters that nothing informs, as a sentence; empty if there is none. `information`: diagonal of the normal matrix of the
+/// residuals and the stated priors, free parameters first.
+[[nodiscard]] std::string without_effect(const Model& model, const Eigen::VectorXd& information);
 
 /// Which free parameters these data do not determine, as a sentence: a parameter that no residual depends on, or several of which only a
 /// combination acts — named as product or ratio where it is one. From the eigenvectors of the normal matrix N (columns scaled to unit

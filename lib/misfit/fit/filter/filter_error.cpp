@@ -346,12 +346,9 @@ void describe_estimates(const FilterEstimate& estimate, Fit& fit) {
 
 /// A search with the weak priors that keep it regular ends with such parameters where it began, or where chance took them.
 void warn_without_effect(const FilterEstimate& estimate, Fit& fit) {
-  const Eigen::Index columns = estimate.covariance.rows();
-  NormalEquations problem;
-  problem.prior = parameter_priors(estimate.model);
-  problem.N = Eigen::MatrixXd::Zero(columns, columns);
-  for (const auto& jacobian : estimate.jacobians) problem.N += jacobian.J.transpose() * jacobian.J;
-  if (const std::string idle = without_effect(estimate.model, problem); !idle.empty()) fit.warnings.push_back(idle);
+  Eigen::VectorXd information = parameter_priors(estimate.model).padded(estimate.covariance.rows()).precision;
+  for (const auto& jacobian : estimate.jacobians) information += jacobian.J.colwise().squaredNorm().transpose();
+  if (const std::string idle = without_effect(estimate.model, information); !idle.empty()) fit.warnings.push_back(idle);
 }
 
 /// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a coloured noise that is
