@@ -11,11 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/paths.h"
+
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = MISFIT_SOURCE_DIR;
+const fs::path root = paths::source();
 
 std::string read(const fs::path& path) {
   std::ifstream in(path);

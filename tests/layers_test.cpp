@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/paths.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -161,7 +163,7 @@ class MadeUpTree : public testing::Test {
 };
 
 TEST(Layers, AreReadFromTheLinkLines) {
-  const Layers layers = read_layers(MISFIT_SOURCE_DIR);
+  const Layers layers = read_layers(paths::source());
   ASSERT_TRUE(layers.contains("core") && layers.contains("fit") && layers.contains("report"));
   EXPECT_THAT(layers.at("core"), ElementsAre("core"));
   EXPECT_TRUE(layers.at("fit").contains("sim"));
@@ -169,8 +171,8 @@ TEST(Layers, AreReadFromTheLinkLines) {
 }
 
 TEST(Layers, EveryIncludeIsPermitted) {
-  ASSERT_GT(read_includes(MISFIT_SOURCE_DIR, "lib").size(), 100u) << "the sources were not found";
-  EXPECT_THAT(faults_of(MISFIT_SOURCE_DIR), IsEmpty());
+  ASSERT_GT(read_includes(paths::source(), "lib").size(), 100u) << "the sources were not found";
+  EXPECT_THAT(faults_of(paths::source()), IsEmpty());
 }
 
 TEST_F(MadeUpTree, PermittedIncludesPass) { EXPECT_THAT(faults_of(root_), IsEmpty()); }
@@ -270,8 +272,8 @@ std::vector<std::string> types_defined_twice(const fs::path& root) {
 }
 
 TEST(Types, AreDefinedOnce) {
-  EXPECT_THAT(types_of(read(fs::path(MISFIT_SOURCE_DIR) / "lib/misfit/core/table.h")), testing::Contains("misfit::Column"));
-  EXPECT_THAT(types_defined_twice(MISFIT_SOURCE_DIR), IsEmpty());
+  EXPECT_THAT(types_of(read(paths::source() / "lib/misfit/core/table.h")), testing::Contains("misfit::Column"));
+  EXPECT_THAT(types_defined_twice(paths::source()), IsEmpty());
 }
 
 TEST_F(MadeUpTree, ATypeDefinedTwiceIsFound) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tests/apps/program.h"
+#include "tests/paths.h"
 
 namespace {
 
@@ -14,7 +15,7 @@ using namespace program;
 class ThreeTests : public testing::Test {
  protected:
   ThreeTests() {
-    const fs::path from = fs::path(MISFIT_SOURCE_DIR) / "configs" / "validation";
+    const fs::path from = paths::source() / "configs" / "validation";
     std::istringstream lines(content(from / "alpha_history.csv"));
     std::vector<std::string> rows;
     for (std::string line; std::getline(lines, line);) rows.push_back(line);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "tests/apps/program.h"
+#include "tests/paths.h"
 
 namespace {
 
@@ -94,7 +95,7 @@ TEST(Effects, EveryOneHasFormulaSourceAndUnits) {
     for (const auto& c : effect.at("coefficients")) EXPECT_FALSE(c.at("unit").get<std::string>().empty()) << name << " " << c.at("name");
   }
   // every effect file of models/ is registered, under the name of its file
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(MISFIT_SOURCE_DIR) / "models")) {
+  for (const auto& entry : fs::recursive_directory_iterator(paths::source() / "models")) {
     if (entry.path().extension() != ".cpp" || content(entry.path()).find("MISFIT_EFFECT(") == std::string::npos) continue;
     EXPECT_TRUE(names.contains(entry.path().stem().string())) << entry.path();
   }

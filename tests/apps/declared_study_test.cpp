@@ -1,6 +1,7 @@
 // Studies of systems given as text, through the program.
 
 #include "tests/apps/program.h"
+#include "tests/paths.h"
 
 namespace {
 
@@ -31,7 +32,7 @@ TEST(CascadedTanks, TakeAnEffectDeclaredInTheStudyAndResolvedCanBeRunAgain) {
 
 TEST(CascadedTanks, AreFittedAgainWhenTheFileOfTheirSystemChanges) {
   const StudyCopy study("cascaded_tanks");
-  std::string text = content(fs::path(MISFIT_SOURCE_DIR) / "models" / "cascaded_tanks.toml");
+  std::string text = content(paths::source() / "models" / "cascaded_tanks.toml");
   study.write("tanks.toml", text);
   study.change("kind = \"cascaded_tanks\"", "file = \"tanks.toml\"");
   ASSERT_EQ(study.run("fit").status, 0);

@@ -7,6 +7,7 @@
 #include "misfit/data/study_keys.h"
 #include "misfit/model/declared_keys.h"
 #include "tests/apps/program.h"
+#include "tests/paths.h"
 
 namespace {
 
@@ -275,7 +276,7 @@ std::vector<std::string> undescribed(std::span<const KeyGroup> groups, const fs:
 TEST(KeyReference, HasEveryKeyOfTheShippedStudiesAndSystems) {
   std::size_t studies = 0, systems = 0;
   for (const char* folder : {"configs", "models"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(MISFIT_SOURCE_DIR) / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(paths::source() / folder)) {
       if (entry.path().extension() != ".toml" || entry.path().string().find("/out/") != std::string::npos) continue;
       const bool system = content(entry.path()).find("\n[equations]") != std::string::npos;
       ++(system ? systems : studies);

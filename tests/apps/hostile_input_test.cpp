@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include "tests/apps/program.h"
+#include "tests/paths.h"
 
 namespace {
 
@@ -262,7 +263,7 @@ TEST(LittleMemory, IsSaidInWords) {
   GTEST_SKIP() << "sanitizers reserve more address space than the limits leave";
 #endif
   const StudyCopy study("mpf_f111");
-  fs::copy_file(fs::path(MISFIT_SOURCE_DIR) / "tests/apps/data/gaps.mkv", study.path("flight.mkv"), fs::copy_options::overwrite_existing);
+  fs::copy_file(paths::source() / "tests/apps/data/gaps.mkv", study.path("flight.mkv"), fs::copy_options::overwrite_existing);
   for (const rlim_t megabytes :
        {350, 490, 500, 560}) {  // measured: before decoding, in its thread, in the reader, in the decoder's threads
     const rlimit most{megabytes * 1'000'000, megabytes * 1'000'000};

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "tests/apps/program.h"
+#include "tests/paths.h"
 
 namespace program {
 
@@ -13,7 +14,7 @@ inline Outcome on_ranks(int ranks, const std::vector<std::string>& arguments) {
   const TemporaryFolder captured;
   std::string command =
       "NO_COLOR=1 ASAN_OPTIONS=detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n " +
-      std::to_string(ranks) + " " + MISFIT_PROGRAM;
+      std::to_string(ranks) + " " + paths::program().string();
   for (const auto& argument : arguments) command += " '" + argument + "'";
   command += " > '" + (captured.path() / "stdout").string() + "' 2> '" + (captured.path() / "stderr").string() + "'";
   const int status = std::system(command.c_str());  // NOLINT(cert-env33-c): a test
@@ -21,7 +22,7 @@ inline Outcome on_ranks(int ranks, const std::vector<std::string>& arguments) {
 }
 
 inline bool has_mpi() {
-  return fs::exists(fs::path(MISFIT_PROGRAM).parent_path() / "misfit_mpi.so") &&
+  return fs::exists(paths::program().parent_path() / "misfit_mpi.so") &&
          std::system("mpirun --version > /dev/null 2>&1") == 0;  // NOLINT(cert-env33-c): a test
 }
 

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "tests/core/temporary_folder.h"
+#include "tests/paths.h"
 
 /// Runs the built program on copies of the shipped studies.
 namespace program {
@@ -43,10 +44,10 @@ inline pid_t start(
     ::dup2(::open((folder / name).c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), number);
   before();
   std::vector<char*> argv;
-  arguments.insert(arguments.begin(), MISFIT_PROGRAM);
+  arguments.insert(arguments.begin(), paths::program().string());
   for (auto& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  ::execv(MISFIT_PROGRAM, argv.data());
+  ::execv(argv[0], argv.data());
   ::_exit(127);
 }
 
@@ -81,7 +82,7 @@ inline std::vector<std::string> cells_of(const std::string& line) {
 class StudyCopy {
  public:
   explicit StudyCopy(const std::string& name) {
-    for (const auto& entry : fs::directory_iterator(fs::path(MISFIT_SOURCE_DIR) / "configs" / name))
+    for (const auto& entry : fs::directory_iterator(paths::source() / "configs" / name))
       if (entry.is_regular_file()) fs::copy_file(entry.path(), path(entry.path().filename().string()));
   }
   [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }

@@ -3,6 +3,7 @@
 
 #include "misfit/video/canvas.h"
 #include "tests/apps/program.h"
+#include "tests/paths.h"
 #include "tests/workflow/film.h"
 
 namespace {
@@ -18,7 +19,7 @@ using testing::HasSubstr;
 class ShortStudy : public StudyCopy {
  public:
   ShortStudy() : StudyCopy("mpf_f111") {
-    fs::copy_file(fs::path(MISFIT_SOURCE_DIR) / "tests/apps/data/gaps.mkv", path("gaps.mkv"));
+    fs::copy_file(paths::source() / "tests/apps/data/gaps.mkv", path("gaps.mkv"));
     change("flight.mkv", "gaps.mkv");
   }
 };

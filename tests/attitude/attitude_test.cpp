@@ -10,6 +10,7 @@
 
 #include "misfit/attitude/angles.h"
 #include "misfit/core/error.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -259,7 +260,7 @@ TEST(Attitude, SigmasAreTheScatterOfRepeatedMeasurements) {
 }
 
 TEST(Attitude, UnknownMeasurementNoiseIsEstimatedAndSaid) {
-  const Track track = read_track(std::string(MISFIT_SOURCE_DIR) + "/tests/data/tracks/calm_head.csv");  // white noise of 0.5 px
+  const Track track = read_track(paths::source() / "tests/data/tracks/calm_head.csv");  // white noise of 0.5 px
   const Attitude a = attitude(track, camera(), rig());
   Track known = track;
   known.sigma.assign(known.t.size(), 0.5);

@@ -8,6 +8,7 @@
 
 #include "misfit/calibrate/calibrate.h"
 #include "misfit/data/sweep.h"
+#include "tests/paths.h"
 
 namespace misfit::sweeps {
 
@@ -38,7 +39,7 @@ inline const std::vector<Recorded>& recorded() {
       {"upwash", 0.1524, 133.86}, {"vortex", 0.1524, 133.86},   {"camera_roll", 0.145, 131.2}};
   return all;
 }
-inline Sweep read(const std::string& name) { return read_sweep(std::string(MISFIT_SOURCE_DIR) + "/tests/data/sweeps/" + name + ".csv"); }
+inline Sweep read(const std::string& name) { return read_sweep(paths::source() / "tests/data/sweeps" / (name + ".csv")); }
 
 /// Moves a tenth of the points (8 of 75) by 20 px in a random direction each, or all in one direction [rad] if it is not negative.
 inline Sweep with_wild_points(Sweep sweep, unsigned seed, double direction = -1.0) {

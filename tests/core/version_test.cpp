@@ -8,6 +8,7 @@
 
 #include "misfit/core/files.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Version, IsThatOfTheProject) {
-  const std::string project = read_file(fs::path(MISFIT_SOURCE_DIR) / "CMakeLists.txt");
+  const std::string project = read_file(paths::source() / "CMakeLists.txt");
   EXPECT_NE(project.find(std::string("project(misfit VERSION ") + version() + " "), std::string::npos) << version();
 }
 
@@ -28,8 +29,8 @@ class CommitScript : public ::testing::Test {
     ASSERT_EQ(std::system(("cd '" + source() + "' && (" + command + ") >/dev/null 2>&1").c_str()), 0) << command;
   }
   std::string header() const {
-    run("cmake -DSOURCE='" + source() + "' -DOUTPUT='" + output() +
-        "' -DVERSION=1.2.3 -P '" MISFIT_SOURCE_DIR "/lib/misfit/core/commit.cmake'");
+    run("cmake -DSOURCE='" + source() + "' -DOUTPUT='" + output() + "' -DVERSION=1.2.3 -P '" + paths::source().string() +
+        "/lib/misfit/core/commit.cmake'");
     return read_file(output());
   }
   void commit_a_file() const {

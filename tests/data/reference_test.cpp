@@ -7,6 +7,7 @@
 
 #include "misfit/core/error.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -41,7 +42,7 @@ TEST(Reference, ADampingCurveIsEven) {
 TEST(Reference, TheStaticTestOfTheCanopyTrimsNearThirteenDegrees) {
   // The four means about the crossing: 0.0128 at 10.5, 0.0046 at 12, −0.0030 at 13.5, −0.0151 at 15 deg: zero at 12.9 by straight
   // interpolation.
-  const Reference reference = read_reference(MISFIT_SOURCE_DIR "/tests/data/files/static_test.csv", "C_m", "C_m", canopy);
+  const Reference reference = read_reference(paths::source() / "tests/data/files/static_test.csv", "C_m", "C_m", canopy);
   ASSERT_TRUE(reference.trim.has_value());
   EXPECT_EQ(reference.x.size(), 25U);
   EXPECT_NEAR(reference.trim->value, 12.9 * degree, 0.15 * degree);

@@ -7,6 +7,7 @@
 #include "misfit/core/files.h"
 #include "misfit/data/study_keys.h"
 #include "tests/data/study_folder.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -166,7 +167,7 @@ std::string section_of(const config::KeyGroup& group) { return group.path.substr
 /// A test that writes neither the table nor `key =` does not try the key.
 TEST(KeysOfTheReference, AreEachWrittenInATest) {
   std::vector<std::string> tests;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(MISFIT_SOURCE_DIR) / "tests")) {
+  for (const auto& entry : fs::recursive_directory_iterator(paths::source() / "tests")) {
     const std::string end = entry.path().extension().string();
     if (end == ".cpp" || end == ".h") tests.push_back(read_file(entry.path()));
   }

@@ -7,6 +7,7 @@
 
 #include "misfit/core/error.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -18,7 +19,7 @@ std::string error_of(const std::string& content) {
 }
 
 TEST(ReadSweep, ReadsBothCoordinatesOfThreePoints) {
-  const Sweep sweep = read_sweep(std::filesystem::path(MISFIT_SOURCE_DIR) / "tests/data/files/static_sweep.csv");
+  const Sweep sweep = read_sweep(paths::source() / "tests/data/files/static_sweep.csv");
   ASSERT_EQ(sweep.theta.size(), 25U);
   EXPECT_NEAR(sweep.theta.front(), -18.0 * std::numbers::pi / 180.0, 1e-15);
   EXPECT_EQ(sweep.P_y[0][0], 0.130);

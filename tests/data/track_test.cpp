@@ -6,6 +6,7 @@
 
 #include "misfit/core/error.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -108,7 +109,7 @@ TEST_F(TrackFile, IsReadBackAsWritten) {
 }
 
 TEST(TrackExample, OfASimulatedFlightIsRead) {
-  const Track track = read_track(std::filesystem::path(MISFIT_SOURCE_DIR) / "tests/data/files/track.csv");
+  const Track track = read_track(paths::source() / "tests/data/files/track.csv");
   ASSERT_EQ(track.t.size(), 200U);
   EXPECT_NEAR(track.t[199] / 199.0, 1.0 / 59.94, 1e-6);
   EXPECT_EQ(track.P_y[0], 123.857);

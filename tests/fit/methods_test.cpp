@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "misfit/core/error.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -55,7 +56,7 @@ std::vector<std::string> lines_that_name(const fs::path& file) {
 
 TEST(TableOfEstimators, NoOtherFileNamesOneButItsOwn) {
   std::vector<std::string> found;
-  const fs::path root = MISFIT_SOURCE_DIR;
+  const fs::path root = paths::source();
   for (const char* folder : {"lib", "apps"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       const std::string stem = entry.path().stem().string();

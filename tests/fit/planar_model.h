@@ -9,6 +9,7 @@
 #include "misfit/data/signals.h"
 #include "misfit/model/model.h"
 #include "misfit_models_registry.h"
+#include "tests/paths.h"
 
 namespace misfit::testing_planar {
 
@@ -52,7 +53,7 @@ inline Signals measured(const std::vector<double>& t, const std::vector<double>&
   return signals;
 }
 
-inline Table validation() { return read_csv(std::string(MISFIT_SOURCE_DIR) + "/configs/validation/alpha_history.csv"); }
+inline Table validation() { return read_csv(paths::source() / "configs/validation/alpha_history.csv"); }
 
 /// The validation's history as measured, with 0.1 deg of measurement noise, or `alpha_T_true` [rad].
 inline Signals validation_signals(const std::string& column = "alpha_T") {

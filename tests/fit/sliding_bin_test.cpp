@@ -11,6 +11,7 @@
 
 #include "misfit/core/error.h"
 #include "tests/fit/planar_model.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -20,7 +21,7 @@ using testing::HasSubstr;
 
 /// The moment curves the validation motion was made with.
 double true_C_m(double alpha_deg) {
-  static const Table curve = read_csv(std::string(MISFIT_SOURCE_DIR) + "/configs/validation/figure5.csv");
+  static const Table curve = read_csv(paths::source() / "configs/validation/figure5.csv");
   static const auto x = curve.values("alpha_T", "deg"), y = curve.values("C_m", "-");
   const auto next = std::max<std::ptrdiff_t>(std::upper_bound(x.begin(), x.end(), alpha_deg) - x.begin(), 1);
   const auto i = static_cast<std::size_t>(next);

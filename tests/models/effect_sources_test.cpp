@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/paths.h"
+
 namespace misfit {
 namespace {
 
@@ -21,7 +23,7 @@ struct SourceFile {
 std::vector<SourceFile> effect_sources() {
   std::vector<SourceFile> sources;
   for (const char* folder : {"models", "tests/effects", "tests/package/effects", "tests/benchmark"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(MISFIT_SOURCE_DIR) / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(paths::source() / folder)) {
       if (entry.path().extension() != ".cpp") continue;
       std::ostringstream text;
       text << std::ifstream(entry.path()).rdbuf();

@@ -10,6 +10,7 @@
 
 #include "misfit/core/error.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -231,8 +232,7 @@ TEST(Recording, NamesMayBeGivenWhereTheFileHasNone) {
 }
 
 TEST(Recording, OfALogIsReadLikeATable) {
-  const RecordingSurvey s =
-      survey_recording(std::filesystem::path(MISFIT_SOURCE_DIR) / "tests/data/logs/records.npy", {}, {{"on"}, {"w"}, "", {}, {}});
+  const RecordingSurvey s = survey_recording(paths::source() / "tests/data/logs/records.npy", {}, {{"on"}, {"w"}, "", {}, {}});
   EXPECT_EQ(s.format, "NPY (NumPy)");
   EXPECT_EQ(s.rows, 40U);
   EXPECT_EQ(column(s, "w").unit, "rad/s");

@@ -1,5 +1,6 @@
 // misfit open as somebody uses it: browser_test.py in Debian's chromium, on a study of two seconds and on the swivel that rubs.
 #include "tests/apps/oscillator_study.h"
+#include "tests/paths.h"
 
 namespace {
 
@@ -20,10 +21,10 @@ class InABrowser : public testing::Test {
   }
 
   static void expect_good(const fs::path& folder, const std::string& scenario) {
-    const std::string script = std::string(MISFIT_SOURCE_DIR) + "/tests/serve/browser_test.py";
+    const std::string script = paths::source() / "tests/serve/browser_test.py";
     const fs::path said = folder / "browser.log";
-    const std::string command =
-        "/usr/bin/python3 '" + script + "' '" MISFIT_PROGRAM "' '" + folder.string() + "' " + scenario + " > '" + said.string() + "' 2>&1";
+    const std::string command = "/usr/bin/python3 '" + script + "' '" + paths::program().string() + "' '" + folder.string() + "' " +
+                                scenario + " > '" + said.string() + "' 2>&1";
     EXPECT_EQ(std::system(command.c_str()), 0) << content(said);
   }
 };

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/apps/oscillator_study.h"
+#include "tests/paths.h"
 #include "tests/serve/page_server.h"
 
 namespace {
@@ -63,7 +64,7 @@ TEST(CommandsOfThePage, AreWhatOneWouldTypeAndGiveTheSameBytesWhenDoneAgain) {
   EXPECT_EQ(server.end().status, 0);
 
   fs::rename(study.path("out"), study.path("before"));
-  const std::string path = fs::path(MISFIT_PROGRAM).parent_path().string();
+  const std::string path = paths::program().parent_path().string();
   ASSERT_EQ(std::system(("PATH='" + path + "':\"$PATH\" sh '" + study.path("before/session.sh").string() + "' > /dev/null 2>&1").c_str()),
             0);
   const auto before = results_in(study.path("before")), again = results_in(study.path("out"));

@@ -16,6 +16,7 @@
 #include "misfit/video/frame_at.h"
 #include "misfit/video/module.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -25,8 +26,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-fs::path flight() { return fs::path(MISFIT_SOURCE_DIR) / "configs/mpf_f111/flight.mkv"; }
-fs::path gaps() { return fs::path(MISFIT_SOURCE_DIR) / "tests/apps/data/gaps.mkv"; }
+fs::path flight() { return paths::source() / "configs/mpf_f111/flight.mkv"; }
+fs::path gaps() { return paths::source() / "tests/apps/data/gaps.mkv"; }
 
 std::string first_bytes(const fs::path& file, std::size_t count) {
   std::ifstream in(file, std::ios::binary);
@@ -142,7 +143,7 @@ TEST(Video, GapsBetweenTimestampsAreMissingFrames) {
 }
 
 TEST(Video, FramesHaveTheTimesOfTheFile) {
-  Video video(fs::path(MISFIT_SOURCE_DIR) / "tests/apps/data/variable_rate.mp4");
+  Video video(paths::source() / "tests/apps/data/variable_rate.mp4");
   EXPECT_TRUE(video.facts().variable);
   long n = 0, timed = 0;
   while (auto frame = video.next()) {
@@ -185,7 +186,7 @@ std::pair<std::map<std::size_t, FramePicture>, std::size_t> pictures_of(const fs
 
 TEST(FrameReader, GivesTheFrameOfATimeInAnyOrder) {
   const std::vector<std::size_t> numbers = {0, 1, 2, 40, 400, 399, 17, 300, 301, 0, 501};
-  for (const fs::path& film : {fs::path(MISFIT_SOURCE_DIR) / "configs/film_pendulum/swing.mp4", flight()}) {
+  for (const fs::path& film : {paths::source() / "configs/film_pendulum/swing.mp4", flight()}) {
     const auto [frames, count] = pictures_of(film, numbers);
     ASSERT_GT(count, 501U);
     FrameReader reader(film);
@@ -202,7 +203,7 @@ TEST(FrameReader, GivesTheFrameOfATimeInAnyOrder) {
 }
 
 TEST(FrameReader, BetweenFramesTheEarlierIsShownAndBehindTheEndTheLast) {
-  const fs::path film = fs::path(MISFIT_SOURCE_DIR) / "configs/film_pendulum/swing.mp4";
+  const fs::path film = paths::source() / "configs/film_pendulum/swing.mp4";
   const auto [frames, count] = pictures_of(film, {100, 101});
   FrameReader reader(film);
   EXPECT_NEAR(reader.at(0.5 * (frames.at(100).t + frames.at(101).t))->t, frames.at(100).t, 1e-6);
@@ -239,7 +240,7 @@ TEST(Video, TruncatedIsSaidWithTheCounts) {
 }
 
 TEST(Video, MissingFileNamesTheNearest) {
-  EXPECT_THAT(error_of<InputError>(fs::path(MISFIT_SOURCE_DIR) / "configs/mpf_f111/fligth.mkv"),
+  EXPECT_THAT(error_of<InputError>(paths::source() / "configs/mpf_f111/fligth.mkv"),
               AllOf(HasSubstr("no such file"), HasSubstr("flight.mkv")));
 }
 

@@ -14,6 +14,7 @@
 #include "misfit/video/video.h"
 #include "misfit/workflow/measure/track_video.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/paths.h"
 
 /// Films made by tests out of the flight of mpf_f111, whose apex is known in every field (data/apex_truth.csv, which the program never
 /// reads).
@@ -22,13 +23,13 @@ namespace film {
 namespace fs = std::filesystem;
 using namespace misfit;
 
-inline fs::path flight() { return fs::path(MISFIT_SOURCE_DIR) / "configs/mpf_f111/flight.mkv"; }
+inline fs::path flight() { return paths::source() / "configs/mpf_f111/flight.mkv"; }
 constexpr double frame_rate = 29.97;
 
 /// Apex of every field of the flight, in pixels of the frame.
 inline const std::vector<PixelPoint>& truth() {
   static const std::vector<PixelPoint> points = [] {
-    const Table table = read_csv(fs::path(MISFIT_SOURCE_DIR) / "tests/apps/data/apex_truth.csv");
+    const Table table = read_csv(paths::source() / "tests/apps/data/apex_truth.csv");
     std::vector<PixelPoint> out;
     for (std::size_t k = 0; k < table.rows(); ++k) out.push_back({360.0 - table.at("P_y").values[k], 360.0 + table.at("P_z").values[k]});
     return out;

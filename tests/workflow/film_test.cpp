@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "misfit/core/error.h"
+#include "tests/paths.h"
 
 namespace {
 
@@ -153,7 +154,7 @@ TEST(Film, FivePercentOfTheFramesRepeatedInsteadOfTheNext) {
 TEST(Film, TimestampsTellWhereFramesAreMissing) {
   // The first 3 s of the flight with 5 % of the frames left out and the others at their times, written by ffmpeg (select, vsync
   // passthrough).
-  const Score s = score("5 % left out, timestamps kept", fs::path(MISFIT_SOURCE_DIR) / "tests/apps/data/gaps.mkv", {},
+  const Score s = score("5 % left out, timestamps kept", paths::source() / "tests/apps/data/gaps.mkv", {},
                         [&](std::size_t k) { return std::optional(truth()[k]); });
   EXPECT_GT(s.track.facts.missing, 2);
   EXPECT_EQ(s.track.facts.lost.at("no frame in the file"), static_cast<std::size_t>(2 * s.track.facts.missing));

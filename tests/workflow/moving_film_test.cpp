@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "misfit/core/error.h"
+#include "tests/paths.h"
 #include "tests/track/swing_scene.h"
 #include "tests/workflow/film.h"
 
@@ -98,7 +99,7 @@ TEST(MovingFilm, AHandThatPassesIsNotTaken) {
 TEST(MovingFilm, TimesAreThoseOfTheFile) {
   // Made by ffmpeg (libx264, B-frames) from frames drawn at these times; ffprobe prints the same to 11 us.
   const auto time = [](double n) { return n / 30.0 + 0.008 * std::sin(1.3 * n) + (n > 60.0 ? (n - 60.0) / 60.0 : 0.0); };
-  const VideoTrack result = track_video(fs::path(MISFIT_SOURCE_DIR) / "tests/apps/data/variable_rate.mp4", automatic());
+  const VideoTrack result = track_video(paths::source() / "tests/apps/data/variable_rate.mp4", automatic());
   const Track& track = result.track;
   EXPECT_TRUE(result.facts.variable);
   EXPECT_EQ(result.facts.marker, "moving");

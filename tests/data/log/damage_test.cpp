@@ -9,6 +9,7 @@
 #include "misfit/data/log/log.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/data/log/logs_of_the_tests.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -35,7 +36,7 @@ void read_or_refuse(const fs::path& file) {
 
 class DamagedLog : public testing::TestWithParam<std::string> {
  protected:
-  const fs::path file_ = fs::path(MISFIT_SOURCE_DIR) / "tests/data/logs" / GetParam();
+  const fs::path file_ = paths::source() / "tests/data/logs" / GetParam();
   const std::string content_ = content_of(file_);
   const bool by_a_program_ = file_.extension() == ".h5" || GetParam() == "version73.mat";  // which takes longer
   const TemporaryFolder folder_;

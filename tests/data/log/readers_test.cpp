@@ -14,6 +14,7 @@
 #include "misfit/data/log/log.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/data/log/logs_of_the_tests.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -23,7 +24,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-fs::path logs() { return fs::path(MISFIT_SOURCE_DIR) / "tests/data/logs"; }
+fs::path logs() { return paths::source() / "tests/data/logs"; }
 
 struct Expected {
   std::string unit, clock;
