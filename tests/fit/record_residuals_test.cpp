@@ -21,14 +21,19 @@ TEST(RecordResiduals, AreGivenInTheUnitAndInPerCentOfTheMotion) {
   residuals.add(std::nan(""), 0.0, false);
   residuals.add(5.0, 4.0, true);
   Fit fit;
-  residuals.describe(of_y, fit);
+  ChannelPrediction y = of_y;
+  residuals.describe(y, fit);
+  EXPECT_EQ(y.rms, 0.25);
+  EXPECT_EQ(y.nrmse, 0.25);
   EXPECT_EQ(fit.facts.at("residuals of y in 'test'"), "RMS 0.25 V, 25 % of the motion; held out: RMS 1 V");
 }
 
 TEST(RecordResiduals, OfNothingThatCountsNothingIsSaid) {
   Fit fit;
-  RecordResiduals().describe(of_y, fit);
+  ChannelPrediction y = of_y;
+  RecordResiduals().describe(y, fit);
   EXPECT_TRUE(fit.facts.empty());
+  EXPECT_FALSE(y.rms || y.nrmse);
 }
 
 TEST(RecordResiduals, OfEveryExperimentAreAmongTheFactsOfAFit) {

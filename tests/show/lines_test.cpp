@@ -11,7 +11,7 @@ Fit filter() {
   fit.method = "filter_error";
   fit.status = FitStatus::converged;
   fit.parameters = {{"gain", {2.0, 0.1, "V"}}};
-  fit.facts = {{"residuals of w in 'bench'", "RMS 0.3 V, 1.5 % of the motion; held out: RMS 0.4 V, 2 % of the motion"}};
+  fit.predictions = {{"bench", "w", "V", {}, {}, {}, {}, {}, 0.3, 0.015}};
   return fit;
 }
 

@@ -1,6 +1,9 @@
 #include "misfit/data/fit.h"
 
+#include <cmath>
+
 #include "misfit/core/enum_name.h"
+#include "misfit/core/text.h"
 #include "misfit/data/fit_tables.h"
 #include "misfit/data/json_fields.h"
 
@@ -92,6 +95,7 @@ void fields(Archive& json, MaybeConst<StoredParameter> auto& p) {
 template <class Archive>
 void fields(Archive& json, MaybeConst<ChannelPrediction> auto& p) {
   json("experiment", p.experiment), json("channel", p.channel), json("unit", p.unit);
+  json.if_there("rms", p.rms), json.if_there("nrmse", p.nrmse);
 }
 
 template <class Archive>
@@ -124,6 +128,11 @@ void fields(Archive& json, MaybeConst<Fit> auto& fit) {
 template <class Archive>
 void fields(Archive& json, MaybeConst<RoughnessPaths> auto& paths) {
   json("roughness", paths.all);
+}
+
+std::string share_of_motion_in_words(double nrmse) {
+  const double percent = 100.0 * nrmse, step = std::pow(10.0, std::floor(std::log10(percent)) - 1.0);
+  return format_value(percent > 0.0 ? std::round(percent / step) * step : 0.0) + " % of the motion";
 }
 
 std::string to_string(FitStatus status) { return enum_name(fit_status_names, status); }

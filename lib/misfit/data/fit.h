@@ -62,7 +62,13 @@ struct ChannelPrediction {
   std::string experiment, channel, unit;
   std::vector<double> t, measured, predicted, sigma;  ///< SI; NaN = missing; sigma of measured − predicted under the model
   std::vector<bool> held_out;                         ///< validation part
+  /// Of the residuals that enter the fit: RMS [SI], and that over the standard deviation of the same measurements, missing where these do
+  /// not vary.
+  std::optional<double> rms = {}, nrmse = {};
 };
+
+/// "1.1 % of the motion", two digits.
+[[nodiscard]] std::string share_of_motion_in_words(double nrmse);
 
 /// What every method returns. An empty `predictions` means the method does not predict motion.
 struct Fit {

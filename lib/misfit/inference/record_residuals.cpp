@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
-#include "misfit/core/text.h"
 
 namespace misfit {
 
@@ -20,12 +19,17 @@ void RecordResiduals::add(double measured, double predicted, bool held_out) {
 
 std::string RecordResiduals::in_words(const Part& part, const std::string& unit) {
   std::string out = "RMS " + in_display_unit(std::sqrt(part.squares / part.count), unit);
-  if (!(part.spread > 0.0)) return out;
-  const double percent = 100.0 * std::sqrt(part.squares / part.spread), step = std::pow(10.0, std::floor(std::log10(percent)) - 1.0);
-  return out + ", " + format_value(percent > 0.0 ? std::round(percent / step) * step : 0.0) + " % of the motion";
+  if (const auto share = part.nrmse()) out += ", " + share_of_motion_in_words(*share);
+  return out;
 }
 
-void RecordResiduals::describe(const ChannelPrediction& prediction, Fit& fit) const {
+std::optional<double> RecordResiduals::Part::nrmse() const {
+  return spread > 0.0 ? std::optional(std::sqrt(squares / spread)) : std::nullopt;
+}
+
+void RecordResiduals::describe(ChannelPrediction& prediction, Fit& fit) const {
+  if (fitted_.count > 0.0) prediction.rms = std::sqrt(fitted_.squares / fitted_.count);
+  prediction.nrmse = fitted_.nrmse();
   std::string words = fitted_.count > 0.0 ? in_words(fitted_, prediction.unit) : "";
   if (held_out_.count > 0.0) words += (words.empty() ? "held out: " : "; held out: ") + in_words(held_out_, prediction.unit);
   if (!words.empty()) fit.facts["residuals of " + prediction.channel + " in '" + prediction.experiment + "'"] = words;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/show/rows.h"
@@ -20,15 +21,12 @@ std::string joined(const std::vector<std::string>& parts, const char* between) {
   return out;
 }
 
-/// "P_y 1.78 px, 1.1 % of the motion" of "residuals of P_y in 'flight'": "RMS 1.78 px, 1.1 % of the motion; held out: …".
+/// "P_y 1.78 px, 1.1 % of the motion".
 std::vector<std::string> residuals(const Fit& fit) {
-  constexpr std::string_view begin = "residuals of ";
   std::vector<std::string> out;
-  for (const auto& [name, words] : fit.facts) {
-    if (!name.starts_with(begin)) continue;
-    const std::string fitted = words.substr(0, words.find("; held out"));
-    if (fitted.starts_with("RMS ")) out.push_back(name.substr(begin.size(), name.find(" in '") - begin.size()) + " " + fitted.substr(4));
-    if (out.size() == most_named) break;
+  for (const ChannelPrediction& p : fit.predictions) {
+    if (!p.rms || out.size() == most_named) continue;
+    out.push_back(p.channel + " " + in_display_unit(*p.rms, p.unit) + (p.nrmse ? ", " + share_of_motion_in_words(*p.nrmse) : ""));
   }
   return out;
 }

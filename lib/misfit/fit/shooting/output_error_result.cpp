@@ -191,7 +191,7 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
   double loglik = 0.0, held_loglik = 0.0;
   std::map<std::string, std::array<double, 4>> sums;  // squares, count, held-out squares, held-out count
   bool any_held = false;
-  for (const auto& p : fit.predictions) {
+  for (ChannelPrediction& p : fit.predictions) {
     const auto experiment = std::find_if(experiments.begin(), experiments.end(), [&](const Signals& s) { return s.name == p.experiment; });
     auto& s = sums[p.channel];
     const double sigma = fit.noise.at(p.channel).value;
