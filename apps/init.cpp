@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/verbs.h"
+#include "misfit/core/shell_word.h"
 #include "misfit/core/text.h"
-#include "misfit/show/verdict.h"
 
 namespace misfit {
 namespace {

@@ -22,7 +22,7 @@ Fit filter_fit() {
   fit.status = FitStatus::converged;
   fit.driven = true;
   fit.rms = {{"w", {0.30, 0.0, "V"}}};
-  fit.facts = {{"residuals of w in 'bench'", "RMS 0.3 V, 1.5 % of the motion; held out: RMS 0.4 V, 2 % of the motion"}};
+  fit.predictions = {{"bench", "w", "V", {0.0, 0.02, 0.04, 0.06}, {}, {}, {}, {}, 0.3, 0.015}};
   fit.force = {{"correlation_time", {0.2, 0.01, "s"}}, {"dw/dt", {20.0, 1.0, "V/s"}}};
   return fit;
 }
@@ -66,6 +66,7 @@ struct Case {
     second.parent = 0;
     second.added = "coulomb_friction";
     second.k_step = {{"w", {0.3, 0.3, 0.4, 0.5, 0.8, 1.2}}};
+    second.actual_drop = 700.0;
     second.force = {{"dw/dt", {5.0, 0.4, "V/s"}}};
     ladder = Ladder{{first, second}};
   }
@@ -111,12 +112,12 @@ TEST(Verdict, WithoutASearchTheResidualsSpeakAndDiscoverIsNext) {
 
   c.diagnosis->maps.clear();
   v = c.verdict();
-  EXPECT_EQ(v.kind, VerdictKind::nothing_missing);
+  EXPECT_EQ(v.kind, VerdictKind::not_searched);
   EXPECT_THAT(v.sentence, HasSubstr("no map of the missing force is significant"));
   c.diagnosis.reset();
   v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::not_searched);
-  EXPECT_EQ(v.sentence, "Fitted, not diagnosed yet: whether and where the model fails has not been asked.");
+  EXPECT_EQ(v.sentence, "Fitted, not diagnosed yet: whether and where the model fails has not been looked at.");
   EXPECT_EQ(v.next, "misfit diagnose configs/motor");
   c.fits.front().force.clear();
   c.fits.front().method = "output_error";
@@ -152,14 +153,13 @@ TEST(Verdict, EffectsThatTheDataCannotDistinguishAreAllNamed) {
 TEST(Verdict, TheHorizonOfAnErrorHasItsTimeAndTheLastModelItsOtherNumbers) {
   Case c;
   EXPECT_EQ(c.verdict().errors.front().what(), "RMS error of w, one sample ahead") << "of a filter";
-  c.fits.front().predictions.push_back({"bench", "w", "V", {0.0, 0.02, 0.04, 0.06}, {}, {}, {}, {}});
   c.add_effect();
   c.ladder->rungs.back().parameters = {{"friction", {5.0, 0.5, "V/s"}}};
   c.ladder->rungs.back().estimates = {{"friction", {5.0, 0.5, "V/s"}}, {"gain", {2.0, 0.1, "1/s"}}};
   const Verdict v = c.verdict();
   EXPECT_EQ(v.errors.front().what(), "RMS error of w, 32 samples (0.64 s) ahead");
-  EXPECT_THAT(v.added,
-              testing::ElementsAre(testing::StartsWith("coulomb_friction: friction = 5.0"), "beside them: gain = 2.00 ± 0.10 1/s"));
+  EXPECT_THAT(v.added, testing::ElementsAre(testing::StartsWith("coulomb_friction: friction = 5.0"),
+                                            "other parameters of the last model: gain = 2.00 ± 0.10 1/s"));
 }
 
 TEST(Verdict, AForceThatIsNotSeenIsSaidNotToBe) {
@@ -178,16 +178,16 @@ TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCen
   c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "No missing effect detected: none of 1 candidates");
   Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::effect_added);
-  EXPECT_EQ(
-      v.sentence,
-      "coulomb_friction was missing: with it the RMS error of w, 32 samples ahead falls from 8 V to 1.2 V (-85 %); nothing more is found "
-      "missing.");
+  EXPECT_EQ(v.sentence,
+            "coulomb_friction was missing: with it the RMS error of w, 32 samples (0.64 s) ahead falls from 8 V to 1.2 V (-85 %); nothing "
+            "more is found "
+            "missing.");
   EXPECT_THAT(v.where, EndsWith("(p = 1e-20); with coulomb_friction: p = 0.7."));
   EXPECT_THAT(v.next, IsEmpty());
 
   c.discovery.reset();
   v = c.verdict();
-  EXPECT_THAT(v.sentence, EndsWith("whether more is missing has not been asked."));
+  EXPECT_THAT(v.sentence, EndsWith("whether more is missing has not been looked for."));
   EXPECT_EQ(v.next, "misfit discover configs/motor");
 }
 
@@ -243,6 +243,54 @@ TEST(Verdict, AnAddedEffectThatExplainsNothingIsNotCalledMissing) {
       << "as the last model has it";
 }
 
+/// A curve has no parameter with a name: its coefficients count all the same.
+TEST(Verdict, TheDropOfACurveIsTestedWithAllItsCoefficients) {
+  Case c;
+  c.add_effect();
+  Rung& rung = c.ladder->rungs.back();
+  rung.actual_drop = 15.0;
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("coulomb_friction was missing")) << "15 for one parameter: p = 1e-4";
+  rung.new_parameters = 10;
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("explains no more than chance does")) << "p = 0.13";
+}
+
+TEST(Verdict, WhatNoLikelihoodComparesIsNotCalledMissing) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs.back().actual_drop.reset();
+  EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("coulomb_friction was added, and no likelihood compares it with the model "
+                                                              "before: with it the RMS error of w"),
+                                          HasSubstr("(-85 %); whether")));
+}
+
+TEST(Verdict, EachPartOfItAgreesInNumber) {
+  Case c;
+  c.add_effect();
+  Rung other = c.ladder->rungs.back(), third = other;
+  other.id = 2, other.parent = 1, other.added = "drag", other.actual_drop = 0.2;
+  third.id = 3, third.parent = 2, third.added = "lag", third.actual_drop = 0.3;
+  c.ladder->rungs.push_back(other);
+  EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("coulomb_friction was missing: with all that was added the RMS error of w"),
+                                          HasSubstr("; drag was added and explains no more than chance does; whether")));
+  c.ladder->rungs.push_back(third);
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("; drag and lag were added and explain no more than chance does; whether"));
+}
+
+TEST(Verdict, AnErrorThatClearlyRisesIsSaidBesideOneThatFalls) {
+  Case c;
+  c.add_effect();
+  for (auto& [rung, last] : {std::pair<Rung&, double>(c.ladder->rungs[0], 2.0), std::pair<Rung&, double>(c.ladder->rungs[1], 7.0)}) {
+    rung.rms["x"] = {0.1, 0.0, "m"};
+    rung.k_step["x"] = {0.1, 0.1, 0.1, 0.1, 0.1, last};
+  }
+  EXPECT_THAT(c.verdict().sentence,
+              AllOf(HasSubstr("the RMS error of w, 32 samples (0.64 s) ahead falls from 8 V to 1.2 V (-85 %), but the RMS "
+                              "error of x, 32 samples (0.64 s) ahead rises from 2 m to 7 m (+250 %)")));
+  c.ladder->rungs[1].k_step = c.ladder->rungs[0].k_step;
+  c.ladder->rungs[1].force.clear();
+  EXPECT_THAT(c.verdict().sentence, HasSubstr(" stays at "));
+}
+
 TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
   Case c;
   c.add_effect();
@@ -279,7 +327,7 @@ TEST(Verdict, AChangeWithinItsSigmaIsCalledSoAndTheMapWhereTheModelFailedLeads) 
   c.add_effect();
   c.ladder->rungs[1].force = {{"dw/dt", {19.4, 0.9, "V/s"}}};
   c.ladder->rungs[1].k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 7.9}}};
-  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w, 32 samples ahead falls from 8 V to 7.9 V (-1.2 %)"));
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w, 32 samples (0.64 s) ahead falls from 8 V to 7.9 V (-1.2 %)"));
   c.fail_at_rest();
   c.rung_diagnosis = c.diagnosis;
   c.rung_diagnosis->maps.front().p_corrected = 0.7;
@@ -388,7 +436,6 @@ TEST(Verdict, CommandsNameTheRunFolderAndQuoteWhatAShellWouldSplit) {
   const std::vector<Fit> fits{filter_fit()};
   const VerdictInput input{"my studies/motor", "out 2", &fits};
   EXPECT_EQ(verdict_of(input).next, "misfit diagnose 'my studies/motor' --out 'out 2'");
-  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
 }
 
 }  // namespace

@@ -32,8 +32,10 @@ void fields(Archive& json, MaybeConst<Rung> auto& r) {
   json("trim_deg", Formed(r.trim, [](auto& object, auto& trim) { trim_fields(object, trim); }));
   json("parameters", r.parameters), json("note", r.note);
   json.if_there("estimates", r.estimates), json.if_there("gained_too_little", r.gained_too_little);
-  json.if_there("also", r.also);
+  json.if_there("also", r.also), json.if_there("new_parameters", r.new_parameters);
 }
+
+int parameters_added(const Rung& rung) { return rung.new_parameters.value_or(static_cast<int>(rung.parameters.size())); }
 
 std::string added_in_words(const Rung& rung, const Ladder& ladder) {
   const auto of_kind = std::count_if(ladder.rungs.begin(), ladder.rungs.end(), [&](const Rung& r) { return r.added == rung.added; });

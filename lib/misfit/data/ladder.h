@@ -25,7 +25,8 @@ struct Rung {
   std::map<std::string, Estimate> rms, validation_rms;        ///< per channel, one step ahead
   std::map<std::string, std::vector<double>> k_step;          ///< channel → RMS at 1, 2, 4, 8, 16, 32 steps ahead [unit of rms]
   std::optional<Estimate> trim;                               ///< [rad]
-  std::map<std::string, Estimate> parameters;                 ///< of the added effect
+  std::map<std::string, Estimate> parameters;                 ///< of the added effect, numbers alone
+  std::optional<int> new_parameters;                          ///< free ones that its parent does not have, coefficients of curves too
   std::optional<std::map<std::string, Estimate>> estimates;   ///< of all parameters of its model that are no coefficients of curves
   std::optional<std::vector<std::string>> gained_too_little;  ///< curves of unknown form that were tried beside this model: effect_at()
   std::optional<std::string> also;                            ///< other values of what was added that explain hardly less, in words
@@ -37,6 +38,9 @@ inline constexpr int kLadderSteps[] = {1, 2, 4, 8, 16, 32};
 struct Ladder {
   std::vector<Rung> rungs;
 };
+
+/// What the drop of a rung is tested with: its new_parameters, else the number of its parameters.
+[[nodiscard]] int parameters_added(const Rung& rung);
 
 /// What was added, in words: its key, and its place where the key alone does not say it: a force of unknown form, one of several of a kind.
 [[nodiscard]] std::string added_in_words(const Rung& rung, const Ladder& ladder);

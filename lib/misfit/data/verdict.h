@@ -13,7 +13,7 @@ namespace misfit {
 enum class VerdictKind {
   nothing_missing,   ///< no effect is needed
   random_force,      ///< the same; what drives the motion is a random force
-  not_searched,      ///< something is missing; discover has not been asked which effect
+  not_searched,      ///< discover has not looked yet which effect is missing, or whether one is
   missing,           ///< one effect is named
   several_possible,  ///< one of several that the data cannot distinguish
   unknown_form,      ///< something is missing that no effect of the library explains

@@ -9,7 +9,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
-#include "misfit/show/verdict.h"
+#include "misfit/core/shell_word.h"
 
 namespace misfit::serve {
 namespace {

@@ -141,7 +141,7 @@ class BeforeAndAfter {
 std::string drop_sentence(const Rung& rung) {
   std::string out =
       fmt::format("Drop: {} predicted, {:.1f} actual for {} parameter{}", rung.predicted_drop ? shown_drop(rung.predicted_drop) : "none",
-                  *rung.actual_drop, rung.parameters.size(), rung.parameters.size() == 1 ? "" : "s");
+                  *rung.actual_drop, parameters_added(rung), parameters_added(rung) == 1 ? "" : "s");
   return out + (rung.held_out_gain ? "; gain of the held-out log-likelihood: " + shown_gain(rung.held_out_gain) + "."
                                    : "; no validation data: set validation = \"last 25 %\".");
 }

@@ -20,6 +20,9 @@ namespace misfit {
 /// A change that stands for itself: beyond its sigma, or a clear fall where no sigma is known.
 [[nodiscard]] bool is_telling(const ErrorChange& change);
 
+/// A rise by a fifth or more, beyond its sigma where that is known.
+[[nodiscard]] bool clearly_rises(const ErrorChange& change);
+
 /// "the RMS error of w falls from 8 V to 1.2 V (−85 %)".
 [[nodiscard]] std::string change_in_words(const ErrorChange& change);
 

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "misfit/core/display.h"
+#include "misfit/core/shell_word.h"
 #include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
 #include "misfit/math/statistics.h"
@@ -64,15 +66,20 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     if (rung.held_out_gain) line += fmt::format("; held-out gain {:.1f}", *rung.held_out_gain);
     out.push_back(line + (rung.also ? "; " + *rung.also : ""));
   }
-  if (const Estimates rest = others_of_last(ladder); !rest.empty() && !out.empty()) out.push_back("beside them: " + values_of(rest));
+  if (const Estimates rest = others_of_last(ladder); !rest.empty() && !out.empty())
+    out.push_back("other parameters of the last model: " + values_of(rest));
   return out;
 }
 
-/// The rung's drop is no more than chance gives for so many parameters.
-bool may_be_chance(const Rung& rung) {
+/// What the likelihood says of what a rung added. Untested: no likelihood compares it with the model before (another system, or a
+/// comparison that was cut off).
+enum class Evidence { needed, chance, untested };
+
+/// Chance: the drop is no more than that gives for so many parameters.
+Evidence evidence_for(const Rung& rung) {
   constexpr double rare = 0.01;
-  const double parameters = std::max<double>(1.0, static_cast<double>(rung.parameters.size()));
-  return rung.actual_drop && chi_square_tail(*rung.actual_drop, parameters) > rare;
+  if (!rung.actual_drop) return Evidence::untested;
+  return chi_square_tail(*rung.actual_drop, std::max(1, parameters_added(rung))) > rare ? Evidence::chance : Evidence::needed;
 }
 
 const Candidate* accepted(const Discovery& d) {
@@ -99,7 +106,7 @@ class VerdictBuilder {
     if (fit_ == nullptr) {
       no_result();
     } else if (in_.discovery == nullptr) {
-      effects_added_ ? added("whether more is missing has not been asked", command("discover")) : not_searched();
+      effects_added_ ? added("whether more is missing has not been looked for", command("discover")) : not_searched();
     } else if (!in_.discovery->sweep_asks.empty()) {
       calibration();
     } else if (const Candidate* best = accepted(*in_.discovery)) {
@@ -129,7 +136,7 @@ class VerdictBuilder {
     return out;
   }
 
-  /// With the 95 % interval of the last one and what the references say.
+  /// The trim before and after what was added, with the 95 % interval of the last one and what the references say.
   void add_trim() {
     const Rung* last = effects_added_ ? &in_.ladder->rungs.back() : nullptr;
     const std::optional<Estimate> before = last != nullptr ? in_.ladder->rungs.front().trim : fit_ != nullptr ? fit_->trim : std::nullopt;
@@ -186,7 +193,7 @@ class VerdictBuilder {
 
   /// What fits and diagnosis alone say.
   void not_searched() {
-    const std::string ask = "; which effect it is has not been asked";
+    const std::string ask = "; which effect it is has not been looked for";
     if (fit_->force.empty() && (fit_->driven || fit_->coloured)) {
       say(VerdictKind::not_searched,
           "something is missing from the model: the residuals of " + fit_->method + " are not white" +
@@ -195,10 +202,10 @@ class VerdictBuilder {
     } else if (!out_.where.empty()) {
       say(VerdictKind::not_searched, "something is missing from the model" + ask, command("discover"));
     } else if (!fit_->force.empty() && in_.diagnosis == nullptr) {
-      say(VerdictKind::not_searched, "fitted, not diagnosed yet: whether and where the model fails has not been asked",
+      say(VerdictKind::not_searched, "fitted, not diagnosed yet: whether and where the model fails has not been looked at",
           command("diagnose"));
     } else {
-      say(VerdictKind::nothing_missing,
+      say(VerdictKind::not_searched,
           "nothing shows that an effect is missing: " + residuals() + "; the effects of the library were not tested", command("discover"));
     }
   }
@@ -278,7 +285,9 @@ class VerdictBuilder {
     }
   }
   void nothing_missing(const Discovery& d) {
-    const std::string tested = fmt::format("no effect is found missing: none of {} that were tested is needed", d.candidates.size());
+    const auto effects = std::count_if(d.candidates.begin(), d.candidates.end(),
+                                       [](const Candidate& c) { return c.family != CandidateFamily::unknown && !c.described; });
+    const std::string tested = fmt::format("no effect is found missing: none of {} that were tested is needed", effects);
     const auto force = fit_->driven ? force_strength(fit_->force) : std::nullopt;
     constexpr double sigmas = 2.0;
     if (force && force->value > sigmas * force->sigma) {
@@ -297,29 +306,42 @@ class VerdictBuilder {
     if (after != nullptr && (out_.errors.empty() || !is_telling(out_.errors.front())))
       return fmt::format("the map of {} over {} goes from {} to {}", before->port, before->quantity, p_equals(before->p_corrected),
                          p_equals(after->p_corrected));
-    return out_.errors.empty() ? "" : change_in_words(out_.errors.front());
+    if (out_.errors.empty()) return "";
+    std::string out = change_in_words(out_.errors.front());
+    for (const ErrorChange& e : std::span(out_.errors).subspan(1)) {
+      if (clearly_rises(e)) out += ", but " + change_in_words(e);
+    }
+    return out;
   }
-  enum class Which { all, needed, in_vain };
-  /// What was added: all of it, what explains more than chance does, or what does not.
-  [[nodiscard]] std::string names_added(Which which = Which::all) const {
+  /// What was added: all of it, or that of which the likelihood says so.
+  [[nodiscard]] std::vector<std::string> added_names(std::optional<Evidence> of = std::nullopt) const {
     std::vector<std::string> names;
     for (const Rung& rung : in_.ladder->rungs) {
-      const bool asked = which == Which::all || (which == Which::in_vain) == may_be_chance(rung);
-      if (!rung.added.empty() && asked) names.push_back(added_in_words(rung, *in_.ladder));
+      if (!rung.added.empty() && (!of || evidence_for(rung) == *of)) names.push_back(added_in_words(rung, *in_.ladder));
     }
-    return join_words(names);
+    return names;
   }
+  [[nodiscard]] std::string names_added() const { return join_words(added_names()); }
+
+  /// "a was missing: with all that was added the error falls; b was added and explains no more than chance does; ", and what comes behind.
   void added(const std::string& rest, const std::string& next, VerdictKind kind = VerdictKind::effect_added) {
-    const std::string names = names_added(Which::needed), in_vain = names_added(Which::in_vain);
-    const bool one = in_.ladder->rungs.size() == 2;
-    std::string change = change_by_ladder();
-    if (!change.empty()) change = (one ? "with it " : "with them ") + change + "; ";
-    std::string sentence = names.empty() ? "" : names + (one ? " was" : " were") + " missing: " + change;
-    if (!in_vain.empty())
-      sentence += in_vain + (names.empty() ? " was added and" : ", added too,") + " explains no more than chance does; ";
-    say(kind, sentence + rest, next);
-    const std::string& first = names.empty() ? in_vain : names;
-    out_.sentence.replace(0, first.size(), first);  // names of effects keep their small letters
+    const auto needed = added_names(Evidence::needed), untested = added_names(Evidence::untested), chance = added_names(Evidence::chance);
+    std::vector<std::string> parts;
+    const auto part = [&](const std::vector<std::string>& names, const char* of_one, const char* of_several) {
+      if (!names.empty()) parts.push_back(join_words(names) + (names.size() == 1 ? of_one : of_several));
+    };
+    part(needed, " was missing", " were missing");
+    part(untested, " was added, and no likelihood compares it with the model before",
+         " were added, and no likelihood compares them with the models before");
+    part(chance, " was added and explains no more than chance does", " were added and explain no more than chance does");
+    if (const std::string change = change_by_ladder(); !change.empty() && parts.size() > (chance.empty() ? 0 : 1)) {
+      const char* with = parts.size() > 1 ? "all that was added" : added_names().size() == 1 ? "it" : "them";
+      parts.front() += fmt::format(": with {} {}", with, change);
+    }
+    parts.push_back(rest);
+    say(kind, fmt::format("{}", fmt::join(parts, "; ")), next);
+    const std::string& first = parts.front();
+    out_.sentence.replace(0, 1, first, 0, 1);  // names of effects keep their small letters
   }
 
   const VerdictInput& in_;
@@ -343,16 +365,6 @@ Blocks blocks_of(const Verdict& v) {
   out.list({errors});
   if (!v.next.empty()) out.paragraph("next: " + v.next, Tone::command);
   return out;
-}
-
-std::string shell_word(const std::string& text) {
-  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c > 127 || std::string_view("./-_:+,@%").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (plain) return text;
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
 }
 
 }  // namespace misfit

@@ -34,7 +34,4 @@ struct VerdictInput {
 /// The box at the end of what a terminal shows and at the beginning of a report: sentence, errors, next command.
 [[nodiscard]] Blocks blocks_of(const Verdict& verdict);
 
-/// A word of a shell: in quotation marks where it has characters other than letters, digits and ./-_:
-[[nodiscard]] std::string shell_word(const std::string& text);
-
 }  // namespace misfit

@@ -95,7 +95,7 @@ struct Gain {
 
 /// 2 [log L(with) − log L(without)] on the same measurements and with the same weights of roughness, each at its own maximum, priors
 /// counted. The child's is looked for from its fit and from the parent's with what is new off, so that it is never below that. The held-out
-/// gain is that of discovery, with the parameters uncertain.
+/// gain, where the study holds something out, is defined as in discovery: predictive, with the parameters uncertain.
 Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   FilterOptions options;
   options.threads = threads;
@@ -120,6 +120,9 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
 /// What the child's model brings.
 void compare_with_parent(const FilterWork& child, const FilterWork& parent, int threads, Rung& rung) {
   rung.parameters = new_parameters(child, parent);
+  rung.new_parameters = static_cast<int>(std::count_if(child.fit.names.begin(), child.fit.names.end(), [&](const std::string& name) {
+    return std::find(parent.fit.names.begin(), parent.fit.names.end(), name) == parent.fit.names.end();
+  }));
   if (!same_channels(child.estimate->model, parent.estimate->model)) return;
   try {
     const Gain gain = gain_of(child, parent, threads);
@@ -127,11 +130,12 @@ void compare_with_parent(const FilterWork& child, const FilterWork& parent, int 
     rung.held_out_gain = gain.held_out;
   } catch (const TimeSpent& spent) {
     append_note(rung.note, std::string("no actual drop: ") + spent.what());
+  } catch (const RunError& error) {  // the rung's own fit is valid without the comparison
+    append_note(rung.note, std::string("no actual drop: ") + error.what());
   }
 }
 
-/// "c is held at 0.5 1/s: the curve takes it over"
-/// Values that discovery found and the study of the rung holds: they stand in no table of estimates.
+/// "width is held at 0.5 rad/s": values that discovery found and the study of the rung holds; they stand in no table of estimates.
 std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
   std::vector<std::string> out;
   for (const auto& [name, e] : from.parameters) {
@@ -142,6 +146,7 @@ std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
   return join_words(out);
 }
 
+/// "c is held at 0.5 1/s: the curve takes over what it does".
 std::string held_in_words(const std::map<std::string, Estimate>& held) {
   std::string out;
   for (const auto& [name, e] : held)
@@ -303,7 +308,8 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   rung.study = relative_study(*child);
   rung.added = effect;
   if (study.system) {
-    append_note(rung.note, "a change of system has no drop: its channels and states are others; compare k-step errors and the force");
+    append_note(rung.note,
+                "no likelihood compares two systems: their channels and states differ; compare k-step errors and the random force");
     for (const auto& left : study.left_out) append_note(rung.note, "effect '" + left + "' is left out: it does not suit " + study.name);
   } else {
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
@@ -325,23 +331,24 @@ std::vector<fs::path> ModelLadder::remove(const std::string& asked) {
   if (asked == std::to_string(ladder_.rungs.front().id)) throw InputError("rung " + shown(asked) + " is the study's own model: it stays");
   const std::span<const Rung> added = std::span<const Rung>(ladder_.rungs).subspan(1);
   const std::size_t first = 1 + (&find_rung(added, asked, "rung ") - added.data());
-  const std::vector<Rung> removed(ladder_.rungs.begin() + static_cast<std::ptrdiff_t>(first), ladder_.rungs.end());
-  ladder_.rungs.resize(first);
-  store();
   last_.reset();
   std::vector<fs::path> kept;
-  for (const Rung& rung : removed) {
-    const fs::path folder = root_.folder.file(rung.study).parent_path().lexically_normal();
-    if (!rung.study.starts_with("rungs/") || !fs::exists(folder)) continue;
-    fs::path to = folder.parent_path() / ("removed_" + folder.filename().string());
-    for (int again = 2; fs::exists(to); ++again)
-      to = folder.parent_path() / fmt::format("removed_{}_{}", folder.filename().string(), again);
-    std::error_code error;
-    fs::rename(folder, to, error);
-    if (error) throw WriteError(folder.string() + ": cannot be renamed to " + to.filename().string() + ": " + error.message());
-    kept.push_back(to);
+  for (; ladder_.rungs.size() > first; store()) {  // from the last on, so that an end on the way leaves a ladder that can be gone on with
+    if (auto folder = kept_aside(ladder_.rungs.back())) kept.insert(kept.begin(), std::move(*folder));
+    ladder_.rungs.pop_back();
   }
   return kept;
+}
+
+std::optional<fs::path> ModelLadder::kept_aside(const Rung& rung) {
+  const fs::path folder = root_.folder.file(rung.study).parent_path().lexically_normal();
+  if (!rung.study.starts_with("rungs/") || !fs::exists(folder)) return std::nullopt;
+  fs::path to = folder.parent_path() / ("removed_" + folder.filename().string());
+  for (int again = 2; fs::exists(to); ++again) to = folder.parent_path() / fmt::format("removed_{}_{}", folder.filename().string(), again);
+  std::error_code error;
+  fs::rename(folder, to, error);
+  if (error) throw WriteError(folder.string() + ": cannot be renamed to " + to.filename().string() + ": " + error.message());
+  return to;
 }
 
 void diagnose_rungs(ModelLadder& ladder) {

@@ -59,6 +59,8 @@ class ModelLadder {
   [[nodiscard]] std::unique_ptr<Session> open(const NewStudy& study, const Session& parent, const FilterWork& parent_work);
   void append(Rung rung);
   void store();
+  /// Renames the folder of a rung; nullopt: it has none of its own. WriteError.
+  [[nodiscard]] std::optional<std::filesystem::path> kept_aside(const Rung& rung);
 
   SessionOptions options_;
   const Registry& registry_;

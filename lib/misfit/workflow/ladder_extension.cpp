@@ -82,7 +82,7 @@ class Extension {
   bool add(const Candidate& candidate, std::vector<Candidate> alternatives) {
     const Rung& rung = ladder_.add(candidate.effect, candidate);
     if (listener_.added) listener_.added(rung);
-    if (rung.actual_drop && may_be_chance(*rung.actual_drop, int_size(rung.parameters), families_)) {
+    if (rung.actual_drop && may_be_chance(*rung.actual_drop, parameters_added(rung), families_)) {
       ladder_.root().note(fmt::format("{} gains nothing once fitted (drop {}): its rung is taken off",
                                       effect_at(candidate.effect, candidate.roles), format_value(*rung.actual_drop)));
       ladder_.remove(std::to_string(rung.id));
@@ -106,7 +106,6 @@ class Extension {
       return false;  // its knots are too far apart for what is left, or its place is another
     const std::optional<Candidate> curve = predict_effect(ladder_.last(), effect, {roles});
     if (!curve || has_left(*curve)) return false;
-    const std::vector<std::string> before = filter_work(ladder_.last())->fit.names;
     try {
       if (!add(*curve, {})) {
         ladder_.gained_too_little(effect_at(effect, roles));
@@ -121,10 +120,8 @@ class Extension {
       return false;
     }
     const Rung& rung = ladder_.ladder().rungs.back();
-    const std::vector<std::string>& after = ladder_.last_fit().names;
-    const auto more = std::count_if(after.begin(), after.end(),
-                                    [&](const std::string& name) { return std::find(before.begin(), before.end(), name) == before.end(); });
-    if (!gains_too_little(rung.actual_drop, rung.held_out_gain, static_cast<int>(more), families_)) return true;
+    const int more = parameters_added(rung);
+    if (!gains_too_little(rung.actual_drop, rung.held_out_gain, more, families_)) return true;
     ladder_.root().note(fmt::format("{} gains too little for its {} coefficients (drop {}, held-out gain {}): its rung is taken off",
                                     effect_at(effect, roles), more, rung.actual_drop ? format_value(*rung.actual_drop) : "unknown",
                                     rung.held_out_gain ? format_value(*rung.held_out_gain) : "unknown"));
