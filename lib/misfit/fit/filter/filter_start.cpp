@@ -122,7 +122,7 @@ SizedRecording sized_means(const FilterModel& model, const FilterData& data, std
 /// at lags beyond the five samples from which each is read, and decimating by two more than halves them.
 bool mostly_noise(const FilterModel& model, const SizedRecording& recording, const SizedRecording& coarser) {
   constexpr double of_motion = 0.5, largest_memory = 0.25;
-  constexpr int first_apart = 6, last = 9;  // lags at which two accelerations have no sample in common
+  constexpr int first_apart = 6, last = 9;  // lags; from 5 on two accelerations have no sample in common
   for (int i = 0; i < model.model.system_states(); ++i) {
     if (model.kind[i] != 1 || !recording.rates.shown[i]) continue;
     if (coarser.rates.rms[i] > of_motion * recording.rates.rms[i]) continue;
@@ -191,17 +191,23 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   constexpr double share_of_motion = 0.3, samples_of_memory = 6.0;
   FilterNoise out;
   const Signals& first = *data.front().signals;
-  const SizedRecording recording = sized_by_motion(model, data.front());
-  const ReconstructedStates& states = recording.states;
-  const double h = step_of_measurements(first), step = recording.step;
+  std::vector<SizedRecording> recordings;
+  for (const FilterData& recording : data) recordings.push_back(sized_by_motion(model, recording));
+  const double h = step_of_measurements(first);
   constexpr double memory_of_white = 0.3;  // samples: correlated by 4 % at the next
-  out.force_time = model.model.force_time ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * step;
-  const double of_equal_intensity = std::sqrt(samples_of_memory * step / out.force_time);
-  const RateSizes& rates = recording.rates;
-  const auto usual_force = [&](int group) { return share_of_motion * force_size(model, group, data.front(), rates) * of_equal_intensity; };
+  out.force_time =
+      model.model.force_time ? std::max(*model.model.force_time, memory_of_white * h) : samples_of_memory * recordings.front().step;
+  const auto usual_force = [&](int group) {  // of the recording that moves most
+    double largest = 0.0;
+    for (std::size_t e = 0; e < data.size(); ++e) {
+      const double of_equal_intensity = std::sqrt(samples_of_memory * recordings[e].step / out.force_time);
+      largest = std::max(largest, share_of_motion * force_size(model, group, data[e], recordings[e].rates) * of_equal_intensity);
+    }
+    return largest;
+  };
   out.force = usual_force(0);
   for (int group = 1; group < model.force_groups(); ++group) out.further_forces.push_back(usual_force(group));
-  const double motion = motion_frequency(model.model, states);
+  const double motion = motion_frequency(model.model, recordings.front().states);
   for (std::size_t o = 0; o < first.measured.size(); ++o) out.channels.push_back(usual_channel(model.model, first, o, motion));
   mark_known(model, out);
   return out;

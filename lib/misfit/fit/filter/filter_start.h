@@ -7,7 +7,8 @@ namespace misfit {
 /// Noise as it usually is on such data, before anything is fitted: white noise from fifth differences of the channels, coloured noise as
 /// large at 0.15 of the sampling rate or three times the motion's own frequency, a force of 0.3 of the measured accelerations (or rates)
 /// with a correlation time of six samples. Where it acts on states that no channel shows alone: 0.3 of the rates that the model itself
-/// gives them, or of the one that takes them through their typical size in the recording.
+/// gives them, or of the one that takes them through their typical size in the recording. Of several recordings: the force of the one that
+/// moves most; the rest of the first, which stands for all.
 [[nodiscard]] FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>& data);
 
 /// Marks in the usual noise what the study knows: noise and correlation time that are held, the prior of the force's strength. RunError if
