@@ -545,16 +545,20 @@ function line(pen, s) {
 
 const manyDots = 12000;
 
-/** Small squares at the samples that are `wanted`; of very many those that would cover others are left out. */
+/** Small squares at the samples that are `wanted`; of very many those that would cover others, two pixels apart or less, and those outside of
+    the axes are left out. */
 function dots(pen, s, [from, to], side, wanted) {
-  const taken = to - from > manyDots ? new Set() : null;
+  const columns = Math.ceil(pen.width / 2) + 1, rows = Math.ceil(pen.height / 2) + 1;
+  const taken = to - from > manyDots ? new Uint8Array(columns * rows) : null;
   for (let i = from; i < to; ++i) {
     if (!wanted(i) || s.y[i] === null || s.x[i] === null) continue;
     const x = pen.X(s.x[i]), y = pen.Y(s.y[i]);
     if (taken) {
-      const place = Math.round(x / 2) * 100000 + Math.round(y / 2);
-      if (taken.has(place)) continue;
-      taken.add(place);
+      const column = Math.round((x - pen.left) / 2), row = Math.round((y - pen.top) / 2);
+      if (column < 0 || column >= columns || row < 0 || row >= rows) continue;
+      const place = row * columns + column;
+      if (taken[place]) continue;
+      taken[place] = 1;
     }
     pen.ctx.fillRect(x - side / 2, y - side / 2, side, side);
   }
