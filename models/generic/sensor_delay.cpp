@@ -4,16 +4,16 @@ namespace {
 
 using namespace misfit;
 
-/// An output that comes late while the others do not: a slow bus, a video line. Second-order Pade approximation as in `delay`; time_offset
-/// moves all outputs together and is exact.
+/// An output that comes late while the others do not: a slow bus, a video line. Second-order Pade approximation, since what an output was
+/// before is in no recording; time_offset moves all outputs together, sensor_clock one of them, both exactly.
 struct SensorDelay {
   static constexpr const char* formula =
       "y = h + late_share (h(t - tau) - h), h(t - tau) = h - tau z_rate; z' = z_rate, z_rate' = 12/tau^2 (h - z) - 6/tau z_rate";
   static constexpr const char* symbols =
       "h predicted output, z, z_rate filtered output and its rate, late_share of the output [-] (1: all of it), tau = sensor_delay [s]";
   static constexpr const char* valid = "outputs slower than 1.7/tau (phase to 1 %)";
-  static constexpr const char* size = "20 ms at 1 rad/s: 2 % of the amplitude, 90 deg after it";
-  static constexpr const char* source = "Golub and Van Loan, Matrix Computations, 11.3: Pade (2, 2) of exp(-tau s)";
+  static constexpr const char* size = "20 ms at 1 rad/s: an error of 2 % of the amplitude, 90 deg behind the output";
+  static constexpr const char* source = "Golub and Van Loan, Matrix Computations, 3rd ed., 11.3: Pade (2, 2) of exp(-tau s)";
   static constexpr const char* excludes = "a clock that is off for all channels (time_offset), delays that change";
 
   enum Quantity { signal };
@@ -36,7 +36,7 @@ struct SensorDelay {
        .lower = 1e-9,
        .upper = 1e9,
        .scale = 0.05,
-       .doc = "delay",
+       .doc = "by how much the output comes late",
        .scan = {.from = 1.0, .to = 20.0, .count = 4, .over = "step"}},
   };
   enum State { z, z_rate };

@@ -334,5 +334,23 @@ TEST(LogScoreTail, OneSidedStrengthsHaveHalfTheChance) {
   EXPECT_EQ(log_score_tail(s, 0.0), 0.0) << "nothing there: p 1, not a half";
 }
 
+/// Sigma 0.11 s of the lag's time.
+TEST(Verdict, AMemoryWhoseTimeIsBelowTwoSigmasIsNotDetermined) {
+  Model model = assemble(parachute(true, {effect("lag")}), registry());
+  const std::vector<int> free = model.free_parameters();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(std::ssize(free), std::ssize(free));
+  const auto column = std::find(free.begin(), free.end(), model.find_parameter("tau")) - free.begin();
+  ASSERT_LT(column, covariance.rows());
+  covariance(column, column) = 0.11 * 0.11;
+  set(model, "tau", 0.16);
+  EXPECT_EQ(undetermined_time(model, covariance).value_or(""), "its time is not determined: tau = 0.16 ± 0.11 s");
+  EXPECT_FALSE(undetermined_time(model, Eigen::MatrixXd()).has_value()) << "nothing is known of its sigma";
+  set(model, "tau", 0.23);
+  EXPECT_FALSE(undetermined_time(model, covariance).has_value());
+  Model forced = assemble(cart({effect("periodic_forcing")}), registry());
+  const std::size_t size = forced.free_parameters().size();
+  EXPECT_FALSE(undetermined_time(forced, 1e6 * Eigen::MatrixXd::Identity(size, size)).has_value()) << "it remembers nothing";
+}
+
 }  // namespace
 }  // namespace misfit

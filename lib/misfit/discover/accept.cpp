@@ -16,7 +16,7 @@
 namespace misfit {
 namespace {
 
-constexpr double tied_gains = 3.0;  // of the log-likelihood: half of it
+constexpr double tied_gains = 3.0;  // [log-likelihood] a drop of 6
 
 CandidateModel with_quantities(CandidateModel candidate_model, const std::vector<int>& quantities) {
   candidate_model.quantities.insert(candidate_model.quantities.end(), quantities.begin(), quantities.end());
@@ -40,10 +40,10 @@ bool near_a_maximum(const Refit& refit) {
 /// Not significant as refitted: as it is, or because its refit has not found what its score promises.
 std::string not_significant(const RankedCandidate& e, const SearchContext& context) {
   const double promised = e.screening->result.chi2;
-  const bool in_screening = sidak(std::min(1.0, std::exp(e.screening->log_p)), context.families) < context.options.p_accept;
+  const bool in_screening = family_wise_p(e.screening->log_p, context.families) < context.options.p_accept;
   if (!in_screening || !(e.refit->drop < least_of_score * promised)) return "not significant: family-wise " + p_equals(e.candidate.p_value);
-  return "its refit failed: it ends at a drop of " + format_value(e.refit->drop) + " where its score promises " + format_value(promised) +
-         ", which says nothing against it";
+  return "its refit failed: it ends at a drop of " + format_value(e.refit->drop) + " where the score test predicts " +
+         format_value(promised) + ", which is no evidence against it";
 }
 
 /// Step 1: the reason why it cannot be accepted; empty if there is none.
@@ -61,6 +61,7 @@ std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& 
   if (const auto unknown =
           undetermined_strengths(e.refit->estimate.model, e.refit->estimate.covariance, e.screening->candidate_model->strengths))
     return *unknown;
+  if (const auto time = undetermined_time(e.refit->estimate.model, e.refit->estimate.covariance)) return *time;
   if (const auto collinear = no_longer_determined(e.refit->estimate, context.estimate)) return *collinear;
   if (memory) return *memory;
   if (uneven) return *uneven;
@@ -68,8 +69,9 @@ std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& 
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
   e.alone_gains_nothing = !(*c.held_out_gain > least_held_out_gain(estimated_parameters(*e.refit)));
   if (!e.alone_gains_nothing) return "";
-  if (!(*c.held_out_gain > 0.0)) return "the held-out likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
-  return "the held-out likelihood rises by " + format_value(*c.held_out_gain) + ", less than by half for each of its estimated parameters";
+  if (!(*c.held_out_gain > 0.0)) return "the held-out log-likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
+  return "the held-out log-likelihood rises by " + format_value(*c.held_out_gain) + ", less than the " +
+         format_value(least_held_out_gain(estimated_parameters(*e.refit))) + " asked of so many parameters";
 }
 
 /// Step 7: groups the best candidate with those that these data cannot distinguish from it.
@@ -91,6 +93,20 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   for (RankedCandidate* e : members) e->candidate.group = group;
 }
 
+/// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
+double gain_of(const RankedCandidate& e) { return 0.5 * e.refit->drop + e.candidate.held_out_gain.value_or(0.0); }
+
+/// What decided between one that is not refused and the accepted one (steps 2 and 5).
+std::string why_not_before(const RankedCandidate& other, const RankedCandidate& best) {
+  const std::string than = label(best.candidate);
+  if (!(other.refit->drop > best.refit->drop)) return "explains less than " + than;
+  if (gain_of(other) < gain_of(best)) return "explains more than " + than + " here, but less of what is held out, and less in all";
+  return "explains hardly more than " + than +
+         (estimated_parameters(*other.refit) > estimated_parameters(*best.refit)
+              ? ", which has fewer parameters"
+              : ", which comes first: what a sensor does can stand for much of what the plant does");
+}
+
 /// Step 8: reasons for those that were refitted and are not accepted, the accepted one in front.
 void explain_others(std::vector<RankedCandidate>& ranked) {
   const Candidate& best = ranked.front().candidate;
@@ -98,10 +114,8 @@ void explain_others(std::vector<RankedCandidate>& ranked) {
     Candidate& other = ranked[k].candidate;
     if (!other.why.empty() || !ranked[k].refit) continue;
     const bool indistinguishable = std::find(other.group.begin(), other.group.end(), label(best)) != other.group.end();
-    const bool larger_drop = ranked[k].refit->drop > ranked.front().refit->drop;
     other.why = indistinguishable ? "these data cannot distinguish it from " + label(best)
-                : larger_drop ? "less significant than " + label(best) + " for its number of parameters; tested again once that is added"
-                              : "explains less than " + label(best) + "; tested again once that is added";
+                                  : why_not_before(ranked[k], ranked.front()) + "; tested again once that is added";
   }
 }
 
@@ -119,9 +133,6 @@ struct Choice {
   Place at;
   std::optional<Pair> pair = std::nullopt;
 };
-
-/// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
-double gain_of(const RankedCandidate& e) { return 0.5 * e.refit->drop + e.candidate.held_out_gain.value_or(0.0); }
 
 /// Dynamics or a nonlinearity of a sensor (lag, delay, saturation) that nothing is known of beforehand: it can imitate much of what the
 /// plant does.
@@ -171,29 +182,30 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
                              const std::vector<UnknownCurve>& unknown, HeldOut& held_out, const SearchContext& context) {
   const double least = 2.0 * choice.at->refit->drop;
   const auto past = [&](const std::string& larger, const char* which) -> Choice {
-    choice.at->candidate.why = "explains less than half of what " + larger + " does, which " + which;
+    choice.at->candidate.why = "explains less than half of what " + larger + " does, and " + which;
     return {ranked.end()};
   };
   for (const Alias& alias : aliases) {
     if (!(alias.at->refit->drop > least)) continue;
     if (const auto pair = explaining_effect(*alias.at, ranked, held_out, context)) return {alias.at, pair};
-    return past(label(alias.at->candidate), "leaves a lack of fit that no second effect removes");
+    return past(label(alias.at->candidate), "that leaves a lack of fit which no second effect removes");
   }
+  // A degenerate refit is no effect, but so much that something else explains is still missing beside the choice.
   for (auto e = ranked.begin(); e != ranked.end(); ++e) {
     if (!e->refit || e->candidate.why.empty() || !(e->refit->drop > least) || !(e->candidate.p_value < context.options.p_accept)) continue;
     if (e->alone_gains_nothing) {
       if (const auto pair = explaining_effect(*e, ranked, held_out, context)) return {e, pair};
     }
-    return past(label(e->candidate), "cannot be accepted");
+    return past(label(e->candidate), "that cannot be accepted");
   }
   for (const UnknownCurve& curve : unknown) {
     if (!(curve.result.chi2 - 2.0 * curve.result.dof > least)) continue;
-    return past(curve.label(), "no known effect describes");
+    return past(curve.label(), "no known effect describes that");
   }
   return choice;
 }
 
-/// Step 5.
+/// Step 5: the first of a pair that explains clearly more, in place of the choice.
 Choice or_a_better_pair(std::vector<RankedCandidate>& ranked, const Choice& choice, HeldOut& held_out, const SearchContext& context) {
   if (choice.pair) return choice;
   const auto instead = better_pair(ranked, *choice.at, held_out, context);
@@ -217,7 +229,7 @@ Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const st
   return {ranked.end()};
 }
 
-/// Step 6.
+/// Step 6: marks the choice as accepted, says why, and makes it the first of the list.
 void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   Candidate& c = choice.at->candidate;
   c.accepted = true;

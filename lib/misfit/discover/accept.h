@@ -41,10 +41,10 @@ inline constexpr double least_of_score = 0.5;
 /// options say otherwise; numbers and formulas: lib/misfit/README.md, 6.5.
 ///
 /// 1. A candidate is refused (`refusal`) if its family-wise p is not below p_accept, its refit has not converged, only a part of an effect
-///    is found that exists as a whole (whole_strength.h), one of its strengths ends at a bound, all are smaller than two sigmas, a
-///    parameter that was known to 5 % is not known to 50 % beside it, it
-///    remembers for longer than half of the recording or has not one period in it, it has an edge where nothing was, or the held-out
-///    log-likelihood rises by less than 1/2 for each of its parameters. The first reason that holds is noted.
+///    is found that exists as a whole (whole_strength.h), one of its strengths ends at a bound, all are smaller than two sigmas, or a time
+///    by which it remembers is, a parameter that was known to 5 % is not known to 50 % beside it, it remembers for longer than half of the
+///    recording or has not one period in it, it has an edge where nothing was, or the held-out log-likelihood rises by less than 1/2 for
+///    each of its parameters. The first reason that holds is noted.
 /// 2. The others come by what they gain, on the estimation's measurements and the held-out ones together (`gain_of`); those within 3 of
 ///    the best by the number of their parameters, then as in the list, but a lag, delay or limit of a sensor after the plant. Unknown
 ///    curves and surfaces are screened again with the candidate in the model (`remaining_lack_of_fit`), and with a lag or delay the others
@@ -59,9 +59,8 @@ inline constexpr double least_of_score = 0.5;
 ///    were refused for their held-out gain alone, the first that gains together with a second effect what both must, and leaves as little:
 ///    two effects that hide each other (an offset and dry friction). So in step 3, of a larger one that was refused for that.
 /// 5. If two others of the port and quantity of the accepted one, a force without memory, explain 10 more between them, refitted, than it
-/// does
-///    with the best of these, each needed beside the other, with a larger held-out gain, the first of them takes its place (`better_pair`):
-///    the sum of two forms often looks like a third.
+///    does with the best of these, each needed beside the other, with a larger held-out gain, the first of them takes its place
+///    (`better_pair`): the sum of two forms often looks like a third.
 /// 6. The accepted one becomes the first of the list.
 /// 7. The first is grouped with those that these data cannot distinguish from it (`find_groups`): a refitted drop within 10, and neither
 ///    has a significant score once the other is in the model.

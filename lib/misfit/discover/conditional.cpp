@@ -70,7 +70,7 @@ std::optional<UnknownCurve> remaining_memory(const Refit& in, double drop, const
     if (!lag.lags || lag.ports.empty() || !other.screening->runs || other.candidate.described) continue;
     const std::optional<ScreeningResult> found = conditional.best_score(other);  // none of the effect that is in the model
     if (!found || found->result.dof == 0) continue;
-    const double p = sidak(std::min(1.0, std::exp(found->log_p)), static_cast<double>(ranked.size()));
+    const double p = family_wise_p(found->log_p, static_cast<double>(ranked.size()));
     if (p > context.options.p_accept || found->result.chi2 - 2.0 * found->result.dof < least_share_of_drop * drop) continue;
     if (worst && worst->log_p < found->log_p) continue;
     UnknownCurve memory;

@@ -354,11 +354,12 @@ class Search {
       return;
     }
     c.actual_drop = e.refit->drop;
+    c.held_out_gain.reset();  // that of an earlier refit
     e.log_p = log_score_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
-    c.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families_);
+    c.p_value = family_wise_p(e.log_p, families_);
     c.parameters = e.refit->parameters;
-    if (e.refit->moved) c.roles = *e.refit->moved;
-    if (!e.refit->also.empty()) c.also = e.refit->also;
+    c.roles = e.refit->moved.value_or(e.screening->candidate_model->roles);
+    c.also = e.refit->also.empty() ? std::nullopt : std::optional(e.refit->also);
     c.free = e.refit->free;
     c.fixed = e.refit->fixed;
     const FilterEstimate& there = e.refit->estimate;

@@ -28,8 +28,7 @@ SecondEffect second_effect_given(const RankedCandidate& in, const ConditionalSco
     if (!found || found->result.dof == 0 || (best.entry != nullptr && found->log_p >= best.score.log_p)) continue;
     best = {&other, std::move(*found)};
   }
-  if (best.entry != nullptr && sidak(std::min(1.0, std::exp(best.score.log_p)), static_cast<double>(ranked.size())) > p_accept)
-    best.entry = nullptr;
+  if (best.entry != nullptr && family_wise_p(best.score.log_p, static_cast<double>(ranked.size())) > p_accept) best.entry = nullptr;
   return best;
 }
 
@@ -41,7 +40,7 @@ bool needed_given(const RankedCandidate& in, const Refit& both, const RankedCand
   if (!alone.ok || !alone.estimate.converged) return false;
   const double drop = in.refit->drop + both.drop - alone.drop;
   const double log_p = log_score_tail(*in.screening->candidate_model, drop) + std::log(in.screening->cells_effective);
-  return sidak(std::min(1.0, std::exp(log_p)), context.families) < context.options.p_accept;
+  return family_wise_p(log_p, context.families) < context.options.p_accept;
 }
 
 /// Do both act on a port of the other, and depend on a quantity that the other reads?

@@ -9,6 +9,7 @@
 
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
+#include "misfit/core/text.h"
 #include "misfit/core/watch.h"
 #include "misfit/discover/drift.h"
 #include "misfit/discover/exchanged_poles.h"
@@ -19,7 +20,7 @@
 namespace misfit {
 namespace {
 
-/// Where a part of the effect is found, the whole with a memory so much shorter looks nearly the same.
+/// A share g of an effect with a time constant tau looks nearly like the whole of it with the time constant g tau.
 Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole) {
   Model start = part;
   for (const WholeStrength& w : whole) {
@@ -80,7 +81,7 @@ WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vec
       if (of_input != 0.0 && bound.coefficients[c].parameter >= 0) there.parameters[bound.coefficients[c].parameter].value = of_input;
     }
     out = {std::move(there), *request, request->effects.back().roles};
-  } catch (const InputError&) {  // it cannot act there: its strength is held at a number
+  } catch (const InputError&) {  // it cannot act there: it stays at its port, its strength held at the whole
   }
   return out;
 }
@@ -88,7 +89,7 @@ WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vec
 /// The estimate from where the effect has a time constant of the system, and the system, by the parameter that moves it, the effect's. The
 /// others are fitted first with these two held: a gain is far off then.
 FilterEstimate with_exchanged_poles(const RefitWork& work, const FilterEstimate& estimate, const MovedPole& effect) {
-  const FilterOptions options = options_like(work.without, work.threads);  // with its noise: the way is long
+  const FilterOptions options = options_like(work.without, work.threads);  // from its noise: the start is far from the maximum
   const auto from = [&](const Model& start) {
     return estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
   };
@@ -149,8 +150,13 @@ void try_exchanged_poles(const RefitWork& work, Refit& out) {
       const double found = there.model.parameters[time].value;
       if (there.out_of_time || !there.converged || alike(found, known)) continue;
       const double gain = there.objective - out.estimate.objective;
-      if (std::abs(gain) < hardly ? found < known : gain > 0.0) std::swap(there, out.estimate);
-      if (std::abs(gain) < hardly) out.also = exchange_in_words(out.estimate, there, time);
+      const bool taken = std::abs(gain) < hardly ? found < known : gain > 0.0;
+      if (taken) std::swap(there, out.estimate);
+      if (std::abs(gain) < hardly) {
+        out.also = exchange_in_words(out.estimate, there, time);
+      } else if (taken) {
+        out.also.clear();  // of an order that was left
+      }
     } catch (const TimeSpent&) {  // the order that was found stays
       return;
     } catch (const RunError&) {  // it cannot be run in that order
@@ -183,23 +189,34 @@ std::vector<Lateness> lateness_of_last(const Model& model) {
 void note_half_a_sample(Refit& out) {
   constexpr double sigmas = 3.0, sharp = 0.3, close = 0.1;  // of half an interval
   const Model& model = out.estimate.model;
-  const double half = 0.5 * usual_step(out.estimate.data.front().signals->t);
+  std::vector<std::string> inputs;
+  double half = 0.0;
+  bool straight = false;
   for (const Lateness& late : lateness_of_last(model)) {
     const InputSpec& input = model.system->spec().inputs[late.input];
     const auto sigma = standard_error_of(model, out.estimate.covariance, late.parameter);
     const double seconds = late.sign * model.parameters[late.parameter].value;
-    const bool straight = input.hold == Hold::first_order;  // and should be held, which makes it late
-    if (!sigma || *sigma > sharp * half) continue;
-    if (std::abs(seconds - (straight ? half : -half)) > std::max(sigmas * *sigma, close * half)) continue;
-    out.also = fmt::format(
-        "that is half a sampling interval ({:.4g} s), by which an input seems {} that is {} between its samples: if {} is one, write "
-        "hold = \"{}\" at it instead",
-        half, straight ? "late" : "early", straight ? "held" : "straight", input.name, straight ? "zero_order" : "first_order");
+    if (!sigma) continue;
+    const bool of_line = input.hold == Hold::first_order;  // and should be held, which makes it late
+    for (const FilterData& data : out.estimate.data) {
+      const double half_step = 0.5 * usual_step(data.signals->t), off = std::abs(seconds - (of_line ? half_step : -half_step));
+      if (*sigma > sharp * half_step || off > std::max(sigmas * *sigma, close * half_step)) continue;
+      inputs.push_back(input.name);
+      half = half_step;
+      straight = of_line;
+      break;
+    }
   }
+  if (inputs.empty()) return;
+  out.also = fmt::format(
+      "that is half a sampling interval ({:.4g} s), by which an input seems {} that is {} between its samples: if {} {}, write "
+      "hold = \"{}\" at {} instead",
+      half, straight ? "late" : "early", straight ? "held" : "straight", join_words(inputs), inputs.size() == 1 ? "is one" : "are such",
+      straight ? "zero_order" : "first_order", inputs.size() == 1 ? "it" : "them");
 }
 
 bool free_drifts(const RefitWork& work, Refit& out) {
-  constexpr double least = 5.4;  // of the log-likelihood: 10.8 in chi², 1 degree of freedom
+  constexpr double rare = 1e-3;
   Model start = out.estimate.model;
   const std::vector<int> drifts = held_drifts(start);
   if (drifts.empty()) return true;
@@ -209,8 +226,8 @@ bool free_drifts(const RefitWork& work, Refit& out) {
   try {
     FilterEstimate drifting = estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options);
     if (drifting.out_of_time) return false;
-    const double needed = least * static_cast<double>(drifts.size());
-    if (drifting.converged && drifting.objective > out.estimate.objective + needed) out.estimate = std::move(drifting);
+    const double drop = 2.0 * (drifting.objective - out.estimate.objective);
+    if (drifting.converged && chi_square_tail(drop, static_cast<double>(drifts.size())) < rare) out.estimate = std::move(drifting);
   } catch (const TimeSpent&) {
     return false;
   } catch (const RunError&) {  // it cannot be run with a drift: it stays without

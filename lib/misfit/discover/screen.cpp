@@ -115,7 +115,18 @@ std::vector<std::vector<double>> cells_of(const FilterEstimate& estimate, const 
   return out;
 }
 
+/// Independent lines in a scan over `steps` of 1/(4T), as far as the tail of its largest chi² is concerned: 1.02 Δf T √(chi²/2), which
+/// grows with the height since a high line is a narrow one (Baluev, Mon. Not. R. Astron. Soc. 385 (2008) 1279: Rice's formula for a
+/// recording of even density); never below the 2 Δf T of a line as wide as two steps.
+double independent_frequencies(std::size_t steps, double chi2) {
+  constexpr double steps_of_1_over_T = 4.0, of_even_density = 1.0233;  // sqrt(4 pi/12)
+  const double lines = static_cast<double>(steps) / steps_of_1_over_T;
+  return std::max({of_even_density * lines * std::sqrt(0.5 * std::max(chi2, 0.0)), 2.0 * lines, 1.0});
+}
+
 }  // namespace
+
+double family_wise_p(double log_p, double families) { return sidak(std::min(1.0, std::exp(log_p)), families); }
 
 double log_chi_square_tail(double x, double dof) {
   const double p = chi_square_tail(x, dof);
@@ -162,7 +173,8 @@ std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<Can
     }
     if (candidate_models[s].frequency >= 0) {
       best.frequencies = frequencies[s];
-      best.cells_effective = std::max(0.5 * static_cast<double>(frequencies[s].count), 1.0);  // two steps of a half width each are one line
+      best.cells_effective =
+          independent_frequencies(frequencies[s].count, best.result.chi2) * static_cast<double>(candidate_models[s].cells.size());
     }
     if (!best.runs || best.result.dof == 0) return;
     constexpr double max_p_refined = 0.1;

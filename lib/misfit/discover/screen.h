@@ -51,6 +51,9 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// counts; 1 where there is nothing.
 [[nodiscard]] double log_score_tail(const CandidateModel& candidate_model, double chi2);
 
+/// p-value of the best of `families`, from the logarithm of its own (corrected for its cells).
+[[nodiscard]] double family_wise_p(double log_p, double families);
+
 /// Dynamic ports on which a force of unknown form may act: not those of a state whose rate is another state (no force turns a speed into
 /// something else; what seems to is the sensor's).
 [[nodiscard]] std::vector<int> ports_of_unknown_curves(const SystemSpec& system);

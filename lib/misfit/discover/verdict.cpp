@@ -80,6 +80,15 @@ double rms_from_multiples(const std::vector<double>& values, double step) {
   return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
 }
 
+/// "tau = 0.16 ± 0.11 s" of a parameter that is smaller than two of its sigmas; nullopt: it is larger, or its sigma is not known.
+std::optional<std::string> undetermined(const Model& model, const Eigen::MatrixXd& covariance, int parameter) {
+  constexpr double least = 2.0;  // sigmas
+  const std::optional<double> sigma = standard_error_of(model, covariance, parameter);
+  const Parameter& p = model.parameters[parameter];
+  if (!sigma || !(std::abs(p.value) < least * *sigma)) return std::nullopt;
+  return p.name + " = " + in_display_unit(p.value, p.unit, *sigma);
+}
+
 }  // namespace
 
 void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept, bool camera) {
@@ -145,16 +154,24 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
 
 std::optional<std::string> undetermined_strengths(const Model& model, const Eigen::MatrixXd& covariance,
                                                   const std::vector<int>& strengths) {
-  constexpr double least = 2.0;  // sigmas
   std::string values;
   for (const int strength : strengths) {
-    const std::optional<double> sigma = standard_error_of(model, covariance, strength);
-    const Parameter& p = model.parameters[strength];
-    if (!sigma || !(std::abs(p.value) < least * *sigma)) return std::nullopt;
-    values += (values.empty() ? "" : ", ") + p.name + " = " + in_display_unit(p.value, p.unit, *sigma);
+    const auto value = undetermined(model, covariance, strength);
+    if (!value) return std::nullopt;
+    values += (values.empty() ? "" : ", ") + *value;
   }
   if (values.empty()) return std::nullopt;
   return "its strength is not determined: " + values;
+}
+
+std::optional<std::string> undetermined_time(const Model& model, const Eigen::MatrixXd& covariance) {
+  const BoundEffect& effect = model.effects.back();
+  if (effect.effect->spec().states.empty()) return std::nullopt;
+  for (const auto& coefficient : effect.coefficients) {
+    if (coefficient.parameter < 0 || model.parameters[coefficient.parameter].unit != "s") continue;
+    if (const auto value = undetermined(model, covariance, coefficient.parameter)) return "its time is not determined: " + *value;
+  }
+  return std::nullopt;
 }
 
 std::optional<std::string> outlasts_recording(const Model& model, double seconds) {

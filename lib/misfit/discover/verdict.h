@@ -34,6 +34,11 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 [[nodiscard]] std::optional<std::string> undetermined_strengths(const Model& model, const Eigen::MatrixXd& covariance,
                                                                 const std::vector<int>& strengths);
 
+/// "its time is not determined: sensor_tau = 0.16 ± 0.11 s" where a time of the model's last effect, which remembers, is smaller than two
+/// sigmas: at a time of 0 there is nothing to remember, and its interval reaches that. So a gain of the fit is not that of a memory of this
+/// form. nullopt: none is, or `covariance` (of the free parameters) is not known.
+[[nodiscard]] std::optional<std::string> undetermined_time(const Model& model, const Eigen::MatrixXd& covariance);
+
 /// "its time constant tau = 62 s is longer than half of the recording, 40 s" where a time of the model's last effect, which remembers, is:
 /// on such a record a lag is a constant force and a stiffness. So where its frequency makes less than one period: a drift. nullopt: none
 /// is.
