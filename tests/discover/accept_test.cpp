@@ -340,7 +340,7 @@ TEST(Accept, NothingIsChosenPastAnUnknownFormWorthTwiceAsMuch) {
   EXPECT_TRUE(accepted_beside(1.9).accepted);
   const Candidate passed_over = accepted_beside(2.1);
   EXPECT_FALSE(passed_over.accepted);
-  EXPECT_EQ(passed_over.why, "explains less than half of what an unknown curve force(x) does, which no known effect describes");
+  EXPECT_EQ(passed_over.why, "explains less than half of what an unknown curve force(x) does, and no known effect describes that");
 }
 
 /// The drive is limited in its rate, which no known effect describes, and there is a little friction: that is right, but says nothing of
@@ -367,7 +367,7 @@ TEST(Accept, NothingIsChosenPastALargerAliasThatNoSecondEffectExplains) {
   const auto left = world.accept(ranked);
   for (const auto& e : ranked) EXPECT_FALSE(e.candidate.accepted) << e.candidate.effect << ": " << e.candidate.why;
   EXPECT_TRUE(left.has_value());
-  EXPECT_THAT(of(ranked, "coulomb_friction").why, testing::HasSubstr("which leaves a lack of fit that no second effect removes"));
+  EXPECT_THAT(of(ranked, "coulomb_friction").why, testing::HasSubstr("and that leaves a lack of fit which no second effect removes"));
 }
 
 /// The frequency of a force rises slowly: one at rest finds a part of it, of which the held-out rest knows nothing.
@@ -478,7 +478,7 @@ TEST(Pairs, WhatGainsNothingByItselfIsNotAcceptedWithoutASecond) {
   world.accept(ranked);
   const Candidate& friction = of(ranked, "coulomb_friction");
   EXPECT_FALSE(friction.accepted) << friction.why;
-  EXPECT_THAT(friction.why, testing::HasSubstr("the held-out likelihood does not rise"));
+  EXPECT_THAT(friction.why, testing::HasSubstr("the held-out log-likelihood does not rise"));
 }
 
 TEST(Refit, ThatEndsFarBelowItsScoreHasFailedAndSaysNothingAgainstItsEffect) {
@@ -490,8 +490,8 @@ TEST(Refit, ThatEndsFarBelowItsScoreHasFailedAndSaysNothingAgainstItsEffect) {
   world.accept(ranked);
   EXPECT_FALSE(ranked[0].candidate.accepted);
   EXPECT_THAT(ranked[0].candidate.why,
-              testing::AllOf(testing::StartsWith("its refit failed: it ends at a drop of 2 where its score promises"),
-                             testing::HasSubstr("says nothing against it")));
+              testing::AllOf(testing::StartsWith("its refit failed: it ends at a drop of 2 where the score test predicts"),
+                             testing::HasSubstr("no evidence against it")));
 }
 
 }  // namespace
