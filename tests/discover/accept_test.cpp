@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <memory>
 #include <numbers>
 
 #include "misfit/diagnose/features.h"
@@ -19,31 +22,44 @@ namespace {
 
 using namespace testing_records;
 
-/// A cart whose model knows of viscous friction only, and all that the screen says of it.
+/// Candidate models of one effect, and what the screen says of them.
+struct Screened {
+  std::vector<CandidateModel> models;
+  std::vector<ScreeningResult> results;
+};
+
+/// A cart whose model knows of viscous friction only. An effect is screened when it is asked for.
 struct World {
   std::vector<Signals> signals;
   ModelRequest request = cart({effect("viscous_friction")});
   FilterEstimate estimate;
   std::vector<CandidateModel> list;
-  std::vector<ScreeningResult> screening;
   DiscoverOptions options;
+  mutable std::map<std::string, std::unique_ptr<Screened>> screened;  ///< by effect
 
   explicit World(Signals recorded, const std::map<std::string, double>& upper = {}) : signals{std::move(recorded)} {
     request.parameters["stiffness"].free = true;
     estimate = estimate_filter(assemble(request, registry()), {}, signals);
     for (const auto& [name, bound] : upper) request.parameters[name].upper = bound;  // of an effect that is not in it yet
     list = candidate_models(estimate, request, registry(), nullptr);
-    screening = screen({estimate, ScoreTest(estimate), ForceSensitivity(estimate)}, list);
+  }
+
+  /// At its first place of the list.
+  [[nodiscard]] const ScreeningResult& screening_of(const std::string& key) const {
+    std::unique_ptr<Screened>& there = screened[key];
+    if (there) return there->results.front();
+    there = std::make_unique<Screened>();
+    std::copy_if(list.begin(), list.end(), std::back_inserter(there->models), [&](const CandidateModel& c) { return c.effect == key; });
+    if (there->models.empty()) throw std::runtime_error(key + " is not offered");
+    there->results = screen({estimate, ScoreTest(estimate), ForceSensitivity(estimate)}, there->models);
+    return there->results.front();
   }
 
   [[nodiscard]] double families() const { return static_cast<double>(list.size()); }
 
   [[nodiscard]] RankedCandidate entry(const std::string& key, bool refitted = true) const {
     RankedCandidate e;
-    for (const auto& s : screening) {
-      if (s.candidate_model->effect == key && e.screening == nullptr) e.screening = &s;
-    }
-    if (e.screening == nullptr) throw std::runtime_error(key + " is not offered");
+    e.screening = &screening_of(key);
     e.candidate = named_candidate(*e.screening, families());
     e.log_p = e.screening->log_p;
     if (!refitted) return e;

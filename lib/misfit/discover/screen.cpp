@@ -211,7 +211,8 @@ std::string UnknownCurve::quantities() const { return other.empty() ? quantity :
 
 namespace {
 
-/// Of these functions of the samples, whose columns are given.
+/// Score test of a force, or an error of an output, that is a sum of these functions of a quantity; `columns`: what each adds to the
+/// residuals.
 UnknownCurve unknown_form(const ScoreWork& work, const std::string& port, const Features& f, const Eigen::MatrixXd& columns) {
   UnknownCurve out;
   out.port = port;
@@ -235,7 +236,7 @@ UnknownCurve unknown_error(const ScoreWork& work, int output, const Features& f)
   return out;
 }
 
-/// Whose errors of unknown form are looked for.
+/// Outputs whose errors of unknown form are looked for.
 std::size_t count_of_outputs(const ScoreWork& work) { return work.calibrated ? 0 : work.estimate.model.system->spec().outputs.size(); }
 
 /// Of the own state of an effect to which the features belong.
