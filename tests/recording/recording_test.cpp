@@ -170,6 +170,23 @@ TEST(Recording, AnUnknownUnitOfTimeStopsAndKnownOnesAreConverted) {
   EXPECT_DOUBLE_EQ(survey(with("timestamp_ns")).step, 2e-6);
 }
 
+TEST(Recording, ATemperatureWithoutAUnitIsNoTimeWhereThereIsOne) {
+  for (const char* name : {"T", "T1", "T_2"}) {
+    const RecordingSurvey dated = survey(rows(fmt::format("{},DateTime,q", name), 50, [](int k) {
+      return fmt::format("{},2026-01-02 03:04:{:02},{}", 20.0 + 0.1 * k, k, std::sin(0.3 * k));
+    }));
+    EXPECT_EQ(dated.columns[0].use, ColumnUse::output) << name;
+    EXPECT_EQ(dated.columns[1].use, ColumnUse::time);
+    const RecordingSurvey elapsed = survey(rows(fmt::format("{},Elapsed Time (s),q", name), 50, [](int k) {
+      return fmt::format("{},{},{}", 20.0 + 0.1 * k + (k % 3 == 0 ? 0.3 : 0.0), 0.5 * k, std::sin(0.3 * k));
+    }));
+    EXPECT_EQ(elapsed.columns[1].use, ColumnUse::time) << name;
+    EXPECT_DOUBLE_EQ(elapsed.step, 0.5);
+  }
+  const RecordingSurvey alone = survey(rows("T,y_s", 50, [](int k) { return fmt::format("{},{}", 0.1 * k, std::sin(0.3 * k)); }));
+  EXPECT_EQ(alone.columns[0].use, ColumnUse::time);
+}
+
 TEST(Recording, DatesAreATimeInSeconds) {
   const RecordingSurvey s =
       survey(rows("when,T [\xC2\xB0"
@@ -223,6 +240,12 @@ TEST(Recording, WhatIsChosenIsTakenAndSaid) {
                 static_cast<void>(survey_with(content, {{"aa"}, {}, "", {}, {}}));
               }),
               HasSubstr("no column 'aa' — did you mean 'a'"));
+}
+
+TEST(Recording, ATimeThatIsChosenIsTakenWhateverTheFirstColumnIsCalled) {
+  const std::string content =
+      rows("t[s],clock_ms,y", 50, [](int k) { return fmt::format("{},{},{}", 0.1 * k, 50 * k, std::sin(0.3 * k)); });
+  EXPECT_NEAR(survey_with(content, {{}, {}, "clock_ms", {}, {}}).step, 0.05, 1e-9);
 }
 
 TEST(Recording, NamesMayBeGivenWhereTheFileHasNone) {

@@ -17,12 +17,15 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+std::string without_number(std::string name) {
+  while (!name.empty() && ((name.back() >= '0' && name.back() <= '9') || name.back() == '_')) name.pop_back();
+  return name;
+}
+
 /// The name, or the name with a number behind it ("u1"), is among the words.
 template <std::size_t N>
 bool is_called(const std::string& name, const std::array<std::string_view, N>& words) {
-  std::string bare = lower_case(name);
-  while (!bare.empty() && ((bare.back() >= '0' && bare.back() <= '9') || bare.back() == '_')) bare.pop_back();
-  return std::find(words.begin(), words.end(), bare) != words.end();
+  return std::find(words.begin(), words.end(), without_number(lower_case(name))) != words.end();
 }
 
 constexpr std::array<std::string_view, 8> time_words = {"t", "time", "zeit", "timestamp", "sec", "seconds", "tijd", "temps"};
@@ -117,6 +120,7 @@ std::vector<std::string> limit_remarks(const std::string& header, const std::vec
 }
 
 bool is_called_time(const std::string& name) { return is_called(name, time_words); }
+bool may_be_temperature(const std::string& name) { return name != "t" && without_number(lower_case(name)) == "t"; }
 bool is_called_input(const std::string& name) {
   const auto before = name.rfind('_');
   return is_called(name, input_words) || is_weather(name) ||

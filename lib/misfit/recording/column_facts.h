@@ -23,6 +23,7 @@ namespace misfit {
 
 // By name, case and a number behind it ("u1") aside.
 [[nodiscard]] bool is_called_time(const std::string& name);
+[[nodiscard]] bool may_be_temperature(const std::string& name);  ///< "T", "T1", "t_2"
 [[nodiscard]] bool is_called_input(const std::string& name);
 [[nodiscard]] bool is_called_segment(const std::string& name);
 

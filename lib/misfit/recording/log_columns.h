@@ -15,6 +15,7 @@ struct RecordingTable {
   LooseTable table;
   std::string format;              ///< empty: CSV, whose table says it
   std::vector<std::string> notes;  ///< what was done to channels of a log
+  bool of_log = false;             ///< made from channels of a log: the first column is time
 };
 
 /// A CSV file as it is; of another log the channels that `choice` names, or all if they have one clock, on one time base as columns

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -32,6 +33,7 @@ class ColumnClassifier {
     out_.rows = table_.rows();
     out_.format = recording.format;
     out_.remarks = recording.notes;
+    of_log_ = recording.of_log;
   }
 
   RecordingSurvey run() {
@@ -146,27 +148,47 @@ class ColumnClassifier {
     fail(0, option + ": no column '" + shown(name) + "'" + suggest(name, names));
   }
 
+  /// How surely a column is time, 0 the surest; nullopt: it is none. "T" without a unit may as well be a temperature.
+  std::optional<int> rank_of_time(std::size_t i) const {
+    const ColumnSurvey& c = out_.columns[i];
+    const bool of_time = parse_unit(c.unit).same_dimension(parse_unit("s"));
+    const bool called = is_called_time(c.name) && (of_time || c.unit == "-");
+    if (c.use != ColumnUse::unused || !(of_time || called)) return std::nullopt;
+    const double rows = forward(i), steps = forward(i, false);
+    if (called && (of_time || !may_be_temperature(c.name)) && steps > min_forward_share) return 0;
+    if (of_time && rows == 1.0) return 1;
+    if (called && rows == 1.0) return 2;
+    if (of_time && rows > min_forward_share) return 3;
+    if (called && steps > min_forward_share) return 4;
+    return std::nullopt;
+  }
+
+  /// " ('n' counts rows, …": the first column that does, for the message that none is time.
+  std::string counter() const {
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      if (out_.columns[i].use == ColumnUse::unused && forward(i) == 1.0 && is_integer(finite(values(i))))
+        return " ('" + out_.columns[i].header + "' counts rows, but over which interval?)";
+    }
+    return "";
+  }
+
+  /// The first of the surest; of a log the one that its rows are of.
   void find_time() {
-    constexpr double min_forward_share = 0.5;
-    std::string counter;
-    const bool given = !choice_.time.empty() && table_.columns.front().header != "t[s]";
+    if (of_log_) time_ = 0;
+    const bool given = !of_log_ && !choice_.time.empty();
     if (given) time_ = column_named(choice_.time, "--time");
     if (given && (out_.columns[time_].use != ColumnUse::unused || !(forward(time_) > min_forward_share)))
       fail(0, fmt::format("column '{}' is no time: it does not run forward", out_.columns[time_].header));
-    for (const bool by_name : {true, false}) {
-      for (std::size_t i = 0; i < out_.columns.size() && time_ == none; ++i) {
-        ColumnSurvey& c = out_.columns[i];
-        if (c.use != ColumnUse::unused || !(forward(i, !by_name) > min_forward_share)) continue;
-        const Unit unit = parse_unit(c.unit);
-        const bool of_time = unit.same_dimension(parse_unit("s"));
-        if (by_name ? is_called_time(c.name) && (of_time || c.unit == "-") : of_time) time_ = i;
-        if (time_ == none && counter.empty() && forward(i) == 1.0 && is_integer(finite(values(i)))) counter = c.header;
-      }
+    std::optional<int> surest;
+    for (std::size_t i = 0; i < out_.columns.size() && !given && !of_log_; ++i) {
+      const std::optional<int> rank = rank_of_time(i);
+      if (!rank || (surest && *rank >= *surest)) continue;
+      surest = rank;
+      time_ = i;
     }
     if (time_ == none) {
       fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, or holds dates, and increases") +
-                  (counter.empty() ? "" : " ('" + counter + "' counts rows, but over which interval?)") +
-                  "; write one as t[s], or dates as 2024-03-01 00:10:00 or 01.03.2024 00:10");
+                  counter() + "; write one as t[s], or dates as 2024-03-01 00:10:00 or 01.03.2024 00:10");
     }
     ColumnSurvey& c = out_.columns[time_];
     c.use = ColumnUse::time;
@@ -388,11 +410,13 @@ class ColumnClassifier {
 
   std::vector<std::string> not_understood_;  ///< unit in the header, per column; empty: known, or none, or found out
   static constexpr std::size_t longest_name = 64, longest_header = 80;  // bytes
+  static constexpr double min_forward_share = 0.5;                      // of a time
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   LooseTable table_;
   std::set<std::string> taken_;  // names that are reserved or given
   RecordingSurvey out_;
   const RecordingChoice& choice_;
+  bool of_log_ = false;  // the first column is its time
   std::set<std::size_t> left_out_;
   std::size_t time_ = none;
   std::vector<double> segments_;                  // the number of its recording, a value per row; empty: none

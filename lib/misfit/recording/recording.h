@@ -60,11 +60,11 @@ class ChannelsUndecided : public InputError {
 };
 
 /// Looks at a file of columns, or another log (data/log/log.h), asking nothing. Time: a column called so or in a unit of time that runs
-/// forward; inputs by name ("u", "force", "valve", …) or because they stand still between jumps; the rest are outputs, one that is the
-/// derivative of another its rate. InputError: what read_loose_csv() refuses, text among numbers, no time column, nothing that could be an
-/// output, too few rows. `reserved`: names that no input, output or rate may have ("t" is always one). A column called segment, id, run or
-/// the like splits the recording. An unknown unit of time is an InputError; so is what `choice` names and the file has not, and a log of
-/// several clocks where `choice` says nothing (ChannelsUndecided).
+/// forward ("T" without a unit where no other does); inputs by name ("u", "force", "valve", …) or because they stand still between jumps;
+/// the rest are outputs, one that is the derivative of another its rate. InputError: what read_loose_csv() refuses, text among numbers, no
+/// time column, nothing that could be an output, too few rows. `reserved`: names that no input, output or rate may have ("t" is always
+/// one). A column called segment, id, run or the like splits the recording. An unknown unit of time is an InputError; so is what `choice`
+/// names and the file has not, and a log of several clocks where `choice` says nothing (ChannelsUndecided).
 [[nodiscard]] RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved = {},
                                                const RecordingChoice& choice = {});
 
