@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -285,6 +286,25 @@ TEST(Recording, TimeThatRunsBackwardBeginsAnotherExperiment) {
   EXPECT_EQ(s.parts[0].rows(), 60U);
   EXPECT_EQ(s.parts[1].rows(), 40U);
   EXPECT_THAT(s.remarks, Contains(HasSubstr("backward")));
+}
+
+/// An NPY file of records of t and y.
+std::string npy(const std::vector<std::array<double, 2>>& records) {
+  std::string head = fmt::format("{{'descr': [('t', '<f8'), ('y', '<f8')], 'fortran_order': False, 'shape': ({},), }}", records.size());
+  head.resize(118, ' ');
+  std::string out = std::string("\x93NUMPY\x01\x00\x76\x00", 10) + head;
+  for (const auto& record : records) out.append(reinterpret_cast<const char*>(record.data()), sizeof record);
+  return out;
+}
+
+TEST(Recording, TimeThatRunsBackwardBeginsAnotherExperimentInALogAsWell) {
+  std::vector<std::array<double, 2>> records;
+  for (int k = 0; k < 90; ++k) records.push_back({0.1 * (k % 30), std::sin(0.3 * k)});
+  const TemporaryFolder folder;
+  const RecordingSurvey s = survey_recording(folder.write("runs.npy", npy(records)));
+  ASSERT_EQ(s.parts.size(), 3U);
+  EXPECT_EQ(s.parts[2].rows(), 30U);
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("time runs backward 2 times: 3 recordings in one file")));
 }
 
 TEST(Recording, TheStepOfADigitisedColumnIsFound) {

@@ -117,7 +117,8 @@ RecordingTable recording_table(const std::filesystem::path& path, const Recordin
   RecordingTable out{{}, log.format, log.notes, true};
   if (log.channels.empty()) throw InputError({log.source, 0, 0}, "no series of numbers is in it");
   const std::vector<WantedChannel> wanted = wanted_of(log, choice);
-  const Table table = on_one_time_base(*reader, wanted, choice.time.empty() ? std::nullopt : std::optional(choice.time), out.notes);
+  const std::optional<std::string> time = choice.time.empty() ? std::nullopt : std::optional(choice.time);
+  const Table table = on_one_time_base(*reader, wanted, time, out.notes, Rows::as_recorded);
   out.table.source = table.source;
   for (const Column& c : table.columns) {
     const std::string header =
