@@ -31,6 +31,11 @@ class MadeUpLog : public LogReader {
     values_.push_back(x);
     return *this;
   }
+  MadeUpLog& of_the_last_topic(const std::string& name, const std::vector<double>& x, const std::string& unit) {
+    log_.channels.push_back({name, log_.channels.back().group, unit, x.size(), log_.channels.back().clock, {}});
+    values_.push_back(x);
+    return *this;
+  }
   MadeUpLog& without_time(const std::string& name, const std::vector<double>& x) {
     log_.channels.push_back({name, "", "", x.size(), std::nullopt, {}});
     values_.push_back(x);
@@ -127,6 +132,16 @@ TEST(OneTimeBase, RowsOfOneClockMayStayAsTheyWereRecorded) {
   EXPECT_THAT(r.table.columns[1].values, ElementsAre(1, 2, 3, 4, 5, 6));
   EXPECT_THAT(r.notes, IsEmpty());
   EXPECT_EQ(brought(log, {{"a.x"}, {"u.x", Between::held}}, {}, Rows::as_recorded).table.rows(), 3U) << "of several clocks";
+}
+
+/// Both times count its rows: they are not brought from one to the other by their values.
+TEST(OneTimeBase, TheSecondTimeOfATopicIsThatOfItsRows) {
+  MadeUpLog log;
+  log.topic("a", {0, 1e5, 2e5}, {1, 2, 3}).of_the_last_topic("a.logged", {50.0, 50.1, 50.3}, "s");
+  const Result r = brought(log, {{"a.x"}}, "a.logged");
+  EXPECT_THAT(r.table.columns[0].values, ElementsAre(50.0, 50.1, 50.3));
+  EXPECT_THAT(r.table.columns[1].values, ElementsAre(1, 2, 3));
+  EXPECT_THAT(r.notes, IsEmpty());
 }
 
 TEST(OneTimeBase, WithoutATimeAsksForItByNameAndTakesIt) {

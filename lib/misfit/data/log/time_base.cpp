@@ -107,10 +107,11 @@ class TimeBase {
     t.erase(std::unique(t.begin(), t.end(), [&](double a, double b) { return b - a <= same; }), t.end());
   }
 
-  /// A channel without a clock has that of the base, if it has as many samples.
+  /// That of the base, which may be the second time of a group, for a channel of the same rows; and, if it has as many samples, for one
+  /// without a clock.
   [[nodiscard]] std::size_t clock_of(std::size_t channel) const {
-    const LogChannel& c = log_.channels[channel];
-    if (c.samples == log_.channels[base_].samples && (!c.clock || channel == base_)) return base_;
+    const LogChannel &c = log_.channels[channel], &base = log_.channels[base_];
+    if (c.samples == base.samples && (!c.clock || channel == base_ || c.clock == base.clock)) return base_;
     if (!c.clock) fail_without_time(c);
     return *c.clock;
   }
